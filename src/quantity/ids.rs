@@ -1,0 +1,30 @@
+//! Ids that cannot be mixed up.
+
+/// Defines a numbered id.
+macro_rules! id {
+    ($(#[$doc:meta])* $name:ident) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        pub struct $name(pub usize);
+
+        impl $name {
+            /// The number as used to index, from 0.
+            pub const fn index(self) -> usize {
+                self.0
+            }
+        }
+    };
+}
+
+id! {
+    /// A vertex of the chain, counted from 0 in the direction of +x.
+    VertexId
+}
+id! {
+    /// A segment of the chain: segment `i` joins vertices `i` and `i + 1`.
+    SegmentId
+}
+id! {
+    /// A node of the hop graph, counted from 0 in the direction of +x.
+    NodeId
+}

@@ -1,0 +1,15 @@
+//! Numbers with a meaning: angles, slopes, points, ids, and the roots of quadratics.
+//!
+//! Inside the program a direction is its slope `m = tan(theta)`; [`Angle`] is for the edges, where degrees come in and go out.
+
+mod angle;
+mod ids;
+mod points;
+mod quadratic;
+mod slope;
+
+pub use angle::{Angle, AngleInterval};
+pub use ids::{NodeId, SegmentId, VertexId};
+pub use points::{ChainPoint, MapPoint};
+pub use quadratic::{MonicQuadratic, Roots};
+pub use slope::SlopeInterval;

@@ -1,0 +1,54 @@
+//! Intervals of slopes: every limit of a hop is one of these.
+
+use super::{Angle, AngleInterval};
+
+/// A closed interval of slopes `tan(theta)`, ends possibly infinite; empty where `lower > upper`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlopeInterval {
+    /// The lower end.
+    pub lower: f64,
+    /// The upper end.
+    pub upper: f64,
+}
+
+impl SlopeInterval {
+    /// Every direction of travel.
+    pub const ALL: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
+    /// No direction at all.
+    pub const EMPTY: Self = Self { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
+
+    /// Whether no slope is inside. An end that is not a number counts as empty.
+    pub fn is_empty(self) -> bool {
+        let nonempty = self.lower <= self.upper;
+        !nonempty
+    }
+
+    /// Whether `slope` is inside, ends included.
+    pub fn contains(self, slope: f64) -> bool {
+        self.lower <= slope && slope <= self.upper
+    }
+
+    /// The slopes in both.
+    ///
+    /// ```
+    /// use chta::quantity::SlopeInterval;
+    /// let a = SlopeInterval { lower: 0.0, upper: 2.0 };
+    /// let b = SlopeInterval { lower: 1.0, upper: f64::INFINITY };
+    /// assert_eq!(a.intersect(b), SlopeInterval { lower: 1.0, upper: 2.0 });
+    /// ```
+    #[must_use]
+    pub fn intersect(self, other: Self) -> Self {
+        Self { lower: self.lower.max(other.lower), upper: self.upper.min(other.upper) }
+    }
+
+    /// The interval moved by `offset`.
+    #[must_use]
+    pub fn shifted(self, offset: f64) -> Self {
+        Self { lower: self.lower + offset, upper: self.upper + offset }
+    }
+
+    /// The same directions as angles; `None` where empty.
+    pub fn angles(self) -> Option<AngleInterval> {
+        (!self.is_empty()).then(|| AngleInterval { min: Angle::from_slope(self.lower), max: Angle::from_slope(self.upper) })
+    }
+}

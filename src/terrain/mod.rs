@@ -1,0 +1,1 @@
+//! Elevation rasters and what is cut from them.

@@ -1,0 +1,1 @@
+//! The robot and the body it hops on.
