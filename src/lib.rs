@@ -1,5 +1,7 @@
 //! Constrained hopping traversability analysis.
 
 pub mod quantity;
+
+pub mod chain;
 pub mod terrain;
 pub mod world;

@@ -1,1 +1,13 @@
-//! The robot and the body it hops on.
+//! The body hopped on, the robot, and the ground's grip.
+
+mod body;
+mod friction_cone;
+mod hopper;
+mod limit;
+mod surface;
+
+pub use body::{Body, KNOWN_BODIES};
+pub use friction_cone::{FrictionCone, InvalidFriction};
+pub use hopper::Hopper;
+pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
+pub use surface::{Grip, RestSlope, Surface};

@@ -1,0 +1,270 @@
+//! The chain with every segment's constraints settled: the input of all analysis.
+
+use super::{Contact, Direction, Ground, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, Station};
+use crate::{
+    quantity::{Angle, SegmentId},
+    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+};
+
+/// A chain whose segments all know what they allow.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ConstrainedChain {
+    geometry: PolygonalChain,
+    segments: Vec<SegmentConstraints>,
+    /// Greatest take-off and landing speed over all segments, m/s: bounds the reach of any hop.
+    speed_bounds_m_s: (f64, f64),
+}
+
+/// What keeps a chain from being analysed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ConstraintProblem {
+    /// Neither the chain nor the scenario says what holds on this segment.
+    #[error(
+        "segment {} has no constraints: give the chain a column friction_coefficient or the six explicit columns, \
+         or the scenario a [surface] with friction_coefficient or takeoff_from_slope_deg and landing_from_slope_deg",
+        .0.index() + 1
+    )]
+    NoGrip(SegmentId),
+    /// No speed limit for this segment.
+    #[error(
+        "segment {} has no speed limits: give the scenario a [hopper] with takeoff_speed_max_m_s and landing_speed_max_m_s",
+        .0.index() + 1
+    )]
+    NoSpeed(SegmentId),
+}
+
+/// All that keeps a chain from being analysed: the first segment with each problem and how many share it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{}", .0.iter().map(|(problem, others)| if *others == 0 { problem.to_string() } else { format!("{problem} (and {others} more segments)") }).collect::<Vec<_>>().join("; "))]
+pub struct ConstraintProblems(pub Vec<(ConstraintProblem, usize)>);
+
+impl ConstrainedChain {
+    /// Settles the constraints of every segment from what the chain, the hopper and the scenario's surface say.
+    ///
+    /// The chain's own friction, offsets or explicit limits go first, the surface fills what it leaves open; of two speed limits the
+    /// smaller counts. The rest slope is checked against the full inclination, `n_z = cos chi cos alpha`; left to friction, it is
+    /// that of the coefficient which rules the segment.
+    ///
+    /// # Errors
+    /// [`ConstraintProblems`] where a segment is left without constraints.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{chain::*, quantity::ChainPoint, world::*};
+    /// let chain = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 1.0)]).unwrap();
+    /// let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.6).unwrap())), rest: RestSlope::AsFrictionHolds };
+    /// let chain = ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0), &surface).unwrap();
+    /// // 45 degrees is steeper than atan 0.6 = 31 degrees: nothing rests there.
+    /// let refusal = chain.segments()[0].judged(Contact::Landing, Direction::Forward).unwrap_err();
+    /// assert!((refusal.excess_deg().unwrap() - (45.0 - 30.963_756_532_073_52)).abs() < 1e-9);
+    /// ```
+    pub fn new(geometry: PolygonalChain, hopper: &Hopper, surface: &Surface) -> Result<Self, ConstraintProblems> {
+        let mut problems: Vec<(ConstraintProblem, usize)> = Vec::new();
+        let mut segments = Vec::with_capacity(geometry.segment_count());
+        for (i, (&slope, ground)) in geometry.slopes().iter().zip(geometry.grounds()).enumerate() {
+            match settle(SegmentId(i), slope, ground, hopper, surface) {
+                Ok(segment) => segments.push(segment),
+                Err(problem) => {
+                    let same =
+                        |p: &&mut (ConstraintProblem, usize)| std::mem::discriminant(&p.0) == std::mem::discriminant(&problem);
+                    match problems.iter_mut().find(same) {
+                        Some(known) => known.1 += 1,
+                        None => problems.push((problem, 0)),
+                    }
+                }
+            }
+        }
+        if !problems.is_empty() {
+            return Err(ConstraintProblems(problems));
+        }
+        let bound = |contact: Contact| {
+            let rules = segments.iter().flat_map(|s| Direction::BOTH.map(|d| s.granted(contact, d))).flatten();
+            rules.map(super::ContactRule::speed_max_m_s).fold(0.0, f64::max)
+        };
+        let speed_bounds_m_s = (bound(Contact::Takeoff), bound(Contact::Landing));
+        Ok(Self { geometry, segments, speed_bounds_m_s })
+    }
+
+    /// The chain's geometry.
+    pub const fn geometry(&self) -> &PolygonalChain {
+        &self.geometry
+    }
+
+    /// The constraints of every segment.
+    pub fn segments(&self) -> &[SegmentConstraints] {
+        &self.segments
+    }
+
+    /// The greatest take-off and landing speed that any segment grants, m/s.
+    pub const fn speed_bounds_m_s(&self) -> (f64, f64) {
+        self.speed_bounds_m_s
+    }
+
+    /// The constraints that rule a contact at a station; `None` beyond the chain's ends.
+    #[inline]
+    pub fn ruling(&self, station: &Station, contact: Contact, direction: Direction) -> Option<&SegmentConstraints> {
+        let segment = station.ruling_segment(contact, direction, self.segments.len())?;
+        self.segments.get(segment.index())
+    }
+
+    /// The rule of a contact at a station, or why the ground refuses it whatever the hop.
+    ///
+    /// # Errors
+    /// The ground's refusal.
+    pub fn judged(&self, station: &Station, contact: Contact, direction: Direction) -> Result<super::ContactRule, GroundRefusal> {
+        self.ruling(station, contact, direction).ok_or(GroundRefusal::NoGround)?.judged(contact, direction)
+    }
+}
+
+/// Settles one segment.
+fn settle(
+    id: SegmentId,
+    slope: f64,
+    ground: &Ground,
+    hopper: &Hopper,
+    surface: &Surface,
+) -> Result<SegmentConstraints, ConstraintProblem> {
+    let (takeoff_speed, landing_speed) = (hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s);
+    let (forward, reverse, friction, cross_slope) = match ground.form {
+        GroundForm::Explicit { forward, reverse } => {
+            let capped =
+                |c: Option<LineConstraints>| c.map(|c| c.capped(takeoff_speed, landing_speed)).ok_or(GroundRefusal::NoGround);
+            (capped(forward), capped(reverse), None, Angle::default())
+        }
+        GroundForm::Surface { friction, cross_slope } => {
+            let grip = friction.map(Grip::Friction).or(surface.grip).ok_or(ConstraintProblem::NoGrip(id))?;
+            let on = |slope: f64| match grip {
+                Grip::Friction(cone) => cone
+                    .cut(cross_slope)
+                    .map(|delta| LineConstraints::from_cone(slope, delta, takeoff_speed, landing_speed))
+                    .ok_or(GroundRefusal::CrossSlope { cross_slope, friction: cone }),
+                Grip::FromSlope { takeoff, landing } => {
+                    Ok(LineConstraints::from_offsets(slope, takeoff, landing, takeoff_speed, landing_speed))
+                }
+            };
+            let friction = if let Grip::Friction(cone) = grip { Some(cone) } else { None };
+            (on(slope), on(-slope), friction, cross_slope)
+        }
+    };
+    let unbounded = |c: &Result<LineConstraints, GroundRefusal>| {
+        c.is_ok_and(|c| !(c.takeoff.speed_max_m_s().is_finite() && c.landing.speed_max_m_s().is_finite()))
+    };
+    if unbounded(&forward) || unbounded(&reverse) {
+        return Err(ConstraintProblem::NoSpeed(id));
+    }
+    let rest_slope = match surface.rest {
+        RestSlope::AsFrictionHolds => friction.map(FrictionCone::coefficient),
+        RestSlope::AtMost(angle) => Some(angle.slope()),
+        RestSlope::Unlimited => None,
+    };
+    let tilt = tilt_slope(slope, cross_slope.slope());
+    let too_steep = rest_slope
+        .filter(|&max| tilt > max)
+        .map(|max| GroundRefusal::TooSteep { tilt: Angle::from_slope(tilt), max: Angle::from_slope(max) });
+    let refusal = if ground.keep_out { Some(GroundRefusal::KeepOut) } else { too_steep };
+    Ok(SegmentConstraints::new(forward, reverse, refusal))
+}
+
+/// The tangent of a surface's inclination, from its slope `s` along the plane of travel and the tangent `t` of its cross-slope:
+/// `n_z = cos chi cos alpha` gives `tan^2 = (1 + s^2)(1 + t^2) - 1`. Exactly `|s|` where `t` is zero, so that limits that touch hold.
+fn tilt_slope(s: f64, t: f64) -> f64 {
+    if t == 0.0 { s.abs() } else { libm::hypot(s, t * libm::hypot(1.0, s)) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quantity::{AngleInterval, ChainPoint};
+
+    fn one_segment(rise: f64, form: GroundForm) -> PolygonalChain {
+        let vertices = vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(10.0, rise)];
+        PolygonalChain::new(vertices, vec![Ground { form, keep_out: false }], None).unwrap()
+    }
+
+    fn friction(mu: f64) -> Surface {
+        Surface { grip: Some(Grip::Friction(FrictionCone::new(mu).unwrap())), rest: RestSlope::AsFrictionHolds }
+    }
+
+    const TEN: Hopper = Hopper::with_speeds(10.0, 10.0);
+
+    #[test]
+    fn a_slope_of_exactly_the_friction_angle_still_rests() {
+        let chain = |rise| ConstrainedChain::new(one_segment(rise, Ground::BARE.form), &TEN, &friction(0.6)).unwrap();
+        assert!(chain(6.0).segments()[0].judged(Contact::Landing, Direction::Forward).is_ok(), "tan = 0.6 touches 0.6");
+        assert!(chain(6.0f64.next_up().next_up()).segments()[0].judged(Contact::Landing, Direction::Forward).is_err());
+    }
+
+    #[test]
+    fn cross_slope_makes_flat_looking_ground_unusable() {
+        // mu = 0.6 allows no side-slope over 31 degrees (model section 1).
+        for (chi_deg, allowed) in [(30.9, true), (31.0, false)] {
+            let form = GroundForm::Surface { friction: None, cross_slope: Angle::from_degrees(chi_deg) };
+            let surface = Surface { rest: RestSlope::Unlimited, ..friction(0.6) };
+            let chain = ConstrainedChain::new(one_segment(0.0, form), &TEN, &surface).unwrap();
+            let judged = chain.segments()[0].judged(Contact::Takeoff, Direction::Forward);
+            assert_eq!(judged.is_ok(), allowed, "cross-slope {chi_deg} deg");
+        }
+    }
+
+    #[test]
+    fn tilt_agrees_with_the_normal_of_the_plane() {
+        for (s, t) in [(0.3, 0.4), (-1.0, 0.2), (0.0, 2.0), (5.0, 1e-3)] {
+            // In-plane direction (1, 0, s); the normal's part in the plane is along (-s, 0, 1), its part across has tangent t.
+            let (s, t): (f64, f64) = (s, t);
+            let along = nalgebra::Vector3::new(-s, 0.0, 1.0) / (1.0 + s * s).sqrt();
+            let normal = (along + nalgebra::Vector3::y() * t).normalize();
+            let expected = (normal.x.hypot(normal.y)) / normal.z;
+            assert!((tilt_slope(s, t) - expected).abs() < 1e-12 * (1.0 + expected), "s {s} t {t}");
+        }
+    }
+
+    #[test]
+    fn the_smaller_speed_counts_and_missing_ones_are_named() {
+        let line = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 6.0, 50.0);
+        let form = GroundForm::Explicit { forward: Some(line), reverse: None };
+        let chain = ConstrainedChain::new(one_segment(0.0, form), &TEN, &friction(0.6)).unwrap();
+        let rule = |contact| chain.segments()[0].judged(contact, Direction::Forward).unwrap();
+        assert_eq!(rule(Contact::Takeoff).speed_max_m_s(), 6.0);
+        assert_eq!(rule(Contact::Landing).speed_max_m_s(), 10.0);
+        assert_eq!(
+            chain.segments()[0].judged(Contact::Takeoff, Direction::Reverse).unwrap_err(),
+            GroundRefusal::NoGround,
+            "no reverse columns, no reverse hop"
+        );
+        let bare = Surface { grip: None, rest: RestSlope::AsFrictionHolds };
+        let ConstraintProblems(problems) = ConstrainedChain::new(one_segment(0.0, Ground::BARE.form), &TEN, &bare).unwrap_err();
+        assert_eq!(problems, [(ConstraintProblem::NoGrip(SegmentId(0)), 0)]);
+        let ConstraintProblems(problems) =
+            ConstrainedChain::new(one_segment(0.0, Ground::BARE.form), &Hopper::UNLIMITED, &friction(0.6)).unwrap_err();
+        assert_eq!(problems, [(ConstraintProblem::NoSpeed(SegmentId(0)), 0)]);
+    }
+
+    #[test]
+    fn reverse_sees_the_mirrored_slope() {
+        let surface = Surface {
+            grip: Some(Grip::FromSlope {
+                takeoff: AngleInterval::from_degrees(60.0, 90.0),
+                landing: AngleInterval::from_degrees(-90.0, -60.0),
+            }),
+            rest: RestSlope::AsFrictionHolds,
+        };
+        let chain = ConstrainedChain::new(one_segment(10.0, Ground::BARE.form), &TEN, &surface).unwrap();
+        let angles = |d| chain.segments()[0].stated(d).unwrap().takeoff.angles();
+        assert!((angles(Direction::Forward).min.degrees() - 105.0).abs() < 1e-9);
+        assert!((angles(Direction::Reverse).min.degrees() - 15.0).abs() < 1e-9);
+        assert!(matches!(
+            chain.segments()[0].judged(Contact::Takeoff, Direction::Forward),
+            Err(GroundRefusal::NothingAhead { .. })
+        ));
+    }
+
+    #[test]
+    fn speed_zero_is_refused_before_any_formula() {
+        let line = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 0.0, 5.0);
+        let form = GroundForm::Explicit { forward: Some(line), reverse: Some(line) };
+        let chain = ConstrainedChain::new(one_segment(0.0, form), &TEN, &friction(0.6)).unwrap();
+        assert_eq!(chain.segments()[0].judged(Contact::Takeoff, Direction::Forward), Err(GroundRefusal::SpeedZero));
+        assert!(chain.segments()[0].judged(Contact::Landing, Direction::Forward).is_ok(), "landing keeps its own limit");
+    }
+}

@@ -1,0 +1,276 @@
+//! What one segment allows, for either direction of travel.
+
+use std::fmt;
+
+use super::{Contact, Direction};
+use crate::{
+    quantity::{Angle, AngleInterval, SlopeInterval},
+    world::{FrictionCone, Limit},
+};
+
+/// The limits of one contact: directions of travel and a greatest speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactRule {
+    angles: AngleInterval,
+    slopes: SlopeInterval,
+    speed_max_m_s: f64,
+}
+
+impl ContactRule {
+    /// A rule from angles as stated (cut to (-90, 90) degrees here) and a speed limit in m/s.
+    pub fn new(angles: AngleInterval, speed_max_m_s: f64) -> Self {
+        Self { angles, slopes: angles.slopes(), speed_max_m_s }
+    }
+
+    /// The angles as stated.
+    pub const fn angles(&self) -> AngleInterval {
+        self.angles
+    }
+
+    /// The slopes allowed.
+    #[inline]
+    pub const fn slopes(&self) -> SlopeInterval {
+        self.slopes
+    }
+
+    /// The greatest speed, m/s; 0: not allowed at all.
+    #[inline]
+    pub const fn speed_max_m_s(&self) -> f64 {
+        self.speed_max_m_s
+    }
+
+    /// The same angles with the smaller of two speed limits.
+    #[must_use]
+    fn capped(self, speed_max_m_s: f64) -> Self {
+        Self { speed_max_m_s: self.speed_max_m_s.min(speed_max_m_s), ..self }
+    }
+}
+
+/// The line constraints of a segment for one direction of travel, as seen by the traveller (CHTA paper, Definition 2).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineConstraints {
+    /// Take-off angles and speed.
+    pub takeoff: ContactRule,
+    /// Landing angles and speed.
+    pub landing: ContactRule,
+}
+
+impl LineConstraints {
+    /// The constraints that a friction cone, cut by the plane of travel, puts on a slope.
+    ///
+    /// ```text
+    ///     take-off: alpha + pi/2 -+ delta,   landing: alpha - pi/2 -+ delta
+    /// ```
+    ///
+    /// Source: Campana and Laumond 2016, section IV-A; model section 1.
+    ///
+    /// # Arguments
+    /// `slope`: the segment's slope as seen by the traveller; `cone_half_angle`: delta of [`FrictionCone::cut`]; the two speeds in m/s.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{chain::LineConstraints, quantity::Angle};
+    /// // Flat ground, friction angle 30 degrees: take off between 60 and 120 degrees, of which 60 to 90 is forward.
+    /// let c = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 10.0, 8.0);
+    /// assert!((c.takeoff.angles().min.degrees() - 60.0).abs() < 1e-12);
+    /// assert_eq!(c.takeoff.slopes().upper, f64::INFINITY);
+    /// assert!((c.landing.angles().max.degrees() + 60.0).abs() < 1e-12);
+    /// ```
+    pub fn from_cone(slope: f64, cone_half_angle: Angle, takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Self {
+        let alpha = Angle::from_slope(slope).radians();
+        let about = |axis: f64| AngleInterval::about(Angle::from_radians(axis), cone_half_angle);
+        Self {
+            takeoff: ContactRule::new(about(alpha + std::f64::consts::FRAC_PI_2), takeoff_speed_max_m_s),
+            landing: ContactRule::new(about(alpha - std::f64::consts::FRAC_PI_2), landing_speed_max_m_s),
+        }
+    }
+
+    /// The constraints of angles stated from the slope (CHTA paper, section V-B).
+    pub fn from_offsets(
+        slope: f64,
+        takeoff: AngleInterval,
+        landing: AngleInterval,
+        takeoff_speed_max_m_s: f64,
+        landing_speed_max_m_s: f64,
+    ) -> Self {
+        let alpha = Angle::from_slope(slope).radians();
+        let raised = |offsets: AngleInterval| AngleInterval {
+            min: Angle::from_radians(alpha + offsets.min.radians()),
+            max: Angle::from_radians(alpha + offsets.max.radians()),
+        };
+        Self {
+            takeoff: ContactRule::new(raised(takeoff), takeoff_speed_max_m_s),
+            landing: ContactRule::new(raised(landing), landing_speed_max_m_s),
+        }
+    }
+
+    /// The same angles, with no speed above those given.
+    #[must_use]
+    pub fn capped(self, takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Self {
+        Self { takeoff: self.takeoff.capped(takeoff_speed_max_m_s), landing: self.landing.capped(landing_speed_max_m_s) }
+    }
+
+    /// The rule of one contact.
+    pub const fn contact(&self, contact: Contact) -> ContactRule {
+        match contact {
+            Contact::Takeoff => self.takeoff,
+            Contact::Landing => self.landing,
+        }
+    }
+}
+
+/// Why the ground itself refuses a contact, whatever the hop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GroundRefusal {
+    /// The chain states no limits for this direction, or ends here.
+    NoGround,
+    /// A keep-out zone.
+    KeepOut,
+    /// Too steep to rest on.
+    TooSteep {
+        /// Inclination of the surface against the horizontal.
+        tilt: Angle,
+        /// The steepest allowed.
+        max: Angle,
+    },
+    /// The plane of travel misses the friction cone.
+    CrossSlope {
+        /// Angle between the surface normal and the plane of travel.
+        cross_slope: Angle,
+        /// Half-angle of the cone.
+        friction: FrictionCone,
+    },
+    /// A speed limit of zero.
+    SpeedZero,
+    /// A cone with no direction inside (-90, 90) degrees.
+    NothingAhead {
+        /// The cone.
+        angles: AngleInterval,
+    },
+}
+
+impl GroundRefusal {
+    /// The limit that this refusal counts under.
+    pub const fn limit(&self, contact: Contact) -> Limit {
+        match (self, contact) {
+            (Self::NoGround, _) => Limit::Direction,
+            (Self::KeepOut, _) => Limit::KeepOut,
+            (Self::TooSteep { .. }, _) => Limit::RestSlope,
+            (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Takeoff) => Limit::TakeoffCone,
+            (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Landing) => Limit::LandingCone,
+            (Self::SpeedZero, Contact::Takeoff) => Limit::TakeoffSpeed,
+            (Self::SpeedZero, Contact::Landing) => Limit::LandingSpeed,
+        }
+    }
+
+    /// By how many degrees the limit is missed, where it is one of angles.
+    pub fn excess_deg(&self) -> Option<f64> {
+        match self {
+            Self::TooSteep { tilt, max } => Some(tilt.degrees() - max.degrees()),
+            Self::CrossSlope { cross_slope, friction } => Some(cross_slope.degrees() - friction.half_angle().degrees()),
+            Self::NothingAhead { angles } => {
+                let (min, max) = (angles.min.degrees(), angles.max.degrees());
+                Some(if min > max { min - max } else { (min - 90.0).max(-90.0 - max) })
+            }
+            Self::NoGround | Self::KeepOut | Self::SpeedZero => None,
+        }
+    }
+}
+
+impl fmt::Display for GroundRefusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoGround => write!(f, "the chain grants nothing in this direction"),
+            Self::KeepOut => write!(f, "it lies in a keep-out zone"),
+            Self::TooSteep { tilt, max } => {
+                write!(f, "its surface slopes {:.3} deg, more than the rest slope of {:.3} deg", tilt.degrees(), max.degrees())
+            }
+            Self::CrossSlope { cross_slope, friction } => write!(
+                f,
+                "its cross-slope of {:.3} deg is over the friction angle of {:.3} deg",
+                cross_slope.degrees(),
+                friction.half_angle().degrees()
+            ),
+            Self::SpeedZero => write!(f, "its speed limit is 0"),
+            Self::NothingAhead { angles } => {
+                write!(f, "its cone, {:.3} to {:.3} deg, holds no direction of travel", angles.min.degrees(), angles.max.degrees())
+            }
+        }
+    }
+}
+
+/// What a segment grants, as `None` where the ground refuses whatever the hop.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Granted {
+    takeoff: Option<ContactRule>,
+    landing: Option<ContactRule>,
+}
+
+/// All that one segment allows: the line constraints of both directions, its steepness, and whether it is kept out of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentConstraints {
+    stated: [Result<LineConstraints, GroundRefusal>; 2],
+    /// What holds for both directions.
+    refusal: Option<GroundRefusal>,
+    granted: [Granted; 2],
+}
+
+impl SegmentConstraints {
+    /// From the constraints of the two directions (or why there are none) and a refusal that holds for both.
+    pub fn new(
+        forward: Result<LineConstraints, GroundRefusal>,
+        reverse: Result<LineConstraints, GroundRefusal>,
+        refusal: Option<GroundRefusal>,
+    ) -> Self {
+        let mut segment = Self { stated: [forward, reverse], refusal, granted: [Granted::default(); 2] };
+        for direction in Direction::BOTH {
+            segment.granted[direction as usize] = Granted {
+                takeoff: segment.judged(Contact::Takeoff, direction).ok(),
+                landing: segment.judged(Contact::Landing, direction).ok(),
+            };
+        }
+        segment
+    }
+
+    /// The rule of a contact, or why the ground refuses it whatever the hop.
+    ///
+    /// # Errors
+    /// The first refusal, in the order of [`Limit::ALL`].
+    pub fn judged(&self, contact: Contact, direction: Direction) -> Result<ContactRule, GroundRefusal> {
+        let stated = self.stated[direction as usize];
+        if let Err(refusal @ GroundRefusal::NoGround) = stated {
+            return Err(refusal);
+        }
+        if let Some(refusal) = self.refusal {
+            return Err(refusal);
+        }
+        let rule = stated?.contact(contact);
+        if rule.slopes().is_empty() {
+            return Err(GroundRefusal::NothingAhead { angles: rule.angles() });
+        }
+        if rule.speed_max_m_s() <= 0.0 {
+            return Err(GroundRefusal::SpeedZero);
+        }
+        Ok(rule)
+    }
+
+    /// The rule of a contact where the ground grants one: what inner loops ask.
+    #[inline]
+    pub const fn granted(&self, contact: Contact, direction: Direction) -> Option<&ContactRule> {
+        let granted = &self.granted[direction as usize];
+        match contact {
+            Contact::Takeoff => granted.takeoff.as_ref(),
+            Contact::Landing => granted.landing.as_ref(),
+        }
+    }
+
+    /// The line constraints as stated for a direction.
+    pub fn stated(&self, direction: Direction) -> Option<LineConstraints> {
+        self.stated[direction as usize].ok()
+    }
+
+    /// The refusal that holds for every contact here.
+    pub const fn refusal(&self) -> Option<GroundRefusal> {
+        self.refusal
+    }
+}

@@ -1,0 +1,21 @@
+//! The polygonal chain: terrain in the vertical plane of travel, with what each segment allows in each direction.
+//!
+//! ```text
+//!  z                        v3
+//!  |        v1___          /          segment i joins vertices i and i+1;
+//!  |       /     \___v2___/           at a vertex a forward take-off obeys the segment ahead,
+//!  |   v0_/                           a forward landing the one just flown over
+//!  +--------------------------- x     (reverse travel: the mirror image)
+//! ```
+
+mod constrained;
+mod constraints;
+mod ground;
+mod polygonal;
+mod station;
+
+pub use constrained::{ConstrainedChain, ConstraintProblem, ConstraintProblems};
+pub use constraints::{ContactRule, GroundRefusal, LineConstraints, SegmentConstraints};
+pub use ground::{Ground, GroundForm};
+pub use polygonal::{ChainProblem, InvalidChain, PolygonalChain};
+pub use station::{Contact, Direction, OffChain, Site, Station};

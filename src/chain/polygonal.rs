@@ -1,0 +1,278 @@
+//! The chain's geometry, validated once.
+
+use std::fmt;
+
+use super::{Ground, GroundForm, OffChain, Site, Station};
+use crate::{
+    quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
+    terrain::Profile,
+    world::FrictionCone,
+};
+
+/// A validated polygonal chain: at least two finite vertices, x strictly increasing, a ground for every segment.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PolygonalChain {
+    vertices: Vec<ChainPoint>,
+    /// Slope dz/dx of each segment.
+    slopes: Vec<f64>,
+    grounds: Vec<Ground>,
+    map: Option<Vec<MapPoint>>,
+}
+
+/// One thing that is wrong with a chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum ChainProblem {
+    /// Fewer than two vertices.
+    TooFewVertices {
+        /// How many there are.
+        count: usize,
+    },
+    /// A coordinate that is no finite number.
+    NotFinite {
+        /// Which vertex.
+        vertex: VertexId,
+    },
+    /// A vertex that is not to the right of the one before.
+    NotIncreasing {
+        /// Which vertex.
+        vertex: VertexId,
+        /// Its x, m.
+        x_m: f64,
+        /// The x of the vertex before, m.
+        before_m: f64,
+    },
+    /// A segment so steep that its slope is no finite number.
+    Vertical {
+        /// Which segment.
+        segment: SegmentId,
+    },
+    /// Grounds and segments, or map points and vertices, do not pair up.
+    CountMismatch {
+        /// Of what.
+        what: &'static str,
+        /// How many were given.
+        found: usize,
+        /// How many are needed.
+        expected: usize,
+    },
+}
+
+impl fmt::Display for ChainProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::TooFewVertices { count } => write!(f, "a chain of {count} vertices, expected at least 2"),
+            Self::NotFinite { vertex } => write!(f, "vertex {} has a coordinate that is no finite number", vertex.index() + 1),
+            Self::NotIncreasing { vertex, x_m, before_m } => {
+                write!(f, "vertex {} has x = {x_m} m, expected more than the {before_m} m of the vertex before", vertex.index() + 1)
+            }
+            Self::Vertical { segment } => {
+                write!(f, "segment {} is too steep for its slope to be a number: move its vertices apart", segment.index() + 1)
+            }
+            Self::CountMismatch { what, found, expected } => write!(f, "{found} {what}, expected {expected}"),
+        }
+    }
+}
+
+/// All that is wrong with a chain.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+pub struct InvalidChain(pub Vec<ChainProblem>);
+
+impl PolygonalChain {
+    /// A chain from its vertices, one ground per segment, and (optionally) one map point per vertex.
+    ///
+    /// # Errors
+    /// [`InvalidChain`] with every problem there is.
+    pub fn new(vertices: Vec<ChainPoint>, grounds: Vec<Ground>, map: Option<Vec<MapPoint>>) -> Result<Self, InvalidChain> {
+        let mut problems = Vec::new();
+        if vertices.len() < 2 {
+            problems.push(ChainProblem::TooFewVertices { count: vertices.len() });
+        }
+        for (i, v) in vertices.iter().enumerate() {
+            if !(v.x_m.is_finite() && v.z_m.is_finite()) {
+                problems.push(ChainProblem::NotFinite { vertex: VertexId(i) });
+            }
+        }
+        let mut slopes = Vec::with_capacity(vertices.len().saturating_sub(1));
+        for (i, pair) in vertices.windows(2).enumerate() {
+            let [a, b] = pair else { continue };
+            let slope = (b.z_m - a.z_m) / (b.x_m - a.x_m);
+            if b.x_m <= a.x_m {
+                problems.push(ChainProblem::NotIncreasing { vertex: VertexId(i + 1), x_m: b.x_m, before_m: a.x_m });
+            } else if !slope.is_finite() && [a.x_m, a.z_m, b.x_m, b.z_m].iter().all(|c| c.is_finite()) {
+                problems.push(ChainProblem::Vertical { segment: SegmentId(i) });
+            }
+            slopes.push(slope);
+        }
+        if grounds.len() != slopes.len() {
+            problems.push(ChainProblem::CountMismatch { what: "grounds", found: grounds.len(), expected: slopes.len() });
+        }
+        if let Some(points) = &map {
+            if points.len() != vertices.len() {
+                problems.push(ChainProblem::CountMismatch { what: "map points", found: points.len(), expected: vertices.len() });
+            }
+            for (i, p) in points.iter().enumerate() {
+                if !(p.x.is_finite() && p.y.is_finite()) {
+                    problems.push(ChainProblem::NotFinite { vertex: VertexId(i) });
+                }
+            }
+        }
+        if problems.is_empty() { Ok(Self { vertices, slopes, grounds, map }) } else { Err(InvalidChain(problems)) }
+    }
+
+    /// A chain of bare vertices: constraints come from the scenario.
+    ///
+    /// # Errors
+    /// [`InvalidChain`] with every problem there is.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{chain::PolygonalChain, quantity::ChainPoint};
+    /// let chain = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(2.0, 1.0)]).unwrap();
+    /// assert_eq!(chain.slopes(), [0.5]);
+    /// ```
+    pub fn bare(vertices: Vec<ChainPoint>) -> Result<Self, InvalidChain> {
+        let grounds = vec![Ground::BARE; vertices.len().saturating_sub(1)];
+        Self::new(vertices, grounds, None)
+    }
+
+    /// A chain from a slice of the terrain: cross-slopes from its facets, friction where one is given, map points from the slice.
+    ///
+    /// # Errors
+    /// [`InvalidChain`], which a slice of sound terrain does not give.
+    pub fn from_profile(profile: &Profile, friction: Option<FrictionCone>) -> Result<Self, InvalidChain> {
+        let vertices = profile.points.iter().map(|p| ChainPoint::new(p.x_m, p.z_m)).collect();
+        let grounds = profile
+            .facets
+            .iter()
+            .map(|facet| Ground { form: GroundForm::Surface { friction, cross_slope: facet.cross_slope }, keep_out: false })
+            .collect();
+        let map = profile.points.iter().map(|p| p.map).collect();
+        Self::new(vertices, grounds, Some(map))
+    }
+
+    /// The vertices, in the direction of +x.
+    pub fn vertices(&self) -> &[ChainPoint] {
+        &self.vertices
+    }
+
+    /// The slope dz/dx of each segment.
+    pub fn slopes(&self) -> &[f64] {
+        &self.slopes
+    }
+
+    /// What the chain says of each segment.
+    pub fn grounds(&self) -> &[Ground] {
+        &self.grounds
+    }
+
+    /// Where the vertices lie on the map.
+    pub fn map_points(&self) -> Option<&[MapPoint]> {
+        self.map.as_deref()
+    }
+
+    /// How many segments there are.
+    pub fn segment_count(&self) -> usize {
+        self.slopes.len()
+    }
+
+    /// The x of the first and of the last vertex, m.
+    pub fn extent_m(&self) -> (f64, f64) {
+        (self.vertices[0].x_m, self.vertices[self.vertices.len() - 1].x_m)
+    }
+
+    /// The place on the chain at `x_m`: a vertex where x is the same double, else the inside of a segment.
+    ///
+    /// # Errors
+    /// [`OffChain`] outside the chain, and for NaN.
+    pub fn station(&self, x_m: f64) -> Result<Station, OffChain> {
+        let (first_x_m, last_x_m) = self.extent_m();
+        if !(first_x_m <= x_m && x_m <= last_x_m) {
+            return Err(OffChain { x_m, first_x_m, last_x_m });
+        }
+        // The first vertex at or beyond x.
+        let next = self.vertices.partition_point(|v| v.x_m < x_m);
+        if self.vertices[next].x_m == x_m {
+            return Ok(self.vertex_station(VertexId(next)));
+        }
+        Ok(Station { point: self.point_inside(SegmentId(next - 1), x_m), site: Site::Inside(SegmentId(next - 1)) })
+    }
+
+    /// The station at a vertex.
+    ///
+    /// # Panics
+    /// Where the chain has no such vertex.
+    pub fn vertex_station(&self, vertex: VertexId) -> Station {
+        Station { point: self.vertices[vertex.index()], site: Site::Vertex(vertex) }
+    }
+
+    /// The chain's point at `x_m` on (the line of) a segment, counted from the nearer vertex so that digits are kept.
+    fn point_inside(&self, segment: SegmentId, x_m: f64) -> ChainPoint {
+        let (a, b) = (self.vertices[segment.index()], self.vertices[segment.index() + 1]);
+        let slope = self.slopes[segment.index()];
+        let z_m = if x_m - a.x_m <= b.x_m - x_m { a.z_m + slope * (x_m - a.x_m) } else { b.z_m - slope * (b.x_m - x_m) };
+        ChainPoint::new(x_m, z_m)
+    }
+
+    /// The map point below a station, on the straight line between its segment's ends; `None` where the chain is on no map.
+    pub fn map_point(&self, station: &Station) -> Option<MapPoint> {
+        let map = self.map.as_deref()?;
+        Some(match station.site {
+            Site::Vertex(vertex) => map[vertex.index()],
+            Site::Inside(segment) => {
+                let i = segment.index();
+                let (a, b) = (self.vertices[i].x_m, self.vertices[i + 1].x_m);
+                map[i] + (map[i + 1] - map[i]) * ((station.point.x_m - a) / (b - a))
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn chain(points: &[(f64, f64)]) -> Result<PolygonalChain, InvalidChain> {
+        PolygonalChain::bare(points.iter().map(|&(x, z)| ChainPoint::new(x, z)).collect())
+    }
+
+    #[test]
+    fn every_problem_is_reported_at_once() {
+        let InvalidChain(problems) = chain(&[(0.0, 0.0), (0.0, 1.0), (f64::NAN, 0.0), (3.0, f64::INFINITY)]).unwrap_err();
+        assert!(problems.contains(&ChainProblem::NotFinite { vertex: VertexId(2) }), "{problems:?}");
+        assert!(problems.contains(&ChainProblem::NotFinite { vertex: VertexId(3) }), "{problems:?}");
+        assert!(problems.contains(&ChainProblem::NotIncreasing { vertex: VertexId(1), x_m: 0.0, before_m: 0.0 }), "{problems:?}");
+        assert!(chain(&[(0.0, 0.0)]).is_err(), "one vertex is no chain");
+        assert!(chain(&[]).is_err(), "no vertex is no chain");
+    }
+
+    #[test]
+    fn a_wall_whose_slope_overflows_is_refused() {
+        let InvalidChain(problems) = chain(&[(0.0, 0.0), (f64::MIN_POSITIVE, 1e10)]).unwrap_err();
+        assert_eq!(problems, [ChainProblem::Vertical { segment: SegmentId(0) }]);
+    }
+
+    #[test]
+    fn stations_are_vertices_only_where_x_is_the_same_double() {
+        let c = chain(&[(0.0, 0.0), (1.0, 1.0), (2.0, 1.0)]).unwrap();
+        assert_eq!(c.station(1.0).unwrap().site, Site::Vertex(VertexId(1)));
+        assert_eq!(c.station(1.0f64.next_up()).unwrap().site, Site::Inside(SegmentId(1)));
+        assert_eq!(c.station(1.0f64.next_down()).unwrap().site, Site::Inside(SegmentId(0)));
+        assert_eq!(c.station(0.5).unwrap().point.z_m, 0.5);
+        assert!(c.station(-0.1).is_err() && c.station(2.1).is_err() && c.station(f64::NAN).is_err());
+    }
+
+    #[test]
+    fn shared_segments_count_both_ends() {
+        let c = chain(&[(0.0, 0.0), (1.0, 1.0), (2.0, 1.0)]).unwrap();
+        let at = |x| c.station(x).unwrap();
+        assert_eq!(at(0.0).shared_segment(&at(1.0)), Some(SegmentId(0)));
+        assert_eq!(at(1.0).shared_segment(&at(0.0)), Some(SegmentId(0)));
+        assert_eq!(at(1.0).shared_segment(&at(2.0)), Some(SegmentId(1)));
+        assert_eq!(at(0.5).shared_segment(&at(1.0)), Some(SegmentId(0)));
+        assert_eq!(at(0.0).shared_segment(&at(2.0)), None);
+        assert_eq!(at(0.5).shared_segment(&at(1.5)), None);
+        assert_eq!(at(0.5).shared_segment(&at(0.5)), None);
+    }
+}

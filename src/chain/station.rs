@@ -1,0 +1,120 @@
+//! A place on the chain, and which segment rules there.
+
+use crate::quantity::{ChainPoint, SegmentId, VertexId};
+
+/// A direction of travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Direction {
+    /// Towards +x.
+    Forward,
+    /// Towards -x.
+    Reverse,
+}
+
+impl Direction {
+    /// Both directions.
+    pub const BOTH: [Self; 2] = [Self::Forward, Self::Reverse];
+
+    /// The direction of travel between two stations; `None` where they share the same x.
+    pub fn between(takeoff_x_m: f64, landing_x_m: f64) -> Option<Self> {
+        if landing_x_m > takeoff_x_m {
+            Some(Self::Forward)
+        } else if landing_x_m < takeoff_x_m {
+            Some(Self::Reverse)
+        } else {
+            None
+        }
+    }
+
+    /// +1 forward, -1 in reverse: multiplies x and slopes to see them as the traveller does.
+    pub const fn sign(self) -> f64 {
+        match self {
+            Self::Forward => 1.0,
+            Self::Reverse => -1.0,
+        }
+    }
+
+    /// The name in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Forward => "forward",
+            Self::Reverse => "reverse",
+        }
+    }
+}
+
+/// One of the two ends of a hop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Contact {
+    /// The hop begins here.
+    Takeoff,
+    /// The hop ends here.
+    Landing,
+}
+
+/// Where on the chain a station is. A station is at a vertex where its x is the same double; nothing snaps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Site {
+    /// At a vertex.
+    Vertex(VertexId),
+    /// Strictly inside a segment.
+    Inside(SegmentId),
+}
+
+/// A place on the chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Station {
+    /// The point.
+    pub point: ChainPoint,
+    /// Vertex or segment.
+    pub site: Site,
+}
+
+/// An x that the chain does not reach.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("x = {x_m} m is off the chain, which reaches from {first_x_m} to {last_x_m} m: choose a point between")]
+pub struct OffChain {
+    /// What was asked for.
+    pub x_m: f64,
+    /// Where the chain begins.
+    pub first_x_m: f64,
+    /// Where the chain ends.
+    pub last_x_m: f64,
+}
+
+impl Station {
+    /// The segment that rules a contact here for a direction of travel, on a chain of `segment_count` segments.
+    ///
+    /// Inside a segment that segment; at a vertex the ground ahead for a take-off and the ground just flown over for a landing
+    /// (CHTA paper, Definition 2). `None` at the chain's ends where that ground does not exist.
+    #[inline]
+    pub fn ruling_segment(&self, contact: Contact, direction: Direction, segment_count: usize) -> Option<SegmentId> {
+        match self.site {
+            Site::Inside(segment) => Some(segment),
+            Site::Vertex(vertex) => {
+                let after =
+                    matches!((contact, direction), (Contact::Takeoff, Direction::Forward) | (Contact::Landing, Direction::Reverse));
+                if after {
+                    (vertex.index() < segment_count).then_some(SegmentId(vertex.index()))
+                } else {
+                    vertex.index().checked_sub(1).map(SegmentId)
+                }
+            }
+        }
+    }
+
+    /// The segment that both stations lie on, ends included; `None` where there is none.
+    #[inline]
+    pub fn shared_segment(&self, other: &Self) -> Option<SegmentId> {
+        let range = |site: Site| match site {
+            // Segments that a vertex ends: the one before and the one after.
+            Site::Vertex(v) => (v.index().wrapping_sub(1), v.index()),
+            Site::Inside(s) => (s.index(), s.index()),
+        };
+        let (a, b) = (range(self.site), range(other.site));
+        if self.point.x_m == other.point.x_m {
+            return None;
+        }
+        [a.0, a.1].into_iter().find(|&s| s != usize::MAX && (s == b.0 || s == b.1)).map(SegmentId)
+    }
+}
