@@ -2,6 +2,7 @@
 
 pub mod quantity;
 
+pub mod ballistics;
 pub mod chain;
 pub mod terrain;
 pub mod world;
