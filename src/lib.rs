@@ -4,5 +4,7 @@ pub mod quantity;
 
 pub mod ballistics;
 pub mod chain;
+pub mod graph;
+pub mod path;
 pub mod terrain;
 pub mod world;

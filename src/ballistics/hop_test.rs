@@ -4,7 +4,7 @@ use super::{LineOfSight, SegmentHops, SegmentReach, TakeoffSet, limits};
 use crate::{
     chain::{ConstrainedChain, Contact, ContactRule, Direction, Station},
     quantity::{Angle, SegmentId, SlopeInterval},
-    world::{Hopper, tolerant_speed_m_s},
+    world::{Hopper, Limit, tolerant_speed_m_s},
 };
 
 /// A chain, a hopper and a gravity, ready to answer for any pair of stations.
@@ -81,49 +81,86 @@ impl<'a> HopTest<'a> {
         })
     }
 
-    /// The feasible lofts of one hop between two stations, all limits included; `None` where there are none.
+    /// The feasible lofts of one hop between two stations, all limits included, or the limit that left nothing.
     ///
     /// Cheap limits go first, the terrain last, and it stops at the first vertex that leaves nothing.
     ///
     /// Source: P eq. 21; model section 2.
+    ///
+    /// # Errors
+    /// The first limit, in the order of testing (ground, speeds, cones, machine, terrain), that with those before it leaves no arc.
+    /// [`takeoff_set`](Self::takeoff_set) tells the whole story. [`Limit::Direction`] where both stations share the same x.
     #[inline]
-    pub fn loft(&self, takeoff: &Station, landing: &Station) -> Option<SlopeInterval> {
-        let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
-        let from = self.chain.ruling(takeoff, Contact::Takeoff, direction)?.granted(Contact::Takeoff, direction)?;
-        let to = self.chain.ruling(landing, Contact::Landing, direction)?.granted(Contact::Landing, direction)?;
-        let sight = self.line_of_sight(takeoff, landing)?;
-        let open_air = self.open_air(sight, from, to);
-        if open_air.is_empty() || open_air.upper <= 0.0 {
-            return None;
-        }
+    pub fn loft(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
+        let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).ok_or(Limit::Direction)?;
+        let from = self.granted(takeoff, Contact::Takeoff, direction)?;
+        let to = self.granted(landing, Contact::Landing, direction)?;
+        let sight = self.line_of_sight(takeoff, landing).ok_or(Limit::Direction)?;
+        let open_air = self.open_air(sight, from, to)?;
         let vertices = self.chain.geometry().vertices();
         let mut lower = open_air.lower;
         for point in &vertices[limits::flown_past(takeoff, landing)] {
             lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.hopper.clearance_m));
             if lower > open_air.upper {
-                return None;
+                return Err(Limit::Terrain);
             }
         }
-        Some(SlopeInterval { lower, upper: open_air.upper })
+        Ok(SlopeInterval { lower, upper: open_air.upper })
     }
 
-    /// The lofts that all limits but the terrain allow. May be empty, or have no positive loft.
+    /// The rule that the ground grants a contact, or the limit by which it refuses.
     #[inline]
-    pub(crate) fn open_air(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> SlopeInterval {
+    fn granted(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
+        let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
+        segment.granted(contact, direction).ok_or_else(|| match segment.judged(contact, direction) {
+            Err(refusal) => refusal.limit(contact),
+            Ok(_) => Limit::Direction,
+        })
+    }
+
+    /// The lofts that all limits but the terrain allow, with at least one positive loft.
+    ///
+    /// # Errors
+    /// The limit that left nothing.
+    #[inline]
+    pub(crate) fn open_air(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Result<SlopeInterval, Limit> {
         let speeds = limits::speeds(sight, from.speed_max_m_s(), to.speed_max_m_s(), self.gravity_m_s2);
-        if speeds.is_empty() {
-            return speeds;
-        }
-        let mut loft = speeds
+        let loft = speeds
             .intersect(limits::takeoff_cone(sight, from.slopes().intersect(self.mechanical)))
-            .intersect(limits::landing_cone(sight, to.slopes()));
-        if let Some(height_m) = self.hopper.apex_height_max_m {
-            loft = loft.intersect(limits::apex_height(sight, height_m));
+            .intersect(limits::landing_cone(sight, to.slopes()))
+            .intersect(self.machine(sight));
+        if loft.is_empty() || loft.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(loft) }
+    }
+
+    /// The lofts that the machine's greatest height and longest flight allow.
+    #[inline]
+    fn machine(&self, sight: LineOfSight) -> SlopeInterval {
+        let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
+        match self.hopper.flight_time_max_s {
+            Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),
+            None => apex,
         }
-        if let Some(time_s) = self.hopper.flight_time_max_s {
-            loft = loft.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2));
+    }
+
+    /// Which limit left nothing, limits taken one after the other.
+    #[cold]
+    fn refusing(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Limit {
+        let in_order = [
+            (Limit::TakeoffSpeed, limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2)),
+            (Limit::LandingSpeed, limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2)),
+            (Limit::TakeoffCone, limits::takeoff_cone(sight, from.slopes())),
+            (Limit::LandingCone, limits::landing_cone(sight, to.slopes())),
+            (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical)),
+            (Limit::ApexHeight, self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
+        ];
+        let mut left = SlopeInterval { lower: 0.0, upper: f64::INFINITY };
+        for (limit, loft) in in_order {
+            left = left.intersect(loft);
+            if left.is_empty() || left.upper <= 0.0 {
+                return limit;
+            }
         }
-        loft
+        Limit::FlightTime
     }
 
     /// The feasible take-off set with every limit by itself, what sets its ends, or which limits conflict.
@@ -159,15 +196,24 @@ impl<'a> HopTest<'a> {
     /// from the parabola of safety with the greatest drop `h` the chain offers; the same for the greatest landing speed, flown
     /// backwards, with the greatest climb.
     pub fn reach_bound_m(&self, takeoff: &Station) -> f64 {
-        let (takeoff_speed, landing_speed) = self.chain.speed_bounds_m_s();
+        self.farthest_m(takeoff.point.z_m - self.heights_m.0, self.heights_m.1 - takeoff.point.z_m)
+    }
+
+    /// The horizontal distance that no hop of this chain exceeds, m.
+    pub fn greatest_reach_m(&self) -> f64 {
+        let range_m = self.heights_m.1 - self.heights_m.0;
+        self.farthest_m(range_m, range_m)
+    }
+
+    /// The bound on one hop's distance from the greatest drop and the greatest climb it may take.
+    fn farthest_m(&self, drop_m: f64, climb_m: f64) -> f64 {
         let g = self.gravity_m_s2;
-        let farthest = |speed_max_m_s: f64, height_m: f64| {
+        let safe = |speed_max_m_s: f64, height_m: f64| {
             let v = tolerant_speed_m_s(speed_max_m_s);
             v / g * (v * v + 2.0 * g * height_m.max(0.0)).sqrt()
         };
-        let drop_m = takeoff.point.z_m - self.heights_m.0;
-        let climb_m = self.heights_m.1 - takeoff.point.z_m;
+        let (takeoff_speed, landing_speed) = self.chain.speed_bounds_m_s();
         // Rounding of this bound itself: a few units in the last place.
-        farthest(takeoff_speed, drop_m).min(farthest(landing_speed, climb_m)) * (1.0 + 1e-12)
+        safe(takeoff_speed, drop_m).min(safe(landing_speed, climb_m)) * (1.0 + 1e-12)
     }
 }

@@ -1,9 +1,9 @@
 //! Many hops along one segment.
 
-use super::{HopTest, LineOfSight, TakeoffChoice, limits};
+use super::{Arc, HopTest, LineOfSight, TakeoffChoice, limits};
 use crate::{
     chain::{Contact, ContactRule, Direction},
-    quantity::SegmentId,
+    quantity::{SegmentId, SlopeInterval},
     world::{Limit, SPEED_TOLERANCE},
 };
 
@@ -150,15 +150,21 @@ impl SegmentHops {
         }
     }
 
-    /// The loft of a hop of this length along the segment, by the choice asked for.
+    /// The arc of a hop of this length along the segment, by the choice asked for.
     ///
     /// With the mid-range choice each hop takes the middle of its own set, between the line of sight and the vertical (model
-    /// section 3); a hop of full reach has one loft only.
-    pub fn loft(&self, test: &HopTest<'_>, length_m: f64, choice: TakeoffChoice) -> f64 {
+    /// section 3); a hop of full reach has one arc only.
+    pub fn arc(&self, test: &HopTest<'_>, length_m: f64, choice: TakeoffChoice) -> Arc {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
-        let set = test.open_air(sight, &self.reach.from, &self.reach.to);
+        Arc::new(sight, choice.loft(sight, self.lofts(test, length_m)), test.gravity_m_s2())
+    }
+
+    /// The feasible lofts of a hop of this length along the segment: one point at least.
+    pub fn lofts(&self, test: &HopTest<'_>, length_m: f64) -> SlopeInterval {
+        let sight = LineOfSight::along(length_m, self.reach.sight_slope);
         // At full reach the set is one point, which rounding may lose.
-        if set.is_empty() { self.reach.loft } else { choice.loft(sight, set) }
+        let only = SlopeInterval { lower: self.reach.loft, upper: self.reach.loft };
+        test.open_air(sight, &self.reach.from, &self.reach.to).unwrap_or(only)
     }
 }
 
