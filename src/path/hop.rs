@@ -1,8 +1,9 @@
 //! One hop as commanded, and the path of all hops: plain data.
 
 use crate::{
+    ballistics::{Arc, LineOfSight},
     chain::{Direction, Station},
-    quantity::{Angle, AngleInterval, MapPoint, VertexId},
+    quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
     world::Limit,
 };
 
@@ -39,6 +40,25 @@ pub struct Hop {
     pub lower_vertex: Option<VertexId>,
     /// Which limit sets the greatest feasible take-off angle.
     pub upper_limit: Limit,
+}
+
+impl Hop {
+    /// Points of the flight at equal horizontal distances, take-off and landing included: `(fraction of the run, point)`.
+    ///
+    /// At least two points.
+    pub fn flight_points(&self, gravity_m_s2: f64, count: u32) -> Vec<(f64, ChainPoint)> {
+        let (from, to) = (self.takeoff.point, self.landing.point);
+        let sight = LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m);
+        let arc = Arc::new(sight, self.takeoff_angle.slope() - sight.slope(), gravity_m_s2);
+        let last = count.max(2) - 1;
+        (0..=last)
+            .map(|i| {
+                let fraction = f64::from(i) / f64::from(last);
+                let height_m = arc.height_at_m(sight.run_m() * fraction);
+                (fraction, ChainPoint::new(from.x_m + (to.x_m - from.x_m) * fraction, from.z_m + height_m))
+            })
+            .collect()
+    }
 }
 
 /// A hop on the map.
