@@ -8,3 +8,5 @@ pub mod graph;
 pub mod path;
 pub mod terrain;
 pub mod world;
+pub mod report;
+pub mod scenario;

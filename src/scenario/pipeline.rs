@@ -1,0 +1,149 @@
+//! The pipeline: scenario, terrain, chain, constraints; ready for the hop test.
+
+use std::{
+    fs::File,
+    io::{self, Read},
+    path::{Path, PathBuf},
+};
+
+use sha2::{Digest, Sha256};
+
+use super::{BodyChoice, Scenario, TerrainSource};
+use crate::{
+    chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
+    path::Hop,
+    terrain::{TerrainError, read_dem, slice},
+    world::{Body, FrictionCone, Grip},
+};
+
+/// A chain ready to be analysed, with start and goal where they are known.
+#[derive(Clone, Debug)]
+pub struct Prepared {
+    /// The chain with its constraints.
+    pub chain: ConstrainedChain,
+    /// Where the journey begins.
+    pub start: Option<Station>,
+    /// Where it ends.
+    pub goal: Option<Station>,
+    /// What the reader of the terrain noticed.
+    pub warnings: Vec<String>,
+}
+
+/// Why a scenario's terrain gives no chain to analyse.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PipelineError {
+    /// The elevation raster or its slice.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    /// The chain CSV.
+    #[error(transparent)]
+    Csv(#[from] csv::CsvFileError),
+    /// A slice that makes no chain.
+    #[error("the slice makes no chain: {0}")]
+    Chain(#[from] InvalidChain),
+    /// Segments without constraints.
+    #[error(transparent)]
+    Constraints(#[from] ConstraintProblems),
+    /// A start or goal off the chain.
+    #[error("{which}: {problem}")]
+    OffChain {
+        /// `start` or `goal`.
+        which: &'static str,
+        /// Where, and where the chain is.
+        problem: OffChain,
+    },
+    /// A file that cannot be read.
+    #[error("{}: cannot be read ({source}): check the path and its permissions", path.display())]
+    Read {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: io::Error,
+    },
+}
+
+/// Builds the chain of a scenario: slices its DEM or reads its chain, settles the constraints, finds start and goal on it.
+///
+/// `base` is the folder that the scenario's paths start from.
+///
+/// # Errors
+/// [`PipelineError`].
+pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
+    let (geometry, warnings, ends) = match source {
+        TerrainSource::Dem { path, start, goal } => {
+            let profile = slice(&read_dem(&base.join(path))?, *start, *goal)?;
+            let chain = PolygonalChain::from_profile(&profile, friction(scenario))?;
+            let (first_m, last_m) = chain.extent_m();
+            (chain, Vec::new(), (Some(first_m), Some(last_m)))
+        }
+        TerrainSource::Chain { path } => {
+            let file = csv::read_chain_csv_file(base.join(path))?;
+            (file.chain, file.warnings, (None, None))
+        }
+    };
+    let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface)?;
+    let station = |which, x_m: Option<f64>| {
+        x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
+    };
+    let start = station("start", scenario.start_x_m.or(ends.0))?;
+    let goal = station("goal", scenario.goal_x_m.or(ends.1))?;
+    Ok(Prepared { chain, start, goal, warnings })
+}
+
+/// The friction that a scenario gives the whole ground.
+pub fn friction(scenario: &Scenario) -> Option<FrictionCone> {
+    match scenario.surface.grip {
+        Some(Grip::Friction(cone)) => Some(cone),
+        Some(Grip::FromSlope { .. }) | None => None,
+    }
+}
+
+/// The SHA-256 of a file, hexadecimal, read in pieces.
+///
+/// # Errors
+/// [`PipelineError::Read`].
+pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
+    let reading = |source| PipelineError::Read { path: path.to_path_buf(), source };
+    let mut file = File::open(path).map_err(reading)?;
+    let mut digest = Sha256::new();
+    let mut piece = vec![0; 1 << 16];
+    loop {
+        let count = file.read(&mut piece).map_err(reading)?;
+        if count == 0 {
+            break;
+        }
+        digest.update(&piece[..count]);
+    }
+    Ok(digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+}
+
+/// Where constant gravity over flat ground is a bad model for these hops: what is doubtful and by how much; empty where nothing is.
+///
+/// A hop is doubted where its range or its highest point above the take-off is over a hundredth of the body's radius, or a speed over
+/// a tenth of its escape speed `sqrt(2 g R)`. Nothing is said of a body of unknown radius.
+pub fn constant_gravity_doubts(body: &BodyChoice, hops: &[Hop]) -> Vec<String> {
+    let Some(radius_m) = body.radius_m else { return Vec::new() };
+    let largest = |of: fn(&Hop) -> f64| hops.iter().map(of).fold(0.0, f64::max);
+    let name = body.name.as_deref().unwrap_or("the body");
+    let escape = Body { name: "", gravity_m_s2: body.gravity_m_s2, radius_m, source: "" }.escape_speed_m_s();
+    let lengths = [
+        ("a hop's range", largest(|h| (h.landing.point.x_m - h.takeoff.point.x_m).abs())),
+        ("a hop's highest point above its take-off", largest(|h| h.apex_z_m - h.takeoff.point.z_m)),
+    ];
+    let speed = largest(|h| h.takeoff_speed_m_s.max(h.landing_speed_m_s));
+    let mut doubts: Vec<String> = lengths
+        .into_iter()
+        .filter(|(_, length_m)| *length_m > 0.01 * radius_m)
+        .map(|(what, length_m)| {
+            format!("{what}, {length_m:.3} m, is over 1 % of the radius of {name} ({radius_m} m): constant gravity is a bad model there")
+        })
+        .collect();
+    if speed > 0.1 * escape {
+        doubts.push(format!(
+            "a hop's speed, {speed:.4} m/s, is over a tenth of the escape speed of {name} ({escape:.4} m/s): constant gravity is a bad \
+             model there"
+        ));
+    }
+    doubts
+}
