@@ -2,6 +2,9 @@
 
 pub mod quantity;
 
+pub mod ballistics;
 pub mod chain;
+pub mod graph;
+pub mod path;
 pub mod terrain;
 pub mod world;

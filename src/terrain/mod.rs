@@ -1,28 +1,35 @@
 //! Elevation rasters and what is cut from them.
+//!
+//! A [`Dem`] is posts of elevation on a map in metres, read from a file by content ([`read_dem`]), made up from a seed
+//! ([`synthesise`]), or built in memory. [`slice`](slice()) cuts it along a vertical plane into a [`Profile`], from which a polygonal
+//! chain is made. A further file format is one more [`DemReader`] in [`FORMATS`]' list.
+//!
+//! ```
+//! use chta::quantity::MapPoint;
+//! use chta::terrain::{SyntheticTerrain, slice, synthesise};
+//!
+//! let dem = synthesise(&SyntheticTerrain { rows: 40, cols: 60, ..SyntheticTerrain::default() })?;
+//! let profile = slice(&dem, MapPoint::new(2.0, 10.0), MapPoint::new(50.0, 30.0))?;
+//! assert!((profile.length_m() - 52.0).abs() < 1e-9); // a 20-48-52 triangle
+//! # Ok::<(), chta::terrain::TerrainError>(())
+//! ```
 
-use crate::quantity::{Angle, MapPoint};
+mod ascii_grid;
+mod dem;
+mod error;
+mod format;
+mod georeference;
+mod geotiff;
+mod profile;
+mod slice;
+mod synth;
 
-/// A slice of terrain by a vertical plane.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Profile {
-    /// Vertices along the slice.
-    pub points: Vec<ProfilePoint>,
-    /// The facet under each segment.
-    pub facets: Vec<ProfileFacet>,
-}
-/// A vertex.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProfilePoint {
-    /// Along.
-    pub x_m: f64,
-    /// Up.
-    pub z_m: f64,
-    /// On the map.
-    pub map: MapPoint,
-}
-/// A facet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ProfileFacet {
-    /// Cross-slope.
-    pub cross_slope: Angle,
-}
+pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
+pub use dem::{Dem, ELEVATION_LIMIT_M};
+pub use error::{AsciiProblem, TerrainError};
+pub use format::{DemReader, FORMATS, read_dem};
+pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
+pub use geotiff::{geotiff_bytes, read_geotiff_bytes, write_geotiff};
+pub use profile::{Profile, ProfileFacet, ProfilePoint};
+pub use slice::slice;
+pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};

@@ -1,0 +1,219 @@
+//! The hop test: may one hop join two stations, and with which take-off slopes?
+
+use super::{LineOfSight, SegmentHops, SegmentReach, TakeoffSet, limits};
+use crate::{
+    chain::{ConstrainedChain, Contact, ContactRule, Direction, Station},
+    quantity::{Angle, SegmentId, SlopeInterval},
+    world::{Hopper, Limit, tolerant_speed_m_s},
+};
+
+/// A chain, a hopper and a gravity, ready to answer for any pair of stations.
+///
+/// The kernel, [`loft`](Self::loft), has no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains what it found.
+#[derive(Clone, Debug)]
+pub struct HopTest<'a> {
+    chain: &'a ConstrainedChain,
+    hopper: Hopper,
+    gravity_m_s2: f64,
+    /// The machine's own take-off slopes.
+    mechanical: SlopeInterval,
+    /// Lowest and highest vertex, m.
+    heights_m: (f64, f64),
+    /// How far one hop carries on each segment, by direction.
+    reaches: Vec<[Option<SegmentReach>; 2]>,
+}
+
+impl<'a> HopTest<'a> {
+    /// For a chain, a hopper and a gravity above 0 in m/s^2.
+    pub fn new(chain: &'a ConstrainedChain, hopper: &Hopper, gravity_m_s2: f64) -> Self {
+        let heights_m = chain
+            .geometry()
+            .vertices()
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v.z_m), high.max(v.z_m)));
+        let mut test = Self {
+            chain,
+            hopper: *hopper,
+            gravity_m_s2,
+            mechanical: SlopeInterval {
+                lower: hopper.takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
+                upper: hopper.takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
+            },
+            heights_m,
+            reaches: Vec::new(),
+        };
+        test.reaches = (0..chain.segments().len())
+            .map(|i| Direction::BOTH.map(|direction| SegmentReach::on(&test, SegmentId(i), direction)))
+            .collect();
+        test
+    }
+
+    /// The chain it answers for.
+    pub const fn chain(&self) -> &'a ConstrainedChain {
+        self.chain
+    }
+
+    /// The hopper it answers for.
+    pub const fn hopper(&self) -> &Hopper {
+        &self.hopper
+    }
+
+    /// Gravity, m/s^2.
+    pub const fn gravity_m_s2(&self) -> f64 {
+        self.gravity_m_s2
+    }
+
+    /// The machine's own take-off slopes.
+    pub const fn mechanical(&self) -> SlopeInterval {
+        self.mechanical
+    }
+
+    /// The line of sight between two stations in the direction of travel; `None` where they share the same x.
+    ///
+    /// For two stations on one segment its slope is the segment's own: the quotient of two nearly equal heights would lose digits.
+    #[inline]
+    pub fn line_of_sight(&self, takeoff: &Station, landing: &Station) -> Option<LineOfSight> {
+        let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
+        let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
+        Some(match takeoff.shared_segment(landing) {
+            Some(segment) => LineOfSight::along(run_m, direction.sign() * self.chain.geometry().slopes()[segment.index()]),
+            None => LineOfSight::new(run_m, landing.point.z_m - takeoff.point.z_m),
+        })
+    }
+
+    /// The feasible lofts of one hop between two stations, all limits included, or the limit that left nothing.
+    ///
+    /// Cheap limits go first, the terrain last, and it stops at the first vertex that leaves nothing.
+    ///
+    /// Source: P eq. 21; model section 2.
+    ///
+    /// # Errors
+    /// The first limit, in the order of testing (ground, speeds, cones, machine, terrain), that with those before it leaves no arc.
+    /// [`takeoff_set`](Self::takeoff_set) tells the whole story. [`Limit::Direction`] where both stations share the same x.
+    #[inline]
+    pub fn loft(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
+        let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).ok_or(Limit::Direction)?;
+        let from = self.granted(takeoff, Contact::Takeoff, direction)?;
+        let to = self.granted(landing, Contact::Landing, direction)?;
+        let sight = self.line_of_sight(takeoff, landing).ok_or(Limit::Direction)?;
+        let open_air = self.open_air(sight, from, to)?;
+        let vertices = self.chain.geometry().vertices();
+        let mut lower = open_air.lower;
+        for point in &vertices[limits::flown_past(takeoff, landing)] {
+            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.hopper.clearance_m));
+            if lower > open_air.upper {
+                return Err(Limit::Terrain);
+            }
+        }
+        Ok(SlopeInterval { lower, upper: open_air.upper })
+    }
+
+    /// The rule that the ground grants a contact, or the limit by which it refuses.
+    #[inline]
+    fn granted(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
+        let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
+        segment.granted(contact, direction).ok_or_else(|| match segment.judged(contact, direction) {
+            Err(refusal) => refusal.limit(contact),
+            Ok(_) => Limit::Direction,
+        })
+    }
+
+    /// The lofts that all limits but the terrain allow, with at least one positive loft.
+    ///
+    /// # Errors
+    /// The limit that left nothing.
+    #[inline]
+    pub(crate) fn open_air(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Result<SlopeInterval, Limit> {
+        let speeds = limits::speeds(sight, from.speed_max_m_s(), to.speed_max_m_s(), self.gravity_m_s2);
+        let loft = speeds
+            .intersect(limits::takeoff_cone(sight, from.slopes().intersect(self.mechanical)))
+            .intersect(limits::landing_cone(sight, to.slopes()))
+            .intersect(self.machine(sight));
+        if loft.is_empty() || loft.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(loft) }
+    }
+
+    /// The lofts that the machine's greatest height and longest flight allow.
+    #[inline]
+    fn machine(&self, sight: LineOfSight) -> SlopeInterval {
+        let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
+        match self.hopper.flight_time_max_s {
+            Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),
+            None => apex,
+        }
+    }
+
+    /// Which limit left nothing, limits taken one after the other.
+    #[cold]
+    fn refusing(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Limit {
+        let in_order = [
+            (Limit::TakeoffSpeed, limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2)),
+            (Limit::LandingSpeed, limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2)),
+            (Limit::TakeoffCone, limits::takeoff_cone(sight, from.slopes())),
+            (Limit::LandingCone, limits::landing_cone(sight, to.slopes())),
+            (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical)),
+            (Limit::ApexHeight, self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
+        ];
+        let mut left = SlopeInterval { lower: 0.0, upper: f64::INFINITY };
+        for (limit, loft) in in_order {
+            left = left.intersect(loft);
+            if left.is_empty() || left.upper <= 0.0 {
+                return limit;
+            }
+        }
+        Limit::FlightTime
+    }
+
+    /// The feasible take-off set with every limit by itself, what sets its ends, or which limits conflict.
+    ///
+    /// `None` where the two stations share the same x.
+    pub fn takeoff_set(&self, takeoff: &Station, landing: &Station) -> Option<TakeoffSet> {
+        TakeoffSet::of(self, takeoff, landing)
+    }
+
+    /// The least number of hops that join two stations of one segment, hop by hop along the ground; `None` where they share no
+    /// segment or its cones leave no arc.
+    ///
+    /// To be asked where a single hop is impossible: also for pairs within one reach, which the pseudo-code of the paper's
+    /// Algorithm 2 loses (its prose does not).
+    pub fn segment_hops(&self, takeoff: &Station, landing: &Station) -> Option<SegmentHops> {
+        let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
+        let segment = takeoff.shared_segment(landing)?;
+        let reach = self.segment_reach(segment, direction)?;
+        reach.hops_over((landing.point.x_m - takeoff.point.x_m).abs())
+    }
+
+    /// How far one hop carries along a segment; `None` where its ground allows no hop along it.
+    pub fn segment_reach(&self, segment: SegmentId, direction: Direction) -> Option<SegmentReach> {
+        self.reaches.get(segment.index()).and_then(|both| both[direction as usize])
+    }
+
+    /// The horizontal distance beyond which no hop from this station lands, in either direction, m.
+    ///
+    /// ```text
+    ///     X <= (v / g) sqrt(v^2 + 2 g h)
+    /// ```
+    ///
+    /// from the parabola of safety with the greatest drop `h` the chain offers; the same for the greatest landing speed, flown
+    /// backwards, with the greatest climb.
+    pub fn reach_bound_m(&self, takeoff: &Station) -> f64 {
+        self.farthest_m(takeoff.point.z_m - self.heights_m.0, self.heights_m.1 - takeoff.point.z_m)
+    }
+
+    /// The horizontal distance that no hop of this chain exceeds, m.
+    pub fn greatest_reach_m(&self) -> f64 {
+        let range_m = self.heights_m.1 - self.heights_m.0;
+        self.farthest_m(range_m, range_m)
+    }
+
+    /// The bound on one hop's distance from the greatest drop and the greatest climb it may take.
+    fn farthest_m(&self, drop_m: f64, climb_m: f64) -> f64 {
+        let g = self.gravity_m_s2;
+        let safe = |speed_max_m_s: f64, height_m: f64| {
+            let v = tolerant_speed_m_s(speed_max_m_s);
+            v / g * (v * v + 2.0 * g * height_m.max(0.0)).sqrt()
+        };
+        let (takeoff_speed, landing_speed) = self.chain.speed_bounds_m_s();
+        // Rounding of this bound itself: a few units in the last place.
+        safe(takeoff_speed, drop_m).min(safe(landing_speed, climb_m)) * (1.0 + 1e-12)
+    }
+}

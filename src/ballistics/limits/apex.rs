@@ -1,0 +1,39 @@
+//! The machine's greatest height of flight.
+
+use crate::{
+    ballistics::LineOfSight,
+    quantity::{MonicQuadratic, SlopeInterval},
+};
+
+/// The lofts at which the flight stays below a height above its take-off.
+///
+/// ```text
+///     X (b + n)^2 <= 4 H n   <=>   n^2 - 2 (2 H / X - b) n + b^2 <= 0
+/// ```
+///
+/// Only the larger root limits: below the smaller one the arc has its apex behind the take-off (falling ground) or beyond the landing
+/// (rising ground), and its highest point is the take-off or the landing itself.
+///
+/// Source: model section 2 (apex height), with that correction.
+///
+/// # Units
+/// `H` in m.
+///
+/// # Returns
+/// An interval without lower end; empty where the landing itself is higher than `H`.
+///
+/// # Examples
+/// ```
+/// use chta::ballistics::{LineOfSight, limits};
+/// // Flat: X n / 4 <= H
+/// assert_eq!(limits::apex_height(LineOfSight::new(10.0, 0.0), 2.5).upper, 1.0);
+/// assert!(limits::apex_height(LineOfSight::new(10.0, 3.0), 2.5).is_empty());
+/// ```
+#[inline]
+pub fn apex_height(sight: LineOfSight, height_max_m: f64) -> SlopeInterval {
+    let (b, h) = (sight.slope(), height_max_m / sight.run_m());
+    match (MonicQuadratic { half_sum: 2.0 * h - b, geometric_mean: b.abs() }).roots() {
+        Some(roots) => SlopeInterval { lower: f64::NEG_INFINITY, upper: roots.larger },
+        None => SlopeInterval::EMPTY,
+    }
+}

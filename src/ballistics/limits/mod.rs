@@ -1,0 +1,17 @@
+//! Each limit of a hop as an interval of the loft `n = m - b`; one file per kind.
+//!
+//! All are closed forms of ratios and one square root: no trigonometry, no allocation. An empty interval means that the limit alone
+//! refuses every arc.
+
+mod apex;
+mod cones;
+mod flight_time;
+mod speed;
+mod terrain;
+
+pub use apex::apex_height;
+pub use cones::{landing_cone, takeoff_cone};
+pub use flight_time::flight_time;
+pub use speed::{landing_speed, speeds, takeoff_speed};
+pub(crate) use terrain::flown_past;
+pub use terrain::{clearing_loft, terrain};

@@ -1,0 +1,86 @@
+//! Take-off and landing speed.
+
+use crate::{
+    ballistics::LineOfSight,
+    quantity::{MonicQuadratic, SlopeInterval},
+    world::tolerant_speed_m_s,
+};
+
+/// The lofts at which the take-off speed stays within its limit.
+///
+/// ```text
+///     g X (1 + (b + n)^2) <= 2 n v^2   <=>   n^2 - 2 (q - b) n + (1 + b^2) <= 0,   q = v^2 / (g X)      (P eq. 15)
+/// ```
+///
+/// The limit holds as `v (1 + 1e-9)`, the program's one tolerance.
+///
+/// # Units
+/// `v` in m/s, `g` in m/s^2.
+///
+/// # Returns
+/// A closed interval of positive lofts, empty where the landing is out of reach (and for `v = 0` or NaN).
+///
+/// # Examples
+/// ```
+/// use chta::ballistics::{LineOfSight, limits};
+/// // Flat, q = 1.25: n^2 - 2.5 n + 1 = (n - 0.5)(n - 2)
+/// let loft = limits::takeoff_speed(LineOfSight::new(8.0, 0.0), 10.0, 10.0);
+/// assert!((loft.lower - 0.5).abs() < 1e-8 && (loft.upper - 2.0).abs() < 1e-8);
+/// ```
+#[inline]
+pub fn takeoff_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {
+    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) - sight.slope())
+}
+
+/// The lofts at which the landing speed stays within its limit.
+///
+/// ```text
+///     g X (1 + (b - n)^2) <= 2 n v^2   <=>   n^2 - 2 (q + b) n + (1 + b^2) <= 0,   q = v^2 / (g X)      (P eq. 17, with v_l)
+/// ```
+///
+/// Equal to the take-off limit at `v^2 + 2 g Z`, without the cancellation of that sum. Units, tolerance and return as
+/// [`takeoff_speed`].
+///
+/// # Examples
+/// ```
+/// use chta::ballistics::{LineOfSight, limits};
+/// // The same speed reaches the same flat distance at either end.
+/// let sight = LineOfSight::new(8.0, 0.0);
+/// assert_eq!(limits::landing_speed(sight, 10.0, 10.0), limits::takeoff_speed(sight, 10.0, 10.0));
+/// ```
+#[inline]
+pub fn landing_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {
+    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) + sight.slope())
+}
+
+/// Both speed limits at once, with one square root: the two quadratics have the same product of roots, so the one with the smaller
+/// sum lies inside the other.
+///
+/// ```
+/// use chta::ballistics::{LineOfSight, limits};
+/// let sight = LineOfSight::new(5.0, -2.0);
+/// let both = limits::speeds(sight, 9.0, 10.0, 5.0);
+/// assert_eq!(both, limits::takeoff_speed(sight, 9.0, 5.0).intersect(limits::landing_speed(sight, 10.0, 5.0)));
+/// ```
+#[inline]
+pub fn speeds(sight: LineOfSight, takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {
+    let takeoff = reach_ratio(sight, takeoff_speed_max_m_s, gravity_m_s2) - sight.slope();
+    let landing = reach_ratio(sight, landing_speed_max_m_s, gravity_m_s2) + sight.slope();
+    between_roots(sight, takeoff.min(landing))
+}
+
+/// `q = v^2 / (g X)`, the speed limit with its tolerance.
+#[inline]
+fn reach_ratio(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> f64 {
+    let v = tolerant_speed_m_s(speed_max_m_s);
+    v * v / (gravity_m_s2 * sight.run_m())
+}
+
+/// Between the roots of `n^2 - 2 h n + (1 + b^2)`.
+#[inline]
+fn between_roots(sight: LineOfSight, half_sum: f64) -> SlopeInterval {
+    match (MonicQuadratic { half_sum, geometric_mean: sight.stretch() }).roots() {
+        Some(roots) => SlopeInterval { lower: roots.smaller, upper: roots.larger },
+        None => SlopeInterval::EMPTY,
+    }
+}

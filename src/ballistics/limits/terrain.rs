@@ -1,0 +1,76 @@
+//! The ground in between.
+
+use crate::{
+    chain::{PolygonalChain, Site, Station},
+    quantity::{ChainPoint, SlopeInterval, VertexId},
+};
+
+/// The least loft that clears one point between take-off and landing.
+///
+/// ```text
+///     n >= s - t,   s = (z_p + eps - z_t) / |x_p - x_t|,   t = (z_l - z_p - eps) / |x_l - x_p|
+/// ```
+///
+/// `s` is the slope at which the take-off sees the point, `t` that at which the point sees the landing: the loft has to make up for
+/// the kink between them. This is P eq. 14 (`m >= s + (d/X)(s - t)`) less the line of sight's slope, which is the mean of `s` and
+/// `t`, weighted by their runs.
+///
+/// # Units
+/// All in m; `eps` is the clearance.
+///
+/// # Examples
+/// ```
+/// use chta::{ballistics::limits::clearing_loft, quantity::ChainPoint};
+/// let (t, l) = (ChainPoint::new(0.0, 0.0), ChainPoint::new(4.0, 0.0));
+/// // A 1 m needle in the middle: z = n d (1 - d/4), so n = 1 passes just over (2, 1).
+/// assert_eq!(clearing_loft(t, l, ChainPoint::new(2.0, 1.0), 0.0), 1.0);
+/// assert_eq!(clearing_loft(t, l, ChainPoint::new(2.0, 1.0), 1.0), 2.0);
+/// ```
+#[inline]
+pub fn clearing_loft(takeoff: ChainPoint, landing: ChainPoint, point: ChainPoint, clearance_m: f64) -> f64 {
+    // Heights are subtracted before the clearance is added: close doubles subtract without error.
+    let seen = ((point.z_m - takeoff.z_m) + clearance_m) / (point.x_m - takeoff.x_m).abs();
+    let ahead = ((landing.z_m - point.z_m) - clearance_m) / (landing.x_m - point.x_m).abs();
+    seen - ahead
+}
+
+/// The lofts that clear every chain vertex flown past, and the vertex that decides.
+///
+/// Vertices are enough: between them the arc is concave and the ground straight. The answer depends a little on how finely flat
+/// ground is divided, since a clearance over a vertex just after take-off asks for a steep start (model section 2).
+///
+/// # Returns
+/// An interval without upper end, and the vertex that sets its lower end; no lower end and no vertex where none is flown past.
+///
+/// # Complexity
+/// One division pair per vertex flown past.
+pub fn terrain(
+    chain: &PolygonalChain,
+    takeoff: &Station,
+    landing: &Station,
+    clearance_m: f64,
+) -> (SlopeInterval, Option<VertexId>) {
+    let mut highest = (f64::NEG_INFINITY, None);
+    for i in flown_past(takeoff, landing) {
+        let loft = clearing_loft(takeoff.point, landing.point, chain.vertices()[i], clearance_m);
+        if loft > highest.0 {
+            highest = (loft, Some(VertexId(i)));
+        }
+    }
+    (SlopeInterval { lower: highest.0, upper: f64::INFINITY }, highest.1)
+}
+
+/// The indices of the vertices strictly between two stations, whichever is left.
+#[inline]
+pub(crate) fn flown_past(a: &Station, b: &Station) -> std::ops::Range<usize> {
+    let (left, right) = if a.point.x_m <= b.point.x_m { (a.site, b.site) } else { (b.site, a.site) };
+    let first = match left {
+        Site::Vertex(v) => v.index() + 1,
+        Site::Inside(s) => s.index() + 1,
+    };
+    let end = match right {
+        Site::Vertex(v) => v.index(),
+        Site::Inside(s) => s.index() + 1,
+    };
+    first..end.max(first)
+}

@@ -1,0 +1,66 @@
+//! The straight line from take-off to landing.
+
+use crate::quantity::Angle;
+
+/// The line of sight from take-off to landing, in the direction of travel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LineOfSight {
+    run_m: f64,
+    slope: f64,
+    /// `sqrt(1 + b^2)`: length per run, and the loft of least speed.
+    stretch: f64,
+}
+
+impl LineOfSight {
+    /// From run `X > 0` and rise `Z`, both in m.
+    ///
+    /// ```
+    /// use chta::ballistics::LineOfSight;
+    /// let sight = LineOfSight::new(4.0, 3.0);
+    /// assert_eq!((sight.slope(), sight.length_m()), (0.75, 5.0));
+    /// ```
+    #[inline]
+    pub fn new(run_m: f64, rise_m: f64) -> Self {
+        Self::along(run_m, rise_m / run_m)
+    }
+
+    /// From run and slope: for two points on one segment, whose own slope keeps more digits than the two heights.
+    #[inline]
+    pub fn along(run_m: f64, slope: f64) -> Self {
+        Self { run_m, slope, stretch: (1.0 + slope * slope).sqrt() }
+    }
+
+    /// Horizontal distance X, m.
+    #[inline]
+    pub const fn run_m(&self) -> f64 {
+        self.run_m
+    }
+
+    /// Height difference Z, m.
+    #[inline]
+    pub fn rise_m(&self) -> f64 {
+        self.slope * self.run_m
+    }
+
+    /// The slope b = Z / X.
+    #[inline]
+    pub const fn slope(&self) -> f64 {
+        self.slope
+    }
+
+    /// `sqrt(1 + b^2)`.
+    #[inline]
+    pub const fn stretch(&self) -> f64 {
+        self.stretch
+    }
+
+    /// The distance R = X sqrt(1 + b^2), m (P eq. 6).
+    pub fn length_m(&self) -> f64 {
+        self.run_m * self.stretch
+    }
+
+    /// The angle beta above the horizontal (P eq. 7).
+    pub fn angle(&self) -> Angle {
+        Angle::from_slope(self.slope)
+    }
+}

@@ -1,0 +1,43 @@
+//! The equations of a ballistic hop: here and, but for the independent checker in [`crate::path`], nowhere else.
+//!
+//! ```text
+//!                 . - ~ - .            m = tan(theta_t)   take-off slope
+//!              .             `         b = tan(beta)      slope of the line of sight, Z / X
+//!            /                 \       n = m - b          the loft
+//!          / theta_t      ___---\      l = b - n          landing slope, 2 b - m
+//!         t---------______       \
+//!          beta ___---            \    X = x_l - x_t > 0, Z = z_l - z_t,
+//!         ---- X -------------->   l   in the direction of travel
+//! ```
+//!
+//! Every limit of a hop is an interval of its take-off slope (model section 2). Stated in the loft `n = m - b`, how much steeper than
+//! the line of sight the hop starts, all of them get shorter, and none loses digits at weak gravity or over long distances:
+//!
+//! | limit | in the loft |
+//! |---|---|
+//! | line of sight | `n > 0` |
+//! | take-off cone `[m1, m2]` | `m1 - b <= n <= m2 - b` |
+//! | landing cone `[l1, l2]` | `b - l2 <= n <= b - l1` |
+//! | take-off speed `v`, `q = v^2 / (g X)` | `n^2 - 2 (q - b) n + (1 + b^2) <= 0` |
+//! | landing speed `v`, `q = v^2 / (g X)` | `n^2 - 2 (q + b) n + (1 + b^2) <= 0` |
+//! | a vertex seen at slope `s` from the take-off, from which the landing is seen at slope `t` | `n >= s - t` |
+//! | flight time `T` | `n <= g T^2 / (2 X)` |
+//!
+//! Least take-off and least landing speed are both at `n = sqrt(1 + b^2)`.
+
+mod arc;
+mod choice;
+mod conflict;
+mod hop_test;
+pub mod limits;
+mod line_of_sight;
+mod segment_hops;
+mod takeoff_set;
+
+pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
+pub use choice::TakeoffChoice;
+pub use conflict::{Conflict, Shortfall};
+pub use hop_test::HopTest;
+pub use line_of_sight::LineOfSight;
+pub use segment_hops::{SegmentHops, SegmentReach, Split};
+pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};

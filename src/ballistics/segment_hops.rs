@@ -1,0 +1,228 @@
+//! Many hops along one segment.
+
+use super::{Arc, HopTest, LineOfSight, TakeoffChoice, limits};
+use crate::{
+    chain::{Contact, ContactRule, Direction},
+    quantity::{SegmentId, SlopeInterval},
+    world::{Limit, SPEED_TOLERANCE},
+};
+
+/// How to divide a stretch of one segment among its hops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Split {
+    /// Hops of full reach, the last one takes the rest (P Algorithm 4): least sum of speeds, least time.
+    #[default]
+    FullReach,
+    /// Hops of equal length: the same energy, lower peak speed.
+    Equal,
+}
+
+impl Split {
+    /// Both splits.
+    pub const ALL: [Self; 2] = [Self::FullReach, Self::Equal];
+
+    /// The name in scenarios and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::FullReach => "full-reach",
+            Self::Equal => "equal",
+        }
+    }
+}
+
+/// How far one hop carries along a segment in one direction, and how.
+///
+/// On one segment the slope `b` is the same for every hop, so the cones allow the same lofts to each of them (P eq. 23-25), and a hop
+/// of loft `n` covers at most
+///
+/// ```text
+///     X_t = 2 v_t^2 n / (g (1 + (b + n)^2)),   X_l = 2 v_l^2 n / (g (1 + (b - n)^2))            (P eq. 29, 30, as run)
+/// ```
+///
+/// both largest at `n = sqrt(1 + b^2)` and falling away on either side (P Remark 2). A greatest flight time or apex height puts a
+/// falling bound beside them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentReach {
+    sight_slope: f64,
+    from: ContactRule,
+    to: ContactRule,
+    loft: f64,
+    reach_m: f64,
+    tolerant_reach_m: f64,
+    limit: Limit,
+}
+
+/// Hops of one length along a segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SegmentHops {
+    reach: SegmentReach,
+    run_m: f64,
+    hops: u64,
+}
+
+impl SegmentReach {
+    /// The reach along a segment; `None` where its ground or its cones allow no arc along it.
+    pub(super) fn on(test: &HopTest<'_>, segment: SegmentId, direction: Direction) -> Option<Self> {
+        let constraints = test.chain().segments().get(segment.index())?;
+        let from = constraints.granted(Contact::Takeoff, direction)?;
+        let to = constraints.granted(Contact::Landing, direction)?;
+        let sight_slope = direction.sign() * test.chain().geometry().slopes()[segment.index()];
+        let sight = LineOfSight::along(1.0, sight_slope);
+        let lofts = limits::takeoff_cone(sight, from.slopes().intersect(test.mechanical()))
+            .intersect(limits::landing_cone(sight, to.slopes()));
+        if lofts.is_empty() || lofts.upper <= 0.0 {
+            return None;
+        }
+        let ends = Ends { b: sight_slope, takeoff_m_s: from.speed_max_m_s(), landing_m_s: to.speed_max_m_s(), test };
+        let fastest = sight.stretch().clamp(lofts.lower.max(f64::MIN_POSITIVE), lofts.upper);
+        let loft = ends.best_loft(lofts.lower.max(f64::MIN_POSITIVE), fastest);
+        let (by_speed, limit) = ends.by_speed_m(loft);
+        let (by_machine, machine_limit) = ends.by_machine_m(loft);
+        let (reach_m, limit) = if by_machine < by_speed { (by_machine, machine_limit) } else { (by_speed, limit) };
+        let tolerance = (1.0 + SPEED_TOLERANCE) * (1.0 + SPEED_TOLERANCE);
+        let tolerant_reach_m = by_machine.min(by_speed * tolerance);
+        (reach_m > 0.0).then_some(Self { sight_slope, from: *from, to: *to, loft, reach_m, tolerant_reach_m, limit })
+    }
+
+    /// The greatest horizontal distance of one hop, m.
+    pub const fn reach_m(&self) -> f64 {
+        self.reach_m
+    }
+
+    /// The greatest distance of one hop along the slope, m.
+    pub fn reach_line_of_sight_m(&self) -> f64 {
+        LineOfSight::along(self.reach_m, self.sight_slope).length_m()
+    }
+
+    /// The loft of the farthest hop.
+    pub const fn loft(&self) -> f64 {
+        self.loft
+    }
+
+    /// The take-off slope of the farthest hop.
+    pub fn takeoff_slope(&self) -> f64 {
+        self.sight_slope + self.loft
+    }
+
+    /// The slope of the ground, as the traveller sees it.
+    pub const fn sight_slope(&self) -> f64 {
+        self.sight_slope
+    }
+
+    /// Which limit ends the reach.
+    pub const fn limit(&self) -> Limit {
+        self.limit
+    }
+
+    /// The least number of hops over a horizontal distance, `N = ceil(X / reach)` (P eq. 26).
+    ///
+    /// No mixture of angles or lengths along the segment needs fewer: none of its hops goes farther. `None` where the number is too
+    /// large to count (over 2^53).
+    pub fn hops_over(&self, run_m: f64) -> Option<SegmentHops> {
+        let hops = (run_m / self.tolerant_reach_m).ceil().max(1.0);
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1 and at most 2^53")]
+        (hops <= 9_007_199_254_740_992.0).then_some(SegmentHops { reach: *self, run_m, hops: hops as u64 })
+    }
+}
+
+impl SegmentHops {
+    /// How many hops.
+    pub const fn hops(&self) -> u64 {
+        self.hops
+    }
+
+    /// The reach they are made of.
+    pub const fn reach(&self) -> SegmentReach {
+        self.reach
+    }
+
+    /// The horizontal lengths of the hops, m: all but the last, and the last.
+    ///
+    /// Full reach leaves the last hop the rest. Where the rest would be over the reach by the speeds' tolerance (a stretch of exactly
+    /// so many reaches), the hops are equal.
+    #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
+    pub fn lengths_m(&self, split: Split) -> (f64, f64) {
+        let equal = self.run_m / self.hops as f64;
+        let rest = self.run_m - (self.hops - 1) as f64 * self.reach.reach_m;
+        match split {
+            Split::FullReach if self.hops > 1 && rest > 0.0 && rest <= self.reach.reach_m => (self.reach.reach_m, rest),
+            _ => (equal, equal),
+        }
+    }
+
+    /// The arc of a hop of this length along the segment, by the choice asked for.
+    ///
+    /// With the mid-range choice each hop takes the middle of its own set, between the line of sight and the vertical (model
+    /// section 3); a hop of full reach has one arc only.
+    pub fn arc(&self, test: &HopTest<'_>, length_m: f64, choice: TakeoffChoice) -> Arc {
+        let sight = LineOfSight::along(length_m, self.reach.sight_slope);
+        Arc::new(sight, choice.loft(sight, self.lofts(test, length_m)), test.gravity_m_s2())
+    }
+
+    /// The feasible lofts of a hop of this length along the segment: one point at least.
+    pub fn lofts(&self, test: &HopTest<'_>, length_m: f64) -> SlopeInterval {
+        let sight = LineOfSight::along(length_m, self.reach.sight_slope);
+        // At full reach the set is one point, which rounding may lose.
+        let only = SlopeInterval { lower: self.reach.loft, upper: self.reach.loft };
+        test.open_air(sight, &self.reach.from, &self.reach.to).unwrap_or(only)
+    }
+}
+
+/// The reaches of a hop along one segment as functions of its loft.
+struct Ends<'a, 'b> {
+    b: f64,
+    takeoff_m_s: f64,
+    landing_m_s: f64,
+    test: &'a HopTest<'b>,
+}
+
+impl Ends<'_, '_> {
+    /// The distance that the speeds allow, and which one ends it.
+    fn by_speed_m(&self, n: f64) -> (f64, Limit) {
+        let covered = |speed: f64, slope: f64| 2.0 * speed * speed / self.test.gravity_m_s2() * (n / (1.0 + slope * slope));
+        let (takeoff, landing) = (covered(self.takeoff_m_s, self.b + n), covered(self.landing_m_s, self.b - n));
+        if landing < takeoff { (landing, Limit::LandingSpeed) } else { (takeoff, Limit::TakeoffSpeed) }
+    }
+
+    /// The distance that flight time and apex height allow, falling with the loft, and which one ends it.
+    fn by_machine_m(&self, n: f64) -> (f64, Limit) {
+        let hopper = self.test.hopper();
+        let g = self.test.gravity_m_s2();
+        let time = hopper.flight_time_max_s.map_or(f64::INFINITY, |t| g * t * (t / (2.0 * n)));
+        let apex = hopper.apex_height_max_m.map_or(f64::INFINITY, |h| {
+            let m = self.b + n;
+            if m <= 0.0 {
+                f64::INFINITY
+            } else if n <= self.b {
+                // Still rising at the landing: the landing is the highest point.
+                h / self.b
+            } else {
+                4.0 * h * (n / (m * m))
+            }
+        });
+        if apex < time { (apex, Limit::ApexHeight) } else { (time, Limit::FlightTime) }
+    }
+
+    /// The loft of the farthest hop, from the flattest to the fastest one.
+    ///
+    /// Up to the fastest, what the speeds allow rises with the loft and what the machine allows falls: the best is at the fastest, or
+    /// where the two meet, found by bisection to the last digit.
+    fn best_loft(&self, flattest: f64, fastest: f64) -> f64 {
+        let machine_ends = |n: f64| self.by_machine_m(n).0 < self.by_speed_m(n).0;
+        if !machine_ends(fastest) {
+            return fastest;
+        }
+        if machine_ends(flattest) {
+            return flattest;
+        }
+        let (mut low, mut high) = (flattest, fastest);
+        loop {
+            // The geometric mean halves the exponent's range too; both ends are positive.
+            let middle = if high > 2.0 * low { low.sqrt() * high.sqrt() } else { 0.5 * (low + high) };
+            if middle <= low || middle >= high {
+                return low;
+            }
+            if machine_ends(middle) { high = middle } else { low = middle }
+        }
+    }
+}

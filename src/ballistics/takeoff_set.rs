@@ -1,0 +1,213 @@
+//! The feasible take-off set of one pair, with every limit by itself: the hop test, explained.
+
+use super::{Arc, Conflict, HopTest, LineOfSight, Shortfall, TakeoffChoice, limits};
+use crate::{
+    chain::{Contact, ContactRule, Direction, Station},
+    quantity::{Angle, AngleInterval, SlopeInterval, VertexId},
+    world::Limit,
+};
+
+/// One limit of a hop, by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LimitInterval {
+    /// Which limit.
+    pub limit: Limit,
+    /// The lofts it allows; empty where it refuses every arc.
+    pub loft: SlopeInterval,
+    /// For the terrain: the vertex that decides.
+    pub vertex: Option<VertexId>,
+    /// By how much it refuses every arc, where it does.
+    pub shortfall: Option<Shortfall>,
+}
+
+/// Which limits set the two ends of a feasible set.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Binding {
+    /// Sets the least take-off angle.
+    pub lower: LimitInterval,
+    /// Sets the greatest take-off angle.
+    pub upper: LimitInterval,
+}
+
+/// The feasible take-off set Theta of one pair (P eq. 21), limit by limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TakeoffSet {
+    direction: Direction,
+    sight: LineOfSight,
+    limits: Vec<LimitInterval>,
+    verdict: Verdict,
+}
+
+/// What the limits come to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Verdict {
+    Feasible(SlopeInterval, Binding),
+    Refused(Conflict),
+}
+
+impl TakeoffSet {
+    /// Takes the limits of a pair apart; `None` where the two stations share the same x.
+    pub(super) fn of(test: &HopTest<'_>, takeoff: &Station, landing: &Station) -> Option<Self> {
+        let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
+        let sight = test.line_of_sight(takeoff, landing)?;
+        let limits = all_limits(test, takeoff, landing, direction, sight);
+        let verdict = judged(sight, &limits);
+        Some(Self { direction, sight, limits, verdict })
+    }
+
+    /// The direction of travel.
+    pub const fn direction(&self) -> Direction {
+        self.direction
+    }
+
+    /// The line of sight from take-off to landing.
+    pub const fn line_of_sight(&self) -> LineOfSight {
+        self.sight
+    }
+
+    /// Every limit that had a say, by itself.
+    pub fn limits(&self) -> &[LimitInterval] {
+        &self.limits
+    }
+
+    /// The feasible lofts; `None` where there are none.
+    pub fn loft(&self) -> Option<SlopeInterval> {
+        match self.verdict {
+            Verdict::Feasible(loft, _) => Some(loft),
+            Verdict::Refused(_) => None,
+        }
+    }
+
+    /// Which limits set the ends of the feasible set; `None` where it is empty.
+    pub fn binding(&self) -> Option<Binding> {
+        match self.verdict {
+            Verdict::Feasible(_, binding) => Some(binding),
+            Verdict::Refused(_) => None,
+        }
+    }
+
+    /// Why the set is empty; `None` where it is not.
+    pub fn conflict(&self) -> Option<Conflict> {
+        match self.verdict {
+            Verdict::Feasible(..) => None,
+            Verdict::Refused(conflict) => Some(conflict),
+        }
+    }
+
+    /// The feasible take-off angles; `None` where there are none.
+    pub fn angles(&self) -> Option<AngleInterval> {
+        self.angles_of(self.loft()?)
+    }
+
+    /// Lofts as take-off angles; `None` for an empty interval.
+    pub fn angles_of(&self, loft: SlopeInterval) -> Option<AngleInterval> {
+        loft.shifted(self.sight.slope()).angles()
+    }
+
+    /// The arc to fly by a choice; `None` where there is none.
+    pub fn arc(&self, choice: TakeoffChoice, gravity_m_s2: f64) -> Option<Arc> {
+        Some(Arc::new(self.sight, choice.loft(self.sight, self.loft()?), gravity_m_s2))
+    }
+}
+
+/// The line of sight as a limit: open at its lower end, since no arc is the line itself.
+const ABOVE_SIGHT: LimitInterval = LimitInterval {
+    limit: Limit::LineOfSight,
+    loft: SlopeInterval { lower: 0.0, upper: f64::INFINITY },
+    vertex: None,
+    shortfall: None,
+};
+
+/// Every limit that has a say in a pair, in the order of [`Limit::ALL`].
+fn all_limits(
+    test: &HopTest<'_>,
+    takeoff: &Station,
+    landing: &Station,
+    direction: Direction,
+    sight: LineOfSight,
+) -> Vec<LimitInterval> {
+    let mut found = Vec::with_capacity(Limit::ALL.len());
+    let mut add = |limit, loft, vertex, shortfall| found.push(LimitInterval { limit, loft, vertex, shortfall });
+    let mut granted = |contact, station: &Station| -> Option<ContactRule> {
+        match test.chain().judged(station, contact, direction) {
+            Ok(rule) => Some(rule),
+            Err(refusal) => {
+                add(refusal.limit(contact), SlopeInterval::EMPTY, None, Some(Shortfall::Ground { contact, refusal }));
+                None
+            }
+        }
+    };
+    let from = granted(Contact::Takeoff, takeoff);
+    let to = granted(Contact::Landing, landing);
+    let gravity = test.gravity_m_s2();
+    if let Some(rule) = from {
+        add(Limit::TakeoffCone, limits::takeoff_cone(sight, rule.slopes()), None, None);
+        let loft = limits::takeoff_speed(sight, rule.speed_max_m_s(), gravity);
+        let shortfall = loft.is_empty().then(|| Shortfall::Speed {
+            needed_m_s: super::least_takeoff_speed_m_s(sight, gravity),
+            limit_m_s: rule.speed_max_m_s(),
+        });
+        add(Limit::TakeoffSpeed, loft, None, shortfall);
+    }
+    if let Some(rule) = to {
+        add(Limit::LandingCone, limits::landing_cone(sight, rule.slopes()), None, None);
+        let loft = limits::landing_speed(sight, rule.speed_max_m_s(), gravity);
+        let shortfall = loft.is_empty().then(|| Shortfall::Speed {
+            needed_m_s: super::least_landing_speed_m_s(sight, gravity),
+            limit_m_s: rule.speed_max_m_s(),
+        });
+        add(Limit::LandingSpeed, loft, None, shortfall);
+    }
+    add(Limit::LineOfSight, ABOVE_SIGHT.loft, None, None);
+    let (loft, vertex) = limits::terrain(test.chain().geometry(), takeoff, landing, test.hopper().clearance_m);
+    add(Limit::Terrain, loft, vertex, None);
+    machine_limits(test, sight, &mut add);
+    found.sort_by_key(|limit| limit.limit);
+    found
+}
+
+/// The limits of the machine itself, those that it has.
+fn machine_limits(
+    test: &HopTest<'_>,
+    sight: LineOfSight,
+    add: &mut impl FnMut(Limit, SlopeInterval, Option<VertexId>, Option<Shortfall>),
+) {
+    let hopper = test.hopper();
+    if hopper.takeoff_angle_min.is_some() || hopper.takeoff_angle_max.is_some() {
+        add(Limit::MechanicalAngle, limits::takeoff_cone(sight, test.mechanical()), None, None);
+    }
+    if let Some(height_m) = hopper.apex_height_max_m {
+        let loft = limits::apex_height(sight, height_m);
+        let shortfall = loft.is_empty().then(|| Shortfall::Height { needed_m: sight.rise_m(), limit_m: height_m });
+        add(Limit::ApexHeight, loft, None, shortfall);
+    }
+    if let Some(time_s) = hopper.flight_time_max_s {
+        add(Limit::FlightTime, limits::flight_time(sight, time_s, test.gravity_m_s2()), None, None);
+    }
+}
+
+/// The intersection of all limits and what sets its ends, or the conflict that leaves nothing.
+fn judged(sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
+    if let Some(alone) = limits.iter().find(|limit| limit.loft.is_empty()) {
+        return Verdict::Refused(Conflict::Alone(*alone));
+    }
+    let mut binding = Binding { lower: ABOVE_SIGHT, upper: ABOVE_SIGHT };
+    for &limit in limits {
+        if limit.loft.lower > binding.lower.loft.lower {
+            binding.lower = limit;
+        }
+        if limit.loft.upper < binding.upper.loft.upper {
+            binding.upper = limit;
+        }
+    }
+    let loft = SlopeInterval { lower: binding.lower.loft.lower, upper: binding.upper.loft.upper };
+    if loft.is_empty() || loft.upper <= 0.0 {
+        let angle = |loft: f64| Angle::from_slope(sight.slope() + loft).degrees();
+        return Verdict::Refused(Conflict::Pair {
+            lower: binding.lower,
+            upper: binding.upper,
+            gap_deg: angle(loft.lower) - angle(loft.upper),
+        });
+    }
+    Verdict::Feasible(loft, binding)
+}

@@ -1,0 +1,109 @@
+//! What stops a search without success: how far one gets from either end, and what refuses in the gap.
+
+use std::collections::VecDeque;
+
+use super::{HopGraph, RefusalCounts};
+use crate::{ballistics::Conflict, chain::Station, quantity::NodeId};
+
+/// How far one gets from start and towards goal over the nodes of one graph, and what refuses in between.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frontier {
+    /// Every node that the start reaches, the start included, from left to right.
+    pub reached: Vec<Station>,
+    /// Every node from which the goal can be reached, the goal included, from left to right.
+    pub leads_to_goal: Vec<Station>,
+    /// The reached node nearest to the goal.
+    pub nearest_to_goal: Station,
+    /// The node nearest to the start from which the goal can be reached.
+    pub nearest_to_start: Station,
+    /// What refused the hops out of the reached set.
+    pub refusals: RefusalCounts,
+    /// Of those refusals by two conflicting limits, the one with the smallest gap in degrees.
+    pub nearest_miss: Option<NearestMiss>,
+}
+
+/// The refused hop that came closest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NearestMiss {
+    /// From here.
+    pub takeoff: Station,
+    /// To there.
+    pub landing: Station,
+    /// Why not.
+    pub conflict: Conflict,
+}
+
+impl Frontier {
+    /// The most refused hops out of the reached set that are taken apart for the nearest miss; the counts are of all.
+    ///
+    /// Taking a refusal apart costs some microseconds, so this bounds the work to about a second.
+    const EXPLAINED: usize = 200_000;
+
+    /// Of a graph whose search found no path.
+    pub(super) fn of(graph: &HopGraph<'_>) -> Self {
+        let nodes = graph.nodes();
+        let reached = graph.expanded();
+        let leads = leading_to_goal(graph);
+        let of = |flags: &[bool]| -> Vec<Station> {
+            nodes.stations().iter().zip(flags).filter(|(_, flag)| **flag).map(|(station, _)| *station).collect()
+        };
+        let (reached_stations, leads_stations) = (of(&reached), of(&leads));
+        let nearest = |stations: &[Station], to: &Station| {
+            let away = |s: &&Station| (s.point.x_m - to.point.x_m).abs();
+            stations.iter().min_by(|a, b| away(a).total_cmp(&away(b))).copied()
+        };
+        let (start, goal) = (*nodes.station(nodes.start()), *nodes.station(nodes.goal()));
+        let (refusals, nearest_miss) = refusals_out_of(graph, &reached);
+        Self {
+            nearest_to_goal: nearest(&reached_stations, &goal).unwrap_or(start),
+            nearest_to_start: nearest(&leads_stations, &start).unwrap_or(goal),
+            reached: reached_stations,
+            leads_to_goal: leads_stations,
+            refusals,
+            nearest_miss,
+        }
+    }
+}
+
+/// Which nodes lead to the goal: breadth-first, against the direction of the hops.
+fn leading_to_goal(graph: &HopGraph<'_>) -> Vec<bool> {
+    let nodes = graph.nodes();
+    let mut leads = vec![false; nodes.stations().len()];
+    let mut queue = VecDeque::from([nodes.goal()]);
+    leads[nodes.goal().index()] = true;
+    while let Some(landing) = queue.pop_front() {
+        for takeoff in graph.takeoffs(landing) {
+            if !leads[takeoff] && graph.edge(&nodes.stations()[takeoff], nodes.station(landing)).is_ok() {
+                leads[takeoff] = true;
+                queue.push_back(NodeId(takeoff));
+            }
+        }
+    }
+    leads
+}
+
+/// What refuses the hops that leave a set of nodes, and the smallest gap among them.
+fn refusals_out_of(graph: &HopGraph<'_>, reached: &[bool]) -> (RefusalCounts, Option<NearestMiss>) {
+    let stations = graph.nodes().stations();
+    let mut counts = RefusalCounts::default();
+    let mut explained = 0;
+    let mut best: Option<(f64, NearestMiss)> = None;
+    for (i, takeoff) in stations.iter().enumerate().filter(|(i, _)| reached[*i]) {
+        for j in graph.landings(NodeId(i)).filter(|&j| !reached[j]) {
+            let landing = stations[j];
+            let Err(limit) = graph.edge(takeoff, &landing) else { continue };
+            counts.count(limit);
+            if explained == Frontier::EXPLAINED {
+                continue;
+            }
+            explained += 1;
+            let conflict = graph.test().takeoff_set(takeoff, &landing).and_then(|set| set.conflict());
+            if let Some(conflict @ Conflict::Pair { gap_deg, .. }) = conflict
+                && best.is_none_or(|(smallest, _)| gap_deg < smallest)
+            {
+                best = Some((gap_deg, NearestMiss { takeoff: *takeoff, landing, conflict }));
+            }
+        }
+    }
+    (counts, best.map(|(_, miss)| miss))
+}

@@ -1,0 +1,22 @@
+//! The hop graph over points of the chain, and the search for the path of fewest hops.
+//!
+//! Nodes are the vertices, points between them, start and goal; an edge is one hop, or several along one segment, in either
+//! direction of travel. Edges are evaluated when the search asks for them and never stored, so memory grows with the nodes alone.
+//!
+//! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing.
+
+mod cost;
+mod edges;
+mod frontier;
+mod nodes;
+mod refusals;
+mod search;
+mod usable;
+
+pub use cost::{Cost, Effort};
+pub use edges::{Edge, HopGraph};
+pub use frontier::{Frontier, NearestMiss};
+pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
+pub use refusals::RefusalCounts;
+pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search};
+pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};

@@ -1,0 +1,45 @@
+//! Counts of refused pairs, by the limit that refused.
+
+use std::ops::AddAssign;
+
+use crate::world::Limit;
+
+/// How many pairs each limit refused. A pair counts once, under the first limit that left nothing, in the order of testing: ground,
+/// speeds, cones, machine, terrain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct RefusalCounts {
+    counts: [u64; Limit::ALL.len()],
+}
+
+impl RefusalCounts {
+    /// Counts one refusal.
+    #[inline]
+    pub fn count(&mut self, limit: Limit) {
+        self.counts[limit.index()] += 1;
+    }
+
+    /// How many pairs a limit refused.
+    pub const fn of(&self, limit: Limit) -> u64 {
+        self.counts[limit.index()]
+    }
+
+    /// All limits that refused anything, with their counts, most first.
+    pub fn ranked(&self) -> Vec<(Limit, u64)> {
+        let mut ranked: Vec<_> = Limit::ALL.into_iter().map(|limit| (limit, self.of(limit))).filter(|(_, n)| *n > 0).collect();
+        ranked.sort_by_key(|(limit, n)| (std::cmp::Reverse(*n), *limit));
+        ranked
+    }
+
+    /// All refusals together.
+    pub fn total(&self) -> u64 {
+        self.counts.iter().sum()
+    }
+}
+
+impl AddAssign for RefusalCounts {
+    fn add_assign(&mut self, other: Self) {
+        for (mine, theirs) in self.counts.iter_mut().zip(other.counts) {
+            *mine += theirs;
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! Whether start or goal itself refuses, before any hop is tried.
+
+use crate::{
+    chain::{ConstrainedChain, Contact, Direction, GroundRefusal, Station},
+    quantity::VertexId,
+};
+
+/// A start from which nothing takes off, or a goal on which nothing lands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EndpointRefusal {
+    /// Start (take-off) or goal (landing).
+    pub contact: Contact,
+    /// Where.
+    pub station: Station,
+    /// Why, for the direction named.
+    pub refusal: GroundRefusal,
+    /// The direction of travel that the refusal speaks of; the other one is refused as well.
+    pub direction: Direction,
+    /// The nearest point of the chain that would do, by x; `None` where there is none.
+    pub nearest: Option<Station>,
+}
+
+/// Whether a contact is allowed at a station in at least one direction of travel.
+pub fn is_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> bool {
+    Direction::BOTH.into_iter().any(|direction| {
+        chain.ruling(station, contact, direction).is_some_and(|segment| segment.granted(contact, direction).is_some())
+    })
+}
+
+/// Why a start or goal refuses in both directions; `None` where it does not.
+///
+/// `towards` is the direction of the journey, whose reason is told.
+pub fn endpoint_refusal(
+    chain: &ConstrainedChain,
+    station: &Station,
+    contact: Contact,
+    towards: Direction,
+) -> Option<EndpointRefusal> {
+    if is_usable(chain, station, contact) {
+        return None;
+    }
+    let refusal_in = |direction| chain.judged(station, contact, direction).err().map(|refusal| (direction, refusal));
+    let away = if towards == Direction::Forward { Direction::Reverse } else { Direction::Forward };
+    // At the chain's end the ground ahead does not exist: the other direction then tells more.
+    let told =
+        [towards, away].into_iter().filter_map(refusal_in).min_by_key(|(_, refusal)| matches!(refusal, GroundRefusal::NoGround))?;
+    let (direction, refusal) = told;
+    Some(EndpointRefusal { contact, station: *station, refusal, direction, nearest: nearest_usable(chain, station, contact) })
+}
+
+/// The nearest usable point by x: what a segment grants holds all over it, so it is a vertex.
+///
+/// The vertex itself may obey another segment; then the segment's middle stands for it.
+fn nearest_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> Option<Station> {
+    let geometry = chain.geometry();
+    let away = |other: &Station| (other.point.x_m - station.point.x_m).abs();
+    let vertices = (0..=geometry.segment_count()).map(|i| geometry.vertex_station(VertexId(i)));
+    let middles = geometry.vertices().windows(2).filter_map(|pair| geometry.station(0.5 * (pair[0].x_m + pair[1].x_m)).ok());
+    vertices.chain(middles).filter(|candidate| is_usable(chain, candidate, contact)).min_by(|a, b| away(a).total_cmp(&away(b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        chain::PolygonalChain,
+        quantity::ChainPoint,
+        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    };
+
+    #[test]
+    fn a_start_on_a_wall_is_told_its_slope_and_the_nearest_flat_place() {
+        let points = [(0.0, 0.0), (10.0, 0.0), (20.0, 20.0), (21.0, 40.0), (30.0, 40.0)];
+        let chain = PolygonalChain::bare(points.map(|(x, z)| ChainPoint::new(x, z)).to_vec()).unwrap();
+        let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.6).unwrap())), rest: RestSlope::AsFrictionHolds };
+        let chain = ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0), &surface).unwrap();
+        let start = chain.geometry().station(18.0).unwrap();
+        let refusal = endpoint_refusal(&chain, &start, Contact::Takeoff, Direction::Forward).unwrap();
+        assert!(matches!(refusal.refusal, GroundRefusal::TooSteep { .. }));
+        assert_eq!(refusal.nearest.unwrap().point.x_m, 21.0, "the plateau's edge, 3 m ahead, not the plain 8 m back");
+        let flat = chain.geometry().station(5.0).unwrap();
+        assert!(endpoint_refusal(&chain, &flat, Contact::Takeoff, Direction::Forward).is_none());
+    }
+}

@@ -1,0 +1,132 @@
+//! From the search's legs to the hops that fly them (P Algorithm 4).
+
+use super::{Hop, HopPath, MapEnds, Totals};
+use crate::{
+    ballistics::{Arc, HopTest, SegmentHops, Split, TakeoffChoice, TakeoffSet},
+    chain::{Contact, Direction, Station},
+    graph::{Edge, Leg},
+    quantity::SlopeInterval,
+    world::{Hopper, Limit},
+};
+
+/// A path longer than this program lists hop by hop.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "the path has {hops} hops, expected at most {} to list: raise the speed limits, or ask `chta check` for the count alone",
+    TooManyHops::MOST
+)]
+pub struct TooManyHops {
+    /// How many hops the path has.
+    pub hops: u64,
+}
+
+impl TooManyHops {
+    /// The longest path that is listed: some 400 bytes a hop, so 400 MB.
+    pub const MOST: u64 = 1_000_000;
+}
+
+/// The hops of a path, in two dimensions, and in three where the chain lies on a map (P Algorithm 4, Remark 3).
+///
+/// # Errors
+/// [`TooManyHops`].
+pub fn generate(test: &HopTest<'_>, legs: &[Leg], choice: TakeoffChoice, split: Split) -> Result<HopPath, TooManyHops> {
+    let count = |leg: &Leg| match leg.edge {
+        Edge::Hop(_) => 1,
+        Edge::Along(along) => along.hops(),
+    };
+    let total = legs.iter().map(count).fold(0u64, u64::saturating_add);
+    if total > TooManyHops::MOST {
+        return Err(TooManyHops { hops: total });
+    }
+    let mut hops = Vec::new();
+    for leg in legs {
+        match leg.edge {
+            Edge::Hop(loft) => hops.extend(single(test, leg, loft, choice)),
+            Edge::Along(along) => hops.extend(along_segment(test, leg, &along, choice, split)),
+        }
+    }
+    let totals = totals(&hops, test.hopper());
+    Ok(HopPath { hops, totals })
+}
+
+/// The hop of a leg that takes one.
+fn single(test: &HopTest<'_>, leg: &Leg, loft: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
+    let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
+    let arc = Arc::new(sight, choice.loft(sight, loft), test.gravity_m_s2());
+    Some(hop(test, leg.takeoff, leg.landing, &arc, loft))
+}
+
+/// The hops of a leg that runs along one segment.
+fn along_segment(test: &HopTest<'_>, leg: &Leg, along: &SegmentHops, choice: TakeoffChoice, split: Split) -> Vec<Hop> {
+    let Some(direction) = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m) else { return Vec::new() };
+    let (each_m, _) = along.lengths_m(split);
+    let mut hops = Vec::new();
+    let mut takeoff = leg.takeoff;
+    for i in 1..=along.hops() {
+        let last = i == along.hops();
+        #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
+        let x_m = leg.takeoff.point.x_m + direction.sign() * each_m * i as f64;
+        let landing = if last { Some(leg.landing) } else { test.chain().geometry().station(x_m).ok() };
+        let Some(landing) = landing else { break };
+        // The length between the stations themselves: rounding their places must not move the landing.
+        let length_m = (landing.point.x_m - takeoff.point.x_m).abs();
+        hops.push(hop(test, takeoff, landing, &along.arc(test, length_m, choice), along.lofts(test, length_m)));
+        takeoff = landing;
+    }
+    hops
+}
+
+/// A hop with all that is said of it.
+fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, loft: SlopeInterval) -> Hop {
+    let direction = if landing.point.x_m < takeoff.point.x_m { Direction::Reverse } else { Direction::Forward };
+    let geometry = test.chain().geometry();
+    let limit =
+        |contact, station: &Station| test.chain().judged(station, contact, direction).map_or(0.0, |rule| rule.speed_max_m_s());
+    let binding = test.takeoff_set(&takeoff, &landing).as_ref().and_then(TakeoffSet::binding);
+    let takeoff_speed_m_s = arc.takeoff_speed_m_s();
+    let landing_speed_m_s = arc.landing_speed_m_s();
+    let angle = |loft: f64| crate::quantity::Angle::from_slope(arc.line_of_sight().slope() + loft);
+    Hop {
+        direction,
+        takeoff,
+        landing,
+        map: geometry.map_point(&takeoff).zip(geometry.map_point(&landing)).map(|(from, to)| map_ends(from, to)),
+        takeoff_angle: arc.takeoff_angle(),
+        takeoff_speed_m_s,
+        landing_angle: arc.landing_angle(),
+        landing_speed_m_s,
+        flight_time_s: arc.flight_time_s(),
+        apex_z_m: takeoff.point.z_m + arc.apex_height_m(),
+        takeoff_angles: crate::quantity::AngleInterval { min: angle(loft.lower), max: angle(loft.upper) },
+        speed_margin_m_s: (limit(Contact::Takeoff, &takeoff) - takeoff_speed_m_s)
+            .min(limit(Contact::Landing, &landing) - landing_speed_m_s),
+        // Without a binding the set is the one point of full reach, which a speed sets.
+        lower_limit: binding.map_or(Limit::TakeoffSpeed, |b| b.lower.limit),
+        lower_vertex: binding.and_then(|b| b.lower.vertex),
+        upper_limit: binding.map_or(Limit::TakeoffSpeed, |b| b.upper.limit),
+    }
+}
+
+/// The two ends on the map and the heading between them.
+fn map_ends(takeoff: crate::quantity::MapPoint, landing: crate::quantity::MapPoint) -> MapEnds {
+    let along = landing - takeoff;
+    let degrees = libm::atan2(along.x, along.y).to_degrees();
+    MapEnds { takeoff, landing, heading_deg: if degrees < 0.0 { degrees + 360.0 } else { degrees } }
+}
+
+/// What hops add up to.
+fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
+    let sum = |of: fn(&Hop) -> f64| hops.iter().map(of).sum::<f64>();
+    let flight_time_s = sum(|h| h.flight_time_s);
+    let energy_j_kg = sum(|h| 0.5 * h.takeoff_speed_m_s * h.takeoff_speed_m_s);
+    #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
+    let rests = hops.len().saturating_sub(1) as f64;
+    Totals {
+        flight_time_s,
+        energy_j_kg,
+        peak_takeoff_speed_m_s: hops.iter().map(|h| h.takeoff_speed_m_s).fold(0.0, f64::max),
+        ground_distance_m: sum(|h| (h.landing.point.x_m - h.takeoff.point.x_m).abs()),
+        energy_j: hopper.mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
+        mission_time_s: hopper.rest_time_s.map(|rest_time_s| flight_time_s + rest_time_s * rests),
+    }
+}

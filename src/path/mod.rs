@@ -1,0 +1,7 @@
+//! The hop path: its generation from the search's answer, and an independent checker that flies it again.
+
+mod generate;
+mod hop;
+
+pub use generate::{TooManyHops, generate};
+pub use hop::{Hop, HopPath, MapEnds, Totals};

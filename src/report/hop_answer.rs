@@ -1,0 +1,251 @@
+//! The answer for one pair, as plain data.
+
+use serde::Serialize;
+
+use crate::{
+    ballistics::{Arc, Conflict, HopTest, LimitInterval, Shortfall, TakeoffChoice, TakeoffSet},
+    chain::{Contact, Station},
+    quantity::{Angle, VertexId},
+};
+
+/// What `chta hop` answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct HopAnswer {
+    /// Where the hop takes off, m.
+    pub from_x_m: f64,
+    /// Where it lands, m.
+    pub to_x_m: f64,
+    /// Direction of travel.
+    pub direction: &'static str,
+    /// Whether one hop does it.
+    pub feasible: bool,
+    /// The least feasible take-off angle.
+    pub takeoff_angle_min_deg: Option<f64>,
+    /// The greatest feasible take-off angle.
+    pub takeoff_angle_max_deg: Option<f64>,
+    /// Straight distance.
+    pub line_of_sight_m: f64,
+    /// Its angle above the horizontal.
+    pub line_of_sight_angle_deg: f64,
+    /// Each limit by itself.
+    pub limits: Vec<LimitRecord>,
+    /// What sets either end, or what conflicts.
+    pub binding: BindingRecord,
+    /// The hop to fly.
+    pub best: Option<BestRecord>,
+    /// Hops along the segment that both points share, where they share one.
+    pub segment_hops: Option<SegmentHopsRecord>,
+}
+
+/// One limit by itself, as take-off angles.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LimitRecord {
+    /// Its name.
+    pub name: &'static str,
+    /// The least take-off angle it allows; null where it refuses every arc.
+    pub min_deg: Option<f64>,
+    /// The greatest take-off angle it allows; null where it refuses every arc.
+    pub max_deg: Option<f64>,
+    /// For the terrain: the vertex that decides.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub vertex: Option<VertexRecord>,
+    /// Why it refuses every arc, where it does.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refusal: Option<String>,
+}
+
+/// A vertex of the chain.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct VertexRecord {
+    /// Its number, from 1.
+    pub number: usize,
+    /// Its place, m.
+    pub x_m: f64,
+    /// Its height, m.
+    pub z_m: f64,
+}
+
+/// What sets the ends of a feasible set, or why it is empty.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum BindingRecord {
+    /// Feasible: which limit sets either end.
+    Ends {
+        /// Sets the least take-off angle.
+        lower: &'static str,
+        /// Sets the greatest take-off angle.
+        upper: &'static str,
+        /// For the terrain: the vertex that decides.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        vertex: Option<VertexRecord>,
+    },
+    /// Empty: which limits conflict, one alone or two with each other.
+    Conflict {
+        /// Their names.
+        conflict: Vec<&'static str>,
+        /// By how many degrees, where the limits are ones of angles.
+        gap_deg: Option<f64>,
+        /// By how many m/s a speed falls short, where it is one of speed.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        gap_m_s: Option<f64>,
+        /// At which vertex.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        vertex: Option<VertexRecord>,
+        /// The same in one sentence.
+        sentence: String,
+    },
+}
+
+/// The hop to fly.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BestRecord {
+    /// By which choice.
+    pub choice: &'static str,
+    /// Take-off angle.
+    pub takeoff_angle_deg: f64,
+    /// Take-off speed.
+    pub takeoff_speed_m_s: f64,
+    /// Landing angle.
+    pub landing_angle_deg: f64,
+    /// Landing speed.
+    pub landing_speed_m_s: f64,
+    /// Flight time.
+    pub flight_time_s: f64,
+    /// Highest point above the take-off.
+    pub apex_height_m: f64,
+}
+
+/// Hops along one segment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SegmentHopsRecord {
+    /// The least number of hops.
+    pub hops: u64,
+    /// The farthest that one hop carries along the slope.
+    pub reach_line_of_sight_m: f64,
+    /// The same, horizontally.
+    pub reach_horizontal_m: f64,
+    /// Take-off angle of that hop.
+    pub takeoff_angle_deg: f64,
+    /// The same, over the slope of the ground.
+    pub takeoff_over_slope_deg: f64,
+    /// Which limit ends the reach.
+    pub limit: &'static str,
+}
+
+impl HopAnswer {
+    /// The answer for two stations; `None` where they share the same x.
+    pub fn new(test: &HopTest<'_>, takeoff: &Station, landing: &Station, choice: TakeoffChoice) -> Option<Self> {
+        let set = test.takeoff_set(takeoff, landing)?;
+        let angles = set.angles();
+        Some(Self {
+            from_x_m: takeoff.point.x_m,
+            to_x_m: landing.point.x_m,
+            direction: set.direction().name(),
+            feasible: angles.is_some(),
+            takeoff_angle_min_deg: angles.map(|a| a.min.degrees()),
+            takeoff_angle_max_deg: angles.map(|a| a.max.degrees()),
+            line_of_sight_m: set.line_of_sight().length_m(),
+            line_of_sight_angle_deg: set.line_of_sight().angle().degrees(),
+            limits: set.limits().iter().map(|limit| LimitRecord::new(test, &set, limit)).collect(),
+            binding: BindingRecord::new(test, &set),
+            best: set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice)),
+            segment_hops: SegmentHopsRecord::new(test, takeoff, landing),
+        })
+    }
+}
+
+impl LimitRecord {
+    fn new(test: &HopTest<'_>, set: &TakeoffSet, limit: &LimitInterval) -> Self {
+        let angles = set.angles_of(limit.loft);
+        Self {
+            name: limit.limit.name(),
+            min_deg: angles.map(|a| a.min.degrees()),
+            max_deg: angles.map(|a| a.max.degrees()),
+            vertex: limit.vertex.map(|vertex| VertexRecord::new(test, vertex)),
+            refusal: limit.shortfall.map(|shortfall| shortfall.to_string()),
+        }
+    }
+}
+
+impl VertexRecord {
+    fn new(test: &HopTest<'_>, vertex: VertexId) -> Self {
+        let point = test.chain().geometry().vertices()[vertex.index()];
+        Self { number: vertex.index() + 1, x_m: point.x_m, z_m: point.z_m }
+    }
+}
+
+impl BindingRecord {
+    fn new(test: &HopTest<'_>, set: &TakeoffSet) -> Self {
+        if let Some(binding) = set.binding() {
+            return Self::Ends {
+                lower: binding.lower.limit.name(),
+                upper: binding.upper.limit.name(),
+                vertex: binding.lower.vertex.map(|vertex| VertexRecord::new(test, vertex)),
+            };
+        }
+        match set.conflict() {
+            Some(conflict) => Self::of_conflict(test, &conflict),
+            None => Self::Conflict { conflict: Vec::new(), gap_deg: None, gap_m_s: None, vertex: None, sentence: String::new() },
+        }
+    }
+
+    /// What conflicts.
+    pub fn of_conflict(test: &HopTest<'_>, conflict: &Conflict) -> Self {
+        let sentence = conflict.to_string();
+        match conflict {
+            Conflict::Alone(alone) => {
+                let (gap_deg, gap_m_s) = match alone.shortfall {
+                    Some(Shortfall::Ground { refusal, .. }) => (refusal.excess_deg(), None),
+                    Some(Shortfall::Speed { needed_m_s, limit_m_s }) => (None, Some(needed_m_s - limit_m_s)),
+                    Some(Shortfall::Height { .. }) | None => (None, None),
+                };
+                Self::Conflict { conflict: vec![alone.limit.name()], gap_deg, gap_m_s, vertex: None, sentence }
+            }
+            Conflict::Pair { lower, upper, gap_deg } => Self::Conflict {
+                conflict: vec![lower.limit.name(), upper.limit.name()],
+                gap_deg: Some(*gap_deg),
+                gap_m_s: None,
+                vertex: lower.vertex.map(|vertex| VertexRecord::new(test, vertex)),
+                sentence,
+            },
+        }
+    }
+}
+
+impl BestRecord {
+    fn new(arc: &Arc, choice: TakeoffChoice) -> Self {
+        Self {
+            choice: choice.name(),
+            takeoff_angle_deg: arc.takeoff_angle().degrees(),
+            takeoff_speed_m_s: arc.takeoff_speed_m_s(),
+            landing_angle_deg: arc.landing_angle().degrees(),
+            landing_speed_m_s: arc.landing_speed_m_s(),
+            flight_time_s: arc.flight_time_s(),
+            apex_height_m: arc.apex_height_m(),
+        }
+    }
+}
+
+impl SegmentHopsRecord {
+    fn new(test: &HopTest<'_>, takeoff: &Station, landing: &Station) -> Option<Self> {
+        let hops = test.segment_hops(takeoff, landing)?;
+        let reach = hops.reach();
+        let takeoff_angle_deg = Angle::from_slope(reach.takeoff_slope()).degrees();
+        Some(Self {
+            hops: hops.hops(),
+            reach_line_of_sight_m: reach.reach_line_of_sight_m(),
+            reach_horizontal_m: reach.reach_m(),
+            takeoff_angle_deg,
+            takeoff_over_slope_deg: takeoff_angle_deg - Angle::from_slope(reach.sight_slope()).degrees(),
+            limit: reach.limit().name(),
+        })
+    }
+}
+
+/// The name of an end of a hop.
+pub(super) const fn end_name(contact: Contact) -> &'static str {
+    match contact {
+        Contact::Takeoff => "start",
+        Contact::Landing => "goal",
+    }
+}

@@ -1,0 +1,19 @@
+//! Results: plain data first; text, JSON, CSV, GeoJSON and the picture are views of it.
+
+mod check_answer;
+mod document;
+#[cfg(feature = "plot")]
+pub mod figure;
+mod geojson;
+mod hop_answer;
+mod path_record;
+mod text;
+mod whole_file;
+
+pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, verdict_name};
+pub use document::{Document, InputFile};
+pub use geojson::path_geojson;
+pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
+pub use path_record::{HopRecord, MapRecord, TotalsRecord, write_path_csv};
+pub use text::{check_text, hop_text, path_text};
+pub use whole_file::write_whole;

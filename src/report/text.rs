@@ -1,0 +1,157 @@
+//! The same answers for reading on a terminal.
+
+use std::fmt::Write;
+
+use super::{BindingRecord, CheckAnswer, HopAnswer, HopRecord, TotalsRecord};
+
+/// A sheet of text; writing to it does not fail.
+#[derive(Default)]
+struct Sheet(String);
+
+impl Sheet {
+    fn line(&mut self, line: std::fmt::Arguments<'_>) {
+        // Writing to a String cannot fail.
+        let _ = self.0.write_fmt(line);
+        self.0.push('\n');
+    }
+}
+
+/// What `chta hop` prints.
+pub fn hop_text(answer: &HopAnswer) -> String {
+    let mut sheet = Sheet::default();
+    sheet.line(format_args!(
+        "{} from x = {} m to x = {} m: {:.3} m of line of sight at {:.3} deg",
+        answer.direction, answer.from_x_m, answer.to_x_m, answer.line_of_sight_m, answer.line_of_sight_angle_deg
+    ));
+    match (answer.takeoff_angle_min_deg, answer.takeoff_angle_max_deg) {
+        (Some(min), Some(max)) => sheet.line(format_args!("feasible: take-off angles {min:.6} to {max:.6} deg")),
+        _ => sheet.line(format_args!("not feasible in one hop")),
+    }
+    sheet.line(format_args!("{}", binding_line(&answer.binding)));
+    sheet.line(format_args!("\n{:<18}{:>14}{:>14}", "limit", "min (deg)", "max (deg)"));
+    for limit in &answer.limits {
+        let ends = match (limit.min_deg, limit.max_deg) {
+            (Some(min), Some(max)) => format!("{min:>14.6}{max:>14.6}"),
+            _ => format!("{:>14}{:>14}", "-", "-"),
+        };
+        let vertex = limit.vertex.map(|v| format!("  vertex {} at x = {} m", v.number, v.x_m)).unwrap_or_default();
+        let refusal = limit.refusal.as_ref().map(|r| format!("  {r}")).unwrap_or_default();
+        sheet.line(format_args!("{:<18}{ends}{vertex}{refusal}", limit.name));
+    }
+    if let Some(best) = answer.best {
+        sheet.line(format_args!(
+            "\nto fly ({}): {:.6} deg at {:.6} m/s; lands at {:.6} deg with {:.6} m/s after {:.3} s, {:.3} m above the take-off at most",
+            best.choice,
+            best.takeoff_angle_deg,
+            best.takeoff_speed_m_s,
+            best.landing_angle_deg,
+            best.landing_speed_m_s,
+            best.flight_time_s,
+            best.apex_height_m
+        ));
+    }
+    if let Some(along) = answer.segment_hops {
+        sheet.line(format_args!(
+            "\nalong this segment: {} hop{}; one hop carries {:.3} m along the slope ({:.3} m horizontally), taking off {:.3} deg over \
+             the slope ({:.3} deg over the horizontal); {} ends it",
+            along.hops,
+            if along.hops == 1 { "" } else { "s" },
+            along.reach_line_of_sight_m,
+            along.reach_horizontal_m,
+            along.takeoff_over_slope_deg,
+            along.takeoff_angle_deg,
+            along.limit
+        ));
+    }
+    sheet.0
+}
+
+/// What sets the ends, or what conflicts, in one line.
+fn binding_line(binding: &BindingRecord) -> String {
+    match binding {
+        BindingRecord::Ends { lower, upper, vertex } => {
+            let at = vertex.map(|v| format!(" (vertex {} at x = {} m)", v.number, v.x_m)).unwrap_or_default();
+            format!("the least angle is set by {lower}{at}, the greatest by {upper}")
+        }
+        BindingRecord::Conflict { sentence, .. } => format!("why: {sentence}"),
+    }
+}
+
+/// What `chta check` prints for one pair.
+pub fn check_text(answer: &CheckAnswer) -> String {
+    let mut sheet = Sheet::default();
+    let hops = answer.hops.map_or(String::new(), |hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" }));
+    sheet.line(format_args!("{}{hops}: from x = {} m to x = {} m", answer.verdict, answer.start_x_m, answer.goal_x_m));
+    if let Some(effort) = answer.effort {
+        sheet.line(format_args!("{}: {:.6} {}", effort.name, effort.value, effort.unit));
+    }
+    sheet.line(format_args!(
+        "{} points in a segment at most, {} nodes, {} pairs tested",
+        answer.points_per_segment, answer.nodes, answer.pairs_tested
+    ));
+    if !answer.refusals.is_empty() {
+        sheet.line(format_args!("refused by {}", ranked(&answer.refusals)));
+    }
+    for end in &answer.endpoint_refusals {
+        let nearest = end
+            .nearest_usable_x_m
+            .map_or("no point of the chain would do".to_owned(), |x| format!("the nearest usable point is x = {x} m"));
+        sheet.line(format_args!("the {} at x = {} m refuses ({}): {}; {nearest}", end.endpoint, end.x_m, end.limit, end.reason));
+    }
+    if let Some(frontier) = &answer.frontier {
+        sheet.line(format_args!(
+            "from the start one gets to x = {} m ({} nodes); the goal can be reached from x = {} m ({} nodes)",
+            frontier.reached_x_m, frontier.reached_nodes, frontier.leads_to_goal_from_x_m, frontier.leads_to_goal_nodes
+        ));
+        if !frontier.refusals.is_empty() {
+            sheet.line(format_args!("what refuses the hops out of there: {}", ranked(&frontier.refusals)));
+        }
+        if let Some(miss) = &frontier.nearest_miss {
+            sheet.line(format_args!("nearest miss, x = {} to {} m: {}", miss.from_x_m, miss.to_x_m, binding_line(&miss.binding)));
+        }
+        sheet.line(format_args!("more points per segment may find a path: this is no proof that there is none"));
+    }
+    sheet.0
+}
+
+/// Counts by name, most first.
+fn ranked(counts: &std::collections::BTreeMap<&'static str, u64>) -> String {
+    let mut ranked: Vec<_> = counts.iter().collect();
+    ranked.sort_by_key(|(name, count)| (std::cmp::Reverse(**count), **name));
+    ranked.iter().map(|(name, count)| format!("{name} {count}")).collect::<Vec<_>>().join(", ")
+}
+
+/// The hops of a path as a table, with their totals.
+pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
+    let mut sheet = Sheet::default();
+    sheet.line(format_args!(
+        "{:>4} {:<8}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>9}  {}",
+        "hop", "", "from x (m)", "to x (m)", "up (deg)", "m/s", "down(deg)", "m/s", "s", "binding (lower/upper)"
+    ));
+    for row in rows {
+        sheet.line(format_args!(
+            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}  {}",
+            row.hop,
+            row.direction,
+            row.takeoff_x_m,
+            row.landing_x_m,
+            row.takeoff_angle_deg,
+            row.takeoff_speed_m_s,
+            row.landing_angle_deg,
+            row.landing_speed_m_s,
+            row.flight_time_s,
+            row.binding
+        ));
+    }
+    sheet.line(format_args!(
+        "in all: {:.3} m over ground, {:.3} s in flight, {:.4} J/kg, {:.4} m/s at most",
+        totals.ground_distance_m, totals.flight_time_s, totals.energy_j_kg, totals.peak_takeoff_speed_m_s
+    ));
+    if let Some(energy_j) = totals.energy_j {
+        sheet.line(format_args!("energy {energy_j:.4} J"));
+    }
+    if let Some(mission_time_s) = totals.mission_time_s {
+        sheet.line(format_args!("mission time {mission_time_s:.3} s"));
+    }
+    sheet.0
+}

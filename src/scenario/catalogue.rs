@@ -1,0 +1,138 @@
+//! Every key that a scenario may have, with its kind, unit and meaning: one list for reading, help and hints.
+
+use crate::{
+    ballistics::{Split, TakeoffChoice},
+    graph::Effort,
+};
+
+/// What a key's value may be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// A number between two bounds, both included.
+    Number {
+        /// The least.
+        min: f64,
+        /// The greatest.
+        max: f64,
+    },
+    /// An angle from 0 to 90 degrees, or `inf`.
+    AngleOrUnlimited,
+    /// Two numbers `[min, max]`, in degrees.
+    AngleRange,
+    /// Two numbers `[x, y]` on the map, in metres.
+    MapPoint,
+    /// A whole number, or `"auto"`.
+    CountOrAuto,
+    /// One of these words.
+    Word(&'static [&'static str]),
+    /// Any text.
+    Text,
+}
+
+/// One key of a scenario.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Key {
+    /// The table it belongs to.
+    pub table: &'static str,
+    /// Its name, which ends in its unit.
+    pub name: &'static str,
+    /// What its value may be.
+    pub kind: Kind,
+    /// What it means, in one line.
+    pub help: &'static str,
+}
+
+impl Key {
+    /// `table.name`.
+    pub fn path(&self) -> String {
+        format!("{}.{}", self.table, self.name)
+    }
+
+    /// The known key of this table and name.
+    pub fn find(table: &str, name: &str) -> Option<&'static Self> {
+        CATALOGUE.iter().find(|key| key.table == table && key.name == name)
+    }
+}
+
+impl Kind {
+    /// What is expected, for messages.
+    pub fn expected(&self) -> String {
+        match self {
+            Self::Number { min, max } => format!("a number from {min:e} to {max:e}"),
+            Self::AngleOrUnlimited => "an angle from 0 to 90 degrees, or inf".to_owned(),
+            Self::AngleRange => "two angles in degrees, [min, max], from -360 to 360, min not above max".to_owned(),
+            Self::MapPoint => "two finite numbers in metres, [x, y]".to_owned(),
+            Self::CountOrAuto => "a whole number from 0 to 100000, or \"auto\"".to_owned(),
+            Self::Word(words) => format!("one of {}", words.join(", ")),
+            Self::Text => "a text in quotes, not empty".to_owned(),
+        }
+    }
+}
+
+const fn key(table: &'static str, name: &'static str, kind: Kind, help: &'static str) -> Key {
+    Key { table, name, kind, help }
+}
+
+/// Lengths and speeds beyond these are slips of units, not missions.
+const SPEED: Kind = Kind::Number { min: 1e-9, max: 1e5 };
+const LENGTH: Kind = Kind::Number { min: 1e-9, max: 1e9 };
+const FROM_ZERO: Kind = Kind::Number { min: 0.0, max: 1e9 };
+const COORDINATE: Kind = Kind::Number { min: -1e12, max: 1e12 };
+const ELEVATION_ANGLE: Kind = Kind::Number { min: -90.0, max: 90.0 };
+
+const EFFORTS: [&str; 4] =
+    [Effort::ALL[0].name(), Effort::ALL[1].name(), Effort::ALL[2].name(), Effort::ALL[3].name()];
+const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].name(), TakeoffChoice::ALL[2].name()];
+const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
+
+/// All keys, in the order in which a scenario is written.
+pub const CATALOGUE: [Key; 29] = [
+    key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
+    key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
+    key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
+    key("hopper", "takeoff_speed_max_m_s", SPEED, "greatest take-off speed, m/s"),
+    key("hopper", "landing_speed_max_m_s", SPEED, "greatest landing speed, m/s"),
+    key("hopper", "clearance_m", FROM_ZERO, "height to keep over every vertex flown past, m; absent: 0"),
+    key("hopper", "takeoff_angle_min_deg", ELEVATION_ANGLE, "mechanical least take-off angle from the horizontal, degrees"),
+    key("hopper", "takeoff_angle_max_deg", ELEVATION_ANGLE, "mechanical greatest take-off angle from the horizontal, degrees"),
+    key("hopper", "apex_height_max_m", FROM_ZERO, "greatest height of the flight above its take-off, m"),
+    key("hopper", "flight_time_max_s", LENGTH, "longest flight, s"),
+    key("hopper", "mass_kg", LENGTH, "mass, kg, for the total of energy"),
+    key("hopper", "rest_time_s", FROM_ZERO, "rest between hops, s, for the mission time"),
+    key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),
+    key("surface", "takeoff_from_slope_deg", Kind::AngleRange, "take-off angles above the slope, degrees, instead of friction"),
+    key("surface", "landing_from_slope_deg", Kind::AngleRange, "landing angles above the slope, degrees, instead of friction"),
+    key("surface", "rest_slope_max_deg", Kind::AngleOrUnlimited, "steepest surface to rest on, degrees; absent: atan(friction); inf: none"),
+    key("terrain", "dem", Kind::Text, "elevation raster, path from this file"),
+    key("terrain", "chain", Kind::Text, "chain CSV, path from this file"),
+    key("terrain", "start_m", Kind::MapPoint, "start on the map, [x, y], m"),
+    key("terrain", "goal_m", Kind::MapPoint, "goal on the map, [x, y], m"),
+    key("terrain", "start_x_m", COORDINATE, "start along the chain, m"),
+    key("terrain", "goal_x_m", COORDINATE, "goal along the chain, m"),
+    key("search", "points_per_segment", Kind::CountOrAuto, "points inside each segment, or \"auto\": the first of 0, 1, 2, 3, 7, 15, 31 with a path"),
+    key("search", "node_spacing_max_m", LENGTH, "instead: as many points as keep neighbours this close along the ground, m"),
+    key("search", "effort", Kind::Word(&EFFORTS), "second criterion after hops; absent: takeoff-speed"),
+    key("search", "takeoff_angle", Kind::Word(&CHOICES), "which feasible take-off angle to fly; absent: least-speed"),
+    key("search", "split", Kind::Word(&SPLITS), "how to divide many hops on a segment; absent: full-reach"),
+    key("report", "title", Kind::Text, "title of the picture; absent: the scenario's file name"),
+    key("report", "exaggeration", Kind::Number { min: 0.01, max: 1000.0 }, "vertical exaggeration of the picture; absent: chosen and stated"),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_number_ends_in_its_unit() {
+        let units = ["_m", "_m_s", "_m_s2", "_s", "_kg", "_deg"];
+        let pure = ["friction_coefficient", "exaggeration", "points_per_segment"];
+        for key in &CATALOGUE {
+            let number = !matches!(key.kind, Kind::Word(_) | Kind::Text);
+            assert!(
+                !number || pure.contains(&key.name) || units.iter().any(|unit| key.name.ends_with(unit)),
+                "{} has no unit",
+                key.path()
+            );
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! The scenario as it was used, ready to be written and read back.
+
+use serde_json::{Map, Value, json};
+
+use super::{Scenario, TerrainSource};
+use crate::{
+    graph::PointSpacing,
+    quantity::{Angle, AngleInterval},
+    world::{Grip, RestSlope},
+};
+
+/// The scenario as used, defaults filled in, with the keys of [`CATALOGUE`](super::CATALOGUE): [`Entries::from_json`](super::Entries)
+/// reads it back as it was. Paths are `name`d by the caller, relative to the working folder.
+pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> Value {
+    let mut tables = Map::new();
+    tables.insert("body".to_owned(), body(scenario));
+    tables.insert("hopper".to_owned(), hopper(scenario));
+    tables.insert("surface".to_owned(), surface(scenario));
+    tables.insert("terrain".to_owned(), terrain(scenario, named));
+    tables.insert("search".to_owned(), search(scenario));
+    tables.insert(
+        "report".to_owned(),
+        object([
+            ("title", scenario.title.clone().map(Value::from)),
+            ("exaggeration", scenario.exaggeration.map(Value::from)),
+        ]),
+    );
+    tables.retain(|_, table| table.as_object().is_none_or(|keys| !keys.is_empty()));
+    Value::Object(tables)
+}
+
+/// An object of the keys that have a value.
+fn object<const N: usize>(keys: [(&str, Option<Value>); N]) -> Value {
+    Value::Object(keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect())
+}
+
+/// Degrees that read back as the same angle: the shortest of the neighbours that do.
+pub(crate) fn degrees(angle: Angle) -> f64 {
+    let near = angle.degrees();
+    [near, near.next_up(), near.next_down()]
+        .into_iter()
+        .find(|&degrees| Angle::from_degrees(degrees) == angle)
+        .unwrap_or(near)
+}
+
+fn range(angles: AngleInterval) -> Value {
+    json!([degrees(angles.min), degrees(angles.max)])
+}
+
+fn finite(number: f64) -> Option<Value> {
+    number.is_finite().then(|| Value::from(number))
+}
+
+fn body(scenario: &Scenario) -> Value {
+    let body = &scenario.body;
+    object([
+        ("name", body.name.clone().map(Value::from)),
+        ("gravity_m_s2", Some(body.gravity_m_s2.into())),
+        ("radius_m", body.radius_m.map(Value::from)),
+    ])
+}
+
+fn hopper(scenario: &Scenario) -> Value {
+    let hopper = &scenario.hopper;
+    object([
+        ("takeoff_speed_max_m_s", finite(hopper.takeoff_speed_max_m_s)),
+        ("landing_speed_max_m_s", finite(hopper.landing_speed_max_m_s)),
+        ("clearance_m", Some(hopper.clearance_m.into())),
+        ("takeoff_angle_min_deg", hopper.takeoff_angle_min.map(|angle| degrees(angle).into())),
+        ("takeoff_angle_max_deg", hopper.takeoff_angle_max.map(|angle| degrees(angle).into())),
+        ("apex_height_max_m", hopper.apex_height_max_m.map(Value::from)),
+        ("flight_time_max_s", hopper.flight_time_max_s.map(Value::from)),
+        ("mass_kg", hopper.mass_kg.map(Value::from)),
+        ("rest_time_s", hopper.rest_time_s.map(Value::from)),
+    ])
+}
+
+fn surface(scenario: &Scenario) -> Value {
+    let (friction, takeoff, landing) = match scenario.surface.grip {
+        Some(Grip::Friction(cone)) => (Some(cone.coefficient().into()), None, None),
+        Some(Grip::FromSlope { takeoff, landing }) => (None, Some(range(takeoff)), Some(range(landing))),
+        None => (None, None, None),
+    };
+    object([
+        ("friction_coefficient", friction),
+        ("takeoff_from_slope_deg", takeoff),
+        ("landing_from_slope_deg", landing),
+        (
+            "rest_slope_max_deg",
+            match scenario.surface.rest {
+                RestSlope::AsFrictionHolds => None,
+                RestSlope::AtMost(angle) => Some(degrees(angle).into()),
+                RestSlope::Unlimited => Some("inf".into()),
+            },
+        ),
+    ])
+}
+
+fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> Value {
+    let (dem, chain, start, goal) = match &scenario.terrain {
+        Some(TerrainSource::Dem { path, start, goal }) => {
+            (Some(named(path).into()), None, Some(json!([start.x, start.y])), Some(json!([goal.x, goal.y])))
+        }
+        Some(TerrainSource::Chain { path }) => (None, Some(named(path).into()), None, None),
+        None => (None, None, None, None),
+    };
+    object([
+        ("dem", dem),
+        ("chain", chain),
+        ("start_m", start),
+        ("goal_m", goal),
+        ("start_x_m", scenario.start_x_m.map(Value::from)),
+        ("goal_x_m", scenario.goal_x_m.map(Value::from)),
+    ])
+}
+
+fn search(scenario: &Scenario) -> Value {
+    let search = &scenario.search;
+    let (points, spacing) = match search.spacing {
+        None => (Some("auto".into()), None),
+        Some(PointSpacing::PerSegment(points)) => (Some(points.into()), None),
+        Some(PointSpacing::AtMostM(spacing_m)) => (None, Some(spacing_m.into())),
+    };
+    object([
+        ("points_per_segment", points),
+        ("node_spacing_max_m", spacing),
+        ("effort", Some(search.effort.name().into())),
+        ("takeoff_angle", Some(search.takeoff.name().into())),
+        ("split", Some(search.split.name().into())),
+    ])
+}

@@ -1,0 +1,244 @@
+//! Keys and values as typed, each with its place, from a file, a result and the command line.
+
+use std::{collections::BTreeMap, ops::Range};
+
+use toml::de::{DeTable, DeValue};
+
+use super::{CATALOGUE, Key, Kind, ScenarioProblem};
+
+/// Where a value was given.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// These bytes of the scenario file.
+    File(Range<usize>),
+    /// This option of the command line.
+    Option(String),
+    /// Nowhere in particular.
+    Nowhere,
+}
+
+/// A value and its place.
+#[derive(Clone, Debug, PartialEq)]
+struct Entry {
+    value: toml::Value,
+    place: Place,
+}
+
+/// All keys given, later ones in place of earlier ones.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Entries {
+    entries: BTreeMap<(String, String), Entry>,
+    problems: Vec<ScenarioProblem>,
+}
+
+impl Entries {
+    /// The keys of a TOML text. Unknown keys and wrong syntax become problems, told by [`problems`](Self::problems).
+    pub fn from_toml(source: &str) -> Self {
+        let mut entries = Self::default();
+        let document = match DeTable::parse(source) {
+            Ok(document) => document,
+            Err(error) => {
+                entries.problems.push(ScenarioProblem {
+                    place: error.span().map_or(Place::Nowhere, Place::File),
+                    message: format!("this is not TOML: {}", error.message().replace('\n', ", ")),
+                    help: "see the example in README.md; texts stand in quotes, tables in [brackets]".to_owned(),
+                });
+                return entries;
+            }
+        };
+        for (table, content) in document.get_ref() {
+            let place = Place::File(table.span());
+            match content.get_ref() {
+                DeValue::Table(keys) => {
+                    for (name, value) in keys {
+                        match plain(value.get_ref()) {
+                            Some(plain) => entries.add(
+                                table.get_ref(),
+                                name.get_ref(),
+                                plain,
+                                Place::File(value.span()),
+                                Place::File(name.span()),
+                            ),
+                            None => entries.unknown(table.get_ref(), name.get_ref(), Place::File(name.span())),
+                        }
+                    }
+                    if keys.is_empty() && !tables().any(|known| known == table.get_ref()) {
+                        entries.unknown(table.get_ref(), "", place);
+                    }
+                }
+                _ => entries.unknown("", table.get_ref(), place),
+            }
+        }
+        entries
+    }
+
+    /// The keys of the `scenario` of a result that the program wrote.
+    pub fn from_json(scenario: &serde_json::Value) -> Self {
+        let mut entries = Self::default();
+        for (table, keys) in scenario.as_object().into_iter().flatten() {
+            for (name, value) in keys.as_object().into_iter().flatten() {
+                match toml::Value::try_from(value) {
+                    Ok(value) => entries.add(table, name, value, Place::Nowhere, Place::Nowhere),
+                    Err(_) => entries.unknown(table, name, Place::Nowhere),
+                }
+            }
+        }
+        entries
+    }
+
+    /// Sets `table.key=value` as the command line says it. A value that is no TOML value counts as a text.
+    pub fn set(&mut self, assignment: &str) {
+        let option = Place::Option(format!("--set {assignment}"));
+        let parsed = assignment.split_once('=').and_then(|(path, value)| Some((path.trim().split_once('.')?, value.trim())));
+        match parsed {
+            Some(((table, name), value)) => {
+                let value = format!("v = {value}")
+                    .parse::<toml::Table>()
+                    .ok()
+                    .and_then(|mut table| table.remove("v"))
+                    .unwrap_or_else(|| toml::Value::String(value.to_owned()));
+                self.add(table, name, value, option.clone(), option);
+            }
+            None => self.problems.push(ScenarioProblem {
+                place: option,
+                message: "found no table.key=value".to_owned(),
+                help: "write it as --set hopper.takeoff_speed_max_m_s=8".to_owned(),
+            }),
+        }
+    }
+
+    /// Gives a key its value by an option of its own.
+    pub fn set_by_option(&mut self, option: &str, table: &str, name: &str, value: toml::Value) {
+        let place = Place::Option(option.to_owned());
+        self.add(table, name, value, place.clone(), place);
+    }
+
+    /// Forgets a key, where an option replaces it by another one.
+    pub fn forget(&mut self, table: &str, name: &str) {
+        self.entries.remove(&(table.to_owned(), name.to_owned()));
+    }
+
+    /// What was wrong so far.
+    pub fn problems(&self) -> &[ScenarioProblem] {
+        &self.problems
+    }
+
+    /// Adds a problem.
+    pub(super) fn problem(&mut self, place: Place, message: String, help: impl Into<String>) {
+        self.problems.push(ScenarioProblem { place, message, help: help.into() });
+    }
+
+    /// Where a key was given; `None` where it was not.
+    pub(super) fn place(&self, table: &str, name: &str) -> Option<Place> {
+        self.entries.get(&(table.to_owned(), name.to_owned())).map(|entry| entry.place.clone())
+    }
+
+    /// The value of a key; `None` where it was not given.
+    pub(super) fn value(&self, table: &str, name: &str) -> Option<&toml::Value> {
+        self.entries.get(&(table.to_owned(), name.to_owned())).map(|entry| &entry.value)
+    }
+
+    /// A number; `None` where it was not given.
+    pub(super) fn number(&self, table: &str, name: &str) -> Option<f64> {
+        self.value(table, name).and_then(number)
+    }
+
+    /// A text; `None` where it was not given.
+    pub(super) fn text(&self, table: &str, name: &str) -> Option<&str> {
+        self.value(table, name).and_then(toml::Value::as_str)
+    }
+
+    /// Two numbers; `None` where they were not given.
+    pub(super) fn pair(&self, table: &str, name: &str) -> Option<[f64; 2]> {
+        self.value(table, name).and_then(pair)
+    }
+
+    /// Checks a value against its key's kind and keeps it.
+    fn add(&mut self, table: &str, name: &str, value: toml::Value, place: Place, key_place: Place) {
+        let Some(key) = Key::find(table, name) else { return self.unknown(table, name, key_place) };
+        if fits(&value, key.kind) {
+            self.entries.insert((table.to_owned(), name.to_owned()), Entry { value, place });
+        } else {
+            let message = format!("{} is {value}, expected {}", key.path(), key.kind.expected());
+            self.problem(place, message, format!("it means: {}", key.help));
+        }
+    }
+
+    /// Names an unknown key and the nearest known one.
+    fn unknown(&mut self, table: &str, name: &str, place: Place) {
+        let given = match (table, name) {
+            ("", name) => name.to_owned(),
+            (table, "") => format!("[{table}]"),
+            (table, name) => format!("{table}.{name}"),
+        };
+        let distance = |key: &&Key| {
+            let own = strsim::damerau_levenshtein(name, key.name);
+            // A right name in a wrong table is nearer than any other name.
+            own * 10 + usize::from(key.table != table) * strsim::damerau_levenshtein(table, key.table).min(5)
+        };
+        let nearest = CATALOGUE.iter().min_by_key(distance).map(Key::path).unwrap_or_default();
+        let help = match () {
+            () if tables().any(|known| known == table) || !name.is_empty() => format!("the nearest known key is {nearest}"),
+            () => format!("the tables are {}", tables().collect::<Vec<_>>().join(", ")),
+        };
+        self.problem(place, format!("unknown key {given}"), help);
+    }
+}
+
+/// The names of all tables.
+fn tables() -> impl Iterator<Item = &'static str> {
+    let mut last = "";
+    CATALOGUE.iter().map(|key| key.table).filter(move |table| std::mem::replace(&mut last, table) != *table)
+}
+
+/// A TOML value without its spans; `None` for what no key takes.
+fn plain(value: &DeValue<'_>) -> Option<toml::Value> {
+    Some(match value {
+        DeValue::String(text) => toml::Value::String(text.to_string()),
+        DeValue::Integer(integer) => {
+            i64::from_str_radix(integer.as_str(), integer.radix()).map_or_else(
+                |_| integer.as_str().parse().map(toml::Value::Float).ok(),
+                |integer| Some(toml::Value::Integer(integer)),
+            )?
+        }
+        DeValue::Float(float) => toml::Value::Float(float.as_str().parse().ok()?),
+        DeValue::Boolean(boolean) => toml::Value::Boolean(*boolean),
+        DeValue::Array(items) => toml::Value::Array(items.iter().map(|item| plain(item.get_ref())).collect::<Option<_>>()?),
+        DeValue::Datetime(_) | DeValue::Table(_) => return None,
+    })
+}
+
+/// An integer or float as a number.
+#[expect(clippy::cast_precision_loss, reason = "counts and metres stay below 2^53")]
+fn number(value: &toml::Value) -> Option<f64> {
+    match value {
+        toml::Value::Integer(integer) => Some(*integer as f64),
+        toml::Value::Float(float) => Some(*float),
+        _ => None,
+    }
+}
+
+/// An array of two numbers.
+fn pair(value: &toml::Value) -> Option<[f64; 2]> {
+    match value.as_array()?.as_slice() {
+        [a, b] => Some([number(a)?, number(b)?]),
+        _ => None,
+    }
+}
+
+/// Whether a value is of a kind.
+fn fits(value: &toml::Value, kind: Kind) -> bool {
+    match kind {
+        Kind::Number { min, max } => number(value).is_some_and(|n| min <= n && n <= max),
+        Kind::AngleOrUnlimited => {
+            value.as_str() == Some("inf") || number(value).is_some_and(|n| (0.0..=90.0).contains(&n) || n == f64::INFINITY)
+        }
+        Kind::AngleRange => pair(value).is_some_and(|[a, b]| -360.0 <= a && a <= b && b <= 360.0),
+        Kind::MapPoint => pair(value).is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() <= 1e12)),
+        Kind::CountOrAuto => {
+            value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k))
+        }
+        Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
+        Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),
+    }
+}

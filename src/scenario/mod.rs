@@ -1,0 +1,15 @@
+//! The scenario: TOML as typed, then validated, and the pipeline it wires from terrain to answer.
+
+mod catalogue;
+mod document;
+mod entries;
+mod pipeline;
+mod problem;
+mod read;
+
+pub use catalogue::{CATALOGUE, Key, Kind};
+pub use document::scenario_document;
+pub use entries::{Entries, Place};
+pub use pipeline::{InputFile, PipelineError, Prepared, Query, constant_gravity_doubts, prepare};
+pub use problem::{ScenarioProblem, ScenarioProblems};
+pub use read::{BodyChoice, Scenario, TerrainSource};

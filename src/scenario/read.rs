@@ -1,0 +1,268 @@
+//! From keys as typed to a validated scenario in SI units.
+
+use std::path::PathBuf;
+
+use super::{Entries, Key, Place, ScenarioProblem};
+use crate::{
+    ballistics::{Split, TakeoffChoice},
+    graph::{Effort, PointSpacing, SearchOptions},
+    quantity::{Angle, AngleInterval, MapPoint},
+    world::{Body, FrictionCone, Grip, Hopper, KNOWN_BODIES, RestSlope, Surface},
+};
+
+/// Gravity, and the body it belongs to where that is known.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BodyChoice {
+    /// The known body's name.
+    pub name: Option<String>,
+    /// Gravity, m/s^2.
+    pub gravity_m_s2: f64,
+    /// Mean radius, m, where known.
+    pub radius_m: Option<f64>,
+}
+
+/// Where the ground comes from.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TerrainSource {
+    /// A slice of an elevation raster between two map points.
+    Dem {
+        /// The file, from the scenario's folder.
+        path: PathBuf,
+        /// Where the slice begins.
+        start: MapPoint,
+        /// Where it ends.
+        goal: MapPoint,
+    },
+    /// A chain CSV.
+    Chain {
+        /// The file, from the scenario's folder.
+        path: PathBuf,
+    },
+}
+
+/// A validated scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scenario {
+    /// Gravity.
+    pub body: BodyChoice,
+    /// The robot.
+    pub hopper: Hopper,
+    /// The ground's grip.
+    pub surface: Surface,
+    /// The terrain, where the scenario names it.
+    pub terrain: Option<TerrainSource>,
+    /// Start along the chain, m, where the scenario names it.
+    pub start_x_m: Option<f64>,
+    /// Goal along the chain, m, where the scenario names it.
+    pub goal_x_m: Option<f64>,
+    /// How to search.
+    pub search: SearchOptions,
+    /// Title of the picture.
+    pub title: Option<String>,
+    /// Vertical exaggeration of the picture.
+    pub exaggeration: Option<f64>,
+}
+
+impl Scenario {
+    /// Validates keys as typed.
+    ///
+    /// # Errors
+    /// Every problem of the keys, in the order of the file.
+    pub fn new(mut entries: Entries) -> Result<Self, Vec<ScenarioProblem>> {
+        let body = body(&mut entries);
+        let hopper = hopper(&mut entries);
+        let surface = surface(&mut entries);
+        let terrain = terrain(&mut entries);
+        let search = search(&mut entries);
+        let mut problems = entries.problems().to_vec();
+        let Some(body) = body.filter(|_| problems.is_empty()) else {
+            let first = |problem: &ScenarioProblem| match &problem.place {
+                Place::File(span) => span.start,
+                Place::Option(_) | Place::Nowhere => usize::MAX,
+            };
+            problems.sort_by_key(first);
+            return Err(problems);
+        };
+        Ok(Self {
+            body,
+            hopper,
+            surface,
+            terrain,
+            start_x_m: entries.number("terrain", "start_x_m"),
+            goal_x_m: entries.number("terrain", "goal_x_m"),
+            search,
+            title: entries.text("report", "title").map(str::to_owned),
+            exaggeration: entries.number("report", "exaggeration"),
+        })
+    }
+}
+
+/// Gravity and radius: from a known body, from numbers, or from both.
+fn body(entries: &mut Entries) -> Option<BodyChoice> {
+    let gravity = entries.number("body", "gravity_m_s2");
+    let radius = entries.number("body", "radius_m");
+    let name = entries.text("body", "name").map(str::to_owned);
+    match (&name, gravity) {
+        (Some(name), _) => match Body::named(name) {
+            Some(known) => Some(BodyChoice {
+                name: Some(known.name.to_owned()),
+                gravity_m_s2: gravity.unwrap_or(known.gravity_m_s2),
+                radius_m: Some(radius.unwrap_or(known.radius_m)),
+            }),
+            None => {
+                let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
+                let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
+                let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
+                entries.problem(place, message, "for any other body give gravity_m_s2 instead of a name");
+                None
+            }
+        },
+        (None, Some(gravity_m_s2)) => Some(BodyChoice { name: None, gravity_m_s2, radius_m: radius }),
+        (None, None) => {
+            // A gravity that was given but refused has told its own problem.
+            if !entries.problems().iter().any(|problem| problem.message.contains("body.")) {
+                let help = "add [body] with name = \"mars\" or gravity_m_s2 = 3.711, or use --body or --gravity-m-s2";
+                entries.problem(Place::Nowhere, "found no gravity".to_owned(), help);
+            }
+            None
+        }
+    }
+}
+
+/// The robot; what is absent does not limit.
+fn hopper(entries: &mut Entries) -> Hopper {
+    let number = |name| entries.number("hopper", name);
+    let hopper = Hopper {
+        takeoff_speed_max_m_s: number("takeoff_speed_max_m_s").unwrap_or(f64::INFINITY),
+        landing_speed_max_m_s: number("landing_speed_max_m_s").unwrap_or(f64::INFINITY),
+        clearance_m: number("clearance_m").unwrap_or(0.0),
+        takeoff_angle_min: number("takeoff_angle_min_deg").map(Angle::from_degrees),
+        takeoff_angle_max: number("takeoff_angle_max_deg").map(Angle::from_degrees),
+        apex_height_max_m: number("apex_height_max_m"),
+        flight_time_max_s: number("flight_time_max_s"),
+        mass_kg: number("mass_kg"),
+        rest_time_s: number("rest_time_s"),
+    };
+    if let (Some(min), Some(max)) = (hopper.takeoff_angle_min, hopper.takeoff_angle_max)
+        && min > max
+    {
+        let place = entries.place("hopper", "takeoff_angle_min_deg").unwrap_or(Place::Nowhere);
+        let message = format!(
+            "hopper.takeoff_angle_min_deg is {}, expected no more than the takeoff_angle_max_deg of {}",
+            min.degrees(),
+            max.degrees()
+        );
+        entries.problem(place, message, "swap the two or widen the range");
+    }
+    hopper
+}
+
+/// Friction or angles from the slope, and the rest slope.
+fn surface(entries: &mut Entries) -> Surface {
+    let friction = entries.number("surface", "friction_coefficient");
+    let offsets = |entries: &Entries, name| entries.pair("surface", name).map(|[min, max]| AngleInterval::from_degrees(min, max));
+    let takeoff = offsets(entries, "takeoff_from_slope_deg");
+    let landing = offsets(entries, "landing_from_slope_deg");
+    let place = |entries: &Entries, name| entries.place("surface", name).unwrap_or(Place::Nowhere);
+    let grip = match (friction, takeoff, landing) {
+        (Some(mu), None, None) => FrictionCone::new(mu).ok().map(Grip::Friction),
+        (None, Some(takeoff), Some(landing)) => Some(Grip::FromSlope { takeoff, landing }),
+        (None, None, None) => None,
+        (Some(_), _, _) => {
+            let place = place(entries, "friction_coefficient");
+            let message = "surface has both friction_coefficient and angles from the slope, expected one of the two".to_owned();
+            entries.problem(place, message, "remove friction_coefficient, or takeoff_from_slope_deg and landing_from_slope_deg");
+            None
+        }
+        (None, _, _) => {
+            let (given, missing) = if takeoff.is_some() { ("takeoff", "landing") } else { ("landing", "takeoff") };
+            let place = place(entries, if takeoff.is_some() { "takeoff_from_slope_deg" } else { "landing_from_slope_deg" });
+            let message = format!("surface has {given}_from_slope_deg without {missing}_from_slope_deg");
+            entries.problem(place, message, format!("add {missing}_from_slope_deg = [min, max]"));
+            None
+        }
+    };
+    let rest = match entries.value("surface", "rest_slope_max_deg") {
+        None => RestSlope::AsFrictionHolds,
+        Some(value) => match value.as_float().or(value.as_integer().and_then(|i| i32::try_from(i).ok()).map(f64::from)) {
+            Some(degrees) if degrees.is_finite() => RestSlope::AtMost(Angle::from_degrees(degrees)),
+            _ => RestSlope::Unlimited,
+        },
+    };
+    Surface { grip, rest }
+}
+
+/// Where the ground comes from.
+fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
+    let text = |name| entries.text("terrain", name).map(PathBuf::from);
+    let point = |name| entries.pair("terrain", name).map(|[x, y]| MapPoint::new(x, y));
+    let (dem, chain) = (text("dem"), text("chain"));
+    let (start, goal) = (point("start_m"), point("goal_m"));
+    let along = ["start_x_m", "goal_x_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
+    match (dem, chain) {
+        (Some(_), Some(_)) => {
+            let place = entries.place("terrain", "chain").unwrap_or(Place::Nowhere);
+            entries.problem(place, "terrain has both dem and chain, expected one of the two".to_owned(), "remove one of them");
+            None
+        }
+        (Some(path), None) => {
+            if let (Some(start), Some(goal)) = (start, goal) {
+                return Some(TerrainSource::Dem { path, start, goal });
+            }
+            let missing = if start.is_none() { "start_m" } else { "goal_m" };
+            let told = entries.problems().iter().any(|problem| problem.message.contains(missing));
+            if !told {
+                let place = entries.place("terrain", "dem").unwrap_or(Place::Nowhere);
+                entries.problem(place, format!("terrain has a dem but no {missing}"), format!("add {missing} = [x, y], in map metres"));
+            }
+            None
+        }
+        (None, Some(path)) => {
+            for (name, given) in [("start_m", start), ("goal_m", goal)] {
+                if given.is_some() {
+                    let place = entries.place("terrain", name).unwrap_or(Place::Nowhere);
+                    let help = format!("for a chain give {} instead", name.replace("_m", "_x_m"));
+                    entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
+                }
+            }
+            Some(TerrainSource::Chain { path })
+        }
+        (None, None) => {
+            if let Some((name, place @ Place::File(_))) = along {
+                entries.problem(place, format!("terrain.{name} without a chain"), "add chain = \"file.csv\"");
+            }
+            None
+        }
+    }
+}
+
+/// How to search.
+fn search(entries: &mut Entries) -> SearchOptions {
+    let points = entries.value("search", "points_per_segment").cloned();
+    let spacing_m = entries.number("search", "node_spacing_max_m");
+    if let (Some(_), Some(_)) = (&points, spacing_m) {
+        let place = entries.place("search", "node_spacing_max_m").unwrap_or(Place::Nowhere);
+        let message = "search has both points_per_segment and node_spacing_max_m, expected one of the two".to_owned();
+        entries.problem(place, message, "remove one of them");
+    }
+    let count = points.as_ref().and_then(toml::Value::as_integer).and_then(|k| u32::try_from(k).ok());
+    let word = |name| entries.text("search", name);
+    SearchOptions {
+        spacing: spacing_m.map(PointSpacing::AtMostM).or(count.map(PointSpacing::PerSegment)),
+        effort: named(&Effort::ALL, Effort::name, word("effort")),
+        takeoff: named(&TakeoffChoice::ALL, TakeoffChoice::name, word("takeoff_angle")),
+        split: named(&Split::ALL, Split::name, word("split")),
+    }
+}
+
+/// The variant of a name; the default where none is given.
+fn named<T: Copy + Default>(all: &[T], name: fn(T) -> &'static str, word: Option<&str>) -> T {
+    all.iter().copied().find(|variant| Some(name(*variant)) == word).unwrap_or_default()
+}
+
+impl Key {
+    /// The keys of a table, for help texts.
+    pub fn of_table(table: &str) -> impl Iterator<Item = &'static Self> {
+        super::CATALOGUE.iter().filter(move |key| key.table == table)
+    }
+}

@@ -1,0 +1,177 @@
+//! The header of an ASCII grid.
+
+use std::collections::BTreeMap;
+use std::io::{self, BufRead};
+
+use super::read::Problems;
+use super::tokens::{Token, Tokens};
+
+/// What stands for no elevation where the header does not say (the format's own definition).
+const DEFAULT_NO_DATA: f64 = -9999.0;
+
+const KEYS: [&str; 10] =
+    ["ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value"];
+
+/// A header that holds together.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Header {
+    pub(super) rows: usize,
+    pub(super) cols: usize,
+    /// Centre of the south-west post, m.
+    pub(super) south_west: [f64; 2],
+    pub(super) dx_m: f64,
+    pub(super) dy_m: f64,
+    pub(super) no_data: f64,
+}
+
+type Fields = BTreeMap<&'static str, Token>;
+
+/// Takes words in pairs up to the first that is a number, then judges them together. `None`: see `problems`.
+pub(super) fn read_header<R: BufRead>(tokens: &mut Tokens<R>, problems: &mut Problems) -> io::Result<Option<Header>> {
+    let mut fields = Fields::new();
+    while let Some(token) = tokens.peek()? {
+        if looks_like_number(&token.text) {
+            break;
+        }
+        let Some(key) = tokens.next()? else { break };
+        let lower = key.text.to_ascii_lowercase();
+        let Some(known) = KEYS.into_iter().find(|known| *known == lower) else {
+            problems.add(&key, &format!("the header key {}", quoted(&key.text)), &format!("one of {}", KEYS.join(", ")));
+            // A whole text of unknown words is no grid: twenty of them say enough.
+            if problems.are_many() {
+                return Ok(None);
+            }
+            if tokens.peek()?.is_some_and(|value| looks_like_number(&value.text)) {
+                tokens.next()?;
+            }
+            continue;
+        };
+        let Some(value) = tokens.next()? else {
+            problems.add(&key, &format!("{known} without a value"), "a number after it");
+            break;
+        };
+        if let Some(first) = fields.insert(known, value) {
+            problems.add(&key, &format!("{known} a second time"), &format!("it once (first on line {})", first.line));
+        }
+    }
+    let place = tokens.place();
+    Ok(judge(&fields, place, problems))
+}
+
+fn judge(fields: &Fields, place: (usize, usize), problems: &mut Problems) -> Option<Header> {
+    let before = problems.count();
+    let cols = count(fields, "ncols", place, problems);
+    let rows = count(fields, "nrows", place, problems);
+    let (dx_m, dy_m) = spacings(fields, place, problems);
+    let x = corner_or_centre(fields, "xllcorner", "xllcenter", dx_m, place, problems);
+    let y = corner_or_centre(fields, "yllcorner", "yllcenter", dy_m, place, problems);
+    let no_data = match fields.get("nodata_value") {
+        None => Some(DEFAULT_NO_DATA),
+        Some(token) if token.text.to_ascii_lowercase().contains("nan") => Some(f64::NAN),
+        Some(_) => number(fields, "nodata_value", place, problems),
+    };
+    if problems.count() > before {
+        return None;
+    }
+    Some(Header { rows: rows?, cols: cols?, south_west: [x?, y?], dx_m: dx_m?, dy_m: dy_m?, no_data: no_data? })
+}
+
+/// `cellsize`, or `dx` and `dy`.
+fn spacings(fields: &Fields, place: (usize, usize), problems: &mut Problems) -> (Option<f64>, Option<f64>) {
+    let pair = fields.contains_key("dx") || fields.contains_key("dy");
+    if let (true, Some(cellsize)) = (pair, fields.get("cellsize")) {
+        problems.add(cellsize, "cellsize beside dx or dy", "either cellsize, or dx and dy");
+        return (None, None);
+    }
+    if pair {
+        (spacing(fields, "dx", place, problems), spacing(fields, "dy", place, problems))
+    } else {
+        let size = spacing(fields, "cellsize", place, problems);
+        (size, size)
+    }
+}
+
+fn spacing(fields: &Fields, key: &'static str, place: (usize, usize), problems: &mut Problems) -> Option<f64> {
+    let value = number(fields, key, place, problems)?;
+    if value > 0.0 {
+        return Some(value);
+    }
+    problems.add(fields.get(key)?, &format!("{key} {value}"), "a post spacing above 0 m");
+    None
+}
+
+/// The south-west post's centre: a corner lies half a spacing outside it.
+fn corner_or_centre(
+    fields: &Fields,
+    corner: &'static str,
+    centre: &'static str,
+    spacing_m: Option<f64>,
+    place: (usize, usize),
+    problems: &mut Problems,
+) -> Option<f64> {
+    match (fields.get(corner), fields.get(centre)) {
+        (Some(_), None) => Some(number(fields, corner, place, problems)? + 0.5 * spacing_m?),
+        (None, Some(_)) => number(fields, centre, place, problems),
+        (Some(_), Some(both)) => {
+            problems.add(both, &format!("{corner} and {centre}"), "one of the two");
+            None
+        }
+        (None, None) => {
+            problems.add_at(place, &format!("no {corner} and no {centre} in the header"), "one of the two, in m");
+            None
+        }
+    }
+}
+
+fn count(fields: &Fields, key: &'static str, place: (usize, usize), problems: &mut Problems) -> Option<usize> {
+    let Some(token) = fields.get(key) else {
+        problems.add_at(place, &format!("no {key} in the header"), "a whole number of at least 2");
+        return None;
+    };
+    let value = token.text.parse::<usize>().ok().filter(|count| *count >= 2);
+    if value.is_none() {
+        problems.add(token, &format!("{key} {}", quoted(&token.text)), "a whole number of at least 2");
+    }
+    value
+}
+
+fn number(fields: &Fields, key: &'static str, place: (usize, usize), problems: &mut Problems) -> Option<f64> {
+    let Some(token) = fields.get(key) else {
+        problems.add_at(place, &format!("no {key} in the header"), "it with a number, in m");
+        return None;
+    };
+    let value = token.text.parse::<f64>().ok().filter(|value| value.is_finite());
+    if value.is_none() {
+        problems.add(token, &format!("{key} {}", quoted(&token.text)), number_hint(&token.text));
+    }
+    value
+}
+
+/// What to write instead of a word that is no number.
+pub(super) fn number_hint(text: &str) -> &'static str {
+    if text.contains(',') { "a finite number with a decimal point (replace decimal commas by points)" } else { "a finite number" }
+}
+
+/// Words that begin like a number end the header, so that `1,5` is judged as a number gone wrong.
+fn looks_like_number(text: &str) -> bool {
+    let lower = text.to_ascii_lowercase();
+    text.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '-' | '+' | '.')) || lower.starts_with("nan") || lower.starts_with("inf")
+}
+
+/// The beginning of a word, printable, in quotes.
+pub(super) fn quoted(text: &str) -> String {
+    let shown: String = text.chars().take(40).flat_map(char::escape_debug).collect();
+    if text.chars().count() > 40 { format!("'{shown}...'") } else { format!("'{shown}'") }
+}
+
+/// Whether a text begins with a key of the header.
+pub(super) fn begins_with_key(beginning: &[u8]) -> bool {
+    let word: Vec<u8> = beginning
+        .iter()
+        .copied()
+        .skip_while(u8::is_ascii_whitespace)
+        .take_while(|byte| !byte.is_ascii_whitespace())
+        .take(KEYS.iter().map(|key| key.len()).max().unwrap_or(0) + 1)
+        .collect();
+    KEYS.iter().any(|key| word.eq_ignore_ascii_case(key.as_bytes()))
+}

@@ -1,0 +1,10 @@
+//! The ESRI ASCII grid: a header of keys and values, then one number per post from the north-west.
+
+mod header;
+mod read;
+mod tokens;
+mod write;
+
+pub use read::read_ascii_grid_bytes;
+pub(super) use read::AsciiGridReader;
+pub use write::write_ascii_grid;

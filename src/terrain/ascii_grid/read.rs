@@ -1,0 +1,176 @@
+//! Reading an ASCII grid.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+
+use super::header::{Header, begins_with_key, number_hint, quoted, read_header};
+use super::tokens::{Token, Tokens};
+use crate::quantity::MapPoint;
+use crate::terrain::georeference::refuse_degrees;
+use crate::terrain::{AsciiProblem, Dem, DemReader, GeoReference, TerrainError};
+
+/// So many problems are listed, the rest counted.
+const LISTED_PROBLEMS: usize = 20;
+
+/// The ESRI ASCII grid as a format.
+pub(in crate::terrain) struct AsciiGridReader;
+
+impl DemReader for AsciiGridReader {
+    fn name(&self) -> &'static str {
+        "ESRI ASCII grid"
+    }
+
+    fn recognises(&self, beginning: &[u8]) -> bool {
+        begins_with_key(beginning)
+    }
+
+    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError> {
+        read_ascii_grid_bytes(&bytes)
+    }
+
+    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
+        let file = File::open(path).map_err(TerrainError::reading)?;
+        let length = file.metadata().map_err(TerrainError::reading)?.len();
+        read_text(BufReader::new(file), length)
+    }
+}
+
+/// Reads an ESRI ASCII grid held in memory.
+///
+/// Keys in any case and order; corner or centre form; `cellsize`, or `dx` and `dy`; rows wrapped over lines anyhow. Without
+/// `NODATA_value` it is -9999, as the format defines.
+///
+/// # Errors
+/// [`TerrainError::AsciiGrid`] with every problem found, each with its line and column; [`TerrainError::InvalidDem`] where the numbers
+/// make no raster; [`TerrainError::Unsuitable`] where they look like degrees.
+///
+/// # Examples
+/// ```
+/// let text = b"ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2\n3 -9999\n";
+/// let dem = chta::terrain::read_ascii_grid_bytes(text)?;
+/// assert_eq!(dem.georeference().north_west(), chta::quantity::MapPoint::new(5.0, 15.0));
+/// assert_eq!((dem.elevation(0, 1), dem.elevation(1, 1)), (Some(2.0), None));
+/// # Ok::<(), chta::terrain::TerrainError>(())
+/// ```
+pub fn read_ascii_grid_bytes(bytes: &[u8]) -> Result<Dem, TerrainError> {
+    read_text(bytes, bytes.len() as u64)
+}
+
+fn read_text(source: impl BufRead, length: u64) -> Result<Dem, TerrainError> {
+    let mut problems = Problems::default();
+    let mut tokens = Tokens::new(source);
+    let header = read_header(&mut tokens, &mut problems).map_err(TerrainError::reading)?;
+    let Some(header) = header else { return Err(problems.into_error()) };
+    let posts = check_size(&header, length, &tokens, &mut problems);
+    let Some(posts) = posts else { return Err(problems.into_error()) };
+    let elevations = read_elevations(&mut tokens, &header, posts, &mut problems).map_err(TerrainError::reading)?;
+    if problems.count() > 0 {
+        return Err(problems.into_error());
+    }
+    // Rows count from the south in the file's header and from the north in ours.
+    #[expect(clippy::cast_precision_loss, reason = "rows stay far below 2^53: each takes two bytes of the file")]
+    let north = header.south_west[1] + (header.rows - 1) as f64 * header.dy_m;
+    let georeference = GeoReference::local(MapPoint::new(header.south_west[0], north), header.dx_m, header.dy_m)?;
+    let dem = Dem::new(header.rows, header.cols, elevations, georeference)?;
+    refuse_degrees(&dem)?;
+    Ok(dem)
+}
+
+/// A post takes at least a digit and a space, so a header that promises more than the file can hold is refused before anything is
+/// allocated for it.
+fn check_size<R: BufRead>(header: &Header, length: u64, tokens: &Tokens<R>, problems: &mut Problems) -> Option<usize> {
+    let most = usize::try_from(length / 2 + 1).unwrap_or(usize::MAX);
+    let posts = header.rows.checked_mul(header.cols).filter(|posts| *posts <= most);
+    if posts.is_none() {
+        problems.add_at(
+            tokens.place(),
+            &format!("{length} bytes of file for nrows {} times ncols {}", header.rows, header.cols),
+            "two bytes per post at least; the file is cut short or its header wrong",
+        );
+    }
+    posts
+}
+
+fn read_elevations<R: BufRead>(
+    tokens: &mut Tokens<R>,
+    header: &Header,
+    posts: usize,
+    problems: &mut Problems,
+) -> std::io::Result<Vec<f64>> {
+    let mut elevations = Vec::with_capacity(posts);
+    let mut surplus = 0_usize;
+    let mut first_surplus = None;
+    while let Some(token) = tokens.next()? {
+        if elevations.len() == posts {
+            surplus += 1;
+            first_surplus.get_or_insert(token);
+            continue;
+        }
+        let value = parse_elevation(&token, header.no_data);
+        if value.is_none() {
+            let (row, col) = (elevations.len() / header.cols + 1, elevations.len() % header.cols + 1);
+            let expected = format!("{} for row {row} of {}, column {col} of {}", number_hint(&token.text), header.rows, header.cols);
+            problems.add(&token, &quoted(&token.text), &expected);
+        }
+        elevations.push(value.unwrap_or(f64::NAN));
+    }
+    if let Some(token) = first_surplus {
+        problems.add(
+            &token,
+            &format!("{surplus} values too many"),
+            &format!("{posts} (nrows {} times ncols {}); mend the header or remove them", header.rows, header.cols),
+        );
+    }
+    if elevations.len() < posts {
+        problems.add_at(
+            tokens.place(),
+            &format!("the end of the file after {} values", elevations.len()),
+            &format!("{posts} (nrows {} times ncols {}); the file is cut short or its header wrong", header.rows, header.cols),
+        );
+    }
+    Ok(elevations)
+}
+
+/// NaN for no-data, `None` for what is no elevation.
+fn parse_elevation(token: &Token, no_data: f64) -> Option<f64> {
+    let value = token.text.parse::<f64>().ok()?;
+    if value.is_nan() || value == no_data {
+        Some(f64::NAN)
+    } else {
+        value.is_finite().then_some(value)
+    }
+}
+
+/// Problems in the order found.
+#[derive(Debug, Default)]
+pub(super) struct Problems {
+    listed: Vec<AsciiProblem>,
+    further: usize,
+}
+
+impl Problems {
+    pub(super) fn add(&mut self, token: &Token, found: &str, expected: &str) {
+        self.add_at((token.line, token.column), found, expected);
+    }
+
+    pub(super) fn add_at(&mut self, (line, column): (usize, usize), found: &str, expected: &str) {
+        if self.are_many() {
+            self.further += 1;
+        } else {
+            self.listed.push(AsciiProblem { line, column, found: found.to_owned(), expected: expected.to_owned() });
+        }
+    }
+
+    pub(super) fn are_many(&self) -> bool {
+        self.listed.len() >= LISTED_PROBLEMS
+    }
+
+    pub(super) fn count(&self) -> usize {
+        self.listed.len() + self.further
+    }
+
+    fn into_error(self) -> TerrainError {
+        TerrainError::AsciiGrid { problems: self.listed, further: self.further }
+    }
+}

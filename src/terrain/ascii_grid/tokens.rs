@@ -1,0 +1,93 @@
+//! Words of a text with their places, one at a time, from any source, whatever the length of its lines.
+
+use std::io::{self, BufRead};
+
+/// No number and no key is longer: what is longer is cut here and told so, so that a file of one endless word needs no memory.
+const LONGEST_WORD: usize = 512;
+
+/// A word and where it stands.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Token {
+    pub(super) text: String,
+    pub(super) line: usize,
+    pub(super) column: usize,
+}
+
+/// Reads words separated by white space.
+pub(super) struct Tokens<R> {
+    source: R,
+    line: usize,
+    column: usize,
+    word: Vec<u8>,
+    peeked: Option<Token>,
+}
+
+impl<R: BufRead> Tokens<R> {
+    pub(super) fn new(source: R) -> Self {
+        Self { source, line: 1, column: 1, word: Vec::new(), peeked: None }
+    }
+
+    /// The next word without taking it.
+    pub(super) fn peek(&mut self) -> io::Result<Option<&Token>> {
+        if self.peeked.is_none() {
+            self.peeked = self.read_word()?;
+        }
+        Ok(self.peeked.as_ref())
+    }
+
+    /// The next word; `None` at the end.
+    pub(super) fn next(&mut self) -> io::Result<Option<Token>> {
+        match self.peeked.take() {
+            Some(token) => Ok(Some(token)),
+            None => self.read_word(),
+        }
+    }
+
+    /// Where reading has come to.
+    pub(super) fn place(&self) -> (usize, usize) {
+        (self.line, self.column)
+    }
+
+    fn read_word(&mut self) -> io::Result<Option<Token>> {
+        self.word.clear();
+        let (mut line, mut column) = (0, 0);
+        loop {
+            let buffer = self.source.fill_buf()?;
+            if buffer.is_empty() {
+                break;
+            }
+            let mut used = 0;
+            let mut ended = false;
+            for &byte in buffer {
+                if byte.is_ascii_whitespace() || byte == 0x0b {
+                    if !self.word.is_empty() {
+                        ended = true;
+                        break;
+                    }
+                } else {
+                    if self.word.is_empty() {
+                        (line, column) = (self.line, self.column);
+                    }
+                    if self.word.len() < LONGEST_WORD {
+                        self.word.push(byte);
+                    }
+                }
+                used += 1;
+                if byte == b'\n' {
+                    self.line += 1;
+                    self.column = 1;
+                } else {
+                    self.column += 1;
+                }
+            }
+            self.source.consume(used);
+            if ended {
+                break;
+            }
+        }
+        if self.word.is_empty() {
+            return Ok(None);
+        }
+        Ok(Some(Token { text: String::from_utf8_lossy(&self.word).into_owned(), line, column }))
+    }
+}

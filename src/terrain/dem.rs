@@ -1,0 +1,244 @@
+//! The elevation raster in memory.
+
+use super::{GeoReference, MapBounds, TerrainError};
+
+/// No elevation lies further than this from the datum, m: larger numbers are unlabelled no-data (a billion metres is beyond any
+/// body; -2147483648 and 3.4e38, the usual marks, are beyond a billion).
+pub const ELEVATION_LIMIT_M: f64 = 1.0e9;
+
+/// A raster of elevations: at least 2 x 2 posts, row-major from the north, gaps explicit.
+///
+/// Kept as 32-bit floats where each elevation is one exactly, as 64-bit floats otherwise, so nothing is ever rounded.
+#[derive(Clone, Debug)]
+pub struct Dem {
+    rows: usize,
+    cols: usize,
+    posts: Posts,
+    georeference: GeoReference,
+}
+
+/// NaN is a gap.
+#[derive(Clone, Debug)]
+pub(super) enum Posts {
+    Single(Vec<f32>),
+    Double(Vec<f64>),
+}
+
+impl Posts {
+    fn len(&self) -> usize {
+        match self {
+            Self::Single(values) => values.len(),
+            Self::Double(values) => values.len(),
+        }
+    }
+
+    fn at(&self, index: usize) -> Option<f64> {
+        let value = match self {
+            Self::Single(values) => values.get(index).map(|&value| f64::from(value)),
+            Self::Double(values) => values.get(index).copied(),
+        };
+        value.filter(|value| !value.is_nan())
+    }
+
+    /// Single precision where that loses nothing.
+    #[expect(clippy::cast_possible_truncation, reason = "taken only where the way back gives the same number")]
+    fn narrowed(self) -> Self {
+        match self {
+            Self::Double(values) if values.iter().all(|&z| z.is_nan() || f64::from(z as f32) == z) => {
+                Self::Single(values.into_iter().map(|z| z as f32).collect())
+            }
+            other => other,
+        }
+    }
+}
+
+impl Dem {
+    /// A raster from its elevations, row after row from the north, each row from the west, NaN where there is none.
+    ///
+    /// # Errors
+    /// [`TerrainError::InvalidDem`] where there are fewer than 2 rows or columns, the count of elevations is not `rows * cols`, an
+    /// elevation is beyond [`ELEVATION_LIMIT_M`] (infinite ones are), no post has an elevation at all, or the posts' map coordinates
+    /// run out of the numbers.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::quantity::MapPoint;
+    /// use chta::terrain::{Dem, GeoReference};
+    /// let map = GeoReference::local(MapPoint::new(0.0, 10.0), 10.0, 10.0)?;
+    /// let dem = Dem::new(2, 2, vec![1.0, 2.5, f64::NAN, 4.0], map)?;
+    /// assert_eq!(dem.elevation(0, 1), Some(2.5));
+    /// assert_eq!(dem.elevation(1, 0), None);
+    /// # Ok::<(), chta::terrain::TerrainError>(())
+    /// ```
+    pub fn new(rows: usize, cols: usize, elevations_m: Vec<f64>, georeference: GeoReference) -> Result<Self, TerrainError> {
+        Self::from_posts(rows, cols, Posts::Double(elevations_m).narrowed(), georeference)
+    }
+
+    /// The same from 32-bit elevations, which are kept as they are.
+    ///
+    /// # Errors
+    /// As [`Dem::new`].
+    pub fn from_single(rows: usize, cols: usize, elevations_m: Vec<f32>, georeference: GeoReference) -> Result<Self, TerrainError> {
+        Self::from_posts(rows, cols, Posts::Single(elevations_m), georeference)
+    }
+
+    fn from_posts(rows: usize, cols: usize, posts: Posts, georeference: GeoReference) -> Result<Self, TerrainError> {
+        if rows < 2 || cols < 2 {
+            return Err(TerrainError::InvalidDem(format!(
+                "the raster has {rows} rows and {cols} columns, expected at least 2 of each"
+            )));
+        }
+        if rows.checked_mul(cols) != Some(posts.len()) {
+            return Err(TerrainError::InvalidDem(format!(
+                "the raster has {} elevations, expected {rows} rows times {cols} columns",
+                posts.len()
+            )));
+        }
+        let dem = Self { rows, cols, posts, georeference };
+        dem.check_map()?;
+        dem.check_elevations()?;
+        Ok(dem)
+    }
+
+    /// Neighbouring posts must differ in their map coordinates: 1 mm posts 10^14 m from the origin do not.
+    fn check_map(&self) -> Result<(), TerrainError> {
+        let MapBounds { min, max } = self.bounds();
+        let near = |edge: f64, step: f64| (edge + step) - edge > 0.5 * step && (edge - step) - edge < -0.5 * step;
+        let (dx_m, dy_m) = (self.georeference.dx_m(), self.georeference.dy_m());
+        let told_apart = near(min.x, dx_m) && near(max.x, dx_m) && near(min.y, dy_m) && near(max.y, dy_m);
+        if told_apart && [min.x, min.y, max.x, max.y].iter().all(|value| value.is_finite()) {
+            return Ok(());
+        }
+        Err(TerrainError::InvalidDem(format!(
+            "the map has {bounds} with posts every {dx_m} m and {dy_m} m, expected coordinates that tell neighbouring posts apart",
+            bounds = self.bounds()
+        )))
+    }
+
+    fn check_elevations(&self) -> Result<(), TerrainError> {
+        let mut any = false;
+        for index in 0..self.posts.len() {
+            let Some(z_m) = self.posts.at(index) else { continue };
+            any = true;
+            if z_m.abs() >= ELEVATION_LIMIT_M {
+                return Err(TerrainError::InvalidDem(format!(
+                    "row {}, column {} (from 0, from the north-west) holds {z_m:e} m, expected an elevation within {ELEVATION_LIMIT_M:e} m; \
+                     if it marks missing data, say so with: gdal_translate -a_nodata {z_m:e} in.tif out.tif",
+                    index / self.cols,
+                    index % self.cols,
+                )));
+            }
+        }
+        if any {
+            return Ok(());
+        }
+        Err(TerrainError::InvalidDem(format!(
+            "all {} posts are no-data, expected elevations; check the declared no-data value with gdalinfo, and if it is wrong remove it \
+             with: gdal_translate -a_nodata none in.tif out.tif",
+            self.posts.len()
+        )))
+    }
+
+    /// Number of rows, north to south.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of columns, west to east.
+    pub fn cols(&self) -> usize {
+        self.cols
+    }
+
+    /// Where the posts lie.
+    pub fn georeference(&self) -> &GeoReference {
+        &self.georeference
+    }
+
+    /// The rectangle of the outermost posts.
+    pub fn bounds(&self) -> MapBounds {
+        self.georeference.bounds(self.rows, self.cols)
+    }
+
+    /// Elevation of a post, m; `None` where there is none, and outside the raster.
+    pub fn elevation(&self, row: usize, col: usize) -> Option<f64> {
+        if row < self.rows && col < self.cols { self.posts.at(row * self.cols + col) } else { None }
+    }
+
+    /// All elevations, row after row from the north, `None` for gaps.
+    pub fn elevations(&self) -> impl Iterator<Item = Option<f64>> + '_ {
+        (0..self.posts.len()).map(|index| self.posts.at(index))
+    }
+
+    /// Whether the elevations are kept as 32-bit floats (which loses nothing).
+    pub fn is_single_precision(&self) -> bool {
+        matches!(self.posts, Posts::Single(_))
+    }
+
+    /// Lowest and highest elevation, m.
+    pub fn elevation_range_m(&self) -> (f64, f64) {
+        self.elevations().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)))
+    }
+
+    pub(super) fn posts(&self) -> &Posts {
+        &self.posts
+    }
+}
+
+/// Same posts at the same places: gaps equal gaps, and how the numbers are kept does not matter.
+impl PartialEq for Dem {
+    fn eq(&self, other: &Self) -> bool {
+        self.rows == other.rows
+            && self.cols == other.cols
+            && self.georeference == other.georeference
+            && self.elevations().eq(other.elevations())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::quantity::MapPoint;
+
+    fn map() -> GeoReference {
+        GeoReference::local(MapPoint::new(0.0, 0.0), 1.0, 2.0).unwrap()
+    }
+
+    #[test]
+    fn numbers_that_fit_single_precision_are_kept_in_it_and_others_are_not_rounded() {
+        assert!(Dem::new(2, 2, vec![0.5, 1.0, 2.0, f64::NAN], map()).unwrap().is_single_precision());
+        let fine = Dem::new(2, 2, vec![0.1, 1.0, 2.0, 3.0], map()).unwrap();
+        assert!(!fine.is_single_precision());
+        assert_eq!(fine.elevation(0, 0), Some(0.1));
+    }
+
+    #[test]
+    fn rasters_that_make_no_sense_are_refused_with_their_numbers() {
+        let cases: [(usize, usize, Vec<f64>, &str); 5] = [
+            (1, 4, vec![0.0; 4], "1 rows and 4 columns"),
+            (2, 2, vec![0.0; 5], "5 elevations"),
+            (2, 2, vec![f64::NAN; 4], "all 4 posts are no-data"),
+            (2, 2, vec![0.0, f64::INFINITY, 0.0, 0.0], "row 0, column 1"),
+            (usize::MAX, 3, vec![0.0; 4], "4 elevations"),
+        ];
+        for (rows, cols, elevations, expected) in cases {
+            let message = Dem::new(rows, cols, elevations, map()).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        }
+    }
+
+    #[test]
+    fn posts_that_share_a_coordinate_are_refused() {
+        let map = GeoReference::local(MapPoint::new(1.0e15, 0.0), 0.01, 1.0).unwrap();
+        assert!(Dem::new(2, 2, vec![0.0; 4], map).unwrap_err().to_string().contains("apart"));
+        assert!(GeoReference::local(MapPoint::new(0.0, 0.0), 0.0, 1.0).is_err());
+        assert!(GeoReference::local(MapPoint::new(f64::NAN, 0.0), 1.0, 1.0).is_err());
+    }
+
+    #[test]
+    fn outside_the_raster_there_is_no_elevation() {
+        let dem = Dem::new(2, 3, vec![0.0; 6], map()).unwrap();
+        assert_eq!(dem.elevation(0, 3), None);
+        assert_eq!(dem.elevation(2, 0), None);
+        assert_eq!(dem.bounds(), MapBounds { min: MapPoint::new(0.0, -2.0), max: MapPoint::new(2.0, 0.0) });
+    }
+}

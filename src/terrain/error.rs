@@ -1,0 +1,145 @@
+//! What can be wrong with terrain: one enum, one sentence per variant.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use super::MapBounds;
+use crate::quantity::MapPoint;
+
+/// Why a DEM could not be read, written, sliced or made up.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TerrainError {
+    /// A problem of one file, named.
+    #[error("terrain '{}': {problem}", path.display())]
+    InFile {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: Box<TerrainError>,
+    },
+    /// The operating system refused to read or write.
+    #[error("cannot be {action}: {reason}")]
+    Io {
+        /// "read" or "written".
+        action: &'static str,
+        /// The system's words.
+        reason: std::io::Error,
+    },
+    /// No reader knows the content.
+    #[error("the content is no known elevation format (it begins with {found}), expected one of: {expected}")]
+    NotRecognised {
+        /// The first bytes, printable.
+        found: String,
+        /// Names of the formats that can be read.
+        expected: String,
+    },
+    /// Bytes that are not what the format promises.
+    #[error("the {format} is damaged: {reason}; expected a whole file, so copy or download it again")]
+    Damaged {
+        /// The format.
+        format: &'static str,
+        /// What did not fit.
+        reason: String,
+    },
+    /// A sound file of a kind that holds no usable elevations; the text says what was found, what was expected and how to mend it.
+    #[error("{found}, expected {expected}; mend it with: {mend}")]
+    Unsuitable {
+        /// What the file holds.
+        found: String,
+        /// What a DEM holds.
+        expected: &'static str,
+        /// A command that makes a usable file.
+        mend: String,
+    },
+    /// Every problem found in the text of an ASCII grid.
+    #[error("{}", list_problems(problems, *further))]
+    AsciiGrid {
+        /// The first problems, in the file's order.
+        problems: Vec<AsciiProblem>,
+        /// How many more there were.
+        further: usize,
+    },
+    /// Numbers that make no raster.
+    #[error("{0}")]
+    InvalidDem(String),
+    /// A transect without a direction.
+    #[error("the transect starts and ends at the same point ({} m, {} m), expected two different points", at.x, at.y)]
+    SamePoint {
+        /// The point.
+        at: MapPoint,
+    },
+    /// A point that the DEM does not cover.
+    #[error("the {which} point ({} m, {} m) is off the map, expected {bounds} (the outermost posts)", at.x, at.y)]
+    OffTheMap {
+        /// "from" or "to".
+        which: &'static str,
+        /// The point.
+        at: MapPoint,
+        /// What the DEM covers.
+        bounds: MapBounds,
+    },
+    /// The plane of a slice meets posts without elevation.
+    #[error(
+        "the plane meets no-data {distance_m:.3} m from the start, at map point ({:.3} m, {:.3} m), expected elevations all the way; choose another \
+         transect or fill the gap with: gdal_fillnodata.py in.tif filled.tif", at.x, at.y
+    )]
+    NoData {
+        /// Where on the map.
+        at: MapPoint,
+        /// How far from the first point.
+        distance_m: f64,
+    },
+    /// An option of the synthetic terrain that makes no sense.
+    #[error("synthetic terrain: {option} is {found}, expected {expected}")]
+    InvalidOption {
+        /// The option's name.
+        option: &'static str,
+        /// Its value.
+        found: String,
+        /// What is allowed.
+        expected: String,
+    },
+}
+
+impl TerrainError {
+    /// The same problem with the name of its file.
+    pub(super) fn in_file(self, path: &std::path::Path) -> Self {
+        Self::InFile { path: path.to_path_buf(), problem: Box::new(self) }
+    }
+
+    pub(super) fn reading(reason: std::io::Error) -> Self {
+        Self::Io { action: "read", reason }
+    }
+
+    pub(super) fn writing(reason: std::io::Error) -> Self {
+        Self::Io { action: "written", reason }
+    }
+}
+
+/// One problem in the text of an ASCII grid.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AsciiProblem {
+    /// Line of the file, from 1.
+    pub line: usize,
+    /// Character of the line, from 1.
+    pub column: usize,
+    /// What stands there.
+    pub found: String,
+    /// What was expected, and how to mend it.
+    pub expected: String,
+}
+
+impl fmt::Display for AsciiProblem {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "line {}, column {}: found {}, expected {}", self.line, self.column, self.found, self.expected)
+    }
+}
+
+fn list_problems(problems: &[AsciiProblem], further: usize) -> String {
+    let mut lines: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    if further > 0 {
+        lines.push(format!("and {further} more like these"));
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,98 @@
+//! The formats that can be read, told apart by content.
+
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+use super::ascii_grid::AsciiGridReader;
+use super::geotiff::GeoTiffReader;
+use super::{Dem, TerrainError};
+
+/// How many bytes of a file its readers get to see when asked whether it is theirs.
+const PROBE_BYTES: u64 = 4096;
+
+/// A reader of one file format. A new format implements this and joins `READERS` and [`FORMATS`].
+pub trait DemReader: Sync {
+    /// The format's name.
+    fn name(&self) -> &'static str;
+
+    /// Whether a file that begins like this is of the format. Content decides, never the extension.
+    fn recognises(&self, beginning: &[u8]) -> bool;
+
+    /// Reads a whole file held in memory.
+    ///
+    /// # Errors
+    /// [`TerrainError`] with what was found, what was expected, and how to mend it.
+    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError>;
+
+    /// Reads a file from disk.
+    ///
+    /// # Errors
+    /// As [`DemReader::read_bytes`], and where the file cannot be read.
+    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError>;
+}
+
+/// The readers, asked in this order.
+static READERS: [&dyn DemReader; 2] = [&GeoTiffReader, &AsciiGridReader];
+
+/// Names of the formats and one line about each, for help texts.
+pub const FORMATS: [(&str, &str); 2] = [
+    ("GeoTIFF", "one band of integer or float elevations in metres, on a map in metres, north up (also BigTIFF, COG)"),
+    ("ESRI ASCII grid", "ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize or dx and dy, NODATA_value"),
+];
+
+/// Reads a DEM file, whatever its extension.
+///
+/// # Errors
+/// [`TerrainError::InFile`], around what is wrong: the file cannot be read, is of no known format, is damaged, or holds something
+/// other than elevations in metres on a north-up map in metres.
+pub fn read_dem(path: &Path) -> Result<Dem, TerrainError> {
+    let beginning = read_beginning(path).map_err(|error| error.in_file(path))?;
+    let reader = READERS.iter().find(|reader| reader.recognises(&beginning));
+    match reader {
+        Some(reader) => reader.read_path(path),
+        None => Err(not_recognised(&beginning)),
+    }
+    .map_err(|error| error.in_file(path))
+}
+
+fn read_beginning(path: &Path) -> Result<Vec<u8>, TerrainError> {
+    let mut beginning = Vec::new();
+    let file = File::open(path).map_err(TerrainError::reading)?;
+    file.take(PROBE_BYTES).read_to_end(&mut beginning).map_err(TerrainError::reading)?;
+    Ok(beginning)
+}
+
+fn not_recognised(beginning: &[u8]) -> TerrainError {
+    let found = if beginning.is_empty() {
+        "nothing: the file is empty".to_owned()
+    } else {
+        format!("'{}'", beginning.iter().take(24).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect::<String>())
+    };
+    let expected = FORMATS.map(|(name, _)| name).join(", ");
+    TerrainError::NotRecognised { found, expected }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reader_is_named_in_the_list_of_formats() {
+        let names: Vec<&str> = READERS.iter().map(|reader| reader.name()).collect();
+        assert_eq!(names, FORMATS.map(|(name, _)| name));
+    }
+
+    #[test]
+    fn files_of_no_format_are_refused_with_their_first_bytes() {
+        let directory = tempfile::tempdir().unwrap();
+        for (content, expected) in [(&b""[..], "the file is empty"), (b"\x00\x01junk", "\\x00\\x01junk"), (b"x_m,z_m\n0,1\n", "x_m,z_m")] {
+            let path = directory.path().join("a.tif");
+            std::fs::write(&path, content).unwrap();
+            let message = read_dem(&path).unwrap_err().to_string();
+            assert!(message.contains(expected) && message.contains("a.tif") && message.contains("GeoTIFF"), "{message}");
+        }
+        assert!(read_dem(directory.path()).is_err());
+        assert!(read_dem(&directory.path().join("absent")).unwrap_err().to_string().contains("absent"));
+    }
+}

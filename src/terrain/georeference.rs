@@ -1,0 +1,164 @@
+//! Where a raster's posts lie on the map.
+
+use std::fmt;
+
+use super::TerrainError;
+use crate::quantity::MapPoint;
+
+/// The place of a raster on the map: north up, posts on a lattice of rectangles.
+///
+/// ```text
+///   north_west o-----o-----o   north
+///              |     |     |     ^
+///            dy_m    |     |     |
+///              o-dx_m-o----o     +--> east
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct GeoReference {
+    north_west: MapPoint,
+    dx_m: f64,
+    dy_m: f64,
+    /// What the file said of its map projection; empty for a local map.
+    pub coordinate_system: CoordinateSystem,
+    /// The tags the transform came from, kept so that they can be written back byte for byte.
+    pub transform_tags: TransformTags,
+}
+
+/// What a GeoTIFF says of its map projection: its key directory and description, verbatim.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CoordinateSystem {
+    /// Tag 34735; empty where there is none.
+    pub key_directory: Vec<u16>,
+    /// Tag 34736.
+    pub double_parameters: Vec<f64>,
+    /// Tag 34737.
+    pub ascii_parameters: String,
+    /// The citation, or the EPSG code, for people.
+    pub description: Option<String>,
+}
+
+/// The tags that place a GeoTIFF on the map, and its no-data text, verbatim.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TransformTags {
+    /// Tag 33550.
+    pub pixel_scale: Vec<f64>,
+    /// Tag 33922.
+    pub tie_points: Vec<f64>,
+    /// Tag 34264.
+    pub transformation: Vec<f64>,
+    /// Tag 42113, as read. Not used for writing: posts without elevation are written as NaN.
+    pub no_data: Option<String>,
+}
+
+/// The rectangle of the outermost posts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapBounds {
+    /// South-west corner.
+    pub min: MapPoint,
+    /// North-east corner.
+    pub max: MapPoint,
+}
+
+impl fmt::Display for MapBounds {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { min, max } = self;
+        write!(formatter, "x from {} to {} m and y from {} to {} m", min.x, max.x, min.y, max.y)
+    }
+}
+
+impl GeoReference {
+    /// A local map without projection: the north-west post and the spacings east and north, m.
+    ///
+    /// # Errors
+    /// [`TerrainError::InvalidDem`] where a coordinate is not finite or a spacing is not above zero.
+    pub fn local(north_west: MapPoint, dx_m: f64, dy_m: f64) -> Result<Self, TerrainError> {
+        if !(north_west.x.is_finite() && north_west.y.is_finite()) {
+            return Err(TerrainError::InvalidDem(format!(
+                "the north-west post lies at ({} m, {} m), expected finite map coordinates",
+                north_west.x, north_west.y
+            )));
+        }
+        for (name, spacing_m) in [("eastward", dx_m), ("northward", dy_m)] {
+            if !(spacing_m.is_finite() && spacing_m >= f64::MIN_POSITIVE) {
+                return Err(TerrainError::InvalidDem(format!(
+                    "the {name} post spacing is {spacing_m} m, expected a finite number above 0 m"
+                )));
+            }
+        }
+        Ok(Self {
+            north_west,
+            dx_m,
+            dy_m,
+            coordinate_system: CoordinateSystem::default(),
+            transform_tags: TransformTags::default(),
+        })
+    }
+
+    /// Centre of the north-west post.
+    pub fn north_west(&self) -> MapPoint {
+        self.north_west
+    }
+
+    /// Spacing of posts eastward, m.
+    pub fn dx_m(&self) -> f64 {
+        self.dx_m
+    }
+
+    /// Spacing of posts northward, m.
+    pub fn dy_m(&self) -> f64 {
+        self.dy_m
+    }
+
+    /// Map coordinates of a post, each one product and one sum from the north-west post.
+    ///
+    /// ```
+    /// use chta::quantity::MapPoint;
+    /// use chta::terrain::GeoReference;
+    /// let map = GeoReference::local(MapPoint::new(100.0, 50.0), 2.0, 5.0)?;
+    /// assert_eq!(map.post(3, 4), MapPoint::new(108.0, 35.0));
+    /// # Ok::<(), chta::terrain::TerrainError>(())
+    /// ```
+    pub fn post(&self, row: usize, col: usize) -> MapPoint {
+        #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
+        let (row, col) = (row as f64, col as f64);
+        MapPoint::new(self.north_west.x + col * self.dx_m, self.north_west.y - row * self.dy_m)
+    }
+
+    /// The rectangle of the outermost posts of a raster with so many rows and columns.
+    pub fn bounds(&self, rows: usize, cols: usize) -> MapBounds {
+        let south_east = self.post(rows.saturating_sub(1), cols.saturating_sub(1));
+        MapBounds {
+            min: MapPoint::new(self.north_west.x, south_east.y),
+            max: MapPoint::new(south_east.x, self.north_west.y),
+        }
+    }
+}
+
+/// How many times its own map's width a terrain would have to rise before the map is taken to be in degrees.
+///
+/// The steepest landscapes rise about once their width; a map in degrees is some 100 000 times too narrow (Earth, Mars; 30 000 on the
+/// Moon). Smaller would refuse cliffs cut out narrowly, larger would let through gentle plains in degrees.
+const RELIEF_TO_WIDTH_OF_DEGREES: f64 = 5.0;
+
+/// Refuses a raster without stated units whose numbers only make sense in degrees.
+pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
+    let MapBounds { min, max } = dem.bounds();
+    let fits_degrees = min.x >= -180.0 && max.x <= 360.0 && min.y >= -90.0 && max.y <= 90.0;
+    let width = (max.x - min.x).max(max.y - min.y);
+    let (low_m, high_m) = dem.elevation_range_m();
+    let relief_m = high_m - low_m;
+    if fits_degrees && relief_m > RELIEF_TO_WIDTH_OF_DEGREES * width {
+        return Err(TerrainError::Unsuitable {
+            found: format!("the map spans {} by {} units but the elevations {relief_m} m, so its coordinates look like degrees", max.x - min.x, max.y - min.y),
+            expected: EXPECTED_METRES,
+            mend: MEND_DEGREES.to_owned(),
+        });
+    }
+    Ok(())
+}
+
+/// What every map must be.
+pub(super) const EXPECTED_METRES: &str = "a projected map in metres";
+
+/// How a map in degrees becomes one in metres.
+pub(super) const MEND_DEGREES: &str = "gdalwarp -r bilinear -t_srs '+proj=eqc +lat_ts=LATITUDE +lon_0=LONGITUDE +R=RADIUS_M +units=m' in.tif out.tif";

@@ -1,0 +1,70 @@
+//! Which image of a TIFF holds the elevations, and whether it can be elevations at all.
+
+use tiff_reader::{Ifd, RasterLayout, TiffFile};
+
+use super::tag;
+use crate::terrain::TerrainError;
+
+/// Bits of `NewSubfileType`: a smaller copy, a page of several, a transparency mask.
+const REDUCED: u32 = 1;
+const MASK: u32 = 4;
+
+/// The images that matter.
+pub(super) struct Images<'a> {
+    pub(super) elevations: &'a Ifd,
+    pub(super) layout: RasterLayout,
+    /// A mask of the same size: 0 where there is no elevation.
+    pub(super) mask: Option<&'a Ifd>,
+}
+
+impl<'a> Images<'a> {
+    /// The one full-size image, with its mask.
+    pub(super) fn of(file: &'a TiffFile) -> Result<Self, TerrainError> {
+        let full: Vec<&Ifd> = file.ifds().iter().filter(|image| kind(image) & (REDUCED | MASK) == 0).collect();
+        let elevations = match full[..] {
+            [only] => only,
+            [] => return Err(damaged("it has no image of full size".to_owned())),
+            [..] => {
+                return Err(TerrainError::Unsuitable {
+                    found: format!("{} images in one file", full.len()),
+                    expected: "one",
+                    mend: "gdal_translate GTIFF_DIR:1:in.tif out.tif (or whichever image holds the elevations)".to_owned(),
+                });
+            }
+        };
+        refuse_colours(elevations)?;
+        let layout = elevations.raster_layout().map_err(|error| damaged(error.to_string()))?;
+        let mask = file.ifds().iter().find(|image| {
+            kind(image) & (REDUCED | MASK) == MASK && image.width() == elevations.width() && image.height() == elevations.height()
+        });
+        Ok(Self { elevations, layout, mask })
+    }
+}
+
+pub(super) fn damaged(reason: String) -> TerrainError {
+    TerrainError::Damaged { format: "TIFF", reason }
+}
+
+fn kind(image: &Ifd) -> u32 {
+    image.tag(tag::NEW_SUBFILE_TYPE).and_then(|tag| tag.value.as_u32()).unwrap_or(0)
+}
+
+/// One band of numbers is an elevation; colours, palettes and negatives are pictures.
+fn refuse_colours(image: &Ifd) -> Result<(), TerrainError> {
+    let bands = image.samples_per_pixel();
+    let (found, mend) = match image.photometric_interpretation().unwrap_or(1) {
+        2 => (format!("an RGB picture of {bands} bands"), "gdal_translate -b BAND -co PHOTOMETRIC=MINISBLACK in.tif out.tif"),
+        5..=10 => (format!("a colour picture of {bands} bands"), "gdal_translate -b BAND -co PHOTOMETRIC=MINISBLACK in.tif out.tif"),
+        3 => (
+            "a picture with a colour palette".to_owned(),
+            "use the product's elevation file instead of its picture (a palette's numbers are colours)",
+        ),
+        0 => (
+            "a picture whose samples count darkness (WhiteIsZero)".to_owned(),
+            "gdal_translate -co PHOTOMETRIC=MINISBLACK in.tif out.tif, if its stored numbers are elevations",
+        ),
+        _ if bands > 1 => (format!("{bands} bands"), "gdal_translate -b 1 in.tif out.tif (or whichever band holds the elevations)"),
+        _ => return Ok(()),
+    };
+    Err(TerrainError::Unsuitable { found, expected: "one band of elevations", mend: mend.to_owned() })
+}

@@ -1,0 +1,328 @@
+//! The GeoKeys and the tags of the transform: where the posts lie, and in which units.
+
+use super::{key, tag};
+use crate::quantity::MapPoint;
+use crate::terrain::georeference::{EXPECTED_METRES, MEND_DEGREES};
+use crate::terrain::{CoordinateSystem, GeoReference, TerrainError, TransformTags};
+
+/// A rotation or shear below this share of the spacing is rounding of whoever wrote the file.
+const STRAIGHT: f64 = 1.0e-9;
+
+/// Where the posts lie, and whether the rows of the file run from the south and must be turned round.
+#[derive(Debug)]
+pub(super) struct Placement {
+    pub(super) georeference: GeoReference,
+    pub(super) south_up: bool,
+    /// Whether the file says that its map is projected; otherwise its numbers must speak for themselves.
+    pub(super) states_metres: bool,
+}
+
+/// The tags of one image, as far as they matter here.
+#[derive(Debug, Default)]
+pub(super) struct GeoTags {
+    pub(super) coordinate_system: CoordinateSystem,
+    pub(super) transform: TransformTags,
+}
+
+impl GeoTags {
+    /// From the image's tags; what has another type than the standard says counts as absent.
+    pub(super) fn of(image: &tiff_reader::Ifd) -> Self {
+        let doubles = |code| image.tag(code).and_then(|tag| tag.value.as_f64_vec()).unwrap_or_default();
+        let text = |code| image.tag(code).and_then(|tag| tag.value.as_str()).map(str::to_owned);
+        let mut coordinate_system = CoordinateSystem {
+            key_directory: image.tag(tag::KEY_DIRECTORY).and_then(|tag| tag.value.as_u16_slice()).unwrap_or_default().to_vec(),
+            double_parameters: doubles(tag::DOUBLE_PARAMETERS),
+            ascii_parameters: text(tag::ASCII_PARAMETERS).unwrap_or_default(),
+            description: None,
+        };
+        coordinate_system.description = description(&coordinate_system);
+        Self {
+            coordinate_system,
+            transform: TransformTags {
+                pixel_scale: doubles(tag::PIXEL_SCALE),
+                tie_points: doubles(tag::TIE_POINTS),
+                transformation: doubles(tag::TRANSFORMATION),
+                no_data: text(tag::GDAL_NO_DATA),
+            },
+        }
+    }
+
+    /// Judges units and transform, and places the raster's posts.
+    ///
+    /// # Errors
+    /// [`TerrainError::Unsuitable`] for degrees, other units than metres, rotated or mirrored transforms, or none at all.
+    pub(super) fn place(self, rows: usize) -> Result<Placement, TerrainError> {
+        check_units(&self.coordinate_system)?;
+        let states_metres = short_key(&self.coordinate_system, key::MODEL_TYPE) == Some(key::PROJECTED);
+        let post_at_tie = short_key(&self.coordinate_system, key::RASTER_TYPE) == Some(key::PIXEL_IS_POINT);
+        let lattice = Lattice::of(&self.transform, if post_at_tie { 0.0 } else { 0.5 })?;
+        let south_up = lattice.step_y > 0.0;
+        #[expect(clippy::cast_precision_loss, reason = "rows stay below 2^32")]
+        let last_row = (rows.saturating_sub(1)) as f64;
+        let north = if south_up { lattice.first.y + last_row * lattice.step_y } else { lattice.first.y };
+        let mut georeference = GeoReference::local(MapPoint::new(lattice.first.x, north), lattice.step_x, lattice.step_y.abs())?;
+        georeference.coordinate_system = self.coordinate_system;
+        georeference.transform_tags = self.transform;
+        Ok(Placement { georeference, south_up, states_metres })
+    }
+}
+
+/// The first post of the file and the steps to its right and lower neighbours.
+struct Lattice {
+    first: MapPoint,
+    step_x: f64,
+    step_y: f64,
+}
+
+impl Lattice {
+    /// `half` is where in its pixel a post lies, as seen from the corner or post that the tags place.
+    fn of(tags: &TransformTags, half: f64) -> Result<Self, TerrainError> {
+        if let ([scale_x, scale_y, ..], [i, j, _, x, y, _, ..]) = (&tags.pixel_scale[..], &tags.tie_points[..]) {
+            if !(*scale_x > 0.0 && *scale_y > 0.0) {
+                return Err(unsuitable(
+                    format!("a pixel scale of ({scale_x}, {scale_y})"),
+                    "scales above 0",
+                    "gdal_translate -a_ullr WEST NORTH EAST SOUTH in.tif out.tif",
+                ));
+            }
+            let first = MapPoint::new(x + (half - i) * scale_x, y - (half - j) * scale_y);
+            return Ok(Self { first, step_x: *scale_x, step_y: -scale_y });
+        }
+        if let [a, b, _, d, e, f, _, h, ..] = tags.transformation[..] {
+            return Self::of_matrix([a, b, d, e, f, h], half);
+        }
+        if tags.tie_points.len() > 6 {
+            return Err(unsuitable(
+                format!("{} ground control points and no pixel scale", tags.tie_points.len() / 6),
+                "a north-up raster",
+                "gdalwarp -r bilinear in.tif out.tif",
+            ));
+        }
+        Err(unsuitable(
+            "no position on a map (neither ModelPixelScale with ModelTiepoint nor ModelTransformation)".to_owned(),
+            "a raster placed on a map in metres",
+            "gdal_translate -a_ullr WEST NORTH EAST SOUTH in.tif out.tif (in metres; 0 HEIGHT WIDTH 0 for a local map)",
+        ))
+    }
+
+    /// x = a i + b j + d and y = e i + f j + h for column i and row j.
+    fn of_matrix([a, b, d, e, f, h]: [f64; 6], half: f64) -> Result<Self, TerrainError> {
+        if !(b.abs() <= STRAIGHT * a.abs() && e.abs() <= STRAIGHT * f.abs()) {
+            return Err(unsuitable(
+                format!("a rotated or sheared raster (transformation x = {a} i + {b} j + {d}, y = {e} i + {f} j + {h})"),
+                "a north-up raster",
+                "gdalwarp -r bilinear in.tif out.tif",
+            ));
+        }
+        if !(a > 0.0) || f == 0.0 {
+            return Err(unsuitable(
+                format!("columns that run by {a} m eastward and rows by {f} m northward"),
+                "columns from west to east, rows along the meridian",
+                "gdalwarp -r near in.tif out.tif",
+            ));
+        }
+        Ok(Self { first: MapPoint::new(a * half + d, f * half + h), step_x: a, step_y: f })
+    }
+}
+
+fn unsuitable(found: String, expected: &'static str, mend: &str) -> TerrainError {
+    TerrainError::Unsuitable { found, expected, mend: mend.to_owned() }
+}
+
+fn check_units(system: &CoordinateSystem) -> Result<(), TerrainError> {
+    let degrees = "a map in degrees of longitude and latitude";
+    match short_key(system, key::MODEL_TYPE) {
+        Some(key::GEOGRAPHIC) => return Err(unsuitable(degrees.to_owned(), EXPECTED_METRES, MEND_DEGREES)),
+        Some(key::GEOCENTRIC) => return Err(unsuitable("geocentric coordinates".to_owned(), EXPECTED_METRES, MEND_DEGREES)),
+        _ => {}
+    }
+    check_linear_units(system)?;
+    match short_key(system, key::VERTICAL_UNITS) {
+        None | Some(key::METRE) => Ok(()),
+        Some(unit) => Err(unsuitable(
+            format!("elevations in {}", unit_name(unit)),
+            "elevations in metres",
+            "gdal_calc.py -A in.tif --outfile=metres.tif --calc='A*METRES_PER_UNIT', then gdal_translate -a_srs HORIZONTAL_CRS metres.tif out.tif",
+        )),
+    }
+}
+
+fn check_linear_units(system: &CoordinateSystem) -> Result<(), TerrainError> {
+    let found = match short_key(system, key::LINEAR_UNITS) {
+        Some(key::METRE) => return Ok(()),
+        Some(key::USER_DEFINED) => match double_key(system, key::LINEAR_UNIT_SIZE) {
+            Some(1.0) => return Ok(()),
+            Some(size_m) => format!("map units of {size_m} m"),
+            None => "map units that are not said".to_owned(),
+        },
+        Some(unit) => format!("map coordinates in {}", unit_name(unit)),
+        // Metres are the default; citations of maps in feet say so ("NAD83 / Texas Central (ftUS)").
+        None if system.description.as_deref().is_some_and(speaks_of_feet) => "map coordinates in feet".to_owned(),
+        None => return Ok(()),
+    };
+    Err(unsuitable(found, EXPECTED_METRES, "gdalwarp -r bilinear -t_srs 'THE SAME PROJECTION WITH +units=m' in.tif out.tif"))
+}
+
+fn speaks_of_feet(description: &str) -> bool {
+    let lower = description.to_ascii_lowercase();
+    lower.split(|letter: char| !letter.is_ascii_alphabetic()).any(|word| matches!(word, "ft" | "ftus" | "feet" | "foot"))
+}
+
+fn unit_name(code: u16) -> String {
+    match code {
+        9002 => "feet".to_owned(),
+        9003 => "US survey feet".to_owned(),
+        9030 => "nautical miles".to_owned(),
+        9036 => "kilometres".to_owned(),
+        9101 => "radians".to_owned(),
+        9102 => "degrees".to_owned(),
+        key::USER_DEFINED => "a unit of the file's own".to_owned(),
+        other => format!("unit EPSG:{other}"),
+    }
+}
+
+/// The entry of a key: location, count, value or offset.
+fn entry(system: &CoordinateSystem, wanted: u16) -> Option<[u16; 3]> {
+    let keys = system.key_directory.get(4..)?;
+    keys.chunks_exact(4).find_map(|entry| match *entry {
+        [id, location, count, value] if id == wanted => Some([location, count, value]),
+        _ => None,
+    })
+}
+
+pub(super) fn short_key(system: &CoordinateSystem, wanted: u16) -> Option<u16> {
+    match entry(system, wanted)? {
+        [0, _, value] => Some(value),
+        _ => None,
+    }
+}
+
+fn double_key(system: &CoordinateSystem, wanted: u16) -> Option<f64> {
+    match entry(system, wanted)? {
+        [tag::DOUBLE_PARAMETERS, _, offset] => system.double_parameters.get(usize::from(offset)).copied(),
+        _ => None,
+    }
+}
+
+fn text_key(system: &CoordinateSystem, wanted: u16) -> Option<&str> {
+    match entry(system, wanted)? {
+        [tag::ASCII_PARAMETERS, count, offset] => {
+            let start = usize::from(offset);
+            let text = system.ascii_parameters.get(start..start + usize::from(count)).or_else(|| system.ascii_parameters.get(start..))?;
+            Some(text.trim_end_matches(['|', '\0'])).filter(|text| !text.is_empty())
+        }
+        _ => None,
+    }
+}
+
+/// The citation of the projected map if there is one, else the general one, else the geographic one, else the EPSG code.
+fn description(system: &CoordinateSystem) -> Option<String> {
+    let cited = [key::PROJECTED_CITATION, key::CITATION, key::GEOGRAPHIC_CITATION].into_iter().find_map(|wanted| text_key(system, wanted));
+    let epsg = || short_key(system, key::PROJECTED_CRS).filter(|code| *code != key::USER_DEFINED).map(|code| format!("EPSG:{code}"));
+    cited.map(str::to_owned).or_else(epsg)
+}
+
+/// The directory with the raster type set, in the place that its order asks for.
+pub(super) fn with_raster_type(directory: &[u16], raster_type: u16) -> Vec<u16> {
+    let header = directory.get(..3).unwrap_or(&[1, 1, 0]);
+    let mut entries: Vec<[u16; 4]> = directory
+        .get(4..)
+        .unwrap_or_default()
+        .chunks_exact(4)
+        .filter_map(|entry| <[u16; 4]>::try_from(entry).ok())
+        .filter(|entry| entry[0] != key::RASTER_TYPE)
+        .collect();
+    entries.push([key::RASTER_TYPE, 0, 1, raster_type]);
+    entries.sort_by_key(|entry| entry[0]);
+    let mut result = header.to_vec();
+    result.push(u16::try_from(entries.len()).unwrap_or(u16::MAX));
+    result.extend(entries.into_iter().flatten());
+    result
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn keys(entries: &[[u16; 4]]) -> CoordinateSystem {
+        let mut key_directory = vec![1, 1, 0, u16::try_from(entries.len()).unwrap()];
+        key_directory.extend(entries.iter().flatten());
+        CoordinateSystem { key_directory, ..CoordinateSystem::default() }
+    }
+
+    fn scaled() -> TransformTags {
+        TransformTags {
+            pixel_scale: vec![2.0, 4.0, 0.0],
+            tie_points: vec![0.0, 0.0, 0.0, 100.0, 200.0, 0.0],
+            ..TransformTags::default()
+        }
+    }
+
+    fn place(entries: &[[u16; 4]], transform: TransformTags) -> Result<Placement, TerrainError> {
+        GeoTags { coordinate_system: keys(entries), transform }.place(11)
+    }
+
+    #[test]
+    fn posts_are_pixel_centres_unless_the_tie_point_is_a_post() {
+        let area = place(&[[1024, 0, 1, 1], [1025, 0, 1, 1]], scaled()).unwrap();
+        assert_eq!(area.georeference.north_west(), MapPoint::new(101.0, 198.0));
+        assert!(area.states_metres && !area.south_up);
+        let point = place(&[[1025, 0, 1, 2]], scaled()).unwrap();
+        assert_eq!(point.georeference.north_west(), MapPoint::new(100.0, 200.0));
+        assert!(!point.states_metres);
+        let tied_elsewhere = TransformTags { tie_points: vec![3.0, 5.0, 0.0, 100.0, 200.0, 0.0], ..scaled() };
+        assert_eq!(place(&[], tied_elsewhere).unwrap().georeference.north_west(), MapPoint::new(95.0, 218.0));
+    }
+
+    #[test]
+    fn a_matrix_with_rows_from_the_south_is_turned_round() {
+        let mut matrix = vec![0.0; 16];
+        (matrix[0], matrix[3], matrix[5], matrix[7], matrix[15]) = (2.0, 100.0, 4.0, 200.0, 1.0);
+        let south_up = place(&[], TransformTags { transformation: matrix.clone(), ..TransformTags::default() }).unwrap();
+        assert!(south_up.south_up);
+        assert_eq!(south_up.georeference.north_west(), MapPoint::new(101.0, 242.0));
+        matrix[1] = 0.1;
+        let message = place(&[], TransformTags { transformation: matrix.clone(), ..TransformTags::default() }).unwrap_err().to_string();
+        assert!(message.contains("rotated") && message.contains("gdalwarp"), "{message}");
+        (matrix[1], matrix[0]) = (0.0, -2.0);
+        assert!(place(&[], TransformTags { transformation: matrix, ..TransformTags::default() }).is_err());
+    }
+
+    #[test]
+    fn units_other_than_metres_are_refused_by_name() {
+        for (entries, word) in [
+            (&[[1024, 0, 1, 2]][..], "degrees"),
+            (&[[1024, 0, 1, 3]], "geocentric"),
+            (&[[1024, 0, 1, 1], [3076, 0, 1, 9003]], "US survey feet"),
+            (&[[1024, 0, 1, 1], [3076, 0, 1, 9036]], "kilometres"),
+            (&[[1024, 0, 1, 1], [3076, 0, 1, 32767]], "not said"),
+            (&[[1024, 0, 1, 1], [4099, 0, 1, 9002]], "elevations in feet"),
+        ] {
+            let message = place(entries, scaled()).unwrap_err().to_string();
+            assert!(message.contains(word) && message.contains("gdal"), "{message}");
+        }
+        let mut own_unit = keys(&[[1024, 0, 1, 1], [3076, 0, 1, 32767], [3077, 34736, 1, 0]]);
+        own_unit.double_parameters = vec![1.0];
+        assert!(GeoTags { coordinate_system: own_unit.clone(), transform: scaled() }.place(2).is_ok());
+        own_unit.double_parameters = vec![1000.0];
+        assert!(GeoTags { coordinate_system: own_unit, transform: scaled() }.place(2).is_err());
+        assert!(speaks_of_feet("NAD83 / Texas Central (ftUS)") && !speaks_of_feet("Craft 1"));
+    }
+
+    #[test]
+    fn no_transform_negative_scales_and_control_points_are_refused() {
+        let message = place(&[], TransformTags::default()).unwrap_err().to_string();
+        assert!(message.contains("-a_ullr"), "{message}");
+        assert!(place(&[], TransformTags { pixel_scale: vec![1.0, -1.0, 0.0], ..scaled() }).is_err());
+        assert!(place(&[], TransformTags { pixel_scale: vec![], tie_points: vec![0.0; 24], ..scaled() }).is_err());
+    }
+
+    #[test]
+    fn setting_the_raster_type_keeps_order_and_count() {
+        assert_eq!(with_raster_type(&[], 2), [1, 1, 0, 1, 1025, 0, 1, 2]);
+        let directory = [1, 1, 1, 2, 1024, 0, 1, 1, 3072, 0, 1, 3035];
+        assert_eq!(with_raster_type(&directory, 2), [1, 1, 1, 3, 1024, 0, 1, 1, 1025, 0, 1, 2, 3072, 0, 1, 3035]);
+        let replaced = with_raster_type(&with_raster_type(&directory, 1), 2);
+        assert_eq!(replaced, with_raster_type(&directory, 2));
+    }
+}

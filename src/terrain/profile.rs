@@ -1,0 +1,78 @@
+//! What a vertical plane cuts out of a terrain.
+
+use nalgebra::{Vector2, Vector3};
+
+use crate::quantity::{Angle, MapPoint};
+
+/// The ground along a straight line on the map: a polygonal line, and the facet under each of its segments.
+///
+/// ```text
+///   points:   0-----1---2--------3      x_m strictly increasing from 0
+///   facets:      0    1      2          one fewer than points
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// Every place where the plane crosses a line of the triangulated terrain, and its two ends.
+    pub points: Vec<ProfilePoint>,
+    /// Of the segment that begins at the point of the same number.
+    pub facets: Vec<ProfileFacet>,
+    /// Direction of travel on the map, of length 1.
+    pub heading: Vector2<f64>,
+}
+
+/// A point of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfilePoint {
+    /// Horizontal distance from the first point, m.
+    pub x_m: f64,
+    /// Elevation, m.
+    pub z_m: f64,
+    /// Where on the map.
+    pub map: MapPoint,
+}
+
+/// The facet under a segment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ProfileFacet {
+    /// Upward normal of length 1: east, north, up.
+    pub normal: Vector3<f64>,
+    /// Angle between the normal and the vertical plane of travel, 0 to 90 degrees.
+    pub cross_slope: Angle,
+}
+
+impl Profile {
+    /// Horizontal distance from the first point to the last, m.
+    pub fn length_m(&self) -> f64 {
+        self.points.last().map_or(0.0, |point| point.x_m)
+    }
+}
+
+impl ProfileFacet {
+    /// The facet of gradient (east, north) as met along `heading`.
+    ///
+    ///     n = (-p, -q, 1) / sqrt(1 + p^2 + q^2),   cross-slope = asin |n . s|,   s horizontal, across the heading
+    ///
+    /// taken as atan2 of the parts of n across and along the plane, which keeps its digits near 0 and near 90 degrees.
+    ///
+    /// ```
+    /// use chta::terrain::ProfileFacet;
+    /// use nalgebra::Vector2;
+    /// // A side-slope of 45 degrees, walked along its contour.
+    /// let facet = ProfileFacet::from_gradient(Vector2::new(0.0, 1.0), Vector2::new(1.0, 0.0));
+    /// assert!((facet.cross_slope.degrees() - 45.0).abs() < 1e-12);
+    /// ```
+    pub fn from_gradient(gradient: Vector2<f64>, heading: Vector2<f64>) -> Self {
+        let upward = Vector3::new(-gradient.x, -gradient.y, 1.0);
+        let across = gradient.x * heading.y - gradient.y * heading.x;
+        let along = gradient.dot(&heading);
+        Self {
+            normal: upward / upward.norm(),
+            cross_slope: Angle::from_radians(libm::atan2(across.abs(), libm::sqrt(along * along + 1.0))),
+        }
+    }
+
+    /// How steep the facet is in its steepest direction, 0 to 90 degrees.
+    pub fn tilt(&self) -> Angle {
+        Angle::from_radians(libm::atan2(libm::hypot(self.normal.x, self.normal.y), self.normal.z))
+    }
+}

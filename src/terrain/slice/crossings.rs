@@ -1,0 +1,150 @@
+//! Where a line on the map crosses the lines of the lattice.
+
+use nalgebra::Vector2;
+
+use super::facet::Ground;
+use crate::quantity::MapPoint;
+
+/// A vertex of the slice: where it is on the lattice, on the map, and along the way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Crossing {
+    pub(super) x_m: f64,
+    pub(super) lattice: Vector2<f64>,
+    pub(super) map: MapPoint,
+    rank: Rank,
+}
+
+/// Which of two vertices at the same place stays: the later one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    Diagonal,
+    Line,
+    Post,
+    End,
+}
+
+/// Distances that the sum and difference of two doubles of the transect's length cannot tell apart, as a share of it.
+const SAME_PLACE: f64 = 4.0 * f64::EPSILON;
+
+/// All vertices from `from` to `to`, strictly apart.
+///
+/// They are found in one order of the two ends, whichever the direction of travel, so that the way back has the same ones. Each is
+/// solved from its own line's number, so that no error adds up.
+pub(super) fn crossings(ground: &Ground<'_>, from: MapPoint, to: MapPoint, length_m: f64) -> Vec<Crossing> {
+    let backwards = (to.x, to.y) < (from.x, from.y);
+    let (first, last) = if backwards { (to, from) } else { (from, to) };
+    let transect = Transect::new(ground, first, last, length_m);
+    let mut found = Vec::new();
+    transect.push_crossings(&mut found, Vector2::new(1.0, 0.0));
+    transect.push_crossings(&mut found, Vector2::new(0.0, 1.0));
+    transect.push_crossings(&mut found, Vector2::new(1.0, -1.0));
+    found.sort_by(|a, b| a.x_m.total_cmp(&b.x_m).then(a.rank.cmp(&b.rank)));
+    let mut vertices = vec![Crossing { x_m: 0.0, lattice: transect.start, map: first, rank: Rank::End }];
+    let end = Crossing { x_m: length_m, lattice: transect.start + transect.step, map: last, rank: Rank::End };
+    for crossing in found.into_iter().chain([Crossing { lattice: ground.lattice(last), ..end }]) {
+        push_apart(&mut vertices, crossing, SAME_PLACE * length_m);
+    }
+    if backwards {
+        vertices.reverse();
+        for vertex in &mut vertices {
+            vertex.x_m = length_m - vertex.x_m;
+        }
+    }
+    vertices
+}
+
+/// Adds a vertex, or settles which of two at the same place stays.
+fn push_apart(vertices: &mut Vec<Crossing>, crossing: Crossing, closest_m: f64) {
+    // The first vertex, the start, stays whatever comes.
+    while let [_, .., previous] | [previous] = &vertices[..] {
+        if crossing.x_m - previous.x_m > closest_m {
+            break;
+        }
+        let only_the_start = vertices.len() == 1;
+        if crossing.rank == Rank::End && only_the_start {
+            break;
+        }
+        if only_the_start || previous.rank >= crossing.rank {
+            return;
+        }
+        vertices.pop();
+    }
+    vertices.push(crossing);
+}
+
+/// The line in lattice coordinates.
+struct Transect<'a> {
+    ground: &'a Ground<'a>,
+    start: Vector2<f64>,
+    end: Vector2<f64>,
+    step: Vector2<f64>,
+    origin: MapPoint,
+    along: Vector2<f64>,
+    heading: Vector2<f64>,
+}
+
+impl<'a> Transect<'a> {
+    fn new(ground: &'a Ground<'a>, first: MapPoint, last: MapPoint, length_m: f64) -> Self {
+        let (start, end) = (ground.lattice(first), ground.lattice(last));
+        let along = last - first;
+        let heading = Vector2::new(along.x / length_m, along.y / length_m);
+        Self { ground, start, end, step: end - start, origin: first, along, heading }
+    }
+
+    /// Crossings with the lines `normal . (u, v) = whole number`.
+    fn push_crossings(&self, found: &mut Vec<Crossing>, normal: Vector2<f64>) {
+        let (begin, change) = (normal.dot(&self.start), normal.dot(&self.step));
+        let end = normal.dot(&self.end);
+        let (low, high) = if begin <= end { (begin, end) } else { (end, begin) };
+        let mut line = low.ceil();
+        while line <= high && change != 0.0 {
+            let share = ((line - begin) / change).clamp(0.0, 1.0);
+            let crossing = self.crossing(normal, line, share);
+            if !self.at_an_end(crossing.lattice) {
+                found.push(crossing);
+            }
+            line += 1.0;
+        }
+    }
+
+    /// The vertex on a line, moved onto the post where it is one.
+    fn crossing(&self, normal: Vector2<f64>, line: f64, share: f64) -> Crossing {
+        let mut lattice = self.start + self.step * share;
+        let mut map = self.origin + self.along * share;
+        let mut rank = Rank::Diagonal;
+        if normal.y == 0.0 {
+            lattice.x = line;
+            rank = Rank::Line;
+        } else if normal.x == 0.0 {
+            lattice.y = line;
+            rank = Rank::Line;
+        }
+        let near = self.ground.snapped(lattice);
+        if near.x.fract() == 0.0 && near.y.fract() == 0.0 {
+            lattice = near;
+            rank = Rank::Post;
+        } else if rank == Rank::Diagonal {
+            // u - v = k: the smaller coordinate carries the digits, the other follows it exactly.
+            lattice.x = lattice.y + line;
+        }
+        let exact = self.ground.map_point(lattice);
+        if lattice.x.fract() == 0.0 {
+            map.x = exact.x;
+        }
+        if lattice.y.fract() == 0.0 {
+            map.y = exact.y;
+        }
+        Crossing { x_m: self.distance_m(lattice), lattice, map, rank }
+    }
+
+    /// Along the transect, of the foot of a lattice point on it: exact along rows and columns from a post.
+    fn distance_m(&self, lattice: Vector2<f64>) -> f64 {
+        let away = self.ground.metres(lattice - self.start);
+        away.dot(&self.heading)
+    }
+
+    fn at_an_end(&self, lattice: Vector2<f64>) -> bool {
+        let near = |end: Vector2<f64>| (lattice - end).amax() <= self.ground.tolerance();
+        near(self.start) || near(self.end)
+    }
+}

@@ -1,0 +1,184 @@
+//! Terrain made up from a seed: fractal ground, craters, a rille, boulders.
+//!
+//! The layers are added in that order, each with its own random stream of the seed, so that switching one off leaves the others as they
+//! were. All draws are serial and all functions come from `libm`: the same seed gives the same bytes everywhere.
+
+mod boulders;
+mod craters;
+mod fractal;
+mod options;
+mod random;
+mod rille;
+
+pub use boulders::Boulders;
+pub use craters::{Craters, DepthLaw};
+pub use fractal::FractalGround;
+pub use rille::Rille;
+
+use self::options::{at_least, within};
+use super::{Dem, GeoReference, TerrainError};
+use crate::quantity::{Angle, MapPoint};
+
+/// Most posts that are made: 4 GB of working memory.
+const MOST_POSTS: usize = 1 << 28;
+
+/// What to make up. Layers that are `None` are left out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SyntheticTerrain {
+    /// Number of rows, at least 2.
+    pub rows: usize,
+    /// Number of columns, at least 2.
+    pub cols: usize,
+    /// Spacing of posts both ways, m.
+    pub spacing_m: f64,
+    /// Map coordinates of the south-west post, m.
+    pub south_west: MapPoint,
+    /// Elevation of the plane under everything, at the middle of the map, m.
+    pub mean_elevation_m: f64,
+    /// Slope of that plane.
+    pub tilt: Angle,
+    /// Towards where it rises, clockwise from grid north.
+    pub tilt_towards: Angle,
+    /// The same seed gives the same terrain.
+    pub seed: u64,
+    /// Rough ground.
+    pub ground: Option<FractalGround>,
+    /// Impact craters.
+    pub craters: Option<Craters>,
+    /// One sinuous channel across the map.
+    pub rille: Option<Rille>,
+    /// Rocks.
+    pub boulders: Option<Boulders>,
+}
+
+impl Default for SyntheticTerrain {
+    /// A square of 256 m of rough ground, level, with small craters and neither rille nor boulders.
+    fn default() -> Self {
+        Self {
+            rows: 257,
+            cols: 257,
+            spacing_m: 1.0,
+            south_west: MapPoint::new(0.0, 0.0),
+            mean_elevation_m: 0.0,
+            tilt: Angle::from_radians(0.0),
+            tilt_towards: Angle::from_radians(0.0),
+            seed: 1,
+            ground: Some(FractalGround::default()),
+            craters: Some(Craters::default()),
+            rille: None,
+            boulders: None,
+        }
+    }
+}
+
+/// The lattice that the layers are drawn on, by row from the south, in m from the south-west post.
+#[derive(Clone, Copy, Debug)]
+struct Canvas {
+    rows: usize,
+    cols: usize,
+    spacing_m: f64,
+}
+
+impl Canvas {
+    #[expect(clippy::cast_precision_loss, reason = "rows and columns stay below 2^28")]
+    fn place(self, row: usize, col: usize) -> [f64; 2] {
+        [col as f64 * self.spacing_m, row as f64 * self.spacing_m]
+    }
+
+    /// Width and height between the outermost posts, m.
+    fn extent_m(self) -> [f64; 2] {
+        self.place(self.rows - 1, self.cols - 1)
+    }
+
+    /// Calls `draw` with the index and place of every post within `reach_m` of a centre, as a square.
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the raster first")]
+    #[expect(clippy::cast_precision_loss, reason = "rows and columns stay below 2^28")]
+    fn each_within(self, centre: [f64; 2], reach_m: f64, mut draw: impl FnMut(usize, [f64; 2])) {
+        let span = |middle: f64, count: usize| {
+            let first = ((middle - reach_m) / self.spacing_m).ceil().clamp(0.0, count as f64) as usize;
+            let end = (((middle + reach_m) / self.spacing_m).floor() + 1.0).clamp(0.0, count as f64) as usize;
+            first..end
+        };
+        for row in span(centre[1], self.rows) {
+            for col in span(centre[0], self.cols) {
+                draw(row * self.cols + col, self.place(row, col));
+            }
+        }
+    }
+}
+
+/// Makes a terrain up.
+///
+/// Elevations are rounded to 32-bit floats, so that files hold them exactly.
+///
+/// # Errors
+/// [`TerrainError::InvalidOption`] with the option, its value and what is allowed.
+///
+/// # Examples
+/// ```
+/// use chta::terrain::{SyntheticTerrain, synthesise};
+/// let flat = SyntheticTerrain { ground: None, craters: None, mean_elevation_m: 7.0, ..SyntheticTerrain::default() };
+/// assert_eq!(synthesise(&flat)?.elevation_range_m(), (7.0, 7.0));
+/// # Ok::<(), chta::terrain::TerrainError>(())
+/// ```
+pub fn synthesise(terrain: &SyntheticTerrain) -> Result<Dem, TerrainError> {
+    check(terrain)?;
+    let canvas = Canvas { rows: terrain.rows, cols: terrain.cols, spacing_m: terrain.spacing_m };
+    let mut heights_m = plane(terrain, canvas);
+    if let Some(ground) = &terrain.ground {
+        ground.add(&mut heights_m, canvas, terrain.seed)?;
+    }
+    if let Some(craters) = &terrain.craters {
+        craters.add(&mut heights_m, canvas, terrain.seed)?;
+    }
+    if let Some(rille) = &terrain.rille {
+        rille.add(&mut heights_m, canvas, terrain.seed)?;
+    }
+    if let Some(boulders) = &terrain.boulders {
+        boulders.add(&mut heights_m, canvas, terrain.seed)?;
+    }
+    let height_m = canvas.extent_m()[1];
+    let north_west = MapPoint::new(terrain.south_west.x, terrain.south_west.y + height_m);
+    let georeference = GeoReference::local(north_west, terrain.spacing_m, terrain.spacing_m)?;
+    Dem::from_single(terrain.rows, terrain.cols, northern_row_first(&heights_m, terrain.cols), georeference)
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "elevations are rounded to what the files hold")]
+fn northern_row_first(heights_m: &[f64], cols: usize) -> Vec<f32> {
+    heights_m.chunks_exact(cols).rev().flatten().map(|&height_m| height_m as f32).collect()
+}
+
+fn plane(terrain: &SyntheticTerrain, canvas: Canvas) -> Vec<f64> {
+    let slope = terrain.tilt.slope();
+    let azimuth = terrain.tilt_towards.radians();
+    let (east, north) = (slope * libm::sin(azimuth), slope * libm::cos(azimuth));
+    let [width_m, height_m] = canvas.extent_m();
+    let mut heights_m = Vec::with_capacity(canvas.rows * canvas.cols);
+    for row in 0..canvas.rows {
+        for col in 0..canvas.cols {
+            let [x_m, y_m] = canvas.place(row, col);
+            heights_m.push(terrain.mean_elevation_m + east * (x_m - 0.5 * width_m) + north * (y_m - 0.5 * height_m));
+        }
+    }
+    heights_m
+}
+
+fn check(terrain: &SyntheticTerrain) -> Result<(), TerrainError> {
+    let posts = terrain.rows.checked_mul(terrain.cols).unwrap_or(usize::MAX);
+    if terrain.rows < 2 || terrain.cols < 2 || posts > MOST_POSTS {
+        return Err(TerrainError::InvalidOption {
+            option: "rows times cols",
+            found: format!("{} times {}", terrain.rows, terrain.cols),
+            expected: format!("at least 2 of each and at most {MOST_POSTS} posts"),
+        });
+    }
+    at_least("spacing_m", terrain.spacing_m, 1.0e-6, "m")?;
+    within("south_west x", terrain.south_west.x, -1.0e9, 1.0e9, "m")?;
+    within("south_west y", terrain.south_west.y, -1.0e9, 1.0e9, "m")?;
+    within("mean_elevation_m", terrain.mean_elevation_m, -1.0e8, 1.0e8, "m")?;
+    within("tilt", terrain.tilt.degrees(), 0.0, 80.0, "degrees")?;
+    within("tilt_towards", terrain.tilt_towards.degrees(), -360.0, 360.0, "degrees")
+}
+
+#[cfg(test)]
+mod tests;

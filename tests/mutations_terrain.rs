@@ -1,0 +1,158 @@
+//! The byte readers against ten thousand seeded mutations each: no panic, no long run, no absurd memory.
+
+use std::time::{Duration, Instant};
+
+use chta::quantity::MapPoint;
+use chta::terrain::{Dem, SyntheticTerrain, TerrainError, geotiff_bytes, read_ascii_grid_bytes, read_geotiff_bytes, synthesise, write_ascii_grid};
+use rand::rngs::ChaCha8Rng;
+use rand::{RngExt, SeedableRng};
+
+const MUTATIONS: u64 = 10_000;
+/// One file of a kilobyte must not keep anyone waiting, even on a busy machine and unoptimised.
+const LONGEST: Duration = Duration::from_secs(2);
+
+fn small() -> Dem {
+    let terrain = SyntheticTerrain { rows: 9, cols: 13, south_west: MapPoint::new(-40.0, 1000.0), ..SyntheticTerrain::default() };
+    synthesise(&terrain).unwrap()
+}
+
+/// One to eight changes: bits, bytes, interesting numbers, cuts, copies.
+fn mutate(whole: &[u8], random: &mut ChaCha8Rng, alphabet: &[u8]) -> Vec<u8> {
+    let mut bytes = whole.to_vec();
+    for _ in 0..random.random_range(1..=8) {
+        let at = random.random_range(0..bytes.len());
+        match random.random_range(0..7) {
+            0 => bytes[at] ^= 1 << random.random_range(0..8),
+            1 => bytes[at] = random.random(),
+            2 => bytes[at] = alphabet[random.random_range(0..alphabet.len())],
+            3 => {
+                let value: u32 = [0, 1, 2, 0xffff, 0x7fff_ffff, 0xffff_ffff][random.random_range(0..6)];
+                let end = (at + 4).min(bytes.len());
+                bytes[at..end].copy_from_slice(&value.to_le_bytes()[..end - at]);
+            }
+            4 if random.random_range(0..4) == 0 => bytes.truncate(at.max(1)),
+            5 => {
+                let length = random.random_range(0..=(bytes.len() - at).min(40));
+                let copy = bytes[at..at + length].to_vec();
+                let to = random.random_range(0..bytes.len());
+                bytes.splice(to..to, copy);
+            }
+            _ => {
+                let length = random.random_range(0..=(bytes.len() - at).min(12));
+                bytes.drain(at..at + length);
+            }
+        }
+        if bytes.is_empty() {
+            bytes.push(0);
+        }
+    }
+    bytes
+}
+
+fn check(whole: &[u8], alphabet: &[u8], read: impl Fn(Vec<u8>) -> Result<Dem, TerrainError>) {
+    assert!(read(whole.to_vec()).is_ok());
+    let mut random = ChaCha8Rng::seed_from_u64(20_261_122);
+    let (mut read_well, mut slowest) = (0, Duration::ZERO);
+    for number in 0..MUTATIONS {
+        let bytes = mutate(whole, &mut random, alphabet);
+        let begin = Instant::now();
+        match read(bytes) {
+            Ok(dem) => {
+                read_well += 1;
+                assert!(dem.rows() >= 2 && dem.cols() >= 2);
+                let (low_m, high_m) = dem.elevation_range_m();
+                assert!(low_m <= high_m && low_m.abs() < 1e9 && high_m.abs() < 1e9);
+            }
+            Err(error) => {
+                let message = error.to_string();
+                assert!(!message.is_empty() && message.len() < 20_000, "mutation {number}: {message}");
+            }
+        }
+        let took = begin.elapsed();
+        slowest = slowest.max(took);
+        assert!(took < LONGEST, "mutation {number} took {took:?}");
+    }
+    // Some mutations touch elevations only; most must be noticed.
+    assert!(read_well > 0 && read_well < MUTATIONS, "{read_well}");
+    eprintln!("{read_well} of {MUTATIONS} mutations still read; the slowest took {slowest:?}");
+}
+
+#[test]
+fn mutated_geotiffs_never_panic() {
+    // Without compression, or most mutations would only ever meet the deflate checksum: GDAL is not needed for a 9 x 13 raster.
+    check(&geotiff_bytes(&small()).unwrap(), b"\x00\x01\x02\x03\x04\x08\x10\xff", read_geotiff_bytes);
+}
+
+#[test]
+fn mutated_plain_geotiffs_never_panic() {
+    check(&plain_tiff(), b"\x00\x01\x02\x03\x04\x08\x10\xff", read_geotiff_bytes);
+}
+
+#[test]
+fn mutated_ascii_grids_never_panic() {
+    let mut text = Vec::new();
+    write_ascii_grid(&small(), &mut text).unwrap();
+    check(&text, b"0123456789.,-+eE nNaA\n\r\t", |bytes| read_ascii_grid_bytes(&bytes));
+}
+
+/// A 3 x 4 int16 strip without compression, tag by tag, with scale, tie point, keys and no-data.
+fn plain_tiff() -> Vec<u8> {
+    let doubles = |values: &[f64]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
+    let shorts = |values: &[u16]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
+    let samples = shorts(&[1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 0x8000]);
+    let scale = doubles(&[2.0, 2.0, 0.0]);
+    let tie = doubles(&[0.0, 0.0, 0.0, 1000.0, 2000.0, 0.0]);
+    let keys = shorts(&[1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3076, 0, 1, 9001]);
+    let metadata = b"<GDALMetadata><Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.5</Item></GDALMetadata>\0".to_vec();
+    let no_data = b"-32768\0".to_vec();
+    let short = |value: u16| shorts(&[value]);
+    let entries: [(u16, u16, Vec<u8>); 15] = [
+        (256, 3, short(4)),
+        (257, 3, short(3)),
+        (258, 3, short(16)),
+        (259, 3, short(1)),
+        (262, 3, short(1)),
+        (273, 4, 8_u32.to_le_bytes().to_vec()),
+        (277, 3, short(1)),
+        (278, 3, short(3)),
+        (279, 4, 24_u32.to_le_bytes().to_vec()),
+        (339, 3, short(2)),
+        (33550, 12, scale),
+        (33922, 12, tie),
+        (34735, 3, keys),
+        (42112, 2, metadata),
+        (42113, 2, no_data),
+    ];
+    let directory = 8 + samples.len();
+    let mut values = directory + 2 + 12 * entries.len() + 4;
+    let mut file = b"II*\0".to_vec();
+    file.extend(u32::try_from(directory).unwrap().to_le_bytes());
+    file.extend(samples);
+    file.extend(u16::try_from(entries.len()).unwrap().to_le_bytes());
+    let mut tail = Vec::new();
+    for (tag, kind, value) in entries {
+        let size = [1, 1, 1, 2, 4, 8, 1, 1, 2, 4, 8, 4, 8][usize::from(kind)];
+        file.extend(tag.to_le_bytes());
+        file.extend(kind.to_le_bytes());
+        file.extend(u32::try_from(value.len() / size).unwrap().to_le_bytes());
+        if value.len() <= 4 {
+            let mut padded = value;
+            padded.resize(4, 0);
+            file.extend(padded);
+        } else {
+            file.extend(u32::try_from(values).unwrap().to_le_bytes());
+            values += value.len();
+            tail.extend(value);
+        }
+    }
+    file.extend([0; 4]);
+    file.extend(tail);
+    file
+}
+
+#[test]
+fn the_plain_geotiff_of_these_tests_says_what_it_should() {
+    let dem = read_geotiff_bytes(plain_tiff()).unwrap();
+    assert_eq!((dem.rows(), dem.cols(), dem.elevation(0, 0), dem.elevation(2, 3)), (3, 4, Some(0.5), None));
+    assert_eq!(dem.georeference().north_west(), MapPoint::new(1001.0, 1999.0));
+}
