@@ -10,6 +10,7 @@
 
 mod constrained;
 mod constraints;
+pub mod csv;
 mod ground;
 mod polygonal;
 mod station;

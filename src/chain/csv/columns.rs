@@ -1,0 +1,220 @@
+//! The columns there are, what each holds, and what a field of each must be.
+
+use super::degrees::read_degrees;
+
+/// A column that the program reads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CsvColumn {
+    /// Its name in the header, which ends in its unit.
+    pub name: &'static str,
+    /// One line on what it holds.
+    pub help: &'static str,
+    /// Whether a file without it is refused.
+    pub required: bool,
+    kind: Kind,
+}
+
+/// What a field must be.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    /// Any finite number.
+    Finite,
+    /// A friction coefficient, at least 0.
+    Friction,
+    /// A speed limit, at least 0.
+    Speed,
+    /// An angle in degrees between two ends.
+    Degrees { least: f64, greatest: f64 },
+    /// 0 or 1.
+    Flag,
+}
+
+/// The farthest that an angle may be from the horizontal. The cone of a slope of nearly 90 degrees with a half-angle of nearly 90
+/// reaches 270; whatever lies beyond is a slip of the pen. A smaller bound would refuse cones that the program itself derives.
+const ANGLE_MAX_DEG: f64 = 270.0;
+
+const fn required(name: &'static str, help: &'static str) -> CsvColumn {
+    CsvColumn { name, help, required: true, kind: Kind::Finite }
+}
+
+const fn optional(name: &'static str, kind: Kind, help: &'static str) -> CsvColumn {
+    CsvColumn { name, help, required: false, kind }
+}
+
+const fn angle(name: &'static str, help: &'static str) -> CsvColumn {
+    optional(name, Kind::Degrees { least: -ANGLE_MAX_DEG, greatest: ANGLE_MAX_DEG }, help)
+}
+
+pub(super) const X: usize = 0;
+pub(super) const Z: usize = 1;
+pub(super) const FRICTION: usize = 2;
+pub(super) const CROSS_SLOPE: usize = 3;
+pub(super) const KEEP_OUT: usize = 4;
+/// The first of the six for travel towards +x: least and greatest take-off angle and take-off speed, then the same of the landing.
+pub(super) const FORWARD: usize = 5;
+/// The first of the six for travel towards -x.
+pub(super) const REVERSE: usize = FORWARD + SIX;
+pub(super) const SIX: usize = 6;
+pub(super) const MAP_X: usize = REVERSE + SIX;
+pub(super) const MAP_Y: usize = MAP_X + 1;
+
+/// All columns of a chain CSV.
+pub const CHAIN_COLUMNS: [CsvColumn; 19] = [
+    required("x_m", "along the plane of travel, strictly increasing (required)"),
+    required("z_m", "elevation (required)"),
+    optional("friction_coefficient", Kind::Friction, "of the segment that begins here; else that of the scenario's [surface]"),
+    optional(
+        "cross_slope_deg",
+        Kind::Degrees { least: 0.0, greatest: 90.0 },
+        "angle between the surface normal and the plane of travel, 0 to 90; absent: 0",
+    ),
+    optional("keep_out", Kind::Flag, "1: no take-off and no landing on the segment, flying over is allowed; else 0"),
+    angle("takeoff_min_deg", "least take-off elevation towards +x; the six explicit columns come together or not at all"),
+    angle("takeoff_max_deg", "greatest take-off elevation towards +x"),
+    optional("takeoff_speed_max_m_s", Kind::Speed, "greatest take-off speed towards +x; 0: not allowed there"),
+    angle("landing_min_deg", "least landing elevation towards +x, negative downwards"),
+    angle("landing_max_deg", "greatest landing elevation towards +x"),
+    optional("landing_speed_max_m_s", Kind::Speed, "greatest landing speed towards +x; 0: not allowed there"),
+    angle("reverse_takeoff_min_deg", "the six for travel towards -x, elevations as seen by the traveller"),
+    angle("reverse_takeoff_max_deg", "greatest take-off elevation towards -x"),
+    optional("reverse_takeoff_speed_max_m_s", Kind::Speed, "greatest take-off speed towards -x; 0: not allowed there"),
+    angle("reverse_landing_min_deg", "least landing elevation towards -x, negative downwards"),
+    angle("reverse_landing_max_deg", "greatest landing elevation towards -x"),
+    optional("reverse_landing_speed_max_m_s", Kind::Speed, "greatest landing speed towards -x; 0: not allowed there"),
+    optional("map_x_m", Kind::Finite, "easting of the vertex on the map; with map_y_m in every row, or neither"),
+    optional("map_y_m", Kind::Finite, "northing of the vertex on the map"),
+];
+
+/// All columns of a CSV of pairs.
+pub const PAIRS_COLUMNS: [CsvColumn; 2] = [
+    required("start_x_m", "where on the chain the path starts (required)"),
+    required("goal_x_m", "where on the chain the path ends (required)"),
+];
+
+/// What a field should have been, and how to mend it.
+#[derive(Debug, PartialEq, Eq)]
+pub(super) struct Fault {
+    pub(super) expected: String,
+    pub(super) help: String,
+}
+
+impl CsvColumn {
+    /// The value of a field, angles in radians.
+    pub(super) fn parse(&self, text: &str) -> Result<f64, Fault> {
+        let fault = |help: String| Fault { expected: self.expected().to_owned(), help };
+        let number: f64 = text.parse().map_err(|_| fault(help_for_text(text)))?;
+        if !number.is_finite() {
+            return Err(fault(self.help_for_infinite(text)));
+        }
+        match self.kind {
+            Kind::Finite => Ok(number),
+            Kind::Friction | Kind::Speed if number >= 0.0 => Ok(number),
+            Kind::Friction => Err(fault("dry rock and regolith have 0.3 to 1.2".to_owned())),
+            Kind::Speed => Err(fault("a speed has no sign here: write its amount, or 0 for not allowed".to_owned())),
+            Kind::Degrees { least, greatest } if least <= number && number <= greatest => Ok(read_degrees(text, number).radians()),
+            Kind::Degrees { .. } => Err(fault("check the unit: angles are degrees".to_owned())),
+            Kind::Flag if number == 0.0 || number == 1.0 => Ok(number),
+            Kind::Flag => Err(fault("write 1 where neither take-off nor landing is allowed, else 0".to_owned())),
+        }
+    }
+
+    /// What a field must be, in words.
+    pub(super) fn expected(&self) -> &'static str {
+        match self.kind {
+            Kind::Finite => "a finite number",
+            Kind::Friction => "a finite number of at least 0",
+            Kind::Speed => "a finite speed of at least 0 m/s",
+            Kind::Degrees { least, .. } if least < 0.0 => "a finite angle from -270 to 270 degrees",
+            Kind::Degrees { .. } => "a finite angle from 0 to 90 degrees",
+            Kind::Flag => "0 or 1",
+        }
+    }
+
+    fn help_for_infinite(&self, text: &str) -> String {
+        if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && text.contains(|c: char| c.is_ascii_digit()) {
+            return "no number may be beyond 1.8e308: check the exponent".to_owned();
+        }
+        match self.kind {
+            Kind::Speed => {
+                "where nothing limits the speed, write one that is never reached: the smaller of chain and [hopper] counts"
+                    .to_owned()
+            }
+            Kind::Degrees { least, .. } if least < 0.0 => "where nothing limits the angle, write -90 or 90".to_owned(),
+            _ => "write a number, or remove the row".to_owned(),
+        }
+    }
+}
+
+/// How to mend text that is no number.
+fn help_for_text(text: &str) -> String {
+    let point = text.replacen(',', ".", 1);
+    let number = text.trim_end_matches(|c: char| !(c.is_ascii_digit() || c == '.')).trim_end();
+    if text.contains(',') && point.parse::<f64>().is_ok() {
+        format!("write a decimal point, not a comma: {}", excerpt(&point))
+    } else if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && number.parse::<f64>().is_ok() {
+        format!("write the number alone, {}: its unit stands in the column's name", excerpt(number))
+    } else {
+        "write a plain number such as 12.5 or 1e-3".to_owned()
+    }
+}
+
+/// User text for a message: short, on one line, with nothing a terminal would obey.
+pub(super) fn excerpt(text: &str) -> String {
+    const SHOWN: usize = 40;
+    let mut shown: String = text.chars().take(SHOWN).flat_map(char::escape_debug).collect();
+    if text.chars().nth(SHOWN).is_some() {
+        shown.push_str("...");
+    }
+    shown
+}
+
+/// The known name nearest to an unknown one; `None` where none is near.
+pub(super) fn nearest(columns: &[CsvColumn], name: &str) -> Option<&'static str> {
+    /// Below this, the nearest name has nothing to do with what was typed (`note` and `map_x_m`: 0.0; `x` and `x_m`: 0.8).
+    const NEAR: f64 = 0.7;
+    /// No column's name is half as long, and the search is quadratic.
+    const LONGEST: usize = 64;
+    if name.len() > LONGEST {
+        return None;
+    }
+    let typed = name.to_lowercase();
+    let scored = columns.iter().map(|column| (strsim::jaro_winkler(&typed, column.name), column.name));
+    scored.filter(|&(score, _)| score >= NEAR).max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_indices_point_at_the_names() {
+        let named = [
+            (X, "x_m"),
+            (Z, "z_m"),
+            (FRICTION, "friction_coefficient"),
+            (CROSS_SLOPE, "cross_slope_deg"),
+            (KEEP_OUT, "keep_out"),
+            (FORWARD, "takeoff_min_deg"),
+            (REVERSE, "reverse_takeoff_min_deg"),
+            (MAP_X, "map_x_m"),
+            (MAP_Y, "map_y_m"),
+        ];
+        for (index, name) in named {
+            assert_eq!(CHAIN_COLUMNS[index].name, name);
+        }
+        for i in 0..SIX {
+            assert_eq!(CHAIN_COLUMNS[REVERSE + i].name, format!("reverse_{}", CHAIN_COLUMNS[FORWARD + i].name));
+        }
+    }
+
+    #[test]
+    fn nearest_names_are_near() {
+        for (typed, known) in
+            [("x", "x_m"), ("Z_M", "z_m"), ("friction", "friction_coefficient"), ("takeoff_speed_m_s", "takeoff_speed_max_m_s")]
+        {
+            assert_eq!(nearest(&CHAIN_COLUMNS, typed), Some(known));
+        }
+        assert_eq!(nearest(&CHAIN_COLUMNS, "note"), None);
+        assert_eq!(nearest(&CHAIN_COLUMNS, ""), None);
+    }
+}

@@ -1,0 +1,325 @@
+//! A CSV file as a table of values under known columns.
+
+use super::{
+    CsvColumn, CsvProblems,
+    columns::{excerpt, nearest},
+    records::{Place, Record, Records, plain, text_of},
+};
+
+/// How many columns that nobody knows are warned of one by one.
+const WARNED_AT_MOST: usize = 20;
+
+/// What a field holds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Cell {
+    /// Nothing, or no such column.
+    Blank,
+    /// Something that was found wrong, and reported.
+    Bad,
+    /// A value, angles in radians.
+    Value(f64),
+}
+
+/// A row, found again when there is something to say about it.
+#[derive(Clone, Copy, Debug)]
+struct Row {
+    offset: usize,
+    line: u64,
+}
+
+/// The rows of a file under a set of known columns.
+#[derive(Debug)]
+pub(super) struct Table<'a> {
+    source: &'a str,
+    columns: &'static [CsvColumn],
+    header: Record,
+    /// For each known column, the place of its field in a row.
+    fields: Vec<Option<usize>>,
+    /// For each known column, the place of its cell in a row of cells.
+    slots: Vec<Option<usize>>,
+    width: usize,
+    rows: Vec<Row>,
+    cells: Vec<Cell>,
+    /// Whether the rows reach to the end of the file.
+    pub(super) complete: bool,
+    /// What was ignored.
+    pub(super) warnings: Vec<String>,
+}
+
+impl<'a> Table<'a> {
+    /// Reads a table; `None` where nothing more can be said about the file than the problems noted.
+    pub(super) fn read(bytes: &'a [u8], columns: &'static [CsvColumn], problems: &mut CsvProblems) -> Option<Self> {
+        let source = match text_of(bytes) {
+            Ok(source) => source,
+            Err(problem) => {
+                problems.push(|| *problem);
+                return None;
+            }
+        };
+        let mut records = Records::of(source);
+        let mut header = Record::default();
+        match records.read(&mut header) {
+            Ok(true) => {}
+            Ok(false) => {
+                let nothing = Record { offset: 0, line: 1, fields: Vec::new() };
+                let found = if source.trim().is_empty() { "an empty file" } else { "a file of comments only" };
+                problems.push(|| {
+                    Place::of_line(source, &nothing).problem(
+                        found.to_owned(),
+                        "a header",
+                        format!("begin with the line {}", required_names(columns)),
+                    )
+                });
+                return None;
+            }
+            Err(problem) => {
+                problems.push(|| *problem);
+                return None;
+            }
+        }
+        let mut table = Self {
+            source,
+            columns,
+            header,
+            fields: vec![None; columns.len()],
+            slots: vec![None; columns.len()],
+            width: 0,
+            rows: Vec::new(),
+            cells: Vec::new(),
+            complete: true,
+            warnings: Vec::new(),
+        };
+        if !table.is_a_header(problems) {
+            return None;
+        }
+        table.read_header(problems);
+        table.read_rows(&mut records, problems);
+        Some(table)
+    }
+
+    fn text(&self, record: &Record, field: usize) -> &'a str {
+        record.fields.get(field).and_then(|bytes| self.source.get(bytes.clone())).map_or("", plain)
+    }
+
+    /// Whether the first record is a header with commas; if not, that is the file's only problem.
+    fn is_a_header(&self, problems: &mut CsvProblems) -> bool {
+        let names: Vec<&str> = (0..self.header.fields.len()).map(|field| self.text(&self.header, field)).collect();
+        let known = |name: &str| self.columns.iter().any(|column| column.name == name.trim_matches(['"', ' ']));
+        for (separator, called) in [(';', "semicolons"), ('\t', "tabs")] {
+            let between = |name: &&str| name.contains(separator) && name.split(separator).any(known);
+            if names.iter().any(between) {
+                problems.push(|| {
+                    Place::of_line(self.source, &self.header).problem(
+                        format!("{called} between the columns"),
+                        "commas",
+                        "write commas between columns and points in numbers (1.5, not 1,5), or export as CSV with an English locale",
+                    )
+                });
+                return false;
+            }
+        }
+        if names.iter().all(|name| name.parse::<f64>().is_ok()) {
+            problems.push(|| {
+                Place::of_line(self.source, &self.header).problem(
+                    "numbers in the first row".to_owned(),
+                    "a header",
+                    format!("put the names of the columns above them: {}", required_names(self.columns)),
+                )
+            });
+            return false;
+        }
+        true
+    }
+
+    /// Finds the known columns, and warns of the others.
+    fn read_header(&mut self, problems: &mut CsvProblems) {
+        let mut unknown = 0;
+        for field in 0..self.header.fields.len() {
+            let name = self.text(&self.header, field);
+            let Some(index) = self.columns.iter().position(|column| column.name == name) else {
+                unknown += 1;
+                if unknown <= WARNED_AT_MOST {
+                    self.warnings.push(self.warning_of_unknown(field, name));
+                }
+                continue;
+            };
+            if let Some(first) = self.fields[index] {
+                problems.push(|| {
+                    Place::of_field(self.source, &self.header, field).named(name).problem(
+                        format!("`{name}` twice, here and as field {}", first + 1),
+                        "each column once",
+                        "remove one of the two",
+                    )
+                });
+            } else {
+                self.fields[index] = Some(field);
+                self.slots[index] = Some(self.width);
+                self.width += 1;
+            }
+        }
+        if unknown > WARNED_AT_MOST {
+            self.warnings.push(format!("{} more unknown columns are ignored", unknown - WARNED_AT_MOST));
+        }
+        self.check_required(problems);
+    }
+
+    fn warning_of_unknown(&self, field: usize, name: &str) -> String {
+        let which = if name.is_empty() {
+            format!("column {} without a name", field + 1)
+        } else {
+            format!("unknown column `{}`", excerpt(name))
+        };
+        match nearest(self.columns, name) {
+            Some(near) => format!("line {}: {which} is ignored (the nearest known column is {near})", self.header.line),
+            None => format!("line {}: {which} is ignored", self.header.line),
+        }
+    }
+
+    fn check_required(&self, problems: &mut CsvProblems) {
+        for (column, field) in self.columns.iter().zip(&self.fields) {
+            if !column.required || field.is_some() {
+                continue;
+            }
+            problems.push(|| {
+                let near = (0..self.header.fields.len()).map(|field| self.text(&self.header, field)).find(|name| {
+                    !self.columns.iter().any(|known| known.name == *name) && nearest(self.columns, name) == Some(column.name)
+                });
+                let help = match near {
+                    Some(near) => format!("is `{}` meant? rename it to {}", excerpt(near), column.name),
+                    None => format!("name the column {} in the header", column.name),
+                };
+                let found = format!("a header without {}", column.name);
+                Place::of_line(self.source, &self.header).problem(found, format!("a column {}", column.name), help)
+            });
+        }
+    }
+
+    fn read_rows(&mut self, records: &mut Records<'a>, problems: &mut CsvProblems) {
+        let mut record = Record::default();
+        loop {
+            match records.read(&mut record) {
+                Ok(true) => {}
+                Ok(false) => break,
+                Err(problem) => {
+                    problems.push(|| *problem);
+                    self.complete = false;
+                    break;
+                }
+            }
+            self.rows.push(Row { offset: record.offset, line: record.line });
+            let start = self.cells.len();
+            if record.fields.len() == self.header.fields.len() {
+                self.cells.resize(start + self.width, Cell::Blank);
+                self.read_cells(&record, start, problems);
+            } else {
+                self.cells.resize(start + self.width, Cell::Bad);
+                problems.push(|| self.ragged(&record));
+            }
+        }
+    }
+
+    /// Parses the fields of a row into its cells.
+    fn read_cells(&mut self, record: &Record, start: usize, problems: &mut CsvProblems) {
+        for (index, column) in self.columns.iter().enumerate() {
+            let (Some(field), Some(slot)) = (self.fields[index], self.slots[index]) else { continue };
+            let text = self.text(record, field);
+            self.cells[start + slot] = if text.is_empty() && !column.required {
+                Cell::Blank
+            } else {
+                match column.parse(text) {
+                    Ok(value) => Cell::Value(value),
+                    Err(fault) => {
+                        problems.push(|| {
+                            let found = if text.is_empty() { "nothing".to_owned() } else { format!("`{}`", excerpt(text)) };
+                            Place::of_field(self.source, record, field).named(column.name).problem(
+                                found,
+                                fault.expected,
+                                fault.help,
+                            )
+                        });
+                        Cell::Bad
+                    }
+                }
+            };
+        }
+    }
+
+    /// A row with too few or too many fields.
+    fn ragged(&self, record: &Record) -> super::CsvProblem {
+        let (found, expected) = (record.fields.len(), self.header.fields.len());
+        let help = if found > expected {
+            "is there a decimal comma (write 1.5, not 1,5), or a comma too many?"
+        } else {
+            "write every comma, also in the last row, whose segment columns stay empty"
+        };
+        let place =
+            if found > expected { Place::of_field(self.source, record, expected) } else { Place::of_line(self.source, record) };
+        place.problem(format!("{found} fields"), format!("{expected} as in the header"), help)
+    }
+
+    /// How many rows there are.
+    pub(super) fn row_count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// The line of a row.
+    pub(super) fn line(&self, row: usize) -> u64 {
+        self.rows.get(row).map_or(self.header.line, |row| row.line)
+    }
+
+    /// What stands in a row under a known column.
+    pub(super) fn cell(&self, row: usize, column: usize) -> Cell {
+        let slot = self.slots.get(column).copied().flatten();
+        slot.and_then(|slot| self.cells.get(row * self.width + slot)).copied().unwrap_or(Cell::Blank)
+    }
+
+    /// The value in a row under a known column, where there is one.
+    pub(super) fn value(&self, row: usize, column: usize) -> Option<f64> {
+        if let Cell::Value(value) = self.cell(row, column) { Some(value) } else { None }
+    }
+
+    /// Whether the header has this column.
+    pub(super) fn has(&self, column: usize) -> bool {
+        self.slots.get(column).is_some_and(Option::is_some)
+    }
+
+    /// The place of a known column's field in a row.
+    pub(super) fn place(&self, row: usize, column: usize) -> Place {
+        let record = self.record(row);
+        let (Some(field), Some(known)) = (self.fields.get(column).copied().flatten(), self.columns.get(column)) else {
+            return Place::of_line(self.source, &record);
+        };
+        Place::of_field(self.source, &record, field).named(known.name)
+    }
+
+    /// The place of a whole row; of the header where there is no such row.
+    pub(super) fn row_place(&self, row: usize) -> Place {
+        Place::of_line(self.source, &self.record(row))
+    }
+
+    /// The place of a known column's name in the header.
+    pub(super) fn header_place(&self, column: usize) -> Place {
+        match self.fields.get(column).copied().flatten() {
+            Some(field) => Place::of_field(self.source, &self.header, field),
+            None => Place::of_line(self.source, &self.header),
+        }
+    }
+
+    /// The text of a known column's field in a row, for a message.
+    pub(super) fn excerpt(&self, row: usize, column: usize) -> String {
+        let field = self.fields.get(column).copied().flatten();
+        field.map_or_else(String::new, |field| excerpt(self.text(&self.record(row), field)))
+    }
+
+    /// A row's record, read again.
+    fn record(&self, row: usize) -> Record {
+        let mut record = Record::default();
+        let found = self.rows.get(row).map(|row| Records::again(self.source, row.offset, row.line).read(&mut record));
+        if matches!(found, Some(Ok(true))) { record } else { self.header.clone() }
+    }
+}
+
+/// The names of the columns that a file must have.
+fn required_names(columns: &[CsvColumn]) -> String {
+    columns.iter().filter(|column| column.required).map(|column| column.name).collect::<Vec<_>>().join(",")
+}

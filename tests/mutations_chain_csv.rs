@@ -1,0 +1,114 @@
+//! Ten thousand spoiled files of each form: never a panic, and what is accepted reads back equal after writing.
+
+use chta::chain::csv::{read_chain_csv, read_pairs_csv, write_chain_csv};
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
+
+const SURFACE: &str = "# a crater's rim\n\
+    x_m,z_m,friction_coefficient,cross_slope_deg,keep_out,map_x_m,map_y_m,note\n\
+    0,0.5,0.6,0,0,100.25,-7,\n\
+    2.5,1.25,0.55,12.5,1,102.75,-7,\"steep, dark\"\n\
+    4,-1e-3,0.6,3.0000000000000000001,0,104.25,-7,\n\
+    9,2,,,,109.25,-7,\n";
+
+const EXPLICIT: &str = "x_m,z_m,takeoff_min_deg,takeoff_max_deg,takeoff_speed_max_m_s,landing_min_deg,landing_max_deg,landing_speed_max_m_s,\
+    reverse_takeoff_min_deg,reverse_takeoff_max_deg,reverse_takeoff_speed_max_m_s,reverse_landing_min_deg,reverse_landing_max_deg,reverse_landing_speed_max_m_s\r\n\
+    0,0,63.5,93.5,10,-93.5,-60,10,56.5,86.5,10,-90,-63.5,10\r\n\
+    3,1,60,90,0,-90,-60,8.5,60,90,9,-90,-60,0\r\n\
+    4.5,-2,45.000000000000000000001,135,5,-135,-45,5,45,135,5,-135,-45,5\r\n\
+    7,0,,,,,,,,,,,,\r\n";
+
+const PAIRS: &str = "start_x_m,goal_x_m\n0,9\n2.5,4\n1e0,\"0.5\"\n";
+
+/// Bytes that mean something in a CSV, more likely to get past the first check than any byte.
+const TELLING: &[u8] = b",\n\r\"#;\t 0123456789.-+eE\0\xff\xefx_mnaif";
+
+/// Spoils a file, mostly in one place, else in up to four.
+fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
+    let mut bytes = original.to_vec();
+    let places = if rng.random_bool(0.6) { 1 } else { rng.random_range(2..=4) };
+    for _ in 0..places {
+        if bytes.is_empty() {
+            break;
+        }
+        let at = rng.random_range(0..bytes.len());
+        let end = rng.random_range(at..=bytes.len().min(at + 30));
+        match rng.random_range(0..10) {
+            0 => bytes[at] ^= 1 << rng.random_range(0..8),
+            1 => bytes[at] = TELLING[rng.random_range(0..TELLING.len())],
+            2 => bytes.insert(at, TELLING[rng.random_range(0..TELLING.len())]),
+            3 => drop(bytes.remove(at)),
+            4 => drop(bytes.drain(at..end)),
+            5 => {
+                let piece = bytes[at..end].to_vec();
+                let to = rng.random_range(0..=bytes.len());
+                bytes.splice(to..to, piece);
+            }
+            // Another digit: what most likely passes every check.
+            6..9 => {
+                let digits: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i].is_ascii_digit()).collect();
+                if !digits.is_empty() {
+                    bytes[digits[rng.random_range(0..digits.len())]] = rng.random_range(b'0'..=b'9');
+                }
+            }
+            // Rare: most of a file should be left.
+            _ if rng.random_bool(0.2) => bytes.truncate(at),
+            _ => bytes[at] = rng.random(),
+        }
+    }
+    bytes
+}
+
+/// Spoils a chain 10 000 times; how many were still accepted.
+fn accepted(original: &str, seed: u64) -> usize {
+    let mut rng = ChaCha8Rng::seed_from_u64(seed);
+    let mut accepted = 0;
+    for _ in 0..10_000 {
+        let bytes = spoiled(&mut rng, original.as_bytes());
+        match read_chain_csv(&bytes) {
+            Ok(file) => {
+                accepted += 1;
+                let mut written = Vec::new();
+                let shown = || String::from_utf8_lossy(&bytes);
+                write_chain_csv(&file.chain, &mut written, &[]).unwrap_or_else(|error| panic!("{error} on writing {}", shown()));
+                let again = read_chain_csv(&written).unwrap_or_else(|problems| panic!("{problems} on reading again {}", shown()));
+                assert_eq!(again.chain, file.chain, "{}", shown());
+            }
+            Err(problems) => {
+                assert!(!problems.problems.is_empty());
+                for problem in &problems.problems {
+                    assert!(problem.text.get(problem.span.clone()).is_some(), "a span off its text: {problem:?}");
+                    assert!(problem.line >= 1 && problem.to_string().starts_with("line "), "{problem:?}");
+                }
+            }
+        }
+    }
+    accepted
+}
+
+#[test]
+fn spoiled_surface_files_never_panic_and_read_back() {
+    let accepted = accepted(SURFACE, 1);
+    assert!((500..9500).contains(&accepted), "{accepted} of 10 000 were accepted: the mutations test one side only");
+}
+
+#[test]
+fn spoiled_explicit_files_never_panic_and_read_back() {
+    let accepted = accepted(EXPLICIT, 2);
+    assert!((500..9500).contains(&accepted), "{accepted} of 10 000 were accepted: the mutations test one side only");
+}
+
+#[test]
+fn spoiled_pairs_never_panic() {
+    let mut rng = ChaCha8Rng::seed_from_u64(3);
+    let mut accepted = 0;
+    for _ in 0..10_000 {
+        match read_pairs_csv(&spoiled(&mut rng, PAIRS.as_bytes())) {
+            Ok(file) => {
+                accepted += 1;
+                assert!(file.pairs.iter().all(|pair| pair.start_x_m.is_finite() && pair.goal_x_m.is_finite()));
+            }
+            Err(problems) => assert!(!problems.problems.is_empty()),
+        }
+    }
+    assert!((500..9500).contains(&accepted), "{accepted} of 10 000 were accepted");
+}
