@@ -86,7 +86,7 @@ const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 29] = [
+pub const CATALOGUE: [Key; 28] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
@@ -115,7 +115,6 @@ pub const CATALOGUE: [Key; 29] = [
     key("search", "takeoff_angle", Kind::Word(&CHOICES), "which feasible take-off angle to fly; absent: least-speed"),
     key("search", "split", Kind::Word(&SPLITS), "how to divide many hops on a segment; absent: full-reach"),
     key("report", "title", Kind::Text, "title of the picture; absent: the scenario's file name"),
-    key("report", "exaggeration", Kind::Number { min: 0.01, max: 1000.0 }, "vertical exaggeration of the picture; absent: chosen and stated"),
 ];
 
 #[cfg(test)]
@@ -125,7 +124,7 @@ mod tests {
     #[test]
     fn every_number_ends_in_its_unit() {
         let units = ["_m", "_m_s", "_m_s2", "_s", "_kg", "_deg"];
-        let pure = ["friction_coefficient", "exaggeration", "points_per_segment"];
+        let pure = ["friction_coefficient", "points_per_segment"];
         for key in &CATALOGUE {
             let number = !matches!(key.kind, Kind::Word(_) | Kind::Text);
             assert!(

@@ -20,10 +20,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("search".to_owned(), search(scenario));
     tables.insert(
         "report".to_owned(),
-        object([
-            ("title", scenario.title.clone().map(Value::from)),
-            ("exaggeration", scenario.exaggeration.map(Value::from)),
-        ]),
+        object([("title", scenario.title.clone().map(Value::from))]),
     );
     tables.retain(|_, table| table.as_object().is_none_or(|keys| !keys.is_empty()));
     Value::Object(tables)

@@ -118,6 +118,18 @@ impl Entries {
         self.entries.remove(&(table.to_owned(), name.to_owned()));
     }
 
+    /// The title of the report, where one was given.
+    pub fn title(&self) -> Option<&str> {
+        self.text("report", "title")
+    }
+
+    /// Gives the report a title, where the scenario has none.
+    pub fn set_default_title(&mut self, title: &str) {
+        if self.title().is_none() && !title.trim().is_empty() {
+            self.add("report", "title", toml::Value::from(title), Place::Nowhere, Place::Nowhere);
+        }
+    }
+
     /// What was wrong so far.
     pub fn problems(&self) -> &[ScenarioProblem] {
         &self.problems

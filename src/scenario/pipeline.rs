@@ -118,31 +118,50 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
     Ok(digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
 }
 
-/// Where constant gravity over flat ground is a bad model for these hops: what is doubtful and by how much; empty where nothing is.
+/// The largest figures of some hops, to be doubted.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Extremes {
+    /// Greatest horizontal distance, m.
+    pub range_m: f64,
+    /// Greatest height above a take-off, m.
+    pub height_m: f64,
+    /// Greatest speed, m/s.
+    pub speed_m_s: f64,
+}
+
+impl Extremes {
+    /// Those of planned hops.
+    pub fn of(hops: &[Hop]) -> Self {
+        let largest = |of: fn(&Hop) -> f64| hops.iter().map(of).fold(0.0, f64::max);
+        Self {
+            range_m: largest(|h| (h.landing.point.x_m - h.takeoff.point.x_m).abs()),
+            height_m: largest(|h| h.apex_z_m - h.takeoff.point.z_m),
+            speed_m_s: largest(|h| h.takeoff_speed_m_s.max(h.landing_speed_m_s)),
+        }
+    }
+}
+
+/// Where constant gravity over flat ground is a bad model: what is doubtful and by how much; empty where nothing is.
 ///
 /// A hop is doubted where its range or its highest point above the take-off is over a hundredth of the body's radius, or a speed over
 /// a tenth of its escape speed `sqrt(2 g R)`. Nothing is said of a body of unknown radius.
-pub fn constant_gravity_doubts(body: &BodyChoice, hops: &[Hop]) -> Vec<String> {
+pub fn constant_gravity_doubts(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
     let Some(radius_m) = body.radius_m else { return Vec::new() };
-    let largest = |of: fn(&Hop) -> f64| hops.iter().map(of).fold(0.0, f64::max);
     let name = body.name.as_deref().unwrap_or("the body");
-    let escape = Body { name: "", gravity_m_s2: body.gravity_m_s2, radius_m, source: "" }.escape_speed_m_s();
-    let lengths = [
-        ("a hop's range", largest(|h| (h.landing.point.x_m - h.takeoff.point.x_m).abs())),
-        ("a hop's highest point above its take-off", largest(|h| h.apex_z_m - h.takeoff.point.z_m)),
-    ];
-    let speed = largest(|h| h.takeoff_speed_m_s.max(h.landing_speed_m_s));
+    let escape_m_s = Body { name: "", gravity_m_s2: body.gravity_m_s2, radius_m, source: "" }.escape_speed_m_s();
+    let Extremes { range_m, height_m, speed_m_s } = extremes;
+    let lengths = [("range", range_m), ("highest point above its take-off", height_m)];
     let mut doubts: Vec<String> = lengths
         .into_iter()
         .filter(|(_, length_m)| *length_m > 0.01 * radius_m)
         .map(|(what, length_m)| {
-            format!("{what}, {length_m:.3} m, is over 1 % of the radius of {name} ({radius_m} m): constant gravity is a bad model there")
+            format!("a hop's {what}, {length_m:.3} m, is over 1 % of the radius of {name} ({radius_m} m): constant gravity is a bad model there")
         })
         .collect();
-    if speed > 0.1 * escape {
+    if speed_m_s > 0.1 * escape_m_s {
         doubts.push(format!(
-            "a hop's speed, {speed:.4} m/s, is over a tenth of the escape speed of {name} ({escape:.4} m/s): constant gravity is a bad \
-             model there"
+            "a hop's speed, {speed_m_s:.4} m/s, is over a tenth of the escape speed of {name} ({escape_m_s:.4} m/s): constant gravity is \
+             a bad model there"
         ));
     }
     doubts

@@ -36,22 +36,29 @@ impl ScenarioProblems {
     }
 }
 
+impl ScenarioProblems {
+    /// One problem as a sentence that begins with its place.
+    pub fn sentence(&self, problem: &ScenarioProblem) -> String {
+        let place = match &problem.place {
+            Place::File(span) => {
+                let (line, column) = line_and_column(&self.source, span.start);
+                format!("{}:{line}:{column}: ", self.name)
+            }
+            Place::Option(option) => format!("{option}: "),
+            Place::Nowhere if self.name.is_empty() => String::new(),
+            Place::Nowhere => format!("{}: ", self.name),
+        };
+        format!("{place}{}; {}", problem.message, problem.help)
+    }
+}
+
 impl fmt::Display for ScenarioProblems {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, problem) in self.problems.iter().enumerate() {
             if i > 0 {
                 writeln!(f)?;
             }
-            match &problem.place {
-                Place::File(span) => {
-                    let (line, column) = line_and_column(&self.source, span.start);
-                    write!(f, "{}:{line}:{column}: ", self.name)?;
-                }
-                Place::Option(option) => write!(f, "{option}: ")?,
-                Place::Nowhere if self.name.is_empty() => {}
-                Place::Nowhere => write!(f, "{}: ", self.name)?,
-            }
-            write!(f, "{}; {}", problem.message, problem.help)?;
+            f.write_str(&self.sentence(problem))?;
         }
         Ok(())
     }

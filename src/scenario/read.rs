@@ -59,8 +59,6 @@ pub struct Scenario {
     pub search: SearchOptions,
     /// Title of the picture.
     pub title: Option<String>,
-    /// Vertical exaggeration of the picture.
-    pub exaggeration: Option<f64>,
 }
 
 impl Scenario {
@@ -92,7 +90,6 @@ impl Scenario {
             goal_x_m: entries.number("terrain", "goal_x_m"),
             search,
             title: entries.text("report", "title").map(str::to_owned),
-            exaggeration: entries.number("report", "exaggeration"),
         })
     }
 }

@@ -1,0 +1,315 @@
+//! The command line as typed.
+
+use std::path::PathBuf;
+
+use chta::quantity::MapPoint;
+use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
+
+/// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?
+///
+/// Exit status: 0 done, and the answer is yes; 1 done, and the answer is no; 2 bad input or failure.
+#[derive(Debug, Parser)]
+#[command(version, max_term_width = 110)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+/// The commands.
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    Run(RunArgs),
+    Slice(SliceArgs),
+    Hop(HopArgs),
+    Check(CheckArgs),
+    Plan(PlanArgs),
+    Synth(Box<SynthArgs>),
+    /// List the known bodies with gravity, radius and their source
+    #[command(after_help = "Example:\n  chta bodies")]
+    Bodies,
+}
+
+/// How a result is written to standard output.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For reading.
+    Text,
+    /// One document, for scripts.
+    Json,
+}
+
+/// What all analyses take.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct CommonArgs {
+    /// Scenario (TOML) with body, hopper, surface and search
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scenario: Option<PathBuf>,
+    /// Set any scenario key; wins over the scenario [example: --set hopper.takeoff_speed_max_m_s=8]
+    #[arg(long, value_name = "TABLE.KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Known body, which gives gravity and radius (`chta bodies` lists them)
+    #[arg(long, value_name = "NAME")]
+    pub(crate) body: Option<String>,
+    /// Gravity, m/s^2
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
+    pub(crate) gravity_m_s2: Option<f64>,
+    /// Height to keep over every vertex flown past, m [default: 0]
+    #[arg(long, value_name = "E", allow_negative_numbers = true)]
+    pub(crate) clearance_m: Option<f64>,
+    /// No warnings and no progress on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// What searches take.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct SearchArgs {
+    /// Points inside each segment, or auto: the first of 0, 1, 2, 3, 7, 15, 31 that finds a path [default: auto]
+    #[arg(long, value_name = "K|auto")]
+    pub(crate) points_per_segment: Option<String>,
+    /// Instead: as many points as keep neighbours this close along the ground, m
+    #[arg(long, value_name = "D", conflicts_with = "points_per_segment")]
+    pub(crate) node_spacing_max_m: Option<f64>,
+    /// Second criterion after hops: takeoff-speed, energy, time, peak-speed [default: takeoff-speed]
+    #[arg(long, value_name = "EFFORT")]
+    pub(crate) effort: Option<String>,
+}
+
+/// Do everything a scenario asks for: chain.csv, path.csv, path.geojson (on a map), result.json and path.svg
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta run data/scenarios/mars_crater_field.toml -o out")]
+pub(crate) struct RunArgs {
+    /// Scenario (TOML), or a result.json to repeat
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) scenario: PathBuf,
+    /// Folder for the results, made where it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+    /// How the answer is written to standard output
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    /// Set any scenario key; wins over the scenario [example: --set hopper.takeoff_speed_max_m_s=8]
+    #[arg(long, value_name = "TABLE.KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// No warnings and no progress on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// Cut terrain along a vertical plane into a polygonal chain (CSV)
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta slice data/terrain/mars_crater_field.tif --from 12,12 --to 180,150 -o chain.csv")]
+pub(crate) struct SliceArgs {
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
+    #[arg(value_name = "DEM")]
+    pub(crate) dem: PathBuf,
+    /// Where the slice begins, map coordinates in m
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
+    pub(crate) from: MapPoint,
+    /// Where it ends, map coordinates in m
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
+    pub(crate) to: MapPoint,
+    /// Scenario whose friction goes into the chain
+    #[arg(long, value_name = "FILE")]
+    pub(crate) scenario: Option<PathBuf>,
+    /// Chain CSV to write; - or absent: standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+/// Test one hop: every limit by itself, what sets either end of the feasible take-off angles, or which two conflict
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json")]
+pub(crate) struct HopArgs {
+    /// Chain (CSV), scenario (TOML) or result (JSON)
+    #[arg(value_name = "CHAIN")]
+    pub(crate) chain: PathBuf,
+    /// Where the hop takes off, along the chain, m [default: the scenario's start]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) from: Option<f64>,
+    /// Where it lands, along the chain, m [default: the scenario's goal]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) to: Option<f64>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Does a path exist, and in how few hops
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta check data/scenarios/simple_reduced.toml --points-per-segment 2")]
+pub(crate) struct CheckArgs {
+    /// Chain (CSV), scenario (TOML) or result (JSON)
+    #[arg(value_name = "CHAIN")]
+    pub(crate) chain: PathBuf,
+    /// Start along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) start: Option<f64>,
+    /// Goal along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) goal: Option<f64>,
+    /// Many questions at once: CSV with start_x_m,goal_x_m
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["start", "goal"])]
+    pub(crate) pairs: Option<PathBuf>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Plan the path of fewest hops, then least effort
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta plan data/scenarios/paper_76m.toml --verify -o path.csv --plot path.svg")]
+pub(crate) struct PlanArgs {
+    /// Chain (CSV), scenario (TOML) or result (JSON)
+    #[arg(value_name = "CHAIN")]
+    pub(crate) chain: PathBuf,
+    /// Start along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) start: Option<f64>,
+    /// Goal along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) goal: Option<f64>,
+    /// Path CSV to write; -: to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Path in three dimensions (GeoJSON) to write, for a chain on a map
+    #[arg(long, value_name = "FILE")]
+    pub(crate) geojson: Option<PathBuf>,
+    /// Picture (SVG) to write, also where there is no path
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Fly the path again by direct simulation and judge every limit
+    #[arg(long)]
+    pub(crate) verify: bool,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Make terrain up from a seed: fractal ground, craters, a rille, boulders
+///
+/// The same options give the same bytes on every machine.
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta synth --rows 200 --cols 200 --craters --crater-density-per-km2 2000 --seed 7 -o moon.tif")]
+pub(crate) struct SynthArgs {
+    /// Elevation raster to write: .tif (GeoTIFF) or .asc (ESRI ASCII grid)
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: PathBuf,
+    /// Seed of all random numbers
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Rows of posts
+    #[arg(long, default_value_t = 257)]
+    pub(crate) rows: usize,
+    /// Columns of posts
+    #[arg(long, default_value_t = 257)]
+    pub(crate) cols: usize,
+    /// Spacing of posts, m
+    #[arg(long, default_value_t = 1.0)]
+    pub(crate) spacing_m: f64,
+    /// Map coordinates of the south-west post, m
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, default_value = "0,0")]
+    pub(crate) south_west_m: MapPoint,
+    /// Elevation at the middle of the map, m
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub(crate) mean_elevation_m: f64,
+    /// Slope of the plane under everything, degrees
+    #[arg(long, default_value_t = 0.0)]
+    pub(crate) tilt_deg: f64,
+    /// Towards where it rises, degrees clockwise from grid north
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
+    pub(crate) tilt_towards_deg: f64,
+    /// Without fractal ground
+    #[arg(long, conflicts_with_all = ["ground_hurst", "ground_rms_m", "ground_baseline_m"])]
+    pub(crate) no_ground: bool,
+    /// Hurst exponent of the ground: near 0 rough at all scales, near 1 smooth close by
+    #[arg(long, default_value_t = 0.8)]
+    pub(crate) ground_hurst: f64,
+    /// Root mean square height difference at the baseline, m
+    #[arg(long, default_value_t = 0.1)]
+    pub(crate) ground_rms_m: f64,
+    /// The baseline, m
+    #[arg(long, default_value_t = 1.0)]
+    pub(crate) ground_baseline_m: f64,
+    /// With craters
+    #[arg(long)]
+    pub(crate) craters: bool,
+    /// Smallest crater, m
+    #[arg(long, default_value_t = 4.0, requires = "craters")]
+    pub(crate) crater_diameter_min_m: f64,
+    /// Largest crater, m
+    #[arg(long, default_value_t = 60.0, requires = "craters")]
+    pub(crate) crater_diameter_max_m: f64,
+    /// Craters per square kilometre
+    #[arg(long, default_value_t = 1500.0, requires = "craters")]
+    pub(crate) crater_density_per_km2: f64,
+    /// Exponent of the cumulative counts: 3 young, 2 in equilibrium
+    #[arg(long, default_value_t = 2.5, requires = "craters")]
+    pub(crate) crater_power_law_exponent: f64,
+    /// Depth of fresh craters by diameter: moon (Pike 1977) or mars (Robbins and Hynek 2012)
+    #[arg(long, value_enum, default_value = "moon", requires = "craters")]
+    pub(crate) crater_depth_law: DepthLawArg,
+    /// 0: all fresh; 1: some worn to nothing
+    #[arg(long, default_value_t = 0.8, requires = "craters")]
+    pub(crate) crater_degradation_max: f64,
+    /// With a sinuous rille from west to east
+    #[arg(long)]
+    pub(crate) rille: bool,
+    /// Width of the rille between its upper edges, m
+    #[arg(long, default_value_t = 80.0, requires = "rille")]
+    pub(crate) rille_width_m: f64,
+    /// Depth of the rille, m
+    #[arg(long, default_value_t = 15.0, requires = "rille")]
+    pub(crate) rille_depth_m: f64,
+    /// Slope of its walls, degrees
+    #[arg(long, default_value_t = 28.0, requires = "rille")]
+    pub(crate) rille_wall_slope_deg: f64,
+    /// Swing of its centre line, m
+    #[arg(long, default_value_t = 30.0, requires = "rille")]
+    pub(crate) rille_meander_amplitude_m: f64,
+    /// Length of its meanders, m
+    #[arg(long, default_value_t = 300.0, requires = "rille")]
+    pub(crate) rille_meander_length_m: f64,
+    /// With boulders
+    #[arg(long)]
+    pub(crate) boulders: bool,
+    /// Share of ground covered by rocks of any size: 0.05 sparse, 0.2 rough
+    #[arg(long, default_value_t = 0.1, requires = "boulders")]
+    pub(crate) rock_abundance: f64,
+    /// Smallest boulder, m
+    #[arg(long, default_value_t = 1.0, requires = "boulders")]
+    pub(crate) boulder_diameter_min_m: f64,
+    /// Largest boulder, m
+    #[arg(long, default_value_t = 4.0, requires = "boulders")]
+    pub(crate) boulder_diameter_max_m: f64,
+    /// Share of a boulder's radius below ground
+    #[arg(long, default_value_t = 0.2, requires = "boulders")]
+    pub(crate) boulder_burial: f64,
+}
+
+/// Whose fresh craters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum DepthLawArg {
+    /// Pike 1977.
+    Moon,
+    /// Robbins and Hynek 2012.
+    Mars,
+}
+
+/// Reads `X,Y`.
+fn map_point(text: &str) -> Result<MapPoint, String> {
+    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|n| n.is_finite());
+    let wanted = || format!("found `{text}`, expected two finite numbers in metres, X,Y, such as 12.5,-30");
+    let (x, y) = text.split_once(',').ok_or_else(wanted)?;
+    Ok(MapPoint::new(number(x).ok_or_else(wanted)?, number(y).ok_or_else(wanted)?))
+}

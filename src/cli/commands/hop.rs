@@ -1,0 +1,39 @@
+//! `chta hop`: one pair, limit by limit.
+
+use chta::{
+    report::{Document, HopAnswer, hop_text},
+    scenario::{Extremes, constant_gravity_doubts},
+};
+
+use crate::cli::{
+    Answer, Failure,
+    args::{Format, HopArgs},
+    load::load,
+    output,
+};
+
+/// Tests one hop.
+pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
+    let loaded = load(&args.chain, &args.common, None, [args.from, args.to])?;
+    let (takeoff, landing) = loaded.ends()?;
+    let test = loaded.hop_test();
+    let answer = HopAnswer::new(&test, &takeoff, &landing, loaded.scenario.search.takeoff).ok_or_else(|| {
+        Failure::message(format!("--from and --to are both x = {} m, expected two different points of the chain", takeoff.point.x_m))
+    })?;
+    let extremes = answer.best.map_or_else(Extremes::default, |best| Extremes {
+        range_m: (answer.to_x_m - answer.from_x_m).abs(),
+        height_m: best.apex_height_m,
+        speed_m_s: best.takeoff_speed_m_s.max(best.landing_speed_m_s),
+    });
+    let warnings = constant_gravity_doubts(&loaded.scenario.body, extremes);
+    for warning in &warnings {
+        output::warn(args.common.quiet, warning);
+    }
+    let verdict = if answer.feasible { Answer::Yes } else { Answer::No };
+    let text = match args.format {
+        Format::Text => hop_text(&answer),
+        Format::Json => Document::new("hop", loaded.document, loaded.inputs, warnings, answer).to_json()?,
+    };
+    output::to_stdout(text.as_bytes())?;
+    Ok(verdict)
+}

@@ -1,0 +1,10 @@
+//! One file per command.
+
+pub(super) mod bodies;
+pub(super) mod check;
+pub(super) mod hop;
+pub(super) mod plan;
+pub(super) mod run;
+mod search;
+pub(super) mod slice;
+pub(super) mod synth;

@@ -1,0 +1,190 @@
+//! `chta plan`: the path of fewest hops, then least effort.
+
+use chta::{
+    ballistics::HopTest,
+    chain::Station,
+    graph::{self, Outcome},
+    path::{HopPath, execute, generate},
+    report::{
+        CheckAnswer, Document, HopRecord, TotalsRecord, check_text, path_geojson, path_text,
+        figure::{FigureInput, FigureTitle, draw},
+        write_path_csv,
+    },
+    scenario::{Extremes, Scenario, constant_gravity_doubts},
+    world::Grip,
+};
+use serde::Serialize;
+
+use super::search::search;
+use crate::cli::{
+    Answer, Failure,
+    args::{Format, PlanArgs},
+    load::{Loaded, load},
+    output,
+};
+
+/// What a plan answers: the check, the path, its totals.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct PlanAnswer {
+    #[serde(flatten)]
+    check: CheckAnswer,
+    /// Whether the path was flown again and passed; absent where that was not asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    verified: Option<bool>,
+    path: Vec<HopRecord>,
+    totals: Option<TotalsRecord>,
+}
+
+/// A plan with all that is drawn and written of it.
+#[derive(Debug)]
+pub(super) struct Planned {
+    pub(super) found: graph::Answer,
+    pub(super) path: Option<HopPath>,
+    pub(super) answer: PlanAnswer,
+    pub(super) warnings: Vec<String>,
+}
+
+impl Planned {
+    /// Searches, generates the path, and flies it again where asked.
+    pub(super) fn new(loaded: &Loaded, test: &HopTest<'_>, verify: bool, quiet: bool) -> Result<Self, Failure> {
+        let (start, goal) = loaded.ends()?;
+        let options = &loaded.scenario.search;
+        let found = search(test, start, goal, options, quiet)?;
+        let path = match &found.outcome {
+            Outcome::Path { legs, .. } => {
+                Some(generate(test, legs, options.takeoff, options.split).map_err(|e| Failure::message(e.to_string()))?)
+            }
+            Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
+        };
+        if let Some(path) = path.as_ref().filter(|_| verify) {
+            verified(loaded, path)?;
+        }
+        let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
+        let warnings = constant_gravity_doubts(&loaded.scenario.body, extremes);
+        for warning in &warnings {
+            output::warn(quiet, warning);
+        }
+        let answer = PlanAnswer {
+            check: CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &found, options.effort),
+            verified: (verify && path.is_some()).then_some(true),
+            path: path.as_ref().map(HopRecord::rows).unwrap_or_default(),
+            totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+        };
+        Ok(Self { found, path, answer, warnings })
+    }
+
+    /// Yes with a path, no without.
+    pub(super) fn verdict(&self) -> Answer {
+        if self.path.is_some() { Answer::Yes } else { Answer::No }
+    }
+
+    /// The answer for reading.
+    pub(super) fn text(&self) -> String {
+        let mut text = check_text(&self.answer.check);
+        if let Some(totals) = &self.answer.totals {
+            text.push('\n');
+            text.push_str(&path_text(&self.answer.path, totals));
+        }
+        if self.answer.verified == Some(true) {
+            text.push_str("verified: every hop was flown again by direct simulation and breaks no limit\n");
+        }
+        text
+    }
+
+    /// The path as CSV; only the header where there is none.
+    pub(super) fn csv(&self, loaded: &Loaded) -> Result<Vec<u8>, Failure> {
+        let mut csv = Vec::new();
+        let on_map = loaded.prepared.chain.geometry().map_points().is_some();
+        write_path_csv(&self.answer.path, on_map, &mut csv).map_err(|e| Failure::message(format!("path.csv: {e}")))?;
+        Ok(csv)
+    }
+
+    /// The path over the map; `None` without a path or a map.
+    pub(super) fn geojson(&self, loaded: &Loaded) -> Option<String> {
+        loaded.prepared.chain.geometry().map_points()?;
+        path_geojson(self.path.as_ref()?, loaded.scenario.body.gravity_m_s2)
+    }
+
+    /// The result as one document of a kind.
+    pub(super) fn document(&self, kind: &str, loaded: &Loaded) -> Result<String, Failure> {
+        let document = loaded.document.clone();
+        Ok(Document::new(kind, document, loaded.inputs.clone(), self.warnings.clone(), self.answer.clone()).to_json()?)
+    }
+
+    /// The picture.
+    pub(super) fn picture(&self, loaded: &Loaded, test: &HopTest<'_>, (start, goal): (Station, Station)) -> Result<String, Failure> {
+        let scenario = &loaded.scenario;
+        draw(&FigureInput {
+            test,
+            answer: &self.found,
+            path: self.path.as_ref(),
+            start,
+            goal,
+            title: FigureTitle {
+                name: scenario.title.clone().unwrap_or_default(),
+                body: scenario.body.name.clone().unwrap_or_default(),
+                ground: ground_words(scenario),
+            },
+        })
+        .map_err(|e| Failure::message(e.to_string()))
+    }
+}
+
+/// The ground's grip in a few words.
+fn ground_words(scenario: &Scenario) -> String {
+    match scenario.surface.grip {
+        Some(Grip::Friction(cone)) => format!("friction coefficient {}", cone.coefficient()),
+        Some(Grip::FromSlope { takeoff, landing }) => format!(
+            "take-off {:.4} to {:.4} and landing {:.4} to {:.4} deg from the slope",
+            takeoff.min.degrees(),
+            takeoff.max.degrees(),
+            landing.min.degrees(),
+            landing.max.degrees()
+        ),
+        None => String::new(),
+    }
+}
+
+/// Flies a path again; a broken limit is a failure of the program, told as such.
+fn verified(loaded: &Loaded, path: &HopPath) -> Result<(), Failure> {
+    let scenario = &loaded.scenario;
+    let violations = execute(&loaded.prepared.chain, &scenario.hopper, scenario.body.gravity_m_s2, path);
+    if violations.is_empty() {
+        return Ok(());
+    }
+    let told: Vec<_> = violations.iter().take(10).map(ToString::to_string).collect();
+    Err(Failure::message(format!(
+        "the planned path does not pass its own check ({} violations): {}; this is a defect of chta, please report it with the scenario",
+        violations.len(),
+        told.join("; ")
+    )))
+}
+
+/// Plans a path.
+pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
+    let loaded = load(&args.chain, &args.common, Some(&args.search), [args.start, args.goal])?;
+    let ends = loaded.ends()?;
+    if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {
+        return Err(Failure::message("--geojson: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"));
+    }
+    let test = loaded.hop_test();
+    let planned = Planned::new(&loaded, &test, args.verify, args.common.quiet)?;
+    if let Some(file) = &args.plot {
+        output::to_file(file, planned.picture(&loaded, &test, ends)?.as_bytes())?;
+    }
+    if let (Some(file), Some(geojson)) = (&args.geojson, planned.geojson(&loaded)) {
+        output::to_file(file, geojson.as_bytes())?;
+    }
+    let csv_to_stdout = args.output.as_deref() == Some(std::path::Path::new("-"));
+    if let Some(file) = &args.output {
+        output::to_file_or_stdout(Some(file), &planned.csv(&loaded)?)?;
+    }
+    if !csv_to_stdout {
+        let text = match args.format {
+            Format::Text => planned.text(),
+            Format::Json => planned.document("plan", &loaded)?,
+        };
+        output::to_stdout(text.as_bytes())?;
+    }
+    Ok(planned.verdict())
+}

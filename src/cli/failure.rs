@@ -1,0 +1,164 @@
+//! Bad input and failures, told on standard error with the place underlined.
+
+use std::{
+    fmt,
+    io::{self, IsTerminal, Write},
+};
+
+use chta::{
+    chain::csv::{CsvFileError, CsvProblem},
+    scenario::{PipelineError, ScenarioProblems},
+};
+use miette::{
+    Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, NamedSource, SourceCode,
+    SourceSpan, SpanContents,
+};
+
+/// Why a command ends with status 2.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// One sentence.
+    Message(String),
+    /// Problems of a scenario.
+    Scenario(ScenarioProblems),
+    /// Problems of a CSV file.
+    Csv(CsvFileError),
+}
+
+impl Failure {
+    /// One sentence.
+    pub(crate) fn message(sentence: impl Into<String>) -> Self {
+        Self::Message(sentence.into())
+    }
+
+    /// Tells it on standard error: one sentence a problem, with the line and the field underlined where there is one.
+    pub(crate) fn tell(&self) {
+        let mut text = String::new();
+        for pointed in self.pointed() {
+            // Writing to a String cannot fail.
+            let _ = handler().render_report(&mut text, &pointed);
+        }
+        // Nobody to tell where standard error is closed.
+        let _ = io::stderr().write_all(text.as_bytes());
+    }
+
+    /// Every problem with its place.
+    fn pointed(&self) -> Vec<Pointed> {
+        match self {
+            Self::Message(sentence) => vec![Pointed::bare(sentence.clone())],
+            Self::Scenario(problems) => problems
+                .problems
+                .iter()
+                .map(|problem| Pointed {
+                    sentence: problems.sentence(problem),
+                    source: Some(Box::new(NamedSource::new(&problems.name, problems.source.clone()))),
+                    span: problems.span(problem).map(SourceSpan::from),
+                })
+                .collect(),
+            Self::Csv(error @ CsvFileError::Problems { path, problems }) => {
+                let name = path.display().to_string();
+                let mut pointed: Vec<_> = problems.problems.iter().map(|problem| Pointed::in_csv(&name, problem)).collect();
+                if problems.more > 0 {
+                    pointed.push(Pointed::bare(format!("{name}: and {} more problems", problems.more)));
+                }
+                if pointed.is_empty() { vec![Pointed::bare(error.to_string())] } else { pointed }
+            }
+            Self::Csv(error) => vec![Pointed::bare(error.to_string())],
+        }
+    }
+}
+
+impl From<PipelineError> for Failure {
+    fn from(error: PipelineError) -> Self {
+        match error {
+            PipelineError::Csv(error) => Self::Csv(error),
+            other => Self::Message(other.to_string()),
+        }
+    }
+}
+
+impl From<serde_json::Error> for Failure {
+    fn from(error: serde_json::Error) -> Self {
+        Self::Message(format!("the result cannot be written as JSON ({error})"))
+    }
+}
+
+impl From<CsvFileError> for Failure {
+    fn from(error: CsvFileError) -> Self {
+        Self::Csv(error)
+    }
+}
+
+/// How problems are drawn: as a terminal can show it, plainly elsewhere, no line broken.
+fn handler() -> GraphicalReportHandler {
+    let theme = match (io::stderr().is_terminal(), std::env::var_os("NO_COLOR")) {
+        (true, None) => GraphicalTheme::unicode(),
+        (true, Some(_)) => GraphicalTheme::unicode_nocolor(),
+        (false, _) => GraphicalTheme::none(),
+    };
+    GraphicalReportHandler::new_themed(theme).with_wrap_lines(false).with_break_words(false)
+}
+
+/// One problem and the text it points into.
+struct Pointed {
+    sentence: String,
+    source: Option<Box<dyn SourceCode>>,
+    span: Option<SourceSpan>,
+}
+
+impl Pointed {
+    fn bare(sentence: String) -> Self {
+        Self { sentence, source: None, span: None }
+    }
+
+    fn in_csv(name: &str, problem: &CsvProblem) -> Self {
+        let line = LineOfFile { name: name.to_owned(), number: problem.line, text: problem.text.clone() };
+        let span = SourceSpan::from(problem.span.clone());
+        Self { sentence: format!("{name}: {problem}"), source: Some(Box::new(line)), span: Some(span) }
+    }
+}
+
+impl fmt::Debug for Pointed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence)
+    }
+}
+
+impl fmt::Display for Pointed {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.sentence)
+    }
+}
+
+impl std::error::Error for Pointed {}
+
+impl Diagnostic for Pointed {
+    fn source_code(&self) -> Option<&dyn SourceCode> {
+        self.span.and(self.source.as_deref())
+    }
+
+    fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
+        let span = self.span?;
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(Some("here".to_owned()), span))))
+    }
+}
+
+/// One line of a file that is too large, or too strange, to be held whole.
+#[derive(Debug)]
+struct LineOfFile {
+    name: String,
+    number: u64,
+    text: String,
+}
+
+impl SourceCode for LineOfFile {
+    fn read_span<'a>(&'a self, span: &SourceSpan, _before: usize, _after: usize) -> Result<Box<dyn SpanContents<'a> + 'a>, MietteError> {
+        if span.offset() + span.len() > self.text.len() {
+            return Err(MietteError::OutOfBounds);
+        }
+        let whole = SourceSpan::from(0..self.text.len());
+        let line = usize::try_from(self.number).unwrap_or(usize::MAX).saturating_sub(1);
+        let name = self.name.clone();
+        Ok(Box::new(MietteSpanContents::new_named(name, self.text.as_bytes(), whole, line, 0, 1)))
+    }
+}

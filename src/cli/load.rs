@@ -1,0 +1,214 @@
+//! From the command line to a scenario and its chain.
+
+use std::{
+    fs,
+    path::{Component, Path, PathBuf},
+};
+
+use chta::{
+    ballistics::HopTest,
+    chain::Station,
+    report::InputFile,
+    scenario::{
+        Entries, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, prepare, scenario_document, sha256_of,
+    },
+};
+
+use super::{
+    Failure,
+    args::{CommonArgs, SearchArgs},
+    output,
+};
+
+/// A scenario with its chain, and what a result has to say of both.
+#[derive(Debug)]
+pub(crate) struct Loaded {
+    /// The scenario as used.
+    pub(crate) scenario: Scenario,
+    /// The chain, with start and goal where they are known.
+    pub(crate) prepared: Prepared,
+    /// The scenario for a result.
+    pub(crate) document: serde_json::Value,
+    /// The files that were read.
+    pub(crate) inputs: Vec<InputFile>,
+}
+
+impl Loaded {
+    /// The hop test over the chain.
+    pub(crate) fn hop_test(&self) -> HopTest<'_> {
+        HopTest::new(&self.prepared.chain, &self.scenario.hopper, self.scenario.body.gravity_m_s2)
+    }
+
+    /// Start and goal, or what is missing.
+    pub(crate) fn ends(&self) -> Result<(Station, Station), Failure> {
+        let missing = |end: &str| {
+            Failure::message(format!(
+                "found no {end}: give --{end} X along the chain, or [terrain] {end}_x_m (for a dem {end}_m) in the scenario"
+            ))
+        };
+        Ok((self.prepared.start.ok_or_else(|| missing("start"))?, self.prepared.goal.ok_or_else(|| missing("goal"))?))
+    }
+}
+
+/// Keys of a scenario with the file they came from.
+struct Source {
+    entries: Entries,
+    name: String,
+    text: String,
+    /// The folder that its paths start from.
+    base: PathBuf,
+}
+
+/// Loads a chain, scenario or result with the options beside it.
+pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: [Option<f64>; 2]) -> Result<Loaded, Failure> {
+    let is_scenario = is_scenario(target);
+    let mut source = match (is_scenario, &common.scenario) {
+        (true, None) => read_source(target)?,
+        (true, Some(other)) => {
+            return Err(Failure::message(format!(
+                "found two scenarios, {} and --scenario {}, expected one: give a chain CSV as CHAIN, or leave --scenario away",
+                target.display(),
+                other.display()
+            )));
+        }
+        (false, Some(scenario)) => read_source(scenario)?,
+        (false, None) => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
+    };
+    apply_options(&mut source.entries, common, search, ends);
+    if !is_scenario {
+        for key in ["dem", "chain", "start_m", "goal_m"] {
+            source.entries.forget("terrain", key);
+        }
+    }
+    let mut scenario = validated(source.entries, &source.name, &source.text)?;
+    let (terrain, base) = if is_scenario {
+        let named = scenario.terrain.clone();
+        let terrain = named.ok_or_else(|| {
+            Failure::message(format!("{}: found no terrain; add [terrain] with dem or chain, or give a chain CSV", target.display()))
+        })?;
+        (terrain, source.base)
+    } else {
+        (TerrainSource::Chain { path: target.to_path_buf() }, PathBuf::new())
+    };
+    scenario.terrain = Some(terrain.clone());
+    let prepared = prepare(&scenario, &terrain, &base)?;
+    for warning in &prepared.warnings {
+        output::warn(common.quiet, warning);
+    }
+    let file = match &terrain {
+        TerrainSource::Dem { path, .. } | TerrainSource::Chain { path } => base.join(path),
+    };
+    let inputs = vec![InputFile { name: relative_name(&file), sha256: sha256_of(&file)? }];
+    let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
+    Ok(Loaded { scenario, prepared, document, inputs })
+}
+
+/// Reads a scenario alone, without a terrain: for `slice`.
+pub(crate) fn scenario_alone(path: &Path) -> Result<Scenario, Failure> {
+    let source = read_source(path)?;
+    validated(source.entries, &source.name, &source.text)
+}
+
+/// Whether a file is a scenario or a result by its name; anything else is a chain CSV.
+fn is_scenario(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml") || extension.eq_ignore_ascii_case("json"))
+}
+
+/// Reads the keys of a scenario (TOML) or of a result (JSON).
+fn read_source(path: &Path) -> Result<Source, Failure> {
+    const LARGEST: u64 = 1 << 24;
+    let name = path.display().to_string();
+    let unread = |reason: String, help: &str| Failure::message(format!("{name}: cannot be read ({reason}), expected a scenario: {help}"));
+    let size = fs::metadata(path).map_err(|e| unread(e.to_string(), "check the path and its permissions"))?.len();
+    if size > LARGEST {
+        return Err(unread(format!("{size} bytes"), "a scenario has some kilobytes; give a chain or DEM inside it"));
+    }
+    let bytes = fs::read(path).map_err(|e| unread(e.to_string(), "check the path and its permissions"))?;
+    let text = String::from_utf8(bytes).map_err(|e| unread(e.to_string(), "write it as TOML in UTF-8"))?;
+    let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
+    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+        let result: serde_json::Value =
+            serde_json::from_str(&text).map_err(|e| unread(e.to_string(), "give a result.json that chta wrote"))?;
+        let scenario = result
+            .get("scenario")
+            .ok_or_else(|| unread("it has no `scenario`".to_owned(), "give a result.json that chta wrote"))?;
+        // A result names its files from the folder that chta ran in.
+        return Ok(Source { entries: Entries::from_json(scenario), name, text: String::new(), base: PathBuf::new() });
+    }
+    let mut entries = Entries::from_toml(&text);
+    entries.set_default_title(&path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default());
+    Ok(Source { entries, name, text, base: folder })
+}
+
+/// Options win over the scenario: `--set` first, named options after it.
+fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&SearchArgs>, ends: [Option<f64>; 2]) {
+    let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, quiet: _ } = common;
+    for assignment in set {
+        entries.set(assignment);
+    }
+    if let Some(name) = body {
+        entries.forget("body", "gravity_m_s2");
+        entries.forget("body", "radius_m");
+        entries.set_by_option("--body", "body", "name", name.clone().into());
+    }
+    if let Some(gravity) = gravity_m_s2 {
+        entries.set_by_option("--gravity-m-s2", "body", "gravity_m_s2", (*gravity).into());
+    }
+    if let Some(clearance) = clearance_m {
+        entries.set_by_option("--clearance-m", "hopper", "clearance_m", (*clearance).into());
+    }
+    for (key, option, x_m) in [("start_x_m", "--start", ends[0]), ("goal_x_m", "--goal", ends[1])] {
+        if let Some(x_m) = x_m {
+            entries.set_by_option(option, "terrain", key, x_m.into());
+        }
+    }
+    let Some(SearchArgs { points_per_segment, node_spacing_max_m, effort }) = search else { return };
+    if let Some(points) = points_per_segment {
+        entries.forget("search", "node_spacing_max_m");
+        let value = points.parse::<i64>().map_or_else(|_| toml::Value::from(points.clone()), toml::Value::from);
+        entries.set_by_option("--points-per-segment", "search", "points_per_segment", value);
+    }
+    if let Some(spacing) = node_spacing_max_m {
+        entries.forget("search", "points_per_segment");
+        entries.set_by_option("--node-spacing-max-m", "search", "node_spacing_max_m", (*spacing).into());
+    }
+    if let Some(effort) = effort {
+        entries.set_by_option("--effort", "search", "effort", effort.clone().into());
+    }
+}
+
+/// Validates keys, with the file they came from in every problem.
+fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failure> {
+    Scenario::new(entries).map_err(|problems: Vec<ScenarioProblem>| {
+        let in_file = problems.iter().any(|problem| !matches!(problem.place, Place::Option(_)));
+        let (name, source) = if in_file { (name.to_owned(), text.to_owned()) } else { (String::new(), String::new()) };
+        Failure::Scenario(ScenarioProblems { name, source, problems })
+    })
+}
+
+/// The name of a file from the working folder, with `/` and without detours, so that a result reads the same everywhere.
+fn relative_name(path: &Path) -> String {
+    let here = std::env::current_dir().unwrap_or_default();
+    let absolute = normal(&here.join(path));
+    let here = normal(&here);
+    let shared = absolute.iter().zip(&here).take_while(|(a, b)| a == b).count();
+    let up = std::iter::repeat_n("..".to_owned(), here.len() - shared);
+    up.chain(absolute[shared..].iter().cloned()).collect::<Vec<_>>().join("/")
+}
+
+/// The parts of a path, with `.` and `..` resolved as text.
+fn normal(path: &Path) -> Vec<String> {
+    let mut parts = Vec::new();
+    for component in path.components() {
+        match component {
+            Component::CurDir => {}
+            Component::ParentDir => {
+                parts.pop();
+            }
+            Component::Prefix(_) | Component::RootDir | Component::Normal(_) => {
+                parts.push(component.as_os_str().to_string_lossy().into_owned());
+            }
+        }
+    }
+    parts
+}

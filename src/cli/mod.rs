@@ -1,0 +1,45 @@
+//! The command's own side: arguments, one file per command, what is said on the terminal.
+
+mod args;
+mod commands;
+mod failure;
+mod load;
+mod output;
+mod progress;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use args::{Args, Command};
+pub(crate) use failure::Failure;
+
+/// What an analysis came to, as an exit status.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// Done, and the answer is yes (or there was no question).
+    Yes,
+    /// Done, and the answer is no.
+    No,
+}
+
+/// Runs the command line.
+pub(crate) fn run() -> ExitCode {
+    let answer = match Args::parse().command {
+        Command::Run(args) => commands::run::run(&args),
+        Command::Slice(args) => commands::slice::run(&args),
+        Command::Hop(args) => commands::hop::run(&args),
+        Command::Check(args) => commands::check::run(&args),
+        Command::Plan(args) => commands::plan::run(&args),
+        Command::Synth(args) => commands::synth::run(&args),
+        Command::Bodies => commands::bodies::run(),
+    };
+    match answer {
+        Ok(Answer::Yes) => ExitCode::SUCCESS,
+        Ok(Answer::No) => ExitCode::from(1),
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(2)
+        }
+    }
+}

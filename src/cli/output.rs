@@ -1,0 +1,45 @@
+//! Data to standard output or to files, talk to standard error.
+
+use std::{
+    io::{self, ErrorKind, Write},
+    path::Path,
+};
+
+use chta::report::write_whole;
+
+use super::Failure;
+
+/// Writes data to standard output. A reader who closed the pipe is no error.
+pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
+    let mut out = io::stdout().lock();
+    match out.write_all(data).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            Err(Failure::message(format!("standard output: cannot be written ({error}): free some space or choose -o FILE elsewhere")))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Writes a file whole or not at all.
+pub(crate) fn to_file(path: &Path, data: &[u8]) -> Result<(), Failure> {
+    write_whole(path, data).map_err(|error| {
+        let help = "choose a folder that exists, may be written to and has space left";
+        Failure::message(format!("{}: cannot be written ({error}): {help}", path.display()))
+    })
+}
+
+/// Writes to a file, or to standard output where that is `-` or absent.
+pub(crate) fn to_file_or_stdout(path: Option<&Path>, data: &[u8]) -> Result<(), Failure> {
+    match path {
+        Some(path) if path != Path::new("-") => to_file(path, data),
+        _ => to_stdout(data),
+    }
+}
+
+/// Says a warning on standard error.
+pub(crate) fn warn(quiet: bool, warning: &str) {
+    if !quiet {
+        // Nobody to tell where standard error is closed.
+        let _ = writeln!(io::stderr(), "warning: {warning}");
+    }
+}
