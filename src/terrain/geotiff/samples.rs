@@ -32,7 +32,8 @@ pub(super) fn read_elevations(
     let read = Reading { file, image: images.elevations, layout: &images.layout };
     let layout = &images.layout;
     if layout.sample_format == 3 && layout.bits_per_sample == 32 && scaling == Scaling::NONE {
-        let mut posts = read.all(|sample: f32| if no_data.is_some_and(|mark| mark.is_single(sample)) { f32::NAN } else { sample })?;
+        let mut posts =
+            read.all(|sample: f32| if no_data.is_some_and(|mark| mark.is_single(sample)) { f32::NAN } else { sample })?;
         missing.blank(&mut posts, f32::NAN);
         return Ok(Elevations::Single(posts));
     }
@@ -60,11 +61,16 @@ pub(super) fn read_elevations(
     Ok(Elevations::Double(posts))
 }
 
+/// What a file of so many bytes may unpack to.
+pub(super) fn largest_unpacked(length: u64) -> u64 {
+    length.saturating_mul(LARGEST_RATIO).max(FREE_BYTES)
+}
+
 /// Refuses a declared size that the file's length cannot back, before anything is allocated for it.
 fn check_size(file: &TiffFile, images: &Images<'_>) -> Result<(), TerrainError> {
     let RasterLayout { width, height, bytes_per_sample, .. } = images.layout;
     let declared = (width as u64).checked_mul(height as u64).and_then(|posts| posts.checked_mul(bytes_per_sample as u64));
-    let allowed = file.source().len().saturating_mul(LARGEST_RATIO).max(FREE_BYTES);
+    let allowed = largest_unpacked(file.source().len());
     match declared {
         Some(bytes) if bytes <= allowed => Ok(()),
         _ => Err(damaged(format!(
@@ -88,10 +94,17 @@ impl Reading<'_> {
         let step = rows_at_once(self.image, height);
         for first in (0..height).step_by(step) {
             let rows = step.min(height - first);
-            let band = self.file.read_window_from_ifd::<T>(self.image, first, 0, rows, width).map_err(|error| damaged(error.to_string()))?;
+            let band = self
+                .file
+                .read_window_from_ifd::<T>(self.image, first, 0, rows, width)
+                .map_err(|error| damaged(error.to_string()))?;
             posts.extend(band.into_iter().map(&convert));
         }
-        if posts.len() == width * height { Ok(posts) } else { Err(damaged(format!("it holds {} of {} posts", posts.len(), width * height))) }
+        if posts.len() == width * height {
+            Ok(posts)
+        } else {
+            Err(damaged(format!("it holds {} of {} posts", posts.len(), width * height)))
+        }
     }
 }
 

@@ -74,7 +74,8 @@ fn raster_bytes<T: TiffWriteSample>(raster: &Raster<'_, T>) -> Result<Vec<u8>, T
 
 fn image<T: TiffWriteSample>(raster: &Raster<'_, T>) -> Result<ImageBuilder, TerrainError> {
     let side = |posts: usize| {
-        u32::try_from(posts).map_err(|_| TerrainError::InvalidDem(format!("the raster has {posts} rows or columns, expected fewer than 2^32")))
+        u32::try_from(posts)
+            .map_err(|_| TerrainError::InvalidDem(format!("the raster has {posts} rows or columns, expected fewer than 2^32")))
     };
     let tile = side(TILE)?;
     let image = ImageBuilder::new(side(raster.cols)?, side(raster.rows)?)

@@ -104,7 +104,8 @@ mod tests {
         let table = boulders.counts_per_m2();
         let total = table.last().unwrap()[1];
         let mut draws = Draws::of(1, Layer::Boulders);
-        let covered: f64 = (0..200_000).map(|_| diameter_at(&table, draws.uniform() * total)).map(|d| 0.25 * std::f64::consts::PI * d * d).sum();
+        let covered: f64 =
+            (0..200_000).map(|_| diameter_at(&table, draws.uniform() * total)).map(|d| 0.25 * std::f64::consts::PI * d * d).sum();
         let q = 1.79 + 0.152 / 0.2;
         let law = 0.2 * ((-q * 0.5_f64).exp() - (-q * 5.0_f64).exp());
         let drawn = covered / 200_000.0 * total;
