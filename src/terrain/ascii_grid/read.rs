@@ -13,6 +13,9 @@ use crate::terrain::{AsciiProblem, Dem, DemReader, GeoReference, TerrainError};
 /// So many problems are listed, the rest counted.
 const LISTED_PROBLEMS: usize = 20;
 
+/// Posts that memory is set aside for before they are read: what the header promises beyond, the file has to show first.
+const FIRST_RESERVE: usize = 1 << 20;
+
 /// The ESRI ASCII grid as a format.
 pub(in crate::terrain) struct AsciiGridReader;
 
@@ -98,7 +101,7 @@ fn read_elevations<R: BufRead>(
     posts: usize,
     problems: &mut Problems,
 ) -> std::io::Result<Vec<f64>> {
-    let mut elevations = Vec::with_capacity(posts);
+    let mut elevations = Vec::with_capacity(posts.min(FIRST_RESERVE));
     let mut surplus = 0_usize;
     let mut first_surplus = None;
     while let Some(token) = tokens.next()? {

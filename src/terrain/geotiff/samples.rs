@@ -90,7 +90,6 @@ impl Reading<'_> {
     fn all<T: TiffSample, U>(&self, convert: impl Fn(T) -> U) -> Result<Vec<U>, TerrainError> {
         let RasterLayout { width, height, .. } = *self.layout;
         let mut posts = Vec::new();
-        posts.try_reserve_exact(width * height).map_err(|error| damaged(error.to_string()))?;
         let step = rows_at_once(self.image, height);
         for first in (0..height).step_by(step) {
             let rows = step.min(height - first);
@@ -98,6 +97,8 @@ impl Reading<'_> {
                 .file
                 .read_window_from_ifd::<T>(self.image, first, 0, rows, width)
                 .map_err(|error| damaged(error.to_string()))?;
+            // Not before the first rows have shown that the file holds any.
+            posts.try_reserve_exact(width * height - posts.len()).map_err(|error| damaged(error.to_string()))?;
             posts.extend(band.into_iter().map(&convert));
         }
         if posts.len() == width * height {

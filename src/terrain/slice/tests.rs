@@ -311,3 +311,47 @@ fn a_plane_that_grazes_a_row_keeps_its_vertices_apart() {
         }
     }
 }
+
+fn greatest_common_divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
+}
+
+/// Vertices between two posts so many columns and rows apart: lines crossed, and each post on the way counted once instead of three times.
+fn count_vertices(col_step: i64, row_step: i64) -> usize {
+    let [columns, rows, diagonals] = [col_step, row_step, col_step - row_step].map(|step| usize::try_from(step.abs()).unwrap());
+    let inner = [columns, rows, diagonals].iter().map(|count| count.saturating_sub(1)).sum::<usize>();
+    let posts = greatest_common_divisor(columns, rows) - 1;
+    let families = [columns, rows, diagonals].iter().filter(|count| **count > 0).count();
+    2 + inner - posts * (families - 1)
+}
+
+#[test]
+fn between_posts_of_maps_whose_coordinates_round_no_vertex_is_lost_or_doubled() {
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let side = 41_i64;
+    for (offset_m, dx_m, dy_m) in
+        [(4.3e6, 0.1, 0.1), (-609_600.3, 0.3, 0.7), (75_360.7, 5.1, 3.3), (0.1, 1.01, 1.01), (1.0e8, 0.9, 1.1), (0.0, 1e-3, 1e3)]
+    {
+        let map = GeoReference::local(MapPoint::new(offset_m, -offset_m), dx_m, dy_m).unwrap();
+        let ground = dem(41, 41, map, bumps);
+        for _ in 0..300 {
+            let [from, to] = std::array::from_fn(|_| [random.random_range(0..side), random.random_range(0..side)]);
+            if from == to {
+                continue;
+            }
+            let index = |post: [i64; 2]| post.map(|value| usize::try_from(value).unwrap());
+            let ([from_col, from_row], [to_col, to_row]) = (index(from), index(to));
+            let post = |row, col| ground.georeference().post(row, col);
+            let profile = slice(&ground, post(from_row, from_col), post(to_row, to_col)).unwrap();
+            check_shape(&profile, post(from_row, from_col), post(to_row, to_col));
+            assert_eq!(profile.points.len(), count_vertices(to[0] - from[0], to[1] - from[1]), "{offset_m} {dx_m} {from:?} {to:?}");
+            let posts = greatest_common_divisor(from_col.abs_diff(to_col), from_row.abs_diff(to_row));
+            for k in 0..=posts {
+                let along = |begin: usize, end: usize| (begin * (posts - k) + end * k) / posts;
+                let (row, col) = (along(from_row, to_row), along(from_col, to_col));
+                let found = profile.points.iter().find(|point| (point.map - post(row, col)).norm() < 1e-3 * dx_m);
+                assert_eq!(found.map(|point| (point.z_m, point.map)), Some((bumps(row, col), post(row, col))));
+            }
+        }
+    }
+}

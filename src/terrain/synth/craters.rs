@@ -40,7 +40,9 @@ fn rim_height_m(diameter_m: f64) -> f64 {
 
 /// A population of craters, placed at random, of diameters D with a power law: so many per area with at least D go as D^-b.
 ///
-///     z(r) = rim - depth (1 - (r/R)^2)   for r <= R,      z(r) = rim (r/R)^-3   outside, out to 5 R
+/// ```text
+/// z(r) = rim - depth (1 - (r/R)^2)   for r <= R,      z(r) = rim (r/R)^-3   outside, out to 5 R
+/// ```
 ///
 /// A bowl of revolution inside; outside, the ejecta thickness of `McGetchin`, Settle and Head, Earth Planet. Sci. Lett. 20 (1973) 226. Age wears
 /// a crater down: depth and rim are both scaled by 1 - d, with d drawn evenly from 0 to `degradation_max`. Craters add to what is there.

@@ -7,7 +7,9 @@ use crate::terrain::TerrainError;
 
 /// Self-affine ground: the root mean square difference of heights a distance L apart is
 ///
-///     nu(L) = rms_deviation_m (L / baseline_m)^hurst_exponent
+/// ```text
+/// nu(L) = rms_deviation_m (L / baseline_m)^hurst_exponent
+/// ```
 ///
 /// Source: Shepard et al., The roughness of natural terrain, J. Geophys. Res. 106 (2001) 32777, eqs. 3 and 5. Planetary surfaces have Hurst
 /// exponents of some 0.5 to 0.95 at metres to hundreds of metres.

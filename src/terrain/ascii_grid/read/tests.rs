@@ -80,7 +80,7 @@ fn every_problem_is_listed_with_its_place() {
 
 #[test]
 fn more_problems_than_twenty_are_counted() {
-    let (found, further) = problems(&format!("{}{}", HEADER.replace("nrows 2", "nrows 20"), format!("1 {}", "x ".repeat(59))));
+    let (found, further) = problems(&format!("{}1 {}", HEADER.replace("nrows 2", "nrows 20"), "x ".repeat(59)));
     assert_eq!((found.len(), further), (20, 39));
     let message = read(&format!("{}{}", HEADER.replace("nrows 2", "nrows 20"), "1 x 1 ".repeat(20))).unwrap_err().to_string();
     assert!(message.lines().count() == 20, "{message}");
