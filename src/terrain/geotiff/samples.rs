@@ -10,7 +10,7 @@ use crate::terrain::TerrainError;
 const ROWS_AT_ONCE: usize = 256;
 
 /// A compressed file may hold this many times its own length, and in any case [`FREE_BYTES`]. Rough ground reaches 2 to 4, so more than this
-/// is a raster empty but for a 200th part, or a trap for memory.
+/// is a raster empty but for a sixtieth, or a trap for memory.
 const LARGEST_RATIO: u64 = 256;
 const FREE_BYTES: u64 = 64 << 20;
 
@@ -81,7 +81,7 @@ fn check_size(file: &TiffFile, images: &Images<'_>) -> Result<(), TerrainError> 
     match declared {
         Some(bytes) if bytes <= allowed => Ok(()),
         _ => Err(damaged(format!(
-            "it declares {height} rows of {width} posts of {bits_per_sample} bits, which its {length} bytes cannot hold"
+            "it declares {height} rows of {width} posts of {bits_per_sample} bits, which its {length} bytes cannot hold (of a raster that is nearly all no-data, cut out the part that is not with gdal_translate -projwin)"
         ))),
     }
 }
