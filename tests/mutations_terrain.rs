@@ -1,9 +1,12 @@
 //! The byte readers against ten thousand seeded mutations each: no panic, no long run, no absurd memory.
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and tells what it saw")]
 
 use std::time::{Duration, Instant};
 
 use chta::quantity::MapPoint;
-use chta::terrain::{Dem, SyntheticTerrain, TerrainError, geotiff_bytes, read_ascii_grid_bytes, read_geotiff_bytes, synthesise, write_ascii_grid};
+use chta::terrain::{
+    Dem, SyntheticTerrain, TerrainError, geotiff_bytes, read_ascii_grid_bytes, read_geotiff_bytes, synthesise, write_ascii_grid,
+};
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
@@ -79,12 +82,12 @@ fn check(whole: &[u8], alphabet: &[u8], read: impl Fn(Vec<u8>) -> Result<Dem, Te
 
 #[test]
 fn mutated_geotiffs_never_panic() {
-    // Without compression, or most mutations would only ever meet the deflate checksum: GDAL is not needed for a 9 x 13 raster.
     check(&geotiff_bytes(&small()).unwrap(), b"\x00\x01\x02\x03\x04\x08\x10\xff", read_geotiff_bytes);
 }
 
 #[test]
 fn mutated_plain_geotiffs_never_panic() {
+    // Without compression, where a mutation is not caught by deflate's checksum.
     check(&plain_tiff(), b"\x00\x01\x02\x03\x04\x08\x10\xff", read_geotiff_bytes);
 }
 

@@ -16,7 +16,7 @@ pub enum TerrainError {
         /// The file.
         path: PathBuf,
         /// What is wrong with it.
-        problem: Box<TerrainError>,
+        problem: Box<Self>,
     },
     /// The operating system refused to read or write.
     #[error("cannot be {action}: {reason}")]

@@ -67,7 +67,10 @@ fn not_recognised(beginning: &[u8]) -> TerrainError {
     let found = if beginning.is_empty() {
         "nothing: the file is empty".to_owned()
     } else {
-        format!("'{}'", beginning.iter().take(24).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect::<String>())
+        format!(
+            "'{}'",
+            beginning.iter().take(24).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect::<String>()
+        )
     };
     let expected = FORMATS.map(|(name, _)| name).join(", ");
     TerrainError::NotRecognised { found, expected }
@@ -86,7 +89,9 @@ mod tests {
     #[test]
     fn files_of_no_format_are_refused_with_their_first_bytes() {
         let directory = tempfile::tempdir().unwrap();
-        for (content, expected) in [(&b""[..], "the file is empty"), (b"\x00\x01junk", "\\x00\\x01junk"), (b"x_m,z_m\n0,1\n", "x_m,z_m")] {
+        for (content, expected) in
+            [(&b""[..], "the file is empty"), (b"\x00\x01junk", "\\x00\\x01junk"), (b"x_m,z_m\n0,1\n", "x_m,z_m")]
+        {
             let path = directory.path().join("a.tif");
             std::fs::write(&path, content).unwrap();
             let message = read_dem(&path).unwrap_err().to_string();

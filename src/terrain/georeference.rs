@@ -127,10 +127,7 @@ impl GeoReference {
     /// The rectangle of the outermost posts of a raster with so many rows and columns.
     pub fn bounds(&self, rows: usize, cols: usize) -> MapBounds {
         let south_east = self.post(rows.saturating_sub(1), cols.saturating_sub(1));
-        MapBounds {
-            min: MapPoint::new(self.north_west.x, south_east.y),
-            max: MapPoint::new(south_east.x, self.north_west.y),
-        }
+        MapBounds { min: MapPoint::new(self.north_west.x, south_east.y), max: MapPoint::new(south_east.x, self.north_west.y) }
     }
 }
 
@@ -149,7 +146,11 @@ pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
     let relief_m = high_m - low_m;
     if fits_degrees && relief_m > RELIEF_TO_WIDTH_OF_DEGREES * width {
         return Err(TerrainError::Unsuitable {
-            found: format!("the map spans {} by {} units but the elevations {relief_m} m, so its coordinates look like degrees", max.x - min.x, max.y - min.y),
+            found: format!(
+                "the map spans {} by {} units but the elevations {relief_m} m, so its coordinates look like degrees",
+                max.x - min.x,
+                max.y - min.y
+            ),
             expected: EXPECTED_METRES,
             mend: MEND_DEGREES.to_owned(),
         });
@@ -161,4 +162,5 @@ pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
 pub(super) const EXPECTED_METRES: &str = "a projected map in metres";
 
 /// How a map in degrees becomes one in metres.
-pub(super) const MEND_DEGREES: &str = "gdalwarp -r bilinear -t_srs '+proj=eqc +lat_ts=LATITUDE +lon_0=LONGITUDE +R=RADIUS_M +units=m' in.tif out.tif";
+pub(super) const MEND_DEGREES: &str =
+    "gdalwarp -r bilinear -t_srs '+proj=eqc +lat_ts=LATITUDE +lon_0=LONGITUDE +R=RADIUS_M +units=m' in.tif out.tif";

@@ -2,7 +2,8 @@
 //!
 //! A [`Dem`] is posts of elevation on a map in metres, read from a file by content ([`read_dem`]), made up from a seed
 //! ([`synthesise`]), or built in memory. [`slice`](slice()) cuts it along a vertical plane into a [`Profile`], from which a polygonal
-//! chain is made. A further file format is one more [`DemReader`] in [`FORMATS`]' list.
+//! chain is made. A further file format is one more [`DemReader`], listed
+//! in [`FORMATS`].
 //!
 //! ```
 //! use chta::quantity::MapPoint;

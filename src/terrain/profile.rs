@@ -50,7 +50,9 @@ impl Profile {
 impl ProfileFacet {
     /// The facet of gradient (east, north) as met along `heading`.
     ///
-    ///     n = (-p, -q, 1) / sqrt(1 + p^2 + q^2),   cross-slope = asin |n . s|,   s horizontal, across the heading
+    /// ```text
+    /// n = (-p, -q, 1) / sqrt(1 + p^2 + q^2),   cross-slope = asin |n . s|,   s horizontal, across the heading
+    /// ```
     ///
     /// taken as atan2 of the parts of n across and along the plane, which keeps its digits near 0 and near 90 degrees.
     ///

@@ -9,6 +9,9 @@ use super::tokens::{Token, Tokens};
 /// What stands for no elevation where the header does not say (the format's own definition).
 const DEFAULT_NO_DATA: f64 = -9999.0;
 
+/// Some editors put one before the first key.
+const BYTE_ORDER_MARK: char = '\u{feff}';
+
 const KEYS: [&str; 10] =
     ["ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value"];
 
@@ -34,7 +37,7 @@ pub(super) fn read_header<R: BufRead>(tokens: &mut Tokens<R>, problems: &mut Pro
             break;
         }
         let Some(key) = tokens.next()? else { break };
-        let lower = key.text.to_ascii_lowercase();
+        let lower = key.text.trim_start_matches(BYTE_ORDER_MARK).to_ascii_lowercase();
         let Some(known) = KEYS.into_iter().find(|known| *known == lower) else {
             problems.add(&key, &format!("the header key {}", quoted(&key.text)), &format!("one of {}", KEYS.join(", ")));
             // A whole text of unknown words is no grid: twenty of them say enough.
@@ -155,7 +158,9 @@ pub(super) fn number_hint(text: &str) -> &'static str {
 /// Words that begin like a number end the header, so that `1,5` is judged as a number gone wrong.
 fn looks_like_number(text: &str) -> bool {
     let lower = text.to_ascii_lowercase();
-    text.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '-' | '+' | '.')) || lower.starts_with("nan") || lower.starts_with("inf")
+    text.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '-' | '+' | '.'))
+        || lower.starts_with("nan")
+        || lower.starts_with("inf")
 }
 
 /// The beginning of a word, printable, in quotes.
@@ -166,6 +171,7 @@ pub(super) fn quoted(text: &str) -> String {
 
 /// Whether a text begins with a key of the header.
 pub(super) fn begins_with_key(beginning: &[u8]) -> bool {
+    let beginning = beginning.strip_prefix("\u{feff}".as_bytes()).unwrap_or(beginning);
     let word: Vec<u8> = beginning
         .iter()
         .copied()

@@ -13,6 +13,9 @@ use crate::terrain::{AsciiProblem, Dem, DemReader, GeoReference, TerrainError};
 /// So many problems are listed, the rest counted.
 const LISTED_PROBLEMS: usize = 20;
 
+/// Posts that memory is set aside for before they are read: what the header promises beyond, the file has to show first.
+const FIRST_RESERVE: usize = 1 << 20;
+
 /// The ESRI ASCII grid as a format.
 pub(in crate::terrain) struct AsciiGridReader;
 
@@ -98,7 +101,7 @@ fn read_elevations<R: BufRead>(
     posts: usize,
     problems: &mut Problems,
 ) -> std::io::Result<Vec<f64>> {
-    let mut elevations = Vec::with_capacity(posts);
+    let mut elevations = Vec::with_capacity(posts.min(FIRST_RESERVE));
     let mut surplus = 0_usize;
     let mut first_surplus = None;
     while let Some(token) = tokens.next()? {
@@ -110,7 +113,8 @@ fn read_elevations<R: BufRead>(
         let value = parse_elevation(&token, header.no_data);
         if value.is_none() {
             let (row, col) = (elevations.len() / header.cols + 1, elevations.len() % header.cols + 1);
-            let expected = format!("{} for row {row} of {}, column {col} of {}", number_hint(&token.text), header.rows, header.cols);
+            let expected =
+                format!("{} for row {row} of {}, column {col} of {}", number_hint(&token.text), header.rows, header.cols);
             problems.add(&token, &quoted(&token.text), &expected);
         }
         elevations.push(value.unwrap_or(f64::NAN));
@@ -135,11 +139,7 @@ fn read_elevations<R: BufRead>(
 /// NaN for no-data, `None` for what is no elevation.
 fn parse_elevation(token: &Token, no_data: f64) -> Option<f64> {
     let value = token.text.parse::<f64>().ok()?;
-    if value.is_nan() || value == no_data {
-        Some(f64::NAN)
-    } else {
-        value.is_finite().then_some(value)
-    }
+    if value.is_nan() || value == no_data { Some(f64::NAN) } else { value.is_finite().then_some(value) }
 }
 
 /// Problems in the order found.
@@ -174,3 +174,6 @@ impl Problems {
         TerrainError::AsciiGrid { problems: self.listed, further: self.further }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -54,7 +54,9 @@ fn refuse_colours(image: &Ifd) -> Result<(), TerrainError> {
     let bands = image.samples_per_pixel();
     let (found, mend) = match image.photometric_interpretation().unwrap_or(1) {
         2 => (format!("an RGB picture of {bands} bands"), "gdal_translate -b BAND -co PHOTOMETRIC=MINISBLACK in.tif out.tif"),
-        5..=10 => (format!("a colour picture of {bands} bands"), "gdal_translate -b BAND -co PHOTOMETRIC=MINISBLACK in.tif out.tif"),
+        5..=10 => {
+            (format!("a colour picture of {bands} bands"), "gdal_translate -b BAND -co PHOTOMETRIC=MINISBLACK in.tif out.tif")
+        }
         3 => (
             "a picture with a colour palette".to_owned(),
             "use the product's elevation file instead of its picture (a palette's numbers are colours)",

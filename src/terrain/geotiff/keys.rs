@@ -1,4 +1,4 @@
-//! The GeoKeys and the tags of the transform: where the posts lie, and in which units.
+//! The `GeoKeys` and the tags of the transform: where the posts lie, and in which units.
 
 use super::{key, tag};
 use crate::quantity::MapPoint;
@@ -114,7 +114,7 @@ impl Lattice {
                 "gdalwarp -r bilinear in.tif out.tif",
             ));
         }
-        if !(a > 0.0) || f == 0.0 {
+        if a.is_nan() || a <= 0.0 || f.is_nan() || f == 0.0 {
             return Err(unsuitable(
                 format!("columns that run by {a} m eastward and rows by {f} m northward"),
                 "columns from west to east, rows along the meridian",
@@ -208,7 +208,8 @@ fn text_key(system: &CoordinateSystem, wanted: u16) -> Option<&str> {
     match entry(system, wanted)? {
         [tag::ASCII_PARAMETERS, count, offset] => {
             let start = usize::from(offset);
-            let text = system.ascii_parameters.get(start..start + usize::from(count)).or_else(|| system.ascii_parameters.get(start..))?;
+            let text =
+                system.ascii_parameters.get(start..start + usize::from(count)).or_else(|| system.ascii_parameters.get(start..))?;
             Some(text.trim_end_matches(['|', '\0'])).filter(|text| !text.is_empty())
         }
         _ => None,
@@ -217,8 +218,10 @@ fn text_key(system: &CoordinateSystem, wanted: u16) -> Option<&str> {
 
 /// The citation of the projected map if there is one, else the general one, else the geographic one, else the EPSG code.
 fn description(system: &CoordinateSystem) -> Option<String> {
-    let cited = [key::PROJECTED_CITATION, key::CITATION, key::GEOGRAPHIC_CITATION].into_iter().find_map(|wanted| text_key(system, wanted));
-    let epsg = || short_key(system, key::PROJECTED_CRS).filter(|code| *code != key::USER_DEFINED).map(|code| format!("EPSG:{code}"));
+    let cited =
+        [key::PROJECTED_CITATION, key::CITATION, key::GEOGRAPHIC_CITATION].into_iter().find_map(|wanted| text_key(system, wanted));
+    let epsg =
+        || short_key(system, key::PROJECTED_CRS).filter(|code| *code != key::USER_DEFINED).map(|code| format!("EPSG:{code}"));
     cited.map(str::to_owned).or_else(epsg)
 }
 
@@ -282,7 +285,8 @@ mod tests {
         assert!(south_up.south_up);
         assert_eq!(south_up.georeference.north_west(), MapPoint::new(101.0, 242.0));
         matrix[1] = 0.1;
-        let message = place(&[], TransformTags { transformation: matrix.clone(), ..TransformTags::default() }).unwrap_err().to_string();
+        let message =
+            place(&[], TransformTags { transformation: matrix.clone(), ..TransformTags::default() }).unwrap_err().to_string();
         assert!(message.contains("rotated") && message.contains("gdalwarp"), "{message}");
         (matrix[1], matrix[0]) = (0.0, -2.0);
         assert!(place(&[], TransformTags { transformation: matrix, ..TransformTags::default() }).is_err());

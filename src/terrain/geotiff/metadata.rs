@@ -26,7 +26,7 @@ pub(super) fn read_scaling(xml: &str) -> Result<Scaling, TerrainError> {
     let mut rest = xml;
     while let Some((attributes, text, after)) = next_item(rest) {
         rest = after;
-        if !attribute(attributes, "sample").is_none_or(|sample| sample == "0") {
+        if attribute(attributes, "sample").is_some_and(|sample| sample != "0") {
             continue;
         }
         match attribute(attributes, "role") {

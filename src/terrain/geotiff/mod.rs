@@ -26,7 +26,7 @@ mod tag {
     pub(super) const GDAL_NO_DATA: u16 = 42113;
 }
 
-/// Numbers of the GeoKeys and of their values (OGC GeoTIFF 1.1).
+/// Numbers of the `GeoKeys` and of their values (OGC GeoTIFF 1.1).
 mod key {
     pub(super) const MODEL_TYPE: u16 = 1024;
     pub(super) const RASTER_TYPE: u16 = 1025;

@@ -8,7 +8,7 @@ use tiff_reader::{OpenOptions, TiffError, TiffFile};
 use super::image::{Images, damaged};
 use super::keys::{GeoTags, Placement};
 use super::metadata::{NoData, Scaling, read_scaling};
-use super::samples::{Elevations, read_elevations};
+use super::samples::{Elevations, largest_unpacked, read_elevations};
 use super::tag;
 use crate::terrain::georeference::refuse_degrees;
 use crate::terrain::{Dem, DemReader, TerrainError};
@@ -30,7 +30,8 @@ impl DemReader for GeoTiffReader {
     }
 
     fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
-        read_tiff(&TiffFile::open_with_options(path, open_options()).map_err(open_error)?)
+        let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
+        read_tiff(&TiffFile::open_with_options(path, open_options(length)).map_err(open_error)?)
     }
 }
 
@@ -44,19 +45,19 @@ impl DemReader for GeoTiffReader {
 /// [`TerrainError::Damaged`] where the bytes are no whole TIFF; [`TerrainError::Unsuitable`] where they are, but hold colours, several
 /// bands or images, degrees, other units, a rotated map or none; [`TerrainError::InvalidDem`] where the numbers make no raster.
 pub fn read_geotiff_bytes(bytes: Vec<u8>) -> Result<Dem, TerrainError> {
-    read_tiff(&TiffFile::from_bytes_with_options(bytes, open_options()).map_err(open_error)?)
+    let options = open_options(bytes.len() as u64);
+    read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?)
 }
 
-/// Tighter than the defaults: a DEM has a handful of images, and its longest tag lists the blocks.
-fn open_options() -> OpenOptions {
+/// Tighter than the defaults: a DEM has a handful of images, and nothing in it unpacks to more than its length can hold.
+fn open_options(length: u64) -> OpenOptions {
     OpenOptions {
         parse_budgets: ParseBudgets { max_ifds: 256, max_ifd_entries: 1024, ..ParseBudgets::default() },
-        decode_output_bytes: usize::MAX,
+        decode_output_bytes: usize::try_from(largest_unpacked(length)).unwrap_or(usize::MAX),
         ..OpenOptions::default()
     }
 }
 
-#[expect(clippy::needless_pass_by_value, reason = "the shape of map_err")]
 fn open_error(error: TiffError) -> TerrainError {
     match error {
         TiffError::Io(reason, _) => TerrainError::reading(reason),

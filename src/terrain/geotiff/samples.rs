@@ -9,10 +9,13 @@ use crate::terrain::TerrainError;
 /// Rows decoded at once, at least: enough for the decoder's threads, little beside the raster.
 const ROWS_AT_ONCE: usize = 256;
 
-/// A compressed file may hold this many times its own length, and in any case [`FREE_BYTES`]: deflate and LZW reach 1032 and some 1400
-/// at best. More is either an almost empty raster or a trap for memory.
-const LARGEST_RATIO: u64 = 2048;
+/// A compressed file may hold this many times its own length, and in any case [`FREE_BYTES`]. Rough ground reaches 2 to 4, so more than this
+/// is a raster empty but for a sixtieth, or a trap for memory.
+const LARGEST_RATIO: u64 = 256;
 const FREE_BYTES: u64 = 64 << 20;
+
+/// TIFF's number for no compression.
+const UNCOMPRESSED: u16 = 1;
 
 /// Elevations as they come out of a file: NaN is a gap.
 pub(super) enum Elevations {
@@ -32,7 +35,8 @@ pub(super) fn read_elevations(
     let read = Reading { file, image: images.elevations, layout: &images.layout };
     let layout = &images.layout;
     if layout.sample_format == 3 && layout.bits_per_sample == 32 && scaling == Scaling::NONE {
-        let mut posts = read.all(|sample: f32| if no_data.is_some_and(|mark| mark.is_single(sample)) { f32::NAN } else { sample })?;
+        let mut posts =
+            read.all(|sample: f32| if no_data.is_some_and(|mark| mark.is_single(sample)) { f32::NAN } else { sample })?;
         missing.blank(&mut posts, f32::NAN);
         return Ok(Elevations::Single(posts));
     }
@@ -60,18 +64,32 @@ pub(super) fn read_elevations(
     Ok(Elevations::Double(posts))
 }
 
+/// What a file of so many bytes may unpack to.
+pub(super) fn largest_unpacked(length: u64) -> u64 {
+    length.saturating_mul(LARGEST_RATIO).max(FREE_BYTES)
+}
+
 /// Refuses a declared size that the file's length cannot back, before anything is allocated for it.
 fn check_size(file: &TiffFile, images: &Images<'_>) -> Result<(), TerrainError> {
-    let RasterLayout { width, height, bytes_per_sample, .. } = images.layout;
-    let declared = (width as u64).checked_mul(height as u64).and_then(|posts| posts.checked_mul(bytes_per_sample as u64));
-    let allowed = file.source().len().saturating_mul(LARGEST_RATIO).max(FREE_BYTES);
+    let RasterLayout { width, height, bits_per_sample, .. } = images.layout;
+    let length = file.source().len();
+    let posts = (width as u64).checked_mul(height as u64);
+    let declared = posts.and_then(|posts| posts.checked_mul(u64::from(bits_per_sample))).map(|bits| bits / 8);
+    let stored_as_is =
+        images.elevations.compression() == UNCOMPRESSED && block_lengths(images.elevations).iter().all(|bytes| *bytes > 0);
+    let allowed = if stored_as_is { length } else { largest_unpacked(length) };
     match declared {
         Some(bytes) if bytes <= allowed => Ok(()),
         _ => Err(damaged(format!(
-            "it declares {height} rows of {width} posts of {bytes_per_sample} bytes, which its {} bytes cannot hold",
-            file.source().len()
+            "it declares {height} rows of {width} posts of {bits_per_sample} bits, which its {length} bytes cannot hold (of a raster that is nearly all no-data, cut out the part that is not with gdal_translate -projwin)"
         ))),
     }
+}
+
+/// Encoded lengths of the image's tiles or strips, bytes; 0 for one that was never written.
+fn block_lengths(image: &Ifd) -> Vec<u64> {
+    let lengths = if image.is_tiled() { image.tile_byte_counts() } else { image.strip_byte_counts() };
+    lengths.unwrap_or_default()
 }
 
 struct Reading<'a> {
@@ -84,14 +102,22 @@ impl Reading<'_> {
     fn all<T: TiffSample, U>(&self, convert: impl Fn(T) -> U) -> Result<Vec<U>, TerrainError> {
         let RasterLayout { width, height, .. } = *self.layout;
         let mut posts = Vec::new();
-        posts.try_reserve_exact(width * height).map_err(|error| damaged(error.to_string()))?;
         let step = rows_at_once(self.image, height);
         for first in (0..height).step_by(step) {
             let rows = step.min(height - first);
-            let band = self.file.read_window_from_ifd::<T>(self.image, first, 0, rows, width).map_err(|error| damaged(error.to_string()))?;
+            let band = self
+                .file
+                .read_window_from_ifd::<T>(self.image, first, 0, rows, width)
+                .map_err(|error| damaged(error.to_string()))?;
+            // Not before the first rows have shown that the file holds any.
+            posts.try_reserve_exact((width * height).saturating_sub(posts.len())).map_err(|error| damaged(error.to_string()))?;
             posts.extend(band.into_iter().map(&convert));
         }
-        if posts.len() == width * height { Ok(posts) } else { Err(damaged(format!("it holds {} of {} posts", posts.len(), width * height))) }
+        if posts.len() == width * height {
+            Ok(posts)
+        } else {
+            Err(damaged(format!("it holds {} of {} posts", posts.len(), width * height)))
+        }
     }
 }
 
@@ -149,12 +175,12 @@ fn holes(images: &Images<'_>) -> Vec<[usize; 4]> {
     let image = images.elevations;
     let RasterLayout { width, height, .. } = images.layout;
     let whole = |value: u32| usize::try_from(value).unwrap_or(usize::MAX).max(1);
-    let (cols, rows, counts) = match (image.tile_width(), image.tile_height()) {
-        (Some(cols), Some(rows)) => (whole(cols), whole(rows), image.tile_byte_counts()),
-        _ => (width, whole(image.rows_per_strip()).min(height), image.strip_byte_counts()),
+    let (cols, rows) = match (image.tile_width(), image.tile_height()) {
+        (Some(cols), Some(rows)) => (whole(cols), whole(rows)),
+        _ => (width, whole(image.rows_per_strip()).min(height)),
     };
     let across = width.div_ceil(cols);
-    let empty = counts.unwrap_or_default().into_iter().enumerate().filter(|(_, count)| *count == 0);
+    let empty = block_lengths(image).into_iter().enumerate().filter(|(_, length)| *length == 0);
     empty
         .map(|(block, _)| [(block / across).saturating_mul(rows), (block % across) * cols, rows, cols])
         .filter(|hole| hole[0] < height)

@@ -14,14 +14,13 @@ use crate::terrain::{Dem, GeoReference, TerrainError};
 /// Side of a tile, posts: the usual one, a multiple of 16 as the format asks.
 const TILE: usize = 256;
 
-/// A raster of any sample type that goes with a [`GeoReference`].
+/// A raster of floats that goes with a [`GeoReference`].
 struct Raster<'a, T> {
     rows: usize,
     cols: usize,
     samples: &'a [T],
     /// Fills what sticks out of the raster in its last tiles.
     filler: T,
-    no_data: &'a str,
     georeference: &'a GeoReference,
 }
 
@@ -54,8 +53,8 @@ pub fn write_geotiff(dem: &Dem, mut out: impl Write) -> Result<(), TerrainError>
 pub fn geotiff_bytes(dem: &Dem) -> Result<Vec<u8>, TerrainError> {
     let (rows, cols, georeference) = (dem.rows(), dem.cols(), dem.georeference());
     match dem.posts() {
-        Posts::Single(samples) => raster_bytes(&Raster { rows, cols, samples, filler: f32::NAN, no_data: "nan", georeference }),
-        Posts::Double(samples) => raster_bytes(&Raster { rows, cols, samples, filler: f64::NAN, no_data: "nan", georeference }),
+        Posts::Single(samples) => raster_bytes(&Raster { rows, cols, samples, filler: f32::NAN, georeference }),
+        Posts::Double(samples) => raster_bytes(&Raster { rows, cols, samples, filler: f64::NAN, georeference }),
     }
 }
 
@@ -74,15 +73,16 @@ fn raster_bytes<T: TiffWriteSample>(raster: &Raster<'_, T>) -> Result<Vec<u8>, T
 
 fn image<T: TiffWriteSample>(raster: &Raster<'_, T>) -> Result<ImageBuilder, TerrainError> {
     let side = |posts: usize| {
-        u32::try_from(posts).map_err(|_| TerrainError::InvalidDem(format!("the raster has {posts} rows or columns, expected fewer than 2^32")))
+        u32::try_from(posts)
+            .map_err(|_| TerrainError::InvalidDem(format!("the raster has {posts} rows or columns, expected fewer than 2^32")))
     };
     let tile = side(TILE)?;
     let image = ImageBuilder::new(side(raster.cols)?, side(raster.rows)?)
         .sample_type::<T>()
         .compression(Compression::Deflate)
-        .predictor(if T::SAMPLE_FORMAT == 3 { Predictor::FloatingPoint } else { Predictor::Horizontal })
+        .predictor(Predictor::FloatingPoint)
         .tiles(tile, tile)
-        .tag(Tag::new(tag::GDAL_NO_DATA, TagValue::Ascii(raster.no_data.to_owned())));
+        .tag(Tag::new(tag::GDAL_NO_DATA, TagValue::Ascii("nan".to_owned())));
     Ok(map_tags(raster.georeference, raster.rows).into_iter().fold(image, ImageBuilder::tag))
 }
 

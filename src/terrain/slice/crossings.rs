@@ -40,8 +40,8 @@ pub(super) fn crossings(ground: &Ground<'_>, from: MapPoint, to: MapPoint, lengt
     transect.push_crossings(&mut found, Vector2::new(1.0, -1.0));
     found.sort_by(|a, b| a.x_m.total_cmp(&b.x_m).then(a.rank.cmp(&b.rank)));
     let mut vertices = vec![Crossing { x_m: 0.0, lattice: transect.start, map: first, rank: Rank::End }];
-    let end = Crossing { x_m: length_m, lattice: transect.start + transect.step, map: last, rank: Rank::End };
-    for crossing in found.into_iter().chain([Crossing { lattice: ground.lattice(last), ..end }]) {
+    let end = Crossing { x_m: length_m, lattice: transect.end, map: last, rank: Rank::End };
+    for crossing in found.into_iter().chain([end]) {
         push_apart(&mut vertices, crossing, SAME_PLACE * length_m);
     }
     if backwards {
@@ -56,7 +56,7 @@ pub(super) fn crossings(ground: &Ground<'_>, from: MapPoint, to: MapPoint, lengt
 /// Adds a vertex, or settles which of two at the same place stays.
 fn push_apart(vertices: &mut Vec<Crossing>, crossing: Crossing, closest_m: f64) {
     // The first vertex, the start, stays whatever comes.
-    while let [_, .., previous] | [previous] = &vertices[..] {
+    while let Some(previous) = vertices.last() {
         if crossing.x_m - previous.x_m > closest_m {
             break;
         }
@@ -85,7 +85,8 @@ struct Transect<'a> {
 
 impl<'a> Transect<'a> {
     fn new(ground: &'a Ground<'a>, first: MapPoint, last: MapPoint, length_m: f64) -> Self {
-        let (start, end) = (ground.lattice(first), ground.lattice(last));
+        // Ends that are all but on a line are on it: else a line crossed at a flat angle would be crossed once more beside them.
+        let (start, end) = (ground.snapped(ground.lattice(first)), ground.snapped(ground.lattice(last)));
         let along = last - first;
         let heading = Vector2::new(along.x / length_m, along.y / length_m);
         Self { ground, start, end, step: end - start, origin: first, along, heading }
@@ -93,8 +94,8 @@ impl<'a> Transect<'a> {
 
     /// Crossings with the lines `normal . (u, v) = whole number`.
     fn push_crossings(&self, found: &mut Vec<Crossing>, normal: Vector2<f64>) {
-        let (begin, change) = (normal.dot(&self.start), normal.dot(&self.step));
-        let end = normal.dot(&self.end);
+        let [begin, end] = [self.start, self.end].map(|place| self.ground.nearly_whole(normal.dot(&place)));
+        let change = end - begin;
         let (low, high) = if begin <= end { (begin, end) } else { (end, begin) };
         let mut line = low.ceil();
         while line <= high && change != 0.0 {

@@ -69,11 +69,14 @@ impl<'a> Ground<'a> {
 
     /// Coordinates that are nearly whole made whole, and kept on the map.
     pub(super) fn snapped(&self, lattice: Vector2<f64>) -> Vector2<f64> {
-        let snap = |value: f64, last: f64| {
-            let whole = value.round();
-            (if (value - whole).abs() <= self.tolerance { whole } else { value }).clamp(0.0, last)
-        };
+        let snap = |value: f64, last: f64| self.nearly_whole(value).clamp(0.0, last);
         Vector2::new(snap(lattice.x, self.last.x), snap(lattice.y, self.last.y))
+    }
+
+    /// The whole number that a coordinate nearly is, else the coordinate.
+    pub(super) fn nearly_whole(&self, value: f64) -> f64 {
+        let whole = value.round();
+        if (value - whole).abs() <= self.tolerance { whole } else { value }
     }
 
     /// Elevation of the ground: a post's own, between two posts on a line, and on the plane of three inside a facet. `None` where one

@@ -1,4 +1,5 @@
 //! The slice against slower roads: exact rational arithmetic, and barycentric coordinates in brute force.
+#![expect(clippy::cast_precision_loss, reason = "small rasters")]
 
 use num_rational::BigRational;
 use rand::rngs::ChaCha8Rng;
@@ -37,13 +38,14 @@ fn brute_elevation(dem: &Dem, at: MapPoint) -> f64 {
     let mut best = (f64::NEG_INFINITY, f64::NAN);
     for row in 0..dem.rows() - 1 {
         for col in 0..dem.cols() - 1 {
-            let [north_west, north_east, south_west, south_east] = [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(r, c)| (row + r, col + c));
+            let [north_west, north_east, south_west, south_east] =
+                [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(r, c)| (row + r, col + c));
             if at.x < map.post(row, col).x - map.dx_m() || at.x > map.post(row, col).x + 2.0 * map.dx_m() {
                 continue;
             }
             for corners in [[north_west, north_east, south_east], [north_west, south_west, south_east]] {
                 let [a, b, c] = corners.map(|(r, c)| map.post(r, c));
-                let cross = |p: nalgebra::Vector2<f64>, q: nalgebra::Vector2<f64>| p.x * q.y - p.y * q.x;
+                let cross = |p: Vector2<f64>, q: Vector2<f64>| p.x * q.y - p.y * q.x;
                 let area = cross(b - a, c - a);
                 let weights = [cross(b - at, c - at) / area, cross(c - at, a - at) / area, cross(a - at, b - at) / area];
                 let inside = weights.iter().copied().fold(f64::INFINITY, f64::min);
@@ -68,7 +70,8 @@ fn random_slices_agree_with_brute_force_at_points_and_middles() {
         let (rows, cols) = (random.random_range(2..12), random.random_range(2..12));
         let ground = dem(rows, cols, GeoReference::local(offset, dx_m, dy_m).unwrap(), bumps);
         let bounds = ground.bounds();
-        let mut inside = || MapPoint::new(random.random_range(bounds.min.x..bounds.max.x), random.random_range(bounds.min.y..bounds.max.y));
+        let mut inside =
+            || MapPoint::new(random.random_range(bounds.min.x..bounds.max.x), random.random_range(bounds.min.y..bounds.max.y));
         let (from, mut to) = (inside(), inside());
         if case % 7 == 0 {
             to = from + (to - from) * 1e-4;
@@ -97,14 +100,16 @@ fn random_slices_agree_with_brute_force_at_points_and_middles() {
 }
 
 /// Crossings of a transect between lattice points given as fractions, in exact arithmetic: (share of the way, elevation).
-fn exact_profile(ground: &Dem, from: [BigRational; 2], to: [BigRational; 2]) -> Vec<(BigRational, BigRational)> {
+fn exact_profile(ground: &Dem, from: &[BigRational; 2], to: &[BigRational; 2]) -> Vec<(BigRational, BigRational)> {
     use num_traits::{One, Zero};
     let zero = BigRational::zero();
     let step = [&to[0] - &from[0], &to[1] - &from[1]];
     let mut shares = vec![zero.clone(), BigRational::one()];
     for normal in [[1, 0], [0, 1], [1, -1]] {
-        let dot = |p: &[BigRational; 2]| &p[0] * BigRational::from_integer(normal[0].into()) + &p[1] * BigRational::from_integer(normal[1].into());
-        let (begin, change) = (dot(&from), dot(&step));
+        let dot = |p: &[BigRational; 2]| {
+            &p[0] * BigRational::from_integer(normal[0].into()) + &p[1] * BigRational::from_integer(normal[1].into())
+        };
+        let (begin, change) = (dot(from), dot(&step));
         if change.is_zero() {
             continue;
         }
@@ -146,9 +151,10 @@ fn slices_between_lattice_fractions_have_the_exact_vertices() {
         if from == to {
             continue;
         }
-        let place = |p: &[BigRational; 2]| MapPoint::new(-512.0 + 0.5 * p[0].to_f64().unwrap(), 1024.0 - 2.0 * p[1].to_f64().unwrap());
+        let place =
+            |p: &[BigRational; 2]| MapPoint::new(-512.0 + 0.5 * p[0].to_f64().unwrap(), 1024.0 - 2.0 * p[1].to_f64().unwrap());
         let profile = slice(&ground, place(&from), place(&to)).unwrap();
-        let exact = exact_profile(&ground, from.clone(), to.clone());
+        let exact = exact_profile(&ground, &from, &to);
         assert_eq!(profile.points.len(), exact.len(), "from {from:?} to {to:?}");
         for (point, (share, z)) in profile.points.iter().zip(&exact) {
             assert!((point.x_m - share.to_f64().unwrap() * profile.length_m()).abs() < 1e-12);
@@ -165,7 +171,14 @@ fn slices_between_lattice_fractions_have_the_exact_vertices() {
 fn along_rows_columns_and_diagonals_only_posts_are_vertices_and_exact() {
     let ground = dem(9, 9, GeoReference::local(MapPoint::new(75_360.0, -609_600.0), 5.0, 5.0).unwrap(), bumps);
     let post = |row, col| ground.georeference().post(row, col);
-    for (begin, step, posts) in [((4, 0), (0, 1), 9), ((0, 3), (1, 0), 9), ((1, 0), (1, 1), 8), ((0, 0), (0, 1), 9), ((8, 0), (0, 1), 9), ((0, 8), (1, 0), 9)] {
+    for (begin, step, posts) in [
+        ((4, 0), (0, 1), 9),
+        ((0, 3), (1, 0), 9),
+        ((1, 0), (1, 1), 8),
+        ((0, 0), (0, 1), 9),
+        ((8, 0), (0, 1), 9),
+        ((0, 8), (1, 0), 9),
+    ] {
         let at = |k: usize| (begin.0 + step.0 * k, begin.1 + step.1 * k);
         let (first, last) = (at(0), at(posts - 1));
         let profile = slice(&ground, post(first.0, first.1), post(last.0, last.1)).unwrap();
@@ -204,13 +217,20 @@ fn on_an_edge_the_larger_cross_slope_of_its_two_facets_counts() {
     // A column with a steeper facet to its west than to its east.
     let column = dem(3, 3, local(1.0, 1.0), |_, col| [-2.0, 0.0, 1.0][col]);
     let north = slice(&column, MapPoint::new(1.0, -2.0), MapPoint::new(1.0, 0.0)).unwrap();
-    assert!(north.facets.iter().all(|facet| (facet.cross_slope.slope() - 2.0).abs() < 1e-12 && (facet.tilt().slope() - 2.0).abs() < 1e-12));
+    assert!(
+        north
+            .facets
+            .iter()
+            .all(|facet| (facet.cross_slope.slope() - 2.0).abs() < 1e-12 && (facet.tilt().slope() - 2.0).abs() < 1e-12)
+    );
 }
 
 #[test]
 fn on_a_tilted_plane_every_facet_has_the_planes_normal() {
     let (p, q) = (0.3, -0.4);
-    let plane = dem(20, 30, GeoReference::local(MapPoint::new(-40.0, 35.0), 2.0, 3.0).unwrap(), |row, col| p * 2.0 * col as f64 - q * 3.0 * row as f64);
+    let plane = dem(20, 30, GeoReference::local(MapPoint::new(-40.0, 35.0), 2.0, 3.0).unwrap(), |row, col| {
+        p * 2.0 * col as f64 - q * 3.0 * row as f64
+    });
     let (from, to) = (MapPoint::new(-39.5, -20.25), MapPoint::new(17.0, 30.125));
     let profile = slice(&plane, from, to).unwrap();
     check_shape(&profile, from, to);
@@ -287,6 +307,50 @@ fn a_plane_that_grazes_a_row_keeps_its_vertices_apart() {
             check_shape(&profile, from, to);
             for point in &profile.points {
                 assert!((brute_elevation(&ground, point.map) - point.z_m).abs() < 1e-6);
+            }
+        }
+    }
+}
+
+fn greatest_common_divisor(a: usize, b: usize) -> usize {
+    if b == 0 { a } else { greatest_common_divisor(b, a % b) }
+}
+
+/// Vertices between two posts so many columns and rows apart: lines crossed, and each post on the way counted once instead of three times.
+fn count_vertices(col_step: i64, row_step: i64) -> usize {
+    let [columns, rows, diagonals] = [col_step, row_step, col_step - row_step].map(|step| usize::try_from(step.abs()).unwrap());
+    let inner = [columns, rows, diagonals].iter().map(|count| count.saturating_sub(1)).sum::<usize>();
+    let posts = greatest_common_divisor(columns, rows) - 1;
+    let families = [columns, rows, diagonals].iter().filter(|count| **count > 0).count();
+    2 + inner - posts * (families - 1)
+}
+
+#[test]
+fn between_posts_of_maps_whose_coordinates_round_no_vertex_is_lost_or_doubled() {
+    let mut random = ChaCha8Rng::seed_from_u64(3);
+    let side = 41_i64;
+    for (offset_m, dx_m, dy_m) in
+        [(4.3e6, 0.1, 0.1), (-609_600.3, 0.3, 0.7), (75_360.7, 5.1, 3.3), (0.1, 1.01, 1.01), (1.0e8, 0.9, 1.1), (0.0, 1e-3, 1e3)]
+    {
+        let map = GeoReference::local(MapPoint::new(offset_m, -offset_m), dx_m, dy_m).unwrap();
+        let ground = dem(41, 41, map, bumps);
+        for _ in 0..300 {
+            let [from, to] = std::array::from_fn(|_| [random.random_range(0..side), random.random_range(0..side)]);
+            if from == to {
+                continue;
+            }
+            let index = |post: [i64; 2]| post.map(|value| usize::try_from(value).unwrap());
+            let ([from_col, from_row], [to_col, to_row]) = (index(from), index(to));
+            let post = |row, col| ground.georeference().post(row, col);
+            let profile = slice(&ground, post(from_row, from_col), post(to_row, to_col)).unwrap();
+            check_shape(&profile, post(from_row, from_col), post(to_row, to_col));
+            assert_eq!(profile.points.len(), count_vertices(to[0] - from[0], to[1] - from[1]), "{offset_m} {dx_m} {from:?} {to:?}");
+            let posts = greatest_common_divisor(from_col.abs_diff(to_col), from_row.abs_diff(to_row));
+            for k in 0..=posts {
+                let along = |begin: usize, end: usize| (begin * (posts - k) + end * k) / posts;
+                let (row, col) = (along(from_row, to_row), along(from_col, to_col));
+                let found = profile.points.iter().find(|point| (point.map - post(row, col)).norm() < 1e-3 * dx_m);
+                assert_eq!(found.map(|point| (point.z_m, point.map)), Some((bumps(row, col), post(row, col))));
             }
         }
     }

@@ -10,7 +10,9 @@ const TABLE_STEPS: usize = 512;
 
 /// Rocks as at the Viking and Pathfinder sites: the share of ground covered by rocks of diameter D (m) or more is
 ///
-///     F(D) = k exp(-q D),   q = 1.79 + 0.152 / k
+/// ```text
+/// F(D) = k exp(-q D),   q = 1.79 + 0.152 / k
+/// ```
 ///
 /// Source: Golombek and Rapp, Size-frequency distributions of rocks on Mars and Earth analog sites, J. Geophys. Res. 102 (1997) 4117, eqs. 1
 /// and 6; heights of half the diameter as in Golombek et al., J. Geophys. Res. 108 (2003) 8086. A rock is a hemisphere on the ground, sunk by `burial` times its radius.
@@ -104,7 +106,8 @@ mod tests {
         let table = boulders.counts_per_m2();
         let total = table.last().unwrap()[1];
         let mut draws = Draws::of(1, Layer::Boulders);
-        let covered: f64 = (0..200_000).map(|_| diameter_at(&table, draws.uniform() * total)).map(|d| 0.25 * std::f64::consts::PI * d * d).sum();
+        let covered: f64 =
+            (0..200_000).map(|_| diameter_at(&table, draws.uniform() * total)).map(|d| 0.25 * std::f64::consts::PI * d * d).sum();
         let q = 1.79 + 0.152 / 0.2;
         let law = 0.2 * ((-q * 0.5_f64).exp() - (-q * 5.0_f64).exp());
         let drawn = covered / 200_000.0 * total;

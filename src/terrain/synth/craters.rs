@@ -40,9 +40,11 @@ fn rim_height_m(diameter_m: f64) -> f64 {
 
 /// A population of craters, placed at random, of diameters D with a power law: so many per area with at least D go as D^-b.
 ///
-///     z(r) = rim - depth (1 - (r/R)^2)   for r <= R,      z(r) = rim (r/R)^-3   outside, out to 5 R
+/// ```text
+/// z(r) = rim - depth (1 - (r/R)^2)   for r <= R,      z(r) = rim (r/R)^-3   outside, out to 5 R
+/// ```
 ///
-/// A bowl of revolution inside; outside, the ejecta thickness of McGetchin, Settle and Head, Earth Planet. Sci. Lett. 20 (1973) 226. Age wears
+/// A bowl of revolution inside; outside, the ejecta thickness of `McGetchin`, Settle and Head, Earth Planet. Sci. Lett. 20 (1973) 226. Age wears
 /// a crater down: depth and rim are both scaled by 1 - d, with d drawn evenly from 0 to `degradation_max`. Craters add to what is there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Craters {
@@ -88,11 +90,11 @@ impl Craters {
             let diameter_m = self.diameter_at(draws.uniform());
             let freshness = 1.0 - self.degradation_max * draws.uniform();
             let crater = Crater {
-                radius_m: 0.5 * diameter_m,
-                depth_m: freshness * self.depth_law.depth_m(diameter_m),
-                rim_m: freshness * rim_height_m(diameter_m),
+                radius: 0.5 * diameter_m,
+                depth: freshness * self.depth_law.depth_m(diameter_m),
+                rim: freshness * rim_height_m(diameter_m),
             };
-            canvas.each_within(centre, EJECTA_REACH * crater.radius_m, |index, [x_m, y_m]| {
+            canvas.each_within(centre, EJECTA_REACH * crater.radius, |index, [x_m, y_m]| {
                 heights_m[index] += crater.height_m(libm::hypot(x_m - centre[0], y_m - centre[1]));
             });
         }
@@ -115,19 +117,20 @@ impl Craters {
     }
 }
 
+/// One crater as drawn, all in m.
 struct Crater {
-    radius_m: f64,
-    depth_m: f64,
-    rim_m: f64,
+    radius: f64,
+    depth: f64,
+    rim: f64,
 }
 
 impl Crater {
     fn height_m(&self, distance_m: f64) -> f64 {
-        let r = distance_m / self.radius_m;
+        let r = distance_m / self.radius;
         if r <= 1.0 {
-            self.rim_m - self.depth_m * (1.0 - r * r)
+            self.rim - self.depth * (1.0 - r * r)
         } else if r <= EJECTA_REACH {
-            self.rim_m / (r * r * r)
+            self.rim / (r * r * r)
         } else {
             0.0
         }
@@ -143,7 +146,7 @@ mod tests {
         let (depth_m, rim_m) = (DepthLaw::Mars.depth_m(100.0), rim_height_m(100.0));
         // 179 * 0.1^1.012 and 36 * 0.1^1.014, by hand.
         assert!((depth_m - 17.412).abs() < 1e-3 && (rim_m - 3.4858).abs() < 1e-4, "{depth_m} {rim_m}");
-        let crater = Crater { radius_m: 50.0, depth_m, rim_m };
+        let crater = Crater { radius: 50.0, depth: depth_m, rim: rim_m };
         assert!((crater.height_m(50.0) - crater.height_m(0.0) - depth_m).abs() < 1e-12);
         assert!((crater.height_m(50.0) - crater.height_m(50.0 + 1e-9)).abs() < 1e-8);
         assert_eq!(crater.height_m(100.0), rim_m / 8.0);

@@ -19,15 +19,15 @@ use self::options::{at_least, within};
 use super::{Dem, GeoReference, TerrainError};
 use crate::quantity::{Angle, MapPoint};
 
-/// Most posts that are made: 4 GB of working memory.
-const MOST_POSTS: usize = 1 << 28;
+/// Most rows and columns that are made: the fractal's square then has 8192 posts a side, 1 GB of working memory.
+const LONGEST_SIDE: usize = 6553;
 
 /// What to make up. Layers that are `None` are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SyntheticTerrain {
-    /// Number of rows, at least 2.
+    /// Number of rows, 2 to 6553.
     pub rows: usize,
-    /// Number of columns, at least 2.
+    /// Number of columns, 2 to 6553.
     pub cols: usize,
     /// Spacing of posts both ways, m.
     pub spacing_m: f64,
@@ -80,7 +80,7 @@ struct Canvas {
 }
 
 impl Canvas {
-    #[expect(clippy::cast_precision_loss, reason = "rows and columns stay below 2^28")]
+    #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
     fn place(self, row: usize, col: usize) -> [f64; 2] {
         [col as f64 * self.spacing_m, row as f64 * self.spacing_m]
     }
@@ -92,7 +92,7 @@ impl Canvas {
 
     /// Calls `draw` with the index and place of every post within `reach_m` of a centre, as a square.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the raster first")]
-    #[expect(clippy::cast_precision_loss, reason = "rows and columns stay below 2^28")]
+    #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
     fn each_within(self, centre: [f64; 2], reach_m: f64, mut draw: impl FnMut(usize, [f64; 2])) {
         let span = |middle: f64, count: usize| {
             let first = ((middle - reach_m) / self.spacing_m).ceil().clamp(0.0, count as f64) as usize;
@@ -164,13 +164,11 @@ fn plane(terrain: &SyntheticTerrain, canvas: Canvas) -> Vec<f64> {
 }
 
 fn check(terrain: &SyntheticTerrain) -> Result<(), TerrainError> {
-    let posts = terrain.rows.checked_mul(terrain.cols).unwrap_or(usize::MAX);
-    if terrain.rows < 2 || terrain.cols < 2 || posts > MOST_POSTS {
-        return Err(TerrainError::InvalidOption {
-            option: "rows times cols",
-            found: format!("{} times {}", terrain.rows, terrain.cols),
-            expected: format!("at least 2 of each and at most {MOST_POSTS} posts"),
-        });
+    for (option, count) in [("rows", terrain.rows), ("cols", terrain.cols)] {
+        if !(2..=LONGEST_SIDE).contains(&count) {
+            let expected = format!("2 to {LONGEST_SIDE}");
+            return Err(TerrainError::InvalidOption { option, found: count.to_string(), expected });
+        }
     }
     at_least("spacing_m", terrain.spacing_m, 1.0e-6, "m")?;
     within("south_west x", terrain.south_west.x, -1.0e9, 1.0e9, "m")?;

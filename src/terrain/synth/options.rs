@@ -8,7 +8,11 @@ fn refuse(option: &'static str, value: f64, expected: String) -> TerrainError {
 
 /// A finite number of at least `lowest`.
 pub(super) fn at_least(option: &'static str, value: f64, lowest: f64, unit: &str) -> Result<(), TerrainError> {
-    if value.is_finite() && value >= lowest { Ok(()) } else { Err(refuse(option, value, format!("at least {lowest} {unit}").trim_end().to_owned())) }
+    if value.is_finite() && value >= lowest {
+        Ok(())
+    } else {
+        Err(refuse(option, value, format!("at least {lowest} {unit}").trim_end().to_owned()))
+    }
 }
 
 /// A number from `lowest` to `highest`.

@@ -9,7 +9,9 @@ use crate::terrain::TerrainError;
 /// A channel from the map's west edge to its east edge, meandering about the middle as a sine, with straight walls and a flat floor (V-shaped
 /// where the walls meet first).
 ///
-///     depth at distance r from the centre line = min(depth, (width / 2 - r) tan(wall slope)), not below 0
+/// ```text
+/// depth at distance r from the centre line = min(depth, (width / 2 - r) tan(wall slope)), not below 0
+/// ```
 ///
 /// The distance is taken as the northing's difference times the cosine of the line's direction there: right to first order. Hadley Rille at
 /// Apollo 15 is some 1200 m wide and 370 m deep with walls of 25 to 30 degrees (Howard, Head and Swann, Proc. Lunar Sci. Conf. 3 (1972) 1).
