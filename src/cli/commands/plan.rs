@@ -57,7 +57,7 @@ impl Planned {
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
         if let Some(path) = path.as_ref().filter(|_| verify) {
-            verified(loaded, path)?;
+            verified(loaded, path, (start, goal))?;
         }
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
         let warnings = constant_gravity_doubts(&loaded.scenario.body, extremes);
@@ -146,16 +146,16 @@ fn ground_words(scenario: &Scenario) -> String {
 }
 
 /// Flies a path again; a broken limit is a failure of the program, told as such.
-fn verified(loaded: &Loaded, path: &HopPath) -> Result<(), Failure> {
+fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result<(), Failure> {
     let scenario = &loaded.scenario;
-    let violations = execute(&loaded.prepared.chain, &scenario.hopper, scenario.body.gravity_m_s2, path);
-    if violations.is_empty() {
+    let execution = execute(&loaded.prepared.chain, &scenario.hopper, scenario.body.gravity_m_s2, path, Some(ends));
+    if execution.passes() {
         return Ok(());
     }
-    let told: Vec<_> = violations.iter().take(10).map(ToString::to_string).collect();
+    let told: Vec<_> = execution.violations.iter().take(10).map(ToString::to_string).collect();
     Err(Failure::message(format!(
         "the planned path does not pass its own check ({} violations): {}; this is a defect of chta, please report it with the scenario",
-        violations.len(),
+        execution.violations.len(),
         told.join("; ")
     )))
 }
