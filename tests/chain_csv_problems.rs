@@ -134,9 +134,18 @@ fn ragged_rows() {
         "x_m,z_m,keep_out\n0,0,1\n1,5,0,0\n2\n3,0,\n",
         &[
             (3, Some(7), "0", None, &["found 4 fields", "expected 3 as in the header", "decimal comma"]),
-            (4, None, "2", None, &["found 1 fields", "expected 3", "every comma"]),
+            (4, None, "2", None, &["found 1 field,", "expected 3", "every comma"]),
         ],
     );
+}
+
+#[test]
+fn a_ragged_row_says_nothing_of_its_columns() {
+    // Neither that a column is filled, nor that both forms are.
+    let header = format!("x_m,z_m,friction_coefficient,{SIX}");
+    let words = &["found 2 fields", "expected 9 as in the header"];
+    assert_problems(&format!("{header}\n0,0,0.6,,,,,,\n1,0\n2,0,,,,,,,\n"), &[(3, None, "1,0", None, words)]);
+    assert_problems(&format!("{header}\n0,0,,,,,,,\n1,0,,,,,,,\n2,0\n"), &[(4, None, "2,0", None, words)]);
 }
 
 #[test]

@@ -128,7 +128,7 @@ impl<'a> Reading<'a> {
             |row: usize, form: std::ops::Range<usize>| form.into_iter().find(|&column| self.table.cell(row, column) != Cell::Blank);
         let mut both = false;
         for row in 0..self.table.row_count().saturating_sub(1) {
-            if self.is_ragged(row) {
+            if self.table.is_ragged(row) {
                 continue;
             }
             if let (Some(of_surface), Some(of_explicit)) = (in_row(row, SURFACE_FORM), in_row(row, EXPLICIT_FORM)) {
@@ -157,11 +157,6 @@ impl<'a> Reading<'a> {
         form.filter_map(|column| Some((self.filled.get(column).copied().flatten()?, column))).min()
     }
 
-    /// A row whose number of fields is wrong was reported as such; all its cells are bad, also that of x.
-    fn is_ragged(&self, row: usize) -> bool {
-        (0..CHAIN_COLUMNS.len()).filter(|&column| self.table.has(column)).all(|column| self.table.cell(row, column) == Cell::Bad)
-    }
-
     /// A column that some row fills is filled by all.
     fn check_blanks(&self, problems: &mut CsvProblems) {
         let both_forms = self.fills_any(SURFACE_FORM) && self.fills_any(EXPLICIT_FORM);
@@ -185,7 +180,7 @@ impl<'a> Reading<'a> {
 
     /// No segment begins at the last vertex, so its row says nothing of one.
     fn check_last_row(&self, problems: &mut CsvProblems) {
-        let known = |&last: &usize| last > 0 && self.table.complete && !self.is_ragged(last);
+        let known = |&last: &usize| last > 0 && self.table.complete && !self.table.is_ragged(last);
         let Some(last) = self.table.row_count().checked_sub(1).filter(known) else { return };
         let filled: Vec<usize> = (FRICTION..MAP_X).filter(|&column| self.table.cell(last, column) != Cell::Blank).collect();
         let Some(&first) = filled.first() else { return };

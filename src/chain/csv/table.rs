@@ -16,6 +16,8 @@ pub(super) enum Cell {
     Blank,
     /// Something that was found wrong, and reported.
     Bad,
+    /// Nobody knows: the row has too few or too many fields, as was reported.
+    Unknown,
     /// A value, angles in radians.
     Value(f64),
 }
@@ -212,7 +214,7 @@ impl<'a> Table<'a> {
                 self.cells.resize(start + self.width, Cell::Blank);
                 self.read_cells(&record, start, problems);
             } else {
-                self.cells.resize(start + self.width, Cell::Bad);
+                self.cells.resize(start + self.width, Cell::Unknown);
                 problems.push(|| self.ragged(&record));
             }
         }
@@ -254,12 +256,18 @@ impl<'a> Table<'a> {
         };
         let place =
             if found > expected { Place::of_field(self.source, record, expected) } else { Place::of_line(self.source, record) };
-        place.problem(format!("{found} fields"), format!("{expected} as in the header"), help)
+        let fields = if found == 1 { "1 field".to_owned() } else { format!("{found} fields") };
+        place.problem(fields, format!("{expected} as in the header"), help)
     }
 
     /// How many rows there are.
     pub(super) fn row_count(&self) -> usize {
         self.rows.len()
+    }
+
+    /// Whether a row has too few or too many fields.
+    pub(super) fn is_ragged(&self, row: usize) -> bool {
+        (0..self.columns.len()).any(|column| self.cell(row, column) == Cell::Unknown)
     }
 
     /// The line of a row.
