@@ -60,7 +60,12 @@ struct Source {
 }
 
 /// Loads a chain, scenario or result with the options beside it.
-pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: [Option<f64>; 2]) -> Result<Loaded, Failure> {
+pub(crate) fn load(
+    target: &Path,
+    common: &CommonArgs,
+    search: Option<&SearchArgs>,
+    ends: [Option<f64>; 2],
+) -> Result<Loaded, Failure> {
     let is_scenario = is_scenario(target);
     let mut source = match (is_scenario, &common.scenario) {
         (true, None) => read_source(target)?,
@@ -84,7 +89,10 @@ pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArg
     let (terrain, base) = if is_scenario {
         let named = scenario.terrain.clone();
         let terrain = named.ok_or_else(|| {
-            Failure::message(format!("{}: found no terrain; add [terrain] with dem or chain, or give a chain CSV", target.display()))
+            Failure::message(format!(
+                "{}: found no terrain; add [terrain] with dem or chain, or give a chain CSV",
+                target.display()
+            ))
         })?;
         (terrain, source.base)
     } else {
@@ -118,7 +126,8 @@ fn is_scenario(path: &Path) -> bool {
 fn read_source(path: &Path) -> Result<Source, Failure> {
     const LARGEST: u64 = 1 << 24;
     let name = path.display().to_string();
-    let unread = |reason: String, help: &str| Failure::message(format!("{name}: cannot be read ({reason}), expected a scenario: {help}"));
+    let unread =
+        |reason: String, help: &str| Failure::message(format!("{name}: cannot be read ({reason}), expected a scenario: {help}"));
     let size = fs::metadata(path).map_err(|e| unread(e.to_string(), "check the path and its permissions"))?.len();
     if size > LARGEST {
         return Err(unread(format!("{size} bytes"), "a scenario has some kilobytes; give a chain or DEM inside it"));

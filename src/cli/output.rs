@@ -13,9 +13,9 @@ use super::Failure;
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     match out.write_all(data).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::message(format!("standard output: cannot be written ({error}): free some space or choose -o FILE elsewhere")))
-        }
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::message(format!(
+            "standard output: cannot be written ({error}): free some space or choose -o FILE elsewhere"
+        ))),
         _ => Ok(()),
     }
 }

@@ -49,6 +49,24 @@ impl Angle {
         self.radians.to_degrees()
     }
 
+    /// Degrees that read back as this very angle, with the fewest digits there are; `None` for the one angle in eleven that no double
+    /// of degrees gives (pi / 180 stretches the significand) and for what is no finite angle.
+    ///
+    /// ```
+    /// use chta::quantity::Angle;
+    /// let angle = Angle::from_degrees(60.0);
+    /// assert_eq!(angle.degrees(), 59.99999999999999);
+    /// assert_eq!(angle.shortest_degrees(), Some(60.0));
+    /// ```
+    pub fn shortest_degrees(self) -> Option<f64> {
+        let near = self.degrees();
+        let neighbours = [near, near.next_up(), near.next_down(), near.next_up().next_up(), near.next_down().next_down()];
+        neighbours
+            .into_iter()
+            .filter(|&degrees| degrees.is_finite() && Self::from_degrees(degrees).radians.to_bits() == self.radians.to_bits())
+            .min_by_key(|degrees| degrees.to_string().len())
+    }
+
     /// The tangent, with plus or minus infinity at and beyond a right angle, so that no tangent of an angle outside (-90, 90)
     /// degrees is ever taken.
     ///

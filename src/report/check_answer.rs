@@ -105,9 +105,7 @@ impl CheckAnswer {
             Outcome::NoPath(frontier) => (Vec::new(), Some(FrontierRecord::new(test, frontier))),
         };
         let effort = match &answer.outcome {
-            Outcome::Path { cost, .. } => {
-                Some(EffortRecord { name: effort.name(), value: cost.effort(), unit: effort.unit() })
-            }
+            Outcome::Path { cost, .. } => Some(EffortRecord { name: effort.name(), value: cost.effort(), unit: effort.unit() }),
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
         Self {

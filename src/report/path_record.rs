@@ -179,8 +179,7 @@ pub fn write_path_csv(rows: &[HopRecord], on_map: bool, out: impl Write) -> io::
         record.extend(numbers.iter().map(ToString::to_string));
         record.push(row.binding.clone());
         if let Some(map) = row.map.filter(|_| on_map) {
-            let numbers =
-                [map.heading_deg, map.takeoff_map_x_m, map.takeoff_map_y_m, map.landing_map_x_m, map.landing_map_y_m];
+            let numbers = [map.heading_deg, map.takeoff_map_x_m, map.takeoff_map_y_m, map.landing_map_x_m, map.landing_map_y_m];
             record.extend(numbers.iter().map(ToString::to_string));
         }
         writer.write_record(&record)?;

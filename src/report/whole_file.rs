@@ -1,6 +1,10 @@
 //! Files are written whole or not at all.
 
-use std::{fs, io::{self, Write}, path::Path};
+use std::{
+    fs,
+    io::{self, Write},
+    path::Path,
+};
 
 /// Writes a file whole or not at all: beside its place first, then renamed into it.
 ///

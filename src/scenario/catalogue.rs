@@ -80,8 +80,7 @@ const FROM_ZERO: Kind = Kind::Number { min: 0.0, max: 1e9 };
 const COORDINATE: Kind = Kind::Number { min: -1e12, max: 1e12 };
 const ELEVATION_ANGLE: Kind = Kind::Number { min: -90.0, max: 90.0 };
 
-const EFFORTS: [&str; 4] =
-    [Effort::ALL[0].name(), Effort::ALL[1].name(), Effort::ALL[2].name(), Effort::ALL[3].name()];
+const EFFORTS: [&str; 4] = [Effort::ALL[0].name(), Effort::ALL[1].name(), Effort::ALL[2].name(), Effort::ALL[3].name()];
 const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].name(), TakeoffChoice::ALL[2].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
@@ -102,14 +101,24 @@ pub const CATALOGUE: [Key; 28] = [
     key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),
     key("surface", "takeoff_from_slope_deg", Kind::AngleRange, "take-off angles above the slope, degrees, instead of friction"),
     key("surface", "landing_from_slope_deg", Kind::AngleRange, "landing angles above the slope, degrees, instead of friction"),
-    key("surface", "rest_slope_max_deg", Kind::AngleOrUnlimited, "steepest surface to rest on, degrees; absent: atan(friction); inf: none"),
+    key(
+        "surface",
+        "rest_slope_max_deg",
+        Kind::AngleOrUnlimited,
+        "steepest surface to rest on, degrees; absent: atan(friction); inf: none",
+    ),
     key("terrain", "dem", Kind::Text, "elevation raster, path from this file"),
     key("terrain", "chain", Kind::Text, "chain CSV, path from this file"),
     key("terrain", "start_m", Kind::MapPoint, "start on the map, [x, y], m"),
     key("terrain", "goal_m", Kind::MapPoint, "goal on the map, [x, y], m"),
     key("terrain", "start_x_m", COORDINATE, "start along the chain, m"),
     key("terrain", "goal_x_m", COORDINATE, "goal along the chain, m"),
-    key("search", "points_per_segment", Kind::CountOrAuto, "points inside each segment, or \"auto\": the first of 0, 1, 2, 3, 7, 15, 31 with a path"),
+    key(
+        "search",
+        "points_per_segment",
+        Kind::CountOrAuto,
+        "points inside each segment, or \"auto\": the first of 0, 1, 2, 3, 7, 15, 31 with a path",
+    ),
     key("search", "node_spacing_max_m", LENGTH, "instead: as many points as keep neighbours this close along the ground, m"),
     key("search", "effort", Kind::Word(&EFFORTS), "second criterion after hops; absent: takeoff-speed"),
     key("search", "takeoff_angle", Kind::Word(&CHOICES), "which feasible take-off angle to fly; absent: least-speed"),

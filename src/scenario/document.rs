@@ -18,10 +18,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("surface".to_owned(), surface(scenario));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
-    tables.insert(
-        "report".to_owned(),
-        object([("title", scenario.title.clone().map(Value::from))]),
-    );
+    tables.insert("report".to_owned(), object([("title", scenario.title.clone().map(Value::from))]));
     tables.retain(|_, table| table.as_object().is_none_or(|keys| !keys.is_empty()));
     Value::Object(tables)
 }
@@ -31,13 +28,9 @@ fn object<const N: usize>(keys: [(&str, Option<Value>); N]) -> Value {
     Value::Object(keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect())
 }
 
-/// Degrees that read back as the same angle: the shortest of the neighbours that do.
-pub(crate) fn degrees(angle: Angle) -> f64 {
-    let near = angle.degrees();
-    [near, near.next_up(), near.next_down()]
-        .into_iter()
-        .find(|&degrees| Angle::from_degrees(degrees) == angle)
-        .unwrap_or(near)
+/// Degrees that read back as the same angle, for every angle that came from degrees.
+fn degrees(angle: Angle) -> f64 {
+    angle.shortest_degrees().unwrap_or_else(|| angle.degrees())
 }
 
 fn range(angles: AngleInterval) -> Value {

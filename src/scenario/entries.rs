@@ -207,12 +207,10 @@ fn tables() -> impl Iterator<Item = &'static str> {
 fn plain(value: &DeValue<'_>) -> Option<toml::Value> {
     Some(match value {
         DeValue::String(text) => toml::Value::String(text.to_string()),
-        DeValue::Integer(integer) => {
-            i64::from_str_radix(integer.as_str(), integer.radix()).map_or_else(
-                |_| integer.as_str().parse().map(toml::Value::Float).ok(),
-                |integer| Some(toml::Value::Integer(integer)),
-            )?
-        }
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix()).map_or_else(
+            |_| integer.as_str().parse().map(toml::Value::Float).ok(),
+            |integer| Some(toml::Value::Integer(integer)),
+        )?,
         DeValue::Float(float) => toml::Value::Float(float.as_str().parse().ok()?),
         DeValue::Boolean(boolean) => toml::Value::Boolean(*boolean),
         DeValue::Array(items) => toml::Value::Array(items.iter().map(|item| plain(item.get_ref())).collect::<Option<_>>()?),
@@ -247,9 +245,7 @@ fn fits(value: &toml::Value, kind: Kind) -> bool {
         }
         Kind::AngleRange => pair(value).is_some_and(|[a, b]| -360.0 <= a && a <= b && b <= 360.0),
         Kind::MapPoint => pair(value).is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() <= 1e12)),
-        Kind::CountOrAuto => {
-            value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k))
-        }
+        Kind::CountOrAuto => value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),
     }

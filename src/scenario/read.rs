@@ -210,7 +210,11 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
             let told = entries.problems().iter().any(|problem| problem.message.contains(missing));
             if !told {
                 let place = entries.place("terrain", "dem").unwrap_or(Place::Nowhere);
-                entries.problem(place, format!("terrain has a dem but no {missing}"), format!("add {missing} = [x, y], in map metres"));
+                entries.problem(
+                    place,
+                    format!("terrain has a dem but no {missing}"),
+                    format!("add {missing} = [x, y], in map metres"),
+                );
             }
             None
         }

@@ -108,14 +108,11 @@ pub(super) fn read_degrees(text: &str, degrees: f64) -> Angle {
 
 /// Text of degrees that reads back as the same double of radians (from [`LONG_TEXT_MIN_DEG`] up); `None` for what is no finite angle.
 pub(super) fn degrees_text(angle: Angle) -> Option<String> {
-    let degrees = angle.degrees();
-    if !degrees.is_finite() {
-        return None;
+    if let Some(degrees) = angle.shortest_degrees() {
+        return Some(number_text(degrees));
     }
-    let neighbours =
-        [degrees, degrees.next_up(), degrees.next_down(), degrees.next_up().next_up(), degrees.next_down().next_down()];
-    let same = neighbours.into_iter().filter(|&near| Angle::from_degrees(near).radians() == angle.radians());
-    same.map(number_text).min_by_key(String::len).or_else(|| longer_text(angle, degrees)).or_else(|| Some(number_text(degrees)))
+    let degrees = angle.degrees();
+    degrees.is_finite().then(|| longer_text(angle, degrees).unwrap_or_else(|| number_text(degrees)))
 }
 
 /// The shortest text of more than 17 digits that reads back.

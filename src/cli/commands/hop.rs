@@ -18,7 +18,10 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
     let (takeoff, landing) = loaded.ends()?;
     let test = loaded.hop_test();
     let answer = HopAnswer::new(&test, &takeoff, &landing, loaded.scenario.search.takeoff).ok_or_else(|| {
-        Failure::message(format!("--from and --to are both x = {} m, expected two different points of the chain", takeoff.point.x_m))
+        Failure::message(format!(
+            "--from and --to are both x = {} m, expected two different points of the chain",
+            takeoff.point.x_m
+        ))
     })?;
     let extremes = answer.best.map_or_else(Extremes::default, |best| Extremes {
         range_m: (answer.to_x_m - answer.from_x_m).abs(),

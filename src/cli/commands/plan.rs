@@ -5,10 +5,11 @@ use chta::{
     chain::Station,
     graph::{self, Outcome},
     path::{HopPath, execute, generate},
+    quantity::AngleInterval,
     report::{
-        CheckAnswer, Document, HopRecord, TotalsRecord, check_text, path_geojson, path_text,
+        CheckAnswer, Document, HopRecord, TotalsRecord, check_text,
         figure::{FigureInput, FigureTitle, draw},
-        write_path_csv,
+        path_geojson, path_text, write_path_csv,
     },
     scenario::{Extremes, Scenario, constant_gravity_doubts},
     world::Grip,
@@ -112,7 +113,12 @@ impl Planned {
     }
 
     /// The picture.
-    pub(super) fn picture(&self, loaded: &Loaded, test: &HopTest<'_>, (start, goal): (Station, Station)) -> Result<String, Failure> {
+    pub(super) fn picture(
+        &self,
+        loaded: &Loaded,
+        test: &HopTest<'_>,
+        (start, goal): (Station, Station),
+    ) -> Result<String, Failure> {
         let scenario = &loaded.scenario;
         draw(&FigureInput {
             test,
@@ -134,13 +140,13 @@ impl Planned {
 fn ground_words(scenario: &Scenario) -> String {
     match scenario.surface.grip {
         Some(Grip::Friction(cone)) => format!("friction coefficient {}", cone.coefficient()),
-        Some(Grip::FromSlope { takeoff, landing }) => format!(
-            "take-off {:.4} to {:.4} and landing {:.4} to {:.4} deg from the slope",
-            takeoff.min.degrees(),
-            takeoff.max.degrees(),
-            landing.min.degrees(),
-            landing.max.degrees()
-        ),
+        Some(Grip::FromSlope { takeoff, landing }) => {
+            let range = |angles: AngleInterval| {
+                let [min, max] = [angles.min, angles.max].map(|angle| angle.shortest_degrees().unwrap_or_else(|| angle.degrees()));
+                format!("{min} to {max}")
+            };
+            format!("take-off {} and landing {} deg from the slope", range(takeoff), range(landing))
+        }
         None => String::new(),
     }
 }

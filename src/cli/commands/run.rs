@@ -15,14 +15,14 @@ use crate::cli::{
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let RunArgs { scenario, output: folder, format, set, quiet } = args;
-    let common =
-        CommonArgs { scenario: None, set: set.clone(), body: None, gravity_m_s2: None, clearance_m: None, quiet: *quiet };
+    let common = CommonArgs { scenario: None, set: set.clone(), body: None, gravity_m_s2: None, clearance_m: None, quiet: *quiet };
     let loaded = load(scenario, &common, None, [None, None])?;
     let ends = loaded.ends()?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, true, *quiet)?;
     let mut chain_csv = Vec::new();
-    let comments = [format!("chta {} run of {}", env!("CARGO_PKG_VERSION"), loaded.scenario.title.as_deref().unwrap_or("a scenario"))];
+    let comments =
+        [format!("chta {} run of {}", env!("CARGO_PKG_VERSION"), loaded.scenario.title.as_deref().unwrap_or("a scenario"))];
     write_chain_csv(loaded.prepared.chain.geometry(), &mut chain_csv, &comments).map_err(|e| Failure::message(e.to_string()))?;
     let mut files = vec![
         ("chain.csv", chain_csv),

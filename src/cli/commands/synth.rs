@@ -18,7 +18,9 @@ pub(crate) fn run(args: &SynthArgs) -> Result<Answer, Failure> {
         Some("asc") => true,
         _ => {
             let path = args.output.display();
-            return Err(Failure::message(format!("-o {path}: found no known extension, expected .tif (GeoTIFF) or .asc (ESRI ASCII grid)")));
+            return Err(Failure::message(format!(
+                "-o {path}: found no known extension, expected .tif (GeoTIFF) or .asc (ESRI ASCII grid)"
+            )));
         }
     };
     let failed = |error: chta::terrain::TerrainError| Failure::message(error.to_string());
