@@ -1,7 +1,9 @@
 //! The hop path: its generation from the search's answer, and an independent checker that flies it again.
 
+mod execute;
 mod generate;
 mod hop;
 
+pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute};
 pub use generate::{TooManyHops, generate};
 pub use hop::{Hop, HopPath, MapEnds, Totals};

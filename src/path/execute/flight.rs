@@ -1,0 +1,368 @@
+//! One hop flown by Newton's equations in small exact steps.
+
+use crate::{
+    chain::{ConstrainedChain, Direction},
+    path::Hop,
+    quantity::{Angle, ChainPoint, VertexId},
+};
+
+/// Steps that a flight takes at least, and those of each stretch between two vertices.
+///
+/// A step under constant acceleration is exact, however long: small steps are there only to look at the ground in between. On a
+/// stretch the arc bends and the ground is straight, so that what a vertex does not show would show in the stretch's inside; four
+/// looks, and 64 on a stretch that is the whole flight, leave no part of a hop unseen. More steps cost time and a rounding each.
+const STEPS_PER_FLIGHT: f64 = 64.0;
+const STEPS_PER_STRETCH: f64 = 4.0;
+
+/// How far from its true place a flown point may be, as a share of the flight's size (its run and its height together).
+///
+/// Places are counted from the take-off, so no digits go to where on the map the hop lies. What is left is the last digit of the
+/// commanded angle and speed (some 1e-15 of the size) and one rounding per step (1e-16 each, in a random walk: 1e-13 for a million
+/// steps). Ten times more than that, and a ten-millionth of what 1 % of a hop is.
+const PLACE_TOLERANCE: f64 = 1e-12;
+
+/// How far from the straight ground a point of the chain may lie, in units in the last place of the chain's greatest height: two
+/// products, a quotient and a sum make a height inside a segment.
+const HEIGHT_ULPS: f64 = 4.0;
+
+/// The least height over a vertex flown past.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Clearance {
+    /// Over which vertex.
+    pub vertex: VertexId,
+    /// Where that is, m.
+    pub x_m: f64,
+    /// How high the flight passes over it, m; negative below.
+    pub height_m: f64,
+}
+
+/// What was flown of one hop.
+///
+/// Time, angle and speed of the landing are those above the planned landing point, also where the flight meets the ground elsewhere:
+/// so every limit of a hop is judged, not only the first that fails.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Flight {
+    /// Where it first comes down; `None` where it leaves the chain in flight.
+    pub contact: Option<ChainPoint>,
+    /// Direction of flight at the landing.
+    pub landing_angle: Angle,
+    /// Speed at the landing, m/s.
+    pub landing_speed_m_s: f64,
+    /// Time to the landing, s.
+    pub flight_time_s: f64,
+    /// The highest point from take-off to landing, m, in the chain's own heights; the landing itself where it still rises there.
+    pub apex_z_m: f64,
+    /// The same above the take-off, m.
+    pub apex_height_m: f64,
+    /// The least clearance over the vertices flown past; `None` where there are none.
+    pub least_clearance: Option<Clearance>,
+    /// How many steps it took.
+    pub steps: usize,
+    /// Every vertex passed lower than its clearance, and by how much the flight passes it, m.
+    pub(super) too_low: Vec<Clearance>,
+    /// Where the flight runs below straight ground between vertices first, and how deep it then gets, m.
+    pub(super) underground: Option<(f64, f64)>,
+    /// How uncertain a place of this flight is by rounding alone, m: [`PLACE_TOLERANCE`] of its size.
+    pub(super) rounding_m: f64,
+    /// The same with the rounding of the chain's own heights, m.
+    pub(super) place_tolerance_m: f64,
+    /// Whether the planned landing is where it comes down.
+    pub(super) hits: bool,
+    /// Horizontal speed, m/s.
+    pub(super) across_m_s: f64,
+    /// Vertical speed at the landing, m/s.
+    pub(super) landing_climb_m_s: f64,
+}
+
+/// Where the hopper is and how it moves, seen from its take-off and along its direction of travel.
+#[derive(Clone, Copy, Debug)]
+struct State {
+    distance_m: f64,
+    height_m: f64,
+    time_s: f64,
+    across_m_s: f64,
+    climb_m_s: f64,
+}
+
+impl State {
+    /// After `step_s` under constant gravity: `x += v_x dt, z += v_z dt - g dt^2 / 2, v_z -= g dt` (Newton; exact for any `dt`).
+    fn after(self, step_s: f64, gravity_m_s2: f64) -> Self {
+        Self {
+            distance_m: self.distance_m + self.across_m_s * step_s,
+            height_m: self.height_m + (self.climb_m_s * step_s - 0.5 * gravity_m_s2 * step_s * step_s),
+            time_s: self.time_s + step_s,
+            across_m_s: self.across_m_s,
+            climb_m_s: self.climb_m_s - gravity_m_s2 * step_s,
+        }
+    }
+
+    /// At a distance ahead, which is then met to the last digit.
+    fn at(self, distance_m: f64, gravity_m_s2: f64) -> Self {
+        Self { distance_m, ..self.after((distance_m - self.distance_m) / self.across_m_s, gravity_m_s2) }
+    }
+
+    /// Length of the flight per metre of run, here.
+    fn stretch(self) -> f64 {
+        libm::hypot(1.0, self.climb_m_s / self.across_m_s)
+    }
+}
+
+/// Straight ground between two neighbouring points of the chain, from the take-off, along the direction of travel.
+#[derive(Clone, Copy, Debug)]
+struct Stretch {
+    from: (f64, f64),
+    to: (f64, f64),
+    /// The vertex that ends it; `None` at the landing.
+    vertex: Option<VertexId>,
+}
+
+impl Stretch {
+    /// Height of the ground at a share of the stretch, m.
+    fn height_m(&self, share: f64) -> f64 {
+        self.from.1 + (self.to.1 - self.from.1) * share
+    }
+
+    /// Share of the stretch at a distance.
+    fn share(&self, distance_m: f64) -> f64 {
+        (distance_m - self.from.0) / (self.to.0 - self.from.0)
+    }
+
+    /// Length of the ground per metre of run.
+    fn ground_stretch(&self) -> f64 {
+        libm::hypot(1.0, (self.to.1 - self.from.1) / (self.to.0 - self.from.0))
+    }
+
+    /// Where a flight that is above the ground at `above` and not at `below` meets it: bisection to the last digit.
+    fn contact_m(&self, above: State, below: State, gravity_m_s2: f64) -> f64 {
+        let (mut near, mut far) = (above.distance_m, below.distance_m);
+        loop {
+            let middle = 0.5 * (near + far);
+            if middle <= near || middle >= far {
+                return near;
+            }
+            if above.at(middle, gravity_m_s2).height_m >= self.height_m(self.share(middle)) { near = middle } else { far = middle }
+        }
+    }
+}
+
+/// The ground under a hop and its gravity: what a flight is flown over.
+pub(super) struct Course<'a> {
+    chain: &'a ConstrainedChain,
+    hop: &'a Hop,
+    direction: Direction,
+    gravity_m_s2: f64,
+    clearance_m: f64,
+    height_rounding_m: f64,
+}
+
+impl<'a> Course<'a> {
+    /// The course of a hop, flown in the direction that its two ends say.
+    pub(super) fn new(
+        chain: &'a ConstrainedChain,
+        hop: &'a Hop,
+        direction: Direction,
+        gravity_m_s2: f64,
+        clearance_m: f64,
+        height_rounding_m: f64,
+    ) -> Self {
+        Self { chain, hop, direction, gravity_m_s2, clearance_m, height_rounding_m }
+    }
+
+    /// Distance and height of a point, from the take-off along the direction of travel. Close doubles subtract without error.
+    fn seen(&self, point: ChainPoint) -> (f64, f64) {
+        let takeoff = self.hop.takeoff.point;
+        (self.direction.sign() * (point.x_m - takeoff.x_m), point.z_m - takeoff.z_m)
+    }
+
+    /// The vertices strictly beyond one x, in the direction of travel, up to (without) another.
+    fn vertices_between(&self, from_x_m: f64, to_x_m: f64) -> impl Iterator<Item = VertexId> + use<> {
+        let vertices = self.chain.geometry().vertices();
+        let (left, right) = (from_x_m.min(to_x_m), from_x_m.max(to_x_m));
+        let first = vertices.partition_point(|v| v.x_m <= left);
+        let end = vertices.partition_point(|v| v.x_m < right).max(first);
+        let forward = self.direction == Direction::Forward;
+        (first..end).map(move |i| VertexId(if forward { i } else { first + end - 1 - i }))
+    }
+
+    /// The stretches of ground from the take-off to the landing, or from the landing to the chain's end.
+    fn stretches(&self, beyond: bool) -> Vec<Stretch> {
+        let (start, end_x_m) = if beyond {
+            let (first, last) = self.chain.geometry().extent_m();
+            // One step outside, so that the chain's last vertex counts.
+            let end = if self.direction == Direction::Forward { last.next_up() } else { first.next_down() };
+            (self.hop.landing.point, end)
+        } else {
+            (self.hop.takeoff.point, self.hop.landing.point.x_m)
+        };
+        let mut from = self.seen(start);
+        let mut stretches = Vec::new();
+        for vertex in self.vertices_between(start.x_m, end_x_m) {
+            let to = self.seen(self.chain.geometry().vertices()[vertex.index()]);
+            stretches.push(Stretch { from, to, vertex: Some(vertex) });
+            from = to;
+        }
+        if !beyond {
+            stretches.push(Stretch { from, to: self.seen(self.hop.landing.point), vertex: None });
+        }
+        stretches
+    }
+
+    /// The point of the chain's plane at a distance and height from the take-off.
+    fn point(&self, distance_m: f64, height_m: f64) -> ChainPoint {
+        let takeoff = self.hop.takeoff.point;
+        ChainPoint::new(takeoff.x_m + self.direction.sign() * distance_m, takeoff.z_m + height_m)
+    }
+
+    /// Flies the hop as commanded; `None` where it does not leave forwards at all.
+    ///
+    /// Steps end exactly above every vertex flown past, with the small ones of [`STEPS_PER_FLIGHT`] between.
+    pub(super) fn fly(&self) -> Option<Flight> {
+        let (speed, angle) = (self.hop.takeoff_speed_m_s, self.hop.takeoff_angle.radians());
+        let takeoff = State {
+            distance_m: 0.0,
+            height_m: 0.0,
+            time_s: 0.0,
+            across_m_s: speed * libm::cos(angle),
+            climb_m_s: speed * libm::sin(angle),
+        };
+        let forwards = takeoff.across_m_s > 0.0 && takeoff.across_m_s.is_finite();
+        if !forwards {
+            return None;
+        }
+        let stretches = self.stretches(false);
+        let (states, top_m) = self.stepped(takeoff, &stretches);
+        let landing = states.last().and_then(|steps| steps.last()).copied()?;
+        let (run_m, rise_m) = stretches.last()?.to;
+        let rounding_m = PLACE_TOLERANCE * libm::hypot(run_m, top_m.max(rise_m.abs()).max(landing.height_m.abs()));
+        let place_tolerance_m = rounding_m + self.height_rounding_m;
+        let mut flight = Flight {
+            contact: None,
+            landing_angle: Angle::from_slope(landing.climb_m_s / landing.across_m_s),
+            landing_speed_m_s: libm::hypot(landing.across_m_s, landing.climb_m_s),
+            flight_time_s: landing.time_s,
+            apex_z_m: self.hop.takeoff.point.z_m + top_m,
+            apex_height_m: top_m,
+            least_clearance: None,
+            steps: states.iter().map(Vec::len).sum(),
+            too_low: Vec::new(),
+            underground: None,
+            rounding_m,
+            place_tolerance_m,
+            hits: false,
+            across_m_s: landing.across_m_s,
+            landing_climb_m_s: landing.climb_m_s,
+        };
+        self.look_at_vertices(&mut flight, &stretches, &states);
+        let early = self.look_at_ground(&mut flight, takeoff, &stretches, &states);
+        // Across the arc: how far the landing point lies off the flown line.
+        let over_m = (landing.height_m - rise_m) / landing.stretch();
+        flight.hits = early.is_none() && over_m.abs() <= place_tolerance_m;
+        flight.contact = match early {
+            Some(contact) => Some(contact),
+            None if over_m > place_tolerance_m => self.beyond(landing),
+            None => Some(self.hop.landing.point),
+        };
+        Some(flight)
+    }
+
+    /// All states, stretch by stretch, and the highest height on the way.
+    fn stepped(&self, takeoff: State, stretches: &[Stretch]) -> (Vec<Vec<State>>, f64) {
+        let run_m = stretches.last().map_or(0.0, |s| s.to.0);
+        let g = self.gravity_m_s2;
+        let mut state = takeoff;
+        let mut top_m = 0.0f64;
+        let mut all = Vec::with_capacity(stretches.len());
+        for stretch in stretches {
+            let length_m = stretch.to.0 - stretch.from.0;
+            let pieces = (STEPS_PER_FLIGHT * length_m / run_m).ceil().clamp(STEPS_PER_STRETCH, STEPS_PER_FLIGHT);
+            let mut steps = Vec::new();
+            let mut piece = 1.0;
+            while piece <= pieces {
+                let to_m = if piece == pieces { stretch.to.0 } else { stretch.from.0 + length_m * (piece / pieces) };
+                let next = state.at(to_m, g);
+                if state.climb_m_s > 0.0 && next.climb_m_s < 0.0 {
+                    // The top of the flight lies within this step: a step that ends there, exactly.
+                    top_m = top_m.max(state.after(state.climb_m_s / g, g).height_m);
+                }
+                top_m = top_m.max(next.height_m);
+                steps.push(next);
+                state = next;
+                piece += 1.0;
+            }
+            all.push(steps);
+        }
+        (all, top_m)
+    }
+
+    /// The clearance over every vertex flown past.
+    fn look_at_vertices(&self, flight: &mut Flight, stretches: &[Stretch], states: &[Vec<State>]) {
+        for (stretch, steps) in stretches.iter().zip(states) {
+            let (Some(vertex), Some(over)) = (stretch.vertex, steps.last()) else { continue };
+            let height_m = over.height_m - stretch.to.1;
+            let clearance = Clearance { vertex, x_m: self.chain.geometry().vertices()[vertex.index()].x_m, height_m };
+            if flight.least_clearance.is_none_or(|least| height_m < least.height_m) {
+                flight.least_clearance = Some(clearance);
+            }
+            // A place uncertain across a steep arc is uncertain in height by so much more.
+            if height_m < self.clearance_m - flight.place_tolerance_m * over.stretch() {
+                flight.too_low.push(clearance);
+            }
+        }
+    }
+
+    /// Whether every small step stays above the ground; where not, the point at which the flight first meets it.
+    fn look_at_ground(
+        &self,
+        flight: &mut Flight,
+        takeoff: State,
+        stretches: &[Stretch],
+        states: &[Vec<State>],
+    ) -> Option<ChainPoint> {
+        let mut before = takeoff;
+        let mut contact = None;
+        for (stretch, steps) in stretches.iter().zip(states) {
+            let slack_m = flight.place_tolerance_m * stretch.ground_stretch();
+            for (i, &state) in steps.iter().enumerate() {
+                let is_end = i + 1 == steps.len();
+                let ground_m = if is_end { stretch.to.1 } else { stretch.height_m(stretch.share(state.distance_m)) };
+                let slack_m = if is_end { flight.place_tolerance_m * state.stretch() } else { slack_m };
+                let over_m = state.height_m - ground_m;
+                if over_m < -slack_m {
+                    if contact.is_none() {
+                        let met_m = stretch.contact_m(before, state, self.gravity_m_s2);
+                        contact = Some(self.point(met_m, stretch.height_m(stretch.share(met_m))));
+                    }
+                    // On the last stretch, to come down early is to land early.
+                    if stretch.vertex.is_some() {
+                        let x_m = self.point(state.distance_m, 0.0).x_m;
+                        let known = flight.underground.unwrap_or((x_m, over_m));
+                        flight.underground = Some((known.0, known.1.min(over_m)));
+                    }
+                }
+                before = state;
+            }
+        }
+        contact
+    }
+
+    /// Where a flight that passes over its landing comes down; `None` where the chain ends first.
+    ///
+    /// The arc is concave, so it has met a straight stretch if and only if it is below that stretch's end.
+    fn beyond(&self, landing: State) -> Option<ChainPoint> {
+        let mut before = landing;
+        for stretch in self.stretches(true) {
+            let state = before.at(stretch.to.0, self.gravity_m_s2);
+            if state.height_m < stretch.to.1 {
+                let met_m = stretch.contact_m(before, state, self.gravity_m_s2);
+                return Some(self.point(met_m, stretch.height_m(stretch.share(met_m))));
+            }
+            before = state;
+        }
+        None
+    }
+}
+
+/// How much a height of the chain may be rounded, m: [`HEIGHT_ULPS`].
+pub(super) fn height_rounding_m(chain: &ConstrainedChain) -> f64 {
+    HEIGHT_ULPS * f64::EPSILON * chain.geometry().vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max)
+}
