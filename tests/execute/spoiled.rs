@@ -103,7 +103,9 @@ fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
     for (i, (radians, room, limit)) in ends.into_iter().enumerate() {
         // Next to the line of sight and the vertical 1 % of the rest is less than the nanoradian that directions tolerate (and a
         // speed at the bottom of its curve, which goes with the square of the angle, less than its own).
-        if room < 1e-5 {
+        // Nor does any angle alone break an apex limit that the landing itself just meets.
+        let landing_is_top = one_point && limit == Limit::ApexHeight && case.hop.landing_angle.radians() >= 0.0;
+        if room < 1e-5 || landing_is_top {
             tally.too_fine += 1;
             continue;
         }
