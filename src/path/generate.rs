@@ -53,31 +53,59 @@ pub fn generate(test: &HopTest<'_>, legs: &[Leg], choice: TakeoffChoice, split: 
 fn single(test: &HopTest<'_>, leg: &Leg, loft: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
     let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
     let arc = Arc::new(sight, choice.loft(sight, loft), test.gravity_m_s2());
-    Some(hop(test, leg.takeoff, leg.landing, &arc, loft))
+    Some(hop(test, leg.takeoff, leg.landing, &arc, loft, Limit::TakeoffSpeed))
 }
 
 /// The hops of a leg that runs along one segment.
 fn along_segment(test: &HopTest<'_>, leg: &Leg, along: &SegmentHops, choice: TakeoffChoice, split: Split) -> Vec<Hop> {
     let Some(direction) = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m) else { return Vec::new() };
-    let (each_m, _) = along.lengths_m(split);
-    let mut hops = Vec::new();
+    let landings = full_reach_m(leg, along, direction, split).unwrap_or_else(|| equal_m(leg, along, direction));
+    let mut hops = Vec::with_capacity(landings.len() + 1);
     let mut takeoff = leg.takeoff;
-    for i in 1..=along.hops() {
-        let last = i == along.hops();
-        #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
-        let x_m = leg.takeoff.point.x_m + direction.sign() * each_m * i as f64;
-        let landing = if last { Some(leg.landing) } else { test.chain().geometry().station(x_m).ok() };
-        let Some(landing) = landing else { break };
+    let inside = landings.into_iter().map_while(|x_m| test.chain().geometry().station(x_m).ok());
+    for landing in inside.chain([leg.landing]) {
         // The length between the stations themselves: rounding their places must not move the landing.
         let length_m = (landing.point.x_m - takeoff.point.x_m).abs();
-        hops.push(hop(test, takeoff, landing, &along.arc(test, length_m, choice), along.lofts(test, length_m)));
+        let arc = along.arc(test, length_m, choice);
+        // At full reach the set is one point, which rounding may lose: then what ends the reach binds.
+        hops.push(hop(test, takeoff, landing, &arc, along.lofts(test, length_m), along.reach().limit()));
         takeoff = landing;
     }
     hops
 }
 
+/// The x of all landings but the last for hops of full reach, m; `None` where the split is another, or the last hop would be too long.
+///
+/// An x far from zero has coarse last digits, and a hop rounded up would go beyond its reach (a hop of 1 mm at x = 200 km by 1e-8 of
+/// itself, ten times what a speed tolerates): each is rounded towards its take-off, and the last makes up for all.
+fn full_reach_m(leg: &Leg, along: &SegmentHops, direction: Direction, split: Split) -> Option<Vec<f64>> {
+    let (each_m, last_m) = along.lengths_m(split);
+    if each_m == last_m {
+        return None;
+    }
+    let mut from_m = leg.takeoff.point.x_m;
+    let mut landings = Vec::new();
+    for _ in 1..along.hops() {
+        let x_m = from_m + direction.sign() * each_m;
+        let towards_takeoff = if direction == Direction::Forward { x_m.next_down() } else { x_m.next_up() };
+        from_m = if (x_m - from_m).abs() > each_m { towards_takeoff } else { x_m };
+        landings.push(from_m);
+    }
+    ((leg.landing.point.x_m - from_m).abs() <= each_m).then_some(landings)
+}
+
+/// The x of all landings but the last for hops of equal length, m.
+fn equal_m(leg: &Leg, along: &SegmentHops, direction: Direction) -> Vec<f64> {
+    let (each_m, _) = along.lengths_m(Split::Equal);
+    #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
+    let x_m = |i: u64| leg.takeoff.point.x_m + direction.sign() * each_m * i as f64;
+    (1..along.hops()).map(x_m).collect()
+}
+
 /// A hop with all that is said of it.
-fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, loft: SlopeInterval) -> Hop {
+///
+/// `otherwise` is the limit named where the set is one point that rounding loses.
+fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, loft: SlopeInterval, otherwise: Limit) -> Hop {
     let direction = if landing.point.x_m < takeoff.point.x_m { Direction::Reverse } else { Direction::Forward };
     let geometry = test.chain().geometry();
     let limit =
@@ -100,10 +128,9 @@ fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, loft: 
         takeoff_angles: crate::quantity::AngleInterval { min: angle(loft.lower), max: angle(loft.upper) },
         speed_margin_m_s: (limit(Contact::Takeoff, &takeoff) - takeoff_speed_m_s)
             .min(limit(Contact::Landing, &landing) - landing_speed_m_s),
-        // Without a binding the set is the one point of full reach, which a speed sets.
-        lower_limit: binding.map_or(Limit::TakeoffSpeed, |b| b.lower.limit),
+        lower_limit: binding.map_or(otherwise, |b| b.lower.limit),
         lower_vertex: binding.and_then(|b| b.lower.vertex),
-        upper_limit: binding.map_or(Limit::TakeoffSpeed, |b| b.upper.limit),
+        upper_limit: binding.map_or(otherwise, |b| b.upper.limit),
     }
 }
 

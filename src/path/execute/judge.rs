@@ -6,7 +6,7 @@ use super::{Flight, Measure, StatedValue, ViolatedLimit, Violation};
 use crate::{
     chain::{ConstrainedChain, Contact, Direction, GroundRefusal, Station},
     path::Hop,
-    quantity::{AngleInterval, MapPoint},
+    quantity::{Angle, AngleInterval, MapPoint},
     world::{Hopper, Limit, tolerant_speed_m_s},
 };
 
@@ -30,6 +30,7 @@ pub(super) struct Judge<'a> {
     pub(super) hopper: &'a Hopper,
     pub(super) hop: &'a Hop,
     pub(super) direction: Direction,
+    pub(super) gravity_m_s2: f64,
     pub(super) height_rounding_m: f64,
     pub(super) violations: &'a mut Vec<Violation>,
 }
@@ -97,14 +98,27 @@ impl Judge<'_> {
         self.ground(&hop.takeoff, meeting);
     }
 
+    /// How uncertain the landing's direction is: a place uncertain by `e` turns the direction of flight by `e` times the curvature
+    /// there, `g v_x / v^3`.
+    fn landing_angle_tolerance_rad(&self, flight: &Flight) -> f64 {
+        let v = flight.landing_speed_m_s;
+        ANGLE_TOLERANCE_RAD + flight.rounding_m * (self.gravity_m_s2 / v) * (flight.across_m_s / v) / v
+    }
+
+    /// How uncertain the landing's speed is: it changes by `g v_z / v^2` per metre flown.
+    fn landing_speed_rounding_m_s(&self, flight: &Flight) -> f64 {
+        let v = flight.landing_speed_m_s;
+        flight.rounding_m * (self.gravity_m_s2 / v) * (flight.landing_climb_m_s.abs() / v)
+    }
+
     /// What holds at the landing.
     fn landing(&mut self, flight: &Flight) {
         let meeting = Meeting {
             contact: Contact::Landing,
             angle_rad: flight.landing_angle.radians(),
-            angle_tolerance_rad: landing_angle_tolerance_rad(flight, self.hop),
+            angle_tolerance_rad: self.landing_angle_tolerance_rad(flight),
             speed_m_s: flight.landing_speed_m_s,
-            speed_rounding_m_s: landing_speed_rounding_m_s(flight, self.hop),
+            speed_rounding_m_s: self.landing_speed_rounding_m_s(flight),
         };
         self.station(&self.hop.landing, StatedValue::LandingStation);
         self.ground(&self.hop.landing, meeting);
@@ -175,10 +189,12 @@ impl Judge<'_> {
 
     /// The machine's own take-off angles.
     fn mechanical_angle(&mut self) {
-        let min = self.hopper.takeoff_angle_min.map_or(-FRAC_PI_2, |a| a.radians());
-        let max = self.hopper.takeoff_angle_max.map_or(FRAC_PI_2, |a| a.radians());
-        let x_m = self.hop.takeoff.point.x_m;
-        self.angle_between(Limit::MechanicalAngle, self.hop.takeoff_angle.radians(), (min, max), ANGLE_TOLERANCE_RAD, x_m);
+        let (min, max) = (self.hopper.takeoff_angle_min, self.hopper.takeoff_angle_max);
+        if min.is_some() || max.is_some() {
+            let ends = (min.map_or(-FRAC_PI_2, Angle::radians), max.map_or(FRAC_PI_2, Angle::radians));
+            let (angle_rad, x_m) = (self.hop.takeoff_angle.radians(), self.hop.takeoff.point.x_m);
+            self.angle_between(Limit::MechanicalAngle, angle_rad, ends, ANGLE_TOLERANCE_RAD, x_m);
+        }
     }
 
     /// Clearance over the vertices, and the ground between them.
@@ -202,13 +218,12 @@ impl Judge<'_> {
         }
         let planned = self.hop.landing.point;
         let (first_x_m, last_x_m) = self.chain.geometry().extent_m();
-        let (found, at_x_m) = match flight.contact {
-            Some(contact) => (libm::hypot(contact.x_m - planned.x_m, contact.z_m - planned.z_m), contact.x_m),
+        let (found, at_x_m) = if let Some(contact) = flight.contact {
+            (libm::hypot(contact.x_m - planned.x_m, contact.z_m - planned.z_m), contact.x_m)
+        } else {
             // It flies off the chain: by at least as much.
-            None => {
-                let end_x_m = if self.direction == Direction::Forward { last_x_m } else { first_x_m };
-                ((end_x_m - planned.x_m).abs(), end_x_m)
-            }
+            let end_x_m = if self.direction == Direction::Forward { last_x_m } else { first_x_m };
+            ((end_x_m - planned.x_m).abs(), end_x_m)
         };
         let measure = Measure { found, allowed: flight.place_tolerance_m, unit: "m" };
         self.note(ViolatedLimit::LandingPoint, Some(measure), at_x_m);
@@ -234,7 +249,7 @@ impl Judge<'_> {
     /// The numbers of the plan, against those flown.
     fn stated_values(&mut self, flight: &Flight) {
         let hop = self.hop;
-        let angle_tolerance_deg = landing_angle_tolerance_rad(flight, hop).to_degrees();
+        let angle_tolerance_deg = self.landing_angle_tolerance_rad(flight).to_degrees();
         self.stated(
             StatedValue::LandingAngle,
             hop.landing_angle.degrees(),
@@ -242,7 +257,7 @@ impl Judge<'_> {
             angle_tolerance_deg,
             "deg",
         );
-        let speed_tolerance_m_s = flight.landing_speed_m_s * TIME_TOLERANCE + landing_speed_rounding_m_s(flight, hop);
+        let speed_tolerance_m_s = flight.landing_speed_m_s * TIME_TOLERANCE + self.landing_speed_rounding_m_s(flight);
         self.stated(StatedValue::LandingSpeed, hop.landing_speed_m_s, flight.landing_speed_m_s, speed_tolerance_m_s, "m/s");
         let time_tolerance_s = flight.flight_time_s * TIME_TOLERANCE + time_rounding_s(flight);
         self.stated(StatedValue::FlightTime, hop.flight_time_s, flight.flight_time_s, time_tolerance_s, "s");
@@ -298,27 +313,9 @@ impl Judge<'_> {
     }
 }
 
-/// How uncertain the landing's direction is: a place uncertain by `e` turns the direction of flight by `e` times the curvature there,
-/// `g v_x / v^3`.
-fn landing_angle_tolerance_rad(flight: &Flight, hop: &Hop) -> f64 {
-    let v = flight.landing_speed_m_s;
-    ANGLE_TOLERANCE_RAD + flight.rounding_m * (mean_gravity_m_s2(flight, hop) / v) * (flight.across_m_s / v) / v
-}
-
-/// How uncertain the landing's speed is: it changes by `g v_z / v^2` per metre flown.
-fn landing_speed_rounding_m_s(flight: &Flight, hop: &Hop) -> f64 {
-    let v = flight.landing_speed_m_s;
-    flight.rounding_m * (mean_gravity_m_s2(flight, hop) / v) * (flight.landing_climb_m_s.abs() / v)
-}
-
 /// How uncertain the time of landing is: a place over the speed.
 fn time_rounding_s(flight: &Flight) -> f64 {
     flight.rounding_m / flight.landing_speed_m_s
-}
-
-/// Gravity as the flight felt it, m/s^2: change of climb over time.
-fn mean_gravity_m_s2(flight: &Flight, hop: &Hop) -> f64 {
-    (hop.takeoff_speed_m_s * libm::sin(hop.takeoff_angle.radians()) - flight.landing_climb_m_s).abs() / flight.flight_time_s
 }
 
 /// The numbers of a refusal, where it has some.

@@ -94,7 +94,8 @@ pub fn execute(
             continue;
         };
         let flown = Course::new(chain, hop, direction, gravity_m_s2, hopper.clearance_m, height_rounding_m).fly();
-        let mut judge = Judge { number: i + 1, chain, hopper, hop, direction, height_rounding_m, violations: &mut violations };
+        let mut judge =
+            Judge { number: i + 1, chain, hopper, hop, direction, gravity_m_s2, height_rounding_m, violations: &mut violations };
         match &flown {
             Some(flight) => judge.flight(flight),
             None => judge.no_flight(),
