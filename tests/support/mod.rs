@@ -9,10 +9,10 @@ use chta::{
 };
 
 /// `SplitMix64`: the same numbers on every platform and with every version of every crate.
-pub struct Draw(u64);
+pub(crate) struct Draw(u64);
 
 impl Draw {
-    pub const fn seeded(seed: u64) -> Self {
+    pub(crate) const fn seeded(seed: u64) -> Self {
         Self(seed)
     }
 
@@ -26,39 +26,39 @@ impl Draw {
 
     /// In [0, 1).
     #[expect(clippy::cast_precision_loss, reason = "53 bits")]
-    pub fn unit(&mut self) -> f64 {
+    pub(crate) fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    pub fn uniform(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn uniform(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * self.unit()
     }
 
-    pub fn log_uniform(&mut self, low: f64, high: f64) -> f64 {
+    pub(crate) fn log_uniform(&mut self, low: f64, high: f64) -> f64 {
         self.uniform(low.ln(), high.ln()).exp()
     }
 
     /// In 0..count.
     #[expect(clippy::cast_possible_truncation, reason = "small counts")]
-    pub fn below(&mut self, count: usize) -> usize {
+    pub(crate) fn below(&mut self, count: usize) -> usize {
         (self.next() % count as u64) as usize
     }
 
-    pub fn chance(&mut self, probability: f64) -> bool {
+    pub(crate) fn chance(&mut self, probability: f64) -> bool {
         self.unit() < probability
     }
 
-    pub fn sign(&mut self) -> f64 {
+    pub(crate) fn sign(&mut self) -> f64 {
         if self.chance(0.5) { 1.0 } else { -1.0 }
     }
 
     /// Gravity from a boulder's to above Jupiter's, m/s^2.
-    pub fn gravity(&mut self) -> f64 {
+    pub(crate) fn gravity(&mut self) -> f64 {
         self.log_uniform(1e-5, 25.0)
     }
 
     /// A rough profile: flats, slopes, steps, walls and needles, with here and there a segment of next to no length.
-    pub fn profile(&mut self, segments: usize, size_m: f64) -> Vec<ChainPoint> {
+    pub(crate) fn profile(&mut self, segments: usize, size_m: f64) -> Vec<ChainPoint> {
         let mut points = vec![ChainPoint::new(self.uniform(-1.0, 1.0) * size_m, self.uniform(-1.0, 1.0) * size_m)];
         for i in 0..segments {
             let run = size_m * if self.chance(0.1) { self.log_uniform(1e-6, 1e-2) } else { self.uniform(0.05, 1.0) };
@@ -74,7 +74,7 @@ impl Draw {
     }
 
     /// Line constraints: cones from wide open to a sliver about the vertical, speeds about `speed_m_s`.
-    pub fn line(&mut self, speed_m_s: f64) -> LineConstraints {
+    pub(crate) fn line(&mut self, speed_m_s: f64) -> LineConstraints {
         let takeoff = match self.below(4) {
             0 => (-90.0, 90.0),
             1 => (self.uniform(-60.0, 60.0), 120.0),
@@ -92,7 +92,7 @@ impl Draw {
 }
 
 /// Line constraints from degrees and m/s.
-pub fn line(takeoff_deg: (f64, f64), takeoff_m_s: f64, landing_deg: (f64, f64), landing_m_s: f64) -> LineConstraints {
+pub(crate) fn line(takeoff_deg: (f64, f64), takeoff_m_s: f64, landing_deg: (f64, f64), landing_m_s: f64) -> LineConstraints {
     LineConstraints {
         takeoff: ContactRule::new(AngleInterval::from_degrees(takeoff_deg.0, takeoff_deg.1), takeoff_m_s),
         landing: ContactRule::new(AngleInterval::from_degrees(landing_deg.0, landing_deg.1), landing_m_s),
@@ -100,10 +100,10 @@ pub fn line(takeoff_deg: (f64, f64), takeoff_m_s: f64, landing_deg: (f64, f64), 
 }
 
 /// A surface that adds nothing to explicit constraints.
-pub const NO_SURFACE: Surface = Surface { grip: None, rest: RestSlope::Unlimited };
+pub(crate) const NO_SURFACE: Surface = Surface { grip: None, rest: RestSlope::Unlimited };
 
 /// A chain with explicit constraints per segment, (forward, reverse).
-pub fn explicit(points: &[ChainPoint], lines: &[(LineConstraints, LineConstraints)], rest: RestSlope) -> ConstrainedChain {
+pub(crate) fn explicit(points: &[ChainPoint], lines: &[(LineConstraints, LineConstraints)], rest: RestSlope) -> ConstrainedChain {
     let grounds = lines
         .iter()
         .map(|&(forward, reverse)| Ground {
@@ -116,13 +116,13 @@ pub fn explicit(points: &[ChainPoint], lines: &[(LineConstraints, LineConstraint
 }
 
 /// A chain with the same explicit constraints everywhere and in both directions.
-pub fn uniform(points: &[ChainPoint], line: LineConstraints) -> ConstrainedChain {
+pub(crate) fn uniform(points: &[ChainPoint], line: LineConstraints) -> ConstrainedChain {
     explicit(points, &vec![(line, line); points.len() - 1], RestSlope::Unlimited)
 }
 
 /// The value below which this share of the values lies.
 #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index from a share")]
-pub fn quantile(values: &mut [f64], share: f64) -> f64 {
+pub(crate) fn quantile(values: &mut [f64], share: f64) -> f64 {
     assert!(!values.is_empty(), "a quantile of nothing");
     values.sort_by(f64::total_cmp);
     values[((values.len() - 1) as f64 * share).round() as usize]
