@@ -1,4 +1,4 @@
-//! Every limit of single hops against 60-digit arithmetic: data/validation/hop_limits.py and the table it wrote.
+//! Every limit of single hops against 60-digit arithmetic: `data/validation/hop_limits.py` and the table it wrote.
 #![allow(clippy::unwrap_used, clippy::print_stdout, reason = "a broken table fails the test; quantiles are for the report")]
 
 mod support;

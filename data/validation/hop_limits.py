@@ -8,7 +8,8 @@ The program states every limit in the loft n = m - b; this page states them in t
 equations, and shares nothing with it. Inputs are doubles, printed so that they read back as the same double, and taken as exact.
 Ends are take-off angles in radians, blank where the limit leaves nothing. Cases whose answer hangs on the last digits of the input
 (an interval that is empty or not within 1e-12) are not drawn; speeds a hair above the least one are, since the program's speed
-tolerance of 1e-9 makes them well-posed.
+tolerance of 1e-9 makes them well-posed. Not drawn either are speeds whose last binary digit alone moves an end by more than 1e-10 rad
+(a landing at next to the least speed, falling almost vertically): no arithmetic on doubles says more of them than the input does.
 
 The apex limit bounds the highest point of the flown arc: the take-off where it never rises, the landing where it still rises there.
 """
@@ -79,6 +80,19 @@ def limits_of(c):
 def well_posed(b, interval):
     """Whether an interval is empty or not by more than rounding."""
     return interval is None or abs(interval[1] - interval[0]) > mpf(10) ** -12 * (1 + abs(b))
+
+
+def resolved(c, found):
+    """Whether the last digit of either speed moves no end by more than 1e-10 rad."""
+    other = dict(c)
+    for name in ("takeoff", "landing"):
+        other[name + "_speed_max_m_s"] = mpf(c[name + "_speed_max_m_s"]) * (1 - mpf(2) ** -53)
+    moved = limits_of(other)[3]
+    for name in ("takeoff-speed", "landing-speed"):
+        one, two = found[name], moved[name]
+        if (one is None) != (two is None) or (one and any(abs(atan(m) - atan(n)) > mpf(10) ** -10 for m, n in zip(one, two))):
+            return False
+    return True
 
 
 def arc(g, run, b, m):
@@ -152,7 +166,7 @@ def main():
     ends = [f"{name}_{end}_rad" for name in LIMITS + ["all"] for end in ("min", "max")]
     arcs = [f"{choice}_{what}" for choice in CHOICES for what in ("takeoff_speed_m_s", "landing_speed_m_s", "flight_time_s")]
     print(",".join(INPUTS + ends + arcs))
-    rows = 0
+    rows, unresolved = 0, 0
     while rows < ROWS:
         c = draw(r)
         if not usable(c):
@@ -164,6 +178,9 @@ def main():
         every = None if None in parts or low >= high else (low, high)
         if not all(well_posed(b, i) for i in parts) or not well_posed(b, (low, high)):
             continue
+        if not resolved(c, found):
+            unresolved += 1
+            continue
         fields = [text(c[name]) for name in INPUTS]
         for name in LIMITS:
             interval = found.get(name, ())
@@ -172,6 +189,7 @@ def main():
         fields += [""] * 9 if every is None else [text(v) for m in chosen(b, *every) for v in arc(g, run, b, m)]
         print(",".join(fields))
         rows += 1
+    print(f"{unresolved} cases left out beside {rows}: beyond the resolution of their own speeds", file=sys.stderr)
 
 
 if __name__ == "__main__":
