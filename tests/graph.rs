@@ -257,8 +257,8 @@ fn closure(prices: &[Vec<Option<Price>>], from: usize, transposed: bool) -> Vec<
     let mut next = 0;
     while next < reached.len() {
         let here = reached[next];
-        for there in 0..prices.len() {
-            let edge = if transposed { prices[there][here] } else { prices[here][there] };
+        for (there, row) in prices.iter().enumerate() {
+            let edge = if transposed { row[here] } else { prices[here][there] };
             if edge.is_some() && !reached.contains(&there) {
                 reached.push(there);
             }
@@ -361,14 +361,13 @@ fn refusing_ends_are_named_with_a_usable_point_where_there_is_one() {
         assert_eq!(refusals.iter().map(|r| r.contact).collect::<Vec<_>>(), expected);
         let (first, last) = chain.geometry().extent_m();
         for refusal in refusals {
-            match refusal.nearest {
-                Some(nearest) => assert!(is_usable(&chain, &nearest, refusal.contact)),
-                None => {
-                    let x = |i: i32| (first + (last - first) * f64::from(i) / 400.0).min(last);
-                    let anywhere = (0..=400).map(|i| chain.geometry().station(x(i)).unwrap());
-                    assert!(!anywhere.clone().any(|s| allowed(&s, refusal.contact)), "there are usable points");
-                    nowhere += 1;
-                }
+            if let Some(nearest) = refusal.nearest {
+                assert!(is_usable(&chain, &nearest, refusal.contact));
+            } else {
+                let x = |i: i32| (first + (last - first) * f64::from(i) / 400.0).min(last);
+                let anywhere = (0..=400).map(|i| chain.geometry().station(x(i)).unwrap());
+                assert!(!anywhere.clone().any(|s| allowed(&s, refusal.contact)), "there are usable points");
+                nowhere += 1;
             }
             if refusal.contact == Contact::Takeoff { starts += 1 } else { goals += 1 }
         }
