@@ -1,7 +1,7 @@
 //! Which of the feasible arcs to fly.
 
 use super::LineOfSight;
-use crate::quantity::{Angle, SlopeInterval};
+use crate::quantity::SlopeInterval;
 
 /// How to choose the take-off angle from its feasible set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -55,11 +55,18 @@ impl TakeoffChoice {
         match self {
             Self::LeastSpeed => sight.stretch().clamp(lower, upper),
             Self::LeastTime => lower,
-            Self::MidRange => {
-                let end = |loft: f64| Angle::from_slope(sight.slope() + loft).radians();
-                let middle = Angle::from_radians(0.5 * (end(lower) + end(upper)));
-                (middle.slope() - sight.slope()).clamp(lower, upper.min(f64::MAX))
-            }
+            Self::MidRange => bisecting_loft(sight, lower, upper),
         }
     }
+}
+
+/// The loft whose take-off direction bisects the angle between those of two lofts.
+///
+/// Unit vectors along both directions add up to one along the bisector, whose loft is therefore the mean of both, each weighted by the
+/// other's `sqrt(1 + m^2)`: no tangent, and no digits lost next to the vertical.
+fn bisecting_loft(sight: LineOfSight, lower: f64, upper: f64) -> f64 {
+    let length = |loft: f64| libm::hypot(1.0, sight.slope() + loft);
+    let first = length(lower);
+    let middle = if upper.is_infinite() { lower + first } else { lower + (upper - lower) * (first / (first + length(upper))) };
+    middle.clamp(lower, upper.min(f64::MAX))
 }

@@ -54,6 +54,26 @@ impl LineOfSight {
         self.stretch
     }
 
+    /// `b + sqrt(1 + b^2)`: the least `v^2 / (g X)` of a take-off, and the take-off slope that needs it (P eq. 16, 20).
+    ///
+    /// Down a slope written as `1 / (sqrt(1 + b^2) - b)`, which keeps its digits.
+    ///
+    /// ```
+    /// use chta::ballistics::LineOfSight;
+    /// assert_eq!(LineOfSight::new(4.0, 3.0).lift(), 2.0);
+    /// assert_eq!(LineOfSight::new(4.0, -3.0).lift(), 0.5);
+    /// ```
+    #[inline]
+    pub fn lift(&self) -> f64 {
+        lift(self.slope, self.stretch)
+    }
+
+    /// `sqrt(1 + b^2) - b`: the least `v^2 / (g X)` of a landing, which is the take-off of the same line travelled backwards (P eq. 18).
+    #[inline]
+    pub fn reversed_lift(&self) -> f64 {
+        lift(-self.slope, self.stretch)
+    }
+
     /// The distance R = X sqrt(1 + b^2), m (P eq. 6).
     pub fn length_m(&self) -> f64 {
         self.run_m * self.stretch
@@ -63,4 +83,10 @@ impl LineOfSight {
     pub fn angle(&self) -> Angle {
         Angle::from_slope(self.slope)
     }
+}
+
+/// `b + w` for `w = sqrt(1 + b^2)`, without cancellation.
+#[inline]
+fn lift(slope: f64, stretch: f64) -> f64 {
+    if slope >= 0.0 { slope + stretch } else { 1.0 / (stretch - slope) }
 }

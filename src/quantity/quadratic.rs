@@ -1,13 +1,16 @@
 //! Sign-safe roots of the quadratics that limits lead to.
 
-/// The quadratic `n^2 - 2 h n + w^2`, known by the half-sum `h` of its roots and the root `w >= 0` of their product.
+/// The quadratic `n^2 - 2 (w + e) n + w^2`, known by the root `w >= 0` of its roots' product and the excess `e` of half their sum
+/// over it.
 ///
-/// Every speed and apex limit of a hop has this form, with a product that is a sum of squares, so neither root loses digits: the
-/// larger is `h + r` with `r = sqrt((h - w)(h + w))`, the smaller `w^2 / (h + r)`.
+/// Every speed and apex limit of a hop has this form, with a product that is a sum of squares. The roots are real where the excess is
+/// not negative, and how far apart they are hangs on it alone, so it is given as such: taken as the difference of two large numbers
+/// (at the foot of a wall, next to the end of the reach) it would lose its digits. Neither root then loses any: the larger is
+/// `w + e + sqrt(e (2 w + e))`, the smaller `w^2` over it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonicQuadratic {
-    /// Half the sum of the roots.
-    pub half_sum: f64,
+    /// Half the sum of the roots, less their geometric mean.
+    pub excess: f64,
     /// The geometric mean of the roots, not negative.
     pub geometric_mean: f64,
 }
@@ -22,23 +25,27 @@ pub struct Roots {
 }
 
 impl MonicQuadratic {
-    /// The two roots where they are real and not negative, else `None` (also for NaN).
+    /// The two roots where they are real and the larger one is positive, else `None` (also for NaN).
     ///
     /// ```
     /// use chta::quantity::MonicQuadratic;
     /// // n^2 - 5 n + 4 = (n - 1)(n - 4)
-    /// let roots = MonicQuadratic { half_sum: 2.5, geometric_mean: 2.0 }.roots().unwrap();
+    /// let roots = MonicQuadratic { excess: 0.5, geometric_mean: 2.0 }.roots().unwrap();
     /// assert_eq!((roots.smaller, roots.larger), (1.0, 4.0));
     /// // The school formula loses the small root of n^2 - 2e10 n + 1 altogether.
-    /// let roots = MonicQuadratic { half_sum: 1e10, geometric_mean: 1.0 }.roots().unwrap();
+    /// let roots = MonicQuadratic { excess: 1e10 - 1.0, geometric_mean: 1.0 }.roots().unwrap();
     /// assert_eq!(roots.smaller, 5e-11);
+    /// // Half the sum 1000 (1 + 1e-18) is 1000 in floating point; the roots still stand apart.
+    /// let roots = MonicQuadratic { excess: 1e-15, geometric_mean: 1000.0 }.roots().unwrap();
+    /// assert!((roots.larger - roots.smaller - 2.0 * 2e-12f64.sqrt()).abs() < 1e-12);
     /// ```
     #[inline]
     pub fn roots(self) -> Option<Roots> {
-        let Self { half_sum: h, geometric_mean: w } = self;
-        if h >= w && h > 0.0 {
+        let Self { excess: e, geometric_mean: w } = self;
+        let half_sum = w + e;
+        if e >= 0.0 && half_sum > 0.0 {
             // Two square roots: the product under one root would overflow where h^2 does.
-            let larger = h + (h - w).sqrt() * (h + w).sqrt();
+            let larger = half_sum + e.sqrt() * (half_sum + w).sqrt();
             // w / larger first: w^2 may overflow where the root does not.
             Some(Roots { smaller: w * (w / larger), larger })
         } else {

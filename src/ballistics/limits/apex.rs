@@ -32,7 +32,8 @@ use crate::{
 #[inline]
 pub fn apex_height(sight: LineOfSight, height_max_m: f64) -> SlopeInterval {
     let (b, h) = (sight.slope(), height_max_m / sight.run_m());
-    match (MonicQuadratic { half_sum: 2.0 * h - b, geometric_mean: b.abs() }).roots() {
+    // Half the sum of the roots, 2 h - b, less their geometric mean |b|.
+    match (MonicQuadratic { excess: 2.0 * (h - b.max(0.0)), geometric_mean: b.abs() }).roots() {
         Some(roots) => SlopeInterval { lower: f64::NEG_INFINITY, upper: roots.larger },
         None => SlopeInterval::EMPTY,
     }

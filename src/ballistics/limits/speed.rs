@@ -29,7 +29,7 @@ use crate::{
 /// ```
 #[inline]
 pub fn takeoff_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {
-    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) - sight.slope())
+    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) - sight.lift())
 }
 
 /// The lofts at which the landing speed stays within its limit.
@@ -50,7 +50,7 @@ pub fn takeoff_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) 
 /// ```
 #[inline]
 pub fn landing_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {
-    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) + sight.slope())
+    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) - sight.reversed_lift())
 }
 
 /// Both speed limits at once, with one square root: the two quadratics have the same product of roots, so the one with the smaller
@@ -64,8 +64,8 @@ pub fn landing_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) 
 /// ```
 #[inline]
 pub fn speeds(sight: LineOfSight, takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {
-    let takeoff = reach_ratio(sight, takeoff_speed_max_m_s, gravity_m_s2) - sight.slope();
-    let landing = reach_ratio(sight, landing_speed_max_m_s, gravity_m_s2) + sight.slope();
+    let takeoff = reach_ratio(sight, takeoff_speed_max_m_s, gravity_m_s2) - sight.lift();
+    let landing = reach_ratio(sight, landing_speed_max_m_s, gravity_m_s2) - sight.reversed_lift();
     between_roots(sight, takeoff.min(landing))
 }
 
@@ -76,10 +76,10 @@ fn reach_ratio(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> f64
     v * v / (gravity_m_s2 * sight.run_m())
 }
 
-/// Between the roots of `n^2 - 2 h n + (1 + b^2)`.
+/// Between the roots of `n^2 - 2 (w + e) n + w^2`, with `w = sqrt(1 + b^2)` and the excess `e` of `q` over the ratio of least speed.
 #[inline]
-fn between_roots(sight: LineOfSight, half_sum: f64) -> SlopeInterval {
-    match (MonicQuadratic { half_sum, geometric_mean: sight.stretch() }).roots() {
+fn between_roots(sight: LineOfSight, excess: f64) -> SlopeInterval {
+    match (MonicQuadratic { excess, geometric_mean: sight.stretch() }).roots() {
         Some(roots) => SlopeInterval { lower: roots.smaller, upper: roots.larger },
         None => SlopeInterval::EMPTY,
     }

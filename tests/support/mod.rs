@@ -1,0 +1,129 @@
+//! What several test files share: a seeded generator biased to the ugly, and short ways to build chains.
+#![allow(dead_code, reason = "each test file uses its own part")]
+#![allow(clippy::unwrap_used, reason = "test helpers: a chain that cannot be built fails its test")]
+
+use chta::{
+    chain::{ConstrainedChain, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
+    quantity::{AngleInterval, ChainPoint},
+    world::{Hopper, RestSlope, Surface},
+};
+
+/// `SplitMix64`: the same numbers on every platform and with every version of every crate.
+pub(crate) struct Draw(u64);
+
+impl Draw {
+    pub(crate) const fn seeded(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    /// In [0, 1).
+    #[expect(clippy::cast_precision_loss, reason = "53 bits")]
+    pub(crate) fn unit(&mut self) -> f64 {
+        (self.next() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    pub(crate) fn uniform(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    pub(crate) fn log_uniform(&mut self, low: f64, high: f64) -> f64 {
+        self.uniform(low.ln(), high.ln()).exp()
+    }
+
+    /// In 0..count.
+    #[expect(clippy::cast_possible_truncation, reason = "small counts")]
+    pub(crate) fn below(&mut self, count: usize) -> usize {
+        (self.next() % count as u64) as usize
+    }
+
+    pub(crate) fn chance(&mut self, probability: f64) -> bool {
+        self.unit() < probability
+    }
+
+    pub(crate) fn sign(&mut self) -> f64 {
+        if self.chance(0.5) { 1.0 } else { -1.0 }
+    }
+
+    /// Gravity from a boulder's to above Jupiter's, m/s^2.
+    pub(crate) fn gravity(&mut self) -> f64 {
+        self.log_uniform(1e-5, 25.0)
+    }
+
+    /// A rough profile: flats, slopes, steps, walls and needles, with here and there a segment of next to no length.
+    pub(crate) fn profile(&mut self, segments: usize, size_m: f64) -> Vec<ChainPoint> {
+        let mut points = vec![ChainPoint::new(self.uniform(-1.0, 1.0) * size_m, self.uniform(-1.0, 1.0) * size_m)];
+        for i in 0..segments {
+            let run = size_m * if self.chance(0.1) { self.log_uniform(1e-6, 1e-2) } else { self.uniform(0.05, 1.0) };
+            let rise = match self.below(6) {
+                0 => 0.0,
+                1 => self.sign() * self.log_uniform(1e-6, 1e-1) * size_m,
+                2 => self.sign() * run * self.log_uniform(1.0, 30.0).min(2.0 * size_m / run),
+                _ => self.uniform(-0.6, 0.6) * run,
+            };
+            points.push(ChainPoint::new(points[i].x_m + run, points[i].z_m + rise));
+        }
+        points
+    }
+
+    /// Line constraints: cones from wide open to a sliver about the vertical, speeds about `speed_m_s`.
+    pub(crate) fn line(&mut self, speed_m_s: f64) -> LineConstraints {
+        let takeoff = match self.below(4) {
+            0 => (-90.0, 90.0),
+            1 => (self.uniform(-60.0, 60.0), 120.0),
+            2 => (self.uniform(-60.0, 40.0), self.uniform(40.0, 89.9)),
+            _ => (self.uniform(20.0, 70.0), self.uniform(70.0, 95.0)),
+        };
+        let landing = match self.below(4) {
+            0 => (-90.0, 90.0),
+            1 => (-120.0, self.uniform(-60.0, 60.0)),
+            2 => (self.uniform(-89.9, -40.0), self.uniform(-40.0, 60.0)),
+            _ => (self.uniform(-95.0, -70.0), self.uniform(-70.0, -20.0)),
+        };
+        line(takeoff, speed_m_s * self.log_uniform(0.5, 2.0), landing, speed_m_s * self.log_uniform(0.5, 2.0))
+    }
+}
+
+/// Line constraints from degrees and m/s.
+pub(crate) fn line(takeoff_deg: (f64, f64), takeoff_m_s: f64, landing_deg: (f64, f64), landing_m_s: f64) -> LineConstraints {
+    LineConstraints {
+        takeoff: ContactRule::new(AngleInterval::from_degrees(takeoff_deg.0, takeoff_deg.1), takeoff_m_s),
+        landing: ContactRule::new(AngleInterval::from_degrees(landing_deg.0, landing_deg.1), landing_m_s),
+    }
+}
+
+/// A surface that adds nothing to explicit constraints.
+pub(crate) const NO_SURFACE: Surface = Surface { grip: None, rest: RestSlope::Unlimited };
+
+/// A chain with explicit constraints per segment, (forward, reverse).
+pub(crate) fn explicit(points: &[ChainPoint], lines: &[(LineConstraints, LineConstraints)], rest: RestSlope) -> ConstrainedChain {
+    let grounds = lines
+        .iter()
+        .map(|&(forward, reverse)| Ground {
+            form: GroundForm::Explicit { forward: Some(forward), reverse: Some(reverse) },
+            keep_out: false,
+        })
+        .collect();
+    let chain = PolygonalChain::new(points.to_vec(), grounds, None).unwrap();
+    ConstrainedChain::new(chain, &Hopper::UNLIMITED, &Surface { rest, ..NO_SURFACE }).unwrap()
+}
+
+/// A chain with the same explicit constraints everywhere and in both directions.
+pub(crate) fn uniform(points: &[ChainPoint], line: LineConstraints) -> ConstrainedChain {
+    explicit(points, &vec![(line, line); points.len() - 1], RestSlope::Unlimited)
+}
+
+/// The value below which this share of the values lies.
+#[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index from a share")]
+pub(crate) fn quantile(values: &mut [f64], share: f64) -> f64 {
+    assert!(!values.is_empty(), "a quantile of nothing");
+    values.sort_by(f64::total_cmp);
+    values[((values.len() - 1) as f64 * share).round() as usize]
+}
