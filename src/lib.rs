@@ -1,11 +1,85 @@
-//! Constrained hopping traversability analysis.
-
-pub mod quantity;
+//! Constrained hopping traversability analysis: can a ballistic hopper get from here to there, in how few hops, with which commands?
+//!
+//! A hopper travels by ballistic hops over terrain that limits it: slopes it would slide on (friction cones limit the take-off and
+//! landing angles), greatest take-off and landing speeds, and the ground in between. This crate answers for a vertical slice of an
+//! elevation raster, or for a polygonal chain of its own.
+//!
+//! # From a DEM to a path
+//!
+//! ```
+//! use chta::{
+//!     ballistics::{HopTest, Split, TakeoffChoice},
+//!     chain::{ConstrainedChain, PolygonalChain},
+//!     graph::{Outcome, PointSpacing, SearchOptions, search},
+//!     path::{execute, generate},
+//!     quantity::MapPoint,
+//!     terrain::{SyntheticTerrain, slice, synthesise},
+//!     world::{Body, FrictionCone, Grip, Hopper, RestSlope, Surface},
+//! };
+//!
+//! // Terrain: a DEM (here made up from a seed; `terrain::read_dem` reads one), cut along a vertical plane.
+//! let dem = synthesise(&SyntheticTerrain { rows: 60, cols: 120, ..SyntheticTerrain::default() })?;
+//! let profile = slice(&dem, MapPoint::new(10.0, 30.0), MapPoint::new(110.0, 32.0))?;
+//!
+//! // Chain: what the ground allows this hopper, segment by segment and in both directions.
+//! let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(8.0, 8.0) };
+//! let friction = FrictionCone::new(0.6)?;
+//! let surface = Surface { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
+//! let chain = ConstrainedChain::new(PolygonalChain::from_profile(&profile, Some(friction))?, &hopper, &surface)?;
+//!
+//! // Hop test: the feasible take-off angles of one pair, limit by limit.
+//! let moon = Body::named("moon").ok_or("no moon")?;
+//! let test = HopTest::new(&chain, &hopper, moon.gravity_m_s2);
+//! let (first_m, last_m) = chain.geometry().extent_m();
+//! let (start, goal) = (chain.geometry().station(first_m)?, chain.geometry().station(last_m)?);
+//! let set = test.takeoff_set(&start, &goal).ok_or("the same point")?;
+//! assert!(set.angles().is_none(), "100 m are too far for one hop");
+//! println!("{}", set.conflict().ok_or("no conflict")?);
+//!
+//! // Graph and search: fewest hops, then least effort.
+//! let options = SearchOptions { spacing: Some(PointSpacing::AtMostM(1.0)), ..SearchOptions::default() };
+//! let answer = search(&test, start, goal, &options, &mut |_| {})?;
+//! let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path over these nodes") };
+//!
+//! // Path: the command of every hop; and an independent checker that flies it again.
+//! let path = generate(&test, &legs, TakeoffChoice::LeastSpeed, Split::FullReach)?;
+//! assert!(path.hops.len() >= 3);
+//! assert!(execute(&chain, &hopper, moon.gravity_m_s2, &path, Some((start, goal))).passes());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # The ladder
+//!
+//! A module uses only those above it; `tests/layers.rs` reads the sources and holds it so.
+//!
+//! ```text
+//! quantity     angles, slopes, points, ids, sign-safe roots
+//! world        bodies, the hopper, friction cones
+//! terrain      elevation rasters, slices of them, terrain made up from a seed
+//! chain        the polygonal chain and what each segment allows
+//! ballistics   the equations: every limit as an interval, the hop test, many hops on a segment
+//! graph        nodes, hops as edges, the search
+//! path         the hops to fly, and `execute`, which flies them again without those equations
+//! report       results as plain data; text, JSON, CSV, GeoJSON and the picture are views of it
+//! scenario     TOML, validated; wires the pipeline
+//! ```
+//!
+//! # Conventions
+//!
+//! SI units; degrees at the edges only, where names end in `_deg`. Inside, a direction is its slope. Angles are elevations above the
+//! direction of travel. "No" is an answer, not an error: a refusal names its limits. The equations are those of the paper that
+//! introduced constrained hopping traversability analysis on nonuniform polygonal chains (IEEE Access; "P" or "the CHTA paper" in the
+//! sources) and of Campana and Laumond, *Ballistic motion planning*, numbered as there.
+//!
+//! # Features
+//!
+//! `cli` (default): the command `chta`. `plot` (default): the SVG picture. Neither is needed by the analysis.
 
 pub mod ballistics;
 pub mod chain;
 pub mod graph;
 pub mod path;
+pub mod quantity;
 pub mod report;
 pub mod scenario;
 pub mod terrain;

@@ -1,0 +1,34 @@
+//! README, CONTRIBUTING and CI name the same commands.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot read the documents should stop")]
+
+use std::{fs, path::Path};
+
+fn read(name: &str) -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(name)).unwrap()
+}
+
+#[test]
+fn contributing_lists_what_ci_runs() {
+    let readme = read("README.md");
+    let marked = readme.split("<!-- test command -->").nth(1).unwrap().split("<!-- end of test command -->").next().unwrap();
+    let test_command: Vec<_> = marked.lines().filter(|line| line.starts_with("cargo ")).collect();
+    assert_eq!(test_command.len(), 1, "README marks one test command");
+
+    let ci = read(".ci/run");
+    let steps = ci.lines().filter_map(|line| {
+        let (settings, command) = line.split_once("step ")?;
+        let runs = !line.trim_start().starts_with('#') && !line.contains("step()");
+        runs.then(|| format!("{settings}{command}").replace("$test_command", test_command[0]))
+    });
+    let contributing = read("CONTRIBUTING.md");
+    let listed: Vec<_> = contributing.split("```").nth(1).unwrap().lines().skip(1).map(str::to_owned).collect();
+    assert_eq!(listed, steps.collect::<Vec<_>>());
+}
+
+#[test]
+fn the_manifest_and_the_readme_agree_on_the_rust_version() {
+    let manifest = read("Cargo.toml");
+    let version = manifest.lines().find_map(|line| line.strip_prefix("rust-version = \"")).unwrap().trim_end_matches('"');
+    assert!(read("README.md").contains(&format!("Rust {version} or newer")), "README speaks of another Rust than {version}");
+}
