@@ -6,5 +6,6 @@ pub mod ballistics;
 pub mod chain;
 pub mod graph;
 pub mod path;
+pub mod report;
 pub mod terrain;
 pub mod world;

@@ -1,0 +1,4 @@
+//! What goes to people: the picture of an analysis.
+
+#[cfg(feature = "plot")]
+pub mod figure;
