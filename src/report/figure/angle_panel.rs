@@ -5,11 +5,13 @@ use super::{
     data::{HopFigure, Thinned},
     palette::{BLACK, BLUE, LEFT_MM, RIGHT_MM, SKY, SMALL_MM},
     sheet::{Anchor, Label, Line, Pen, Sheet, text_width_mm},
-    ticks::Ticks,
+    ticks::{Ticks, one_in},
 };
 
 /// Height of the bars' own part of the panel.
 const BARS_MM: f64 = 30.0;
+/// Room left and right of the bars.
+const SIDE_MM: f64 = 2.0;
 /// Least range of angles shown.
 const LEAST_RANGE_DEG: f64 = 8.0;
 
@@ -52,15 +54,12 @@ impl Layout {
     #[expect(clippy::cast_precision_loss, reason = "at most a few hundred hops are drawn")]
     fn new(hops: &Thinned<HopFigure>, top_mm: f64) -> Self {
         let widest = hops.shown.iter().flat_map(names).map(|name| text_width_mm(&name, SMALL_MM)).fold(0.0, f64::max);
-        let slot_mm = (RIGHT_MM - LEFT_MM) / (hops.shown.len().max(1) as f64 + 0.4);
+        let slot_mm = (RIGHT_MM - LEFT_MM - 2.0 * SIDE_MM) / hops.shown.len().max(1) as f64;
         let upright = slot_mm < widest + 1.5;
         let number_mm = text_width_mm(&hops.of.to_string(), SMALL_MM);
         let needed_mm = if upright { (SMALL_MM + 0.8).max(number_mm + 1.0) } else { 0.0 };
-        let every = std::iter::successors(Some(1usize), |n| n.checked_add(1))
-            .take(hops.shown.len().max(1))
-            .find(|n| *n as f64 * slot_mm >= needed_mm)
-            .unwrap_or(1);
-        let names_mm = 2.0 + if upright { widest } else { SMALL_MM };
+        let every = one_in(needed_mm / slot_mm);
+        let names_mm = 2.4 + if upright { widest } else { SMALL_MM };
         let (low, high) = hops.shown.iter().fold((90.0f64, -90.0f64), |(low, high), hop| {
             let feasible = hop.hop.takeoff_angles;
             (low.min(feasible.min.degrees()), high.max(feasible.max.degrees()))
@@ -79,7 +78,7 @@ impl Layout {
     /// The middle of a hop's slot.
     #[expect(clippy::cast_precision_loss, reason = "at most a few hundred hops are drawn")]
     fn x(&self, i: usize) -> f64 {
-        self.panel.left + (i as f64 + 0.7) * self.slot_mm
+        self.panel.left + SIDE_MM + (i as f64 + 0.5) * self.slot_mm
     }
 
     fn axes(&self, sheet: &mut Sheet, hops: &Thinned<HopFigure>) {
@@ -109,6 +108,9 @@ impl Layout {
             return;
         }
         let [lower, upper] = names(hop);
+        // Names of a few hops stand at their bars; of many they keep clear of the bars in between.
+        let (low, high) = self.range_deg;
+        let (top, bottom) = if self.every > 1 { (self.y(high), self.y(low)) } else { (top, bottom) };
         let (above, below) = ((x, top - 1.2), (x, bottom + 1.2));
         if self.upright {
             sheet.label(Label::new(upper, above, SMALL_MM).turned());
@@ -129,4 +131,5 @@ fn chosen(sheet: &mut Sheet, (x, y): (f64, f64), half: f64) {
 }
 
 /// What the panel shows, as its caption.
-pub(super) const CAPTION: &str = "Bars: feasible take-off angles above the horizontal, in the direction of travel, with the limits that set their ends; diamond: the angle chosen.";
+pub(super) const CAPTION: &str =
+    "Bars: feasible take-off angles above the horizontal, with the limits that set their ends; diamond: the angle chosen.";

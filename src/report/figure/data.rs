@@ -16,7 +16,7 @@ use crate::{
 /// The most hops drawn; of longer paths every n-th is, and the picture says so.
 pub const MOST_HOPS_DRAWN: usize = 300;
 /// The most nodes drawn.
-const MOST_NODES_DRAWN: usize = 300;
+const MOST_NODES_DRAWN: usize = 150;
 /// Room beside the journey, over its length.
 const MARGIN: f64 = 0.06;
 /// A journey over this share of the chain or more shows the whole chain.

@@ -30,9 +30,9 @@ pub(super) fn above(sheet: &mut Sheet, input: &FigureInput<'_>, data: &FigureDat
 }
 
 /// What the panels leave to words; returns where it ends.
-pub(super) fn below(sheet: &mut Sheet, input: &FigureInput<'_>, data: &FigureData, top_mm: f64) -> f64 {
+pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
     let mut y = top_mm;
-    for text in remarks(data, input.answer) {
+    for text in remarks(data) {
         y = paragraph(sheet, &text, TEXT_MM, false, y);
     }
     y
@@ -58,7 +58,7 @@ fn conditions(input: &FigureInput<'_>) -> String {
     let gravity = format!("g = {} m/s²", short(test.gravity_m_s2()));
     parts.push(if input.title.body.is_empty() { gravity } else { format!("{}, {gravity}", input.title.body) });
     for (name, limit, bound) in
-        [("take-off", hopper.takeoff_speed_max_m_s, bounds.0), ("landing", hopper.landing_speed_max_m_s, bounds.1)]
+        [("take-off speed", hopper.takeoff_speed_max_m_s, bounds.0), ("landing speed", hopper.landing_speed_max_m_s, bounds.1)]
     {
         // Without a limit of the hopper's own the chain's explicit ones hold.
         let most = if limit.is_finite() { limit } else { bound };
@@ -79,17 +79,16 @@ fn conditions(input: &FigureInput<'_>) -> String {
 }
 
 /// The answer in a few words.
-pub(super) fn verdict(answer: &Answer, data: &FigureData) -> String {
+fn verdict(answer: &Answer, data: &FigureData) -> String {
     match &data.subject {
         Subject::Path { hops, .. } => match hops.of {
             0 => "no hop needed".to_owned(),
             1 => "1 hop, traversable".to_owned(),
             many => format!("{many} hops, traversable"),
         },
-        Subject::Stopped(_) => format!(
-            "no path found over {} nodes ({} per segment); denser nodes may find one",
-            answer.nodes, answer.points_per_segment
-        ),
+        Subject::Stopped(_) => {
+            format!("no path over {} nodes ({} per segment); denser ones may have one", answer.nodes, answer.points_per_segment)
+        }
         Subject::EndpointsRefuse(refusals) => {
             let refusing: Vec<_> = refusals.iter().map(|refusal| end_name(refusal.contact)).collect();
             let verb = if refusing.len() == 1 { "refuses" } else { "refuse" };
@@ -106,10 +105,10 @@ const fn end_name(contact: Contact) -> &'static str {
 }
 
 /// Totals, or what stops the journey.
-pub(super) fn remarks(data: &FigureData, answer: &Answer) -> Vec<String> {
+fn remarks(data: &FigureData) -> Vec<String> {
     match &data.subject {
         Subject::Path { hops, totals } => {
-            let mut all = vec![total(totals, answer)];
+            let mut all = vec![total(totals)];
             if !hops.shown.is_empty() {
                 all.push(angle_panel::CAPTION.to_owned());
             }
@@ -127,7 +126,7 @@ pub(super) fn remarks(data: &FigureData, answer: &Answer) -> Vec<String> {
 }
 
 /// What the hops add up to.
-fn total(totals: &Totals, answer: &Answer) -> String {
+fn total(totals: &Totals) -> String {
     let mut parts = vec![
         format!("distance {} m", short(totals.ground_distance_m)),
         format!("flight time {} s", short(totals.flight_time_s)),
@@ -136,7 +135,7 @@ fn total(totals: &Totals, answer: &Answer) -> String {
     ];
     parts.extend(totals.energy_j.map(|energy| format!("{} J in all", short(energy))));
     parts.extend(totals.mission_time_s.map(|time| format!("{} s with rests", short(time))));
-    format!("Totals: {}. Searched over {} nodes.", parts.join(", "), answer.nodes)
+    format!("Totals: {}.", parts.join(", "))
 }
 
 /// Why start or goal refuses, and where to go instead.

@@ -129,6 +129,6 @@ fn laid_out(input: &FigureInput<'_>, data: &FigureData) -> (Sheet, f64) {
         Subject::Stopped(stop) => stop_panel::draw(&mut sheet, stop, end),
         Subject::Path { .. } | Subject::EndpointsRefuse(_) => end,
     };
-    let end = heading::below(&mut sheet, input, data, end + 1.0);
+    let end = heading::below(&mut sheet, data, end + 1.0);
     (sheet, end + 2.5)
 }

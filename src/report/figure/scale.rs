@@ -4,7 +4,7 @@ use super::sheet::Place;
 use crate::quantity::ChainPoint;
 
 /// Less height than this on the sheet and heights are exaggerated, mm.
-const FLAT_MM: f64 = 16.0;
+const FLAT_MM: f64 = 14.0;
 /// The most height on the sheet, mm.
 const TALL_MM: f64 = 76.0;
 /// The least share of the panel's width that the ground may take where its height decides the scale.

@@ -21,8 +21,6 @@ pub(super) type Place = (f64, f64);
 
 /// Units of the SVG per mm.
 const UNITS_PER_MM: f64 = 100.0;
-/// Width of a letter over the font size, on the safe side for common sans-serif fonts.
-const LETTER_WIDTH: f64 = 0.6;
 
 /// One thing on the sheet.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,10 +115,15 @@ impl Label {
     }
 }
 
-/// The estimated width of a text, mm.
-#[expect(clippy::cast_precision_loss, reason = "no text of 2^53 letters")]
+/// The width of a text, estimated for a wide sans-serif font (DejaVu Sans), mm.
 pub(super) fn text_width_mm(text: &str, size_mm: f64) -> f64 {
-    text.chars().count() as f64 * size_mm * LETTER_WIDTH
+    let ems = text.chars().map(|letter| match letter {
+        'i' | 'j' | 'l' | '.' | ',' | ';' | ':' | ' ' | '-' | '\'' | '(' | ')' => 0.34,
+        'm' | 'w' | 'M' | 'W' | '≤' | '≥' | '=' => 0.92,
+        '0'..='9' | 'A'..='Z' => 0.65,
+        _ => 0.58,
+    });
+    ems.sum::<f64>() * size_mm
 }
 
 /// A text broken between words into lines of at most a width.

@@ -8,7 +8,7 @@ use super::{
     sheet::{Anchor, Label, Line, Pen, Place, Sheet, text_width_mm},
     spans::{GroundUse, stretch},
     symbols,
-    ticks::{Ticks, short},
+    ticks::{Ticks, one_in, short},
 };
 use crate::{chain::ConstrainedChain, quantity::ChainPoint};
 
@@ -16,6 +16,10 @@ use crate::{chain::ConstrainedChain, quantity::ChainPoint};
 const ABOVE_MM: f64 = 8.0;
 /// Ground drawn below the lowest point, for start, goal and hatching.
 const DEPTH_MM: f64 = 9.5;
+/// Room beside an end of the chain.
+const BESIDE_MM: f64 = 3.0;
+/// Least distance of the numbers of the height axis.
+const TICK_MM: f64 = 6.5;
 /// Columns within which only the lowest and the highest ground can be seen.
 const COLUMN_MM: f64 = 0.08;
 /// How far a drawn flight may leave the parabola.
@@ -37,13 +41,16 @@ impl<'a> TerrainPanel<'a> {
         // The numbers of the axis decide where the panel begins, and depend themselves on its scale: a first guess is enough.
         let guess = Scale::new(length_m, high_m - low_m, RIGHT_MM - LEFT_MM);
         let left = LEFT_MM.max(1.0 + left_room_mm(&height_ticks(&guess, low_m, high_m)));
-        let scale = Scale::new(length_m, high_m - low_m, RIGHT_MM - left);
+        // Beside the ends of the chain there is room for what stands on them.
+        let beside = |seen: f64, end: f64| if seen == end { BESIDE_MM } else { 0.0 };
+        let (before, after) = (beside(data.view_x_m.0, data.chain_x_m.0), beside(data.view_x_m.1, data.chain_x_m.1));
+        let scale = Scale::new(length_m, high_m - low_m, RIGHT_MM - left - before - after);
         let panel = Panel { left, top: top_mm, right: RIGHT_MM, bottom: top_mm + ABOVE_MM + scale.height_mm + DEPTH_MM };
         let centre_m = 0.5 * (data.view_x_m.0 + data.view_x_m.1);
         let frame = Frame {
             scale,
             origin: ChainPoint::new(centre_m, low_m),
-            place: (0.5 * (panel.left + panel.right), panel.bottom - DEPTH_MM),
+            place: (0.5 * (panel.left + before + panel.right - after), panel.bottom - DEPTH_MM),
         };
         Self { data, chain, panel, frame }
     }
@@ -82,7 +89,7 @@ impl<'a> TerrainPanel<'a> {
         let cut =
             if self.data.is_cut() { format!("; part of a chain from {} to {} m", short(from), short(to)) } else { String::new() };
         panel.x_axis(sheet, &ticks, &format!("distance along the chain, x (m){cut}; {}", frame.scale.text()), true);
-        let up = Ticks::round(frame.z_m(panel.bottom), frame.z_m(panel.top), panel.height() / 9.0);
+        let up = Ticks::round(frame.z_m(panel.bottom), frame.z_m(panel.top), panel.height() / TICK_MM);
         let ticks: Vec<_> =
             up.values.iter().map(|&z_m| (frame.place(ChainPoint::new(frame.origin.x_m, z_m)).1, up.text(z_m))).collect();
         panel.y_axis(sheet, &ticks, "height, z (m)");
@@ -96,11 +103,11 @@ impl<'a> TerrainPanel<'a> {
             sheet.area(surface.iter().copied().chain(base).collect(), GROUND, 1.0);
         }
         sheet.line(surface, symbols::SURFACE_PEN);
-        for &node in &self.data.nodes.shown {
-            symbols::node(sheet, self.frame.place(node));
-        }
         for span in self.data.spans.iter().filter(|span| span.allows != GroundUse::Both) {
             symbols::ground(sheet, &self.surface(span.from_x_m, span.to_x_m), span.allows);
+        }
+        for &node in &self.data.nodes.shown {
+            symbols::node(sheet, self.frame.place(node));
         }
     }
 
@@ -125,7 +132,9 @@ impl<'a> TerrainPanel<'a> {
             symbols::takeoff(sheet, frame.place(hop.hop.takeoff.point));
             symbols::landing(sheet, frame.place(hop.hop.landing.point));
         }
-        for hop in hops {
+        let widest = hops.last().map_or(0.0, |hop| text_width_mm(&hop.number.to_string(), SMALL_MM));
+        let every = one_in((widest + 1.2) / lengths.get(lengths.len() / 2).copied().unwrap_or(1.0));
+        for hop in hops.iter().step_by(every) {
             self.number(sheet, hop);
         }
     }
@@ -182,17 +191,32 @@ impl<'a> TerrainPanel<'a> {
         sheet.label(Label::new(text, (x, y - 1.2), SMALL_MM).hung(Anchor::Middle, Line::Above));
     }
 
-    /// Start or goal: a pin in the ground with its name.
+    /// Start or goal: a pin in the ground with its name below or, where the ground falls away, beside it.
     fn end(&self, sheet: &mut Sheet, point: ChainPoint, name: &str) {
         let (x, y) = self.frame.place(point);
         sheet.area(vec![(x, y + 0.4), (x - 1.2, y + 3.0), (x + 1.2, y + 3.0)], BLACK, 1.0);
         let half = 0.5 * text_width_mm(name, SMALL_MM) + 0.8;
         let middle = x.clamp(self.panel.left + half, self.panel.right - half);
-        let mut label = Label { bold: true, ..Label::new(name, (middle, y + 3.5), SMALL_MM).hung(Anchor::Middle, Line::Below) };
-        if sheet.is_taken(&label) {
-            label.at.1 += SMALL_MM + 0.3;
-        }
-        sheet.label(label);
+        let hung = |at, anchor| Label { bold: true, ..Label::new(name, at, SMALL_MM).hung(anchor, Line::Below) };
+        let below = hung((middle, y + 3.5), Anchor::Middle);
+        let beside = [hung((x + 2.2, y + 2.2), Anchor::Start), hung((x - 2.2, y + 2.2), Anchor::End)];
+        let lower = hung((middle, y + 3.8 + SMALL_MM), Anchor::Middle);
+        let places = [&below, &beside[0], &beside[1], &lower];
+        let buried = places.into_iter().find(|label| self.is_buried(label) && !sheet.is_taken(label));
+        let free = buried.or_else(|| places.into_iter().find(|label| !sheet.is_taken(label)));
+        sheet.label(free.unwrap_or(&lower).clone());
+    }
+
+    /// Whether a text lies in the drawn ground.
+    fn is_buried(&self, label: &Label) -> bool {
+        let (left, top, right, _) = label.bounds_mm();
+        let (first, last) = self.data.view_x_m;
+        left >= self.panel.left
+            && right <= self.panel.right
+            && [left, right].into_iter().all(|x_mm| {
+                let ground = self.chain.geometry().station(self.frame.x_m(x_mm).clamp(first, last));
+                ground.is_ok_and(|station| self.frame.place(station.point).1 <= top)
+            })
     }
 }
 
@@ -212,7 +236,7 @@ fn heights(data: &FigureData, chain: &ConstrainedChain) -> (f64, f64) {
 fn height_ticks(scale: &Scale, low_m: f64, high_m: f64) -> Ticks {
     let per_mm = 1.0 / (scale.mm_per_m * scale.exaggeration);
     let (from, to) = (low_m - DEPTH_MM * per_mm, high_m + ABOVE_MM * per_mm);
-    Ticks::round(from, to, (to - from) / per_mm / 9.0)
+    Ticks::round(from, to, (to - from) / per_mm / TICK_MM)
 }
 
 /// A flight on the sheet, with as many points as its curvature needs.

@@ -44,6 +44,11 @@ fn round_step(least: f64) -> f64 {
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|&step| step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * power)
 }
 
+/// The least of 1, 2, 5, 10, 20, ... that is no smaller: one in how many is written.
+pub(super) fn one_in(least: f64) -> usize {
+    [1, 2, 5, 10, 20, 50, 100, 200].into_iter().find(|&n| f64::from(n) >= least).map_or(500, |n: u16| n.into())
+}
+
 /// A number with four significant digits, without trailing zeros.
 pub(super) fn short(value: f64) -> String {
     if value == 0.0 || !value.is_finite() {
