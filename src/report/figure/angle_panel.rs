@@ -4,7 +4,7 @@ use super::{
     axes::{BELOW_MM, Panel},
     data::{HopFigure, Thinned},
     palette::{BLACK, BLUE, LEFT_MM, RIGHT_MM, SKY, SMALL_MM},
-    sheet::{Anchor, Label, Line, Pen, Sheet, text_width_mm},
+    sheet::{Anchor, Hang, Label, Pen, Sheet, text_width_mm},
     ticks::{Ticks, one_in},
 };
 
@@ -114,10 +114,10 @@ impl Layout {
         let (above, below) = ((x, top - 1.2), (x, bottom + 1.2));
         if self.upright {
             sheet.label(Label::new(upper, above, SMALL_MM).turned());
-            sheet.label(Label::new(lower, below, SMALL_MM).hung(Anchor::End, Line::Through).turned());
+            sheet.label(Label::new(lower, below, SMALL_MM).hung(Anchor::End, Hang::Through).turned());
         } else {
-            sheet.label(Label::new(upper, above, SMALL_MM).hung(Anchor::Middle, Line::Above));
-            sheet.label(Label::new(lower, below, SMALL_MM).hung(Anchor::Middle, Line::Below));
+            sheet.label(Label::new(upper, above, SMALL_MM).hung(Anchor::Middle, Hang::Above));
+            sheet.label(Label::new(lower, below, SMALL_MM).hung(Anchor::Middle, Hang::Below));
         }
     }
 }
@@ -132,4 +132,4 @@ fn chosen(sheet: &mut Sheet, (x, y): (f64, f64), half: f64) {
 
 /// What the panel shows, as its caption.
 pub(super) const CAPTION: &str =
-    "Bars: feasible take-off angles above the horizontal, with the limits that set their ends; diamond: the angle chosen.";
+    "Bars: feasible take-off angles above the horizontal and the limits at their ends; diamond: angle chosen.";

@@ -2,7 +2,7 @@
 
 use super::{
     palette::{AXIS, GRID, SMALL_MM, TEXT_MM},
-    sheet::{Anchor, Label, Line, Pen, Sheet, text_width_mm},
+    sheet::{Anchor, Hang, Label, Pen, Sheet, text_width_mm},
     ticks::Ticks,
 };
 
@@ -36,11 +36,11 @@ impl Panel {
                 sheet.line(vec![(*x, self.top), (*x, self.bottom)], GRID_PEN);
             }
             sheet.line(vec![(*x, self.bottom), (*x, self.bottom + 1.0)], AXIS_PEN);
-            let label = Label::new(text.as_str(), (*x, self.bottom + 1.5), SMALL_MM).hung(Anchor::Middle, Line::Below);
+            let label = Label::new(text.as_str(), (*x, self.bottom + 1.5), SMALL_MM).hung(Anchor::Middle, Hang::Below);
             sheet.label(label);
         }
         let middle = 0.5 * (self.left + self.right);
-        sheet.label(Label::new(name, (middle, self.bottom + 5.2), TEXT_MM).hung(Anchor::Middle, Line::Below));
+        sheet.label(Label::new(name, (middle, self.bottom + 5.2), TEXT_MM).hung(Anchor::Middle, Hang::Below));
     }
 
     /// Grid and numbers at places along the left edge, and what they mean.
@@ -49,11 +49,11 @@ impl Panel {
         for (y, text) in ticks {
             sheet.line(vec![(self.left, *y), (self.right, *y)], GRID_PEN);
             sheet.line(vec![(self.left - 1.0, *y), (self.left, *y)], AXIS_PEN);
-            sheet.label(Label::new(text.as_str(), (self.left - 1.5, *y), SMALL_MM).hung(Anchor::End, Line::Through));
+            sheet.label(Label::new(text.as_str(), (self.left - 1.5, *y), SMALL_MM).hung(Anchor::End, Hang::Through));
             widest = widest.max(text_width_mm(text, SMALL_MM));
         }
         let at = (self.left - 2.5 - widest - 0.5 * TEXT_MM, 0.5 * (self.top + self.bottom));
-        sheet.label(Label::new(name, at, TEXT_MM).hung(Anchor::Middle, Line::Through).turned());
+        sheet.label(Label::new(name, at, TEXT_MM).hung(Anchor::Middle, Hang::Through).turned());
     }
 
     /// The outline, drawn over what touches it.

@@ -192,6 +192,7 @@ fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
     let sight = test
         .line_of_sight(&hop.takeoff, &hop.landing)
         .unwrap_or_else(|| crate::ballistics::LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m));
+    let gravity_m_s2 = test.gravity_m_s2();
     let cone = |station: &Station, contact| {
         let rule = test.chain().judged(station, contact, hop.direction).ok()?;
         Some(Cone { apex: station.point, contact, direction: hop.direction, slopes: rule.slopes() })
@@ -199,7 +200,8 @@ fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
     HopFigure {
         number,
         hop: *hop,
-        arc: Arc::new(sight, hop.takeoff_angle.slope() - sight.slope(), test.gravity_m_s2()),
+        // From the flight time, n = g T^2 / (2 X): tangents of steep angles lose digits.
+        arc: Arc::new(sight, 0.5 * gravity_m_s2 * hop.flight_time_s * (hop.flight_time_s / sight.run_m()), gravity_m_s2),
         cones: [cone(&hop.takeoff, Contact::Takeoff), cone(&hop.landing, Contact::Landing)],
     }
 }

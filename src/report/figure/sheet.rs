@@ -52,7 +52,7 @@ pub(super) enum Anchor {
 
 /// Where a text hangs on its place, vertically.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Line {
+pub(super) enum Hang {
     Below,
     Through,
     Above,
@@ -65,7 +65,7 @@ pub(super) struct Label {
     pub(super) at: Place,
     pub(super) size_mm: f64,
     pub(super) anchor: Anchor,
-    pub(super) line: Line,
+    pub(super) hang: Hang,
     pub(super) bold: bool,
     /// Reads upwards.
     pub(super) turned: bool,
@@ -80,7 +80,7 @@ impl Label {
             at,
             size_mm,
             anchor: Anchor::Start,
-            line: Line::Through,
+            hang: Hang::Through,
             bold: false,
             turned: false,
             colour: super::palette::BLACK,
@@ -88,8 +88,8 @@ impl Label {
     }
 
     /// The same text, hung differently.
-    pub(super) fn hung(self, anchor: Anchor, line: Line) -> Self {
-        Self { anchor, line, ..self }
+    pub(super) fn hung(self, anchor: Anchor, hang: Hang) -> Self {
+        Self { anchor, hang, ..self }
     }
 
     /// The same text, reading upwards.
@@ -105,17 +105,17 @@ impl Label {
             Anchor::Middle => (-0.5 * width, 0.5 * width),
             Anchor::End => (-width, 0.0),
         };
-        let (top, bottom) = match self.line {
-            Line::Below => (0.0, self.size_mm),
-            Line::Through => (-0.5 * self.size_mm, 0.5 * self.size_mm),
-            Line::Above => (-self.size_mm, 0.0),
+        let (top, bottom) = match self.hang {
+            Hang::Below => (0.0, self.size_mm),
+            Hang::Through => (-0.5 * self.size_mm, 0.5 * self.size_mm),
+            Hang::Above => (-self.size_mm, 0.0),
         };
         let (x, y) = self.at;
         if self.turned { (x + top, y - to, x + bottom, y - from) } else { (x + from, y + top, x + to, y + bottom) }
     }
 }
 
-/// The width of a text, estimated for a wide sans-serif font (DejaVu Sans), mm.
+/// The width of a text, estimated for a wide sans-serif font (`DejaVu Sans`), mm.
 pub(super) fn text_width_mm(text: &str, size_mm: f64) -> f64 {
     let ems = text.chars().map(|letter| match letter {
         'i' | 'j' | 'l' | '.' | ',' | ';' | ':' | ' ' | '-' | '\'' | '(' | ')' => 0.34,
@@ -254,10 +254,10 @@ fn text_style(label: &Label) -> TextStyle<'_> {
         Anchor::Middle => HPos::Center,
         Anchor::End => HPos::Right,
     };
-    let vertical = match label.line {
-        Line::Below => VPos::Top,
-        Line::Through => VPos::Center,
-        Line::Above => VPos::Bottom,
+    let vertical = match label.hang {
+        Hang::Below => VPos::Top,
+        Hang::Through => VPos::Center,
+        Hang::Above => VPos::Bottom,
     };
     // plotters divides font sizes by 1.24.
     let font = ("sans-serif", label.size_mm * UNITS_PER_MM * 1.24).into_font();
@@ -278,7 +278,7 @@ fn with_short_font_sizes(svg: &str) -> String {
         }
         out.push_str(NAME);
         match part.split_once('"').and_then(|(size, rest)| Some((size.parse::<f64>().ok()?, rest))) {
-            Some((size, rest)) => out.push_str(&format!("{size:.0}\"{rest}")),
+            Some((size, rest)) => out.extend([&format!("{size:.0}"), "\"", rest]),
             None => out.push_str(part),
         }
     }

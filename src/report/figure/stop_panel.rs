@@ -4,7 +4,7 @@ use super::{
     axes::{BELOW_MM, Panel},
     data::StoppedFigure,
     palette::{LEFT_MM, RIGHT_MM, SMALL_MM, VERMILION},
-    sheet::{Anchor, Label, Line, Pen, Sheet, text_width_mm},
+    sheet::{Anchor, Hang, Label, Pen, Sheet, text_width_mm},
     ticks::Ticks,
 };
 
@@ -41,7 +41,7 @@ pub(super) fn draw(sheet: &mut Sheet, stop: &StoppedFigure, top_mm: f64) -> f64 
         let (top, bottom) = (y - 0.5 * BAR_MM, y + 0.5 * BAR_MM);
         sheet.area(vec![(panel.left, top), (end, top), (end, bottom), (panel.left, bottom)], VERMILION, 0.7);
         sheet.line(vec![(end, top), (end, bottom)], Pen { colour: VERMILION, width_mm: 0.3 });
-        sheet.label(Label::new(limit.name(), (panel.left - 1.5, y), SMALL_MM).hung(Anchor::End, Line::Through));
+        sheet.label(Label::new(limit.name(), (panel.left - 1.5, y), SMALL_MM).hung(Anchor::End, Hang::Through));
         sheet.label(Label::new(count.to_string(), (end + 1.0, y), SMALL_MM));
     }
     panel.outline(sheet);

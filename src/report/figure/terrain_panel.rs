@@ -5,7 +5,7 @@ use super::{
     data::{FigureData, HopFigure, StoppedFigure, Subject},
     palette::{AXIS, BLACK, GROUND, LEFT_MM, RIGHT_MM, SMALL_MM},
     scale::{Frame, Scale},
-    sheet::{Anchor, Label, Line, Pen, Place, Sheet, text_width_mm},
+    sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm},
     spans::{GroundUse, stretch},
     symbols,
     ticks::{Ticks, one_in, short},
@@ -144,7 +144,7 @@ impl<'a> TerrainPanel<'a> {
         let apex = (0.5 * hop.arc.takeoff_slope() / hop.arc.loft()).clamp(0.1, 0.9);
         let free = [apex, apex - 0.12, apex + 0.12, apex - 0.25, apex + 0.25].into_iter().find_map(|share| {
             let (x, y) = self.frame.place(hop.point_at(share.clamp(0.05, 0.95)));
-            let label = Label::new(hop.number.to_string(), (x, y - 0.8), SMALL_MM).hung(Anchor::Middle, Line::Above);
+            let label = Label::new(hop.number.to_string(), (x, y - 0.8), SMALL_MM).hung(Anchor::Middle, Hang::Above);
             (!sheet.is_taken(&label)).then_some(label)
         });
         if let Some(label) = free {
@@ -188,7 +188,7 @@ impl<'a> TerrainPanel<'a> {
         let text = format!("gap {} m", short(gap_m));
         let half = 0.5 * text_width_mm(&text, SMALL_MM);
         let x = (0.5 * (a.0 + b.0)).clamp(self.panel.left + half + 1.0, self.panel.right - half - 1.0);
-        sheet.label(Label::new(text, (x, y - 1.2), SMALL_MM).hung(Anchor::Middle, Line::Above));
+        sheet.label(Label::new(text, (x, y - 1.2), SMALL_MM).hung(Anchor::Middle, Hang::Above));
     }
 
     /// Start or goal: a pin in the ground with its name below or, where the ground falls away, beside it.
@@ -197,7 +197,7 @@ impl<'a> TerrainPanel<'a> {
         sheet.area(vec![(x, y + 0.4), (x - 1.2, y + 3.0), (x + 1.2, y + 3.0)], BLACK, 1.0);
         let half = 0.5 * text_width_mm(name, SMALL_MM) + 0.8;
         let middle = x.clamp(self.panel.left + half, self.panel.right - half);
-        let hung = |at, anchor| Label { bold: true, ..Label::new(name, at, SMALL_MM).hung(anchor, Line::Below) };
+        let hung = |at, anchor| Label { bold: true, ..Label::new(name, at, SMALL_MM).hung(anchor, Hang::Below) };
         let below = hung((middle, y + 3.5), Anchor::Middle);
         let beside = [hung((x + 2.2, y + 2.2), Anchor::Start), hung((x - 2.2, y + 2.2), Anchor::End)];
         let lower = hung((middle, y + 3.8 + SMALL_MM), Anchor::Middle);

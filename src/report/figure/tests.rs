@@ -63,7 +63,7 @@ fn rough(segments: u32, length_m: f64, relief_m: f64, base_m: f64) -> PolygonalC
     bare((0..=segments).map(|i| {
         let s = f64::from(i) / f64::from(segments);
         let waves = [(3.1, 0.5, 0.3), (7.7, 0.28, 1.1), (17.3, 0.14, 2.0), (31.9, 0.08, 0.7)];
-        let z: f64 = waves.iter().map(|(k, a, p)| a * libm::sin(6.283 * k * s + p)).sum();
+        let z: f64 = waves.iter().map(|(k, a, p)| a * libm::sin(std::f64::consts::TAU * k * s + p)).sum();
         (s * length_m, base_m + relief_m * z)
     }))
 }
@@ -371,10 +371,15 @@ fn check_well_formed(svg: &str) {
     assert!(open.is_empty() && rest.trim().is_empty(), "{open:?} left open");
 }
 
+/// With `CHTA_FIGURES_TO=folder` it also writes the pictures there, to be looked at.
 #[test]
 fn every_svg_is_well_formed_small_and_the_same_twice() {
+    let folder = std::env::var_os("CHTA_FIGURES_TO").map(std::path::PathBuf::from);
     for case in cases() {
         let svg = case.with(|input| draw(input).unwrap());
+        if let Some(folder) = &folder {
+            std::fs::write(folder.join(case.name.replace(' ', "-")).with_extension("svg"), &svg).unwrap();
+        }
         check_well_formed(&svg);
         assert!(svg.len() < 1_000_000, "{}: {} bytes", case.name, svg.len());
         assert_eq!(svg, case.with(|input| draw(input).unwrap()), "{}", case.name);
