@@ -87,7 +87,7 @@ fn verdict(answer: &Answer, data: &FigureData) -> String {
             many => format!("{many} hops, traversable"),
         },
         Subject::Stopped(_) => {
-            format!("no path over {} nodes ({} per segment); denser ones may have one", answer.nodes, answer.points_per_segment)
+            format!("no path over {} nodes, at most {} inside a segment", answer.nodes, answer.points_per_segment)
         }
         Subject::EndpointsRefuse(refusals) => {
             let refusing: Vec<_> = refusals.iter().map(|refusal| end_name(refusal.contact)).collect();
@@ -119,7 +119,7 @@ fn remarks(data: &FigureData) -> Vec<String> {
                 .nearest_miss
                 .as_ref()
                 .map(|(from, to, why)| format!("Nearest miss, from x = {} m to x = {} m: {why}.", place(from.x_m), place(to.x_m)));
-            miss.into_iter().collect()
+            miss.into_iter().chain(std::iter::once("Denser nodes may still hold a path.".to_owned())).collect()
         }
         Subject::EndpointsRefuse(refusals) => refusals.iter().map(endpoint).collect(),
     }

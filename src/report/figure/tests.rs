@@ -16,6 +16,7 @@ use crate::{
 /// One journey, analysed.
 struct Case {
     name: &'static str,
+    ground: &'static str,
     chain: ConstrainedChain,
     hopper: Hopper,
     gravity_m_s2: f64,
@@ -27,6 +28,7 @@ impl Case {
     fn new(name: &'static str, chain: PolygonalChain, hopper: Hopper, gravity_m_s2: f64, ends_m: (f64, f64)) -> Self {
         Self {
             name,
+            ground: "friction coefficient 0.6",
             chain: ConstrainedChain::new(chain, &hopper, &friction(0.6)).unwrap(),
             hopper,
             gravity_m_s2,
@@ -44,8 +46,7 @@ impl Case {
             Outcome::Path { legs, .. } => Some(generate(&test, legs, self.options.takeoff, Split::FullReach).unwrap()),
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
-        let title =
-            FigureTitle { name: self.name.to_owned(), body: "Mars".to_owned(), ground: "friction coefficient 0.6".to_owned() };
+        let title = FigureTitle { name: self.name.to_owned(), body: "Mars".to_owned(), ground: self.ground.to_owned() };
         look(&FigureInput { test: &test, answer: &answer, path: path.as_ref(), start, goal, title })
     }
 }
@@ -79,7 +80,15 @@ fn paper() -> Case {
     let hopper = Hopper::with_speeds(10.0, 10.0);
     let chain = ConstrainedChain::new(bare([(0.0, 54.61), (76.0, 59.24)]), &hopper, &surface).unwrap();
     let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(0)), ..SearchOptions::default() };
-    Case { name: "The paper's 76 m case", chain, hopper, gravity_m_s2: 3.711, ends_m: (0.0, 76.0), options }
+    Case {
+        name: "The paper's 76 m case",
+        ground: "take-off 60 to 90 deg from the slope",
+        chain,
+        hopper,
+        gravity_m_s2: 3.711,
+        ends_m: (0.0, 76.0),
+        options,
+    }
 }
 
 /// Walls, a keep-out zone, a side-slope, a stretch without speed, a stretch without limits, one for landing only.
@@ -316,7 +325,7 @@ fn a_path_shows_every_hop_number_limit_and_unit() {
     assert_eq!(svg.matches("takeoff-cone").count(), 4);
     assert_eq!(svg.matches("takeoff-speed").count(), 4);
     for words in
-        ["x (m)", "z (m)", "(deg)", "3.711 m/s²", "10 m/s", "76 m", "4 hops, traversable", "J/kg", "friction coefficient 0.6"]
+        ["x (m)", "z (m)", "(deg)", "3.711 m/s²", "10 m/s", "76 m", "4 hops, traversable", "J/kg", "60 to 90 deg from the slope"]
     {
         assert!(svg.contains(words), "{words:?} is missing");
     }
