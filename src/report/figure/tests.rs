@@ -82,7 +82,7 @@ fn paper() -> Case {
     let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(0)), ..SearchOptions::default() };
     Case {
         name: "The paper's 76 m case",
-        ground: "take-off 60 to 90 deg from the slope",
+        ground: "cones 60 to 90 deg over the slope",
         chain,
         hopper,
         gravity_m_s2: 3.711,
