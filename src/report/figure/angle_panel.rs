@@ -1,0 +1,135 @@
+//! The second panel of a path: each hop's feasible take-off angles, the one chosen, and what sets the two ends.
+
+use super::{
+    axes::{BELOW_MM, Panel},
+    data::{HopFigure, Thinned},
+    palette::{BLACK, BLUE, LEFT_MM, RIGHT_MM, SKY, SMALL_MM},
+    sheet::{Anchor, Hang, Label, Pen, Sheet, text_width_mm},
+    ticks::{Ticks, one_in},
+};
+
+/// Height of the bars' own part of the panel.
+const BARS_MM: f64 = 30.0;
+/// Room left and right of the bars.
+const SIDE_MM: f64 = 2.0;
+/// Least range of angles shown.
+const LEAST_RANGE_DEG: f64 = 8.0;
+
+/// Draws the panel below a height; returns where it ends.
+pub(super) fn draw(sheet: &mut Sheet, hops: &Thinned<HopFigure>, top_mm: f64) -> f64 {
+    let layout = Layout::new(hops, top_mm);
+    layout.axes(sheet, hops);
+    for (i, hop) in hops.shown.iter().enumerate() {
+        layout.bar(sheet, i, hop);
+    }
+    layout.panel.outline(sheet);
+    layout.panel.bottom + BELOW_MM
+}
+
+/// Where everything lies.
+struct Layout {
+    panel: Panel,
+    /// Width for one hop.
+    slot_mm: f64,
+    /// Limit names lie along the axis or stand upright.
+    upright: bool,
+    /// Every how many hops names and numbers are written.
+    every: usize,
+    /// Room for names above and below the bars.
+    names_mm: f64,
+    /// Lowest and highest angle of any bar, with least range.
+    range_deg: (f64, f64),
+}
+
+/// The names of the limits at a bar's lower and upper end.
+fn names(hop: &HopFigure) -> [String; 2] {
+    let lower = match hop.hop.lower_vertex {
+        Some(vertex) => format!("{} v{}", hop.hop.lower_limit, vertex.index() + 1),
+        None => hop.hop.lower_limit.to_string(),
+    };
+    [lower, hop.hop.upper_limit.to_string()]
+}
+
+impl Layout {
+    #[expect(clippy::cast_precision_loss, reason = "at most a few hundred hops are drawn")]
+    fn new(hops: &Thinned<HopFigure>, top_mm: f64) -> Self {
+        let widest = hops.shown.iter().flat_map(names).map(|name| text_width_mm(&name, SMALL_MM)).fold(0.0, f64::max);
+        let slot_mm = (RIGHT_MM - LEFT_MM - 2.0 * SIDE_MM) / hops.shown.len().max(1) as f64;
+        let upright = slot_mm < widest + 1.5;
+        let number_mm = text_width_mm(&hops.of.to_string(), SMALL_MM);
+        let needed_mm = if upright { (SMALL_MM + 0.8).max(number_mm + 1.0) } else { 0.0 };
+        let every = one_in(needed_mm / slot_mm);
+        let names_mm = 2.4 + if upright { widest } else { SMALL_MM };
+        let (low, high) = hops.shown.iter().fold((90.0f64, -90.0f64), |(low, high), hop| {
+            let feasible = hop.hop.takeoff_angles;
+            (low.min(feasible.min.degrees()), high.max(feasible.max.degrees()))
+        });
+        let spare = (0.5 * (LEAST_RANGE_DEG - (high - low))).max(0.0);
+        let panel = Panel { left: LEFT_MM, top: top_mm, right: RIGHT_MM, bottom: top_mm + BARS_MM + 2.0 * names_mm };
+        Self { panel, slot_mm, upright, every, names_mm, range_deg: (low - spare, high + spare) }
+    }
+
+    /// The height on the sheet of an angle.
+    fn y(&self, angle_deg: f64) -> f64 {
+        let (low, high) = self.range_deg;
+        self.panel.bottom - self.names_mm - (angle_deg - low) / (high - low) * BARS_MM
+    }
+
+    /// The middle of a hop's slot.
+    #[expect(clippy::cast_precision_loss, reason = "at most a few hundred hops are drawn")]
+    fn x(&self, i: usize) -> f64 {
+        self.panel.left + SIDE_MM + (i as f64 + 0.5) * self.slot_mm
+    }
+
+    fn axes(&self, sheet: &mut Sheet, hops: &Thinned<HopFigure>) {
+        let numbers: Vec<_> =
+            hops.shown.iter().enumerate().step_by(self.every).map(|(i, hop)| (self.x(i), hop.number.to_string())).collect();
+        self.panel.x_axis(sheet, &numbers, "hop number", false);
+        let (low, high) = self.range_deg;
+        let beyond = self.names_mm * (high - low) / BARS_MM;
+        // Directions ahead end at the vertical: the room for names above it bears no angles.
+        let (from, to) = ((low - beyond).max(-90.0), (high + beyond).min(90.0));
+        let ticks = Ticks::round(from, to, (self.y(from) - self.y(to)) / 8.0);
+        let angles: Vec<_> = ticks.values.iter().map(|&deg| (self.y(deg), ticks.text(deg))).collect();
+        self.panel.y_axis(sheet, &angles, "take-off angle (deg)");
+    }
+
+    /// One hop: bar, chosen angle, limit names.
+    fn bar(&self, sheet: &mut Sheet, i: usize, hop: &HopFigure) {
+        let x = self.x(i);
+        let half = (0.3 * self.slot_mm).min(2.2);
+        let feasible = hop.hop.takeoff_angles;
+        let (bottom, top) = (self.y(feasible.min.degrees()), self.y(feasible.max.degrees()));
+        let corners = [(x - half, bottom), (x + half, bottom), (x + half, top), (x - half, top)];
+        sheet.area(corners.to_vec(), SKY, 0.45);
+        sheet.line(corners.into_iter().chain([corners[0]]).collect(), Pen { colour: BLUE, width_mm: 0.2 });
+        chosen(sheet, (x, self.y(hop.hop.takeoff_angle.degrees())), half);
+        if !i.is_multiple_of(self.every) {
+            return;
+        }
+        let [lower, upper] = names(hop);
+        // Names of a few hops stand at their bars; of many they keep clear of the bars in between.
+        let (low, high) = self.range_deg;
+        let (top, bottom) = if self.every > 1 { (self.y(high), self.y(low)) } else { (top, bottom) };
+        let (above, below) = ((x, top - 1.2), (x, bottom + 1.2));
+        if self.upright {
+            sheet.label(Label::new(upper, above, SMALL_MM).turned());
+            sheet.label(Label::new(lower, below, SMALL_MM).hung(Anchor::End, Hang::Through).turned());
+        } else {
+            sheet.label(Label::new(upper, above, SMALL_MM).hung(Anchor::Middle, Hang::Above));
+            sheet.label(Label::new(lower, below, SMALL_MM).hung(Anchor::Middle, Hang::Below));
+        }
+    }
+}
+
+/// The chosen angle: a line across the bar and a diamond.
+fn chosen(sheet: &mut Sheet, (x, y): (f64, f64), half: f64) {
+    let wide = half + 0.5;
+    sheet.line(vec![(x - wide, y), (x + wide, y)], Pen { colour: BLACK, width_mm: 0.3 });
+    let r = (0.6 * half).min(0.9);
+    sheet.area(vec![(x - r, y), (x, y - r), (x + r, y), (x, y + r)], BLACK, 1.0);
+}
+
+/// What the panel shows, as its caption.
+pub(super) const CAPTION: &str =
+    "Bars: feasible take-off angles above the horizontal and the limits at their ends; diamond: angle chosen.";

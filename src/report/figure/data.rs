@@ -1,0 +1,257 @@
+//! What the picture shows, as plain data in metres: the drawing adds nothing to it.
+
+use super::{
+    FigureError, FigureInput,
+    spans::{GroundSpan, spans},
+};
+use crate::{
+    ballistics::Arc,
+    chain::{Contact, Direction, Station},
+    graph::{EndpointRefusal, Frontier, NodeSet, Outcome},
+    path::{Hop, HopPath, Totals},
+    quantity::{ChainPoint, SlopeInterval},
+    world::Limit,
+};
+
+/// The most hops drawn; of longer paths every n-th is, and the picture says so.
+pub const MOST_HOPS_DRAWN: usize = 300;
+/// The most nodes drawn.
+const MOST_NODES_DRAWN: usize = 150;
+/// Room beside the journey, over its length.
+const MARGIN: f64 = 0.06;
+/// A journey over this share of the chain or more shows the whole chain.
+const WHOLE_CHAIN: f64 = 0.6;
+
+/// One analysis as the picture shows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FigureData {
+    /// The range of x shown, m.
+    pub view_x_m: (f64, f64),
+    /// The range of the chain, m.
+    pub chain_x_m: (f64, f64),
+    /// What the ground allows, over the range shown.
+    pub spans: Vec<GroundSpan>,
+    /// Nodes of the search within the range shown.
+    pub nodes: Thinned<ChainPoint>,
+    /// Where the journey begins.
+    pub start: ChainPoint,
+    /// Where it should end.
+    pub goal: ChainPoint,
+    /// What came of it.
+    pub subject: Subject,
+}
+
+/// Every n-th of many.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Thinned<T> {
+    /// Those shown.
+    pub shown: Vec<T>,
+    /// One of how many is shown.
+    pub every: usize,
+    /// How many there are.
+    pub of: usize,
+}
+
+/// What came of the search.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Subject {
+    /// A path.
+    Path {
+        /// Its hops.
+        hops: Thinned<HopFigure>,
+        /// Its totals.
+        totals: Totals,
+    },
+    /// No path over these nodes.
+    Stopped(Box<StoppedFigure>),
+    /// Start, goal or both refuse whatever the hop.
+    EndpointsRefuse(Vec<EndpointRefusal>),
+}
+
+/// One hop as drawn.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HopFigure {
+    /// Its place in the path, from 1.
+    pub number: usize,
+    /// All that is known of it.
+    pub hop: Hop,
+    /// Its flight.
+    pub arc: Arc,
+    /// The take-off cone at its take-off, and the landing cone at its landing, where the ground grants them.
+    pub cones: [Option<Cone>; 2],
+}
+
+/// The allowed directions at a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cone {
+    /// Where.
+    pub apex: ChainPoint,
+    /// Take-off or landing.
+    pub contact: Contact,
+    /// Direction of travel.
+    pub direction: Direction,
+    /// Slopes of flight as the traveller sees them, cut to the directions ahead.
+    pub slopes: SlopeInterval,
+}
+
+/// What stops a journey, as drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StoppedFigure {
+    /// Stretches over neighbouring nodes that the start reaches, as ranges of x, m.
+    pub reached_x_m: Vec<(f64, f64)>,
+    /// Stretches over neighbouring nodes from which the goal can be reached.
+    pub leads_to_goal_x_m: Vec<(f64, f64)>,
+    /// The reached node nearest to the goal, and the node nearest to the start that leads to the goal.
+    pub gap: (ChainPoint, ChainPoint),
+    /// What refused, most first.
+    pub refusals: Vec<(Limit, u64)>,
+    /// The refused hop that came closest: from, to, why not.
+    pub nearest_miss: Option<(ChainPoint, ChainPoint, String)>,
+}
+
+impl HopFigure {
+    /// The point of the flight at a share of its horizontal distance, 0 to 1.
+    pub fn point_at(&self, share: f64) -> ChainPoint {
+        let distance_m = self.arc.line_of_sight().run_m() * share;
+        let from = self.hop.takeoff.point;
+        ChainPoint::new(from.x_m + self.hop.direction.sign() * distance_m, from.z_m + self.arc.height_at_m(distance_m))
+    }
+}
+
+impl Cone {
+    /// A unit vector (x, z) from the apex along which the hopper leaves, or from which it comes in, at a slope of flight.
+    pub fn ray(&self, slope: f64) -> (f64, f64) {
+        let sign = self.direction.sign();
+        let (along, up) = if slope.is_infinite() {
+            (0.0, slope.signum())
+        } else {
+            (1.0 / libm::hypot(1.0, slope), slope / libm::hypot(1.0, slope))
+        };
+        match self.contact {
+            Contact::Takeoff => (sign * along, up),
+            Contact::Landing => (-sign * along, -up),
+        }
+    }
+}
+
+impl<T> Thinned<T> {
+    /// Of a sequence of known length, at most `most`.
+    fn of(all: impl ExactSizeIterator<Item = T>, most: usize) -> Self {
+        let of = all.len();
+        let every = of.div_ceil(most).max(1);
+        Self { shown: all.step_by(every).collect(), every, of }
+    }
+}
+
+impl FigureData {
+    /// Gathers what the picture shows.
+    ///
+    /// # Errors
+    /// [`FigureError::NoHops`] where the answer is a path and none was given; [`FigureError::TooManyNodes`].
+    pub fn new(input: &FigureInput<'_>) -> Result<Self, FigureError> {
+        let chain = input.test.chain();
+        let nodes = NodeSet::new(chain, input.start, input.goal, input.answer.spacing)?;
+        let subject = match &input.answer.outcome {
+            Outcome::Path { .. } => path_subject(input, input.path.ok_or(FigureError::NoHops)?),
+            Outcome::EndpointsRefuse(refusals) => Subject::EndpointsRefuse(refusals.clone()),
+            Outcome::NoPath(frontier) => Subject::Stopped(Box::new(stopped(frontier, &nodes))),
+        };
+        let chain_x_m = chain.geometry().extent_m();
+        let view_x_m = view(input, chain_x_m);
+        let towards = Direction::between(input.start.point.x_m, input.goal.point.x_m).unwrap_or(Direction::Forward);
+        let inside = |x_m: f64| nodes.stations().partition_point(|station| station.point.x_m < x_m);
+        let visible = &nodes.stations()[inside(view_x_m.0)..inside(view_x_m.1.next_up())];
+        Ok(Self {
+            view_x_m,
+            chain_x_m,
+            spans: spans(chain, view_x_m, towards),
+            nodes: Thinned::of(visible.iter().map(|station| station.point), MOST_NODES_DRAWN),
+            start: input.start.point,
+            goal: input.goal.point,
+            subject,
+        })
+    }
+
+    /// Whether the chain goes on beyond the range shown.
+    pub fn is_cut(&self) -> bool {
+        self.view_x_m != self.chain_x_m
+    }
+}
+
+/// The hops of a path.
+fn path_subject(input: &FigureInput<'_>, path: &HopPath) -> Subject {
+    let all = path.hops.iter().enumerate().map(|(i, hop)| hop_figure(input, i + 1, hop));
+    Subject::Path { hops: Thinned::of(all, MOST_HOPS_DRAWN), totals: path.totals }
+}
+
+/// One hop with its flight and its two cones.
+fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
+    let test = input.test;
+    let from = hop.takeoff.point;
+    let to = hop.landing.point;
+    let sight = test
+        .line_of_sight(&hop.takeoff, &hop.landing)
+        .unwrap_or_else(|| crate::ballistics::LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m));
+    let gravity_m_s2 = test.gravity_m_s2();
+    let cone = |station: &Station, contact| {
+        let rule = test.chain().judged(station, contact, hop.direction).ok()?;
+        Some(Cone { apex: station.point, contact, direction: hop.direction, slopes: rule.slopes() })
+    };
+    HopFigure {
+        number,
+        hop: *hop,
+        // From the flight time, n = g T^2 / (2 X): tangents of steep angles lose digits.
+        arc: Arc::new(sight, 0.5 * gravity_m_s2 * hop.flight_time_s * (hop.flight_time_s / sight.run_m()), gravity_m_s2),
+        cones: [cone(&hop.takeoff, Contact::Takeoff), cone(&hop.landing, Contact::Landing)],
+    }
+}
+
+/// How far one gets, and what stops it.
+fn stopped(frontier: &Frontier, nodes: &NodeSet) -> StoppedFigure {
+    StoppedFigure {
+        reached_x_m: runs(&frontier.reached, nodes.stations()),
+        leads_to_goal_x_m: runs(&frontier.leads_to_goal, nodes.stations()),
+        gap: (frontier.nearest_to_goal.point, frontier.nearest_to_start.point),
+        refusals: frontier.refusals.ranked(),
+        nearest_miss: frontier.nearest_miss.map(|miss| (miss.takeoff.point, miss.landing.point, miss.conflict.to_string())),
+    }
+}
+
+/// Runs of neighbouring nodes of which all belong to a set, both sorted by x, as ranges of x.
+fn runs(set: &[Station], nodes: &[Station]) -> Vec<(f64, f64)> {
+    let mut found: Vec<(f64, f64)> = Vec::new();
+    let mut members = set.iter().map(|station| station.point.x_m).peekable();
+    let mut goes_on = false;
+    for x_m in nodes.iter().map(|station| station.point.x_m) {
+        let is_member = members.next_if_eq(&x_m).is_some();
+        match found.last_mut() {
+            Some(run) if is_member && goes_on => run.1 = x_m,
+            _ if is_member => found.push((x_m, x_m)),
+            _ => {}
+        }
+        goes_on = is_member;
+    }
+    found
+}
+
+/// The range of x to show: the journey with some room, or the whole chain where the journey is most of it.
+fn view(input: &FigureInput<'_>, chain_x_m: (f64, f64)) -> (f64, f64) {
+    let mut seen = vec![input.start.point.x_m, input.goal.point.x_m];
+    match &input.answer.outcome {
+        Outcome::Path { .. } => seen.extend(input.path.iter().flat_map(|path| &path.hops).map(|hop| hop.landing.point.x_m)),
+        Outcome::NoPath(frontier) => {
+            let both = [&frontier.reached, &frontier.leads_to_goal];
+            seen.extend(both.into_iter().flatten().map(|station| station.point.x_m));
+        }
+        Outcome::EndpointsRefuse(refusals) => {
+            seen.extend(refusals.iter().filter_map(|refusal| refusal.nearest).map(|station| station.point.x_m));
+        }
+    }
+    let (low, high) = seen.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+    let whole = chain_x_m.1 - chain_x_m.0;
+    if high == low || high - low >= WHOLE_CHAIN * whole {
+        return chain_x_m;
+    }
+    let room = MARGIN * (high - low);
+    ((low - room).max(chain_x_m.0), (high + room).min(chain_x_m.1))
+}

@@ -1,0 +1,163 @@
+//! The sentences above and below the panels.
+
+use super::{
+    FigureInput, angle_panel,
+    data::{FigureData, Subject},
+    palette::{RIGHT_MM, TEXT_MM, TITLE_MM},
+    sheet::{Label, Sheet, wrapped},
+    ticks::short,
+};
+use crate::{
+    chain::Contact,
+    graph::{Answer, EndpointRefusal},
+    path::Totals,
+};
+
+/// Distance of lines over their size.
+const LEADING: f64 = 1.4;
+/// Where texts begin.
+const MARGIN_MM: f64 = 4.0;
+
+/// Title, what was asked under which limits, and the verdict; returns where they end.
+pub(super) fn above(sheet: &mut Sheet, input: &FigureInput<'_>, data: &FigureData) -> f64 {
+    let mut y = 3.0;
+    if !input.title.name.is_empty() {
+        y = paragraph(sheet, &input.title.name, TITLE_MM, true, y);
+    }
+    y = paragraph(sheet, &conditions(input), TEXT_MM, false, y);
+    let journey = format!("From x = {} m to x = {} m: ", place(data.start.x_m), place(data.goal.x_m));
+    paragraph(sheet, &(journey + &verdict(input.answer, data)), TEXT_MM, true, y) + 1.5
+}
+
+/// What the panels leave to words; returns where it ends.
+pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
+    let mut y = top_mm;
+    for text in remarks(data) {
+        y = paragraph(sheet, &text, TEXT_MM, false, y);
+    }
+    y
+}
+
+/// A text over as many lines as it needs.
+fn paragraph(sheet: &mut Sheet, text: &str, size_mm: f64, bold: bool, top_mm: f64) -> f64 {
+    let mut y = top_mm;
+    // Bold letters are wider.
+    let width = (RIGHT_MM - MARGIN_MM) * if bold { 0.88 } else { 1.0 };
+    for line in wrapped(text, size_mm, width) {
+        sheet.label(Label { bold, ..Label::new(line, (MARGIN_MM, y + 0.5 * LEADING * size_mm), size_mm) });
+        y += LEADING * size_mm;
+    }
+    y
+}
+
+/// Body, gravity, speeds, the machine's other limits and the ground's grip.
+fn conditions(input: &FigureInput<'_>) -> String {
+    let (test, hopper) = (input.test, input.test.hopper());
+    let bounds = test.chain().speed_bounds_m_s();
+    let mut parts = Vec::new();
+    let gravity = format!("g = {} m/s²", short(test.gravity_m_s2()));
+    parts.push(if input.title.body.is_empty() { gravity } else { format!("{}, {gravity}", input.title.body) });
+    for (name, limit, bound) in
+        [("take-off speed", hopper.takeoff_speed_max_m_s, bounds.0), ("landing speed", hopper.landing_speed_max_m_s, bounds.1)]
+    {
+        // Without a limit of the hopper's own the chain's explicit ones hold.
+        let most = if limit.is_finite() { limit } else { bound };
+        parts.push(format!("{name} ≤ {} m/s", short(most)));
+    }
+    if hopper.clearance_m > 0.0 {
+        parts.push(format!("clearance {} m", short(hopper.clearance_m)));
+    }
+    for (name, angle) in [("take-off angle ≥", hopper.takeoff_angle_min), ("take-off angle ≤", hopper.takeoff_angle_max)] {
+        parts.extend(angle.map(|angle| format!("{name} {} deg", short(angle.degrees()))));
+    }
+    parts.extend(hopper.apex_height_max_m.map(|height| format!("apex ≤ {} m", short(height))));
+    parts.extend(hopper.flight_time_max_s.map(|time| format!("flight ≤ {} s", short(time))));
+    if !input.title.ground.is_empty() {
+        parts.push(input.title.ground.clone());
+    }
+    parts.join("; ")
+}
+
+/// The answer in a few words.
+fn verdict(answer: &Answer, data: &FigureData) -> String {
+    match &data.subject {
+        Subject::Path { hops, .. } => match hops.of {
+            0 => "no hop needed".to_owned(),
+            1 => "1 hop, traversable".to_owned(),
+            many => format!("{many} hops, traversable"),
+        },
+        Subject::Stopped(_) => {
+            format!("no path over {} nodes, at most {} inside a segment", answer.nodes, answer.points_per_segment)
+        }
+        Subject::EndpointsRefuse(refusals) => {
+            let refusing: Vec<_> = refusals.iter().map(|refusal| end_name(refusal.contact)).collect();
+            let verb = if refusing.len() == 1 { "refuses" } else { "refuse" };
+            format!("not traversable, {} {verb} whatever the hop", refusing.join(" and "))
+        }
+    }
+}
+
+const fn end_name(contact: Contact) -> &'static str {
+    match contact {
+        Contact::Takeoff => "start",
+        Contact::Landing => "goal",
+    }
+}
+
+/// Totals, or what stops the journey.
+fn remarks(data: &FigureData) -> Vec<String> {
+    match &data.subject {
+        Subject::Path { hops, totals } => {
+            let mut all = vec![total(totals)];
+            if !hops.shown.is_empty() {
+                all.push(angle_panel::CAPTION.to_owned());
+            }
+            all
+        }
+        Subject::Stopped(stop) => {
+            let miss = stop
+                .nearest_miss
+                .as_ref()
+                .map(|(from, to, why)| format!("Nearest miss, from x = {} m to x = {} m: {why}.", place(from.x_m), place(to.x_m)));
+            miss.into_iter().chain(std::iter::once("Denser nodes may still hold a path.".to_owned())).collect()
+        }
+        Subject::EndpointsRefuse(refusals) => refusals.iter().map(endpoint).collect(),
+    }
+}
+
+/// What the hops add up to.
+fn total(totals: &Totals) -> String {
+    let mut parts = vec![
+        format!("distance {} m", short(totals.ground_distance_m)),
+        format!("flight time {} s", short(totals.flight_time_s)),
+        format!("fastest take-off {} m/s", short(totals.peak_takeoff_speed_m_s)),
+        format!("energy {} J/kg", short(totals.energy_j_kg)),
+    ];
+    parts.extend(totals.energy_j.map(|energy| format!("{} J in all", short(energy))));
+    parts.extend(totals.mission_time_s.map(|time| format!("{} s with rests", short(time))));
+    format!("Totals: {}.", parts.join(", "))
+}
+
+/// Why start or goal refuses, and where to go instead.
+fn endpoint(refusal: &EndpointRefusal) -> String {
+    let contact = match refusal.contact {
+        Contact::Takeoff => "take-off",
+        Contact::Landing => "landing",
+    };
+    let at = format!(
+        "The {} at x = {} m refuses every {contact}: {}",
+        end_name(refusal.contact),
+        place(refusal.station.point.x_m),
+        refusal.refusal
+    );
+    match refusal.nearest {
+        Some(nearest) => format!("{at}; the nearest usable point is x = {} m.", place(nearest.point.x_m)),
+        None => format!("{at}; no point of the chain is usable."),
+    }
+}
+
+/// A place along the chain: more digits than a quantity, since places are looked up.
+fn place(x_m: f64) -> String {
+    let rounded = format!("{x_m:.3}");
+    if x_m != 0.0 && x_m.abs() < 1.0 { short(x_m) } else { rounded.trim_end_matches('0').trim_end_matches('.').to_owned() }
+}

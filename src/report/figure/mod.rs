@@ -1,0 +1,134 @@
+//! The picture of one analysis, for a mission report: SVG, 170 mm wide.
+//!
+//! ```text
+//!   title, body, limits, verdict
+//!   +----------------------------------+   ground, nodes, flights, cones, closed stretches;
+//!   |    .-1-.     .-2-.               |   without a path: how far one gets from either end
+//!   | __/     \___/     \___           |
+//!   +----------------------------------+
+//!   legend
+//!   +----------------------------------+   each hop's feasible take-off angles and the one chosen;
+//!   |    |         |                   |   without a path: what refused, how often
+//!   +----------------------------------+
+//!   totals, or the nearest miss
+//! ```
+//!
+//! [`FigureData`] is what the picture shows, in metres; [`draw`] puts it on the sheet. Heights are drawn at true scale where that is
+//! readable, else exaggerated by a round factor that the axis states; cones and flights follow the same scale. No kind of mark is told
+//! by its colour alone.
+
+mod angle_panel;
+mod axes;
+mod data;
+mod heading;
+mod legend;
+mod palette;
+mod scale;
+mod sheet;
+mod spans;
+mod stop_panel;
+mod symbols;
+mod terrain_panel;
+mod ticks;
+
+#[cfg(test)]
+mod tests;
+
+pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
+pub use scale::Scale;
+pub use spans::{Closure, GroundSpan, GroundUse};
+
+use crate::{
+    ballistics::HopTest,
+    chain::Station,
+    graph::{Answer, TooManyNodes},
+    path::HopPath,
+};
+use sheet::Sheet;
+
+/// All that a picture is drawn from.
+#[derive(Clone, Debug)]
+pub struct FigureInput<'a> {
+    /// The chain, the hopper and the gravity.
+    pub test: &'a HopTest<'a>,
+    /// What the search answered.
+    pub answer: &'a Answer,
+    /// The hops, where the answer is a path.
+    pub path: Option<&'a HopPath>,
+    /// Where the journey begins.
+    pub start: Station,
+    /// Where it should end.
+    pub goal: Station,
+    /// What the figure cannot know of itself.
+    pub title: FigureTitle,
+}
+
+/// Words for the title that are not in the analysis; what is empty is left out.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct FigureTitle {
+    /// The name of the scenario.
+    pub name: String,
+    /// The body hopped on.
+    pub body: String,
+    /// The ground's grip, such as `friction coefficient 0.6`.
+    pub ground: String,
+}
+
+/// What keeps a figure from being drawn.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum FigureError {
+    /// A path to draw, and no hops.
+    #[error("the answer is a path, but its hops were not given: generate them and pass them with the answer")]
+    NoHops,
+    /// The nodes of the search cannot be laid out again.
+    #[error(transparent)]
+    TooManyNodes(#[from] TooManyNodes),
+    /// plotters failed.
+    #[error("the figure could not be drawn: {0}")]
+    Drawing(String),
+}
+
+/// Draws the picture of one analysis as SVG.
+///
+/// The same input gives the same bytes. A path of more than [`MOST_HOPS_DRAWN`] hops is thinned to every n-th, which the legend says.
+///
+/// # Errors
+/// [`FigureError`].
+///
+/// # Examples
+/// ```
+/// use chta::{ballistics::*, chain::*, graph::*, path::generate, quantity::ChainPoint, report::figure::*, world::*};
+/// let hopper = Hopper::with_speeds(10.0, 10.0);
+/// let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.6)?)), rest: RestSlope::AsFrictionHolds };
+/// let ground = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(30.0, 2.0), ChainPoint::new(60.0, 0.0)])?;
+/// let chain = ConstrainedChain::new(ground, &hopper, &surface)?;
+/// let test = HopTest::new(&chain, &hopper, 3.711);
+/// let (start, goal) = (chain.geometry().station(0.0)?, chain.geometry().station(60.0)?);
+/// let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {})?;
+/// let Outcome::Path { legs, .. } = &answer.outcome else { panic!("no path") };
+/// let path = generate(&test, legs, TakeoffChoice::LeastSpeed, Split::FullReach)?;
+/// let title = FigureTitle { body: "Mars".into(), ..FigureTitle::default() };
+/// let svg = draw(&FigureInput { test: &test, answer: &answer, path: Some(&path), start, goal, title })?;
+/// assert!(svg.starts_with("<svg") && svg.contains("traversable"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn draw(input: &FigureInput<'_>) -> Result<String, FigureError> {
+    let (sheet, height_mm) = laid_out(input, &FigureData::new(input)?);
+    sheet.to_svg(palette::PAGE_WIDTH_MM, height_mm)
+}
+
+/// Everything on the sheet, and the sheet's height.
+fn laid_out(input: &FigureInput<'_>, data: &FigureData) -> (Sheet, f64) {
+    let mut sheet = Sheet::default();
+    let top = heading::above(&mut sheet, input, data);
+    let end = terrain_panel::TerrainPanel::new(data, input.test.chain(), top).draw(&mut sheet);
+    let end = legend::draw(&mut sheet, &legend::entries(data), end + 0.5) + 2.5;
+    let end = match &data.subject {
+        Subject::Path { hops, .. } if !hops.shown.is_empty() => angle_panel::draw(&mut sheet, hops, end),
+        Subject::Stopped(stop) => stop_panel::draw(&mut sheet, stop, end),
+        Subject::Path { .. } | Subject::EndpointsRefuse(_) => end,
+    };
+    let end = heading::below(&mut sheet, data, end + 1.0);
+    (sheet, end + 2.5)
+}

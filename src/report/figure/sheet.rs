@@ -1,0 +1,369 @@
+//! The sheet: a list of marks in millimetres, and its rendering through plotters.
+//!
+//! plotters rounds every coordinate of an SVG to a whole unit, so the sheet counts in hundredths of a millimetre and the root element
+//! gets its size in millimetres afterwards: curves then move in steps of 0.01 mm.
+
+use plotters::{
+    drawing::DrawingAreaErrorKind,
+    prelude::{
+        Circle, FontStyle, FontTransform, IntoDrawingArea, PathElement, Polygon, RGBColor, SVGBackend, ShapeStyle, Text, WHITE,
+    },
+    style::{
+        Color, IntoFont, TextStyle,
+        text_anchor::{HPos, Pos, VPos},
+    },
+};
+
+use super::FigureError;
+
+/// A place on the sheet, mm from the left and from the top.
+pub(super) type Place = (f64, f64);
+
+/// Units of the SVG per mm.
+const UNITS_PER_MM: f64 = 100.0;
+
+/// One thing on the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Mark {
+    /// A line.
+    Line { points: Vec<Place>, pen: Pen },
+    /// A filled outline.
+    Area { points: Vec<Place>, colour: RGBColor, opacity: f64 },
+    /// A circle, filled or not.
+    Dot { centre: Place, radius_mm: f64, pen: Pen, filled: bool },
+    /// A text.
+    Label(Label),
+}
+
+/// Colour and width of a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Pen {
+    pub(super) colour: RGBColor,
+    pub(super) width_mm: f64,
+}
+
+/// Where a text hangs on its place, horizontally.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// Where a text hangs on its place, vertically.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Hang {
+    Below,
+    Through,
+    Above,
+}
+
+/// A text on the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Label {
+    pub(super) text: String,
+    pub(super) at: Place,
+    pub(super) size_mm: f64,
+    pub(super) anchor: Anchor,
+    pub(super) hang: Hang,
+    pub(super) bold: bool,
+    /// Reads upwards.
+    pub(super) turned: bool,
+    pub(super) colour: RGBColor,
+}
+
+impl Label {
+    /// A black text that begins at a place.
+    pub(super) fn new(text: impl Into<String>, at: Place, size_mm: f64) -> Self {
+        Self {
+            text: text.into(),
+            at,
+            size_mm,
+            anchor: Anchor::Start,
+            hang: Hang::Through,
+            bold: false,
+            turned: false,
+            colour: super::palette::BLACK,
+        }
+    }
+
+    /// The same text, hung differently.
+    pub(super) fn hung(self, anchor: Anchor, hang: Hang) -> Self {
+        Self { anchor, hang, ..self }
+    }
+
+    /// The same text, reading upwards.
+    pub(super) fn turned(self) -> Self {
+        Self { turned: true, ..self }
+    }
+
+    /// Left, top, right and bottom of the text, estimated, mm.
+    pub(super) fn bounds_mm(&self) -> (f64, f64, f64, f64) {
+        let width = text_width_mm(&self.text, self.size_mm);
+        let (from, to) = match self.anchor {
+            Anchor::Start => (0.0, width),
+            Anchor::Middle => (-0.5 * width, 0.5 * width),
+            Anchor::End => (-width, 0.0),
+        };
+        let (top, bottom) = match self.hang {
+            Hang::Below => (0.0, self.size_mm),
+            Hang::Through => (-0.5 * self.size_mm, 0.5 * self.size_mm),
+            Hang::Above => (-self.size_mm, 0.0),
+        };
+        let (x, y) = self.at;
+        if self.turned { (x + top, y - to, x + bottom, y - from) } else { (x + from, y + top, x + to, y + bottom) }
+    }
+}
+
+/// The width of a text, estimated for a wide sans-serif font (`DejaVu Sans`), mm.
+pub(super) fn text_width_mm(text: &str, size_mm: f64) -> f64 {
+    let ems = text.chars().map(|letter| match letter {
+        'i' | 'j' | 'l' | '.' | ',' | ';' | ':' | ' ' | '-' | '\'' | '(' | ')' => 0.34,
+        'm' | 'w' | 'M' | 'W' | '≤' | '≥' | '=' => 0.92,
+        '0'..='9' | 'A'..='Z' => 0.65,
+        _ => 0.58,
+    });
+    ems.sum::<f64>() * size_mm
+}
+
+/// A text broken between words into lines of at most a width.
+pub(super) fn wrapped(text: &str, size_mm: f64, width_mm: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        match lines.last_mut() {
+            Some(line) if text_width_mm(line, size_mm) + text_width_mm(word, size_mm) + size_mm <= width_mm => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// The sheet of one figure, marks from back to front.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Sheet {
+    pub(super) marks: Vec<Mark>,
+}
+
+impl Sheet {
+    /// Adds a line.
+    pub(super) fn line(&mut self, points: Vec<Place>, pen: Pen) {
+        self.marks.push(Mark::Line { points, pen });
+    }
+
+    /// Adds a dashed line.
+    pub(super) fn dashed(&mut self, points: &[Place], dash_mm: f64, gap_mm: f64, pen: Pen) {
+        for points in dashes(points, dash_mm, gap_mm) {
+            self.line(points, pen);
+        }
+    }
+
+    /// Adds a filled outline.
+    pub(super) fn area(&mut self, points: Vec<Place>, colour: RGBColor, opacity: f64) {
+        self.marks.push(Mark::Area { points, colour, opacity });
+    }
+
+    /// Adds a filled circle.
+    pub(super) fn dot(&mut self, centre: Place, radius_mm: f64, colour: RGBColor) {
+        self.marks.push(Mark::Dot { centre, radius_mm, pen: Pen { colour, width_mm: 0.1 }, filled: true });
+    }
+
+    /// Adds an open circle.
+    pub(super) fn ring(&mut self, centre: Place, radius_mm: f64, pen: Pen) {
+        self.marks.push(Mark::Dot { centre, radius_mm, pen, filled: false });
+    }
+
+    /// Adds a text.
+    pub(super) fn label(&mut self, label: Label) {
+        self.marks.push(Mark::Label(label));
+    }
+
+    /// Whether a text overlaps one that is there already.
+    pub(super) fn is_taken(&self, label: &Label) -> bool {
+        let (left, top, right, bottom) = label.bounds_mm();
+        self.marks.iter().any(|mark| match mark {
+            Mark::Label(other) => {
+                let (l, t, r, b) = other.bounds_mm();
+                left < r && l < right && top < b && t < bottom
+            }
+            _ => false,
+        })
+    }
+
+    /// The sheet as SVG.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`] with what plotters says.
+    pub(super) fn to_svg(&self, width_mm: f64, height_mm: f64) -> Result<String, FigureError> {
+        let (width, height) = (units(width_mm).unsigned_abs(), units(height_mm).unsigned_abs());
+        let mut svg = String::new();
+        {
+            let area = SVGBackend::with_string(&mut svg, (width, height)).into_drawing_area();
+            area.fill(&WHITE).map_err(|error| failed(&error))?;
+            for mark in &self.marks {
+                match mark {
+                    Mark::Line { points, pen } => area.draw(&PathElement::new(in_units(points), stroke(*pen))),
+                    Mark::Area { points, colour, opacity } => {
+                        area.draw(&Polygon::new(in_units(points), colour.mix(*opacity).filled()))
+                    }
+                    Mark::Dot { centre, radius_mm, pen, filled } => {
+                        area.draw(&Circle::new(place(*centre), units(*radius_mm), ShapeStyle { filled: *filled, ..stroke(*pen) }))
+                    }
+                    Mark::Label(label) => area.draw(&Text::new(label.text.as_str(), place(label.at), text_style(label))),
+                }
+                .map_err(|error| failed(&error))?;
+            }
+            area.present().map_err(|error| failed(&error))?;
+        }
+        let plain = format!("width=\"{width}\" height=\"{height}\" viewBox");
+        let physical = format!("width=\"{width_mm}mm\" height=\"{height_mm:.2}mm\" viewBox");
+        Ok(with_short_font_sizes(&svg.replacen(&plain, &physical, 1)))
+    }
+}
+
+/// What plotters says went wrong.
+fn failed(error: &DrawingAreaErrorKind<std::io::Error>) -> FigureError {
+    FigureError::Drawing(error.to_string())
+}
+
+/// Millimetres in units of the SVG.
+#[expect(clippy::cast_possible_truncation, reason = "a sheet is some thousand units wide; the cast saturates beyond")]
+fn units(length_mm: f64) -> i32 {
+    (length_mm * UNITS_PER_MM).round() as i32
+}
+
+fn place(at: Place) -> (i32, i32) {
+    (units(at.0), units(at.1))
+}
+
+fn in_units(points: &[Place]) -> Vec<(i32, i32)> {
+    let mut rounded: Vec<_> = points.iter().copied().map(place).collect();
+    rounded.dedup();
+    rounded
+}
+
+fn stroke(pen: Pen) -> ShapeStyle {
+    ShapeStyle { color: pen.colour.to_rgba(), filled: false, stroke_width: units(pen.width_mm).unsigned_abs() }
+}
+
+fn text_style(label: &Label) -> TextStyle<'_> {
+    let horizontal = match label.anchor {
+        Anchor::Start => HPos::Left,
+        Anchor::Middle => HPos::Center,
+        Anchor::End => HPos::Right,
+    };
+    let vertical = match label.hang {
+        Hang::Below => VPos::Top,
+        Hang::Through => VPos::Center,
+        Hang::Above => VPos::Bottom,
+    };
+    // plotters divides font sizes by 1.24.
+    let font = ("sans-serif", label.size_mm * UNITS_PER_MM * 1.24).into_font();
+    let font = if label.bold { font.style(FontStyle::Bold) } else { font };
+    let font = if label.turned { font.transform(FontTransform::Rotate270) } else { font };
+    TextStyle::from(font).color(&label.colour).pos(Pos::new(horizontal, vertical))
+}
+
+/// Font sizes rounded to whole units: the division by 1.24 leaves sixteen digits. Quotes in texts are escaped, so that the attribute's
+/// name with its quote is found in attributes alone.
+fn with_short_font_sizes(svg: &str) -> String {
+    const NAME: &str = "font-size=\"";
+    let mut out = String::with_capacity(svg.len());
+    for (i, part) in svg.split(NAME).enumerate() {
+        if i == 0 {
+            out.push_str(part);
+            continue;
+        }
+        out.push_str(NAME);
+        match part.split_once('"').and_then(|(size, rest)| Some((size.parse::<f64>().ok()?, rest))) {
+            Some((size, rest)) => out.extend([&format!("{size:.0}"), "\"", rest]),
+            None => out.push_str(part),
+        }
+    }
+    out
+}
+
+/// The dashes of a line.
+pub(super) fn dashes(points: &[Place], dash_mm: f64, gap_mm: f64) -> Vec<Vec<Place>> {
+    let mut found = Vec::new();
+    let (mut current, mut left_mm, mut drawing) = (Vec::new(), dash_mm, true);
+    for pair in points.windows(2) {
+        let (a, b) = (pair[0], pair[1]);
+        let length = libm::hypot(b.0 - a.0, b.1 - a.1);
+        let mut at = 0.0;
+        while at < length {
+            let step = left_mm.min(length - at);
+            if drawing {
+                if current.is_empty() {
+                    current.push(between(a, b, at / length));
+                }
+                current.push(between(a, b, (at + step) / length));
+            }
+            at += step;
+            left_mm -= step;
+            if left_mm <= 0.0 {
+                if drawing {
+                    found.push(std::mem::take(&mut current));
+                }
+                drawing = !drawing;
+                left_mm = if drawing { dash_mm } else { gap_mm };
+            }
+        }
+    }
+    if current.len() > 1 {
+        found.push(current);
+    }
+    found
+}
+
+/// Places along a line every so many mm, the first half a step in, each with the line's direction there; at least one.
+pub(super) fn steps_along(points: &[Place], step_mm: f64) -> Vec<(Place, Place)> {
+    let lengths: Vec<f64> = points.windows(2).map(|p| libm::hypot(p[1].0 - p[0].0, p[1].1 - p[0].1)).collect();
+    let total: f64 = lengths.iter().sum();
+    let mut next = 0.5 * step_mm.min(total);
+    let mut behind = 0.0;
+    let mut found = Vec::new();
+    for (pair, &length) in points.windows(2).zip(&lengths) {
+        while length > 0.0 && next <= behind + length {
+            let ahead = ((pair[1].0 - pair[0].0) / length, (pair[1].1 - pair[0].1) / length);
+            found.push((between(pair[0], pair[1], (next - behind) / length), ahead));
+            next += step_mm;
+        }
+        behind += length;
+    }
+    found
+}
+
+fn between(a: Place, b: Place, fraction: f64) -> Place {
+    (a.0 + (b.0 - a.0) * fraction, a.1 + (b.1 - a.1) * fraction)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn dashes_cover_their_share_of_the_line() {
+        let line = [(0.0, 0.0), (3.0, 4.0), (3.0, 9.0)];
+        let found = dashes(&line, 1.0, 0.5);
+        let length: f64 = found.iter().flat_map(|d| d.windows(2)).map(|p| (p[1].0 - p[0].0).hypot(p[1].1 - p[0].1)).sum();
+        // 10 mm: six whole dashes of 1 mm up to 9 mm, then one of 1 mm.
+        assert!((length - 7.0).abs() < 1e-9, "{length}");
+    }
+
+    #[test]
+    fn steps_along_a_line_keep_their_distance_and_short_lines_get_one() {
+        let steps = steps_along(&[(0.0, 0.0), (10.0, 0.0)], 2.0);
+        assert_eq!(steps.iter().map(|(p, _)| p.0).collect::<Vec<_>>(), [1.0, 3.0, 5.0, 7.0, 9.0]);
+        assert_eq!(steps_along(&[(0.0, 0.0), (0.1, 0.0)], 2.0).len(), 1);
+    }
+
+    #[test]
+    fn long_texts_break_between_words_only() {
+        let lines = wrapped("one two three four", 2.0, 12.0);
+        assert_eq!(lines.join(" "), "one two three four");
+        assert!(lines.len() > 1 && lines.iter().all(|l| text_width_mm(l, 2.0) <= 12.0), "{lines:?}");
+    }
+}

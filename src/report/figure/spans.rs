@@ -1,0 +1,114 @@
+//! Stretches of ground by what they allow.
+
+use crate::{
+    chain::{ConstrainedChain, Contact, Direction, GroundRefusal, SegmentConstraints},
+    quantity::{ChainPoint, SegmentId},
+};
+
+/// Why nothing takes off from a stretch of ground nor lands on it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Closure {
+    /// A keep-out zone.
+    KeepOut,
+    /// Too steep to rest on.
+    RestSlope,
+    /// Cones without a direction of travel: the plane misses the friction cone, or the cone lies beyond the vertical.
+    Cones,
+    /// A speed limit of zero.
+    SpeedZero,
+    /// The chain states no limits.
+    NoLimits,
+}
+
+impl Closure {
+    /// Every closure, in the order of the legend.
+    pub const ALL: [Self; 5] = [Self::KeepOut, Self::RestSlope, Self::Cones, Self::SpeedZero, Self::NoLimits];
+
+    /// What the legend says.
+    pub const fn text(self) -> &'static str {
+        match self {
+            Self::KeepOut => "no contact: keep-out",
+            Self::RestSlope => "no contact: rest-slope",
+            Self::Cones => "no contact: cones (cross-slope or direction)",
+            Self::SpeedZero => "no contact: speed limit 0",
+            Self::NoLimits => "no contact: no limits stated (direction)",
+        }
+    }
+
+    const fn of(refusal: &GroundRefusal) -> Self {
+        match refusal {
+            GroundRefusal::KeepOut => Self::KeepOut,
+            GroundRefusal::TooSteep { .. } => Self::RestSlope,
+            GroundRefusal::CrossSlope { .. } | GroundRefusal::NothingAhead { .. } => Self::Cones,
+            GroundRefusal::SpeedZero => Self::SpeedZero,
+            GroundRefusal::NoGround => Self::NoLimits,
+        }
+    }
+}
+
+/// What a stretch of ground allows, in whichever direction of travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum GroundUse {
+    /// Take-off and landing.
+    Both,
+    /// Landing, but no take-off.
+    LandingOnly,
+    /// Take-off, but no landing.
+    TakeoffOnly,
+    /// Neither, and why.
+    Closed(Closure),
+}
+
+/// A stretch of ground of one use.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundSpan {
+    /// Where it begins, m.
+    pub from_x_m: f64,
+    /// Where it ends, m.
+    pub to_x_m: f64,
+    /// What it allows.
+    pub allows: GroundUse,
+}
+
+/// What one segment allows; for a closed one the reason told is that of the journey's direction, unless the chain just states nothing
+/// for that direction.
+fn use_of(segment: &SegmentConstraints, towards: Direction) -> GroundUse {
+    let allowed = |contact| Direction::BOTH.into_iter().any(|direction| segment.granted(contact, direction).is_some());
+    match (allowed(Contact::Takeoff), allowed(Contact::Landing)) {
+        (true, true) => GroundUse::Both,
+        (false, true) => GroundUse::LandingOnly,
+        (true, false) => GroundUse::TakeoffOnly,
+        (false, false) => {
+            let away = if towards == Direction::Forward { Direction::Reverse } else { Direction::Forward };
+            let refusals = [towards, away].into_iter().filter_map(|direction| segment.judged(Contact::Takeoff, direction).err());
+            let told = refusals.min_by_key(|refusal| matches!(refusal, GroundRefusal::NoGround));
+            GroundUse::Closed(told.as_ref().map_or(Closure::NoLimits, Closure::of))
+        }
+    }
+}
+
+/// The stretches of ground within a range of x, from left to right, neighbours of one use joined.
+pub(super) fn spans(chain: &ConstrainedChain, (from_x_m, to_x_m): (f64, f64), towards: Direction) -> Vec<GroundSpan> {
+    let vertices = chain.geometry().vertices();
+    let mut found: Vec<GroundSpan> = Vec::new();
+    for (i, ends) in vertices.windows(2).enumerate() {
+        let (from, to) = (ends[0].x_m.max(from_x_m), ends[1].x_m.min(to_x_m));
+        let Some(segment) = chain.segments().get(SegmentId(i).index()).filter(|_| from < to) else { continue };
+        let allows = use_of(segment, towards);
+        match found.last_mut() {
+            Some(last) if last.allows == allows => last.to_x_m = to,
+            _ => found.push(GroundSpan { from_x_m: from, to_x_m: to, allows }),
+        }
+    }
+    found
+}
+
+/// The chain between two x of its extent: its vertices there, and the points at the two ends.
+pub(super) fn stretch(chain: &ConstrainedChain, from_x_m: f64, to_x_m: f64) -> Vec<ChainPoint> {
+    let geometry = chain.geometry();
+    let vertices = geometry.vertices();
+    let first = vertices.partition_point(|v| v.x_m <= from_x_m);
+    let end = vertices.partition_point(|v| v.x_m < to_x_m).max(first);
+    let at = |x_m| geometry.station(x_m).ok().map(|station| station.point);
+    at(from_x_m).into_iter().chain(vertices[first..end].iter().copied()).chain(at(to_x_m)).collect()
+}

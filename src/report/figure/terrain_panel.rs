@@ -1,0 +1,287 @@
+//! The first panel: the ground, the hops over it, or what stops them.
+
+use super::{
+    axes::{BELOW_MM, Panel, left_room_mm},
+    data::{FigureData, HopFigure, StoppedFigure, Subject},
+    palette::{AXIS, BLACK, GROUND, LEFT_MM, RIGHT_MM, SMALL_MM},
+    scale::{Frame, Scale},
+    sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm},
+    spans::{GroundUse, stretch},
+    symbols,
+    ticks::{Ticks, one_in, short},
+};
+use crate::{chain::ConstrainedChain, quantity::ChainPoint};
+
+/// Room above the highest point, for hop numbers and cones.
+const ABOVE_MM: f64 = 8.0;
+/// Ground drawn below the lowest point, for start, goal and hatching.
+const DEPTH_MM: f64 = 9.5;
+/// Room beside an end of the chain.
+const BESIDE_MM: f64 = 3.0;
+/// Least distance of the numbers of the height axis.
+const TICK_MM: f64 = 6.5;
+/// Columns within which only the lowest and the highest ground can be seen.
+const COLUMN_MM: f64 = 0.08;
+/// How far a drawn flight may leave the parabola.
+const FLATNESS_MM: f64 = 0.008;
+
+/// The panel: where it lies on the sheet, and the scale within.
+pub(super) struct TerrainPanel<'a> {
+    data: &'a FigureData,
+    chain: &'a ConstrainedChain,
+    panel: Panel,
+    frame: Frame,
+}
+
+impl<'a> TerrainPanel<'a> {
+    /// Lays the panel out below a height of the sheet.
+    pub(super) fn new(data: &'a FigureData, chain: &'a ConstrainedChain, top_mm: f64) -> Self {
+        let (low_m, high_m) = heights(data, chain);
+        let length_m = data.view_x_m.1 - data.view_x_m.0;
+        // The numbers of the axis decide where the panel begins, and depend themselves on its scale: a first guess is enough.
+        let guess = Scale::new(length_m, high_m - low_m, RIGHT_MM - LEFT_MM);
+        let left = LEFT_MM.max(1.0 + left_room_mm(&height_ticks(&guess, low_m, high_m)));
+        // Beside the ends of the chain there is room for what stands on them.
+        let beside = |seen: f64, end: f64| if seen == end { BESIDE_MM } else { 0.0 };
+        let (before, after) = (beside(data.view_x_m.0, data.chain_x_m.0), beside(data.view_x_m.1, data.chain_x_m.1));
+        let scale = Scale::new(length_m, high_m - low_m, RIGHT_MM - left - before - after);
+        let panel = Panel { left, top: top_mm, right: RIGHT_MM, bottom: top_mm + ABOVE_MM + scale.height_mm + DEPTH_MM };
+        let centre_m = 0.5 * (data.view_x_m.0 + data.view_x_m.1);
+        let frame = Frame {
+            scale,
+            origin: ChainPoint::new(centre_m, low_m),
+            place: (0.5 * (panel.left + before + panel.right - after), panel.bottom - DEPTH_MM),
+        };
+        Self { data, chain, panel, frame }
+    }
+
+    /// Draws it; returns where it ends, axis included.
+    pub(super) fn draw(&self, sheet: &mut Sheet) -> f64 {
+        self.axes(sheet);
+        self.ground(sheet);
+        match &self.data.subject {
+            Subject::Path { hops, .. } => self.hops(sheet, &hops.shown),
+            Subject::Stopped(stop) => self.stop(sheet, stop),
+            Subject::EndpointsRefuse(refusals) => {
+                for refusal in refusals {
+                    symbols::cross(sheet, self.frame.place(refusal.station.point));
+                    if let Some(nearest) = refusal.nearest {
+                        symbols::usable(sheet, self.frame.place(nearest.point));
+                    }
+                }
+            }
+        }
+        self.end(sheet, self.data.start, "start");
+        self.end(sheet, self.data.goal, "goal");
+        self.panel.outline(sheet);
+        self.panel.bottom + BELOW_MM
+    }
+
+    /// Axes with the scale's statement.
+    fn axes(&self, sheet: &mut Sheet) {
+        let (panel, frame) = (&self.panel, &self.frame);
+        let along = Ticks::round(frame.x_m(panel.left), frame.x_m(panel.right), panel.width() / 16.0);
+        let along_widest = text_width_mm(&along.longest(), SMALL_MM) + 3.0;
+        let along = Ticks::round(frame.x_m(panel.left), frame.x_m(panel.right), panel.width() / along_widest.max(16.0));
+        let at = |x_m: f64| frame.place(ChainPoint::new(x_m, frame.origin.z_m)).0;
+        let ticks: Vec<_> = along.values.iter().map(|&x_m| (at(x_m), along.text(x_m))).collect();
+        let (from, to) = self.data.chain_x_m;
+        let cut =
+            if self.data.is_cut() { format!("; part of a chain from {} to {} m", short(from), short(to)) } else { String::new() };
+        panel.x_axis(sheet, &ticks, &format!("distance along the chain, x (m){cut}; {}", frame.scale.text()), true);
+        let up = Ticks::round(frame.z_m(panel.bottom), frame.z_m(panel.top), panel.height() / TICK_MM);
+        let ticks: Vec<_> =
+            up.values.iter().map(|&z_m| (frame.place(ChainPoint::new(frame.origin.x_m, z_m)).1, up.text(z_m))).collect();
+        panel.y_axis(sheet, &ticks, "height, z (m)");
+    }
+
+    /// The profile, its nodes and what it allows.
+    fn ground(&self, sheet: &mut Sheet) {
+        let surface = self.surface(self.data.view_x_m.0, self.data.view_x_m.1);
+        if let (Some(&first), Some(&last)) = (surface.first(), surface.last()) {
+            let base = [(last.0, self.panel.bottom), (first.0, self.panel.bottom)];
+            sheet.area(surface.iter().copied().chain(base).collect(), GROUND, 1.0);
+        }
+        sheet.line(surface, symbols::SURFACE_PEN);
+        for span in self.data.spans.iter().filter(|span| span.allows != GroundUse::Both) {
+            symbols::ground(sheet, &self.surface(span.from_x_m, span.to_x_m), span.allows);
+        }
+        for &node in &self.data.nodes.shown {
+            symbols::node(sheet, self.frame.place(node));
+        }
+    }
+
+    /// The ground between two x on the sheet, without what no eye can see.
+    fn surface(&self, from_x_m: f64, to_x_m: f64) -> Vec<Place> {
+        thinned(&stretch(self.chain, from_x_m, to_x_m).into_iter().map(|point| self.frame.place(point)).collect::<Vec<_>>())
+    }
+
+    /// Cones, flights, contacts and numbers, in this order from back to front.
+    fn hops(&self, sheet: &mut Sheet, hops: &[HopFigure]) {
+        let frame = &self.frame;
+        let mut lengths: Vec<f64> = hops.iter().map(|h| h.arc.line_of_sight().run_m() * frame.scale.mm_per_m).collect();
+        lengths.sort_by(f64::total_cmp);
+        let length_mm = (0.3 * lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)).clamp(1.6, 7.5);
+        for cone in hops.iter().flat_map(|hop| hop.cones.iter().flatten()) {
+            symbols::cone(sheet, frame, cone, length_mm);
+        }
+        for hop in hops {
+            symbols::flight(sheet, flight(frame, hop), hop.hop.direction);
+        }
+        for hop in hops {
+            symbols::takeoff(sheet, frame.place(hop.hop.takeoff.point));
+            symbols::landing(sheet, frame.place(hop.hop.landing.point));
+        }
+        let widest = hops.last().map_or(0.0, |hop| text_width_mm(&hop.number.to_string(), SMALL_MM));
+        let every = one_in((widest + 1.2) / lengths.get(lengths.len() / 2).copied().unwrap_or(1.0));
+        for hop in hops.iter().step_by(every) {
+            self.number(sheet, hop);
+        }
+    }
+
+    /// The number of a hop over its highest point, or beside it where another stands there; left out where there is no room.
+    fn number(&self, sheet: &mut Sheet, hop: &HopFigure) {
+        let apex = (0.5 * hop.arc.takeoff_slope() / hop.arc.loft()).clamp(0.1, 0.9);
+        let free = [apex, apex - 0.12, apex + 0.12, apex - 0.25, apex + 0.25].into_iter().find_map(|share| {
+            let (x, y) = self.frame.place(hop.point_at(share.clamp(0.05, 0.95)));
+            let label = Label::new(hop.number.to_string(), (x, y - 0.8), SMALL_MM).hung(Anchor::Middle, Hang::Above);
+            (!sheet.is_taken(&label)).then_some(label)
+        });
+        if let Some(label) = free {
+            sheet.label(label);
+        }
+    }
+
+    /// What is reached from either end, the gap and the nearest miss.
+    fn stop(&self, sheet: &mut Sheet, stop: &StoppedFigure) {
+        for (runs, from_start) in [(&stop.leads_to_goal_x_m, false), (&stop.reached_x_m, true)] {
+            for &(from_x_m, to_x_m) in runs {
+                let half_m = 0.6 / self.frame.scale.mm_per_m;
+                let (from, to) = if to_x_m - from_x_m < 2.0 * half_m {
+                    let middle = 0.5 * (from_x_m + to_x_m);
+                    ((middle - half_m).max(self.data.view_x_m.0), (middle + half_m).min(self.data.view_x_m.1))
+                } else {
+                    (from_x_m, to_x_m)
+                };
+                symbols::band(sheet, &self.surface(from, to), from_start);
+            }
+        }
+        if let Some((from, to, _)) = &stop.nearest_miss {
+            symbols::nearest_miss(sheet, &[self.frame.place(*from), self.frame.place(*to)]);
+        }
+        let (reached, leads) = stop.gap;
+        let towards = (self.data.goal.x_m - self.data.start.x_m).signum();
+        let gap_m = (leads.x_m - reached.x_m) * towards;
+        if gap_m > 0.0 {
+            self.gap(sheet, self.frame.place(reached), self.frame.place(leads), gap_m);
+        }
+    }
+
+    /// A measured distance at the top of the panel.
+    fn gap(&self, sheet: &mut Sheet, a: Place, b: Place, gap_m: f64) {
+        let pen = Pen { colour: BLACK, width_mm: 0.2 };
+        let y = self.panel.top + 5.0;
+        for (x, down) in [a, b] {
+            sheet.dashed(&[(x, y - 1.0), (x, down)], 0.7, 0.7, Pen { colour: AXIS, width_mm: 0.15 });
+        }
+        sheet.line(vec![(a.0, y), (b.0, y)], pen);
+        let text = format!("gap {} m", short(gap_m));
+        let half = 0.5 * text_width_mm(&text, SMALL_MM);
+        let x = (0.5 * (a.0 + b.0)).clamp(self.panel.left + half + 1.0, self.panel.right - half - 1.0);
+        sheet.label(Label::new(text, (x, y - 1.2), SMALL_MM).hung(Anchor::Middle, Hang::Above));
+    }
+
+    /// Start or goal: a pin in the ground with its name below or, where the ground falls away, beside it.
+    fn end(&self, sheet: &mut Sheet, point: ChainPoint, name: &str) {
+        let (x, y) = self.frame.place(point);
+        sheet.area(vec![(x, y + 0.4), (x - 1.2, y + 3.0), (x + 1.2, y + 3.0)], BLACK, 1.0);
+        let half = 0.5 * text_width_mm(name, SMALL_MM) + 0.8;
+        let middle = x.clamp(self.panel.left + half, self.panel.right - half);
+        let hung = |at, anchor| Label { bold: true, ..Label::new(name, at, SMALL_MM).hung(anchor, Hang::Below) };
+        let below = hung((middle, y + 3.5), Anchor::Middle);
+        let beside = [hung((x + 2.2, y + 2.2), Anchor::Start), hung((x - 2.2, y + 2.2), Anchor::End)];
+        let lower = hung((middle, y + 3.8 + SMALL_MM), Anchor::Middle);
+        let places = [&below, &beside[0], &beside[1], &lower];
+        let buried = places.into_iter().find(|label| self.is_buried(label) && !sheet.is_taken(label));
+        let free = buried.or_else(|| places.into_iter().find(|label| !sheet.is_taken(label)));
+        sheet.label(free.unwrap_or(&lower).clone());
+    }
+
+    /// Whether a text lies in the drawn ground.
+    fn is_buried(&self, label: &Label) -> bool {
+        let (left, top, right, _) = label.bounds_mm();
+        let (first, last) = self.data.view_x_m;
+        left >= self.panel.left
+            && right <= self.panel.right
+            && [left, right].into_iter().all(|x_mm| {
+                let ground = self.chain.geometry().station(self.frame.x_m(x_mm).clamp(first, last));
+                ground.is_ok_and(|station| self.frame.place(station.point).1 <= top)
+            })
+    }
+}
+
+/// The lowest and the highest of ground and flights in view, m.
+fn heights(data: &FigureData, chain: &ConstrainedChain) -> (f64, f64) {
+    let ground = stretch(chain, data.view_x_m.0, data.view_x_m.1).into_iter().map(|point| point.z_m);
+    let flights = match &data.subject {
+        Subject::Path { hops, .. } => hops.shown.as_slice(),
+        Subject::Stopped(_) | Subject::EndpointsRefuse(_) => &[],
+    };
+    ground
+        .chain(flights.iter().map(|hop| hop.hop.apex_z_m))
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)))
+}
+
+/// The numbers of the height axis for a scale.
+fn height_ticks(scale: &Scale, low_m: f64, high_m: f64) -> Ticks {
+    let per_mm = 1.0 / (scale.mm_per_m * scale.exaggeration);
+    let (from, to) = (low_m - DEPTH_MM * per_mm, high_m + ABOVE_MM * per_mm);
+    Ticks::round(from, to, (to - from) / per_mm / TICK_MM)
+}
+
+/// A flight on the sheet, with as many points as its curvature needs.
+fn flight(frame: &Frame, hop: &HopFigure) -> Vec<Place> {
+    // The sagitta of one of N pieces of the parabola is n X / (4 N^2).
+    let bow_mm = 0.25 * hop.arc.loft() * hop.arc.line_of_sight().run_m() * frame.scale.mm_per_m * frame.scale.exaggeration;
+    let pieces = (bow_mm / FLATNESS_MM).sqrt().ceil().clamp(8.0, 160.0);
+    let mut points = Vec::new();
+    let mut i = 0.0;
+    while i <= pieces {
+        points.push(frame.place(hop.point_at(i / pieces)));
+        i += 1.0;
+    }
+    points
+}
+
+/// A line from left to right with only the first, lowest, highest and last of the points in each narrow column.
+fn thinned(points: &[Place]) -> Vec<Place> {
+    let mut kept: Vec<Place> = Vec::new();
+    let column = |place: &Place| (place.0 / COLUMN_MM).floor();
+    for group in points.chunk_by(|a, b| column(a) == column(b)) {
+        if group.len() <= 4 {
+            kept.extend(group);
+            continue;
+        }
+        let by_height = |a: &&Place, b: &&Place| a.1.total_cmp(&b.1);
+        let (high, low) = (group.iter().min_by(by_height), group.iter().max_by(by_height));
+        let mut four: Vec<Place> = [group.first(), high, low, group.last()].into_iter().flatten().copied().collect();
+        four.sort_by(|a, b| a.0.total_cmp(&b.0));
+        kept.extend(four);
+    }
+    kept
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn thinning_keeps_extremes_and_ends() {
+        let points: Vec<Place> = (0..10_000).map(|i| (f64::from(i) * 1e-3, f64::from(i % 7))).collect();
+        let kept = thinned(&points);
+        assert!(kept.len() < 600, "{}", kept.len());
+        assert_eq!((kept.first(), kept.last()), (points.first(), points.last()));
+        assert!(kept.is_sorted_by(|a, b| a.0 <= b.0));
+        assert!(kept.iter().any(|p| p.1 == 0.0) && kept.iter().any(|p| p.1 == 6.0));
+    }
+}

@@ -1,0 +1,445 @@
+//! The figure of many journeys: what it shows, what it says, and that it can be read.
+
+use super::{
+    sheet::{Label, Mark},
+    *,
+};
+use crate::{
+    ballistics::{Split, TakeoffChoice},
+    chain::{ConstrainedChain, Contact, Direction, Ground, GroundForm, PolygonalChain},
+    graph::{Outcome, PointSpacing, SearchOptions, is_usable, search},
+    path::generate,
+    quantity::{Angle, AngleInterval, ChainPoint},
+    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+};
+
+/// One journey, analysed.
+struct Case {
+    name: &'static str,
+    ground: &'static str,
+    chain: ConstrainedChain,
+    hopper: Hopper,
+    gravity_m_s2: f64,
+    ends_m: (f64, f64),
+    options: SearchOptions,
+}
+
+impl Case {
+    fn new(name: &'static str, chain: PolygonalChain, hopper: Hopper, gravity_m_s2: f64, ends_m: (f64, f64)) -> Self {
+        Self {
+            name,
+            ground: "friction coefficient 0.6",
+            chain: ConstrainedChain::new(chain, &hopper, &friction(0.6)).unwrap(),
+            hopper,
+            gravity_m_s2,
+            ends_m,
+            options: SearchOptions::default(),
+        }
+    }
+
+    fn with<T>(&self, look: impl FnOnce(&FigureInput<'_>) -> T) -> T {
+        let test = HopTest::new(&self.chain, &self.hopper, self.gravity_m_s2);
+        let at = |x_m| self.chain.geometry().station(x_m).unwrap();
+        let (start, goal) = (at(self.ends_m.0), at(self.ends_m.1));
+        let answer = search(&test, start, goal, &self.options, &mut |_| {}).unwrap();
+        let path = match &answer.outcome {
+            Outcome::Path { legs, .. } => Some(generate(&test, legs, self.options.takeoff, Split::FullReach).unwrap()),
+            Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
+        };
+        let title = FigureTitle { name: self.name.to_owned(), body: "Mars".to_owned(), ground: self.ground.to_owned() };
+        look(&FigureInput { test: &test, answer: &answer, path: path.as_ref(), start, goal, title })
+    }
+}
+
+fn friction(mu: f64) -> Surface {
+    Surface { grip: Some(Grip::Friction(FrictionCone::new(mu).unwrap())), rest: RestSlope::AsFrictionHolds }
+}
+
+fn bare(points: impl IntoIterator<Item = (f64, f64)>) -> PolygonalChain {
+    PolygonalChain::bare(points.into_iter().map(|(x, z)| ChainPoint::new(x, z)).collect()).unwrap()
+}
+
+/// Rough ground: a few sines of unrelated lengths, the same on every platform.
+fn rough(segments: u32, length_m: f64, relief_m: f64, base_m: f64) -> PolygonalChain {
+    bare((0..=segments).map(|i| {
+        let s = f64::from(i) / f64::from(segments);
+        let waves = [(3.1, 0.5, 0.3), (7.7, 0.28, 1.1), (17.3, 0.14, 2.0), (31.9, 0.08, 0.7)];
+        let z: f64 = waves.iter().map(|(k, a, p)| a * libm::sin(std::f64::consts::TAU * k * s + p)).sum();
+        (s * length_m, base_m + relief_m * z)
+    }))
+}
+
+fn paper() -> Case {
+    let surface = Surface {
+        grip: Some(Grip::FromSlope {
+            takeoff: AngleInterval::from_degrees(60.0, 90.0),
+            landing: AngleInterval::from_degrees(-90.0, -60.0),
+        }),
+        rest: RestSlope::AsFrictionHolds,
+    };
+    let hopper = Hopper::with_speeds(10.0, 10.0);
+    let chain = ConstrainedChain::new(bare([(0.0, 54.61), (76.0, 59.24)]), &hopper, &surface).unwrap();
+    let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(0)), ..SearchOptions::default() };
+    Case {
+        name: "The paper's 76 m case",
+        ground: "cones 60 to 90 deg over the slope",
+        chain,
+        hopper,
+        gravity_m_s2: 3.711,
+        ends_m: (0.0, 76.0),
+        options,
+    }
+}
+
+/// Walls, a keep-out zone, a side-slope, a stretch without speed, a stretch without limits, one for landing only.
+fn closed() -> Case {
+    let points = [
+        (0.0, 0.0),
+        (12.0, 0.5),
+        (16.0, 5.0),
+        (30.0, 5.5),
+        (40.0, 5.0),
+        (52.0, 4.5),
+        (60.0, 4.0),
+        (66.0, 1.0),
+        (78.0, 0.5),
+        (90.0, 0.8),
+        (100.0, 0.0),
+        (110.0, 0.4),
+    ];
+    let free = Ground::BARE;
+    let tilted = Ground { form: GroundForm::Surface { friction: None, cross_slope: Angle::from_degrees(35.0) }, keep_out: false };
+    let kept = Ground { keep_out: true, ..Ground::BARE };
+    let line = |takeoff, landing| {
+        let c = crate::chain::LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), takeoff, landing);
+        Ground { form: GroundForm::Explicit { forward: Some(c), reverse: Some(c) }, keep_out: false }
+    };
+    let silent = Ground { form: GroundForm::Explicit { forward: None, reverse: None }, keep_out: false };
+    let grounds = vec![free, free, free, kept, free, tilted, free, line(0.0, 0.0), silent, line(0.0, 9.0), free];
+    let vertices = points.iter().map(|&(x, z)| ChainPoint::new(x, z)).collect();
+    let chain = PolygonalChain::new(vertices, grounds, None).unwrap();
+    let hopper = Hopper::with_speeds(14.0, 16.0);
+    let surface = Surface { rest: RestSlope::AtMost(Angle::from_degrees(40.0)), ..friction(0.6) };
+    Case {
+        chain: ConstrainedChain::new(chain.clone(), &hopper, &surface).unwrap(),
+        ..Case::new("Closed stretches of every kind", chain, hopper, 3.711, (0.0, 110.0))
+    }
+}
+
+fn impossible() -> Case {
+    let points = [(0.0, 0.0), (15.0, 0.4), (30.0, 0.0), (36.0, -9.0), (64.0, -9.5), (70.0, 0.5), (85.0, 1.0), (100.0, 0.5)];
+    Case::new("A rille too wide", bare(points), Hopper::with_speeds(7.0, 8.0), 3.711, (2.0, 98.0))
+}
+
+/// The cones ask for steep hops, and these fall a metre short.
+fn nearly() -> Case {
+    let points = [(0.0, 0.0), (15.0, 0.4), (30.0, 0.0), (42.0, -22.0), (55.0, 0.1), (85.0, 1.0), (100.0, 0.5)];
+    Case::new("A rille a metre too wide", bare(points), Hopper::with_speeds(10.0, 10.0), 3.711, (90.0, 10.0))
+}
+
+fn refused() -> Case {
+    let points = [(0.0, 0.0), (10.0, 0.0), (20.0, 20.0), (21.0, 40.0), (45.0, 40.0), (60.0, 40.0)];
+    Case::new("A start on a wall", bare(points), Hopper::with_speeds(10.0, 10.0), 3.711, (15.0, 50.0))
+}
+
+fn cases() -> Vec<Case> {
+    let ten = Hopper::with_speeds(10.0, 10.0);
+    let spaced = |case: Case, k| Case {
+        options: SearchOptions { spacing: Some(PointSpacing::PerSegment(k)), ..SearchOptions::default() },
+        ..case
+    };
+    let mut flat = Case::new("Sixty hops on a plain", bare([(0.0, 2.0), (1500.0, 5.0)]), ten, 3.711, (0.0, 1480.0));
+    flat.options.takeoff = TakeoffChoice::MidRange;
+    let tall = Hopper { clearance_m: 0.2, flight_time_max_s: Some(60.0), mass_kg: Some(20.0), rest_time_s: Some(120.0), ..ten };
+    vec![
+        paper(),
+        spaced(Case::new("Rough ground", rough(80, 200.0, 7.0, 0.0), Hopper { clearance_m: 0.3, ..ten }, 3.711, (3.0, 190.0)), 2),
+        spaced(Case::new("Rough ground in reverse", rough(80, 200.0, 7.0, 0.0), tall, 3.711, (190.0, 3.0)), 1),
+        closed(),
+        impossible(),
+        nearly(),
+        refused(),
+        Case::new("One hop", bare([(0.0, 0.0), (5.0, 0.5), (11.0, 0.0)]), ten, 3.711, (1.0, 10.0)),
+        flat,
+        spaced(Case::new("Chain at 1 m posts", rough(300, 300.0, 4.0, -2531.0), ten, 3.711, (20.0, 60.0)), 0),
+        spaced(
+            Case::new(
+                "Kilometres with metres of relief",
+                rough(400, 4000.0, 6.0, 800.0),
+                Hopper::with_speeds(30.0, 30.0),
+                1.624,
+                (0.0, 4000.0),
+            ),
+            1,
+        ),
+        Case::new("One centimetre", rough(12, 0.01, 0.0006, 0.0), Hopper::with_speeds(0.05, 0.05), 3.711, (0.0, 0.01)),
+        Case::new("No hop at all", bare([(0.0, 812.0), (40.0, 812.3)]), ten, 3.711, (5.0, 5.0)),
+        Case::new(
+            "Up a cliff",
+            bare([(0.0, 0.0), (4.0, 0.0), (4.5, 60.0), (9.0, 60.0)]),
+            Hopper::with_speeds(25.0, 25.0),
+            3.711,
+            (1.0, 8.0),
+        ),
+        spaced(Case::new("Two thousand vertices, a hundred hops", rough(2000, 2400.0, 9.0, 100.0), ten, 3.711, (0.0, 2400.0)), 0),
+    ]
+}
+
+fn labels(case: &Case) -> Vec<Label> {
+    case.with(|input| {
+        let (sheet, _) = laid_out(input, &FigureData::new(input).unwrap());
+        let label = |mark| if let Mark::Label(label) = mark { Some(label) } else { None };
+        sheet.marks.into_iter().filter_map(label).collect()
+    })
+}
+
+fn texts(case: &Case) -> String {
+    labels(case).iter().map(|label| label.text.as_str()).collect::<Vec<_>>().join("\n")
+}
+
+fn hops(data: &FigureData) -> &[HopFigure] {
+    if let Subject::Path { hops, .. } = &data.subject { &hops.shown } else { &[] }
+}
+
+#[test]
+fn flights_follow_the_commanded_speed_and_angle_from_point_to_point() {
+    let mut flown = 0;
+    for case in cases() {
+        let data = case.with(|input| FigureData::new(input).unwrap());
+        for hop in hops(&data) {
+            let (from, to) = (hop.hop.takeoff.point, hop.hop.landing.point);
+            let run_m = (to.x_m - from.x_m).abs();
+            let tolerance_m = 1e-9 * (run_m + hop.hop.apex_z_m - from.z_m);
+            // Newton's parabola from the commands alone.
+            let (v, angle) = (hop.hop.takeoff_speed_m_s, hop.hop.takeoff_angle.radians());
+            for share in [0.0, 0.1, 0.5, 0.77, 1.0] {
+                let point = hop.point_at(share);
+                let time_s = run_m * share / (v * angle.cos());
+                let height_m = from.z_m + v * angle.sin() * time_s - 0.5 * case.gravity_m_s2 * time_s * time_s;
+                assert!((point.z_m - height_m).abs() <= tolerance_m + 1e-12 * from.z_m.abs(), "{} hop {}", case.name, hop.number);
+                assert!((point.x_m - from.x_m - (to.x_m - from.x_m) * share).abs() <= tolerance_m + 1e-12 * from.x_m.abs());
+            }
+            flown += 1;
+        }
+    }
+    assert!(flown > 200, "{flown} hops looked at");
+}
+
+#[test]
+fn cones_hold_the_flights_that_leave_and_enter_them() {
+    for case in cases() {
+        let data = case.with(|input| FigureData::new(input).unwrap());
+        for hop in hops(&data) {
+            let [Some(takeoff), Some(landing)] = hop.cones else { panic!("{} hop {} has no cones", case.name, hop.number) };
+            let slack = |slope: f64| 1e-9 * (1.0 + slope * slope);
+            for (cone, slope) in [(takeoff, hop.arc.takeoff_slope()), (landing, hop.arc.landing_slope())] {
+                let (low, high) = (cone.slopes.lower - slack(slope), cone.slopes.upper + slack(slope));
+                assert!(low <= slope && slope <= high, "{} hop {}: {slope} outside {:?}", case.name, hop.number, cone.slopes);
+            }
+            // The ray of the flight's own slope points along the drawn flight.
+            let (start, next) = (hop.point_at(0.0), hop.point_at(1e-4));
+            let (x, z) = takeoff.ray(hop.arc.takeoff_slope());
+            let (dx, dz) = (next.x_m - start.x_m, next.z_m - start.z_m);
+            let sine = (x * dz - z * dx) / dx.hypot(dz);
+            assert!(x * dx + z * dz > 0.0 && sine.abs() < 1e-3, "{} hop {}: {sine}", case.name, hop.number);
+            assert_eq!(x > 0.0, hop.hop.direction == Direction::Forward);
+            let (x, _) = landing.ray(hop.arc.landing_slope());
+            assert_eq!(x < 0.0, hop.hop.direction == Direction::Forward, "the landing cone opens to where the hopper comes from");
+        }
+    }
+}
+
+#[test]
+fn spans_tell_of_every_place_what_it_allows() {
+    for case in cases() {
+        let data = case.with(|input| FigureData::new(input).unwrap());
+        assert_eq!((data.spans[0].from_x_m, data.spans[data.spans.len() - 1].to_x_m), data.view_x_m, "{}", case.name);
+        assert!(data.spans.windows(2).all(|pair| pair[0].to_x_m == pair[1].from_x_m && pair[0].allows != pair[1].allows));
+        for i in 0..997 {
+            let x_m = data.view_x_m.0 + (data.view_x_m.1 - data.view_x_m.0) * (f64::from(i) + 0.4321) / 997.0;
+            let station = case.chain.geometry().station(x_m).unwrap();
+            let span = data.spans.iter().find(|span| span.from_x_m < x_m && x_m < span.to_x_m).unwrap();
+            let usable = [Contact::Takeoff, Contact::Landing].map(|contact| is_usable(&case.chain, &station, contact));
+            let told = match span.allows {
+                GroundUse::Both => [true, true],
+                GroundUse::TakeoffOnly => [true, false],
+                GroundUse::LandingOnly => [false, true],
+                GroundUse::Closed(_) => [false, false],
+            };
+            assert_eq!(told, usable, "{} at {x_m} m", case.name);
+        }
+    }
+}
+
+#[test]
+fn each_kind_of_closed_ground_is_found_and_in_the_legend() {
+    let case = closed();
+    let data = case.with(|input| FigureData::new(input).unwrap());
+    let at = |x_m: f64| data.spans.iter().find(|s| s.from_x_m < x_m && x_m < s.to_x_m).unwrap().allows;
+    let found = [14.0, 35.0, 56.0, 70.0, 85.0, 95.0].map(at);
+    let closed = [Closure::RestSlope, Closure::KeepOut, Closure::Cones, Closure::SpeedZero, Closure::NoLimits];
+    assert_eq!(found[..5], closed.map(GroundUse::Closed));
+    assert_eq!(found[5], GroundUse::LandingOnly);
+    let texts = texts(&case);
+    for words in closed.map(Closure::text).into_iter().chain(["landing only"]) {
+        assert!(texts.contains(words), "the legend lacks {words:?}");
+    }
+}
+
+#[test]
+fn the_scale_is_always_stated() {
+    for (case, words) in [
+        (paper(), "heights at true scale"),
+        (cases().remove(8), "heights exaggerated 20 times"),
+        (cases().remove(13), "heights drawn at 1/5 of the horizontal scale"),
+        (cases().remove(9), "part of a chain from 0 to 300 m"),
+    ] {
+        assert!(texts(&case).contains(words), "{}: {}", case.name, texts(&case));
+    }
+}
+
+#[test]
+fn texts_stay_on_the_page_and_off_each_other() {
+    for case in cases() {
+        let labels = labels(&case);
+        for (i, label) in labels.iter().enumerate() {
+            let (left, top, right, bottom) = label.bounds_mm();
+            assert!(left >= 0.5 && right <= 169.5 && top >= 0.5, "{}: {:?} leaves the page", case.name, label.text);
+            for other in &labels[i + 1..] {
+                let (l, t, r, b) = other.bounds_mm();
+                let apart = right <= l || r <= left || bottom <= t || b <= top;
+                assert!(apart, "{}: {:?} over {:?}", case.name, label.text, other.text);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_path_shows_every_hop_number_limit_and_unit() {
+    let case = paper();
+    let svg = case.with(|input| draw(input).unwrap());
+    for words in ["1\n", "2\n", "3\n", "4\n"] {
+        let count = svg.matches(&format!(">\n{words}</text>")).count();
+        assert_eq!(count, 2, "hop {words} is numbered over its flight and below its bar");
+    }
+    assert_eq!(svg.matches("takeoff-cone").count(), 4);
+    assert_eq!(svg.matches("takeoff-speed").count(), 4);
+    for words in
+        ["x (m)", "z (m)", "(deg)", "3.711 m/s²", "10 m/s", "76 m", "4 hops, traversable", "J/kg", "60 to 90 deg over the slope"]
+    {
+        assert!(svg.contains(words), "{words:?} is missing");
+    }
+}
+
+#[test]
+fn an_impossible_journey_shows_how_far_one_gets_and_why_no_farther() {
+    let case = nearly();
+    let (data, frontier) = case.with(|input| {
+        let Outcome::NoPath(frontier) = &input.answer.outcome else { panic!("a path over the rille") };
+        (FigureData::new(input).unwrap(), frontier.clone())
+    });
+    let Subject::Stopped(stop) = &data.subject else { panic!("{:?}", data.subject) };
+    assert_eq!((stop.reached_x_m.as_slice(), stop.leads_to_goal_x_m.as_slice()), (&[(55.0, 100.0)][..], &[(0.0, 30.0)][..]));
+    assert_eq!((stop.gap.0.x_m, stop.gap.1.x_m), (55.0, 30.0));
+    let texts = texts(&case);
+    for (limit, count) in frontier.refusals.ranked() {
+        assert!(texts.contains(limit.name()) && texts.contains(&count.to_string()), "{limit} {count}");
+    }
+    let miss = frontier.nearest_miss.unwrap().conflict.to_string();
+    assert!(texts.replace('\n', " ").contains(&miss), "{miss}\n{texts}");
+    assert!(texts.contains("gap 25 m") && texts.contains("no path over"));
+    let texts = self::texts(&refused());
+    for words in ["start refuses", "rest slope of", "x = 10 m"] {
+        assert!(texts.contains(words), "{words:?} is missing in {texts}");
+    }
+}
+
+/// Tags that open and close in pairs, attributes quoted, no bare special letters.
+fn check_well_formed(svg: &str) {
+    let mut open = Vec::new();
+    let mut rest = svg;
+    while let Some(start) = rest.find('<') {
+        let text = &rest[..start];
+        assert!(!text.contains('>'), "bare > in {text:?}");
+        for (at, _) in text.match_indices('&') {
+            let entity = ["&lt;", "&gt;", "&amp;", "&quot;", "&apos;"].iter().any(|known| text[at..].starts_with(known));
+            assert!(entity, "bare & in {text:?}");
+        }
+        let end = start + rest[start..].find('>').unwrap();
+        let tag = &rest[start + 1..end];
+        if let Some(name) = tag.strip_prefix('/') {
+            assert_eq!(open.pop(), Some(name));
+        } else {
+            assert!(tag.matches('"').count().is_multiple_of(2), "{tag}");
+            if !tag.ends_with('/') {
+                open.push(tag.split_whitespace().next().unwrap());
+            }
+        }
+        rest = &rest[end + 1..];
+    }
+    assert!(open.is_empty() && rest.trim().is_empty(), "{open:?} left open");
+}
+
+/// With `CHTA_FIGURES_TO=folder` it also writes the pictures there, to be looked at.
+#[test]
+fn every_svg_is_well_formed_small_and_the_same_twice() {
+    let folder = std::env::var_os("CHTA_FIGURES_TO").map(std::path::PathBuf::from);
+    for case in cases() {
+        let svg = case.with(|input| draw(input).unwrap());
+        if let Some(folder) = &folder {
+            std::fs::write(folder.join(case.name.replace(' ', "-")).with_extension("svg"), &svg).unwrap();
+        }
+        check_well_formed(&svg);
+        assert!(svg.len() < 1_000_000, "{}: {} bytes", case.name, svg.len());
+        assert_eq!(svg, case.with(|input| draw(input).unwrap()), "{}", case.name);
+        for token in svg.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-')) {
+            assert!(token.len() <= 10, "{}: the number {token} is long", case.name);
+        }
+    }
+}
+
+#[test]
+fn names_with_special_letters_are_escaped() {
+    let svg = paper().with(|input| {
+        let title = FigureTitle { name: "a < b & \"c\" font-size=\"7.5\"".to_owned(), ..FigureTitle::default() };
+        draw(&FigureInput { title, ..input.clone() }).unwrap()
+    });
+    check_well_formed(&svg);
+    assert!(svg.contains("a &lt; b &amp; &quot;c&quot; font-size=&quot;7.5&quot;"));
+}
+
+#[test]
+fn curves_are_finer_than_pixels() {
+    let svg = paper().with(|input| draw(input).unwrap());
+    assert!(svg.starts_with("<svg width=\"170mm\" height=\""), "{}", &svg[..120]);
+    let width: f64 = svg.split("viewBox=\"0 0 ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    let units_per_pixel = width / (170.0 / 25.4 * 96.0);
+    assert!(units_per_pixel > 4.0, "{units_per_pixel} units a pixel");
+    // The four flights are the longest lines of the paper's case, on straight ground; their steps change smoothly.
+    let lines = svg.split("points=\"").skip(1).map(|part| part.split('"').next().unwrap());
+    let longest = lines.max_by_key(|line| line.len()).unwrap();
+    let points: Vec<(f64, f64)> = longest
+        .split_whitespace()
+        .map(|pair| pair.split_once(',').map(|(x, y)| (x.parse().unwrap(), y.parse().unwrap())).unwrap())
+        .collect();
+    assert!(points.len() > 40, "{} points", points.len());
+    let bend = |w: &[(f64, f64)]| (w[2].1 - 2.0 * w[1].1 + w[0].1).abs();
+    assert!(points.windows(3).map(bend).fold(0.0, f64::max) < units_per_pixel, "a step of more than a pixel");
+}
+
+#[test]
+fn long_paths_are_thinned_and_say_so() {
+    let hopper = Hopper::with_speeds(10.0, 10.0);
+    let case = Case::new("Far", bare([(0.0, 0.0), (100_000.0, 0.0)]), hopper, 3.711, (0.0, 100_000.0));
+    let data = case.with(|input| FigureData::new(input).unwrap());
+    let Subject::Path { hops, .. } = &data.subject else { panic!("no path") };
+    assert!(hops.of > 4000 && hops.shown.len() <= MOST_HOPS_DRAWN && hops.shown.len() > MOST_HOPS_DRAWN / 2);
+    assert!(texts(&case).contains(&format!("hop, forward (1 in {} of {} shown)", hops.every, hops.of)));
+    assert!(case.with(|input| draw(input).unwrap()).len() < 1_000_000);
+}
+
+#[test]
+fn a_path_without_its_hops_is_refused() {
+    let error = paper().with(|input| draw(&FigureInput { path: None, ..input.clone() })).unwrap_err();
+    assert_eq!(error, FigureError::NoHops);
+}
