@@ -477,3 +477,42 @@ fn rest_slope_cross_slope_and_keep_out_refuse_at_the_end_that_has_them() {
         assert!(seen.contains(&limit), "{limit} never refused");
     }
 }
+
+#[test]
+fn limits_that_touch_leave_exactly_one_arc() {
+    let draw = &mut Draw::seeded(9);
+    for _ in 0..500 {
+        // Flat ground: no steeper than theta at take-off, no flatter than theta at landing.
+        let (g, run, degrees) = (draw.gravity(), draw.log_uniform(1e-3, 1e5), draw.uniform(5.0, 85.0));
+        let points = [ChainPoint::new(0.0, 0.0), ChainPoint::new(run, 0.0)];
+        let chain = uniform(&points, line((-90.0, degrees), 1e6, (-90.0, -degrees), 1e6));
+        let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
+        let at = |i| chain.geometry().vertex_station(VertexId(i));
+        let angles = test.takeoff_set(&at(0), &at(1)).unwrap().angles().expect("limits that touch still hold");
+        assert_eq!(angles.min, angles.max);
+        assert!((angles.min.degrees() - degrees).abs() < 1e-12 * degrees);
+        // The least speed there is, as a double: the tolerance keeps it, a millionth less does not.
+        let least = chta::ballistics::least_takeoff_speed_m_s(chta::ballistics::LineOfSight::new(run, 0.0), g);
+        for (speed, reaches) in [(least, true), (least * (1.0 - 1e-6), false)] {
+            let chain = uniform(&points, line((-90.0, 90.0), speed, (-90.0, 90.0), speed));
+            let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
+            assert_eq!(test.loft(&at(0), &at(1)).is_ok(), reaches, "{speed} m/s over {run} m");
+        }
+    }
+}
+
+#[test]
+fn a_landing_exactly_as_high_as_the_apex_limit_is_allowed_from_below() {
+    // 3 m up a wall 1 m away: flights still rising at the landing have it as their highest point.
+    let points = [ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 3.0)];
+    let chain = uniform(&points, line((-90.0, 90.0), 100.0, (-90.0, 90.0), 100.0));
+    for (height, allowed) in [(3.0, true), (3.0f64.next_down(), false)] {
+        let hopper = Hopper { apex_height_max_m: Some(height), ..Hopper::UNLIMITED };
+        let test = HopTest::new(&chain, &hopper, 9.81);
+        let at = |i| chain.geometry().vertex_station(VertexId(i));
+        let set = test.takeoff_set(&at(0), &at(1)).unwrap();
+        assert_eq!(set.loft().is_some(), allowed, "{height} m");
+        // The steepest of them lands level: b - n = 0.
+        assert!(set.loft().is_none_or(|loft| (loft.upper - 3.0).abs() < 1e-12));
+    }
+}

@@ -311,3 +311,26 @@ fn mid_range_hops_fly_the_middle_of_their_own_set_and_are_no_more() {
     }
     assert!(middles > 500, "only {middles}");
 }
+
+#[test]
+fn hops_of_full_reach_lie_in_their_own_set_whatever_limit_ends_the_reach() {
+    let draw = &mut Draw::seeded(28);
+    let mut seen = std::collections::BTreeSet::new();
+    for i in 0..2000 {
+        let slope = Slope::draw(draw, i % 4 != 0);
+        let (takeoff, landing) = slope.ends();
+        let test = slope.test();
+        let Some(along) = test.segment_hops(&takeoff, &landing) else { continue };
+        if !(2..=100).contains(&along.hops()) {
+            continue;
+        }
+        for hop in flown(&slope, along, TakeoffChoice::LeastSpeed, Split::FullReach) {
+            let set = test.takeoff_set(&hop.takeoff, &hop.landing).unwrap();
+            let angles = set.angles().unwrap_or_else(|| panic!("{}: {}", along.reach().limit(), set.conflict().unwrap()));
+            let angle = hop.takeoff_angle.radians();
+            assert!(angles.min.radians() <= angle && angle <= angles.max.radians());
+        }
+        seen.insert(along.reach().limit());
+    }
+    assert_eq!(seen.len(), 4, "reaches ended by {seen:?} only");
+}

@@ -49,6 +49,9 @@ pub struct SegmentReach {
     loft: f64,
     reach_m: f64,
     tolerant_reach_m: f64,
+    /// The length of a hop of full reach: the reach, but a billionth less than the machine's limits allow. They hold without tolerance,
+    /// so a hop on the very limit would lose its one arc to rounding.
+    stride_m: f64,
     limit: Limit,
 }
 
@@ -81,7 +84,8 @@ impl SegmentReach {
         let (reach_m, limit) = if by_machine < by_speed { (by_machine, machine_limit) } else { (by_speed, limit) };
         let tolerance = (1.0 + SPEED_TOLERANCE) * (1.0 + SPEED_TOLERANCE);
         let tolerant_reach_m = by_machine.min(by_speed * tolerance);
-        (reach_m > 0.0).then_some(Self { sight_slope, from: *from, to: *to, loft, reach_m, tolerant_reach_m, limit })
+        let stride_m = reach_m.min(by_machine * (1.0 - SPEED_TOLERANCE));
+        (reach_m > 0.0).then_some(Self { sight_slope, from: *from, to: *to, loft, reach_m, tolerant_reach_m, stride_m, limit })
     }
 
     /// The greatest horizontal distance of one hop, m.
@@ -138,14 +142,15 @@ impl SegmentHops {
 
     /// The horizontal lengths of the hops, m: all but the last, and the last.
     ///
-    /// Full reach leaves the last hop the rest. Where the rest would be over the reach by the speeds' tolerance (a stretch of exactly
-    /// so many reaches), the hops are equal.
+    /// Full reach leaves the last hop the rest. Where the rest would be over the reach by a tolerance (a stretch of exactly so many
+    /// reaches), the hops are equal.
     #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
     pub fn lengths_m(&self, split: Split) -> (f64, f64) {
         let equal = self.run_m / self.hops as f64;
-        let rest = self.run_m - (self.hops - 1) as f64 * self.reach.reach_m;
+        let stride_m = self.reach.stride_m;
+        let rest = self.run_m - (self.hops - 1) as f64 * stride_m;
         match split {
-            Split::FullReach if self.hops > 1 && rest > 0.0 && rest <= self.reach.reach_m => (self.reach.reach_m, rest),
+            Split::FullReach if self.hops > 1 && rest > 0.0 && rest <= stride_m => (stride_m, rest),
             _ => (equal, equal),
         }
     }
