@@ -44,7 +44,7 @@ pub(crate) struct CommonArgs {
     /// Scenario (TOML) with body, hopper, surface and search
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
-    /// Set any scenario key; wins over the scenario [example: --set hopper.takeoff_speed_max_m_s=8]
+    /// Set any scenario key; wins over the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
     #[arg(long, value_name = "TABLE.KEY=VALUE")]
     pub(crate) set: Vec<String>,
     /// Known body, which gives gravity and radius (`chta bodies` lists them)
@@ -88,7 +88,7 @@ pub(crate) struct RunArgs {
     /// How the answer is written to standard output
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
-    /// Set any scenario key; wins over the scenario [example: --set hopper.takeoff_speed_max_m_s=8]
+    /// Set any scenario key; wins over the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
     #[arg(long, value_name = "TABLE.KEY=VALUE")]
     pub(crate) set: Vec<String>,
     /// No warnings and no progress on standard error
@@ -150,7 +150,7 @@ pub(crate) struct CheckArgs {
     /// Goal along the chain, m [default: the scenario's]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) goal: Option<f64>,
-    /// Many questions at once: CSV with start_x_m,goal_x_m
+    /// Many questions at once: CSV with `start_x_m,goal_x_m`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["start", "goal"])]
     pub(crate) pairs: Option<PathBuf>,
     /// How the answer is written
@@ -200,6 +200,7 @@ pub(crate) struct PlanArgs {
 ///
 /// The same options give the same bytes on every machine.
 #[derive(Debug, ClapArgs)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 #[command(after_help = "Example:\n  chta synth --rows 200 --cols 200 --craters --crater-density-per-km2 2000 --seed 7 -o moon.tif")]
 pub(crate) struct SynthArgs {
     /// Elevation raster to write: .tif (GeoTIFF) or .asc (ESRI ASCII grid)

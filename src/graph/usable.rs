@@ -48,15 +48,19 @@ pub fn endpoint_refusal(
     Some(EndpointRefusal { contact, station: *station, refusal, direction, nearest: nearest_usable(chain, station, contact) })
 }
 
-/// The nearest usable point by x: what a segment grants holds all over it, so it is a vertex.
+/// The nearest usable point by x.
 ///
-/// The vertex itself may obey another segment; then the segment's middle stands for it.
+/// What a segment grants holds all over it, so that is an end of a segment, or, where that vertex obeys another segment, a point a
+/// hundredth of the segment inside.
 fn nearest_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> Option<Station> {
     let geometry = chain.geometry();
     let away = |other: &Station| (other.point.x_m - station.point.x_m).abs();
     let vertices = (0..=geometry.segment_count()).map(|i| geometry.vertex_station(VertexId(i)));
-    let middles = geometry.vertices().windows(2).filter_map(|pair| geometry.station(0.5 * (pair[0].x_m + pair[1].x_m)).ok());
-    vertices.chain(middles).filter(|candidate| is_usable(chain, candidate, contact)).min_by(|a, b| away(a).total_cmp(&away(b)))
+    let insides = geometry.vertices().windows(2).flat_map(|pair| {
+        let run_m = pair[1].x_m - pair[0].x_m;
+        [0.01, 0.99].into_iter().filter_map(move |share| geometry.station(pair[0].x_m + share * run_m).ok())
+    });
+    vertices.chain(insides).filter(|candidate| is_usable(chain, candidate, contact)).min_by(|a, b| away(a).total_cmp(&away(b)))
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! The pipeline: scenario, terrain, chain, constraints; ready for the hop test.
 
 use std::{
+    fmt::Write,
     fs::File,
     io::{self, Read},
     path::{Path, PathBuf},
@@ -115,7 +116,12 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
         }
         digest.update(&piece[..count]);
     }
-    Ok(digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    let mut hexadecimal = String::new();
+    for byte in digest.finalize() {
+        // Writing to a String cannot fail.
+        let _ = write!(hexadecimal, "{byte:02x}");
+    }
+    Ok(hexadecimal)
 }
 
 /// The largest figures of some hops, to be doubted.

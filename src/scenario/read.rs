@@ -100,20 +100,20 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
     let radius = entries.number("body", "radius_m");
     let name = entries.text("body", "name").map(str::to_owned);
     match (&name, gravity) {
-        (Some(name), _) => match Body::named(name) {
-            Some(known) => Some(BodyChoice {
-                name: Some(known.name.to_owned()),
-                gravity_m_s2: gravity.unwrap_or(known.gravity_m_s2),
-                radius_m: Some(radius.unwrap_or(known.radius_m)),
-            }),
-            None => {
+        (Some(name), _) => {
+            let Some(known) = Body::named(name) else {
                 let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
                 let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
                 let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
                 entries.problem(place, message, "for any other body give gravity_m_s2 instead of a name");
-                None
-            }
-        },
+                return None;
+            };
+            Some(BodyChoice {
+                name: Some(known.name.to_owned()),
+                gravity_m_s2: gravity.unwrap_or(known.gravity_m_s2),
+                radius_m: Some(radius.unwrap_or(known.radius_m)),
+            })
+        }
         (None, Some(gravity_m_s2)) => Some(BodyChoice { name: None, gravity_m_s2, radius_m: radius }),
         (None, None) => {
             // A gravity that was given but refused has told its own problem.
