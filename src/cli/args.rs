@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use chta::quantity::MapPoint;
+use chta::{quantity::MapPoint, terrain::LonLat};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 /// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?
@@ -56,6 +56,9 @@ pub(crate) struct CommonArgs {
     /// Height to keep over every vertex flown past, m [default: 0]
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub(crate) clearance_m: Option<f64>,
+    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    #[arg(long)]
+    pub(crate) accept_map_scale: bool,
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -91,6 +94,9 @@ pub(crate) struct RunArgs {
     /// Set any scenario key; wins over the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
     #[arg(long, value_name = "TABLE.KEY=VALUE")]
     pub(crate) set: Vec<String>,
+    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    #[arg(long)]
+    pub(crate) accept_map_scale: bool,
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -104,17 +110,29 @@ pub(crate) struct SliceArgs {
     #[arg(value_name = "DEM")]
     pub(crate) dem: PathBuf,
     /// Where the slice begins, map coordinates in m
-    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
-    pub(crate) from: MapPoint,
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, required_unless_present = "from_lonlat")]
+    pub(crate) from: Option<MapPoint>,
+    /// Instead: longitude and planetocentric latitude, degrees, east positive
+    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "from")]
+    pub(crate) from_lonlat: Option<LonLat>,
     /// Where it ends, map coordinates in m
-    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
-    pub(crate) to: MapPoint,
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, required_unless_present = "to_lonlat")]
+    pub(crate) to: Option<MapPoint>,
+    /// Instead: longitude and planetocentric latitude, degrees, east positive
+    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "to")]
+    pub(crate) to_lonlat: Option<LonLat>,
     /// Scenario whose friction goes into the chain
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
+    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    #[arg(long)]
+    pub(crate) accept_map_scale: bool,
     /// Chain CSV to write; - or absent: standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// The slice as a line in three dimensions (GeoJSON) to write
+    #[arg(long, value_name = "FILE")]
+    pub(crate) geojson: Option<PathBuf>,
 }
 
 /// Test one hop: every limit by itself, what sets either end of the feasible take-off angles, or which two conflict
@@ -313,4 +331,17 @@ fn map_point(text: &str) -> Result<MapPoint, String> {
     let wanted = || format!("found `{text}`, expected two finite numbers in metres, X,Y, such as 12.5,-30");
     let (x, y) = text.split_once(',').ok_or_else(wanted)?;
     Ok(MapPoint::new(number(x).ok_or_else(wanted)?, number(y).ok_or_else(wanted)?))
+}
+
+/// Reads `LON,LAT`.
+fn lon_lat(text: &str) -> Result<LonLat, String> {
+    let number = |part: &str, range: std::ops::RangeInclusive<f64>| part.trim().parse::<f64>().ok().filter(|n| range.contains(n));
+    let wanted = || {
+        format!(
+            "found `{text}`, expected longitude (-180 to 360, east positive) and latitude (-90 to 90) in degrees, such as 62.8,-87.18"
+        )
+    };
+    let (lon, lat) = text.split_once(',').ok_or_else(wanted)?;
+    let (lon_deg, lat_deg) = (number(lon, -180.0..=360.0).ok_or_else(wanted)?, number(lat, -90.0..=90.0).ok_or_else(wanted)?);
+    Ok(LonLat { lon_deg, lat_deg })
 }

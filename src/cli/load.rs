@@ -81,7 +81,7 @@ pub(crate) fn load(
     };
     apply_options(&mut source.entries, common, search, ends);
     if !is_scenario {
-        for key in ["dem", "chain", "start_m", "goal_m"] {
+        for key in ["dem", "chain", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg"] {
             source.entries.forget("terrain", key);
         }
     }
@@ -151,7 +151,7 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
 
 /// Options win over the scenario: `--set` first, named options after it.
 fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&SearchArgs>, ends: [Option<f64>; 2]) {
-    let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, quiet: _ } = common;
+    let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, accept_map_scale, quiet: _ } = common;
     for assignment in set {
         entries.set(assignment);
     }
@@ -165,6 +165,9 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
     }
     if let Some(clearance) = clearance_m {
         entries.set_by_option("--clearance-m", "hopper", "clearance_m", (*clearance).into());
+    }
+    if *accept_map_scale {
+        entries.set_by_option("--accept-map-scale", "terrain", "accept_map_scale", true.into());
     }
     for (key, option, x_m) in [("start_x_m", "--start", ends[0]), ("goal_x_m", "--goal", ends[1])] {
         if let Some(x_m) = x_m {

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::terrain::MapProjection;
+
 /// A result as one JSON document: what it is, what made it, from what, and the answer.
 ///
 /// No clock and no absolute path, so that the same run gives the same bytes.
@@ -17,9 +19,38 @@ pub struct Document<T: Serialize> {
     pub inputs: Vec<InputFile>,
     /// What the analyst should know.
     pub warnings: Vec<String>,
+    /// The reference system of the map; absent where the chain lies on no map of a known projection.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub crs: Option<CrsRecord>,
     /// The answer.
     #[serde(flatten)]
     pub answer: T,
+}
+
+/// The reference system of a map.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct CrsRecord {
+    /// Its name, for people.
+    pub name: String,
+    /// Its proj string.
+    pub proj: String,
+    /// Authority and code, such as `IAU_2015:30135`; null where none is known.
+    pub code: Option<String>,
+}
+
+impl From<&MapProjection> for CrsRecord {
+    fn from(projection: &MapProjection) -> Self {
+        let code = projection.code().map(str::to_owned);
+        Self { name: projection.name().to_owned(), proj: projection.proj_string(), code }
+    }
+}
+
+impl CrsRecord {
+    /// Comments that say the same at the head of a chain CSV.
+    pub fn comments(&self) -> Vec<String> {
+        let code = self.code.as_ref().map(|code| format!("crs_code: {code}"));
+        [format!("crs_name: {}", self.name), format!("crs_proj: {}", self.proj)].into_iter().chain(code).collect()
+    }
 }
 
 /// A file that a result was made from.
@@ -34,7 +65,22 @@ pub struct InputFile {
 impl<T: Serialize> Document<T> {
     /// A document of a kind (`hop`, `check`, `plan`, `run`).
     pub fn new(kind: &str, scenario: serde_json::Value, inputs: Vec<InputFile>, warnings: Vec<String>, answer: T) -> Self {
-        Self { schema: format!("chta/{kind}/1"), chta_version: env!("CARGO_PKG_VERSION"), scenario, inputs, warnings, answer }
+        Self {
+            schema: format!("chta/{kind}/1"),
+            chta_version: env!("CARGO_PKG_VERSION"),
+            scenario,
+            inputs,
+            warnings,
+            crs: None,
+            answer,
+        }
+    }
+
+    /// The same with the reference system of its map.
+    #[must_use]
+    pub fn on_map(mut self, projection: Option<&MapProjection>) -> Self {
+        self.crs = projection.map(CrsRecord::from);
+        self
     }
 
     /// As indented JSON with a final line end.

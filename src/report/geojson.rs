@@ -1,9 +1,16 @@
-//! The path in three dimensions as GeoJSON, in the coordinates of the map.
+//! Paths and slices in three dimensions as GeoJSON, in the coordinates of the map.
+//!
+//! The reference system stands in the `crs` member of the format's edition of 2008, which GIS programs still read: as the uniform resource
+//! name of an IAU or EPSG code where one is known, else as the proj string, which GDAL understands there, beside a `.prj` file.
 
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, Position};
 
-use super::path_record::HopRecord;
-use crate::path::{Hop, HopPath, MapEnds};
+use super::path_record::{HopRecord, tenth_digit};
+use crate::{
+    path::{Hop, HopPath, MapEnds},
+    quantity::MapPoint,
+    terrain::{MapProjection, Profile},
+};
 
 /// Points drawn along each arc: under a thousandth of the hop's length off the true curve.
 const POINTS_PER_ARC: u32 = 32;
@@ -11,9 +18,10 @@ const POINTS_PER_ARC: u32 = 32;
 /// A path over a map as a feature collection: an arc (a line in three dimensions) for each hop with all its columns, and a point for
 /// each place that is touched. `None` where the chain lies on no map.
 ///
-/// Coordinates are easting, northing and height in metres of the input's map, not longitude and latitude.
-pub fn path_geojson(path: &HopPath, gravity_m_s2: f64) -> Option<String> {
-    let rows = HopRecord::rows(path);
+/// Coordinates are easting, northing and height in metres of the input's map, not longitude and latitude; with a `projection`, the
+/// properties have those too.
+pub fn path_geojson(path: &HopPath, gravity_m_s2: f64, projection: Option<&MapProjection>) -> Option<String> {
+    let rows = HopRecord::rows(path, projection);
     let mut features = Vec::new();
     for (hop, row) in path.hops.iter().zip(&rows) {
         let map = hop.map?;
@@ -21,20 +29,55 @@ pub fn path_geojson(path: &HopPath, gravity_m_s2: f64) -> Option<String> {
         properties.insert("kind".to_owned(), "hop".into());
         features.push(feature(GeometryValue::LineString { coordinates: arc_positions(hop, &map, gravity_m_s2) }, properties));
         if row.hop == 1 {
-            features.push(contact(0, [map.takeoff.x, map.takeoff.y, hop.takeoff.point.z_m]));
+            features.push(contact(0, map.takeoff, hop.takeoff.point.z_m, projection));
         }
-        features.push(contact(row.hop, [map.landing.x, map.landing.y, hop.landing.point.z_m]));
+        features.push(contact(row.hop, map.landing, hop.landing.point.z_m, projection));
     }
-    let collection = FeatureCollection { bbox: None, features, foreign_members: None };
-    Some(geojson::GeoJson::from(collection).to_string() + "\n")
+    Some(document(features, projection))
+}
+
+/// A slice as one line in three dimensions, with the name of what was sliced and, with a `projection`, where its ends lie on the body.
+pub fn slice_geojson(profile: &Profile, source: &str, projection: Option<&MapProjection>) -> String {
+    let coordinates = profile.points.iter().map(|point| Position::from([point.map.x, point.map.y, point.z_m])).collect();
+    let mut properties = JsonObject::new();
+    properties.insert("kind".to_owned(), "slice".into());
+    properties.insert("source".to_owned(), source.into());
+    properties.insert("length_m".to_owned(), profile.length_m().into());
+    for (end, point) in [("from", profile.points.first()), ("to", profile.points.last())] {
+        if let Some(point) = point {
+            insert_lon_lat(&mut properties, &format!("{end}_"), point.map, projection);
+        }
+    }
+    document(vec![feature(GeometryValue::LineString { coordinates }, properties)], projection)
+}
+
+/// Features with their reference system.
+fn document(features: Vec<Feature>, projection: Option<&MapProjection>) -> String {
+    let reference = projection.map(|projection| {
+        let name = projection.urn().unwrap_or_else(|| projection.proj_string());
+        let mut members = JsonObject::new();
+        members.insert("crs".to_owned(), serde_json::json!({ "type": "name", "properties": { "name": name } }));
+        members
+    });
+    let collection = FeatureCollection { bbox: None, features, foreign_members: reference };
+    geojson::GeoJson::from(collection).to_string() + "\n"
+}
+
+/// Longitude and latitude as properties, where the projection is known and the body has the place.
+fn insert_lon_lat(properties: &mut JsonObject, prefix: &str, at: MapPoint, projection: Option<&MapProjection>) {
+    if let Some(place) = projection.and_then(|projection| projection.lon_lat(at)) {
+        properties.insert(format!("{prefix}lon_deg"), tenth_digit(place.lon_deg).into());
+        properties.insert(format!("{prefix}lat_deg"), tenth_digit(place.lat_deg).into());
+    }
 }
 
 /// A place that is touched after so many hops.
-fn contact(after_hops: usize, position: [f64; 3]) -> Feature {
+fn contact(after_hops: usize, at: MapPoint, z_m: f64, projection: Option<&MapProjection>) -> Feature {
     let mut properties = JsonObject::new();
     properties.insert("kind".to_owned(), "contact".into());
     properties.insert("after_hops".to_owned(), after_hops.into());
-    feature(GeometryValue::Point { coordinates: Position::from(position) }, properties)
+    insert_lon_lat(&mut properties, "", at, projection);
+    feature(GeometryValue::Point { coordinates: Position::from([at.x, at.y, z_m]) }, properties)
 }
 
 fn feature(geometry: GeometryValue, properties: JsonObject) -> Feature {

@@ -11,9 +11,9 @@ mod text;
 mod whole_file;
 
 pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, verdict_name};
-pub use document::{Document, InputFile};
-pub use geojson::path_geojson;
+pub use document::{CrsRecord, Document, InputFile};
+pub use geojson::{path_geojson, slice_geojson};
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
-pub use path_record::{HopRecord, MapRecord, TotalsRecord, write_path_csv};
+pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv};
 pub use text::{check_text, hop_text, path_text};
 pub use whole_file::write_whole;

@@ -4,7 +4,10 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::path::{Hop, HopPath, Totals};
+use crate::{
+    path::{Hop, HopPath, MapEnds, Totals},
+    terrain::MapProjection,
+};
 
 /// One hop of a path, as plain data. The columns of path.csv and the keys of `path` in JSON.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -59,6 +62,40 @@ pub struct MapRecord {
     pub landing_map_x_m: f64,
     /// Where it lands, northing.
     pub landing_map_y_m: f64,
+    /// On a map of a known projection: the same places on the body.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub lon_lat: Option<LonLatRecord>,
+}
+
+/// The columns of a hop on a map whose projection is known; planetocentric, east positive.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LonLatRecord {
+    /// Where it takes off, longitude.
+    pub takeoff_lon_deg: f64,
+    /// Where it takes off, latitude.
+    pub takeoff_lat_deg: f64,
+    /// Where it lands, longitude.
+    pub landing_lon_deg: f64,
+    /// Where it lands, latitude.
+    pub landing_lat_deg: f64,
+}
+
+impl LonLatRecord {
+    fn new(map: &MapEnds, projection: &MapProjection) -> Option<Self> {
+        let [takeoff, landing] = [map.takeoff, map.landing].map(|at| projection.lon_lat(at));
+        let (takeoff, landing) = (takeoff?, landing?);
+        Some(Self {
+            takeoff_lon_deg: tenth_digit(takeoff.lon_deg),
+            takeoff_lat_deg: tenth_digit(takeoff.lat_deg),
+            landing_lon_deg: tenth_digit(landing.lon_deg),
+            landing_lat_deg: tenth_digit(landing.lat_deg),
+        })
+    }
+}
+
+/// Degrees to ten digits, some micrometres: what is beyond differs from one system's mathematics to the next.
+pub(super) fn tenth_digit(degrees: f64) -> f64 {
+    libm::rint(degrees * 1.0e10) / 1.0e10
 }
 
 /// What the hops of a path add up to.
@@ -81,12 +118,12 @@ pub struct TotalsRecord {
 }
 
 impl HopRecord {
-    /// The rows of a path.
-    pub fn rows(path: &HopPath) -> Vec<Self> {
-        path.hops.iter().enumerate().map(|(i, hop)| Self::new(i + 1, hop)).collect()
+    /// The rows of a path; with a `projection`, places on a map get their longitude and latitude.
+    pub fn rows(path: &HopPath, projection: Option<&MapProjection>) -> Vec<Self> {
+        path.hops.iter().enumerate().map(|(i, hop)| Self::new(i + 1, hop, projection)).collect()
     }
 
-    fn new(number: usize, hop: &Hop) -> Self {
+    fn new(number: usize, hop: &Hop, projection: Option<&MapProjection>) -> Self {
         Self {
             hop: number,
             direction: hop.direction.name(),
@@ -110,6 +147,7 @@ impl HopRecord {
                 takeoff_map_y_m: map.takeoff.y,
                 landing_map_x_m: map.landing.x,
                 landing_map_y_m: map.landing.y,
+                lon_lat: projection.and_then(|projection| LonLatRecord::new(&map, projection)),
             }),
         }
     }
@@ -151,38 +189,74 @@ const COLUMNS: [&str; 16] = [
 /// The further columns of a chain on a map.
 const MAP_COLUMNS: [&str; 5] = ["heading_deg", "takeoff_map_x_m", "takeoff_map_y_m", "landing_map_x_m", "landing_map_y_m"];
 
+/// The further columns of a map whose projection is known.
+const LON_LAT_COLUMNS: [&str; 4] = ["takeoff_lon_deg", "takeoff_lat_deg", "landing_lon_deg", "landing_lat_deg"];
+
+/// What is known of where a chain lies, which sets the columns of its path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum MapKnowledge {
+    /// No map.
+    Nothing,
+    /// A map in metres.
+    Metres,
+    /// And its projection.
+    Projection,
+}
+
 /// Writes a path as CSV, the header also where there is no hop.
 ///
 /// # Errors
 /// What the writer says.
-pub fn write_path_csv(rows: &[HopRecord], on_map: bool, out: impl Write) -> io::Result<()> {
+pub fn write_path_csv(rows: &[HopRecord], known: MapKnowledge, out: impl Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    let columns = COLUMNS.iter().chain(MAP_COLUMNS.iter().filter(|_| on_map));
-    writer.write_record(columns)?;
+    let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
+    let lon_lat: &[&str] = if known >= MapKnowledge::Projection { &LON_LAT_COLUMNS } else { &[] };
+    writer.write_record([&COLUMNS[..], map, lon_lat].concat())?;
     for row in rows {
-        let numbers = [
-            row.takeoff_x_m,
-            row.takeoff_z_m,
-            row.landing_x_m,
-            row.landing_z_m,
-            row.takeoff_angle_deg,
-            row.takeoff_speed_m_s,
-            row.landing_angle_deg,
-            row.landing_speed_m_s,
-            row.flight_time_s,
-            row.apex_z_m,
-            row.takeoff_angle_min_deg,
-            row.takeoff_angle_max_deg,
-            row.speed_margin_m_s,
-        ];
-        let mut record = vec![row.hop.to_string(), row.direction.to_owned()];
-        record.extend(numbers.iter().map(ToString::to_string));
-        record.push(row.binding.clone());
-        if let Some(map) = row.map.filter(|_| on_map) {
-            let numbers = [map.heading_deg, map.takeoff_map_x_m, map.takeoff_map_y_m, map.landing_map_x_m, map.landing_map_y_m];
-            record.extend(numbers.iter().map(ToString::to_string));
-        }
-        writer.write_record(&record)?;
+        writer.write_record(row.fields(known))?;
     }
     writer.flush()
+}
+
+impl HopRecord {
+    /// The fields of a row of path.csv.
+    fn fields(&self, known: MapKnowledge) -> Vec<String> {
+        let numbers = [
+            self.takeoff_x_m,
+            self.takeoff_z_m,
+            self.landing_x_m,
+            self.landing_z_m,
+            self.takeoff_angle_deg,
+            self.takeoff_speed_m_s,
+            self.landing_angle_deg,
+            self.landing_speed_m_s,
+            self.flight_time_s,
+            self.apex_z_m,
+            self.takeoff_angle_min_deg,
+            self.takeoff_angle_max_deg,
+            self.speed_margin_m_s,
+        ];
+        let mut fields = vec![self.hop.to_string(), self.direction.to_owned()];
+        fields.extend(numbers.iter().map(ToString::to_string));
+        fields.push(self.binding.clone());
+        if known >= MapKnowledge::Metres {
+            let numbers = self
+                .map
+                .map(|map| [map.heading_deg, map.takeoff_map_x_m, map.takeoff_map_y_m, map.landing_map_x_m, map.landing_map_y_m]);
+            fields.extend(texts(numbers));
+        }
+        if known >= MapKnowledge::Projection {
+            let numbers = self
+                .map
+                .and_then(|map| map.lon_lat)
+                .map(|place| [place.takeoff_lon_deg, place.takeoff_lat_deg, place.landing_lon_deg, place.landing_lat_deg]);
+            fields.extend(texts(numbers));
+        }
+        fields
+    }
+}
+
+/// Numbers as fields, empty where there are none.
+fn texts<const N: usize>(numbers: Option<[f64; N]>) -> [String; N] {
+    numbers.map_or_else(|| std::array::from_fn(|_| String::new()), |numbers| numbers.map(|number| number.to_string()))
 }

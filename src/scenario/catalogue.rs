@@ -21,6 +21,10 @@ pub enum Kind {
     AngleRange,
     /// Two numbers `[x, y]` on the map, in metres.
     MapPoint,
+    /// Two numbers `[longitude, latitude]`, in degrees.
+    LonLat,
+    /// `true` or `false`.
+    Flag,
     /// A whole number, or `"auto"`.
     CountOrAuto,
     /// One of these words.
@@ -62,6 +66,8 @@ impl Kind {
             Self::AngleOrUnlimited => "an angle from 0 to 90 degrees, or inf".to_owned(),
             Self::AngleRange => "two angles in degrees, [min, max], from -360 to 360, min not above max".to_owned(),
             Self::MapPoint => "two finite numbers in metres, [x, y]".to_owned(),
+            Self::LonLat => "[longitude, latitude] in degrees, east positive, from -180 to 360 and from -90 to 90".to_owned(),
+            Self::Flag => "true or false".to_owned(),
             Self::CountOrAuto => "a whole number from 0 to 100000, or \"auto\"".to_owned(),
             Self::Word(words) => format!("one of {}", words.join(", ")),
             Self::Text => "a text in quotes, not empty".to_owned(),
@@ -85,7 +91,7 @@ const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 28] = [
+pub const CATALOGUE: [Key; 31] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
@@ -111,6 +117,9 @@ pub const CATALOGUE: [Key; 28] = [
     key("terrain", "chain", Kind::Text, "chain CSV, path from this file"),
     key("terrain", "start_m", Kind::MapPoint, "start on the map, [x, y], m"),
     key("terrain", "goal_m", Kind::MapPoint, "goal on the map, [x, y], m"),
+    key("terrain", "start_lonlat_deg", Kind::LonLat, "instead: start as [longitude, planetocentric latitude], degrees"),
+    key("terrain", "goal_lonlat_deg", Kind::LonLat, "instead: goal as [longitude, planetocentric latitude], degrees"),
+    key("terrain", "accept_map_scale", Kind::Flag, "take distances of a map whose scale is off by over 1 % as they are"),
     key("terrain", "start_x_m", COORDINATE, "start along the chain, m"),
     key("terrain", "goal_x_m", COORDINATE, "goal along the chain, m"),
     key(
@@ -135,7 +144,7 @@ mod tests {
         let units = ["_m", "_m_s", "_m_s2", "_s", "_kg", "_deg"];
         let pure = ["friction_coefficient", "points_per_segment"];
         for key in &CATALOGUE {
-            let number = !matches!(key.kind, Kind::Word(_) | Kind::Text);
+            let number = !matches!(key.kind, Kind::Word(_) | Kind::Text | Kind::Flag);
             assert!(
                 !number || pure.contains(&key.name) || units.iter().any(|unit| key.name.ends_with(unit)),
                 "{} has no unit",

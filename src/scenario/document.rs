@@ -6,6 +6,7 @@ use super::{Scenario, TerrainSource};
 use crate::{
     graph::PointSpacing,
     quantity::{Angle, AngleInterval},
+    terrain::MapPlace,
     world::{Grip, RestSlope},
 };
 
@@ -87,18 +88,27 @@ fn surface(scenario: &Scenario) -> Value {
 }
 
 fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> Value {
-    let (dem, chain, start, goal) = match &scenario.terrain {
-        Some(TerrainSource::Dem { path, start, goal }) => {
-            (Some(named(path).into()), None, Some(json!([start.x, start.y])), Some(json!([goal.x, goal.y])))
-        }
-        Some(TerrainSource::Chain { path }) => (None, Some(named(path).into()), None, None),
-        None => (None, None, None, None),
+    let (dem, chain, ends) = match &scenario.terrain {
+        Some(TerrainSource::Dem { path, start, goal }) => (Some(named(path).into()), None, Some([start, goal])),
+        Some(TerrainSource::Chain { path }) => (None, Some(named(path).into()), None),
+        None => (None, None, None),
+    };
+    let metres = |place: &MapPlace| match place {
+        MapPlace::Metres(point) => Some(json!([point.x, point.y])),
+        MapPlace::LonLat(_) => None,
+    };
+    let degrees = |place: &MapPlace| match place {
+        MapPlace::Metres(_) => None,
+        MapPlace::LonLat(place) => Some(json!([place.lon_deg, place.lat_deg])),
     };
     object([
         ("dem", dem),
         ("chain", chain),
-        ("start_m", start),
-        ("goal_m", goal),
+        ("start_m", ends.and_then(|[start, _]| metres(start))),
+        ("goal_m", ends.and_then(|[_, goal]| metres(goal))),
+        ("start_lonlat_deg", ends.and_then(|[start, _]| degrees(start))),
+        ("goal_lonlat_deg", ends.and_then(|[_, goal]| degrees(goal))),
+        ("accept_map_scale", scenario.accept_map_scale.then_some(true.into())),
         ("start_x_m", scenario.start_x_m.map(Value::from)),
         ("goal_x_m", scenario.goal_x_m.map(Value::from)),
     ])

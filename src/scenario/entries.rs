@@ -160,6 +160,11 @@ impl Entries {
         self.value(table, name).and_then(toml::Value::as_str)
     }
 
+    /// A switch; `false` where it was not given.
+    pub(super) fn flag(&self, table: &str, name: &str) -> bool {
+        self.value(table, name).and_then(toml::Value::as_bool).unwrap_or(false)
+    }
+
     /// Two numbers; `None` where they were not given.
     pub(super) fn pair(&self, table: &str, name: &str) -> Option<[f64; 2]> {
         self.value(table, name).and_then(pair)
@@ -245,6 +250,8 @@ fn fits(value: &toml::Value, kind: Kind) -> bool {
         }
         Kind::AngleRange => pair(value).is_some_and(|[a, b]| -360.0 <= a && a <= b && b <= 360.0),
         Kind::MapPoint => pair(value).is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() <= 1e12)),
+        Kind::LonLat => pair(value).is_some_and(|[lon, lat]| (-180.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat)),
+        Kind::Flag => value.as_bool().is_some(),
         Kind::CountOrAuto => value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),

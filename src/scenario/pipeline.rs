@@ -13,7 +13,7 @@ use super::{BodyChoice, Scenario, TerrainSource};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     path::Hop,
-    terrain::{TerrainError, read_dem, slice},
+    terrain::{Dem, MapPlace, MapProjection, Profile, TerrainError, check_scale, read_dem, slice},
     world::{Body, FrictionCone, Grip},
 };
 
@@ -26,6 +26,8 @@ pub struct Prepared {
     pub start: Option<Station>,
     /// Where it ends.
     pub goal: Option<Station>,
+    /// The projection of the map that the chain lies on, where it lies on one of a known projection.
+    pub projection: Option<MapProjection>,
     /// What the reader of the terrain noticed.
     pub warnings: Vec<String>,
 }
@@ -71,16 +73,17 @@ pub enum PipelineError {
 /// # Errors
 /// [`PipelineError`].
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
-    let (geometry, warnings, ends) = match source {
+    let (geometry, projection, warnings, ends) = match source {
         TerrainSource::Dem { path, start, goal } => {
-            let profile = slice(&read_dem(&base.join(path))?, *start, *goal)?;
-            let chain = PolygonalChain::from_profile(&profile, friction(scenario))?;
+            let file = base.join(path);
+            let cut = cut(&read_dem(&file)?, [start, goal], scenario.accept_map_scale, &file)?;
+            let chain = PolygonalChain::from_profile(&cut.profile, friction(scenario))?;
             let (first_m, last_m) = chain.extent_m();
-            (chain, Vec::new(), (Some(first_m), Some(last_m)))
+            (chain, cut.projection, cut.warnings, (Some(first_m), Some(last_m)))
         }
         TerrainSource::Chain { path } => {
             let file = csv::read_chain_csv_file(base.join(path))?;
-            (file.chain, file.warnings, (None, None))
+            (file.chain, None, file.warnings, (None, None))
         }
     };
     let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface)?;
@@ -89,7 +92,31 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
     };
     let start = station("start", scenario.start_x_m.or(ends.0))?;
     let goal = station("goal", scenario.goal_x_m.or(ends.1))?;
-    Ok(Prepared { chain, start, goal, warnings })
+    Ok(Prepared { chain, start, goal, projection, warnings })
+}
+
+/// A slice of a DEM with what is known of its map.
+#[derive(Clone, Debug)]
+pub struct Cut {
+    /// The ground along the transect.
+    pub profile: Profile,
+    /// The map's projection, where it is known.
+    pub projection: Option<MapProjection>,
+    /// What the analyst should know of the map.
+    pub warnings: Vec<String>,
+}
+
+/// Slices a DEM between two places, once the scale of its map along the transect is found right or accepted.
+///
+/// # Errors
+/// As [`slice`], [`check_scale`] and [`MapPlace::on_map`].
+pub fn cut(dem: &Dem, [from, to]: [&MapPlace; 2], accept_map_scale: bool, file: &Path) -> Result<Cut, TerrainError> {
+    let projection = dem.georeference().projection();
+    let known = projection.as_ref();
+    let (from, to) = (from.on_map("from", known, dem.bounds())?, to.on_map("to", known, dem.bounds())?);
+    let scale = check_scale(dem, known, [from, to], accept_map_scale, file)?;
+    let profile = slice(dem, from, to)?;
+    Ok(Cut { profile, warnings: scale.warning().into_iter().collect(), projection: projection.ok() })
 }
 
 /// The friction that a scenario gives the whole ground.

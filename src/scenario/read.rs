@@ -7,6 +7,7 @@ use crate::{
     ballistics::{Split, TakeoffChoice},
     graph::{Effort, PointSpacing, SearchOptions},
     quantity::{Angle, AngleInterval, MapPoint},
+    terrain::{LonLat, MapPlace},
     world::{Body, FrictionCone, Grip, Hopper, KNOWN_BODIES, RestSlope, Surface},
 };
 
@@ -29,9 +30,9 @@ pub enum TerrainSource {
         /// The file, from the scenario's folder.
         path: PathBuf,
         /// Where the slice begins.
-        start: MapPoint,
+        start: MapPlace,
         /// Where it ends.
-        goal: MapPoint,
+        goal: MapPlace,
     },
     /// A chain CSV.
     Chain {
@@ -51,6 +52,8 @@ pub struct Scenario {
     pub surface: Surface,
     /// The terrain, where the scenario names it.
     pub terrain: Option<TerrainSource>,
+    /// Whether a map whose scale along the transect is off by over 1 % is taken as it is.
+    pub accept_map_scale: bool,
     /// Start along the chain, m, where the scenario names it.
     pub start_x_m: Option<f64>,
     /// Goal along the chain, m, where the scenario names it.
@@ -86,6 +89,7 @@ impl Scenario {
             hopper,
             surface,
             terrain,
+            accept_map_scale: entries.flag("terrain", "accept_map_scale"),
             start_x_m: entries.number("terrain", "start_x_m"),
             goal_x_m: entries.number("terrain", "goal_x_m"),
             search,
@@ -192,9 +196,7 @@ fn surface(entries: &mut Entries) -> Surface {
 /// Where the ground comes from.
 fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
     let text = |name| entries.text("terrain", name).map(PathBuf::from);
-    let point = |name| entries.pair("terrain", name).map(|[x, y]| MapPoint::new(x, y));
     let (dem, chain) = (text("dem"), text("chain"));
-    let (start, goal) = (point("start_m"), point("goal_m"));
     let along = ["start_x_m", "goal_x_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
     match (dem, chain) {
         (Some(_), Some(_)) => {
@@ -203,26 +205,13 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
             None
         }
         (Some(path), None) => {
-            if let (Some(start), Some(goal)) = (start, goal) {
-                return Some(TerrainSource::Dem { path, start, goal });
-            }
-            let missing = if start.is_none() { "start_m" } else { "goal_m" };
-            let told = entries.problems().iter().any(|problem| problem.message.contains(missing));
-            if !told {
-                let place = entries.place("terrain", "dem").unwrap_or(Place::Nowhere);
-                entries.problem(
-                    place,
-                    format!("terrain has a dem but no {missing}"),
-                    format!("add {missing} = [x, y], in map metres"),
-                );
-            }
-            None
+            let (start, goal) = (map_place(entries, "start"), map_place(entries, "goal"));
+            Some(TerrainSource::Dem { path, start: start?, goal: goal? })
         }
         (None, Some(path)) => {
-            for (name, given) in [("start_m", start), ("goal_m", goal)] {
-                if given.is_some() {
-                    let place = entries.place("terrain", name).unwrap_or(Place::Nowhere);
-                    let help = format!("for a chain give {} instead", name.replace("_m", "_x_m"));
+            for name in ["start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg"] {
+                if let Some(place) = entries.place("terrain", name) {
+                    let help = format!("for a chain give {}_x_m instead", name.split('_').next().unwrap_or(name));
                     entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
                 }
             }
@@ -231,6 +220,32 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
         (None, None) => {
             if let Some((name, place @ Place::File(_))) = along {
                 entries.problem(place, format!("terrain.{name} without a chain"), "add chain = \"file.csv\"");
+            }
+            None
+        }
+    }
+}
+
+/// The start or goal of a transect: map coordinates, or longitude and latitude.
+fn map_place(entries: &mut Entries, end: &str) -> Option<MapPlace> {
+    let (metres, degrees) = (format!("{end}_m"), format!("{end}_lonlat_deg"));
+    let point = entries.pair("terrain", &metres).map(|[x, y]| MapPoint::new(x, y));
+    let place = entries.pair("terrain", &degrees).map(|[lon_deg, lat_deg]| LonLat { lon_deg, lat_deg });
+    match (point, place) {
+        (Some(point), None) => Some(MapPlace::Metres(point)),
+        (None, Some(place)) => Some(MapPlace::LonLat(place)),
+        (Some(_), Some(_)) => {
+            let at = entries.place("terrain", &degrees).unwrap_or(Place::Nowhere);
+            entries.problem(at, format!("terrain has both {metres} and {degrees}, expected one of the two"), "remove one of them");
+            None
+        }
+        (None, None) => {
+            let told =
+                entries.problems().iter().any(|problem| problem.message.contains(&metres) || problem.message.contains(&degrees));
+            if !told {
+                let at = entries.place("terrain", "dem").unwrap_or(Place::Nowhere);
+                let help = format!("add {metres} = [x, y], in map metres, or {degrees} = [longitude, latitude]");
+                entries.problem(at, format!("terrain has a dem but no {metres}"), help);
             }
             None
         }

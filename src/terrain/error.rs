@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use super::MapBounds;
+use super::{LonLat, MapBounds, NoProjection};
 use crate::quantity::MapPoint;
 
 /// Why a DEM could not be read, written, sliced or made up.
@@ -79,6 +79,50 @@ pub enum TerrainError {
         /// What the DEM covers.
         bounds: MapBounds,
     },
+    /// Longitude and latitude on a map without a known projection.
+    #[error(
+        "the {which} point is given as longitude and latitude, but {reason}, expected a GeoTIFF with a projection in metres; give map \
+         coordinates in metres, or state the projection with: gdal_translate -a_srs 'PROJ STRING' in.tif out.tif"
+    )]
+    NoProjection {
+        /// "from" or "to".
+        which: &'static str,
+        /// What is known of the map.
+        reason: NoProjection,
+    },
+    /// A place on the body that the DEM does not cover.
+    #[error("the {which} point ({place}) {}, expected {bounds} (the outermost posts)", lies(*at))]
+    LonLatOffTheMap {
+        /// "from" or "to".
+        which: &'static str,
+        /// The place.
+        place: LonLat,
+        /// Where on the map that is, if anywhere.
+        at: Option<MapPoint>,
+        /// What the DEM covers.
+        bounds: MapBounds,
+    },
+    /// A map whose scale along the transect is not 1.
+    #[error(
+        "{found}, expected 1 within 1 %; mend it with: {mend}; or take it as it is with --accept-map-scale (terrain.accept_map_scale = true)"
+    )]
+    MapScale {
+        /// The factor and its place.
+        found: String,
+        /// A command that makes a map that is true along the transect.
+        mend: String,
+    },
+    /// A transect that leaves what its projection shows of the body.
+    #[error(
+        "the transect from ({} m, {} m) to ({} m, {} m) leaves the part of the map that shows the body, expected longitude and latitude all \
+         the way; choose another transect", from.x, from.y, to.x, to.y
+    )]
+    OffTheBody {
+        /// Where it begins.
+        from: MapPoint,
+        /// Where it ends.
+        to: MapPoint,
+    },
     /// The plane of a slice meets posts without elevation.
     #[error(
         "the plane meets no-data {distance_m:.3} m from the start, at map point ({:.3} m, {:.3} m), expected elevations all the way; choose another \
@@ -134,6 +178,14 @@ impl fmt::Display for AsciiProblem {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "line {}, column {}: found {}, expected {}", self.line, self.column, self.found, self.expected)
     }
+}
+
+/// Where a place lies, for a sentence.
+fn lies(at: Option<MapPoint>) -> String {
+    at.map_or_else(
+        || "lies nowhere on the map".to_owned(),
+        |at| format!("is off the map, at map point ({:.3} m, {:.3} m)", at.x, at.y),
+    )
 }
 
 fn list_problems(problems: &[AsciiProblem], further: usize) -> String {

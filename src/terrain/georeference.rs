@@ -3,6 +3,7 @@
 use std::fmt;
 
 use super::TerrainError;
+use super::projection::{MapProjection, NoProjection, stated_ellipsoid};
 use crate::quantity::MapPoint;
 
 /// The place of a raster on the map: north up, posts on a lattice of rectangles.
@@ -59,6 +60,13 @@ pub struct MapBounds {
     pub max: MapPoint,
 }
 
+impl MapBounds {
+    /// Whether a point lies in the rectangle, its border included.
+    pub fn contains(&self, at: MapPoint) -> bool {
+        (self.min.x..=self.max.x).contains(&at.x) && (self.min.y..=self.max.y).contains(&at.y)
+    }
+}
+
 impl fmt::Display for MapBounds {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { min, max } = self;
@@ -92,6 +100,14 @@ impl GeoReference {
             coordinate_system: CoordinateSystem::default(),
             transform_tags: TransformTags::default(),
         })
+    }
+
+    /// The map projection, from what the file said of it.
+    ///
+    /// # Errors
+    /// [`NoProjection`] where it said nothing, or a projection that is not known here.
+    pub fn projection(&self) -> Result<MapProjection, NoProjection> {
+        MapProjection::of(&self.coordinate_system)
     }
 
     /// Centre of the north-west post.
@@ -152,7 +168,7 @@ pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
                 max.y - min.y
             ),
             expected: EXPECTED_METRES,
-            mend: MEND_DEGREES.to_owned(),
+            mend: mend_degrees(&dem.georeference().coordinate_system),
         });
     }
     Ok(())
@@ -161,6 +177,11 @@ pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
 /// What every map must be.
 pub(super) const EXPECTED_METRES: &str = "a projected map in metres";
 
-/// How a map in degrees becomes one in metres.
-pub(super) const MEND_DEGREES: &str =
-    "gdalwarp -r bilinear -t_srs '+proj=eqc +lat_ts=LATITUDE +lon_0=LONGITUDE +R=RADIUS_M +units=m' in.tif out.tif";
+/// How a map in degrees becomes one in metres: a stereographic map about the transect, true to scale around it.
+pub(super) fn mend_degrees(system: &CoordinateSystem) -> String {
+    let figure = stated_ellipsoid(system).map_or_else(|| "+R=RADIUS_M".to_owned(), |ellipsoid| ellipsoid.proj());
+    format!(
+        "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {figure} +units=m +no_defs' in.tif out.tif, where \
+         LATITUDE and LONGITUDE are the middle of the transect; then give its ends with --from-lonlat and --to-lonlat"
+    )
+}

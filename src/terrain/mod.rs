@@ -22,6 +22,7 @@ mod format;
 mod georeference;
 mod geotiff;
 mod profile;
+mod projection;
 mod slice;
 mod synth;
 
@@ -32,5 +33,8 @@ pub use format::{DemReader, FORMATS, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{geotiff_bytes, read_geotiff_bytes, write_geotiff};
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
+pub use projection::{
+    Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, TransectScale, check_scale,
+};
 pub use slice::slice;
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};

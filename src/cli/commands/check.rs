@@ -67,12 +67,13 @@ fn written(args: &CheckArgs, loaded: Loaded, mut answers: Vec<CheckAnswer>) -> R
     if args.format == Format::Text {
         return Ok(answers.iter().map(check_text).collect::<Vec<_>>().join("\n"));
     }
-    let Loaded { document, inputs, .. } = loaded;
+    let Loaded { document, inputs, prepared, .. } = loaded;
+    let (warnings, projection) = (prepared.warnings, prepared.projection.as_ref());
     Ok(match (&args.pairs, answers.pop()) {
-        (None, Some(answer)) => Document::new("check", document, inputs, Vec::new(), answer).to_json()?,
+        (None, Some(answer)) => Document::new("check", document, inputs, warnings, answer).on_map(projection).to_json()?,
         (_, last) => {
             answers.extend(last);
-            Document::new("check-pairs", document, inputs, Vec::new(), PairsAnswer { pairs: answers }).to_json()?
+            Document::new("check-pairs", document, inputs, warnings, PairsAnswer { pairs: answers }).on_map(projection).to_json()?
         }
     })
 }

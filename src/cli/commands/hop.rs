@@ -28,14 +28,16 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
         height_m: best.apex_height_m,
         speed_m_s: best.takeoff_speed_m_s.max(best.landing_speed_m_s),
     });
-    let warnings = constant_gravity_doubts(&loaded.scenario.body, extremes);
-    for warning in &warnings {
-        output::warn(args.common.quiet, warning);
+    let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
+    for doubt in &doubts {
+        output::warn(args.common.quiet, doubt);
     }
+    let warnings = loaded.prepared.warnings.iter().cloned().chain(doubts).collect();
+    let projection = loaded.prepared.projection.as_ref();
     let verdict = if answer.feasible { Answer::Yes } else { Answer::No };
     let text = match args.format {
         Format::Text => hop_text(&answer),
-        Format::Json => Document::new("hop", loaded.document, loaded.inputs, warnings, answer).to_json()?,
+        Format::Json => Document::new("hop", loaded.document, loaded.inputs, warnings, answer).on_map(projection).to_json()?,
     };
     output::to_stdout(text.as_bytes())?;
     Ok(verdict)

@@ -7,7 +7,7 @@ use chta::{
     path::{HopPath, execute, generate},
     quantity::AngleInterval,
     report::{
-        CheckAnswer, Document, HopRecord, TotalsRecord, check_text,
+        CheckAnswer, Document, HopRecord, MapKnowledge, TotalsRecord, check_text,
         figure::{FigureInput, FigureTitle, draw},
         path_geojson, path_text, write_path_csv,
     },
@@ -61,14 +61,16 @@ impl Planned {
             verified(loaded, path, (start, goal))?;
         }
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
-        let warnings = constant_gravity_doubts(&loaded.scenario.body, extremes);
-        for warning in &warnings {
-            output::warn(quiet, warning);
+        let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
+        for doubt in &doubts {
+            output::warn(quiet, doubt);
         }
+        // Those of the terrain were said when it was read.
+        let warnings = loaded.prepared.warnings.iter().cloned().chain(doubts).collect();
         let answer = PlanAnswer {
             check: CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &found, options.effort),
             verified: (verify && path.is_some()).then_some(true),
-            path: path.as_ref().map(HopRecord::rows).unwrap_or_default(),
+            path: path.as_ref().map(|path| HopRecord::rows(path, loaded.prepared.projection.as_ref())).unwrap_or_default(),
             totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
         };
         Ok(Self { found, path, answer, warnings })
@@ -95,21 +97,26 @@ impl Planned {
     /// The path as CSV; only the header where there is none.
     pub(super) fn csv(&self, loaded: &Loaded) -> Result<Vec<u8>, Failure> {
         let mut csv = Vec::new();
-        let on_map = loaded.prepared.chain.geometry().map_points().is_some();
-        write_path_csv(&self.answer.path, on_map, &mut csv).map_err(|e| Failure::message(format!("path.csv: {e}")))?;
+        let known = match (loaded.prepared.chain.geometry().map_points(), &loaded.prepared.projection) {
+            (None, _) => MapKnowledge::Nothing,
+            (Some(_), None) => MapKnowledge::Metres,
+            (Some(_), Some(_)) => MapKnowledge::Projection,
+        };
+        write_path_csv(&self.answer.path, known, &mut csv).map_err(|e| Failure::message(format!("path.csv: {e}")))?;
         Ok(csv)
     }
 
     /// The path over the map; `None` without a path or a map.
     pub(super) fn geojson(&self, loaded: &Loaded) -> Option<String> {
         loaded.prepared.chain.geometry().map_points()?;
-        path_geojson(self.path.as_ref()?, loaded.scenario.body.gravity_m_s2)
+        path_geojson(self.path.as_ref()?, loaded.scenario.body.gravity_m_s2, loaded.prepared.projection.as_ref())
     }
 
     /// The result as one document of a kind.
     pub(super) fn document(&self, kind: &str, loaded: &Loaded) -> Result<String, Failure> {
         let document = loaded.document.clone();
-        Ok(Document::new(kind, document, loaded.inputs.clone(), self.warnings.clone(), self.answer.clone()).to_json()?)
+        let document = Document::new(kind, document, loaded.inputs.clone(), self.warnings.clone(), self.answer.clone());
+        Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
     }
 
     /// The picture.
@@ -179,7 +186,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
         output::to_file(file, planned.picture(&loaded, &test, ends)?.as_bytes())?;
     }
     if let (Some(file), Some(geojson)) = (&args.geojson, planned.geojson(&loaded)) {
-        output::to_file(file, geojson.as_bytes())?;
+        output::to_geojson_file(file, &geojson, loaded.prepared.projection.as_ref())?;
     }
     let csv_to_stdout = args.output.as_deref() == Some(std::path::Path::new("-"));
     if let Some(file) = &args.output {

@@ -2,7 +2,7 @@
 
 use std::fs;
 
-use chta::chain::csv::write_chain_csv;
+use chta::{chain::csv::write_chain_csv, report::CrsRecord};
 
 use super::plan::Planned;
 use crate::cli::{
@@ -14,15 +14,25 @@ use crate::cli::{
 
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
-    let RunArgs { scenario, output: folder, format, set, quiet } = args;
-    let common = CommonArgs { scenario: None, set: set.clone(), body: None, gravity_m_s2: None, clearance_m: None, quiet: *quiet };
+    let RunArgs { scenario, output: folder, format, set, accept_map_scale, quiet } = args;
+    let common = CommonArgs {
+        scenario: None,
+        set: set.clone(),
+        body: None,
+        gravity_m_s2: None,
+        clearance_m: None,
+        accept_map_scale: *accept_map_scale,
+        quiet: *quiet,
+    };
     let loaded = load(scenario, &common, None, [None, None])?;
     let ends = loaded.ends()?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, true, *quiet)?;
     let mut chain_csv = Vec::new();
-    let comments =
-        [format!("chta {} run of {}", env!("CARGO_PKG_VERSION"), loaded.scenario.title.as_deref().unwrap_or("a scenario"))];
+    let projection = loaded.prepared.projection.as_ref();
+    let mut comments =
+        vec![format!("chta {} run of {}", env!("CARGO_PKG_VERSION"), loaded.scenario.title.as_deref().unwrap_or("a scenario"))];
+    comments.extend(projection.map(|projection| CrsRecord::from(projection).comments()).unwrap_or_default());
     write_chain_csv(loaded.prepared.chain.geometry(), &mut chain_csv, &comments).map_err(|e| Failure::message(e.to_string()))?;
     let mut files = vec![
         ("chain.csv", chain_csv),
@@ -30,16 +40,23 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         ("result.json", planned.document("run", &loaded)?.into_bytes()),
         ("path.svg", planned.picture(&loaded, &test, ends)?.into_bytes()),
     ];
-    files.extend(planned.geojson(&loaded).map(|geojson| ("path.geojson", geojson.into_bytes())));
+    if let Some(geojson) = planned.geojson(&loaded) {
+        files.push(("path.geojson", geojson.into_bytes()));
+        // Where no code of an authority says the reference system.
+        files
+            .extend(projection.filter(|known| known.code().is_none()).map(|known| ("path.prj", (known.wkt() + "\n").into_bytes())));
+    }
     fs::create_dir_all(folder).map_err(|error| {
         Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
     })?;
     for (name, bytes) in &files {
         output::to_file(&folder.join(name), bytes)?;
     }
-    // Of an earlier run that had a path: it would speak of another one.
-    if !files.iter().any(|(name, _)| *name == "path.geojson") {
-        let _ = fs::remove_file(folder.join("path.geojson"));
+    // Of an earlier run that had a path or another map: it would speak of another one.
+    for stale in ["path.geojson", "path.prj"] {
+        if !files.iter().any(|(name, _)| *name == stale) {
+            let _ = fs::remove_file(folder.join(stale));
+        }
     }
     let text = match format {
         Format::Text => {

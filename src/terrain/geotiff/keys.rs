@@ -2,7 +2,7 @@
 
 use super::{key, tag};
 use crate::quantity::MapPoint;
-use crate::terrain::georeference::{EXPECTED_METRES, MEND_DEGREES};
+use crate::terrain::georeference::{EXPECTED_METRES, mend_degrees};
 use crate::terrain::{CoordinateSystem, GeoReference, TerrainError, TransformTags};
 
 /// A rotation or shear below this share of the spacing is rounding of whoever wrote the file.
@@ -132,8 +132,10 @@ fn unsuitable(found: String, expected: &'static str, mend: &str) -> TerrainError
 fn check_units(system: &CoordinateSystem) -> Result<(), TerrainError> {
     let degrees = "a map in degrees of longitude and latitude";
     match short_key(system, key::MODEL_TYPE) {
-        Some(key::GEOGRAPHIC) => return Err(unsuitable(degrees.to_owned(), EXPECTED_METRES, MEND_DEGREES)),
-        Some(key::GEOCENTRIC) => return Err(unsuitable("geocentric coordinates".to_owned(), EXPECTED_METRES, MEND_DEGREES)),
+        Some(key::GEOGRAPHIC) => return Err(unsuitable(degrees.to_owned(), EXPECTED_METRES, &mend_degrees(system))),
+        Some(key::GEOCENTRIC) => {
+            return Err(unsuitable("geocentric coordinates".to_owned(), EXPECTED_METRES, &mend_degrees(system)));
+        }
         _ => {}
     }
     check_linear_units(system)?;
@@ -190,14 +192,14 @@ fn entry(system: &CoordinateSystem, wanted: u16) -> Option<[u16; 3]> {
     })
 }
 
-pub(super) fn short_key(system: &CoordinateSystem, wanted: u16) -> Option<u16> {
+pub(in crate::terrain) fn short_key(system: &CoordinateSystem, wanted: u16) -> Option<u16> {
     match entry(system, wanted)? {
         [0, _, value] => Some(value),
         _ => None,
     }
 }
 
-fn double_key(system: &CoordinateSystem, wanted: u16) -> Option<f64> {
+pub(in crate::terrain) fn double_key(system: &CoordinateSystem, wanted: u16) -> Option<f64> {
     match entry(system, wanted)? {
         [tag::DOUBLE_PARAMETERS, _, offset] => system.double_parameters.get(usize::from(offset)).copied(),
         _ => None,

@@ -9,6 +9,7 @@ mod read;
 mod samples;
 mod write;
 
+pub(super) use keys::{double_key, short_key};
 pub(super) use read::GeoTiffReader;
 pub use read::read_geotiff_bytes;
 pub use write::{geotiff_bytes, write_geotiff};

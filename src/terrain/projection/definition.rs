@@ -1,0 +1,245 @@
+//! A map projection as numbers: method, parameters, ellipsoid; and the proj string that says the same.
+
+use std::fmt::Write;
+
+/// How longitude and latitude become a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Equidistant cylindrical: `eqc`.
+    Equirectangular,
+    /// Stereographic about a pole: `stere` with a latitude of origin of 90 or -90.
+    PolarStereographic,
+    /// Stereographic about any other point: `stere`.
+    ObliqueStereographic,
+    /// Stereographic of the conformal sphere (EPSG 9809): `sterea`.
+    DoubleStereographic,
+    /// Sinusoidal: `sinu`.
+    Sinusoidal,
+    /// Transverse Mercator, UTM among them: `tmerc`.
+    TransverseMercator,
+    /// Orthographic: `ortho`.
+    Orthographic,
+    /// Mercator: `merc`.
+    Mercator,
+    /// Lambert conformal conic with one standard parallel: `lcc`.
+    LambertConformalOneParallel,
+    /// Lambert conformal conic with two standard parallels: `lcc`.
+    LambertConformalTwoParallels,
+    /// Lambert azimuthal equal area: `laea`.
+    LambertAzimuthalEqualArea,
+    /// Azimuthal equidistant: `aeqd`.
+    AzimuthalEquidistant,
+}
+
+impl Method {
+    /// All of them.
+    pub(super) const ALL: [Self; 12] = [
+        Self::Equirectangular,
+        Self::PolarStereographic,
+        Self::ObliqueStereographic,
+        Self::DoubleStereographic,
+        Self::Sinusoidal,
+        Self::TransverseMercator,
+        Self::Orthographic,
+        Self::Mercator,
+        Self::LambertConformalOneParallel,
+        Self::LambertConformalTwoParallels,
+        Self::LambertAzimuthalEqualArea,
+        Self::AzimuthalEquidistant,
+    ];
+
+    /// Its name in words.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Equirectangular => "equirectangular",
+            Self::PolarStereographic => "polar stereographic",
+            Self::ObliqueStereographic => "oblique stereographic",
+            Self::DoubleStereographic => "double stereographic",
+            Self::Sinusoidal => "sinusoidal",
+            Self::TransverseMercator => "transverse Mercator",
+            Self::Orthographic => "orthographic",
+            Self::Mercator => "Mercator",
+            Self::LambertConformalOneParallel | Self::LambertConformalTwoParallels => "Lambert conformal conic",
+            Self::LambertAzimuthalEqualArea => "Lambert azimuthal equal-area",
+            Self::AzimuthalEquidistant => "azimuthal equidistant",
+        }
+    }
+
+    /// The `+proj=` of it.
+    pub(super) const fn proj(self) -> &'static str {
+        match self {
+            Self::Equirectangular => "eqc",
+            Self::PolarStereographic | Self::ObliqueStereographic => "stere",
+            Self::DoubleStereographic => "sterea",
+            Self::Sinusoidal => "sinu",
+            Self::TransverseMercator => "tmerc",
+            Self::Orthographic => "ortho",
+            Self::Mercator => "merc",
+            Self::LambertConformalOneParallel | Self::LambertConformalTwoParallels => "lcc",
+            Self::LambertAzimuthalEqualArea => "laea",
+            Self::AzimuthalEquidistant => "aeqd",
+        }
+    }
+
+    /// Whether its map has a scale at the origin that may differ from 1.
+    pub(super) const fn has_scale(self) -> bool {
+        matches!(
+            self,
+            Self::PolarStereographic
+                | Self::ObliqueStereographic
+                | Self::DoubleStereographic
+                | Self::TransverseMercator
+                | Self::Mercator
+                | Self::LambertConformalOneParallel
+        )
+    }
+
+    /// Whether its origin has a latitude of its own.
+    pub(super) const fn has_latitude(self) -> bool {
+        !matches!(self, Self::Sinusoidal | Self::Mercator)
+    }
+
+    /// The names of its standard parallels in a proj string.
+    pub(super) const fn parallels(self) -> &'static [&'static str] {
+        match self {
+            Self::Equirectangular | Self::PolarStereographic | Self::Mercator => &["lat_ts"],
+            Self::LambertConformalTwoParallels => &["lat_1", "lat_2"],
+            _ => &[],
+        }
+    }
+}
+
+/// The figure of a body: a sphere, or a sphere flattened at its poles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Ellipsoid {
+    /// Equatorial radius, m.
+    pub semi_major_m: f64,
+    /// Polar radius, m.
+    pub semi_minor_m: f64,
+}
+
+impl Ellipsoid {
+    /// WGS 84.
+    pub(super) const WGS84: Self = Self { semi_major_m: 6_378_137.0, semi_minor_m: 6_378_137.0 * (1.0 - 1.0 / 298.257_223_563) };
+    /// GRS 1980.
+    pub(super) const GRS80: Self = Self { semi_major_m: 6_378_137.0, semi_minor_m: 6_378_137.0 * (1.0 - 1.0 / 298.257_222_101) };
+
+    /// A sphere of this radius, m.
+    pub const fn sphere(radius_m: f64) -> Self {
+        Self { semi_major_m: radius_m, semi_minor_m: radius_m }
+    }
+
+    /// By equatorial radius, m, and inverse flattening, where 0 means a sphere.
+    pub fn with_inverse_flattening(semi_major_m: f64, inverse_flattening: f64) -> Self {
+        let flattening = if inverse_flattening == 0.0 { 0.0 } else { 1.0 / inverse_flattening };
+        Self { semi_major_m, semi_minor_m: semi_major_m * (1.0 - flattening) }
+    }
+
+    /// Whether it is a sphere.
+    pub fn is_sphere(&self) -> bool {
+        self.semi_major_m == self.semi_minor_m
+    }
+
+    /// a / (a - b), or 0 for a sphere, as well-known text wants it.
+    pub(super) fn inverse_flattening(&self) -> f64 {
+        if self.is_sphere() { 0.0 } else { self.semi_major_m / (self.semi_major_m - self.semi_minor_m) }
+    }
+
+    /// `+R=` or `+a= +b=`.
+    pub(in crate::terrain) fn proj(&self) -> String {
+        if self.is_sphere() {
+            format!("+R={}", self.semi_major_m)
+        } else {
+            format!("+a={} +b={}", self.semi_major_m, self.semi_minor_m)
+        }
+    }
+}
+
+/// All numbers of a map projection. Latitudes are planetographic here, as projections want them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Definition {
+    /// How.
+    pub method: Method,
+    /// Latitude of the origin, degrees; 0 where the method has none, 90 or -90 for a polar map.
+    pub latitude_deg: f64,
+    /// Longitude of the origin, degrees.
+    pub longitude_deg: f64,
+    /// Standard parallels, degrees, where the method has them.
+    pub parallels_deg: [Option<f64>; 2],
+    /// Scale at the origin; 1 where the method has none.
+    pub scale: f64,
+    /// Easting of the origin, m.
+    pub false_easting_m: f64,
+    /// Northing of the origin, m.
+    pub false_northing_m: f64,
+    /// The body's figure.
+    pub ellipsoid: Ellipsoid,
+}
+
+impl Definition {
+    /// A projection about a point with scale 1 and no offsets.
+    pub const fn about(method: Method, latitude_deg: f64, longitude_deg: f64, ellipsoid: Ellipsoid) -> Self {
+        Self {
+            method,
+            latitude_deg,
+            longitude_deg,
+            parallels_deg: [None; 2],
+            scale: 1.0,
+            false_easting_m: 0.0,
+            false_northing_m: 0.0,
+            ellipsoid,
+        }
+    }
+
+    /// The proj string.
+    ///
+    /// ```
+    /// use chta::terrain::{Definition, Ellipsoid, Method};
+    /// let south = Definition::about(Method::PolarStereographic, -90.0, 0.0, Ellipsoid::sphere(1_737_400.0));
+    /// assert_eq!(south.proj_string(), "+proj=stere +lat_0=-90 +lon_0=0 +k_0=1 +x_0=0 +y_0=0 +R=1737400 +units=m +no_defs");
+    /// ```
+    pub fn proj_string(&self) -> String {
+        let mut text = format!("+proj={}", self.method.proj());
+        // Writing to a String cannot fail.
+        if self.method.has_latitude() {
+            let _ = write!(text, " +lat_0={}", self.latitude_deg);
+        }
+        let _ = write!(text, " +lon_0={}", self.longitude_deg);
+        for (name, degrees) in self.method.parallels().iter().zip(self.parallels_deg) {
+            if let Some(degrees) = degrees {
+                let _ = write!(text, " +{name}={degrees}");
+            }
+        }
+        if self.method == Method::LambertConformalOneParallel {
+            let _ = write!(text, " +lat_1={}", self.latitude_deg);
+        }
+        if self.method.has_scale() && self.parallels_deg[0].is_none() {
+            let _ = write!(text, " +k_0={}", self.scale);
+        }
+        let (x, y, figure) = (self.false_easting_m, self.false_northing_m, self.ellipsoid.proj());
+        let _ = write!(text, " +x_0={x} +y_0={y} {figure} +units=m +no_defs");
+        text
+    }
+
+    /// What makes no projection of it, if anything does.
+    pub(super) fn fault(&self) -> Option<String> {
+        let Self { latitude_deg, longitude_deg, parallels_deg, scale, false_easting_m, false_northing_m, ellipsoid, method } = self;
+        let Ellipsoid { semi_major_m, semi_minor_m } = ellipsoid;
+        if !(semi_major_m.is_finite() && *semi_minor_m > 0.0 && semi_minor_m <= semi_major_m) {
+            return Some(format!("radii of {semi_major_m} m and {semi_minor_m} m"));
+        }
+        if !(latitude_deg.abs() <= 90.0 && parallels_deg.iter().flatten().all(|latitude| latitude.abs() <= 90.0)) {
+            return Some("a latitude beyond 90 degrees".to_owned());
+        }
+        if !(longitude_deg.abs() <= 540.0 && false_easting_m.is_finite() && false_northing_m.is_finite()) {
+            return Some(format!("an origin at longitude {longitude_deg}, ({false_easting_m}, {false_northing_m}) m"));
+        }
+        if !(scale.is_finite() && *scale > 0.0) {
+            return Some(format!("a scale of {scale}"));
+        }
+        if parallels_deg[0].is_some() && *scale != 1.0 {
+            return Some(format!("a {} projection with both a standard parallel and a scale of {scale}", method.name()));
+        }
+        None
+    }
+}

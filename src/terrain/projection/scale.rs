@@ -1,0 +1,206 @@
+//! How true to scale a map is along a transect.
+
+use nalgebra::Vector2;
+
+use super::{Definition, LonLat, MapProjection, Method, NoProjection};
+use crate::quantity::MapPoint;
+use crate::terrain::{Dem, TerrainError};
+
+/// How far a map's scale may be off along a transect before a slice of it is refused.
+const SCALE_TOLERANCE: f64 = 0.01;
+/// Steps along a transect: a projection's scale bends far more slowly than a 256th of any transect that a body has room for.
+const STEPS: u32 = 256;
+/// Half the base of the difference quotient, as a share of the body's radius: rounding (1e-16 R) and curvature (1e-10) both stay small.
+const HALF_BASE: f64 = 1.0e-5;
+/// The longest transect that one stereographic map holds within the tolerance, as a share of the radius: 4 acos(1.01^-1/2) = 0.3987.
+const LONGEST_LOCAL: f64 = 0.39;
+
+/// The place along a transect where a map's scale is most wrong.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScaleExtreme {
+    /// Length on the map over length on the ground, in the direction of travel.
+    pub factor: f64,
+    /// Where on the map.
+    pub at: MapPoint,
+    /// Where on the body.
+    pub place: LonLat,
+    /// How far along the transect, m of the map.
+    pub distance_m: f64,
+}
+
+impl ScaleExtreme {
+    /// Whether it is too far from 1 to be passed over.
+    pub fn is_off(&self) -> bool {
+        (self.factor - 1.0).abs() > SCALE_TOLERANCE
+    }
+
+    /// The factor and its place, in words.
+    fn told(&self) -> String {
+        let Self { factor, at, place, distance_m } = self;
+        format!(
+            "the map's scale along the transect is {factor:.5} at {:.6}, {:.6} (longitude, latitude; map point ({:.3} m, {:.3} m), {distance_m:.3} m \
+             from the start): a metre of ground is {factor:.5} m on the map",
+            place.lon_deg, place.lat_deg, at.x, at.y
+        )
+    }
+}
+
+/// What a check of the scale found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum TransectScale {
+    /// A local map, which is taken as true to scale.
+    Local,
+    /// True to scale within 1 %.
+    True(ScaleExtreme),
+    /// Off by more, and accepted.
+    Accepted(ScaleExtreme),
+    /// The projection is not known, so nobody can tell.
+    Unknown(String),
+}
+
+impl TransectScale {
+    /// What the analyst should know of it.
+    pub fn warning(&self) -> Option<String> {
+        match self {
+            Self::Local | Self::True(_) => None,
+            Self::Accepted(extreme) => {
+                Some(format!("{}, which was accepted; distances along the chain and slopes are off by as much", extreme.told()))
+            }
+            Self::Unknown(reason) => Some(format!(
+                "{reason}, so its scale along the transect was not checked; distances count as true, make sure that they are"
+            )),
+        }
+    }
+}
+
+impl MapProjection {
+    /// Length on the map over length on the ground at a point, in the direction `heading` (of length 1) of the map.
+    ///
+    /// A central difference over 2e-5 of the body's radius, right to some 1e-9. The ground is the sphere or ellipsoid itself: heights
+    /// above it would change a length by height over radius (a kilometre on the Moon: 0.06 %), which is left out. `None` off the map.
+    ///
+    /// ```
+    /// use chta::quantity::MapPoint;
+    /// use chta::terrain::{Definition, Ellipsoid, MapProjection, Method};
+    /// use nalgebra::Vector2;
+    /// // Equirectangular with true scale at the equator: at 60 degrees a degree of longitude is drawn twice as long.
+    /// let moon = Ellipsoid::sphere(1_737_400.0);
+    /// let map = MapProjection::new(Definition::about(Method::Equirectangular, 0.0, 0.0, moon), None).unwrap();
+    /// let at = MapPoint::new(0.0, 60_f64.to_radians() * 1_737_400.0);
+    /// assert!((map.scale(at, Vector2::new(1.0, 0.0)).unwrap() - 2.0).abs() < 1e-8);
+    /// assert!((map.scale(at, Vector2::new(0.0, 1.0)).unwrap() - 1.0).abs() < 1e-8);
+    /// ```
+    pub fn scale(&self, at: MapPoint, heading: Vector2<f64>) -> Option<f64> {
+        let half_m = HALF_BASE * self.definition.ellipsoid.semi_major_m;
+        let ends = [at - heading * half_m, at + heading * half_m];
+        let [Some(begin), Some(end)] = ends.map(|end| self.inverse(end)) else { return None };
+        let ground_m = (self.position(end.0, end.1) - self.position(begin.0, begin.1)).norm();
+        (ground_m > 0.0).then(|| 2.0 * half_m / ground_m)
+    }
+
+    /// The worst scale along a straight line of the map; `None` where a part of it lies off the body.
+    pub fn extreme_scale(&self, from: MapPoint, to: MapPoint) -> Option<ScaleExtreme> {
+        let along = to - from;
+        let length_m = libm::hypot(along.x, along.y);
+        let heading = along / length_m;
+        let mut worst: Option<ScaleExtreme> = None;
+        for step in 0..=STEPS {
+            let fraction = f64::from(step) / f64::from(STEPS);
+            let at = from + along * fraction;
+            let factor = self.scale(at, heading)?;
+            if worst.is_none_or(|worst| (factor - 1.0).abs() > (worst.factor - 1.0).abs()) {
+                worst = Some(ScaleExtreme { factor, at, place: self.lon_lat(at)?, distance_m: fraction * length_m });
+            }
+        }
+        worst
+    }
+
+    /// A stereographic map of scale 1 about a point of this one.
+    fn about(&self, middle: MapPoint) -> Option<Self> {
+        let (lon, lat) = self.inverse(middle)?;
+        let rounded = |radians: f64| libm::rint(radians.to_degrees() * 1.0e6) / 1.0e6;
+        let ellipsoid = self.definition.ellipsoid;
+        let definition = Definition::about(Method::ObliqueStereographic, rounded(lat), rounded(lon), ellipsoid);
+        Self::new(definition, None).ok()
+    }
+}
+
+/// Whether a slice of a DEM from one map point to another is true to scale.
+///
+/// `accepted`: whether the analyst wants it in any case. `file`: the DEM's, for the command that mends it.
+///
+/// # Errors
+/// [`TerrainError::MapScale`] where the scale is off by more than 1 % and that was not accepted, with a `gdalwarp` line that makes a
+/// map that is true along this transect; [`TerrainError::OffTheBody`] where the line leaves the map of the body.
+pub fn check_scale(
+    dem: &Dem,
+    projection: Result<&MapProjection, &NoProjection>,
+    [from, to]: [MapPoint; 2],
+    accepted: bool,
+    file: &std::path::Path,
+) -> Result<TransectScale, TerrainError> {
+    let projection = match projection {
+        Ok(projection) => projection,
+        Err(NoProjection::Local) => return Ok(TransectScale::Local),
+        Err(unknown @ NoProjection::Unknown(_)) => return Ok(TransectScale::Unknown(unknown.to_string())),
+    };
+    // A line without a direction, or off the map, is the slice's to refuse.
+    if from == to || ![from, to].iter().all(|end| dem.bounds().contains(*end)) {
+        return Ok(TransectScale::Local);
+    }
+    let extreme = projection.extreme_scale(from, to).ok_or(TerrainError::OffTheBody { from, to })?;
+    match (extreme.is_off(), accepted) {
+        (false, _) => Ok(TransectScale::True(extreme)),
+        (true, true) => Ok(TransectScale::Accepted(extreme)),
+        (true, false) => {
+            let mend = mend(dem, projection, [from, to], file).ok_or(TerrainError::OffTheBody { from, to })?;
+            Err(TerrainError::MapScale { found: extreme.told(), mend })
+        }
+    }
+}
+
+/// The command that makes a map which is true to scale along a transect, or what else to do.
+fn mend(dem: &Dem, projection: &MapProjection, [from, to]: [MapPoint; 2], file: &std::path::Path) -> Option<String> {
+    let local = projection.about(nalgebra::center(&from, &to))?;
+    let place = |at| projection.lon_lat(at);
+    let (begin, end) = (place(from)?, place(to)?);
+    let ends = [local.map_point(begin)?, local.map_point(end)?];
+    if local.extreme_scale(ends[0], ends[1]).is_none_or(|extreme| extreme.is_off()) {
+        let longest_m = LONGEST_LOCAL * projection.definition.ellipsoid.semi_major_m;
+        return Some(format!("shorter transects, each of {longest_m:.0} m at most: no map is true to scale over a longer one"));
+    }
+    let (ground_m, map_m) = ((ends[1] - ends[0]).norm(), (to - from).norm());
+    let map = dem.georeference();
+    // The finer spacing, as long on the new map as it is on the ground.
+    let spacing_m = rounded_m(map.dx_m().min(map.dy_m()) * ground_m / map_m);
+    let margin_m = 10.0 * spacing_m;
+    let low = |a: f64, b: f64| rounded_m(a.min(b) - margin_m);
+    let high = |a: f64, b: f64| rounded_m(a.max(b) + margin_m);
+    let Definition { latitude_deg, longitude_deg, ellipsoid, .. } = local.definition;
+    Some(format!(
+        "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0={latitude_deg} +lon_0={longitude_deg} {} +units=m +no_defs' -te {} {} {} {} \
+         -tr {spacing_m} {spacing_m} -ot {} -dstnodata nan {} out.tif, then slice out.tif --from-lonlat {:.9},{:.9} --to-lonlat {:.9},{:.9}",
+        ellipsoid.proj(),
+        low(ends[0].x, ends[1].x),
+        low(ends[0].y, ends[1].y),
+        high(ends[0].x, ends[1].x),
+        high(ends[0].y, ends[1].y),
+        if dem.is_single_precision() { "Float32" } else { "Float64" },
+        shell_word(&file.display().to_string()),
+        begin.lon_deg,
+        begin.lat_deg,
+        end.lon_deg,
+        end.lat_deg
+    ))
+}
+
+/// To a ten-thousandth of a metre.
+fn rounded_m(length_m: f64) -> f64 {
+    libm::rint(length_m * 1.0e4) / 1.0e4
+}
+
+/// A word as a shell takes it.
+fn shell_word(text: &str) -> String {
+    let plain = |letter: char| letter.is_ascii_alphanumeric() || "._/-+".contains(letter);
+    if text.chars().all(plain) { text.to_owned() } else { format!("'{}'", text.replace('\'', "'\\''")) }
+}

@@ -1,0 +1,150 @@
+use super::*;
+
+const MOON: Ellipsoid = Ellipsoid::sphere(1_737_400.0);
+const MARS: Ellipsoid = Ellipsoid { semi_major_m: 3_396_190.0, semi_minor_m: 3_376_200.0 };
+
+/// One projection of every method, with nothing left at its default.
+fn one_of_each() -> Vec<Definition> {
+    Method::ALL
+        .into_iter()
+        .map(|method| {
+            let latitude_deg = match method {
+                Method::PolarStereographic => -90.0,
+                Method::Sinusoidal | Method::Mercator => 0.0,
+                _ => 12.5,
+            };
+            let parallels_deg = match method {
+                Method::Equirectangular => [Some(20.0), None],
+                Method::LambertConformalTwoParallels => [Some(5.0), Some(31.0)],
+                _ => [None; 2],
+            };
+            Definition {
+                parallels_deg,
+                scale: if method.has_scale() { 0.9875 } else { 1.0 },
+                false_easting_m: 1000.5,
+                false_northing_m: -250.25,
+                ..Definition::about(method, latitude_deg, -77.25, MARS)
+            }
+        })
+        .collect()
+}
+
+#[test]
+fn every_projection_survives_keys_and_proj_string() {
+    let on_parallel = [
+        Definition { parallels_deg: [Some(-71.0), None], ..Definition::about(Method::PolarStereographic, -90.0, 3.0, MOON) },
+        Definition { parallels_deg: [Some(33.0), None], ..Definition::about(Method::Mercator, 0.0, 3.0, MARS) },
+    ];
+    for definition in one_of_each().into_iter().chain(on_parallel) {
+        let projection = MapProjection::new(definition, Some("a map | of mine".to_owned())).unwrap();
+        let keys = projection.coordinate_system();
+        let again = MapProjection::of(&keys).unwrap();
+        assert_eq!(again.definition(), &definition);
+        assert_eq!(again.name(), "a map _ of mine");
+        let text = definition.proj_string();
+        assert_eq!(MapProjection::from_proj_string(&text, None, None).unwrap().definition(), &definition, "{text}");
+    }
+}
+
+#[test]
+fn there_and_back_is_the_same_place_also_across_the_date_line() {
+    for definition in one_of_each() {
+        let projection = MapProjection::new(definition, None).unwrap();
+        let lat_deg = if definition.latitude_deg == -90.0 { -84.0 } else { 7.0 };
+        for lon_deg in [-77.25, -70.0, 283.0, -100.0] {
+            let at = projection.map_point(LonLat { lon_deg, lat_deg }).unwrap();
+            let place = projection.lon_lat(at).unwrap();
+            let turn = (place.lon_deg - lon_deg) / 360.0;
+            assert!((turn - turn.round()).abs() < 1e-13 && (place.lat_deg - lat_deg).abs() < 1e-11, "{definition:?} {place}");
+        }
+    }
+}
+
+#[test]
+fn places_that_a_map_does_not_show_have_no_point_and_the_reverse() {
+    let ortho = MapProjection::new(Definition::about(Method::Orthographic, 0.0, 0.0, MOON), None).unwrap();
+    assert_eq!(ortho.map_point(LonLat { lon_deg: 120.0, lat_deg: 0.0 }), None);
+    assert_eq!(ortho.lon_lat(MapPoint::new(1.8e6, 0.0)), None);
+    let sinusoidal = MapProjection::new(Definition::about(Method::Sinusoidal, 0.0, 0.0, MOON), None).unwrap();
+    assert_eq!(sinusoidal.lon_lat(MapPoint::new(5.0e6, 1.5e6)), None, "beyond the map's edge");
+    assert_eq!(sinusoidal.map_point(LonLat { lon_deg: 0.0, lat_deg: 90.5 }), None);
+    assert_eq!(sinusoidal.map_point(LonLat { lon_deg: f64::NAN, lat_deg: 0.0 }), None);
+}
+
+#[test]
+fn mars_latitudes_are_planetocentric() {
+    // At 45 degrees planetographic: tan(planetocentric) = (b/a)^2.
+    let map = MapProjection::new(Definition::about(Method::ObliqueStereographic, 45.0, 10.0, MARS), None).unwrap();
+    let place = map.lon_lat(MapPoint::new(0.0, 0.0)).unwrap();
+    let expected = (3_376_200.0_f64 / 3_396_190.0).powi(2).atan().to_degrees();
+    assert!((place.lat_deg - expected).abs() < 1e-12 && (expected - 44.662).abs() < 1e-3, "{place}");
+}
+
+#[test]
+fn what_is_not_known_says_why() {
+    let keys = |entries: &[[u16; 4]], double_parameters: Vec<f64>| CoordinateSystem {
+        key_directory: [&[1, 1, 0, u16::try_from(entries.len()).unwrap()][..], &entries.concat()].concat(),
+        double_parameters,
+        ..CoordinateSystem::default()
+    };
+    assert_eq!(MapProjection::of(&CoordinateSystem::default()), Err(NoProjection::Local));
+    let reason = |entries: &[[u16; 4]], doubles| match MapProjection::of(&keys(entries, doubles)) {
+        Err(NoProjection::Unknown(reason)) => reason,
+        other => panic!("{other:?}"),
+    };
+    let user = [[1024, 0, 1, 1], [3072, 0, 1, 32767]];
+    assert!(reason(&[[1024, 0, 1, 1], [3072, 0, 1, 2278]], vec![]).contains("2278"));
+    assert!(reason(&[user[0], user[1], [3075, 0, 1, 17]], vec![]).contains("no radius"));
+    let sized = |more: &[[u16; 4]]| [&user[..], &[[2057, 34736, 1, 0], [2058, 34736, 1, 0]], more].concat();
+    assert!(reason(&sized(&[[3075, 0, 1, 3]]), vec![1000.0]).contains("number 3"));
+    assert!(reason(&sized(&[[2054, 0, 1, 9101], [3075, 0, 1, 17]]), vec![1000.0]).contains("9101"));
+    assert!(
+        reason(&sized(&[[3075, 0, 1, 17], [3080, 34736, 1, 1], [3088, 34736, 1, 2]]), vec![1.0, 3.0, 4.0]).contains("longitudes")
+    );
+    assert!(reason(&sized(&[[3075, 0, 1, 15]]), vec![1000.0]).contains("pole"));
+    assert!(reason(&sized(&[[3075, 0, 1, 17]]), vec![f64::NAN]).contains("radii"));
+}
+
+#[test]
+fn a_prime_meridian_moves_the_origin() {
+    let plain = MapProjection::new(Definition::about(Method::ObliqueStereographic, 18.0, 77.0, MOON), None).unwrap();
+    let mut keys = plain.coordinate_system();
+    let offset = u16::try_from(keys.double_parameters.len()).unwrap();
+    keys.key_directory.extend([2061, 34736, 1, offset]);
+    keys.key_directory[3] += 1;
+    keys.double_parameters.push(20.0);
+    assert_eq!(MapProjection::of(&keys).unwrap().definition().longitude_deg, 97.0);
+}
+
+#[test]
+fn codes_have_their_urn_and_other_maps_none() {
+    let urn = |definition| MapProjection::new(definition, None).unwrap().urn();
+    assert_eq!(urn(Definition::about(Method::PolarStereographic, -90.0, 0.0, MOON)).unwrap(), "urn:ogc:def:crs:IAU:2015:30135");
+    assert_eq!(urn(Definition::about(Method::PolarStereographic, -90.0, 1.0, MOON)), None);
+    assert_eq!(
+        urn(Definition::about(Method::Sinusoidal, 0.0, 180.0, Ellipsoid::sphere(3_396_190.0))).unwrap(),
+        "urn:ogc:def:crs:IAU:2015:49925"
+    );
+    assert_eq!(urn(Definition::about(Method::Sinusoidal, 0.0, 180.0, MARS)), None);
+    let utm = codes::epsg(32_633).unwrap();
+    let code = |text: &str| MapProjection::from_proj_string(&utm.proj_string(), None, Some(text.to_owned())).unwrap().urn();
+    assert_eq!(code("EPSG:32633").unwrap(), "urn:ogc:def:crs:EPSG::32633");
+    assert_eq!(code("EPSG:32634"), None, "a code of another map");
+}
+
+#[test]
+fn proj_strings_with_a_word_that_is_not_understood_are_refused() {
+    for (text, word) in [
+        ("+proj=ob_tran +R=1000", "ob_tran"),
+        ("+proj=sinu +R=1000 +units=km", "units"),
+        ("+proj=sinu +R=abc", "R is no number"),
+        ("+proj=sinu", "+R or +a"),
+        ("+proj=sinu +R=5 +R=6", "twice"),
+        ("+proj=tmerc +R=5 +lat_ts=3", "lat_ts"),
+        ("+R=5", "+proj"),
+        ("+proj=stere +lat_0=90 +lat_ts=70 +k_0=0.9 +R=5", "both"),
+    ] {
+        let reason = MapProjection::from_proj_string(text, None, None).unwrap_err().to_string();
+        assert!(reason.contains(word), "{text}: {reason}");
+    }
+}

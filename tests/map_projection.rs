@@ -1,0 +1,212 @@
+//! Projections against GDAL: its files read, its coordinates reproduced.
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+use chta::quantity::MapPoint;
+use chta::terrain::{LonLat, MapProjection, read_dem};
+
+fn has_gdal() -> bool {
+    let there = Command::new("gdaltransform").arg("--version").output().is_ok_and(|output| output.status.success());
+    if !there {
+        eprintln!("skipped: gdaltransform is not installed");
+    }
+    there
+}
+
+fn run(program: &str, arguments: &[&str], input: &str) -> String {
+    let mut child =
+        Command::new(program).args(arguments).stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    child.stdin.take().unwrap().write_all(input.as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "{program} {arguments:?}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8_lossy(&output.stdout).into_owned()
+}
+
+/// Longitude and planetocentric latitude of map points as GDAL has them: by way of three dimensions, where no latitude is a matter of
+/// definition.
+fn places_of_gdal(srs: &str, points: &[MapPoint]) -> Vec<LonLat> {
+    let lines: String = points.iter().map(|point| format!("{} {} 0\n", point.x, point.y)).collect();
+    let pick = |keys: &[&str]| {
+        let words = srs.split_whitespace().filter(|word| keys.iter().any(|key| word.starts_with(key)));
+        words.collect::<Vec<_>>().join(" ")
+    };
+    let figure = if srs.starts_with('+') { pick(&["+R=", "+a=", "+b=", "+rf=", "+ellps="]) } else { "+ellps=WGS84".to_owned() };
+    let centred = format!("+proj=geocent {figure} +no_defs");
+    let text = run("gdaltransform", &["-s_srs", srs, "-t_srs", &centred], &lines);
+    let places: Vec<LonLat> = text
+        .lines()
+        .map(|line| {
+            let [x, y, z]: [f64; 3] =
+                line.split_whitespace().map(|word| word.parse().unwrap()).collect::<Vec<_>>().try_into().unwrap();
+            LonLat { lon_deg: y.atan2(x).to_degrees(), lat_deg: z.atan2(x.hypot(y)).to_degrees() }
+        })
+        .collect();
+    assert_eq!(places.len(), points.len());
+    places
+}
+
+/// Both ways, on a grid of points, to 1e-9 degrees and 1e-6 m.
+fn agree(name: &str, projection: &MapProjection, srs: &str, (x, y): (f64, f64), reach_m: f64) {
+    let grid = [-1.0, -0.62, -0.1, 0.35, 1.0].map(|step| step * reach_m);
+    let points: Vec<MapPoint> = grid.iter().flat_map(|dx| grid.map(|dy| MapPoint::new(x + dx, y + dy))).collect();
+    for (point, theirs) in points.iter().zip(places_of_gdal(srs, &points)) {
+        let ours = projection.lon_lat(*point).unwrap();
+        let turn_deg = (ours.lon_deg - theirs.lon_deg + 540.0).rem_euclid(360.0) - 180.0;
+        let off_deg = (turn_deg * theirs.lat_deg.to_radians().cos()).hypot(ours.lat_deg - theirs.lat_deg);
+        assert!(off_deg < 1e-9, "{name} at {point}: {ours}, GDAL {theirs}, off by {off_deg:e} degrees");
+        let back = projection.map_point(theirs).unwrap();
+        assert!((back - point).norm() < 1e-6, "{name} at {point}: back at {back}");
+    }
+}
+
+/// A tiny raster that GDAL placed on a map of this reference system.
+fn placed(directory: &Path, srs: &str) -> PathBuf {
+    let (grid, out) = (directory.join("in.asc"), directory.join("out.tif"));
+    std::fs::write(&grid, "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 10\n1 2\n3 4\n").unwrap();
+    let (grid, path) = (grid.to_str().unwrap(), out.to_str().unwrap());
+    run("gdal_translate", &["-q", "-ot", "Float32", "-a_srs", srs, grid, path], "");
+    out
+}
+
+const MARS: &str = "+a=3396190 +b=3376200";
+
+/// Reference systems, a point of each map, and how far around it to look.
+fn systems() -> Vec<(String, (f64, f64), f64)> {
+    let moon = |text: &str, at, reach| (format!("{text} +R=1737400 +units=m +no_defs"), at, reach);
+    let mars = |text: &str, at, reach| (format!("{text} {MARS} +units=m +no_defs"), at, reach);
+    vec![
+        moon("+proj=eqc +lat_ts=20 +lon_0=10 +x_0=5 +y_0=7", (4.0e4, -3.0e5), 2.0e5),
+        moon("+proj=eqc +lat_ts=20 +lat_0=3 +lon_0=170", (9.0e5, 3.0e5), 2.0e5),
+        mars("+proj=eqc +lat_ts=20 +lon_0=10", (4.0e4, -3.0e5), 2.0e5),
+        moon("+proj=stere +lat_0=-90 +lon_0=30", (7.0e4, 4.0e4), 3.0e5),
+        moon("+proj=stere +lat_0=90 +lon_0=-30 +x_0=500 +y_0=900", (7.0e4, 4.0e4), 3.0e5),
+        mars("+proj=stere +lat_0=90 +lat_ts=70 +lon_0=30", (7.0e4, 4.0e4), 3.0e5),
+        mars("+proj=stere +lat_0=-90 +k_0=0.994 +lon_0=30", (7.0e4, 4.0e4), 3.0e5),
+        moon("+proj=stere +lat_0=18.25 +lon_0=77", (7.0e4, 4.0e4), 3.0e5),
+        mars("+proj=stere +lat_0=18 +lon_0=77 +k_0=0.9", (7.0e4, 4.0e4), 3.0e5),
+        mars("+proj=sterea +lat_0=18 +lon_0=77 +k_0=0.9", (7.0e4, 4.0e4), 3.0e5),
+        moon("+proj=sinu +lon_0=20", (4.0e5, 6.0e5), 2.0e5),
+        mars("+proj=sinu +lon_0=20", (4.0e5, 6.0e5), 2.0e5),
+        moon("+proj=tmerc +lat_0=3 +lon_0=20 +k=0.9996 +x_0=500000", (5.5e5, 3.0e5), 2.0e5),
+        mars("+proj=tmerc +lat_0=3 +lon_0=20 +k=0.9996 +x_0=500000", (5.5e5, 3.0e5), 2.0e5),
+        moon("+proj=ortho +lat_0=-80 +lon_0=20", (7.0e4, 4.0e4), 3.0e5),
+        mars("+proj=ortho +lat_0=40 +lon_0=20", (7.0e4, 4.0e4), 3.0e5),
+        moon("+proj=merc +lon_0=20 +k_0=0.99", (4.0e5, 6.0e5), 2.0e5),
+        mars("+proj=merc +lat_ts=33 +lon_0=20", (4.0e5, 6.0e5), 2.0e5),
+        moon("+proj=lcc +lat_1=30 +lat_2=50 +lat_0=40 +lon_0=10 +x_0=3 +y_0=4", (4.0e5, 1.0e5), 2.0e5),
+        mars("+proj=lcc +lat_1=30 +lat_0=30 +lon_0=10 +k_0=0.99", (4.0e5, 1.0e5), 2.0e5),
+        moon("+proj=laea +lat_0=30 +lon_0=10", (4.0e5, 1.0e5), 2.0e5),
+        mars("+proj=laea +lat_0=30 +lon_0=10", (4.0e5, 1.0e5), 2.0e5),
+        moon("+proj=aeqd +lat_0=30 +lon_0=10", (4.0e5, 1.0e5), 2.0e5),
+        mars("+proj=aeqd +lat_0=30 +lon_0=10", (4.0e5, 1.0e5), 2.0e5),
+        moon("+proj=stere +lat_0=18 +lon_0=77 +pm=20", (7.0e4, 4.0e4), 3.0e5),
+    ]
+}
+
+#[test]
+fn gdals_files_of_every_projection_give_gdals_coordinates() {
+    if !has_gdal() {
+        return;
+    }
+    let directory = tempfile::tempdir().unwrap();
+    for (srs, at, reach_m) in systems() {
+        let dem = read_dem(&placed(directory.path(), &srs)).unwrap();
+        let projection = dem.georeference().projection().unwrap();
+        agree(&srs, &projection, &srs, at, reach_m);
+    }
+}
+
+#[test]
+fn epsg_and_iau_codes_mean_what_gdal_says_and_are_found_again() {
+    if !has_gdal() {
+        return;
+    }
+    let directory = tempfile::tempdir().unwrap();
+    let of_earth = [
+        ("EPSG:32633", (5.0e5, 5.0e6), 2.0e5),
+        ("EPSG:32733", (5.0e5, 8.0e6), 2.0e5),
+        ("EPSG:25832", (5.0e5, 5.0e6), 2.0e5),
+        ("EPSG:26913", (5.0e5, 4.0e6), 2.0e5),
+        ("EPSG:3031", (4.0e5, 1.0e5), 3.0e5),
+        ("EPSG:3413", (4.0e5, 1.0e5), 3.0e5),
+        ("EPSG:3976", (4.0e5, 1.0e5), 3.0e5),
+        ("EPSG:3995", (4.0e5, 1.0e5), 3.0e5),
+        ("EPSG:3035", (4.3e6, 2.8e6), 2.0e5),
+        ("EPSG:32661", (2.3e6, 2.1e6), 2.0e5),
+        ("EPSG:32761", (2.3e6, 2.1e6), 2.0e5),
+    ];
+    for (code, at, reach_m) in of_earth {
+        let projection = read_dem(&placed(directory.path(), code)).unwrap().georeference().projection().unwrap();
+        assert_eq!(projection.code(), Some(code));
+        // GDAL's axes of a code may be north first; its proj string is east first.
+        let srs = run("gdalsrsinfo", &["-o", "proj4", code], "");
+        let srs: Vec<&str> =
+            srs.split_whitespace().filter(|word| !word.starts_with("+towgs84") && !word.starts_with("+datum")).collect();
+        let figure = if code.starts_with("EPSG:2") || code == "EPSG:3035" { "+ellps=GRS80" } else { "+ellps=WGS84" };
+        let plain: Vec<&str> = srs.into_iter().filter(|word| !word.starts_with("+ellps")).chain([figure]).collect();
+        agree(code, &projection, &plain.join(" "), at, reach_m);
+    }
+    for body in ["199", "299", "301", "499"] {
+        for suffix in ["10", "15", "20", "25", "30", "35", "60", "65", "70", "75", "80"] {
+            let code = format!("IAU_2015:{body}{suffix}");
+            let projection = read_dem(&placed(directory.path(), &code)).unwrap().georeference().projection().unwrap();
+            assert_eq!(projection.code(), Some(code.as_str()), "{projection:?}");
+        }
+    }
+}
+
+#[test]
+fn real_files_have_gdals_coordinates_and_those_of_their_readme() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem");
+    for (name, code) in
+        [("lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif", "IAU_2015:30135"), ("lola_dem_north.tif", "IAU_2015:30130")]
+    {
+        let path = folder.join(name);
+        if !path.exists() {
+            eprintln!("skipped: {} is absent", path.display());
+            continue;
+        }
+        let dem = read_dem(&path).unwrap();
+        let projection = dem.georeference().projection().unwrap();
+        assert_eq!(projection.code(), Some(code));
+        let bounds = dem.bounds();
+        let middle = nalgebra::center(&bounds.min, &bounds.max);
+        if name.starts_with("lola5m") {
+            let place = projection.lon_lat(middle).unwrap();
+            assert!((place.lat_deg + 87.18).abs() < 0.01 && (place.lon_deg - 62.8).abs() < 0.05, "{place}");
+        }
+        if has_gdal() {
+            let srs = run("gdalsrsinfo", &["-o", "proj4", path.to_str().unwrap()], "");
+            agree(name, &projection, srs.trim(), (middle.x + 1.0, middle.y), 0.5 * (bounds.max.x - bounds.min.x));
+        }
+    }
+}
+
+#[test]
+fn the_prj_text_and_the_keys_that_we_write_mean_the_same_to_gdal() {
+    if !has_gdal() {
+        return;
+    }
+    let directory = tempfile::tempdir().unwrap();
+    for (srs, at, reach_m) in systems() {
+        if srs.contains("+pm=") {
+            continue;
+        }
+        let dem = read_dem(&placed(directory.path(), &srs)).unwrap();
+        let projection = dem.georeference().projection().unwrap();
+        let prj = directory.path().join("map.prj");
+        std::fs::write(&prj, projection.wkt()).unwrap();
+        let read = run("gdalsrsinfo", &["-o", "proj4", &format!("ESRI::{}", prj.display())], "");
+        agree(&projection.wkt(), &projection, read.trim(), at, reach_m);
+        let mut map = dem.georeference().clone();
+        map.coordinate_system = projection.coordinate_system();
+        let ours = chta::terrain::Dem::new(2, 2, vec![1.0, 2.0, 3.0, 4.0], map).unwrap();
+        let out = directory.path().join("ours.tif");
+        std::fs::write(&out, chta::terrain::geotiff_bytes(&ours).unwrap()).unwrap();
+        let read = run("gdalsrsinfo", &["-o", "proj4", out.to_str().unwrap()], "");
+        agree(&srs, &projection, read.trim(), at, reach_m);
+    }
+}
