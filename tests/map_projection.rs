@@ -29,12 +29,7 @@ fn run(program: &str, arguments: &[&str], input: &str) -> String {
 /// definition.
 fn places_of_gdal(srs: &str, points: &[MapPoint]) -> Vec<LonLat> {
     let lines: String = points.iter().map(|point| format!("{} {} 0\n", point.x, point.y)).collect();
-    let pick = |keys: &[&str]| {
-        let words = srs.split_whitespace().filter(|word| keys.iter().any(|key| word.starts_with(key)));
-        words.collect::<Vec<_>>().join(" ")
-    };
-    let figure = if srs.starts_with('+') { pick(&["+R=", "+a=", "+b=", "+rf=", "+ellps="]) } else { "+ellps=WGS84".to_owned() };
-    let centred = format!("+proj=geocent {figure} +no_defs");
+    let centred = format!("+proj=geocent {} +no_defs", figure_of(srs));
     let text = run("gdaltransform", &["-s_srs", srs, "-t_srs", &centred], &lines);
     let places: Vec<LonLat> = text
         .lines()
@@ -48,17 +43,56 @@ fn places_of_gdal(srs: &str, points: &[MapPoint]) -> Vec<LonLat> {
     places
 }
 
+/// Map points of places as GDAL has them; latitudes planetocentric, by way of three dimensions on the reference surface.
+fn points_of_gdal(srs: &str, places: &[LonLat]) -> Vec<MapPoint> {
+    let figure = figure_of(srs);
+    let radius = |keys: &[&str]| {
+        keys.iter().find_map(|key| Some(figure.split(' ').find_map(|word| word.strip_prefix(key))?.parse::<f64>().unwrap()))
+    };
+    let (a, b) = match (figure.as_str(), radius(&["+R=", "+a="])) {
+        ("+ellps=WGS84", _) => (6_378_137.0, 6_378_137.0 * (1.0 - 1.0 / 298.257_223_563)),
+        ("+ellps=GRS80", _) => (6_378_137.0, 6_378_137.0 * (1.0 - 1.0 / 298.257_222_101)),
+        (_, Some(a)) => (a, radius(&["+b="]).unwrap_or_else(|| a * (1.0 - radius(&["+rf="]).map_or(0.0, |inverse| 1.0 / inverse)))),
+        _ => panic!("{srs}"),
+    };
+    let line = |place: &LonLat| {
+        let ((sin_lat, cos_lat), (sin_lon, cos_lon)) = (place.lat_deg.to_radians().sin_cos(), place.lon_deg.to_radians().sin_cos());
+        let distance_m = a * b / (b * cos_lat).hypot(a * sin_lat);
+        format!("{:?} {:?} {:?}\n", distance_m * cos_lat * cos_lon, distance_m * cos_lat * sin_lon, distance_m * sin_lat)
+    };
+    let lines: String = places.iter().map(line).collect();
+    let text = run("gdaltransform", &["-s_srs", &format!("+proj=geocent {figure} +no_defs"), "-t_srs", srs], &lines);
+    let number = |word: &str| word.parse::<f64>().unwrap();
+    text.lines().map(|line| line.split(' ').map(number).collect::<Vec<_>>()).map(|xyz| MapPoint::new(xyz[0], xyz[1])).collect()
+}
+
+fn figure_of(srs: &str) -> String {
+    let keys = ["+R=", "+a=", "+b=", "+rf=", "+ellps="];
+    srs.split_whitespace().filter(|word| keys.iter().any(|key| word.starts_with(key))).collect::<Vec<_>>().join(" ")
+}
+
 /// Both ways, on a grid of points, to 1e-9 degrees and 1e-6 m.
+///
+/// GDAL's own inverse of the equal-area map on an ellipsoid is a cut-off series, 1e-7 degrees off its own way forward on Mars: there only the
+/// way forward counts.
 fn agree(name: &str, projection: &MapProjection, srs: &str, (x, y): (f64, f64), reach_m: f64) {
     let grid = [-1.0, -0.62, -0.1, 0.35, 1.0].map(|step| step * reach_m);
     let points: Vec<MapPoint> = grid.iter().flat_map(|dx| grid.map(|dy| MapPoint::new(x + dx, y + dy))).collect();
-    for (point, theirs) in points.iter().zip(places_of_gdal(srs, &points)) {
-        let ours = projection.lon_lat(*point).unwrap();
+    let rough = srs.contains("+proj=laea") && !srs.contains("+R=");
+    let ours: Vec<LonLat> = points.iter().map(|point| projection.lon_lat(*point).unwrap()).collect();
+    for ((point, ours), theirs) in points.iter().zip(&ours).zip(places_of_gdal(srs, &points)) {
         let turn_deg = (ours.lon_deg - theirs.lon_deg + 540.0).rem_euclid(360.0) - 180.0;
         let off_deg = (turn_deg * theirs.lat_deg.to_radians().cos()).hypot(ours.lat_deg - theirs.lat_deg);
-        assert!(off_deg < 1e-9, "{name} at {point}: {ours}, GDAL {theirs}, off by {off_deg:e} degrees");
-        let back = projection.map_point(theirs).unwrap();
-        assert!((back - point).norm() < 1e-6, "{name} at {point}: back at {back}");
+        assert!(off_deg < if rough { 1e-6 } else { 1e-9 }, "{name} at {point}: {ours}, GDAL {theirs}, off by {off_deg:e} degrees");
+    }
+    for ((point, ours), theirs) in points.iter().zip(&ours).zip(points_of_gdal(srs, &ours)) {
+        let own = projection.map_point(*ours).unwrap();
+        assert!((own - point).norm() < 1e-6, "{name} at {point}: back at {own}");
+        assert!(
+            (theirs - point).norm() < 1e-6,
+            "{name} at {point}: GDAL puts {ours} at {theirs}, off by {:e} m",
+            (theirs - point).norm()
+        );
     }
 }
 

@@ -83,7 +83,7 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
         }
         TerrainSource::Chain { path } => {
             let file = csv::read_chain_csv_file(base.join(path))?;
-            (file.chain, None, file.warnings, (None, None))
+            (file.chain, file.projection, file.warnings, (None, None))
         }
     };
     let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface)?;

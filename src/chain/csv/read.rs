@@ -11,6 +11,7 @@ use super::{
 use crate::{
     chain::{ChainProblem, ContactRule, Direction, Ground, GroundForm, LineConstraints, PolygonalChain},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
+    terrain::MapProjection,
     world::FrictionCone,
 };
 
@@ -19,6 +20,8 @@ use crate::{
 pub struct ChainFile {
     /// The chain.
     pub chain: PolygonalChain,
+    /// The projection of its map, where comments at its head state one (`# crs_proj: +proj=...`, as `chta slice` writes them).
+    pub projection: Option<MapProjection>,
     /// What was ignored, and what the file leaves impossible without saying so.
     pub warnings: Vec<String>,
 }
@@ -54,12 +57,34 @@ pub fn read_chain_csv(source: &[u8]) -> Result<ChainFile, CsvProblems> {
     }
     reading.warn();
     match reading.chain() {
-        Ok(chain) => Ok(ChainFile { chain, warnings: reading.table.warnings }),
+        Ok(chain) => {
+            let mut warnings = reading.table.warnings;
+            let projection = stated_projection(source, &mut warnings).filter(|_| chain.map_points().is_some());
+            Ok(ChainFile { chain, projection, warnings })
+        }
         Err(invalid) => {
             for problem in invalid.0 {
                 problems.push(|| reading.geometry_problem(&problem, &|row| row));
             }
             Err(problems.sorted())
+        }
+    }
+}
+
+/// The projection that comments before the header state; one that is not understood becomes a warning.
+fn stated_projection(source: &[u8], warnings: &mut Vec<String>) -> Option<MapProjection> {
+    let head: Vec<&str> = source
+        .split(|byte| matches!(byte, b'\n' | b'\r'))
+        .take_while(|line| line.is_empty() || line.starts_with(b"#"))
+        .filter_map(|line| std::str::from_utf8(line).ok())
+        .collect();
+    let comment =
+        |key: &str| head.iter().find_map(|line| Some(line.strip_prefix("# ")?.strip_prefix(key)?.strip_prefix(": ")?.to_owned()));
+    match MapProjection::from_proj_string(&comment("crs_proj")?, comment("crs_name"), comment("crs_code")) {
+        Ok(projection) => Some(projection),
+        Err(reason) => {
+            warnings.push(format!("the comment crs_proj is passed over, so results have no longitude and latitude: {reason}"));
+            None
         }
     }
 }

@@ -94,6 +94,9 @@ impl fmt::Display for NoProjection {
     }
 }
 
+/// An inverse projection that misses by more than this share of the radius has another place in mind, not a rough one.
+const ROUGH_SHARE: f64 = 1.0e-6;
+
 /// The projection of a map in metres.
 #[derive(Clone)]
 pub struct MapProjection {
@@ -212,7 +215,26 @@ impl MapProjection {
     }
 
     /// Longitude and planetographic latitude, radians.
+    ///
+    /// Some inverse projections are cut-off series or loops that end early (some 1e-9 degrees); the forward ones are exact. So what the
+    /// way back misses is added to the point, and the inverse taken again.
     fn inverse(&self, at: MapPoint) -> Option<(f64, f64)> {
+        let settled_m = 1.0e-14 * self.definition.ellipsoid.semi_major_m;
+        let (mut target, mut place) = (at, self.rough_inverse(at)?);
+        for _ in 0..3 {
+            let Some(back) = self.forward(place.0, place.1) else { break };
+            let miss = at - back;
+            if !(settled_m..ROUGH_SHARE * self.definition.ellipsoid.semi_major_m).contains(&miss.norm()) {
+                break;
+            }
+            target += miss;
+            let Some(better) = self.rough_inverse(target) else { break };
+            place = better;
+        }
+        Some(place)
+    }
+
+    fn rough_inverse(&self, at: MapPoint) -> Option<(f64, f64)> {
         let mut point = (at.x, at.y, 0.0);
         transform(&self.projected, &self.geographic, &mut point).ok()?;
         (point.0.is_finite() && point.1.is_finite()).then_some((point.0, point.1))
@@ -281,11 +303,11 @@ fn named(system: &CoordinateSystem) -> Option<String> {
 fn spoken(definition: &Definition) -> String {
     let Ellipsoid { semi_major_m, semi_minor_m } = definition.ellipsoid;
     let figure = if definition.ellipsoid.is_sphere() {
-        format!("sphere of {semi_major_m} m")
+        format!("a sphere of {semi_major_m} m")
     } else {
-        format!("ellipsoid of {semi_major_m} m and {semi_minor_m} m")
+        format!("an ellipsoid of {semi_major_m} m and {semi_minor_m} m")
     };
-    format!("{} on a {figure}", definition.method.name())
+    format!("{} on {figure}", definition.method.name())
 }
 
 #[cfg(test)]

@@ -148,3 +148,46 @@ fn proj_strings_with_a_word_that_is_not_understood_are_refused() {
         assert!(reason.contains(word), "{text}: {reason}");
     }
 }
+
+#[test]
+fn the_scale_is_that_of_the_textbooks() {
+    let east = nalgebra::Vector2::new(1.0, 0.0);
+    let north = nalgebra::Vector2::new(0.0, 1.0);
+    let map = |definition| MapProjection::new(definition, None).unwrap();
+    let at = |map: &MapProjection, lon_deg, lat_deg| map.map_point(LonLat { lon_deg, lat_deg }).unwrap();
+    let near = |found: Option<f64>, expected: f64| assert!((found.unwrap() - expected).abs() < 1e-8, "{found:?} {expected}");
+    // Stereographic, about a pole and about any point: 2 / (1 + cos c), c from the centre, in every direction.
+    for (latitude_deg, lat_deg) in [(-90.0, -70.0), (35.0, 55.0)] {
+        let stereographic = map(Definition::about(Method::ObliqueStereographic, latitude_deg, 10.0, MOON));
+        let place = at(&stereographic, 10.0, lat_deg);
+        for heading in [east, north, nalgebra::Vector2::new(0.6, -0.8)] {
+            near(stereographic.scale(place, heading), 2.0 / (1.0 + 20.0_f64.to_radians().cos()));
+        }
+    }
+    // Orthographic: cos c away from the centre, 1 across.
+    let orthographic = map(Definition::about(Method::Orthographic, 0.0, 0.0, MOON));
+    let place = at(&orthographic, 0.0, 30.0);
+    near(orthographic.scale(place, north), 30.0_f64.to_radians().cos());
+    near(orthographic.scale(place, east), 1.0);
+    // Equirectangular: cos(parallel) / cos(latitude) along a parallel.
+    let mut definition = Definition::about(Method::Equirectangular, 0.0, 0.0, MOON);
+    definition.parallels_deg[0] = Some(40.0);
+    let equirectangular = map(definition);
+    let place = at(&equirectangular, 20.0, -60.0);
+    near(equirectangular.scale(place, east), 2.0 * 40.0_f64.to_radians().cos());
+    near(equirectangular.scale(place, north), 1.0);
+    // A conformal map of an ellipsoid has its scale at the origin there.
+    let mars = map(Definition { scale: 0.9, ..Definition::about(Method::TransverseMercator, 20.0, 5.0, MARS) });
+    near(mars.scale(at(&mars, 5.0, 20.0), nalgebra::Vector2::new(0.8, 0.6)), 0.9);
+}
+
+#[test]
+fn the_worst_scale_of_a_transect_is_found_where_it_is() {
+    let polar = MapProjection::new(Definition::about(Method::PolarStereographic, 90.0, 0.0, MOON), None).unwrap();
+    let extreme = polar.extreme_scale(MapPoint::new(-1.0e5, 0.0), MapPoint::new(4.0e5, 0.0)).unwrap();
+    assert_eq!((extreme.at, extreme.distance_m), (MapPoint::new(4.0e5, 0.0), 5.0e5));
+    // k = 1 + (rho / 2R)^2.
+    assert!((extreme.factor - 1.0 - (4.0e5_f64 / (2.0 * 1_737_400.0)).powi(2)).abs() < 1e-8, "{extreme:?}");
+    assert!(extreme.is_off());
+    assert!(!polar.extreme_scale(MapPoint::new(-1.0e5, 0.0), MapPoint::new(3.0e5, 0.0)).unwrap().is_off());
+}

@@ -23,7 +23,7 @@ fn projection(definition: &Definition) -> (&'static str, Vec<(&'static str, f64)
     let scale = ("Scale_Factor", scale);
     let parallel = ("Standard_Parallel_1", parallels_deg[0].unwrap_or(0.0));
     let (name, mut own) = match (method, parallels_deg[0]) {
-        (Method::Equirectangular, _) => ("Equidistant_Cylindrical", vec![parallel, latitude]),
+        (Method::Equirectangular, _) => ("Equidistant_Cylindrical", vec![parallel]),
         (Method::PolarStereographic, Some(_)) if latitude_deg > 0.0 => ("Stereographic_North_Pole", vec![parallel]),
         (Method::PolarStereographic, Some(_)) => ("Stereographic_South_Pole", vec![parallel]),
         (Method::PolarStereographic | Method::ObliqueStereographic, _) => ("Stereographic", vec![scale, latitude]),
@@ -42,9 +42,14 @@ fn projection(definition: &Definition) -> (&'static str, Vec<(&'static str, f64)
         (Method::LambertAzimuthalEqualArea, _) => ("Lambert_Azimuthal_Equal_Area", vec![latitude]),
         (Method::AzimuthalEquidistant, _) => ("Azimuthal_Equidistant", vec![latitude]),
     };
+    // ESRI's equirectangular map begins at the equator.
+    let from_equator_m = match method {
+        Method::Equirectangular => definition.ellipsoid.semi_major_m * latitude_deg.to_radians(),
+        _ => 0.0,
+    };
     let mut parameters = vec![
         ("False_Easting", definition.false_easting_m),
-        ("False_Northing", definition.false_northing_m),
+        ("False_Northing", definition.false_northing_m - from_equator_m),
         ("Central_Meridian", longitude_deg),
     ];
     parameters.append(&mut own);
