@@ -28,7 +28,7 @@ fn run(program: &str, arguments: &[&str], input: &str) -> String {
 /// Longitude and planetocentric latitude of map points as GDAL has them: by way of three dimensions, where no latitude is a matter of
 /// definition.
 fn places_of_gdal(srs: &str, points: &[MapPoint]) -> Vec<LonLat> {
-    let lines: String = points.iter().map(|point| format!("{} {} 0\n", point.x, point.y)).collect();
+    let lines = points.iter().map(|point| format!("{} {} 0\n", point.x, point.y)).collect::<Vec<_>>().concat();
     let centred = format!("+proj=geocent {} +no_defs", figure_of(srs));
     let text = run("gdaltransform", &["-s_srs", srs, "-t_srs", &centred], &lines);
     let places: Vec<LonLat> = text
@@ -60,7 +60,7 @@ fn points_of_gdal(srs: &str, places: &[LonLat]) -> Vec<MapPoint> {
         let distance_m = a * b / (b * cos_lat).hypot(a * sin_lat);
         format!("{:?} {:?} {:?}\n", distance_m * cos_lat * cos_lon, distance_m * cos_lat * sin_lon, distance_m * sin_lat)
     };
-    let lines: String = places.iter().map(line).collect();
+    let lines = places.iter().map(line).collect::<Vec<_>>().concat();
     let text = run("gdaltransform", &["-s_srs", &format!("+proj=geocent {figure} +no_defs"), "-t_srs", srs], &lines);
     let number = |word: &str| word.parse::<f64>().unwrap();
     text.lines().map(|line| line.split(' ').map(number).collect::<Vec<_>>()).map(|xyz| MapPoint::new(xyz[0], xyz[1])).collect()
@@ -183,8 +183,9 @@ fn epsg_and_iau_codes_mean_what_gdal_says_and_are_found_again() {
         let plain: Vec<&str> = srs.into_iter().filter(|word| !word.starts_with("+ellps")).chain([figure]).collect();
         agree(code, &projection, &plain.join(" "), at, reach_m);
     }
-    for body in ["199", "299", "301", "499"] {
-        for suffix in ["10", "15", "20", "25", "30", "35", "60", "65", "70", "75", "80"] {
+    let all = ["10", "15", "20", "25", "30", "35", "60", "65", "70", "75", "80"];
+    for (body, suffixes) in [("301", &all[..]), ("199", &["10"]), ("299", &["25"]), ("499", &["35"])] {
+        for suffix in suffixes {
             let code = format!("IAU_2015:{body}{suffix}");
             let projection = read_dem(&placed(directory.path(), &code)).unwrap().georeference().projection().unwrap();
             assert_eq!(projection.code(), Some(code.as_str()), "{projection:?}");

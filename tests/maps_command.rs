@@ -100,7 +100,7 @@ fn places_are_refused_without_a_projection_off_the_map_or_said_twice() {
     std::fs::write(folder.path().join("local.asc"), "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2\n3 4\n").unwrap();
     refused(&["slice", "local.asc", "--from-lonlat", "1,1", "--to", "1,1"], &["states no map projection", "gdal_translate -a_srs"]);
     let scenario = |terrain: &str| {
-        std::fs::write(folder.path().join("s.toml"), format!("{HOPPER}[terrain]\ndem = \"in.tif\"\n{terrain}")).unwrap()
+        std::fs::write(folder.path().join("s.toml"), format!("{HOPPER}[terrain]\ndem = \"in.tif\"\n{terrain}")).unwrap();
     };
     scenario("start_m = [0, 0]\nstart_lonlat_deg = [77.25, 18.5]\ngoal_m = [10, 0]\n");
     refused(&["check", "s.toml"], &["both start_m and start_lonlat_deg"]);
@@ -180,7 +180,6 @@ fn an_accepted_scale_is_recorded_in_the_result_which_repeats_it() {
 fn a_slice_without_a_code_has_a_prj_beside_it_and_opens_in_its_place() {
     let folder = tempfile::tempdir().unwrap();
     let projection = local(folder.path());
-    std::fs::write(folder.path().join("stale.prj"), "of another run").unwrap();
     let slice = ["slice", "in.tif", "--from", "-20,10", "--to", "30,-15", "-o", "chain.csv", "--geojson", "slice.geojson"];
     let (status, _, told) = chta(folder.path(), &slice);
     assert_eq!((status, told.as_str()), (0, ""));

@@ -37,17 +37,11 @@ pub(crate) fn to_file_or_stdout(path: Option<&Path>, data: &[u8]) -> Result<(), 
 }
 
 /// Writes a GeoJSON file and, where no code of an authority says its reference system, that as well-known text in a `.prj` beside it.
-///
-/// A `.prj` of an earlier run, which would speak of another map, is removed.
 pub(crate) fn to_geojson_file(path: &Path, geojson: &str, projection: Option<&MapProjection>) -> Result<(), Failure> {
     to_file(path, geojson.as_bytes())?;
-    let beside = path.with_extension("prj");
     match projection.filter(|projection| projection.code().is_none()) {
-        Some(projection) => to_file(&beside, (projection.wkt() + "\n").as_bytes()),
-        None => {
-            let _ = std::fs::remove_file(beside);
-            Ok(())
-        }
+        Some(projection) => to_file(&path.with_extension("prj"), (projection.wkt() + "\n").as_bytes()),
+        None => Ok(()),
     }
 }
 
