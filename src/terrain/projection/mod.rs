@@ -72,7 +72,12 @@ impl MapPlace {
         };
         let projection = projection.map_err(|reason| TerrainError::NoProjection { which, reason: reason.clone() })?;
         let at = projection.map_point(place);
-        at.filter(|at| bounds.contains(*at)).ok_or(TerrainError::LonLatOffTheMap { which, place, at, bounds })
+        // A place on the border may come out a rounding beyond it.
+        let onto_border = |at: MapPoint| {
+            let inside = MapPoint::new(at.x.clamp(bounds.min.x, bounds.max.x), at.y.clamp(bounds.min.y, bounds.max.y));
+            ((inside - at).norm() <= ROUNDING_M).then_some(inside)
+        };
+        at.and_then(onto_border).ok_or(TerrainError::LonLatOffTheMap { which, place, at, bounds })
     }
 }
 
@@ -93,6 +98,9 @@ impl fmt::Display for NoProjection {
         }
     }
 }
+
+/// How far beyond the border of a map a place on it may come out, m.
+const ROUNDING_M: f64 = 1.0e-6;
 
 /// An inverse projection that misses by more than this share of the radius has another place in mind, not a rough one.
 const ROUGH_SHARE: f64 = 1.0e-6;
