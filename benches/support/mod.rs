@@ -10,10 +10,10 @@ use chta::{
 };
 
 /// Gravity of Mars, m/s^2.
-pub const MARS_M_S2: f64 = 3.711;
+pub(crate) const MARS_M_S2: f64 = 3.711;
 
 /// Rough Martian ground along a row of posts: as many one-metre segments, a hopper of 10 m/s with 5 cm of clearance, friction 0.6.
-pub fn fractal_chain(segments: usize) -> (ConstrainedChain, Hopper) {
+pub(crate) fn fractal_chain(segments: usize) -> (ConstrainedChain, Hopper) {
     let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(10.0, 10.0) };
     let terrain = SyntheticTerrain {
         rows: 3,
@@ -32,7 +32,7 @@ pub fn fractal_chain(segments: usize) -> (ConstrainedChain, Hopper) {
 }
 
 /// With friction 0.6 all over.
-pub fn constrained(geometry: PolygonalChain, hopper: &Hopper) -> ConstrainedChain {
+pub(crate) fn constrained(geometry: PolygonalChain, hopper: &Hopper) -> ConstrainedChain {
     let grip = Some(Grip::Friction(FrictionCone::new(0.6).expect("a friction coefficient")));
     ConstrainedChain::new(geometry, hopper, &Surface { grip, rest: RestSlope::AsFrictionHolds }).expect("sound constraints")
 }
