@@ -1,6 +1,6 @@
 //! Ground for the benches: a fractal chain of one-metre segments, from a seed.
 
-#![allow(dead_code, reason = "not every bench uses all of it")]
+#![allow(dead_code, clippy::expect_used, reason = "not every bench uses all of it; a bench that cannot set its scene should stop")]
 
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
