@@ -67,6 +67,9 @@ impl Scenario {
     /// # Errors
     /// Every problem of the keys, in the order of the file.
     pub fn new(mut entries: Entries) -> Result<Self, Vec<ScenarioProblem>> {
+        if entries.is_unreadable() {
+            return Err(entries.problems().to_vec());
+        }
         let body = body(&mut entries);
         let hopper = hopper(&mut entries);
         let surface = surface(&mut entries);
@@ -110,7 +113,11 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
                 let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
                 let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
                 let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
-                entries.problem(place, message, "for any other body give gravity_m_s2 instead of a name");
+                let lower_case = name.to_lowercase();
+                let near =
+                    names.iter().min_by_key(|known| strsim::damerau_levenshtein(&lower_case, known)).copied().unwrap_or_default();
+                let help = format!("the nearest known name is {near}; for any other body give gravity_m_s2 instead of a name");
+                entries.problem(place, message, help);
                 None
             }
         },
@@ -229,7 +236,14 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
             Some(TerrainSource::Chain { path })
         }
         (None, None) => {
-            if let Some((name, place @ Place::File(_))) = along {
+            // Where a key of the terrain has told its own problem, dem or chain may be what was meant by it.
+            if entries.problems().iter().any(|problem| problem.message.contains("terrain.")) {
+                return None;
+            }
+            let on_map = ["start_m", "goal_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
+            if let Some((name, place)) = on_map {
+                entries.problem(place, format!("terrain.{name} without a dem"), "add dem = \"file.tif\"");
+            } else if let Some((name, place @ Place::File(_))) = along {
                 entries.problem(place, format!("terrain.{name} without a chain"), "add chain = \"file.csv\"");
             }
             None
