@@ -28,9 +28,9 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
 
 /// The system's own error, without the name of a temporary file, which tells the user nothing and differs every time.
 fn without_temporary_name(error: &io::Error) -> io::Error {
-    let inner = error.get_ref().and_then(|wrapped| wrapped.source()).and_then(|source| source.downcast_ref::<io::Error>());
-    let system = inner.unwrap_or(error);
-    system.raw_os_error().map_or_else(|| io::Error::from(system.kind()), io::Error::from_raw_os_error)
+    let text = error.to_string();
+    let system = text.split_once(" at path ").map_or(text.as_str(), |(system, _)| system);
+    io::Error::new(error.kind(), system)
 }
 
 /// Temporary files with the permissions that any new file would get.
