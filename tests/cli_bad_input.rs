@@ -305,16 +305,13 @@ fn a_closed_pipe_is_no_error_and_keeps_the_answer() {
     }
 }
 
+#[cfg(target_os = "linux")]
 #[test]
 fn a_pipe_can_be_read_where_a_file_is_expected() {
     let desk = Desk::new();
     let mut command = Command::new(env!("CARGO_BIN_EXE_chta"));
     command.current_dir(desk.path()).args(["check", "/dev/stdin", "--scenario", "scenario.toml"]);
     let chain = File::open(desk.path().join("chain.csv")).unwrap();
-    if !cfg!(target_os = "linux") {
-        eprintln!("skipped: there is no /dev/stdin here");
-        return;
-    }
     assert_eq!(command.stdin(chain).stdout(Stdio::null()).status().unwrap().code(), Some(0));
 }
 
