@@ -27,7 +27,7 @@ struct Entry {
 /// All keys given, later ones in place of earlier ones.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Entries {
-    entries: BTreeMap<(String, String), Entry>,
+    given: BTreeMap<(String, String), Entry>,
     problems: Vec<ScenarioProblem>,
     /// The text could not be read at all, so what is absent tells nothing.
     unreadable: bool,
@@ -132,7 +132,7 @@ impl Entries {
 
     /// Forgets a key, where an option replaces it by another one.
     pub fn forget(&mut self, table: &str, name: &str) {
-        self.entries.remove(&(table.to_owned(), name.to_owned()));
+        self.given.remove(&(table.to_owned(), name.to_owned()));
     }
 
     /// The title of the report, where one was given.
@@ -164,12 +164,12 @@ impl Entries {
 
     /// Where a key was given; `None` where it was not.
     pub(super) fn place(&self, table: &str, name: &str) -> Option<Place> {
-        self.entries.get(&(table.to_owned(), name.to_owned())).map(|entry| entry.place.clone())
+        self.given.get(&(table.to_owned(), name.to_owned())).map(|entry| entry.place.clone())
     }
 
     /// The value of a key; `None` where it was not given.
     pub(super) fn value(&self, table: &str, name: &str) -> Option<&toml::Value> {
-        self.entries.get(&(table.to_owned(), name.to_owned())).map(|entry| &entry.value)
+        self.given.get(&(table.to_owned(), name.to_owned())).map(|entry| &entry.value)
     }
 
     /// A number; `None` where it was not given.
@@ -191,7 +191,7 @@ impl Entries {
     fn add(&mut self, table: &str, name: &str, value: toml::Value, place: Place, key_place: Place) {
         let Some(key) = Key::find(table, name) else { return self.unknown(table, name, key_place) };
         if fits(&value, key.kind) {
-            self.entries.insert((table.to_owned(), name.to_owned()), Entry { value, place });
+            self.given.insert((table.to_owned(), name.to_owned()), Entry { value, place });
         } else {
             self.misfit(key, &value.to_string(), place);
         }

@@ -1,6 +1,7 @@
 //! The pipeline: scenario, terrain, chain, constraints; ready for the hop test.
 
 use std::{
+    fmt::Write,
     fs::File,
     io::{self, Read},
     path::{Path, PathBuf},
@@ -115,7 +116,11 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
         }
         digest.update(&piece[..count]);
     }
-    Ok(digest.finalize().iter().map(|byte| format!("{byte:02x}")).collect())
+    Ok(digest.finalize().iter().fold(String::with_capacity(64), |mut text, byte| {
+        // Writing to a String cannot fail.
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
 }
 
 /// The largest figures of some hops, to be doubted.

@@ -103,24 +103,17 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
     let radius = entries.number("body", "radius_m");
     let name = entries.text("body", "name").map(str::to_owned);
     match (&name, gravity) {
-        (Some(name), _) => match Body::named(name) {
-            Some(known) => Some(BodyChoice {
+        (Some(name), _) => {
+            let Some(known) = Body::named(name) else {
+                unknown_body(entries, name);
+                return None;
+            };
+            Some(BodyChoice {
                 name: Some(known.name.to_owned()),
                 gravity_m_s2: gravity.unwrap_or(known.gravity_m_s2),
                 radius_m: Some(radius.unwrap_or(known.radius_m)),
-            }),
-            None => {
-                let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
-                let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
-                let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
-                let lower_case = name.to_lowercase();
-                let near =
-                    names.iter().min_by_key(|known| strsim::damerau_levenshtein(&lower_case, known)).copied().unwrap_or_default();
-                let help = format!("the nearest known name is {near}; for any other body give gravity_m_s2 instead of a name");
-                entries.problem(place, message, help);
-                None
-            }
-        },
+            })
+        }
         (None, Some(gravity_m_s2)) => Some(BodyChoice { name: None, gravity_m_s2, radius_m: radius }),
         (None, None) => {
             // A gravity that was given but refused has told its own problem.
@@ -131,6 +124,17 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
             None
         }
     }
+}
+
+/// Tells that no known body has this name, and which comes nearest.
+fn unknown_body(entries: &mut Entries, name: &str) {
+    let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
+    let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
+    let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
+    let lower_case = name.to_lowercase();
+    let near = names.iter().min_by_key(|known| strsim::damerau_levenshtein(&lower_case, known)).copied().unwrap_or_default();
+    let help = format!("the nearest known name is {near}; for any other body give gravity_m_s2 instead of a name");
+    entries.problem(place, message, help);
 }
 
 /// The robot; what is absent does not limit.
