@@ -108,8 +108,8 @@ const SYNTH: [&str; 30] = [
     "40",
     "--cols",
     "40",
-    "--spacing-m",
-    "2",
+    "--rock-abundance",
+    "0.4",
     "--tilt-deg",
     "3",
     "--craters",
@@ -128,7 +128,7 @@ const SYNTH: [&str; 30] = [
     "60",
     "--boulders",
     "--boulder-diameter-min-m",
-    "2",
+    "1.5",
     "--boulder-diameter-max-m",
     "6",
 ];
@@ -139,7 +139,7 @@ const SYNTH_OPTIONS: [(&str, &str); 26] = [
     ("--seed", "2"),
     ("--rows", "30"),
     ("--cols", "30"),
-    ("--spacing-m", "1.5"),
+    ("--spacing-m", "1.2"),
     ("--south-west-m", "-10,20"),
     ("--mean-elevation-m", "-3000"),
     ("--tilt-deg", "5"),
@@ -159,8 +159,8 @@ const SYNTH_OPTIONS: [(&str, &str); 26] = [
     ("--rille-meander-amplitude-m", "5"),
     ("--rille-meander-length-m", "50"),
     ("--rock-abundance", "0.2"),
-    ("--boulder-diameter-min-m", "3"),
-    ("--boulder-diameter-max-m", "5"),
+    ("--boulder-diameter-min-m", "2"),
+    ("--boulder-diameter-max-m", "3"),
 ];
 
 fn desk() -> Desk {
