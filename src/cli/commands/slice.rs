@@ -11,8 +11,14 @@ use crate::cli::{Answer, Failure, args::SliceArgs, load::scenario_alone, output}
 /// Slices a DEM.
 pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     let SliceArgs { dem, from, to, scenario, output: file } = args;
-    let friction = scenario.as_deref().map(scenario_alone).transpose()?.as_ref().and_then(friction);
-    let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
+    let given = scenario.as_deref().map(scenario_alone).transpose()?;
+    let friction = given.as_ref().and_then(friction);
+    if let (Some(path), None) = (scenario, friction) {
+        let name = path.display();
+        let reason = "has no friction_coefficient, so none goes into the chain: give the scenario again where the chain is used";
+        output::warn(false, &format!("--scenario {name} {reason}"));
+    }
+    let failed = |error: &dyn std::error::Error| Failure::about(dem, &error.to_string());
     let profile = slice(&read_dem(dem).map_err(|e| failed(&e))?, *from, *to).map_err(|e| failed(&e))?;
     let chain = PolygonalChain::from_profile(&profile, friction).map_err(|e| failed(&e))?;
     let name = dem.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
