@@ -67,7 +67,7 @@ pub(crate) struct SearchArgs {
     /// Points inside each segment, or auto: the first of 0, 1, 2, 3, 7, 15, 31 that finds a path [default: auto]
     #[arg(long, value_name = "K|auto", allow_negative_numbers = true)]
     pub(crate) points_per_segment: Option<String>,
-    /// Instead: as many points as keep neighbours this close along the ground, m
+    /// Instead: as many points as keep neighbours this close along the ground, m [default: by points per segment]
     #[arg(long, value_name = "D", conflicts_with = "points_per_segment", allow_negative_numbers = true)]
     pub(crate) node_spacing_max_m: Option<f64>,
     /// Second criterion after hops: takeoff-speed, energy, time, peak-speed [default: takeoff-speed]
