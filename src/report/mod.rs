@@ -16,4 +16,4 @@ pub use geojson::path_geojson;
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
 pub use path_record::{HopRecord, MapRecord, TotalsRecord, write_path_csv};
 pub use text::{check_text, hop_text, path_text};
-pub use whole_file::write_whole;
+pub use whole_file::{WholeFile, write_whole};

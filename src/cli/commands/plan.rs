@@ -1,5 +1,7 @@
 //! `chta plan`: the path of fewest hops, then least effort.
 
+use std::path::Path;
+
 use chta::{
     ballistics::HopTest,
     chain::Station,
@@ -21,7 +23,7 @@ use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs},
     load::{EndOptions, Loaded, load},
-    output,
+    output::{self, Pending},
 };
 
 /// What a plan answers: the check, the path, its totals.
@@ -174,24 +176,29 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {
         return Err(Failure::message("--geojson: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"));
     }
+    let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
+    // Opened before the search, which may take long.
+    let plot = args.plot.as_deref().map(Pending::begin).transpose()?;
+    let geojson = args.geojson.as_deref().map(Pending::begin).transpose()?;
+    let csv = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, args.verify, args.common.quiet)?;
-    if let Some(file) = &args.plot {
-        output::to_file(file, planned.picture(&loaded, &test, ends)?.as_bytes())?;
+    let mut files = Vec::new();
+    if let Some(file) = plot {
+        files.push((file, planned.picture(&loaded, &test, ends)?.into_bytes()));
     }
-    if let (Some(file), Some(geojson)) = (&args.geojson, planned.geojson(&loaded)) {
-        output::to_file(file, geojson.as_bytes())?;
+    if let (Some(file), Some(geojson)) = (geojson, planned.geojson(&loaded)) {
+        files.push((file, geojson.into_bytes()));
     }
-    let csv_to_stdout = args.output.as_deref() == Some(std::path::Path::new("-"));
-    if let Some(file) = &args.output {
-        output::to_file_or_stdout(Some(file), &planned.csv(&loaded)?)?;
+    if let Some(file) = csv {
+        files.push((file, planned.csv(&loaded)?));
     }
-    if !csv_to_stdout {
-        let text = match args.format {
-            Format::Text => planned.text(),
-            Format::Json => planned.document("plan", &loaded)?,
-        };
-        output::to_stdout(text.as_bytes())?;
-    }
+    output::finish(files)?;
+    let text = match args.format {
+        _ if csv_to_stdout => planned.csv(&loaded)?,
+        Format::Text => planned.text().into_bytes(),
+        Format::Json => planned.document("plan", &loaded)?.into_bytes(),
+    };
+    output::to_stdout(&text)?;
     Ok(planned.verdict())
 }
