@@ -53,6 +53,10 @@ pub(crate) fn to_file(path: &Path, data: &[u8]) -> Result<(), Failure> {
 /// Whether files can be made in a folder, or in the nearest one above it that exists: asked before long work.
 pub(crate) fn check_folder(folder: &Path) -> Result<(), Failure> {
     let existing = folder.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(Path::new("."));
+    // A file in the way is told when the folder is made.
+    if existing.is_file() {
+        return Ok(());
+    }
     let existing = if existing.as_os_str().is_empty() { Path::new(".") } else { existing };
     WholeFile::begin(&existing.join(".chta-probe")).map(drop).map_err(|error| unwritable(folder, &error))
 }
