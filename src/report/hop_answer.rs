@@ -32,8 +32,10 @@ pub struct HopAnswer {
     pub limits: Vec<LimitRecord>,
     /// What sets either end, or what conflicts.
     pub binding: BindingRecord,
-    /// The hop to fly.
+    /// The hop to fly, by the scenario's choice.
     pub best: Option<BestRecord>,
+    /// The hops of all three choices; none where there is no hop.
+    pub choices: Vec<BestRecord>,
     /// Hops along the segment that both points share, where they share one.
     pub segment_hops: Option<SegmentHopsRecord>,
 }
@@ -138,6 +140,7 @@ impl HopAnswer {
     pub fn new(test: &HopTest<'_>, takeoff: &Station, landing: &Station, choice: TakeoffChoice) -> Option<Self> {
         let set = test.takeoff_set(takeoff, landing)?;
         let angles = set.angles();
+        let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice));
         Some(Self {
             from_x_m: takeoff.point.x_m,
             to_x_m: landing.point.x_m,
@@ -149,7 +152,8 @@ impl HopAnswer {
             line_of_sight_angle_deg: unsigned_zero(set.line_of_sight().angle().degrees()),
             limits: set.limits().iter().map(|limit| LimitRecord::new(test, &set, limit)).collect(),
             binding: BindingRecord::new(test, &set),
-            best: set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice)),
+            best: best(choice),
+            choices: TakeoffChoice::ALL.into_iter().filter_map(best).collect(),
             segment_hops: SegmentHopsRecord::new(test, takeoff, landing),
         })
     }

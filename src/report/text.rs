@@ -51,15 +51,22 @@ pub fn hop_text(answer: &HopAnswer) -> String {
     }
     if let Some(best) = answer.best {
         sheet.line(format_args!(
-            "\nto fly ({}): {:.6} deg at {:.6} m/s; lands at {:.6} deg with {:.6} m/s after {:.3} s, {:.3} m above the take-off at most",
-            best.choice,
-            best.takeoff_angle_deg,
-            best.takeoff_speed_m_s,
-            best.landing_angle_deg,
-            best.landing_speed_m_s,
-            best.flight_time_s,
-            best.apex_height_m
+            "\n{:<18}{:>10}{:>10}{:>11}{:>10}{:>10}{:>13}",
+            "to fly", "up (deg)", "m/s", "down (deg)", "m/s", "s", "highest (m)"
         ));
+        for choice in &answer.choices {
+            let chosen = if choice.choice == best.choice { "  <- chosen" } else { "" };
+            sheet.line(format_args!(
+                "{:<18}{:>10.4}{:>10.4}{:>11.4}{:>10.4}{:>10.3}{:>13.3}{chosen}",
+                choice.choice,
+                choice.takeoff_angle_deg,
+                choice.takeoff_speed_m_s,
+                choice.landing_angle_deg,
+                choice.landing_speed_m_s,
+                choice.flight_time_s,
+                choice.apex_height_m
+            ));
+        }
     }
     if let Some(along) = answer.segment_hops {
         sheet.line(format_args!(
