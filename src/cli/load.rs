@@ -43,7 +43,7 @@ impl Loaded {
     pub(crate) fn ends(&self) -> Result<(Station, Station), Failure> {
         let missing = |end: &str| {
             Failure::message(format!(
-                "found no {end}: give --{end} X along the chain, or [terrain] {end}_x_m (for a dem {end}_m) in the scenario"
+                "found no {end}: give --{end} X along the chain, or [terrain] {end}_x_m (for a dem or mesh {end}_m) in the scenario"
             ))
         };
         Ok((self.prepared.start.ok_or_else(|| missing("start"))?, self.prepared.goal.ok_or_else(|| missing("goal"))?))
@@ -81,7 +81,7 @@ pub(crate) fn load(
     };
     apply_options(&mut source.entries, common, search, ends);
     if !is_scenario {
-        for key in ["dem", "chain", "start_m", "goal_m"] {
+        for key in ["dem", "mesh", "mesh_scale", "chain", "start_m", "goal_m"] {
             source.entries.forget("terrain", key);
         }
     }
@@ -90,7 +90,7 @@ pub(crate) fn load(
         let named = scenario.terrain.clone();
         let terrain = named.ok_or_else(|| {
             Failure::message(format!(
-                "{}: found no terrain; add [terrain] with dem or chain, or give a chain CSV",
+                "{}: found no terrain; add [terrain] with dem, mesh or chain, or give a chain CSV",
                 target.display()
             ))
         })?;
@@ -103,9 +103,7 @@ pub(crate) fn load(
     for warning in &prepared.warnings {
         output::warn(common.quiet, warning);
     }
-    let file = match &terrain {
-        TerrainSource::Dem { path, .. } | TerrainSource::Chain { path } => base.join(path),
-    };
+    let file = base.join(terrain.path());
     let inputs = vec![InputFile { name: relative_name(&file), sha256: sha256_of(&file)? }];
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
     Ok(Loaded { scenario, prepared, document, inputs })
