@@ -15,7 +15,7 @@ const LONGEST: Duration = Duration::from_secs(2);
 
 /// A grid of 5 x 4 vertices and its triangles.
 fn grid() -> (Vec<[f32; 3]>, Vec<[u8; 3]>) {
-    let vertices = (0..20_u8).map(|i| [f32::from(i % 5), f32::from(i / 5), f32::from(i * i % 7) * 0.25]).collect();
+    let vertices = (0..20_u8).map(|i| [f32::from(i % 5), f32::from(i / 5), f32::from(u16::from(i).pow(2) % 7) * 0.25]).collect();
     let squares = (0..12_u8).map(|i| i % 4 + 5 * (i / 4));
     (vertices, squares.flat_map(|a| [[a, a + 1, a + 6], [a, a + 6, a + 5]]).collect())
 }

@@ -113,7 +113,8 @@ pub enum TerrainError {
     InvalidMesh(String),
     /// The plane of a slice meets no triangle for a stretch.
     #[error(
-        "the plane meets no triangle of the mesh from x = {begin_m} m to {end_m} m along the transect, map ({:.6}, {:.6}) m to ({:.6}, {:.6}) m{}, expected          ground all the way; choose another transect, or close the hole in the mesh (narrow cracks: weld its vertices)",
+        "the plane meets no triangle of the mesh from x = {begin_m} m to {end_m} m along the transect, map ({:.6}, {:.6}) m to ({:.6}, {:.6}) m{}, expected \
+         ground all the way; choose another transect, or close the hole in the mesh (narrow cracks: weld its vertices)",
         begin.x, begin.y, end.x, end.y, further_gaps(*further)
     )]
     MeshGap {

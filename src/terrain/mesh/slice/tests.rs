@@ -154,6 +154,7 @@ fn a_thin_wall_is_a_spike_and_a_narrow_slot_keeps_its_floor() {
     let slot = mesh(&[&floor(), &level([0.0, 5.0], [0.0, 10.0], 1.0), &level([5.001, 10.0], [0.0, 10.0], 1.0)]);
     let slice = check(&slot, at(1.0, 4.0), at(9.0, 4.0));
     close(&bends(&slice), &[(0.0, 1.0), (4.0, 1.0), (4.00025, 0.0), (4.00075, 0.0), (4.001, 1.0), (8.0, 1.0)]);
+    assert!(slice.layers.places == 2 && (slice.layers.length_m - 7.999).abs() < 1e-9, "{:?}", slice.layers);
 }
 
 #[test]
