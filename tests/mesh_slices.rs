@@ -153,6 +153,36 @@ fn read_shared(name: &str, scale: f64, triangles: usize) -> Option<Mesh> {
 }
 
 #[test]
+fn boxes_around_the_meshes_are_those_that_another_reader_found() {
+    // Read with Python's struct and float.
+    for (name, triangles, x, y, z) in [
+        (
+            "mesh/scene_jump10.stl",
+            696,
+            [-5.505218029022217, 7.696423053741455],
+            [-3.0677671432495117, 3.252018451690674],
+            [-0.6753787398338318, 8.039388656616211],
+        ),
+        (
+            "mesh/envir3d_1.stl",
+            47_733,
+            [-4.347285747528076, 4.0252814292907715],
+            [-4.055268287658691, 4.069412708282471],
+            [-0.7295351028442383, 2.641193389892578],
+        ),
+        ("dem/ryugu_test.obj", 5_932, [-0.50584, 0.51273], [-0.51332, 0.50588], [-0.47563, 0.48856]),
+    ] {
+        let Some(mesh) = read_shared(name, 1.0, triangles) else { continue };
+        let bounds = mesh.bounds();
+        assert_eq!(
+            ([bounds.map.min.x, bounds.map.max.x], [bounds.map.min.y, bounds.map.max.y], [bounds.low_m, bounds.high_m]),
+            (x, y, z),
+            "{name}"
+        );
+    }
+}
+
+#[test]
 fn the_platforms_of_the_planning_paper_are_sliced_and_the_air_between_them_is_a_gap() {
     let Some(mesh) = read_shared("mesh/scene_jump10.stl", 1.0, 696) else { return };
     let at = MapPoint::new;

@@ -101,14 +101,10 @@ pub fn read_mesh_bytes(bytes: &[u8], scale: f64) -> Result<MeshFile, TerrainErro
 fn not_recognised(bytes: &[u8]) -> TerrainError {
     let shown: String = bytes.iter().take(24).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect();
     let mut found = if bytes.is_empty() { "nothing: the file is empty".to_owned() } else { format!("'{shown}'") };
-    if bytes.contains(&0)
-        && let Some(length) = stl::binary_length(bytes)
-    {
-        let triangles = (length - stl::HEADER_BYTES as u64) / 50;
-        found.push_str(&format!(
-            "; as a binary STL it would claim {triangles} triangles in {length} bytes, but the file has {} bytes",
-            bytes.len()
-        ));
+    if let Some(length) = stl::binary_length(bytes).filter(|_| bytes.contains(&0)) {
+        let triangles = (length - stl::HEADER_BYTES as u64) / stl::TRIANGLE_BYTES;
+        let claim = format!("as a binary STL it would claim {triangles} triangles in {length} bytes");
+        found = format!("{found}; {claim}, but the file has {} bytes", bytes.len());
     }
     let expected = MESH_FORMATS.map(|(name, _)| name).join(", ");
     TerrainError::NotAMesh { found, expected }
@@ -159,7 +155,7 @@ mod tests {
         let directory = tempfile::tempdir().unwrap();
         let path = directory.path().join("rock.obj");
         assert!(!looks_like_mesh(&path) && read_mesh(&path, 1.0).unwrap_err().to_string().contains("rock.obj"));
-        std::fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n").unwrap();
+        fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n").unwrap();
         assert!(looks_like_mesh(&path) && !looks_like_mesh(directory.path()));
         let message = read_mesh(&path, 1.0).unwrap_err().to_string();
         assert!(message.contains("rock.obj") && message.contains("line 4"), "{message}");

@@ -10,7 +10,7 @@ pub(super) const ASCII: &str = "ASCII STL";
 /// Title, then the count of triangles.
 pub(super) const HEADER_BYTES: usize = 84;
 /// A normal and three corners in 32-bit floats, and two bytes of no meaning.
-const TRIANGLE_BYTES: u64 = 50;
+pub(super) const TRIANGLE_BYTES: u64 = 50;
 
 /// The bytes that a binary STL of this header has; `None` where the header is cut short.
 pub(super) fn binary_length(header: &[u8]) -> Option<u64> {

@@ -101,7 +101,7 @@ impl Header {
                 ["ply"] if number == 1 => {}
                 [] | ["comment" | "obj_info", ..] => {}
                 ["format", name, "1.0"] => {
-                    encoding = Some(encoding_named(name).map_err(|problem| in_line(NAME, number, &problem))?)
+                    encoding = Some(encoding_named(name).map_err(|problem| in_line(NAME, number, &problem))?);
                 }
                 ["element", name, count] => {
                     let found = || format!("found the count '{}', expected a whole number", shown(count));

@@ -118,7 +118,7 @@ fn read_faces(element: &Element, values: &mut Values<'_>, builder: &mut MeshBuil
     };
     let mut end_row = |row| {
         let at_face = |problem: String| damaged(format!("face {}: {problem}", row + 1));
-        let named: Result<Vec<u32>, String> = corners.borrow_mut().drain(..).map(|value| vertex_index(value)).collect();
+        let named: Result<Vec<u32>, String> = corners.borrow_mut().drain(..).map(vertex_index).collect();
         builder.polygon(&named.map_err(at_face)?).map_err(at_face)
     };
     read_rows(element, values, &mut take, &mut end_row)

@@ -5,7 +5,10 @@ const HEADER: &str = "ply\nformat ascii 1.0\ncomment ours\nelement vertex 4\npro
     property float quality\nend_header\n";
 const BODY: &str = "0 0 255 0.5\n1 0 255 1.5\n1 1 0 0.5\n0 1 0 0.5\n2 7 8\n4 0 1 2 3 0.25\n";
 
-fn mesh(bytes: &[u8]) -> Result<(Vec<nalgebra::Point3<f64>>, Vec<[u32; 3]>), String> {
+/// Vertices and triangles.
+type Parts = (Vec<nalgebra::Point3<f64>>, Vec<[u32; 3]>);
+
+fn mesh(bytes: &[u8]) -> Result<Parts, String> {
     let mut builder = MeshBuilder::new(1.0);
     read(bytes, &mut builder).map_err(|error| error.to_string())?;
     builder.finish().map(|(mesh, _)| (mesh.vertices().to_vec(), mesh.indices().to_vec())).map_err(|error| error.to_string())

@@ -213,7 +213,7 @@ fn planes_cones_and_paraboloids_give_their_own_profiles() {
         let plane = jittered(&mut random, |x, y| p * x + q * y + 2.0);
         let slice = check(&plane, from, to);
         let heading = slice.profile.heading;
-        let expected = ProfileFacet::from_gradient(nalgebra::Vector2::new(p, q), heading);
+        let expected = ProfileFacet::from_gradient(Vector2::new(p, q), heading);
         for point in &slice.profile.points {
             assert!((point.z_m - (p * point.map.x + q * point.map.y + 2.0)).abs() < 1e-9);
         }
