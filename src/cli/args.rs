@@ -65,10 +65,10 @@ pub(crate) struct CommonArgs {
 #[derive(Debug, ClapArgs)]
 pub(crate) struct SearchArgs {
     /// Points inside each segment, or auto: the first of 0, 1, 2, 3, 7, 15, 31 that finds a path [default: auto]
-    #[arg(long, value_name = "K|auto")]
+    #[arg(long, value_name = "K|auto", allow_negative_numbers = true)]
     pub(crate) points_per_segment: Option<String>,
-    /// Instead: as many points as keep neighbours this close along the ground, m
-    #[arg(long, value_name = "D", conflicts_with = "points_per_segment")]
+    /// Instead: as many points as keep neighbours this close along the ground, m [default: by points per segment]
+    #[arg(long, value_name = "D", conflicts_with = "points_per_segment", allow_negative_numbers = true)]
     pub(crate) node_spacing_max_m: Option<f64>,
     /// Second criterion after hops: takeoff-speed, energy, time, peak-speed [default: takeoff-speed]
     #[arg(long, value_name = "EFFORT")]
@@ -213,16 +213,16 @@ pub(crate) struct SynthArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) seed: u64,
     /// Rows of posts
-    #[arg(long, default_value_t = 257)]
+    #[arg(long, default_value_t = 257, allow_negative_numbers = true)]
     pub(crate) rows: usize,
     /// Columns of posts
-    #[arg(long, default_value_t = 257)]
+    #[arg(long, default_value_t = 257, allow_negative_numbers = true)]
     pub(crate) cols: usize,
     /// Spacing of posts, m
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     pub(crate) spacing_m: f64,
     /// Map coordinates of the south-west post, m
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, default_value = "0,0")]
@@ -231,7 +231,7 @@ pub(crate) struct SynthArgs {
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) mean_elevation_m: f64,
     /// Slope of the plane under everything, degrees
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) tilt_deg: f64,
     /// Towards where it rises, degrees clockwise from grid north
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
@@ -240,67 +240,67 @@ pub(crate) struct SynthArgs {
     #[arg(long, conflicts_with_all = ["ground_hurst", "ground_rms_m", "ground_baseline_m"])]
     pub(crate) no_ground: bool,
     /// Hurst exponent of the ground: near 0 rough at all scales, near 1 smooth close by
-    #[arg(long, default_value_t = 0.8)]
+    #[arg(long, default_value_t = 0.8, allow_negative_numbers = true)]
     pub(crate) ground_hurst: f64,
     /// Root mean square height difference at the baseline, m
-    #[arg(long, default_value_t = 0.1)]
+    #[arg(long, default_value_t = 0.1, allow_negative_numbers = true)]
     pub(crate) ground_rms_m: f64,
     /// The baseline, m
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     pub(crate) ground_baseline_m: f64,
     /// With craters
     #[arg(long)]
     pub(crate) craters: bool,
     /// Smallest crater, m
-    #[arg(long, default_value_t = 4.0, requires = "craters")]
+    #[arg(long, default_value_t = 4.0, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_diameter_min_m: f64,
     /// Largest crater, m
-    #[arg(long, default_value_t = 60.0, requires = "craters")]
+    #[arg(long, default_value_t = 60.0, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_diameter_max_m: f64,
     /// Craters per square kilometre
-    #[arg(long, default_value_t = 1500.0, requires = "craters")]
+    #[arg(long, default_value_t = 1500.0, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_density_per_km2: f64,
     /// Exponent of the cumulative counts: 3 young, 2 in equilibrium
-    #[arg(long, default_value_t = 2.5, requires = "craters")]
+    #[arg(long, default_value_t = 2.5, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_power_law_exponent: f64,
     /// Depth of fresh craters by diameter: moon (Pike 1977) or mars (Robbins and Hynek 2012)
     #[arg(long, value_enum, default_value = "moon", requires = "craters")]
     pub(crate) crater_depth_law: DepthLawArg,
     /// 0: all fresh; 1: some worn to nothing
-    #[arg(long, default_value_t = 0.8, requires = "craters")]
+    #[arg(long, default_value_t = 0.8, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_degradation_max: f64,
     /// With a sinuous rille from west to east
     #[arg(long)]
     pub(crate) rille: bool,
     /// Width of the rille between its upper edges, m
-    #[arg(long, default_value_t = 80.0, requires = "rille")]
+    #[arg(long, default_value_t = 80.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_width_m: f64,
     /// Depth of the rille, m
-    #[arg(long, default_value_t = 15.0, requires = "rille")]
+    #[arg(long, default_value_t = 15.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_depth_m: f64,
     /// Slope of its walls, degrees
-    #[arg(long, default_value_t = 28.0, requires = "rille")]
+    #[arg(long, default_value_t = 28.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_wall_slope_deg: f64,
     /// Swing of its centre line, m
-    #[arg(long, default_value_t = 30.0, requires = "rille")]
+    #[arg(long, default_value_t = 30.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_meander_amplitude_m: f64,
     /// Length of its meanders, m
-    #[arg(long, default_value_t = 300.0, requires = "rille")]
+    #[arg(long, default_value_t = 300.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_meander_length_m: f64,
     /// With boulders
     #[arg(long)]
     pub(crate) boulders: bool,
     /// Share of ground covered by rocks of any size: 0.05 sparse, 0.2 rough
-    #[arg(long, default_value_t = 0.1, requires = "boulders")]
+    #[arg(long, default_value_t = 0.1, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) rock_abundance: f64,
     /// Smallest boulder, m
-    #[arg(long, default_value_t = 1.0, requires = "boulders")]
+    #[arg(long, default_value_t = 1.0, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) boulder_diameter_min_m: f64,
     /// Largest boulder, m
-    #[arg(long, default_value_t = 4.0, requires = "boulders")]
+    #[arg(long, default_value_t = 4.0, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) boulder_diameter_max_m: f64,
     /// Share of a boulder's radius below ground
-    #[arg(long, default_value_t = 0.2, requires = "boulders")]
+    #[arg(long, default_value_t = 0.2, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) boulder_burial: f64,
 }
 

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::path_record::unsigned_zero;
 use crate::{
     ballistics::{Arc, Conflict, HopTest, LimitInterval, Shortfall, TakeoffChoice, TakeoffSet},
     chain::{Contact, Station},
@@ -145,7 +146,7 @@ impl HopAnswer {
             takeoff_angle_min_deg: angles.map(|a| a.min.degrees()),
             takeoff_angle_max_deg: angles.map(|a| a.max.degrees()),
             line_of_sight_m: set.line_of_sight().length_m(),
-            line_of_sight_angle_deg: set.line_of_sight().angle().degrees(),
+            line_of_sight_angle_deg: unsigned_zero(set.line_of_sight().angle().degrees()),
             limits: set.limits().iter().map(|limit| LimitRecord::new(test, &set, limit)).collect(),
             binding: BindingRecord::new(test, &set),
             best: set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice)),

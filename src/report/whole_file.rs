@@ -20,10 +20,17 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
     };
-    let mut file = builder().tempfile_in(folder)?;
-    file.write_all(bytes)?;
+    let mut file = builder().tempfile_in(folder).map_err(|error| without_temporary_name(&error))?;
+    file.write_all(bytes).map_err(|error| without_temporary_name(&error))?;
     file.as_file().sync_all()?;
     file.persist(path).map(|_| ()).map_err(|error| error.error)
+}
+
+/// The system's own error, without the name of a temporary file, which tells the user nothing and differs every time.
+fn without_temporary_name(error: &io::Error) -> io::Error {
+    let text = error.to_string();
+    let system = text.split_once(" at path ").map_or(text.as_str(), |(system, _)| system);
+    io::Error::new(error.kind(), system)
 }
 
 /// Temporary files with the permissions that any new file would get.
@@ -61,6 +68,8 @@ mod tests {
     #[test]
     fn a_missing_folder_is_an_error() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(write_whole(&folder.path().join("no/such/file"), b"x").is_err());
+        let error = write_whole(&folder.path().join("no/such/file"), b"x").unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::NotFound);
+        assert!(!error.to_string().contains(".chta-"), "{error} names a temporary file");
     }
 }

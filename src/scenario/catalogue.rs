@@ -58,7 +58,7 @@ impl Kind {
     /// What is expected, for messages.
     pub fn expected(&self) -> String {
         match self {
-            Self::Number { min, max } => format!("a number from {min:e} to {max:e}"),
+            Self::Number { min, max } => format!("a number from {} to {}", written(*min), written(*max)),
             Self::AngleOrUnlimited => "an angle from 0 to 90 degrees, or inf".to_owned(),
             Self::AngleRange => "two angles in degrees, [min, max], from -360 to 360, min not above max".to_owned(),
             Self::MapPoint => "two finite numbers in metres, [x, y]".to_owned(),
@@ -67,6 +67,11 @@ impl Kind {
             Self::Text => "a text in quotes, not empty".to_owned(),
         }
     }
+}
+
+/// A number as people write it: with an exponent only where it has many zeros.
+fn written(number: f64) -> String {
+    if number == 0.0 || (1e-3..1e4).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
 }
 
 const fn key(table: &'static str, name: &'static str, kind: Kind, help: &'static str) -> Key {
@@ -131,6 +136,13 @@ pub const CATALOGUE: [Key; 30] = [
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn bounds_are_written_as_people_write_them() {
+        assert_eq!(ELEVATION_ANGLE.expected(), "a number from -90 to 90");
+        assert_eq!(FROM_ZERO.expected(), "a number from 0 to 1e9");
+        assert_eq!(SPEED.expected(), "a number from 1e-9 to 1e5");
+    }
 
     #[test]
     fn every_number_ends_in_its_unit() {

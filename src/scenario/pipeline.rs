@@ -129,12 +129,11 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
         }
         digest.update(&piece[..count]);
     }
-    let mut hexadecimal = String::new();
-    for byte in digest.finalize() {
+    Ok(digest.finalize().iter().fold(String::with_capacity(64), |mut text, byte| {
         // Writing to a String cannot fail.
-        let _ = write!(hexadecimal, "{byte:02x}");
-    }
-    Ok(hexadecimal)
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
 }
 
 /// The largest figures of some hops, to be doubted.

@@ -95,6 +95,9 @@ impl Scenario {
     /// # Errors
     /// Every problem of the keys, in the order of the file.
     pub fn new(mut entries: Entries) -> Result<Self, Vec<ScenarioProblem>> {
+        if entries.is_unreadable() {
+            return Err(entries.problems().to_vec());
+        }
         let body = body(&mut entries);
         let hopper = hopper(&mut entries);
         let surface = surface(&mut entries);
@@ -130,10 +133,7 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
     match (&name, gravity) {
         (Some(name), _) => {
             let Some(known) = Body::named(name) else {
-                let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
-                let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
-                let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
-                entries.problem(place, message, "for any other body give gravity_m_s2 instead of a name");
+                unknown_body(entries, name);
                 return None;
             };
             Some(BodyChoice {
@@ -152,6 +152,17 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
             None
         }
     }
+}
+
+/// Tells that no known body has this name, and which comes nearest.
+fn unknown_body(entries: &mut Entries, name: &str) {
+    let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
+    let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
+    let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
+    let lower_case = name.to_lowercase();
+    let near = names.iter().min_by_key(|known| strsim::damerau_levenshtein(&lower_case, known)).copied().unwrap_or_default();
+    let help = format!("the nearest known name is {near}; for any other body give gravity_m_s2 instead of a name");
+    entries.problem(place, message, help);
 }
 
 /// The robot; what is absent does not limit.
@@ -229,8 +240,15 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
     }
     match given.as_slice() {
         [] => {
+            // Where a key of the terrain has told its own problem, dem, mesh or chain may be what was meant by it.
+            if entries.problems().iter().any(|problem| problem.message.contains("terrain.")) {
+                return None;
+            }
+            let on_map = ["start_m", "goal_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
             let along = ["start_x_m", "goal_x_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
-            if let Some((name, place @ Place::File(_))) = along {
+            if let Some((name, place)) = on_map {
+                entries.problem(place, format!("terrain.{name} without a dem"), "add dem = \"file.tif\", or mesh = \"file.obj\"");
+            } else if let Some((name, place @ Place::File(_))) = along {
                 entries.problem(place, format!("terrain.{name} without a chain"), "add chain = \"file.csv\"");
             }
             None

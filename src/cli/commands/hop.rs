@@ -8,13 +8,13 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, HopArgs},
-    load::load,
+    load::{EndOptions, load},
     output,
 };
 
 /// Tests one hop.
 pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
-    let loaded = load(&args.chain, &args.common, None, [args.from, args.to])?;
+    let loaded = load(&args.chain, &args.common, None, EndOptions::of_hop(args.from, args.to))?;
     let (takeoff, landing) = loaded.ends()?;
     let test = loaded.hop_test();
     let answer = HopAnswer::new(&test, &takeoff, &landing, loaded.scenario.search.takeoff).ok_or_else(|| {
@@ -28,10 +28,11 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
         height_m: best.apex_height_m,
         speed_m_s: best.takeoff_speed_m_s.max(best.landing_speed_m_s),
     });
-    let warnings = constant_gravity_doubts(&loaded.scenario.body, extremes);
-    for warning in &warnings {
-        output::warn(args.common.quiet, warning);
+    let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
+    for doubt in &doubts {
+        output::warn(args.common.quiet, doubt);
     }
+    let warnings = loaded.warnings_with(doubts);
     let verdict = if answer.feasible { Answer::Yes } else { Answer::No };
     let text = match args.format {
         Format::Text => hop_text(&answer),

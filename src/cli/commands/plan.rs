@@ -20,7 +20,7 @@ use super::search::search;
 use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs},
-    load::{Loaded, load},
+    load::{EndOptions, Loaded, load},
     output,
 };
 
@@ -61,10 +61,11 @@ impl Planned {
             verified(loaded, path, (start, goal))?;
         }
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
-        let warnings = constant_gravity_doubts(&loaded.scenario.body, extremes);
-        for warning in &warnings {
-            output::warn(quiet, warning);
+        let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
+        for doubt in &doubts {
+            output::warn(quiet, doubt);
         }
+        let warnings = loaded.warnings_with(doubts);
         let answer = PlanAnswer {
             check: CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &found, options.effort),
             verified: (verify && path.is_some()).then_some(true),
@@ -168,7 +169,7 @@ fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result
 
 /// Plans a path.
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
-    let loaded = load(&args.chain, &args.common, Some(&args.search), [args.start, args.goal])?;
+    let loaded = load(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal))?;
     let ends = loaded.ends()?;
     if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {
         return Err(Failure::message("--geojson: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"));

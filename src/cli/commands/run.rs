@@ -8,7 +8,7 @@ use super::plan::Planned;
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, Format, RunArgs},
-    load::load,
+    load::{EndOptions, load},
     output,
 };
 
@@ -16,7 +16,7 @@ use crate::cli::{
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let RunArgs { scenario, output: folder, format, set, quiet } = args;
     let common = CommonArgs { scenario: None, set: set.clone(), body: None, gravity_m_s2: None, clearance_m: None, quiet: *quiet };
-    let loaded = load(scenario, &common, None, [None, None])?;
+    let loaded = load(scenario, &common, None, EndOptions::NONE)?;
     let ends = loaded.ends()?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, true, *quiet)?;

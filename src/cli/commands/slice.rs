@@ -13,8 +13,14 @@ use crate::cli::{Answer, Failure, args::SliceArgs, load::scenario_alone, output}
 /// Slices a DEM or a mesh.
 pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     let SliceArgs { terrain, from, to, mesh_scale: _, scenario, output: file, quiet } = args;
-    let friction = scenario.as_deref().map(scenario_alone).transpose()?.as_ref().and_then(friction);
-    let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
+    let given = scenario.as_deref().map(scenario_alone).transpose()?;
+    let friction = given.as_ref().and_then(friction);
+    if let (Some(path), None) = (scenario, friction) {
+        let name = path.display();
+        let reason = "has no friction_coefficient, so none goes into the chain: give the scenario again where the chain is used";
+        output::warn(*quiet, &format!("--scenario {name} {reason}"));
+    }
+    let failed = |error: &dyn std::error::Error| Failure::about(terrain, &error.to_string());
     let (profile, warnings) = sliced(args)?;
     for warning in &warnings {
         output::warn(*quiet, warning);
@@ -35,7 +41,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
 /// The profile, and what its user should know.
 fn sliced(args: &SliceArgs) -> Result<(Profile, Vec<String>), Failure> {
     let SliceArgs { terrain, from, to, mesh_scale, .. } = args;
-    let failed = |error: TerrainError| Failure::message(error.to_string());
+    let failed = |error: TerrainError| Failure::about(terrain, &error.to_string());
     if looks_like_mesh(terrain) {
         return sliced_mesh(args).map_err(failed);
     }
