@@ -151,7 +151,10 @@ fn the_ends_may_be_missing_nowhere() {
     desk.write("no_goal.toml", SCENARIO.replace("goal_x_m = 40\n", ""));
     desk.refused(&["run", "no_goal.toml", "-o", "out"], &["found no goal: add goal_x_m = X", "[terrain]"]);
     desk.write("no_terrain.toml", SCENARIO.split("[terrain]").next().unwrap());
-    desk.refused(&["run", "no_terrain.toml", "-o", "out"], &["no_terrain.toml: found no terrain; add [terrain] with dem or chain"]);
+    desk.refused(
+        &["run", "no_terrain.toml", "-o", "out"],
+        &["no_terrain.toml: found no terrain; add [terrain] with dem, mesh or chain"],
+    );
 }
 
 #[test]

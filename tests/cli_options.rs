@@ -29,13 +29,23 @@ const RUN: [Trial; 4] = [
     ),
 ];
 
-const SLICE: [Trial; 4] = [
+const SLICE: [Trial; 6] = [
     ("--from", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], &["slice", "ground.tif", "--from", "2,1", "--to", "9,9"]),
     ("--to", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], &["slice", "ground.tif", "--from", "1,1", "--to", "9,8"]),
     (
         "--scenario",
         &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
         &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "--scenario", "scenario.toml"],
+    ),
+    (
+        "--mesh-scale",
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3"],
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3", "--mesh-scale", "2"],
+    ),
+    (
+        "--quiet",
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3"],
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3", "--quiet"],
     ),
     (
         "--output",

@@ -45,9 +45,11 @@ fn value(key: &Key) -> BoxedStrategy<String> {
 fn toml() -> impl Strategy<Value = String> {
     let keys: Vec<_> = CATALOGUE.iter().map(|key| proptest::option::of(value(key)).prop_map(move |value| (key, value))).collect();
     // Which of the keys that exclude each other may stay.
-    (keys, 0..3_u8, any::<bool>(), any::<bool>()).prop_map(|(keys, ground, friction, points)| {
+    (keys, 0..4_u8, any::<bool>(), any::<bool>()).prop_map(|(keys, ground, friction, points)| {
         let kept = |key: &Key| match (key.table, key.name) {
-            ("terrain", "dem" | "start_m" | "goal_m") => ground == 1,
+            ("terrain", "dem") => ground == 1,
+            ("terrain", "mesh" | "mesh_scale") => ground == 3,
+            ("terrain", "start_m" | "goal_m") => ground == 1 || ground == 3,
             ("terrain", "chain") => ground == 2,
             ("terrain", _) => ground > 0,
             ("surface", "friction_coefficient") => friction,
@@ -118,6 +120,11 @@ fn every_key_reaches_the_document() {
             ("surface", "landing_from_slope_deg") => with("surface", "takeoff_from_slope_deg", "[1, 2]"),
             ("terrain", "dem" | "start_m" | "goal_m") => {
                 with("terrain", "dem", "x.tif");
+                with("terrain", "start_m", "[0, 0]");
+                with("terrain", "goal_m", "[0, 0]");
+            }
+            ("terrain", "mesh" | "mesh_scale") => {
+                with("terrain", "mesh", "x.obj");
                 with("terrain", "start_m", "[0, 0]");
                 with("terrain", "goal_m", "[0, 0]");
             }

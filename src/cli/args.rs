@@ -100,21 +100,27 @@ pub(crate) struct RunArgs {
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta slice data/terrain/mars_crater_field.tif --from 12,12 --to 180,150 -o chain.csv")]
 pub(crate) struct SliceArgs {
-    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
-    #[arg(value_name = "DEM")]
-    pub(crate) dem: PathBuf,
+    /// Elevation raster (GeoTIFF or ESRI ASCII grid, map in metres) or mesh (OBJ, STL or PLY, z up)
+    #[arg(value_name = "DEM|MESH")]
+    pub(crate) terrain: PathBuf,
     /// Where the slice begins, map coordinates in m
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
     pub(crate) from: MapPoint,
     /// Where it ends, map coordinates in m
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
     pub(crate) to: MapPoint,
+    /// Metres per unit of the mesh: 1000 for one in kilometres [default: 1]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) mesh_scale: Option<f64>,
     /// Scenario whose friction goes into the chain
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
     /// Chain CSV to write; - or absent: standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// No warnings on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 /// Test one hop: every limit by itself, what sets either end of the feasible take-off angles, or which two conflict

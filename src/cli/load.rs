@@ -71,10 +71,12 @@ impl EndOptions {
         let name = end.name();
         Failure::message(match self.names {
             Some(names) => format!(
-                "found no {name}: give {} X along the chain, or [terrain] {name}_x_m (for a dem {name}_m) in the scenario",
+                "found no {name}: give {} X along the chain, or [terrain] {name}_x_m (for a dem or mesh {name}_m) in the scenario",
                 names[end as usize]
             ),
-            None => format!("found no {name}: add {name}_x_m = X (for a dem {name}_m = [x, y]) to the scenario's [terrain]"),
+            None => {
+                format!("found no {name}: add {name}_x_m = X (for a dem or mesh {name}_m = [x, y]) to the scenario's [terrain]")
+            }
         })
     }
 }
@@ -146,7 +148,7 @@ pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArg
     };
     let chain_name = target.to_string_lossy().into_owned();
     if !is_scenario {
-        for key in ["dem", "start_m", "goal_m"] {
+        for key in ["dem", "mesh", "mesh_scale", "start_m", "goal_m"] {
             source.entries.forget("terrain", key);
         }
         source.entries.set_by_option("CHAIN", "terrain", "chain", chain_name.clone().into());
@@ -158,16 +160,14 @@ pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArg
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
         let name = target.display();
-        Failure::message(format!("{name}: found no terrain; add [terrain] with dem or chain, or give a chain CSV"))
+        Failure::message(format!("{name}: found no terrain; add [terrain] with dem, mesh or chain, or give a chain CSV"))
     })?;
     if !is_scenario && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
         // The name as it was given, should it be no UTF-8.
         terrain = TerrainSource::Chain { path: target.to_path_buf() };
         scenario.terrain = Some(terrain.clone());
     }
-    let file = match &terrain {
-        TerrainSource::Dem { path, .. } | TerrainSource::Chain { path } => base.join(path),
-    };
+    let file = base.join(terrain.path());
     let prepared = prepare(&scenario, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
     for warning in &prepared.warnings {
         output::warn(common.quiet, warning);

@@ -90,7 +90,7 @@ const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 28] = [
+pub const CATALOGUE: [Key; 30] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
@@ -113,6 +113,8 @@ pub const CATALOGUE: [Key; 28] = [
         "steepest surface to rest on, degrees; absent: atan(friction); inf: none",
     ),
     key("terrain", "dem", Kind::Text, "elevation raster, path from this file"),
+    key("terrain", "mesh", Kind::Text, "triangulated surface, z up, path from this file"),
+    key("terrain", "mesh_scale", LENGTH, "metres per unit of the mesh; absent: 1"),
     key("terrain", "chain", Kind::Text, "chain CSV, path from this file"),
     key("terrain", "start_m", Kind::MapPoint, "start on the map, [x, y], m"),
     key("terrain", "goal_m", Kind::MapPoint, "goal on the map, [x, y], m"),
@@ -145,7 +147,7 @@ mod tests {
     #[test]
     fn every_number_ends_in_its_unit() {
         let units = ["_m", "_m_s", "_m_s2", "_s", "_kg", "_deg"];
-        let pure = ["friction_coefficient", "points_per_segment"];
+        let pure = ["friction_coefficient", "points_per_segment", "mesh_scale"];
         for key in &CATALOGUE {
             let number = !matches!(key.kind, Kind::Word(_) | Kind::Text);
             assert!(

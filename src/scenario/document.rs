@@ -87,18 +87,23 @@ fn surface(scenario: &Scenario) -> Value {
 }
 
 fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> Value {
-    let (dem, chain, start, goal) = match &scenario.terrain {
-        Some(TerrainSource::Dem { path, start, goal }) => {
-            (Some(named(path).into()), None, Some(json!([start.x, start.y])), Some(json!([goal.x, goal.y])))
-        }
-        Some(TerrainSource::Chain { path }) => (None, Some(named(path).into()), None, None),
-        None => (None, None, None, None),
-    };
+    let source = scenario.terrain.as_ref();
+    let file = |path: &std::path::Path| Value::from(named(path));
+    let (mut dem, mut mesh, mut mesh_scale, mut chain) = (None, None, None, None);
+    match source {
+        Some(TerrainSource::Dem { path, .. }) => dem = Some(file(path)),
+        Some(TerrainSource::Mesh { path, scale, .. }) => (mesh, mesh_scale) = (Some(file(path)), Some((*scale).into())),
+        Some(TerrainSource::Chain { path }) => chain = Some(file(path)),
+        None => {}
+    }
+    let ends = source.and_then(TerrainSource::map_ends);
     object([
         ("dem", dem),
+        ("mesh", mesh),
+        ("mesh_scale", mesh_scale),
         ("chain", chain),
-        ("start_m", start),
-        ("goal_m", goal),
+        ("start_m", ends.map(|[start, _]| json!([start.x, start.y]))),
+        ("goal_m", ends.map(|[_, goal]| json!([goal.x, goal.y]))),
         ("start_x_m", scenario.start_x_m.map(Value::from)),
         ("goal_x_m", scenario.goal_x_m.map(Value::from)),
     ])

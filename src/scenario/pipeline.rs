@@ -13,7 +13,7 @@ use super::{BodyChoice, Scenario, TerrainSource};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     path::Hop,
-    terrain::{TerrainError, read_dem, slice},
+    terrain::{Profile, TerrainError, read_dem, read_mesh, slice, slice_mesh},
     world::{Body, FrictionCone, Grip},
 };
 
@@ -64,7 +64,10 @@ pub enum PipelineError {
     },
 }
 
-/// Builds the chain of a scenario: slices its DEM or reads its chain, settles the constraints, finds start and goal on it.
+/// A chain, warnings, and where start and goal are if nothing else says it.
+type Geometry = (PolygonalChain, Vec<String>, (Option<f64>, Option<f64>));
+
+/// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, settles the constraints, finds start and goal on it.
 ///
 /// `base` is the folder that the scenario's paths start from.
 ///
@@ -74,9 +77,12 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
     let (geometry, warnings, ends) = match source {
         TerrainSource::Dem { path, start, goal } => {
             let profile = slice(&read_dem(&base.join(path))?, *start, *goal)?;
-            let chain = PolygonalChain::from_profile(&profile, friction(scenario))?;
-            let (first_m, last_m) = chain.extent_m();
-            (chain, Vec::new(), (Some(first_m), Some(last_m)))
+            sliced(scenario, &profile, Vec::new())?
+        }
+        TerrainSource::Mesh { path, scale, start, goal } => {
+            let file = read_mesh(&base.join(path), *scale)?;
+            let slice = slice_mesh(&file.mesh, *start, *goal)?;
+            sliced(scenario, &slice.profile, [file.warnings, slice.warnings()].concat())?
         }
         TerrainSource::Chain { path } => {
             let file = csv::read_chain_csv_file(base.join(path))?;
@@ -90,6 +96,13 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
     let start = station("start", scenario.start_x_m.or(ends.0))?;
     let goal = station("goal", scenario.goal_x_m.or(ends.1))?;
     Ok(Prepared { chain, start, goal, warnings })
+}
+
+/// The chain of a slice, with its ends as start and goal.
+fn sliced(scenario: &Scenario, profile: &Profile, warnings: Vec<String>) -> Result<Geometry, InvalidChain> {
+    let chain = PolygonalChain::from_profile(profile, friction(scenario))?;
+    let (first_m, last_m) = chain.extent_m();
+    Ok((chain, warnings, (Some(first_m), Some(last_m))))
 }
 
 /// The friction that a scenario gives the whole ground.

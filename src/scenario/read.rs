@@ -1,6 +1,6 @@
 //! From keys as typed to a validated scenario in SI units.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{Entries, Key, Place, ScenarioProblem};
 use crate::{
@@ -33,11 +33,39 @@ pub enum TerrainSource {
         /// Where it ends.
         goal: MapPoint,
     },
+    /// A slice of a triangulated surface between two map points.
+    Mesh {
+        /// The file, from the scenario's folder.
+        path: PathBuf,
+        /// Metres per unit of the file.
+        scale: f64,
+        /// Where the slice begins.
+        start: MapPoint,
+        /// Where it ends.
+        goal: MapPoint,
+    },
     /// A chain CSV.
     Chain {
         /// The file, from the scenario's folder.
         path: PathBuf,
     },
+}
+
+impl TerrainSource {
+    /// The file, from the scenario's folder.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Dem { path, .. } | Self::Mesh { path, .. } | Self::Chain { path } => path,
+        }
+    }
+
+    /// Where the slice begins and ends on the map; `None` where nothing is sliced.
+    pub fn map_ends(&self) -> Option<[MapPoint; 2]> {
+        match self {
+            Self::Dem { start, goal, .. } | Self::Mesh { start, goal, .. } => Some([*start, *goal]),
+            Self::Chain { .. } => None,
+        }
+    }
 }
 
 /// A validated scenario.
@@ -200,57 +228,78 @@ fn surface(entries: &mut Entries) -> Surface {
     Surface { grip, rest }
 }
 
-/// Where the ground comes from.
+/// Where the ground comes from: one file at most.
 fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
-    let text = |name| entries.text("terrain", name).map(PathBuf::from);
-    let point = |name| entries.pair("terrain", name).map(|[x, y]| MapPoint::new(x, y));
-    let (dem, chain) = (text("dem"), text("chain"));
-    let (start, goal) = (point("start_m"), point("goal_m"));
-    let along = ["start_x_m", "goal_x_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
-    match (dem, chain) {
-        (Some(_), Some(_)) => {
-            let place = entries.place("terrain", "chain").unwrap_or(Place::Nowhere);
-            entries.problem(place, "terrain has both dem and chain, expected one of the two".to_owned(), "remove one of them");
-            None
-        }
-        (Some(path), None) => {
-            if let (Some(start), Some(goal)) = (start, goal) {
-                return Some(TerrainSource::Dem { path, start, goal });
-            }
-            let missing = if start.is_none() { "start_m" } else { "goal_m" };
-            let told = entries.problems().iter().any(|problem| problem.message.contains(missing));
-            if !told {
-                let place = entries.place("terrain", "dem").unwrap_or(Place::Nowhere);
-                entries.problem(
-                    place,
-                    format!("terrain has a dem but no {missing}"),
-                    format!("add {missing} = [x, y], in map metres"),
-                );
-            }
-            None
-        }
-        (None, Some(path)) => {
-            for (name, given) in [("start_m", start), ("goal_m", goal)] {
-                if given.is_some() {
-                    let place = entries.place("terrain", name).unwrap_or(Place::Nowhere);
-                    let help = format!("for a chain give {} instead", name.replace("_m", "_x_m"));
-                    entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
-                }
-            }
-            Some(TerrainSource::Chain { path })
-        }
-        (None, None) => {
-            // Where a key of the terrain has told its own problem, dem or chain may be what was meant by it.
+    let kinds = ["dem", "mesh", "chain"];
+    let given: Vec<(&str, PathBuf)> =
+        kinds.iter().filter_map(|&kind| Some((kind, PathBuf::from(entries.text("terrain", kind)?)))).collect();
+    let scale = entries.number("terrain", "mesh_scale");
+    if scale.is_some() && !given.iter().any(|(kind, _)| *kind == "mesh") {
+        let place = entries.place("terrain", "mesh_scale").unwrap_or(Place::Nowhere);
+        entries.problem(place, "terrain.mesh_scale without a mesh".to_owned(), "add mesh = \"file.obj\", or remove it");
+    }
+    match given.as_slice() {
+        [] => {
+            // Where a key of the terrain has told its own problem, dem, mesh or chain may be what was meant by it.
             if entries.problems().iter().any(|problem| problem.message.contains("terrain.")) {
                 return None;
             }
             let on_map = ["start_m", "goal_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
+            let along = ["start_x_m", "goal_x_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
             if let Some((name, place)) = on_map {
-                entries.problem(place, format!("terrain.{name} without a dem"), "add dem = \"file.tif\"");
+                entries.problem(place, format!("terrain.{name} without a dem"), "add dem = \"file.tif\", or mesh = \"file.obj\"");
             } else if let Some((name, place @ Place::File(_))) = along {
                 entries.problem(place, format!("terrain.{name} without a chain"), "add chain = \"file.csv\"");
             }
             None
+        }
+        [("chain", path)] => {
+            refuse_map_points(entries);
+            Some(TerrainSource::Chain { path: path.clone() })
+        }
+        [(kind, path)] => {
+            let [start, goal] = map_ends(entries, kind)?;
+            let path = path.clone();
+            Some(match *kind {
+                "mesh" => TerrainSource::Mesh { path, scale: scale.unwrap_or(1.0), start, goal },
+                _ => TerrainSource::Dem { path, start, goal },
+            })
+        }
+        [(first, _), .., (last, _)] => {
+            let place = entries.place("terrain", last).unwrap_or(Place::Nowhere);
+            let (amount, all) = if given.len() == 2 { ("two", "both") } else { ("three", "all of") };
+            let names = if given.len() == 2 { format!("{first} and {last}") } else { "dem, mesh and chain".to_owned() };
+            let message = format!("terrain has {all} {names}, expected one of the {amount}");
+            entries.problem(place, message, "keep one of them");
+            None
+        }
+    }
+}
+
+/// Start and goal on the map, which a slice needs.
+fn map_ends(entries: &mut Entries, kind: &str) -> Option<[MapPoint; 2]> {
+    let point = |name| entries.pair("terrain", name).map(|[x, y]| MapPoint::new(x, y));
+    let (start, goal) = (point("start_m"), point("goal_m"));
+    if let (Some(start), Some(goal)) = (start, goal) {
+        return Some([start, goal]);
+    }
+    let missing = if start.is_none() { "start_m" } else { "goal_m" };
+    let told = entries.problems().iter().any(|problem| problem.message.contains(missing));
+    if !told {
+        let place = entries.place("terrain", kind).unwrap_or(Place::Nowhere);
+        let message = format!("terrain has a {kind} but no {missing}");
+        entries.problem(place, message, format!("add {missing} = [x, y], in map metres"));
+    }
+    None
+}
+
+/// Map points beside a chain.
+fn refuse_map_points(entries: &mut Entries) {
+    for name in ["start_m", "goal_m"] {
+        if entries.pair("terrain", name).is_some() {
+            let place = entries.place("terrain", name).unwrap_or(Place::Nowhere);
+            let help = format!("for a chain give {} instead", name.replace("_m", "_x_m"));
+            entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
         }
     }
 }

@@ -90,6 +90,45 @@ pub enum TerrainError {
         /// How far from the first point.
         distance_m: f64,
     },
+    /// No reader of meshes knows the content.
+    #[error("the content is no known mesh format (it begins with {found}), expected one of: {expected}")]
+    NotAMesh {
+        /// The first bytes, printable.
+        found: String,
+        /// Names of the formats that can be read.
+        expected: String,
+    },
+    /// A line of a mesh's text.
+    #[error("the {format} has a fault in line {line}: {problem}")]
+    MeshText {
+        /// The format.
+        format: &'static str,
+        /// Line of the file, from 1.
+        line: usize,
+        /// What stands there, and what was expected.
+        problem: String,
+    },
+    /// Numbers that make no surface.
+    #[error("{0}")]
+    InvalidMesh(String),
+    /// The plane of a slice meets no triangle for a stretch.
+    #[error(
+        "the plane meets no triangle of the mesh from x = {begin_m} m to {end_m} m along the transect, map ({:.6}, {:.6}) m to ({:.6}, {:.6}) m{}, expected \
+         ground all the way; choose another transect, or close the hole in the mesh (narrow cracks: weld its vertices)",
+        begin.x, begin.y, end.x, end.y, further_gaps(*further)
+    )]
+    MeshGap {
+        /// Where the stretch begins along the transect, m.
+        begin_m: f64,
+        /// Where it ends, m.
+        end_m: f64,
+        /// Where it begins on the map.
+        begin: MapPoint,
+        /// Where it ends on the map.
+        end: MapPoint,
+        /// How many more stretches there are.
+        further: usize,
+    },
     /// An option of the synthetic terrain that makes no sense.
     #[error("synthetic terrain: {option} is {found}, expected {expected}")]
     InvalidOption {
@@ -134,6 +173,10 @@ impl fmt::Display for AsciiProblem {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "line {}, column {}: found {}, expected {}", self.line, self.column, self.found, self.expected)
     }
+}
+
+fn further_gaps(further: usize) -> String {
+    if further == 0 { String::new() } else { format!(" (and {further} more such stretches)") }
 }
 
 fn list_problems(problems: &[AsciiProblem], further: usize) -> String {

@@ -3,7 +3,7 @@
 //! A [`Dem`] is posts of elevation on a map in metres, read from a file by content ([`read_dem`]), made up from a seed
 //! ([`synthesise`]), or built in memory. [`slice`](slice()) cuts it along a vertical plane into a [`Profile`], from which a polygonal
 //! chain is made. A further file format is one more [`DemReader`], listed
-//! in [`FORMATS`].
+//! in [`FORMATS`]. A [`Mesh`] is triangles that may overhang, and [`slice_mesh`] cuts it the same way.
 //!
 //! ```
 //! use chta::quantity::MapPoint;
@@ -21,6 +21,7 @@ mod error;
 mod format;
 mod georeference;
 mod geotiff;
+mod mesh;
 mod profile;
 mod slice;
 mod synth;
@@ -31,6 +32,10 @@ pub use error::{AsciiProblem, TerrainError};
 pub use format::{DemReader, FORMATS, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{geotiff_bytes, read_geotiff_bytes, write_geotiff};
+pub use mesh::{
+    Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
+    slice_mesh,
+};
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
 pub use slice::slice;
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};

@@ -73,6 +73,26 @@ impl ProfileFacet {
         }
     }
 
+    /// The facet of a normal (east, north, up; any length above 0, either way up) as met along `heading`: as
+    /// [`from_gradient`](Self::from_gradient), and for upright facets too.
+    ///
+    /// ```
+    /// use chta::terrain::ProfileFacet;
+    /// use nalgebra::{Vector2, Vector3};
+    /// // A wall, walked along its foot.
+    /// let facet = ProfileFacet::from_normal(Vector3::new(0.0, 2.0, 0.0), Vector2::new(1.0, 0.0));
+    /// assert_eq!(facet.cross_slope.degrees(), 90.0);
+    /// ```
+    pub fn from_normal(normal: Vector3<f64>, heading: Vector2<f64>) -> Self {
+        let upward = if normal.z < 0.0 { -normal } else { normal };
+        let across = heading.perp(&upward.xy());
+        let along = heading.dot(&upward.xy());
+        Self {
+            normal: upward / upward.norm(),
+            cross_slope: Angle::from_radians(libm::atan2(across.abs(), libm::hypot(along, upward.z))),
+        }
+    }
+
     /// How steep the facet is in its steepest direction, 0 to 90 degrees.
     pub fn tilt(&self) -> Angle {
         Angle::from_radians(libm::atan2(libm::hypot(self.normal.x, self.normal.y), self.normal.z))

@@ -7,6 +7,9 @@ use std::{collections::BTreeMap, fs, path::Path};
 
 use tempfile::TempDir;
 
+/// A mesh of one tilted face with four corners.
+const PLATE: &str = "v 0 0 0\nv 9 0 1\nv 9 9 1\nv 0 9 0\nf 1 2 3 4\n";
+
 /// Two bumps, 40 m.
 pub(crate) const CHAIN: &str = "x_m,z_m\n0,0\n10,2\n20,0\n30,1\n40,0\n";
 
@@ -44,10 +47,11 @@ impl Desk {
         desk
     }
 
-    /// With `ground.tif` and `map.toml` beside them.
+    /// With `ground.tif`, `map.toml` and `plate.obj` beside them.
     pub(crate) fn with_dem() -> Self {
         let desk = Self::new();
         desk.write("map.toml", ON_MAP);
+        desk.write("plate.obj", PLATE);
         let made = desk.run(&["synth", "--rows", "20", "--cols", "20", "-o", "ground.tif"]);
         assert_eq!((made.status, made.stderr.as_str()), (0, ""));
         desk
