@@ -13,7 +13,7 @@ use super::{BodyChoice, Scenario, TerrainSource};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     path::Hop,
-    terrain::{TerrainError, read_dem, slice},
+    terrain::{TerrainError, slice_file},
     world::{Body, FrictionCone, Grip},
 };
 
@@ -73,7 +73,7 @@ pub enum PipelineError {
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let (geometry, warnings, ends) = match source {
         TerrainSource::Dem { path, start, goal } => {
-            let profile = slice(&read_dem(&base.join(path))?, *start, *goal)?;
+            let profile = slice_file(&base.join(path), *start, *goal)?;
             let chain = PolygonalChain::from_profile(&profile, friction(scenario))?;
             let (first_m, last_m) = chain.extent_m();
             (chain, Vec::new(), (Some(first_m), Some(last_m)))

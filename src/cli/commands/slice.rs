@@ -3,7 +3,7 @@
 use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     scenario::{friction, sha256_of},
-    terrain::{read_dem, slice},
+    terrain::slice_file,
 };
 
 use crate::cli::{Answer, Failure, args::SliceArgs, load::scenario_alone, output};
@@ -13,7 +13,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     let SliceArgs { dem, from, to, scenario, output: file } = args;
     let friction = scenario.as_deref().map(scenario_alone).transpose()?.as_ref().and_then(friction);
     let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
-    let profile = slice(&read_dem(dem).map_err(|e| failed(&e))?, *from, *to).map_err(|e| failed(&e))?;
+    let profile = slice_file(dem, *from, *to).map_err(|e| failed(&e))?;
     let chain = PolygonalChain::from_profile(&profile, friction).map_err(|e| failed(&e))?;
     let name = dem.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let comments = [
