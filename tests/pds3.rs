@@ -267,7 +267,8 @@ fn the_projection_goes_into_a_geotiff_as_gdal_understands_the_label() {
         ("SIMPLE_CYLINDRICAL", "0"),
         ("EQUIRECTANGULAR", "12"),
         ("SINUSOIDAL", "0"),
-        ("STEREOGRAPHIC", "33"),
+        // GDAL takes a centre elsewhere for the standard parallel of a polar map.
+        ("STEREOGRAPHIC", "90"),
         ("ORTHOGRAPHIC", "-20"),
         ("TRANSVERSE_MERCATOR", "10"),
     ] {
