@@ -13,7 +13,7 @@ use super::{BodyChoice, Scenario, TerrainSource};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     path::Hop,
-    terrain::{Profile, TerrainError, read_dem, read_mesh, slice, slice_mesh},
+    terrain::{Profile, TerrainError, read_mesh, slice_file, slice_mesh},
     world::{Body, FrictionCone, Grip},
 };
 
@@ -76,7 +76,7 @@ type Geometry = (PolygonalChain, Vec<String>, (Option<f64>, Option<f64>));
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let (geometry, warnings, ends) = match source {
         TerrainSource::Dem { path, start, goal } => {
-            let profile = slice(&read_dem(&base.join(path))?, *start, *goal)?;
+            let profile = slice_file(&base.join(path), *start, *goal)?;
             sliced(scenario, &profile, Vec::new())?
         }
         TerrainSource::Mesh { path, scale, start, goal } => {

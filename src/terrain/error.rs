@@ -52,7 +52,7 @@ pub enum TerrainError {
         /// A command that makes a usable file.
         mend: String,
     },
-    /// Every problem found in the text of an ASCII grid.
+    /// Every problem found in the text of an ASCII or XYZ grid.
     #[error("{}", list_problems(problems, *further))]
     AsciiGrid {
         /// The first problems, in the file's order.
@@ -156,7 +156,7 @@ impl TerrainError {
     }
 }
 
-/// One problem in the text of an ASCII grid.
+/// One problem in the text of an ASCII or XYZ grid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AsciiProblem {
     /// Line of the file, from 1.

@@ -18,24 +18,34 @@
 mod ascii_grid;
 mod dem;
 mod error;
+#[cfg(not(feature = "gdal"))]
+mod foreign;
 mod format;
+#[cfg(feature = "gdal")]
+mod gdal;
 mod georeference;
 mod geotiff;
 mod mesh;
+mod pds3;
 mod profile;
 mod slice;
 mod synth;
+mod window;
+mod xyz;
 
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M};
 pub use error::{AsciiProblem, TerrainError};
-pub use format::{DemReader, FORMATS, read_dem};
+pub use format::{DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{geotiff_bytes, read_geotiff_bytes, write_geotiff};
 pub use mesh::{
     Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
     slice_mesh,
 };
+pub use pds3::read_pds3_bytes;
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
-pub use slice::slice;
+pub use slice::{slice, slice_file};
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
+pub use window::{DemFile, Window};
+pub use xyz::read_xyz_bytes;

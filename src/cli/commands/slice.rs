@@ -5,7 +5,7 @@ use std::path::Path;
 use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     scenario::{friction, sha256_of},
-    terrain::{Profile, TerrainError, looks_like_mesh, read_dem, read_mesh, slice, slice_mesh},
+    terrain::{Profile, TerrainError, looks_like_mesh, read_mesh, slice_file, slice_mesh},
 };
 
 use crate::cli::{Answer, Failure, args::SliceArgs, load::scenario_alone, output};
@@ -45,10 +45,10 @@ fn sliced(args: &SliceArgs) -> Result<(Profile, Vec<String>), Failure> {
     if looks_like_mesh(terrain) {
         return sliced_mesh(args).map_err(failed);
     }
-    let dem = match read_dem(terrain) {
+    let profile = match slice_file(terrain, *from, *to) {
         // A damaged mesh is told by the readers of meshes, who know why.
         Err(_) if named_as_mesh(terrain) => return sliced_mesh(args).map_err(failed),
-        read => read.map_err(failed)?,
+        sliced => sliced.map_err(failed)?,
     };
     if let Some(scale) = mesh_scale {
         let name = terrain.display();
@@ -56,7 +56,7 @@ fn sliced(args: &SliceArgs) -> Result<(Profile, Vec<String>), Failure> {
             "--mesh-scale {scale}: {name} is an elevation raster, expected a mesh; leave the option away"
         )));
     }
-    Ok((slice(&dem, *from, *to).map_err(failed)?, Vec::new()))
+    Ok((profile, Vec::new()))
 }
 
 fn sliced_mesh(args: &SliceArgs) -> Result<(Profile, Vec<String>), TerrainError> {
