@@ -1,6 +1,6 @@
 //! Slices of meshes against slices of DEMs, against meshes that others made, and against the paper's simple scenario.
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
-#![expect(clippy::unreadable_literal, reason = "bounds as another program printed them")]
+#![expect(clippy::unreadable_literal, reason = "as another program printed them")]
 
 use std::path::{Path, PathBuf};
 

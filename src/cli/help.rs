@@ -5,7 +5,7 @@ use std::fmt::Write;
 use chta::{
     chain::csv::{CHAIN_COLUMNS, CsvColumn, PAIRS_COLUMNS},
     scenario::CATALOGUE,
-    terrain::FORMATS,
+    terrain::{FORMATS, MESH_FORMATS},
 };
 use clap::{CommandFactory, FromArgMatches};
 
@@ -45,10 +45,10 @@ fn scenario_keys() -> String {
     text
 }
 
-/// The formats of elevation rasters.
+/// The formats of elevation rasters and meshes.
 fn formats() -> String {
-    let mut text = "Formats of elevation rasters:\n".to_owned();
-    for (name, what) in FORMATS {
+    let mut text = "Formats of elevation rasters and meshes:\n".to_owned();
+    for (name, what) in FORMATS.into_iter().chain(MESH_FORMATS) {
         line(&mut text, format_args!("  {name:<16} {what}"));
     }
     text

@@ -267,10 +267,12 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
         }
         [(first, _), .., (last, _)] => {
             let place = entries.place("terrain", last).unwrap_or(Place::Nowhere);
-            let (amount, all) = if given.len() == 2 { ("two", "both") } else { ("three", "all of") };
-            let names = if given.len() == 2 { format!("{first} and {last}") } else { "dem, mesh and chain".to_owned() };
-            let message = format!("terrain has {all} {names}, expected one of the {amount}");
-            entries.problem(place, message, "keep one of them");
+            let (message, help) = if given.len() == 2 {
+                (format!("terrain has both {first} and {last}, expected one of the two"), "remove one of them")
+            } else {
+                ("terrain has all of dem, mesh and chain, expected one of the three".to_owned(), "remove two of them")
+            };
+            entries.problem(place, message, help);
             None
         }
     }

@@ -8,7 +8,7 @@ use std::{collections::BTreeMap, fs, path::Path};
 use tempfile::TempDir;
 
 /// A mesh of one tilted face with four corners.
-const PLATE: &str = "v 0 0 0\nv 9 0 1\nv 9 9 1\nv 0 9 0\nf 1 2 3 4\n";
+const PLATE: &str = "v 0 0 1\nv 9 0 2\nv 9 9 2\nv 0 9 1\nf 1 2 3 4\n";
 
 /// Two bumps, 40 m.
 pub(crate) const CHAIN: &str = "x_m,z_m\n0,0\n10,2\n20,0\n30,1\n40,0\n";

@@ -86,7 +86,7 @@ pub struct Wall {
 ///
 /// # Returns
 /// A profile from `from` at x = 0 to `to`. The way back has the same points, facets and walls. A mesh that triangulates a DEM as
-/// [`slice`](crate::terrain::slice) does gives the slice of that DEM.
+/// [`slice`](crate::terrain::slice()) does gives the slice of that DEM.
 ///
 /// # Degenerate
 /// Points nearer than the tolerance above are one. A plane that only touches a corner of a triangle does not meet it.
