@@ -1,6 +1,7 @@
 //! Every file of the shared folder read or refused: docs/formats.md says how, by real runs, and GDAL agrees on what was read.
 //!
 //! `CHTA_UPDATE_DOCS=1 cargo test --test formats_table` writes the table anew.
+#![allow(clippy::cast_precision_loss, reason = "rows and columns are small")]
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::fmt::Write;

@@ -1,4 +1,5 @@
 //! The byte readers against ten thousand seeded mutations each: no panic, no long run, no absurd memory.
+#![allow(clippy::format_push_string, reason = "a test's text need not be written fast")]
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and tells what it saw")]
 
 use std::time::{Duration, Instant};

@@ -1,4 +1,5 @@
 //! PDS3 images made by a small writer of the test's own, read by us and by GDAL.
+#![allow(clippy::format_push_string, reason = "a test's text need not be written fast")]
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::path::Path;

@@ -148,7 +148,17 @@ impl Dem {
 
     /// Lowest and highest elevation, m.
     pub fn elevation_range_m(&self) -> (f64, f64) {
-        self.elevations().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)))
+        // The minimum and maximum of a number and NaN are the number.
+        match &self.posts {
+            Posts::Single(values) => {
+                let (low, high) =
+                    values.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), z| (low.min(*z), high.max(*z)));
+                (low.into(), high.into())
+            }
+            Posts::Double(values) => {
+                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(*z), high.max(*z)))
+            }
+        }
     }
 
     pub(super) fn posts(&self) -> &Posts {

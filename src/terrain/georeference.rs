@@ -147,12 +147,14 @@ const RELIEF_TO_WIDTH_OF_DEGREES: f64 = 5.0;
 
 /// Refuses a raster without stated units whose numbers only make sense in degrees.
 pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
+    if !dem.georeference().may_be_degrees(dem.rows(), dem.cols()) {
+        return Ok(());
+    }
     let MapBounds { min, max } = dem.bounds();
-    let fits_degrees = dem.georeference().may_be_degrees(dem.rows(), dem.cols());
     let width = (max.x - min.x).max(max.y - min.y);
     let (low_m, high_m) = dem.elevation_range_m();
     let relief_m = high_m - low_m;
-    if fits_degrees && relief_m > RELIEF_TO_WIDTH_OF_DEGREES * width {
+    if relief_m > RELIEF_TO_WIDTH_OF_DEGREES * width {
         return Err(TerrainError::Unsuitable {
             found: format!(
                 "the map spans {} by {} units but the elevations {relief_m} m, so its coordinates look like degrees",

@@ -32,7 +32,7 @@ impl DemReader for GeoTiffReader {
 
     fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
         let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
-        read_tiff(&TiffFile::open_with_options(path, open_options(length)).map_err(open_error)?)
+        read_tiff(&TiffFile::open_with_options(path, whole_options(length)).map_err(open_error)?)
     }
 
     fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
@@ -50,7 +50,7 @@ impl DemReader for GeoTiffReader {
 /// [`TerrainError::Damaged`] where the bytes are no whole TIFF; [`TerrainError::Unsuitable`] where they are, but hold colours, several
 /// bands or images, degrees, other units, a rotated map or none; [`TerrainError::InvalidDem`] where the numbers make no raster.
 pub fn read_geotiff_bytes(bytes: Vec<u8>) -> Result<Dem, TerrainError> {
-    let options = open_options(bytes.len() as u64);
+    let options = whole_options(bytes.len() as u64);
     read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?)
 }
 
@@ -61,6 +61,11 @@ fn open_options(length: u64) -> OpenOptions {
         decode_output_bytes: usize::try_from(largest_unpacked(length)).unwrap_or(usize::MAX),
         ..OpenOptions::default()
     }
+}
+
+/// Read whole, no block is decoded twice: kept ones would only cost memory, and the time to ask the system for it.
+fn whole_options(length: u64) -> OpenOptions {
+    OpenOptions { block_cache_bytes: 0, ..open_options(length) }
 }
 
 fn open_error(error: TiffError) -> TerrainError {
@@ -126,7 +131,7 @@ fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
     let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
     let mut options = open_options(length);
     let block = {
-        let file = TiffFile::open_with_options(path, options.clone()).map_err(open_error)?;
+        let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
         let images = Images::of(&file)?;
         let (_, Placement { georeference, states_metres, .. }) = judge(&file, &images)?;
         let (rows, cols) = (images.layout.height, images.layout.width);
@@ -142,7 +147,7 @@ fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
     let images = Images::of(&file)?;
     let (decoder, Placement { georeference, south_up, .. }) = judge(&file, &images)?;
     let (rows, cols) = (images.layout.height, images.layout.width);
-    Ok(Box::new(OpenGeoTiff { decoder, georeference, south_up, rows, cols, file }))
+    Ok(Box::new(OpenGeoTiff { file, decoder, georeference, south_up, rows, cols }))
 }
 
 /// Bytes of a decoded tile or strip.

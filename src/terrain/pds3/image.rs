@@ -40,7 +40,7 @@ impl ImageObject {
     /// [`TerrainError::Unsuitable`] with the first key that is missing or makes no elevations.
     pub(super) fn of(label: &Label) -> Result<Self, TerrainError> {
         if !label.has("IMAGE") {
-            return Err(unsuitable("no IMAGE object".to_owned(), "one (tables, spectra and cubes hold no raster of elevations)"));
+            return Err(unsuitable("no IMAGE object", "one (tables, spectra and cubes hold no raster of elevations)"));
         }
         for (key, others) in [("BANDS", "1 band"), ("ENCODING_TYPE", "an image without encoding")] {
             if let Some(value) = label.value("IMAGE", key)?.filter(|value| !matches!(value.text.as_str(), "1" | "N/A" | "NONE")) {
@@ -60,7 +60,7 @@ impl ImageObject {
         }
         let scale = label.number("IMAGE", "SCALING_FACTOR")?.unwrap_or(1.0);
         if scale == 0.0 {
-            return Err(unsuitable("SCALING_FACTOR 0".to_owned(), "another number"));
+            return Err(unsuitable("SCALING_FACTOR 0", "another number"));
         }
         Ok(Self {
             rows: count("LINES")?,
@@ -92,7 +92,7 @@ impl ImageObject {
 
 /// `^IMAGE`: a record or byte, from 1, of this file, or of one that it names.
 fn pointer(label: &Label) -> Result<(Option<String>, u64), TerrainError> {
-    let values = label.values("", "^IMAGE")?.ok_or_else(|| unsuitable("no ^IMAGE".to_owned(), "where the image begins"))?;
+    let values = label.values("", "^IMAGE")?.ok_or_else(|| unsuitable("no ^IMAGE", "where the image begins"))?;
     let (file, place) = match values {
         [one] if one.text.parse::<u64>().is_ok() => (None, Some(one)),
         [name] => (Some(name.text.clone()), None),
@@ -105,9 +105,9 @@ fn pointer(label: &Label) -> Result<(Option<String>, u64), TerrainError> {
     if place.unit.as_deref().is_some_and(|unit| unit.starts_with("BYTE")) || number == 0 {
         return Ok((file, number));
     }
-    let record = label.count("", "RECORD_BYTES")?.ok_or_else(|| {
-        unsuitable("^IMAGE counted in records but no RECORD_BYTES".to_owned(), "RECORD_BYTES, or a place in <BYTES>")
-    })?;
+    let record = label
+        .count("", "RECORD_BYTES")?
+        .ok_or_else(|| unsuitable("^IMAGE counted in records but no RECORD_BYTES", "RECORD_BYTES, or a place in <BYTES>"))?;
     Ok((file, number.checked_mul(record as u64).ok_or_else(wrong)?))
 }
 

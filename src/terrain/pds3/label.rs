@@ -131,7 +131,8 @@ impl Label {
 }
 
 /// A sound label of no use.
-pub(super) fn unsuitable(found: String, expected: &'static str) -> TerrainError {
+pub(super) fn unsuitable(found: impl AsRef<str>, expected: &'static str) -> TerrainError {
+    let found = found.as_ref();
     TerrainError::Unsuitable {
         found: format!("a PDS3 label with {found}"),
         expected,

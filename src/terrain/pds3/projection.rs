@@ -1,4 +1,4 @@
-//! The IMAGE_MAP_PROJECTION object: where the posts lie, and on which map.
+//! The `IMAGE_MAP_PROJECTION` object: where the posts lie, and on which map.
 
 use super::label::{Label, shown, unsuitable};
 use crate::quantity::MapPoint;

@@ -29,7 +29,7 @@ pub(super) enum Mark {
 }
 
 impl SampleType {
-    /// From SAMPLE_TYPE and SAMPLE_BITS.
+    /// From `SAMPLE_TYPE` and `SAMPLE_BITS`.
     ///
     /// # Errors
     /// [`TerrainError::Unsuitable`] for types that are no elevations, or none that is known.

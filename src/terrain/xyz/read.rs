@@ -169,7 +169,7 @@ mod tests {
         assert!(irregular.contains("line ") && irregular.contains("off the lattice"), "{irregular}");
         let double = message("0 0 1\n1 0 1\n0 1 1\n1 1 1\n1.0 0 2\n");
         assert!(double.contains("line 5") && double.contains("first on line 2"), "{double}");
-        let scattered: String = (0..300).map(|k| format!("{} {} 1\n", k * k, k * k * k)).collect();
+        let scattered: String = (0..300).map(|k| format!("{} {} 1\n", k * k, k * k * k)).collect::<Vec<_>>().concat();
         assert!(message(&scattered).contains("gdal_grid"));
         assert!(message("0 0 1\n0 5 1\n").contains("share"));
         assert!(message("10.0 45.0 100\n10.1 45.0 200\n10.0 45.1 900\n10.1 45.1 100\n").contains("degrees"));

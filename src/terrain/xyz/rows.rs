@@ -82,17 +82,11 @@ pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> io
         if is_blank(&text) {
             continue;
         }
-        let columns = match layout {
-            Some(known) => known,
-            None => {
-                let (found, header) = columns(&text).unwrap_or((PLAIN, false));
-                layout = Some(found);
-                if header {
-                    continue;
-                }
-                found
-            }
-        };
+        let (columns, header) = layout.map_or_else(|| columns(&text).unwrap_or((PLAIN, false)), |known| (known, false));
+        layout = Some(columns);
+        if header {
+            continue;
+        }
         rows.extend(row(&text, line, columns, problems));
         // A whole text that goes wrong is something else.
         if rows.is_empty() && problems.are_many() {
