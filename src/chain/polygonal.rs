@@ -137,7 +137,8 @@ impl PolygonalChain {
         Self::new(vertices, grounds, None)
     }
 
-    /// A chain from a slice of the terrain: cross-slopes from its facets, friction where one is given, map points from the slice.
+    /// A chain from a slice of the terrain: cross-slopes and keep-out from its facets, friction from them or the one given,
+    /// map points from the slice.
     ///
     /// # Errors
     /// [`InvalidChain`], which a slice of sound terrain does not give.
@@ -146,7 +147,10 @@ impl PolygonalChain {
         let grounds = profile
             .facets
             .iter()
-            .map(|facet| Ground { form: GroundForm::Surface { friction, cross_slope: facet.cross_slope }, keep_out: false })
+            .map(|facet| Ground {
+                form: GroundForm::Surface { friction: facet.friction.or(friction), cross_slope: facet.cross_slope },
+                keep_out: facet.keep_out,
+            })
             .collect();
         let map = profile.points.iter().map(|p| p.map).collect();
         Self::new(vertices, grounds, Some(map))

@@ -10,7 +10,8 @@ use chta::{
     chain::Station,
     report::InputFile,
     scenario::{
-        Entries, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, prepare, scenario_document, sha256_of,
+        Covers, Entries, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, prepare, scenario_document,
+        sha256_of,
     },
 };
 
@@ -81,8 +82,12 @@ pub(crate) fn load(
     };
     apply_options(&mut source.entries, common, search, ends);
     if !is_scenario {
-        for key in ["dem", "chain", "start_m", "goal_m"] {
-            source.entries.forget("terrain", key);
+        forget_terrain(&mut source.entries);
+        for key in ["friction_raster", "keep_out"] {
+            if source.entries.forget("surface", key) {
+                let warning = format!("surface.{key} is laid over terrain when it is sliced: for a chain its own columns count");
+                output::warn(common.quiet, &warning);
+            }
         }
     }
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
@@ -106,15 +111,31 @@ pub(crate) fn load(
     let file = match &terrain {
         TerrainSource::Dem { path, .. } | TerrainSource::Chain { path } => base.join(path),
     };
-    let inputs = vec![InputFile { name: relative_name(&file), sha256: sha256_of(&file)? }];
+    let mut inputs = vec![input_file(&file)?];
+    for cover in Covers::files(&scenario) {
+        inputs.push(input_file(&base.join(cover))?);
+    }
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
     Ok(Loaded { scenario, prepared, document, inputs })
 }
 
-/// Reads a scenario alone, without a terrain: for `slice`.
-pub(crate) fn scenario_alone(path: &Path) -> Result<Scenario, Failure> {
-    let source = read_source(path)?;
-    validated(source.entries, &source.name, &source.text)
+/// A file that was read, for a result.
+pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
+    Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
+}
+
+/// Reads a scenario alone, with the folder of its paths but without its terrain: for commands that bring their own.
+pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure> {
+    let mut source = read_source(path)?;
+    forget_terrain(&mut source.entries);
+    Ok((validated(source.entries, &source.name, &source.text)?, source.base))
+}
+
+/// Forgets the terrain that a scenario names, where the command line brings another.
+fn forget_terrain(entries: &mut Entries) {
+    for key in ["dem", "chain", "start_m", "goal_m"] {
+        entries.forget("terrain", key);
+    }
 }
 
 /// Whether a file is a scenario or a result by its name; anything else is a chain CSV.

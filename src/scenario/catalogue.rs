@@ -85,7 +85,7 @@ const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 28] = [
+pub const CATALOGUE: [Key; 30] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
@@ -106,6 +106,18 @@ pub const CATALOGUE: [Key; 28] = [
         "rest_slope_max_deg",
         Kind::AngleOrUnlimited,
         "steepest surface to rest on, degrees; absent: atan(friction); inf: none",
+    ),
+    key(
+        "surface",
+        "friction_raster",
+        Kind::Text,
+        "raster of friction coefficients on the dem's map, path from this file; wins where it has data",
+    ),
+    key(
+        "surface",
+        "keep_out",
+        Kind::Text,
+        "GeoJSON polygons or mask raster on the dem's map, path from this file: no take-off, no landing",
     ),
     key("terrain", "dem", Kind::Text, "elevation raster, path from this file"),
     key("terrain", "chain", Kind::Text, "chain CSV, path from this file"),

@@ -113,9 +113,9 @@ impl Entries {
         self.add(table, name, value, place.clone(), place);
     }
 
-    /// Forgets a key, where an option replaces it by another one.
-    pub fn forget(&mut self, table: &str, name: &str) {
-        self.entries.remove(&(table.to_owned(), name.to_owned()));
+    /// Forgets a key, where an option replaces it by another one; whether it was there.
+    pub fn forget(&mut self, table: &str, name: &str) -> bool {
+        self.entries.remove(&(table.to_owned(), name.to_owned())).is_some()
     }
 
     /// The title of the report, where one was given.

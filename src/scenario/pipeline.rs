@@ -13,7 +13,10 @@ use super::{BodyChoice, Scenario, TerrainSource};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     path::Hop,
-    terrain::{TerrainError, read_dem, slice},
+    terrain::{
+        CoordinateSystem, FrictionRaster, KeepOut, MapBounds, Profile, TerrainError, read_dem, read_friction_raster, read_keep_out,
+        slice,
+    },
     world::{Body, FrictionCone, Grip},
 };
 
@@ -73,8 +76,9 @@ pub enum PipelineError {
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let (geometry, warnings, ends) = match source {
         TerrainSource::Dem { path, start, goal } => {
-            let profile = slice(&read_dem(&base.join(path))?, *start, *goal)?;
-            let chain = PolygonalChain::from_profile(&profile, friction(scenario))?;
+            let dem = read_dem(&base.join(path))?;
+            let covers = Covers::read(scenario, base, Some(&dem.georeference().coordinate_system), dem.bounds())?;
+            let chain = covers.chain(slice(&dem, *start, *goal)?)?;
             let (first_m, last_m) = chain.extent_m();
             (chain, Vec::new(), (Some(first_m), Some(last_m)))
         }
@@ -90,6 +94,52 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
     let start = station("start", scenario.start_x_m.or(ends.0))?;
     let goal = station("goal", scenario.goal_x_m.or(ends.1))?;
     Ok(Prepared { chain, start, goal, warnings })
+}
+
+/// What a scenario lays over its terrain: friction, and keep-out zones.
+#[derive(Clone, Debug)]
+pub struct Covers {
+    constant: Option<FrictionCone>,
+    raster: Option<FrictionRaster>,
+    keep_out: Option<KeepOut>,
+}
+
+impl Covers {
+    /// Reads the files that a scenario names, for a terrain that says this of its map and covers this.
+    ///
+    /// `base` is the folder that the scenario's paths start from.
+    ///
+    /// # Errors
+    /// [`TerrainError::Cover`].
+    pub fn read(
+        scenario: &Scenario,
+        base: &Path,
+        coordinates: Option<&CoordinateSystem>,
+        bounds: MapBounds,
+    ) -> Result<Self, TerrainError> {
+        let raster = scenario.friction_raster.as_deref().map(|path| read_friction_raster(&base.join(path), coordinates));
+        let keep_out = scenario.keep_out.as_deref().map(|path| read_keep_out(&base.join(path), coordinates, bounds));
+        Ok(Self { constant: friction(scenario), raster: raster.transpose()?, keep_out: keep_out.transpose()? })
+    }
+
+    /// The files of a scenario that are read, from its folder.
+    pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
+        [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
+    }
+
+    /// A slice of the terrain as a chain, with its friction and its keep-out zones.
+    ///
+    /// # Errors
+    /// [`TerrainError::Cover`] where a raster ends before the slice does.
+    pub fn chain(&self, mut profile: Profile) -> Result<PolygonalChain, PipelineError> {
+        if let Some(raster) = &self.raster {
+            raster.lay(&mut profile, self.constant)?;
+        }
+        if let Some(keep_out) = &self.keep_out {
+            keep_out.mark(&mut profile)?;
+        }
+        Ok(PolygonalChain::from_profile(&profile, self.constant)?)
+    }
 }
 
 /// The friction that a scenario gives the whole ground.

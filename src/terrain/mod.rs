@@ -24,6 +24,7 @@ mod geotiff;
 mod profile;
 mod slice;
 mod synth;
+mod zones;
 
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M};
@@ -34,3 +35,4 @@ pub use geotiff::{geotiff_bytes, read_geotiff_bytes, write_geotiff};
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
 pub use slice::slice;
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
+pub use zones::{FrictionRaster, KeepOut, read_friction_raster, read_keep_out};
