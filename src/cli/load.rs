@@ -82,7 +82,9 @@ pub(crate) fn load(
     };
     apply_options(&mut source.entries, common, search, ends);
     if !is_scenario {
-        forget_terrain(&mut source.entries);
+        for key in ["dem", "chain", "start_m", "goal_m"] {
+            source.entries.forget("terrain", key);
+        }
         for key in ["friction_raster", "keep_out"] {
             if source.entries.forget("surface", key) {
                 let warning = format!("surface.{key} is laid over terrain when it is sliced: for a chain its own columns count");
@@ -119,6 +121,30 @@ pub(crate) fn load(
     Ok(Loaded { scenario, prepared, document, inputs })
 }
 
+/// A scenario without terrain, for a command that brings its own.
+#[derive(Debug)]
+pub(crate) struct Bare {
+    /// The scenario as used.
+    pub(crate) scenario: Scenario,
+    /// The folder that its paths start from.
+    pub(crate) base: PathBuf,
+    /// The scenario for a result.
+    pub(crate) document: serde_json::Value,
+}
+
+/// Loads the scenario of the options, without its terrain.
+pub(crate) fn load_bare(common: &CommonArgs, search: &SearchArgs) -> Result<Bare, Failure> {
+    let mut source = match &common.scenario {
+        Some(path) => read_source(path)?,
+        None => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
+    };
+    apply_options(&mut source.entries, common, Some(search), [None, None]);
+    forget_terrain(&mut source.entries);
+    let scenario = validated(source.entries, &source.name, &source.text)?;
+    let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
+    Ok(Bare { scenario, base: source.base, document })
+}
+
 /// A file that was read, for a result.
 pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
     Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
@@ -133,7 +159,7 @@ pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure
 
 /// Forgets the terrain that a scenario names, where the command line brings another.
 fn forget_terrain(entries: &mut Entries) {
-    for key in ["dem", "chain", "start_m", "goal_m"] {
+    for key in ["dem", "chain", "start_m", "goal_m", "start_x_m", "goal_x_m"] {
         entries.forget("terrain", key);
     }
 }
