@@ -110,7 +110,10 @@ pub(crate) struct SliceArgs {
     /// Where it ends, map coordinates in m
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
     pub(crate) to: MapPoint,
-    /// Scenario whose friction goes into the chain
+    /// A point between, map coordinates in m, where the slice bends; may be repeated, in the order of travel
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
+    pub(crate) via: Vec<MapPoint>,
+    /// Scenario whose friction and keep-out zones go into the chain
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
     /// Chain CSV to write; - or absent: standard output

@@ -82,7 +82,7 @@ pub(crate) fn load(
     };
     apply_options(&mut source.entries, common, search, ends);
     if !is_scenario {
-        for key in ["dem", "chain", "start_m", "goal_m"] {
+        for key in ["dem", "chain", "start_m", "goal_m", "via_m"] {
             source.entries.forget("terrain", key);
         }
         for key in ["friction_raster", "keep_out"] {
@@ -159,7 +159,7 @@ pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure
 
 /// Forgets the terrain that a scenario names, where the command line brings another.
 fn forget_terrain(entries: &mut Entries) {
-    for key in ["dem", "chain", "start_m", "goal_m", "start_x_m", "goal_x_m"] {
+    for key in ["dem", "chain", "start_m", "goal_m", "via_m", "start_x_m", "goal_x_m"] {
         entries.forget("terrain", key);
     }
 }

@@ -101,6 +101,7 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         ("chain", chain),
         ("start_m", start),
         ("goal_m", goal),
+        ("via_m", (!scenario.via.is_empty()).then(|| scenario.via.iter().map(|point| json!([point.x, point.y])).collect())),
         ("start_x_m", scenario.start_x_m.map(Value::from)),
         ("goal_x_m", scenario.goal_x_m.map(Value::from)),
     ])

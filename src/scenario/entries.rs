@@ -165,6 +165,11 @@ impl Entries {
         self.value(table, name).and_then(pair)
     }
 
+    /// Points; none where they were not given.
+    pub(super) fn points(&self, table: &str, name: &str) -> Vec<[f64; 2]> {
+        self.value(table, name).and_then(toml::Value::as_array).into_iter().flatten().filter_map(pair).collect()
+    }
+
     /// Checks a value against its key's kind and keeps it.
     fn add(&mut self, table: &str, name: &str, value: toml::Value, place: Place, key_place: Place) {
         let Some(key) = Key::find(table, name) else { return self.unknown(table, name, key_place) };
@@ -245,6 +250,7 @@ fn fits(value: &toml::Value, kind: Kind) -> bool {
         }
         Kind::AngleRange => pair(value).is_some_and(|[a, b]| -360.0 <= a && a <= b && b <= 360.0),
         Kind::MapPoint => pair(value).is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() <= 1e12)),
+        Kind::MapPoints => value.as_array().is_some_and(|points| points.iter().all(|point| fits(point, Kind::MapPoint))),
         Kind::CountOrAuto => value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),

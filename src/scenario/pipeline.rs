@@ -15,7 +15,7 @@ use crate::{
     path::Hop,
     terrain::{
         CoordinateSystem, FrictionRaster, KeepOut, MapBounds, Profile, TerrainError, read_dem, read_friction_raster, read_keep_out,
-        slice,
+        slice_legs,
     },
     world::{Body, FrictionCone, Grip},
 };
@@ -78,7 +78,7 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
         TerrainSource::Dem { path, start, goal } => {
             let dem = read_dem(&base.join(path))?;
             let covers = Covers::read(scenario, base, Some(&dem.georeference().coordinate_system), dem.bounds())?;
-            let chain = covers.chain(slice(&dem, *start, *goal)?)?;
+            let chain = covers.chain(slice_legs(&dem, *start, &scenario.via, *goal)?)?;
             let (first_m, last_m) = chain.extent_m();
             (chain, Vec::new(), (Some(first_m), Some(last_m)))
         }
@@ -127,18 +127,20 @@ impl Covers {
         [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
     }
 
-    /// A slice of the terrain as a chain, with its friction and its keep-out zones.
+    /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones.
     ///
     /// # Errors
     /// [`TerrainError::Cover`] where a raster ends before the slice does.
-    pub fn chain(&self, mut profile: Profile) -> Result<PolygonalChain, PipelineError> {
-        if let Some(raster) = &self.raster {
-            raster.lay(&mut profile, self.constant)?;
+    pub fn chain(&self, mut legs: Vec<Profile>) -> Result<PolygonalChain, PipelineError> {
+        for leg in &mut legs {
+            if let Some(raster) = &self.raster {
+                raster.lay(leg, self.constant)?;
+            }
+            if let Some(keep_out) = &self.keep_out {
+                keep_out.mark(leg)?;
+            }
         }
-        if let Some(keep_out) = &self.keep_out {
-            keep_out.mark(&mut profile)?;
-        }
-        Ok(PolygonalChain::from_profile(&profile, self.constant)?)
+        Ok(PolygonalChain::from_legs(&legs, self.constant)?)
     }
 }
 

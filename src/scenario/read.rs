@@ -55,6 +55,8 @@ pub struct Scenario {
     pub keep_out: Option<PathBuf>,
     /// The terrain, where the scenario names it.
     pub terrain: Option<TerrainSource>,
+    /// Points of the map between start and goal, where a slice bends.
+    pub via: Vec<MapPoint>,
     /// Start along the chain, m, where the scenario names it.
     pub start_x_m: Option<f64>,
     /// Goal along the chain, m, where the scenario names it.
@@ -93,6 +95,7 @@ impl Scenario {
             friction_raster,
             keep_out,
             terrain,
+            via: entries.points("terrain", "via_m").into_iter().map(|[x, y]| MapPoint::new(x, y)).collect(),
             start_x_m: entries.number("terrain", "start_x_m"),
             goal_x_m: entries.number("terrain", "goal_x_m"),
             search,
@@ -250,6 +253,10 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
                     let help = format!("for a chain give {} instead", name.replace("_m", "_x_m"));
                     entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
                 }
+            }
+            if let Some(place) = entries.place("terrain", "via_m") {
+                let message = "terrain.via_m is of a slice, but terrain has a chain".to_owned();
+                entries.problem(place, message, "give the chain a column bend instead, as chta slice --via does");
             }
             Some(TerrainSource::Chain { path })
         }

@@ -33,6 +33,6 @@ pub use format::{DemReader, FORMATS, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{geotiff_bytes, read_geotiff_bytes, write_geotiff};
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
-pub use slice::slice;
+pub use slice::{slice, slice_legs};
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
 pub use zones::{FrictionRaster, KeepOut, read_friction_raster, read_keep_out};

@@ -37,7 +37,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         gravity_m_s2: scenario.body.gravity_m_s2,
         spacing,
     };
-    let ground = |profile| Ok(ConstrainedChain::new(covers.chain(profile)?, &scenario.hopper, &scenario.surface)?);
+    let ground = |profile| Ok(ConstrainedChain::new(covers.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?);
     let rays = fan(&request, *threads, &ground).map_err(|e| failed(&e))?;
     let mut answer = FanAnswer::new(*from, *length, &rays);
     match spacing {
@@ -79,7 +79,7 @@ fn subtitle(answer: &FanAnswer, scenario: &chta::scenario::Scenario) -> String {
     let [x, y] = answer.from_m;
     let body = scenario.body.name.clone().map(|name| format!("{name}, ")).unwrap_or_default();
     format!(
-        "{} headings from ({x}, {y}) m, at most {} m; {body}gravity {} m/s²; take-off at most {} m/s, landing at most {} m/s; {} headings \
+        "{} headings from ({x}, {y}) m, at most {} m; {body}gravity {:.4} m/s²; take-off at most {} m/s, landing at most {} m/s; {} headings \
          lead to their far end",
         answer.headings,
         answer.length_m,

@@ -108,7 +108,8 @@ impl<'a> Rose<'a> {
                 sheet.area(outline, colour, 1.0);
             }
             if ray.cut.is_some() {
-                sheet.line(self.arc(ray.length_m, from_deg, to_deg), Pen { colour: VERMILION, width_mm: 0.5 });
+                let outside_m = ray.length_m + 0.6 / self.mm_per_m;
+                sheet.line(self.arc(outside_m, from_deg, to_deg), Pen { colour: VERMILION, width_mm: 0.5 });
             }
             sheet.line(self.arc(ray.farthest_m, from_deg, to_deg), Pen { colour: BLACK, width_mm: 0.35 });
         }

@@ -86,5 +86,15 @@ pub fn slice(dem: &Dem, from: MapPoint, to: MapPoint) -> Result<Profile, Terrain
     Ok(Profile { points, facets, heading })
 }
 
+/// Cuts the terrain along a polyline: one slice for each leg, from `from` over the points between to `to`.
+///
+/// # Errors
+/// As [`slice`](slice()), of the first leg that has one; two equal points in a row are [`TerrainError::SamePoint`].
+pub fn slice_legs(dem: &Dem, from: MapPoint, via: &[MapPoint], to: MapPoint) -> Result<Vec<Profile>, TerrainError> {
+    let ends = via.iter().copied().chain([to]);
+    let begins = [from].into_iter().chain(via.iter().copied());
+    begins.zip(ends).map(|(begin, end)| slice(dem, begin, end)).collect()
+}
+
 #[cfg(test)]
 mod tests;
