@@ -29,7 +29,12 @@ const RUN: [Trial; 4] = [
     ),
 ];
 
-const SLICE: [Trial; 6] = [
+const SLICE: [Trial; 7] = [
+    (
+        "--via",
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "--via", "9,1"],
+    ),
     ("--from", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], &["slice", "ground.tif", "--from", "2,1", "--to", "9,9"]),
     ("--to", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], &["slice", "ground.tif", "--from", "1,1", "--to", "9,8"]),
     (

@@ -32,6 +32,9 @@ fn value(key: &Key) -> BoxedStrategy<String> {
             })
             .boxed(),
         Kind::MapPoint => two(-1e12, 1e12).prop_map(|(x, y)| format!("[{x}, {y}]")).boxed(),
+        Kind::MapPoints => proptest::collection::vec(two(-1e12, 1e12).prop_map(|(x, y)| format!("[{x}, {y}]")), 1..4)
+            .prop_map(|points| format!("[{}]", points.join(", ")))
+            .boxed(),
         Kind::CountOrAuto => prop_oneof![Just("\"auto\"".to_owned()), (0..=100_000_u32).prop_map(|k| k.to_string())].boxed(),
         Kind::Word(words) => proptest::sample::select(words).prop_map(|word| format!("\"{word}\"")).boxed(),
         Kind::Text if key.name == "name" => Just("\"Mars\"".to_owned()).boxed(),
@@ -49,7 +52,9 @@ fn toml() -> impl Strategy<Value = String> {
         let kept = |key: &Key| match (key.table, key.name) {
             ("terrain", "dem") => ground == 1,
             ("terrain", "mesh" | "mesh_scale") => ground == 3,
-            ("terrain", "start_m" | "goal_m") => ground == 1 || ground == 3,
+            ("terrain", "start_m" | "goal_m" | "via_m") => ground == 1 || ground == 3,
+            ("surface", "keep_out") => ground != 2,
+            ("surface", "friction_raster") => friction && ground != 2,
             ("terrain", "chain") => ground == 2,
             ("terrain", _) => ground > 0,
             ("surface", "friction_coefficient") => friction,
@@ -107,6 +112,7 @@ fn every_key_reaches_the_document() {
         Kind::AngleOrUnlimited => "31.5",
         Kind::AngleRange => "[12.5, 60.25]",
         Kind::MapPoint => "[12.5, -3.0]",
+        Kind::MapPoints => "[[12.5, -3.0], [1.0, 2.0]]",
         Kind::CountOrAuto => "7",
         Kind::Word(words) => words[words.len() - 1],
         Kind::Text if key.name == "name" => "vesta",
@@ -118,7 +124,7 @@ fn every_key_reaches_the_document() {
         match (key.table, key.name) {
             ("surface", "takeoff_from_slope_deg") => with("surface", "landing_from_slope_deg", "[1, 2]"),
             ("surface", "landing_from_slope_deg") => with("surface", "takeoff_from_slope_deg", "[1, 2]"),
-            ("terrain", "dem" | "start_m" | "goal_m") => {
+            ("terrain", "dem" | "start_m" | "goal_m" | "via_m") => {
                 with("terrain", "dem", "x.tif");
                 with("terrain", "start_m", "[0, 0]");
                 with("terrain", "goal_m", "[0, 0]");

@@ -20,6 +20,7 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     Run(RunArgs),
     Slice(SliceArgs),
+    Fan(FanArgs),
     Hop(HopArgs),
     Check(CheckArgs),
     Plan(PlanArgs),
@@ -112,7 +113,10 @@ pub(crate) struct SliceArgs {
     /// Metres per unit of the mesh: 1000 for one in kilometres [default: 1]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) mesh_scale: Option<f64>,
-    /// Scenario whose friction goes into the chain
+    /// A point between, map coordinates in m, where the slice bends; may be repeated, in the order of travel [default: none]
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
+    pub(crate) via: Vec<MapPoint>,
+    /// Scenario whose friction and keep-out zones go into the chain
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
     /// Chain CSV to write; - or absent: standard output
@@ -121,6 +125,44 @@ pub(crate) struct SliceArgs {
     /// No warnings on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+/// Slices in all directions from one point: how far and in how few hops one gets in each
+///
+/// Without --points-per-segment, and with auto, each segment has 1 point.
+#[derive(Debug, ClapArgs)]
+#[command(
+    after_help = "Example:\n  chta fan data/terrain/mars_crater_field.tif --from 100,80 --headings 36 --length 80 \\\n    --scenario data/scenarios/mars_crater_field.toml --plot rose.svg"
+)]
+pub(crate) struct FanArgs {
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
+    #[arg(value_name = "DEM")]
+    pub(crate) dem: PathBuf,
+    /// Where all slices begin, map coordinates in m
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
+    pub(crate) from: MapPoint,
+    /// How many, equally spaced clockwise from grid north
+    #[arg(long, value_name = "N", default_value_t = 36)]
+    pub(crate) headings: u32,
+    /// How long each is, m; the map's border and no-data cut it
+    #[arg(long, value_name = "L")]
+    pub(crate) length: f64,
+    /// Table (CSV) to write; -: to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Rose picture (SVG) to write
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
 }
 
 /// Test one hop: every limit by itself, what sets either end of the feasible take-off angles, or which two conflict

@@ -11,7 +11,7 @@ use chta::{
     chain::Station,
     report::InputFile,
     scenario::{
-        Entries, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, prepare,
+        Covers, Entries, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, prepare,
         scenario_document, sha256_of,
     },
 };
@@ -148,8 +148,14 @@ pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArg
     };
     let chain_name = target.to_string_lossy().into_owned();
     if !is_scenario {
-        for key in ["dem", "mesh", "mesh_scale", "start_m", "goal_m"] {
+        for key in ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "via_m"] {
             source.entries.forget("terrain", key);
+        }
+        for key in ["friction_raster", "keep_out"] {
+            if source.entries.forget("surface", key) {
+                let warning = format!("surface.{key} is laid over terrain when it is sliced: for a chain its own columns count");
+                output::warn(common.quiet, &warning);
+            }
         }
         source.entries.set_by_option("CHAIN", "terrain", "chain", chain_name.clone().into());
         // What is given beside the scenario starts from the working folder, as every path on the command line.
@@ -172,7 +178,10 @@ pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArg
     for warning in &prepared.warnings {
         output::warn(common.quiet, warning);
     }
-    let inputs = vec![InputFile { name: relative_name(&file), sha256: sha256_of(&file)? }];
+    let mut inputs = vec![input_file(&file)?];
+    for cover in Covers::files(&scenario) {
+        inputs.push(input_file(&base.join(cover))?);
+    }
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
     Ok(Loaded { scenario, prepared, document, inputs, ends })
 }
@@ -189,10 +198,47 @@ fn unprepared(error: PipelineError, file: &Path, ends: EndOptions) -> Failure {
     }
 }
 
-/// Reads a scenario alone, without a terrain: for `slice`.
-pub(crate) fn scenario_alone(path: &Path) -> Result<Scenario, Failure> {
-    let source = read_source(path)?;
-    validated(source.entries, &source.name, &source.text)
+/// A scenario without terrain, for a command that brings its own.
+#[derive(Debug)]
+pub(crate) struct Bare {
+    /// The scenario as used.
+    pub(crate) scenario: Scenario,
+    /// The folder that its paths start from.
+    pub(crate) base: PathBuf,
+    /// The scenario for a result.
+    pub(crate) document: serde_json::Value,
+}
+
+/// Loads the scenario of the options, without its terrain.
+pub(crate) fn load_bare(common: &CommonArgs, search: &SearchArgs) -> Result<Bare, Failure> {
+    let mut source = match &common.scenario {
+        Some(path) => read_source(path)?,
+        None => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
+    };
+    apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
+    forget_terrain(&mut source.entries);
+    let scenario = validated(source.entries, &source.name, &source.text)?;
+    let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
+    Ok(Bare { scenario, base: source.base, document })
+}
+
+/// A file that was read, for a result.
+pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
+    Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
+}
+
+/// Reads a scenario alone, with the folder of its paths but without its terrain: for commands that bring their own.
+pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure> {
+    let mut source = read_source(path)?;
+    forget_terrain(&mut source.entries);
+    Ok((validated(source.entries, &source.name, &source.text)?, source.base))
+}
+
+/// Forgets the terrain that a scenario names, where the command line brings another.
+fn forget_terrain(entries: &mut Entries) {
+    for key in ["dem", "mesh", "mesh_scale", "chain", "start_m", "goal_m", "via_m", "start_x_m", "goal_x_m"] {
+        entries.forget("terrain", key);
+    }
 }
 
 /// Whether a file is a scenario or a result by its name; anything else is a chain CSV.

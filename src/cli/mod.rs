@@ -27,6 +27,7 @@ pub(crate) fn run() -> ExitCode {
     let answer = match help::parsed().command {
         Command::Run(args) => commands::run::run(&args),
         Command::Slice(args) => commands::slice::run(&args),
+        Command::Fan(args) => commands::fan::run(&args),
         Command::Hop(args) => commands::hop::run(&args),
         Command::Check(args) => commands::check::run(&args),
         Command::Plan(args) => commands::plan::run(&args),

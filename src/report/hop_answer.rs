@@ -202,9 +202,10 @@ impl BindingRecord {
                 let (gap_deg, gap_m_s) = match alone.shortfall {
                     Some(Shortfall::Ground { refusal, .. }) => (refusal.excess_deg(), None),
                     Some(Shortfall::Speed { needed_m_s, limit_m_s }) => (None, Some(needed_m_s - limit_m_s)),
-                    Some(Shortfall::Height { .. }) | None => (None, None),
+                    Some(Shortfall::Height { .. } | Shortfall::Bend { .. }) | None => (None, None),
                 };
-                Self::Conflict { conflict: vec![alone.limit.name()], gap_deg, gap_m_s, vertex: None, sentence }
+                let vertex = alone.vertex.map(|vertex| VertexRecord::new(test, vertex));
+                Self::Conflict { conflict: vec![alone.limit.name()], gap_deg, gap_m_s, vertex, sentence }
             }
             Conflict::Pair { lower, upper, gap_deg } => Self::Conflict {
                 conflict: vec![lower.limit.name(), upper.limit.name()],

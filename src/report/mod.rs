@@ -2,6 +2,7 @@
 
 mod check_answer;
 mod document;
+mod fan_answer;
 #[cfg(feature = "plot")]
 pub mod figure;
 mod geojson;
@@ -12,6 +13,7 @@ mod whole_file;
 
 pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, verdict_name};
 pub use document::{Document, InputFile};
+pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::path_geojson;
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
 pub use path_record::{HopRecord, MapRecord, TotalsRecord, write_path_csv};

@@ -21,6 +21,8 @@ pub enum Kind {
     AngleRange,
     /// Two numbers `[x, y]` on the map, in metres.
     MapPoint,
+    /// A list of points `[x, y]` on the map, in metres.
+    MapPoints,
     /// A whole number, or `"auto"`.
     CountOrAuto,
     /// One of these words.
@@ -62,6 +64,7 @@ impl Kind {
             Self::AngleOrUnlimited => "an angle from 0 to 90 degrees, or inf".to_owned(),
             Self::AngleRange => "two angles in degrees, [min, max], from -360 to 360, min not above max".to_owned(),
             Self::MapPoint => "two finite numbers in metres, [x, y]".to_owned(),
+            Self::MapPoints => "a list of points, each two finite numbers in metres, [[x, y], ...]".to_owned(),
             Self::CountOrAuto => "a whole number from 0 to 100000, or \"auto\"".to_owned(),
             Self::Word(words) => format!("one of {}", words.join(", ")),
             Self::Text => "a text in quotes, not empty".to_owned(),
@@ -90,7 +93,7 @@ const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 30] = [
+pub const CATALOGUE: [Key; 33] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
@@ -112,12 +115,25 @@ pub const CATALOGUE: [Key; 30] = [
         Kind::AngleOrUnlimited,
         "steepest surface to rest on, degrees; absent: atan(friction); inf: none",
     ),
+    key(
+        "surface",
+        "friction_raster",
+        Kind::Text,
+        "raster of friction coefficients on the dem's map, path from this file; wins where it has data",
+    ),
+    key(
+        "surface",
+        "keep_out",
+        Kind::Text,
+        "GeoJSON polygons or mask raster on the dem's map, path from this file: no take-off, no landing",
+    ),
     key("terrain", "dem", Kind::Text, "elevation raster, path from this file"),
     key("terrain", "mesh", Kind::Text, "triangulated surface, z up, path from this file"),
     key("terrain", "mesh_scale", LENGTH, "metres per unit of the mesh; absent: 1"),
     key("terrain", "chain", Kind::Text, "chain CSV, path from this file"),
     key("terrain", "start_m", Kind::MapPoint, "start on the map, [x, y], m"),
     key("terrain", "goal_m", Kind::MapPoint, "goal on the map, [x, y], m"),
+    key("terrain", "via_m", Kind::MapPoints, "points between, [[x, y], ...], m: the slice bends there, and no hop spans a bend"),
     key("terrain", "start_x_m", COORDINATE, "start along the chain, m"),
     key("terrain", "goal_x_m", COORDINATE, "goal along the chain, m"),
     key(

@@ -15,7 +15,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     let mut tables = Map::new();
     tables.insert("body".to_owned(), body(scenario));
     tables.insert("hopper".to_owned(), hopper(scenario));
-    tables.insert("surface".to_owned(), surface(scenario));
+    tables.insert("surface".to_owned(), surface(scenario, named));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
     tables.insert("report".to_owned(), object([("title", scenario.title.clone().map(Value::from))]));
@@ -65,7 +65,7 @@ fn hopper(scenario: &Scenario) -> Value {
     ])
 }
 
-fn surface(scenario: &Scenario) -> Value {
+fn surface(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> Value {
     let (friction, takeoff, landing) = match scenario.surface.grip {
         Some(Grip::Friction(cone)) => (Some(cone.coefficient().into()), None, None),
         Some(Grip::FromSlope { takeoff, landing }) => (None, Some(range(takeoff)), Some(range(landing))),
@@ -83,6 +83,8 @@ fn surface(scenario: &Scenario) -> Value {
                 RestSlope::Unlimited => Some("inf".into()),
             },
         ),
+        ("friction_raster", scenario.friction_raster.as_deref().map(|path| named(path).into())),
+        ("keep_out", scenario.keep_out.as_deref().map(|path| named(path).into())),
     ])
 }
 
@@ -104,6 +106,7 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         ("chain", chain),
         ("start_m", ends.map(|[start, _]| json!([start.x, start.y]))),
         ("goal_m", ends.map(|[_, goal]| json!([goal.x, goal.y]))),
+        ("via_m", (!scenario.via.is_empty()).then(|| scenario.via.iter().map(|point| json!([point.x, point.y])).collect())),
         ("start_x_m", scenario.start_x_m.map(Value::from)),
         ("goal_x_m", scenario.goal_x_m.map(Value::from)),
     ])

@@ -130,9 +130,9 @@ impl Entries {
         self.add(table, name, value, place.clone(), place);
     }
 
-    /// Forgets a key, where an option replaces it by another one.
-    pub fn forget(&mut self, table: &str, name: &str) {
-        self.given.remove(&(table.to_owned(), name.to_owned()));
+    /// Forgets a key, where an option replaces it by another one; whether it was there.
+    pub fn forget(&mut self, table: &str, name: &str) -> bool {
+        self.given.remove(&(table.to_owned(), name.to_owned())).is_some()
     }
 
     /// The title of the report, where one was given.
@@ -185,6 +185,11 @@ impl Entries {
     /// Two numbers; `None` where they were not given.
     pub(super) fn pair(&self, table: &str, name: &str) -> Option<[f64; 2]> {
         self.value(table, name).and_then(pair)
+    }
+
+    /// Points; none where they were not given.
+    pub(super) fn points(&self, table: &str, name: &str) -> Vec<[f64; 2]> {
+        self.value(table, name).and_then(toml::Value::as_array).into_iter().flatten().filter_map(pair).collect()
     }
 
     /// Checks a value against its key's kind and keeps it.
@@ -308,6 +313,7 @@ fn fits(value: &toml::Value, kind: Kind) -> bool {
         }
         Kind::AngleRange => pair(value).is_some_and(|[a, b]| -360.0 <= a && a <= b && b <= 360.0),
         Kind::MapPoint => pair(value).is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() <= 1e12)),
+        Kind::MapPoints => value.as_array().is_some_and(|points| points.iter().all(|point| fits(point, Kind::MapPoint))),
         Kind::CountOrAuto => value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),

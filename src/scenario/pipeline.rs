@@ -13,7 +13,11 @@ use super::{BodyChoice, Scenario, TerrainSource};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     path::Hop,
-    terrain::{Profile, TerrainError, read_mesh, slice_file, slice_mesh},
+    quantity::MapPoint,
+    terrain::{
+        CoordinateSystem, FrictionRaster, KeepOut, MapBounds, Profile, TerrainError, open_dem, read_friction_raster, read_keep_out,
+        read_mesh, slice_legs, slice_mesh,
+    },
     world::{Body, FrictionCone, Grip},
 };
 
@@ -76,13 +80,12 @@ type Geometry = (PolygonalChain, Vec<String>, (Option<f64>, Option<f64>));
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let (geometry, warnings, ends) = match source {
         TerrainSource::Dem { path, start, goal } => {
-            let profile = slice_file(&base.join(path), *start, *goal)?;
-            sliced(scenario, &profile, Vec::new())?
+            let cut = Cut::of_dem(&base.join(path), [*start, *goal], &scenario.via)?;
+            covered(scenario, base, cut)?
         }
         TerrainSource::Mesh { path, scale, start, goal } => {
-            let file = read_mesh(&base.join(path), *scale)?;
-            let slice = slice_mesh(&file.mesh, *start, *goal)?;
-            sliced(scenario, &slice.profile, [file.warnings, slice.warnings()].concat())?
+            let cut = Cut::of_mesh(&base.join(path), *scale, [*start, *goal], &scenario.via)?;
+            covered(scenario, base, cut)?
         }
         TerrainSource::Chain { path } => {
             let file = csv::read_chain_csv_file(base.join(path))?;
@@ -98,11 +101,103 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
     Ok(Prepared { chain, start, goal, warnings })
 }
 
-/// The chain of a slice, with its ends as start and goal.
-fn sliced(scenario: &Scenario, profile: &Profile, warnings: Vec<String>) -> Result<Geometry, InvalidChain> {
-    let chain = PolygonalChain::from_profile(profile, friction(scenario))?;
+/// The chain of a cut under what the scenario lays over it, with its ends as start and goal.
+fn covered(scenario: &Scenario, base: &Path, cut: Cut) -> Result<Geometry, PipelineError> {
+    let chain = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds)?.chain(cut.legs)?;
     let (first_m, last_m) = chain.extent_m();
-    Ok((chain, warnings, (Some(first_m), Some(last_m))))
+    Ok((chain, cut.warnings, (Some(first_m), Some(last_m))))
+}
+
+/// The ground along a journey, leg by leg, and what is known of its map.
+#[derive(Clone, Debug)]
+pub struct Cut {
+    /// One slice for each leg.
+    pub legs: Vec<Profile>,
+    /// What the terrain says of its map.
+    pub coordinates: Option<CoordinateSystem>,
+    /// What the terrain covers.
+    pub bounds: MapBounds,
+    /// What the analyst should know.
+    pub warnings: Vec<String>,
+}
+
+impl Cut {
+    /// Slices an elevation raster from the first end to the second over the points between, reading only what the slices cross.
+    ///
+    /// # Errors
+    /// As [`open_dem`] and [`slice_legs`].
+    pub fn of_dem(file: &Path, [from, to]: [MapPoint; 2], via: &[MapPoint]) -> Result<Self, TerrainError> {
+        let dem = open_dem(file)?;
+        let legs = slice_legs(dem.as_ref(), from, via, to)?;
+        let map = dem.georeference();
+        let bounds = map.bounds(dem.rows(), dem.cols());
+        Ok(Self { legs, coordinates: Some(map.coordinate_system.clone()), bounds, warnings: Vec::new() })
+    }
+
+    /// Slices a mesh from the first end to the second over the points between.
+    ///
+    /// # Errors
+    /// As [`read_mesh`] and [`slice_mesh`].
+    pub fn of_mesh(file: &Path, scale: f64, [from, to]: [MapPoint; 2], via: &[MapPoint]) -> Result<Self, TerrainError> {
+        let read = read_mesh(file, scale)?;
+        let (mut legs, mut warnings) = (Vec::new(), read.warnings);
+        let mut begin = from;
+        for end in via.iter().copied().chain([to]) {
+            let slice = slice_mesh(&read.mesh, begin, end)?;
+            warnings.extend(slice.warnings());
+            legs.push(slice.profile);
+            begin = end;
+        }
+        Ok(Self { legs, coordinates: None, bounds: read.mesh.bounds().map, warnings })
+    }
+}
+
+/// What a scenario lays over its terrain: friction, and keep-out zones.
+#[derive(Clone, Debug)]
+pub struct Covers {
+    constant: Option<FrictionCone>,
+    raster: Option<FrictionRaster>,
+    keep_out: Option<KeepOut>,
+}
+
+impl Covers {
+    /// Reads the files that a scenario names, for a terrain that says this of its map and covers this.
+    ///
+    /// `base` is the folder that the scenario's paths start from.
+    ///
+    /// # Errors
+    /// [`TerrainError::Cover`].
+    pub fn read(
+        scenario: &Scenario,
+        base: &Path,
+        coordinates: Option<&CoordinateSystem>,
+        bounds: MapBounds,
+    ) -> Result<Self, TerrainError> {
+        let raster = scenario.friction_raster.as_deref().map(|path| read_friction_raster(&base.join(path), coordinates));
+        let keep_out = scenario.keep_out.as_deref().map(|path| read_keep_out(&base.join(path), coordinates, bounds));
+        Ok(Self { constant: friction(scenario), raster: raster.transpose()?, keep_out: keep_out.transpose()? })
+    }
+
+    /// The files of a scenario that are read, from its folder.
+    pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
+        [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
+    }
+
+    /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones.
+    ///
+    /// # Errors
+    /// [`TerrainError::Cover`] where a raster ends before the slice does.
+    pub fn chain(&self, mut legs: Vec<Profile>) -> Result<PolygonalChain, PipelineError> {
+        for leg in &mut legs {
+            if let Some(raster) = &self.raster {
+                raster.lay(leg, self.constant)?;
+            }
+            if let Some(keep_out) = &self.keep_out {
+                keep_out.mark(leg)?;
+            }
+        }
+        Ok(PolygonalChain::from_legs(&legs, self.constant)?)
+    }
 }
 
 /// The friction that a scenario gives the whole ground.

@@ -77,8 +77,14 @@ pub struct Scenario {
     pub hopper: Hopper,
     /// The ground's grip.
     pub surface: Surface,
+    /// Raster of friction coefficients, from the scenario's folder.
+    pub friction_raster: Option<PathBuf>,
+    /// Keep-out zones, from the scenario's folder.
+    pub keep_out: Option<PathBuf>,
     /// The terrain, where the scenario names it.
     pub terrain: Option<TerrainSource>,
+    /// Points of the map between start and goal, where a slice bends.
+    pub via: Vec<MapPoint>,
     /// Start along the chain, m, where the scenario names it.
     pub start_x_m: Option<f64>,
     /// Goal along the chain, m, where the scenario names it.
@@ -102,6 +108,7 @@ impl Scenario {
         let hopper = hopper(&mut entries);
         let surface = surface(&mut entries);
         let terrain = terrain(&mut entries);
+        let [friction_raster, keep_out] = covers(&mut entries, &surface, terrain.as_ref());
         let search = search(&mut entries);
         let mut problems = entries.problems().to_vec();
         let Some(body) = body.filter(|_| problems.is_empty()) else {
@@ -116,7 +123,10 @@ impl Scenario {
             body,
             hopper,
             surface,
+            friction_raster,
+            keep_out,
             terrain,
+            via: entries.points("terrain", "via_m").into_iter().map(|[x, y]| MapPoint::new(x, y)).collect(),
             start_x_m: entries.number("terrain", "start_x_m"),
             goal_x_m: entries.number("terrain", "goal_x_m"),
             search,
@@ -228,6 +238,24 @@ fn surface(entries: &mut Entries) -> Surface {
     Surface { grip, rest }
 }
 
+/// The files that lie over the terrain: friction raster and keep-out zones.
+fn covers(entries: &mut Entries, surface: &Surface, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 2] {
+    let own_columns = [("friction_raster", "friction_coefficient"), ("keep_out", "keep_out")];
+    if matches!(terrain, Some(TerrainSource::Chain { .. })) {
+        for (name, column) in own_columns {
+            if let Some(place) = entries.place("surface", name) {
+                let help = format!("give the chain a column {column} instead, as chta slice --scenario does");
+                entries.problem(place, format!("surface.{name} is laid over a dem, but terrain has a chain"), help);
+            }
+        }
+    }
+    if let (Some(Grip::FromSlope { .. }), Some(place)) = (surface.grip, entries.place("surface", "friction_raster")) {
+        let message = "surface has both friction_raster and angles from the slope, expected one of the two".to_owned();
+        entries.problem(place, message, "remove friction_raster, or takeoff_from_slope_deg and landing_from_slope_deg");
+    }
+    own_columns.map(|(name, _)| entries.text("surface", name).map(PathBuf::from))
+}
+
 /// Where the ground comes from: one file at most.
 fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
     let kinds = ["dem", "mesh", "chain"];
@@ -303,6 +331,10 @@ fn refuse_map_points(entries: &mut Entries) {
             let help = format!("for a chain give {} instead", name.replace("_m", "_x_m"));
             entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
         }
+    }
+    if let Some(place) = entries.place("terrain", "via_m") {
+        let message = "terrain.via_m is of a slice, but terrain has a chain".to_owned();
+        entries.problem(place, message, "give the chain a column bend instead, as chta slice --via does");
     }
 }
 

@@ -18,6 +18,16 @@ pub enum TerrainError {
         /// What is wrong with it.
         problem: Box<Self>,
     },
+    /// A problem of keep-out zones or of a raster of friction.
+    #[error("{what} '{}': {problem}", path.display())]
+    Cover {
+        /// "keep-out zones" or "friction raster".
+        what: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What was found, what was expected and how to mend it.
+        problem: String,
+    },
     /// The operating system refused to read or write.
     #[error("cannot be {action}: {reason}")]
     Io {

@@ -32,6 +32,7 @@ mod slice;
 mod synth;
 mod window;
 mod xyz;
+mod zones;
 
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M};
@@ -45,7 +46,8 @@ pub use mesh::{
 };
 pub use pds3::read_pds3_bytes;
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
-pub use slice::{slice, slice_file};
+pub use slice::{slice, slice_file, slice_legs};
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
 pub use window::{DemFile, Window};
 pub use xyz::read_xyz_bytes;
+pub use zones::{FrictionRaster, KeepOut, read_friction_raster, read_keep_out};

@@ -2,7 +2,10 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::quantity::{Angle, MapPoint};
+use crate::{
+    quantity::{Angle, MapPoint},
+    world::FrictionCone,
+};
 
 /// The ground along a straight line on the map: a polygonal line, and the facet under each of its segments.
 ///
@@ -31,13 +34,17 @@ pub struct ProfilePoint {
     pub map: MapPoint,
 }
 
-/// The facet under a segment.
+/// The facet under a segment, and what lies over it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileFacet {
     /// Upward normal of length 1: east, north, up.
     pub normal: Vector3<f64>,
     /// Angle between the normal and the vertical plane of travel, 0 to 90 degrees.
     pub cross_slope: Angle,
+    /// No take-off, no landing: the segment lies in a keep-out zone.
+    pub keep_out: bool,
+    /// Friction of the segment where a raster gives it.
+    pub friction: Option<FrictionCone>,
 }
 
 impl Profile {
@@ -70,6 +77,8 @@ impl ProfileFacet {
         Self {
             normal: upward / upward.norm(),
             cross_slope: Angle::from_radians(libm::atan2(across.abs(), libm::sqrt(along * along + 1.0))),
+            keep_out: false,
+            friction: None,
         }
     }
 
@@ -90,6 +99,8 @@ impl ProfileFacet {
         Self {
             normal: upward / upward.norm(),
             cross_slope: Angle::from_radians(libm::atan2(across.abs(), libm::hypot(along, upward.z))),
+            keep_out: false,
+            friction: None,
         }
     }
 

@@ -33,6 +33,16 @@ pub fn slice_file(path: &Path, from: MapPoint, to: MapPoint) -> Result<Profile, 
     slice_parts(file.as_ref(), from, to, POSTS_AT_ONCE).map_err(|error| error.in_file(path))
 }
 
+/// Cuts an open terrain along a polyline: one slice for each leg, from `from` over the points between to `to`.
+///
+/// # Errors
+/// As [`slice`](super::slice()), of the first leg that has one; two equal points in a row are [`TerrainError::SamePoint`].
+pub fn slice_legs(file: &dyn DemFile, from: MapPoint, via: &[MapPoint], to: MapPoint) -> Result<Vec<Profile>, TerrainError> {
+    let ends = via.iter().copied().chain([to]);
+    let begins = [from].into_iter().chain(via.iter().copied());
+    begins.zip(ends).map(|(begin, end)| slice_parts(file, begin, end, POSTS_AT_ONCE)).collect()
+}
+
 /// Window after window along the transect.
 pub(super) fn slice_parts(file: &dyn DemFile, from: MapPoint, to: MapPoint, posts_at_once: usize) -> Result<Profile, TerrainError> {
     let nothing = Part::none_of(file);

@@ -18,7 +18,7 @@ use nalgebra::Vector2;
 
 use self::crossings::{Crossing, crossings};
 use self::facet::Ground;
-pub use self::from_file::slice_file;
+pub use self::from_file::{slice_file, slice_legs};
 use super::{Dem, Profile, ProfilePoint, TerrainError};
 use crate::quantity::MapPoint;
 

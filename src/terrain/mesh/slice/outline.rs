@@ -158,8 +158,12 @@ impl<'a> Outline<'a> {
             Some(facet) if reached_m >= top_m - self.jump_m => (facet, true),
             _ => {
                 let heading = self.plane.heading;
-                let nothing =
-                    ProfileFacet { normal: Vector3::new(-heading.y, heading.x, 0.0), cross_slope: Angle::from_degrees(90.0) };
+                let nothing = ProfileFacet {
+                    normal: Vector3::new(-heading.y, heading.x, 0.0),
+                    cross_slope: Angle::from_degrees(90.0),
+                    keep_out: false,
+                    friction: None,
+                };
                 (nothing, false)
             }
         }
