@@ -60,6 +60,7 @@
 //! ballistics   the equations: every limit as an interval, the hop test, many hops on a segment
 //! graph        nodes, hops as edges, the search
 //! path         the hops to fly, and `execute`, which flies them again without those equations
+//! reach        how far one gets from one place of a map
 //! report       results as plain data; text, JSON, CSV, GeoJSON and the picture are views of it
 //! scenario     TOML, validated; wires the pipeline
 //! ```
@@ -80,6 +81,7 @@ pub mod chain;
 pub mod graph;
 pub mod path;
 pub mod quantity;
+pub mod reach;
 pub mod report;
 pub mod scenario;
 pub mod terrain;

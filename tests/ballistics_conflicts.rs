@@ -62,7 +62,9 @@ impl Case {
             Limit::MechanicalAngle => (other.hopper.takeoff_angle_min, other.hopper.takeoff_angle_max) = (None, None),
             Limit::ApexHeight => other.hopper.apex_height_max_m = None,
             Limit::FlightTime => other.hopper.flight_time_max_s = None,
-            Limit::Direction | Limit::KeepOut | Limit::RestSlope | Limit::LineOfSight => panic!("{limit} cannot be taken away"),
+            Limit::Direction | Limit::KeepOut | Limit::RestSlope | Limit::Bend | Limit::LineOfSight => {
+                panic!("{limit} cannot be taken away")
+            }
         }
         other
     }

@@ -1,11 +1,13 @@
 //! The byte readers against ten thousand seeded mutations each: no panic, no long run, no absurd memory.
+#![allow(clippy::format_push_string, reason = "a test's text need not be written fast")]
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and tells what it saw")]
 
 use std::time::{Duration, Instant};
 
 use chta::quantity::MapPoint;
 use chta::terrain::{
-    Dem, SyntheticTerrain, TerrainError, geotiff_bytes, read_ascii_grid_bytes, read_geotiff_bytes, synthesise, write_ascii_grid,
+    Dem, SyntheticTerrain, TerrainError, geotiff_bytes, read_ascii_grid_bytes, read_geotiff_bytes, read_pds3_bytes, read_xyz_bytes,
+    synthesise, write_ascii_grid,
 };
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
@@ -96,6 +98,33 @@ fn mutated_ascii_grids_never_panic() {
     let mut text = Vec::new();
     write_ascii_grid(&small(), &mut text).unwrap();
     check(&text, b"0123456789.,-+eE nNaA\n\r\t", |bytes| read_ascii_grid_bytes(&bytes));
+}
+
+#[test]
+fn mutated_xyz_grids_never_panic() {
+    let mut text = "x_m,y_m,z_m\n".to_owned();
+    let dem = small();
+    for row in 0..dem.rows() {
+        for col in 0..dem.cols() {
+            let at = dem.georeference().post(row, col);
+            text += &format!("{},{},{}\n", at.x, at.y, dem.elevation(row, col).unwrap());
+        }
+    }
+    check(text.as_bytes(), b"0123456789.,;-+eE naN\n\r\t", |bytes| read_xyz_bytes(&bytes));
+}
+
+#[test]
+fn mutated_pds3_images_never_panic() {
+    let mut label = "PDS_VERSION_ID = PDS3\nRECORD_BYTES = 1\n^IMAGE = 701 <BYTES>\nOBJECT = IMAGE\nLINES = 3\nLINE_SAMPLES = 4\n\
+                     SAMPLE_TYPE = LSB_INTEGER\nSAMPLE_BITS = 16\nMISSING_CONSTANT = (-1, 16#8000#)\nSCALING_FACTOR = 0.5 /* half */\nEND_OBJECT\n\
+                     OBJECT = IMAGE_MAP_PROJECTION\nMAP_PROJECTION_TYPE = \"SINUSOIDAL\"\nA_AXIS_RADIUS = 1737.4 <KM>\nC_AXIS_RADIUS = 1737.4\n\
+                     CENTER_LONGITUDE = 5\nMAP_SCALE = 10 <M/PIXEL>\nLINE_PROJECTION_OFFSET = 5.5\nSAMPLE_PROJECTION_OFFSET = -7\nEND_OBJECT\nEND\n"
+        .to_owned()
+        .into_bytes();
+    assert!(label.len() <= 700);
+    label.resize(700, b' ');
+    label.extend([1_i16, 2, -1, 4, 5, 6, 7, 8, 9, 10, 11, 12].iter().flat_map(|sample| sample.to_le_bytes()));
+    check(&label, b"0123456789.,=<>(){}#\"/*-\n ", read_pds3_bytes);
 }
 
 /// A 3 x 4 int16 strip without compression, tag by tag, with scale, tie point, keys and no-data.

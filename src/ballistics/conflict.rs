@@ -25,6 +25,11 @@ pub enum Shortfall {
         /// The greatest allowed, m/s.
         limit_m_s: f64,
     },
+    /// The plane of travel turns on the way.
+    Bend {
+        /// Where, m along the chain.
+        x_m: f64,
+    },
     /// The landing itself is too high.
     Height {
         /// Its height above the take-off, m.
@@ -72,6 +77,7 @@ impl fmt::Display for Shortfall {
             Self::Speed { needed_m_s, limit_m_s } => {
                 write!(f, "every arc needs at least {needed_m_s:.6} m/s, the limit is {limit_m_s} m/s")
             }
+            Self::Bend { x_m } => write!(f, "the chain bends at x = {x_m} m, and a hop is flown in one plane: land on the bend"),
             Self::Height { needed_m, limit_m } => {
                 write!(f, "the landing lies {needed_m:.6} m above the take-off, the limit is {limit_m} m")
             }

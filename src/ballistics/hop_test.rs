@@ -88,13 +88,16 @@ impl<'a> HopTest<'a> {
     /// Source: P eq. 21; model section 2.
     ///
     /// # Errors
-    /// The first limit, in the order of testing (ground, speeds, cones, machine, terrain), that with those before it leaves no arc.
+    /// The first limit, in the order of testing (ground, bends, speeds, cones, machine, terrain), that with those before it leaves no arc.
     /// [`takeoff_set`](Self::takeoff_set) tells the whole story. [`Limit::Direction`] where both stations share the same x.
     #[inline]
     pub fn loft(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).ok_or(Limit::Direction)?;
         let from = self.granted(takeoff, Contact::Takeoff, direction)?;
         let to = self.granted(landing, Contact::Landing, direction)?;
+        if self.chain.geometry().bend_between(takeoff.point.x_m, landing.point.x_m).is_some() {
+            return Err(Limit::Bend);
+        }
         let sight = self.line_of_sight(takeoff, landing).ok_or(Limit::Direction)?;
         let open_air = self.open_air(sight, from, to)?;
         let vertices = self.chain.geometry().vertices();

@@ -139,6 +139,10 @@ fn all_limits(
     };
     let from = granted(Contact::Takeoff, takeoff);
     let to = granted(Contact::Landing, landing);
+    if let Some(vertex) = test.chain().geometry().bend_between(takeoff.point.x_m, landing.point.x_m) {
+        let x_m = test.chain().geometry().vertices()[vertex.index()].x_m;
+        add(Limit::Bend, SlopeInterval::EMPTY, Some(vertex), Some(Shortfall::Bend { x_m }));
+    }
     let gravity = test.gravity_m_s2();
     if let Some(rule) = from {
         add(Limit::TakeoffCone, limits::takeoff_cone(sight, rule.slopes()), None, None);

@@ -5,7 +5,7 @@ use std::fmt;
 use super::{Ground, GroundForm, OffChain, Site, Station};
 use crate::{
     quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
-    terrain::Profile,
+    terrain::{Profile, ProfilePoint},
     world::FrictionCone,
 };
 
@@ -17,6 +17,8 @@ pub struct PolygonalChain {
     slopes: Vec<f64>,
     grounds: Vec<Ground>,
     map: Option<Vec<MapPoint>>,
+    /// Vertices where the plane of travel turns, rising.
+    bends: Vec<VertexId>,
 }
 
 /// One thing that is wrong with a chain.
@@ -47,6 +49,11 @@ pub enum ChainProblem {
         /// Which segment.
         segment: SegmentId,
     },
+    /// A bend that is no inner vertex.
+    BendAtEnd {
+        /// Which vertex.
+        vertex: VertexId,
+    },
     /// Grounds and segments, or map points and vertices, do not pair up.
     CountMismatch {
         /// Of what.
@@ -68,6 +75,13 @@ impl fmt::Display for ChainProblem {
             }
             Self::Vertical { segment } => {
                 write!(f, "segment {} is too steep for its slope to be a number: move its vertices apart", segment.index() + 1)
+            }
+            Self::BendAtEnd { vertex } => {
+                write!(
+                    f,
+                    "vertex {} is marked as a bend, expected bends only between the first and the last vertex",
+                    vertex.index() + 1
+                )
             }
             Self::CountMismatch { what, found, expected } => write!(f, "{found} {what}, expected {expected}"),
         }
@@ -118,7 +132,11 @@ impl PolygonalChain {
                 }
             }
         }
-        if problems.is_empty() { Ok(Self { vertices, slopes, grounds, map }) } else { Err(InvalidChain(problems)) }
+        if problems.is_empty() {
+            Ok(Self { vertices, slopes, grounds, map, bends: Vec::new() })
+        } else {
+            Err(InvalidChain(problems))
+        }
     }
 
     /// A chain of bare vertices: constraints come from the scenario.
@@ -137,7 +155,8 @@ impl PolygonalChain {
         Self::new(vertices, grounds, None)
     }
 
-    /// A chain from a slice of the terrain: cross-slopes from its facets, friction where one is given, map points from the slice.
+    /// A chain from a slice of the terrain: cross-slopes and keep-out from its facets, friction from them or the one given,
+    /// map points from the slice.
     ///
     /// # Errors
     /// [`InvalidChain`], which a slice of sound terrain does not give.
@@ -146,10 +165,70 @@ impl PolygonalChain {
         let grounds = profile
             .facets
             .iter()
-            .map(|facet| Ground { form: GroundForm::Surface { friction, cross_slope: facet.cross_slope }, keep_out: false })
+            .map(|facet| Ground {
+                form: GroundForm::Surface { friction: facet.friction.or(friction), cross_slope: facet.cross_slope },
+                keep_out: facet.keep_out,
+            })
             .collect();
         let map = profile.points.iter().map(|p| p.map).collect();
         Self::new(vertices, grounds, Some(map))
+    }
+
+    /// A chain from slices that follow one another, each beginning where the one before ends: a bend at each place where the heading
+    /// changes (by more than a billionth of a radian).
+    ///
+    /// # Errors
+    /// [`InvalidChain`], which slices of sound terrain do not give; also for no slice at all.
+    pub fn from_legs(legs: &[Profile], friction: Option<FrictionCone>) -> Result<Self, InvalidChain> {
+        let mut joined = Profile { points: Vec::new(), facets: Vec::new(), heading: nalgebra::Vector2::zeros() };
+        let mut bends = Vec::new();
+        let mut heading = None;
+        for leg in legs {
+            let begin_m = joined.length_m();
+            let turns = |before: nalgebra::Vector2<f64>| before.perp(&leg.heading).abs() > 1e-9 || before.dot(&leg.heading) < 0.0;
+            if heading.is_some_and(turns) {
+                bends.push(VertexId(joined.points.len() - 1));
+            }
+            heading = Some(leg.heading);
+            // The place where two legs meet is one vertex.
+            let shared = usize::from(!joined.points.is_empty());
+            joined.points.extend(leg.points.iter().skip(shared).map(|point| ProfilePoint { x_m: begin_m + point.x_m, ..*point }));
+            joined.facets.extend(&leg.facets);
+        }
+        Self::from_profile(&joined, friction)?.with_bends(bends)
+    }
+
+    /// The same chain with bends: vertices where the vertical plane of travel turns, so that no hop may span them.
+    ///
+    /// # Errors
+    /// [`InvalidChain`] where a bend is no inner vertex.
+    pub fn with_bends(mut self, mut bends: Vec<VertexId>) -> Result<Self, InvalidChain> {
+        bends.sort_unstable();
+        bends.dedup();
+        let inner = 1..self.segment_count();
+        let wrong: Vec<_> =
+            bends.iter().filter(|v| !inner.contains(&v.index())).map(|&vertex| ChainProblem::BendAtEnd { vertex }).collect();
+        if !wrong.is_empty() {
+            return Err(InvalidChain(wrong));
+        }
+        self.bends = bends;
+        Ok(self)
+    }
+
+    /// The vertices where the plane of travel turns, rising.
+    pub fn bends(&self) -> &[VertexId] {
+        &self.bends
+    }
+
+    /// The first bend strictly between two x, by the order of the chain; `None` where a hop between them spans none.
+    #[inline]
+    pub fn bend_between(&self, a_m: f64, b_m: f64) -> Option<VertexId> {
+        if self.bends.is_empty() {
+            return None;
+        }
+        let (low_m, high_m) = (a_m.min(b_m), a_m.max(b_m));
+        let next = self.bends.partition_point(|v| self.vertices[v.index()].x_m <= low_m);
+        self.bends.get(next).copied().filter(|v| self.vertices[v.index()].x_m < high_m)
     }
 
     /// The vertices, in the direction of +x.

@@ -20,6 +20,7 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     Run(RunArgs),
     Slice(SliceArgs),
+    Fan(FanArgs),
     Hop(HopArgs),
     Check(CheckArgs),
     Plan(PlanArgs),
@@ -68,10 +69,10 @@ pub(crate) struct CommonArgs {
 #[derive(Debug, ClapArgs)]
 pub(crate) struct SearchArgs {
     /// Points inside each segment, or auto: the first of 0, 1, 2, 3, 7, 15, 31 that finds a path [default: auto]
-    #[arg(long, value_name = "K|auto")]
+    #[arg(long, value_name = "K|auto", allow_negative_numbers = true)]
     pub(crate) points_per_segment: Option<String>,
-    /// Instead: as many points as keep neighbours this close along the ground, m
-    #[arg(long, value_name = "D", conflicts_with = "points_per_segment")]
+    /// Instead: as many points as keep neighbours this close along the ground, m [default: by points per segment]
+    #[arg(long, value_name = "D", conflicts_with = "points_per_segment", allow_negative_numbers = true)]
     pub(crate) node_spacing_max_m: Option<f64>,
     /// Second criterion after hops: takeoff-speed, energy, time, peak-speed [default: takeoff-speed]
     #[arg(long, value_name = "EFFORT")]
@@ -106,9 +107,9 @@ pub(crate) struct RunArgs {
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta slice data/terrain/mars_crater_field.tif --from 12,12 --to 180,150 -o chain.csv")]
 pub(crate) struct SliceArgs {
-    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
-    #[arg(value_name = "DEM")]
-    pub(crate) dem: PathBuf,
+    /// Elevation raster (GeoTIFF or ESRI ASCII grid, map in metres) or mesh (OBJ, STL or PLY, z up)
+    #[arg(value_name = "DEM|MESH")]
+    pub(crate) terrain: PathBuf,
     /// Where the slice begins, map coordinates in m
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, required_unless_present = "from_lonlat")]
     pub(crate) from: Option<MapPoint>,
@@ -121,7 +122,13 @@ pub(crate) struct SliceArgs {
     /// Instead: longitude and planetocentric latitude, degrees, east positive
     #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "to")]
     pub(crate) to_lonlat: Option<LonLat>,
-    /// Scenario whose friction goes into the chain
+    /// Metres per unit of the mesh: 1000 for one in kilometres [default: 1]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) mesh_scale: Option<f64>,
+    /// A point between, map coordinates in m, where the slice bends; may be repeated, in the order of travel [default: none]
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
+    pub(crate) via: Vec<MapPoint>,
+    /// Scenario whose friction and keep-out zones go into the chain
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
     /// Take distances of a map whose scale along the transect is off by over 1 % as they are
@@ -133,6 +140,47 @@ pub(crate) struct SliceArgs {
     /// The slice as a line in three dimensions (GeoJSON) to write
     #[arg(long, value_name = "FILE")]
     pub(crate) geojson: Option<PathBuf>,
+    /// No warnings on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// Slices in all directions from one point: how far and in how few hops one gets in each
+///
+/// Without --points-per-segment, and with auto, each segment has 1 point.
+#[derive(Debug, ClapArgs)]
+#[command(
+    after_help = "Example:\n  chta fan data/terrain/mars_crater_field.tif --from 100,80 --headings 36 --length 80 \\\n    --scenario data/scenarios/mars_crater_field.toml --plot rose.svg"
+)]
+pub(crate) struct FanArgs {
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
+    #[arg(value_name = "DEM")]
+    pub(crate) dem: PathBuf,
+    /// Where all slices begin, map coordinates in m
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
+    pub(crate) from: MapPoint,
+    /// How many, equally spaced clockwise from grid north
+    #[arg(long, value_name = "N", default_value_t = 36)]
+    pub(crate) headings: u32,
+    /// How long each is, m; the map's border and no-data cut it
+    #[arg(long, value_name = "L")]
+    pub(crate) length: f64,
+    /// Table (CSV) to write; -: to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Rose picture (SVG) to write
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
 }
 
 /// Test one hop: every limit by itself, what sets either end of the feasible take-off angles, or which two conflict
@@ -225,16 +273,16 @@ pub(crate) struct SynthArgs {
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: PathBuf,
     /// Seed of all random numbers
-    #[arg(long, default_value_t = 1)]
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) seed: u64,
     /// Rows of posts
-    #[arg(long, default_value_t = 257)]
+    #[arg(long, default_value_t = 257, allow_negative_numbers = true)]
     pub(crate) rows: usize,
     /// Columns of posts
-    #[arg(long, default_value_t = 257)]
+    #[arg(long, default_value_t = 257, allow_negative_numbers = true)]
     pub(crate) cols: usize,
     /// Spacing of posts, m
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     pub(crate) spacing_m: f64,
     /// Map coordinates of the south-west post, m
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, default_value = "0,0")]
@@ -243,7 +291,7 @@ pub(crate) struct SynthArgs {
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) mean_elevation_m: f64,
     /// Slope of the plane under everything, degrees
-    #[arg(long, default_value_t = 0.0)]
+    #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) tilt_deg: f64,
     /// Towards where it rises, degrees clockwise from grid north
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
@@ -252,67 +300,67 @@ pub(crate) struct SynthArgs {
     #[arg(long, conflicts_with_all = ["ground_hurst", "ground_rms_m", "ground_baseline_m"])]
     pub(crate) no_ground: bool,
     /// Hurst exponent of the ground: near 0 rough at all scales, near 1 smooth close by
-    #[arg(long, default_value_t = 0.8)]
+    #[arg(long, default_value_t = 0.8, allow_negative_numbers = true)]
     pub(crate) ground_hurst: f64,
     /// Root mean square height difference at the baseline, m
-    #[arg(long, default_value_t = 0.1)]
+    #[arg(long, default_value_t = 0.1, allow_negative_numbers = true)]
     pub(crate) ground_rms_m: f64,
     /// The baseline, m
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     pub(crate) ground_baseline_m: f64,
     /// With craters
     #[arg(long)]
     pub(crate) craters: bool,
     /// Smallest crater, m
-    #[arg(long, default_value_t = 4.0, requires = "craters")]
+    #[arg(long, default_value_t = 4.0, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_diameter_min_m: f64,
     /// Largest crater, m
-    #[arg(long, default_value_t = 60.0, requires = "craters")]
+    #[arg(long, default_value_t = 60.0, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_diameter_max_m: f64,
     /// Craters per square kilometre
-    #[arg(long, default_value_t = 1500.0, requires = "craters")]
+    #[arg(long, default_value_t = 1500.0, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_density_per_km2: f64,
     /// Exponent of the cumulative counts: 3 young, 2 in equilibrium
-    #[arg(long, default_value_t = 2.5, requires = "craters")]
+    #[arg(long, default_value_t = 2.5, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_power_law_exponent: f64,
     /// Depth of fresh craters by diameter: moon (Pike 1977) or mars (Robbins and Hynek 2012)
     #[arg(long, value_enum, default_value = "moon", requires = "craters")]
     pub(crate) crater_depth_law: DepthLawArg,
     /// 0: all fresh; 1: some worn to nothing
-    #[arg(long, default_value_t = 0.8, requires = "craters")]
+    #[arg(long, default_value_t = 0.8, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_degradation_max: f64,
     /// With a sinuous rille from west to east
     #[arg(long)]
     pub(crate) rille: bool,
     /// Width of the rille between its upper edges, m
-    #[arg(long, default_value_t = 80.0, requires = "rille")]
+    #[arg(long, default_value_t = 80.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_width_m: f64,
     /// Depth of the rille, m
-    #[arg(long, default_value_t = 15.0, requires = "rille")]
+    #[arg(long, default_value_t = 15.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_depth_m: f64,
     /// Slope of its walls, degrees
-    #[arg(long, default_value_t = 28.0, requires = "rille")]
+    #[arg(long, default_value_t = 28.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_wall_slope_deg: f64,
     /// Swing of its centre line, m
-    #[arg(long, default_value_t = 30.0, requires = "rille")]
+    #[arg(long, default_value_t = 30.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_meander_amplitude_m: f64,
     /// Length of its meanders, m
-    #[arg(long, default_value_t = 300.0, requires = "rille")]
+    #[arg(long, default_value_t = 300.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_meander_length_m: f64,
     /// With boulders
     #[arg(long)]
     pub(crate) boulders: bool,
     /// Share of ground covered by rocks of any size: 0.05 sparse, 0.2 rough
-    #[arg(long, default_value_t = 0.1, requires = "boulders")]
+    #[arg(long, default_value_t = 0.1, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) rock_abundance: f64,
     /// Smallest boulder, m
-    #[arg(long, default_value_t = 1.0, requires = "boulders")]
+    #[arg(long, default_value_t = 1.0, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) boulder_diameter_min_m: f64,
     /// Largest boulder, m
-    #[arg(long, default_value_t = 4.0, requires = "boulders")]
+    #[arg(long, default_value_t = 4.0, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) boulder_diameter_max_m: f64,
     /// Share of a boulder's radius below ground
-    #[arg(long, default_value_t = 0.2, requires = "boulders")]
+    #[arg(long, default_value_t = 0.2, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) boulder_burial: f64,
 }
 

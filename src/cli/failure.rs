@@ -3,11 +3,13 @@
 use std::{
     fmt,
     io::{self, IsTerminal, Write},
+    ops::Range,
+    path::Path,
 };
 
 use chta::{
     chain::csv::{CsvFileError, CsvProblem},
-    scenario::{PipelineError, ScenarioProblems},
+    scenario::{PipelineError, ScenarioProblem, ScenarioProblems},
 };
 use miette::{
     Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, NamedSource, SourceCode,
@@ -31,12 +33,20 @@ impl Failure {
         Self::Message(sentence.into())
     }
 
+    /// One sentence about a file, which begins with its name unless it has it already.
+    pub(crate) fn about(file: &Path, sentence: &str) -> Self {
+        let known = file.file_name().is_some_and(|name| sentence.contains(&*name.to_string_lossy()));
+        Self::Message(if known { sentence.to_owned() } else { format!("{}: {sentence}", file.display()) })
+    }
+
     /// Tells it on standard error: one sentence a problem, with the line and the field underlined where there is one.
     pub(crate) fn tell(&self) {
         let mut text = String::new();
         for pointed in self.pointed() {
+            let mut report = String::new();
             // Writing to a String cannot fail.
-            let _ = handler().render_report(&mut text, &pointed);
+            let _ = handler().render_report(&mut report, &pointed);
+            text.push_str(report.trim_start());
         }
         // Nobody to tell where standard error is closed.
         let _ = io::stderr().write_all(text.as_bytes());
@@ -46,15 +56,7 @@ impl Failure {
     fn pointed(&self) -> Vec<Pointed> {
         match self {
             Self::Message(sentence) => vec![Pointed::bare(sentence.clone())],
-            Self::Scenario(problems) => problems
-                .problems
-                .iter()
-                .map(|problem| Pointed {
-                    sentence: problems.sentence(problem),
-                    source: Some(Box::new(NamedSource::new(&problems.name, problems.source.clone()))),
-                    span: problems.span(problem).map(SourceSpan::from),
-                })
-                .collect(),
+            Self::Scenario(problems) => problems.problems.iter().map(|problem| Pointed::in_scenario(problems, problem)).collect(),
             Self::Csv(error @ CsvFileError::Problems { path, problems }) => {
                 let name = path.display().to_string();
                 let mut pointed: Vec<_> = problems.problems.iter().map(|problem| Pointed::in_csv(&name, problem)).collect();
@@ -91,12 +93,26 @@ impl From<CsvFileError> for Failure {
 
 /// How problems are drawn: as a terminal can show it, plainly elsewhere, no line broken.
 fn handler() -> GraphicalReportHandler {
-    let theme = match (io::stderr().is_terminal(), std::env::var_os("NO_COLOR")) {
+    let mut theme = match (io::stderr().is_terminal(), std::env::var_os("NO_COLOR")) {
         (true, None) => GraphicalTheme::unicode(),
         (true, Some(_)) => GraphicalTheme::unicode_nocolor(),
         (false, _) => GraphicalTheme::none(),
     };
+    // The word that goes with `warning:` and with what clap says.
+    "error:".clone_into(&mut theme.characters.error);
     GraphicalReportHandler::new_themed(theme).with_wrap_lines(false).with_break_words(false)
+}
+
+/// Longer lines are not shown: the sentence has their place, and a terminal has no room for them.
+const LONGEST_LINE: usize = 200;
+
+/// A span with the lines it stands on and one on either side, as they are shown.
+fn around<'a>(source: &'a str, span: &Range<usize>) -> &'a str {
+    let line_start = |end: usize| source.get(..end).and_then(|before| before.rfind('\n'));
+    let line_end = |start: usize| source.get(start..).and_then(|after| after.find('\n')).map(|length| start + length);
+    let first = line_start(span.start).and_then(line_start).map_or(0, |newline| newline + 1);
+    let last = line_end(span.end).and_then(|newline| line_end(newline + 1)).unwrap_or(source.len());
+    source.get(first..last).unwrap_or(source)
 }
 
 /// One problem and the text it points into.
@@ -111,7 +127,19 @@ impl Pointed {
         Self { sentence, source: None, span: None }
     }
 
+    fn in_scenario(problems: &ScenarioProblems, problem: &ScenarioProblem) -> Self {
+        let sentence = problems.sentence(problem);
+        let shown =
+            problems.span(problem).filter(|span| around(&problems.source, span).lines().all(|line| line.len() <= LONGEST_LINE));
+        let Some(span) = shown else { return Self::bare(sentence) };
+        let source = NamedSource::new(&problems.name, problems.source.clone());
+        Self { sentence, source: Some(Box::new(source)), span: Some(span.into()) }
+    }
+
     fn in_csv(name: &str, problem: &CsvProblem) -> Self {
+        if problem.text.is_empty() {
+            return Self::bare(format!("{name}: {problem}"));
+        }
         let line = LineOfFile { name: name.to_owned(), number: problem.line, text: problem.text.clone() };
         let span = SourceSpan::from(problem.span.clone());
         Self { sentence: format!("{name}: {problem}"), source: Some(Box::new(line)), span: Some(span) }
@@ -139,7 +167,7 @@ impl Diagnostic for Pointed {
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {
         let span = self.span?;
-        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(Some("here".to_owned()), span))))
+        Some(Box::new(std::iter::once(LabeledSpan::new_with_span(None, span))))
     }
 }
 

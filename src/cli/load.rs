@@ -2,6 +2,7 @@
 
 use std::{
     fs,
+    io::Read,
     path::{Component, Path, PathBuf},
 };
 
@@ -10,7 +11,8 @@ use chta::{
     chain::Station,
     report::InputFile,
     scenario::{
-        Entries, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, prepare, scenario_document, sha256_of,
+        Covers, Entries, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, prepare,
+        scenario_document, sha256_of,
     },
 };
 
@@ -31,6 +33,68 @@ pub(crate) struct Loaded {
     pub(crate) document: serde_json::Value,
     /// The files that were read.
     pub(crate) inputs: Vec<InputFile>,
+    /// How start and goal are given on the command line.
+    ends: EndOptions,
+}
+
+/// The options for start and goal, which a command may have under its own names or not at all.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct EndOptions {
+    names: Option<[&'static str; 2]>,
+    x_m: [Option<f64>; 2],
+}
+
+impl EndOptions {
+    /// A command without such options.
+    pub(crate) const NONE: Self = Self { names: None, x_m: [None, None] };
+
+    /// The ends of one hop.
+    pub(crate) const fn of_hop(from: Option<f64>, to: Option<f64>) -> Self {
+        Self { names: Some(["--from", "--to"]), x_m: [from, to] }
+    }
+
+    /// The ends of a path.
+    pub(crate) const fn of_path(start: Option<f64>, goal: Option<f64>) -> Self {
+        Self { names: Some(["--start", "--goal"]), x_m: [start, goal] }
+    }
+
+    /// Where the value of an end came from.
+    fn place(&self, end: End) -> String {
+        match (self.names, self.x_m[end as usize]) {
+            (Some(names), Some(_)) => names[end as usize].to_owned(),
+            _ => format!("terrain.{}_x_m", end.name()),
+        }
+    }
+
+    /// What is missing where an end is given nowhere.
+    fn missing(&self, end: End) -> Failure {
+        let name = end.name();
+        Failure::message(match self.names {
+            Some(names) => format!(
+                "found no {name}: give {} X along the chain, or [terrain] {name}_x_m (for a dem or mesh {name}_m) in the scenario",
+                names[end as usize]
+            ),
+            None => {
+                format!("found no {name}: add {name}_x_m = X (for a dem or mesh {name}_m = [x, y]) to the scenario's [terrain]")
+            }
+        })
+    }
+}
+
+/// One end of a journey.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum End {
+    Start = 0,
+    Goal = 1,
+}
+
+impl End {
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Goal => "goal",
+        }
+    }
 }
 
 impl Loaded {
@@ -41,12 +105,20 @@ impl Loaded {
 
     /// Start and goal, or what is missing.
     pub(crate) fn ends(&self) -> Result<(Station, Station), Failure> {
-        let missing = |end: &str| {
-            Failure::message(format!(
-                "found no {end}: give --{end} X along the chain, or [terrain] {end}_x_m (for a dem {end}_m) in the scenario"
-            ))
-        };
-        Ok((self.prepared.start.ok_or_else(|| missing("start"))?, self.prepared.goal.ok_or_else(|| missing("goal"))?))
+        let start = self.prepared.start.ok_or_else(|| self.ends.missing(End::Start))?;
+        let goal = self.prepared.goal.ok_or_else(|| self.ends.missing(End::Goal))?;
+        Ok((start, goal))
+    }
+
+    /// What an analyst should know of the input and of an answer, each once.
+    pub(crate) fn warnings_with(&self, doubts: impl IntoIterator<Item = String>) -> Vec<String> {
+        let mut warnings = self.prepared.warnings.clone();
+        for doubt in doubts {
+            if !warnings.contains(&doubt) {
+                warnings.push(doubt);
+            }
+        }
+        warnings
     }
 }
 
@@ -60,12 +132,7 @@ struct Source {
 }
 
 /// Loads a chain, scenario or result with the options beside it.
-pub(crate) fn load(
-    target: &Path,
-    common: &CommonArgs,
-    search: Option<&SearchArgs>,
-    ends: [Option<f64>; 2],
-) -> Result<Loaded, Failure> {
+pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Loaded, Failure> {
     let is_scenario = is_scenario(target);
     let mut source = match (is_scenario, &common.scenario) {
         (true, None) => read_source(target)?,
@@ -79,42 +146,99 @@ pub(crate) fn load(
         (false, Some(scenario)) => read_source(scenario)?,
         (false, None) => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
     };
-    apply_options(&mut source.entries, common, search, ends);
+    let chain_name = target.to_string_lossy().into_owned();
     if !is_scenario {
-        for key in ["dem", "chain", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg"] {
+        for key in ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m"] {
             source.entries.forget("terrain", key);
         }
+        for key in ["friction_raster", "keep_out"] {
+            if source.entries.forget("surface", key) {
+                let warning = format!("surface.{key} is laid over terrain when it is sliced: for a chain its own columns count");
+                output::warn(common.quiet, &warning);
+            }
+        }
+        source.entries.set_by_option("CHAIN", "terrain", "chain", chain_name.clone().into());
+        // What is given beside the scenario starts from the working folder, as every path on the command line.
+        source.base = PathBuf::new();
     }
+    apply_options(&mut source.entries, common, search, ends);
+    let base = source.base;
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
-    let (terrain, base) = if is_scenario {
-        let named = scenario.terrain.clone();
-        let terrain = named.ok_or_else(|| {
-            Failure::message(format!(
-                "{}: found no terrain; add [terrain] with dem or chain, or give a chain CSV",
-                target.display()
-            ))
-        })?;
-        (terrain, source.base)
-    } else {
-        (TerrainSource::Chain { path: target.to_path_buf() }, PathBuf::new())
-    };
-    scenario.terrain = Some(terrain.clone());
-    let prepared = prepare(&scenario, &terrain, &base)?;
+    let mut terrain = scenario.terrain.clone().ok_or_else(|| {
+        let name = target.display();
+        Failure::message(format!("{name}: found no terrain; add [terrain] with dem, mesh or chain, or give a chain CSV"))
+    })?;
+    if !is_scenario && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
+        // The name as it was given, should it be no UTF-8.
+        terrain = TerrainSource::Chain { path: target.to_path_buf() };
+        scenario.terrain = Some(terrain.clone());
+    }
+    let file = base.join(terrain.path());
+    let prepared = prepare(&scenario, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
     for warning in &prepared.warnings {
         output::warn(common.quiet, warning);
     }
-    let file = match &terrain {
-        TerrainSource::Dem { path, .. } | TerrainSource::Chain { path } => base.join(path),
-    };
-    let inputs = vec![InputFile { name: relative_name(&file), sha256: sha256_of(&file)? }];
+    let mut inputs = vec![input_file(&file)?];
+    for cover in Covers::files(&scenario) {
+        inputs.push(input_file(&base.join(cover))?);
+    }
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
-    Ok(Loaded { scenario, prepared, document, inputs })
+    Ok(Loaded { scenario, prepared, document, inputs, ends })
 }
 
-/// Reads a scenario alone, without a terrain: for `slice`.
-pub(crate) fn scenario_alone(path: &Path) -> Result<Scenario, Failure> {
-    let source = read_source(path)?;
-    validated(source.entries, &source.name, &source.text)
+/// Why a terrain gives no chain, with the file or the option that says so.
+fn unprepared(error: PipelineError, file: &Path, ends: EndOptions) -> Failure {
+    match error {
+        PipelineError::Csv(error) => Failure::Csv(error),
+        PipelineError::OffChain { which, problem } => {
+            let end = if which == "start" { End::Start } else { End::Goal };
+            Failure::message(format!("{}: {problem}", ends.place(end)))
+        }
+        other => Failure::about(file, &other.to_string()),
+    }
+}
+
+/// A scenario without terrain, for a command that brings its own.
+#[derive(Debug)]
+pub(crate) struct Bare {
+    /// The scenario as used.
+    pub(crate) scenario: Scenario,
+    /// The folder that its paths start from.
+    pub(crate) base: PathBuf,
+    /// The scenario for a result.
+    pub(crate) document: serde_json::Value,
+}
+
+/// Loads the scenario of the options, without its terrain.
+pub(crate) fn load_bare(common: &CommonArgs, search: &SearchArgs) -> Result<Bare, Failure> {
+    let mut source = match &common.scenario {
+        Some(path) => read_source(path)?,
+        None => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
+    };
+    apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
+    forget_terrain(&mut source.entries);
+    let scenario = validated(source.entries, &source.name, &source.text)?;
+    let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
+    Ok(Bare { scenario, base: source.base, document })
+}
+
+/// A file that was read, for a result.
+pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
+    Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
+}
+
+/// Reads a scenario alone, with the folder of its paths but without its terrain: for commands that bring their own.
+pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure> {
+    let mut source = read_source(path)?;
+    forget_terrain(&mut source.entries);
+    Ok((validated(source.entries, &source.name, &source.text)?, source.base))
+}
+
+/// Forgets the terrain that a scenario names, where the command line brings another.
+fn forget_terrain(entries: &mut Entries) {
+    for key in ["dem", "mesh", "mesh_scale", "chain", "start_m", "goal_m", "via_m", "start_x_m", "goal_x_m"] {
+        entries.forget("terrain", key);
+    }
 }
 
 /// Whether a file is a scenario or a result by its name; anything else is a chain CSV.
@@ -132,7 +256,10 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
     if size > LARGEST {
         return Err(unread(format!("{size} bytes"), "a scenario has some kilobytes; give a chain or DEM inside it"));
     }
-    let bytes = fs::read(path).map_err(|e| unread(e.to_string(), "check the path and its permissions"))?;
+    let mut bytes = Vec::new();
+    // Read with a bound of its own: what is no regular file has no size to ask for.
+    let read = fs::File::open(path).and_then(|file| file.take(LARGEST).read_to_end(&mut bytes));
+    read.map_err(|e| unread(e.to_string(), "check the path and its permissions"))?;
     let text = String::from_utf8(bytes).map_err(|e| unread(e.to_string(), "write it as TOML in UTF-8"))?;
     let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
     if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
@@ -150,7 +277,7 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
 }
 
 /// Options win over the scenario: `--set` first, named options after it.
-fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&SearchArgs>, ends: [Option<f64>; 2]) {
+fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) {
     let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, accept_map_scale, quiet: _ } = common;
     for assignment in set {
         entries.set(assignment);
@@ -169,9 +296,9 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
     if *accept_map_scale {
         entries.set_by_option("--accept-map-scale", "terrain", "accept_map_scale", true.into());
     }
-    for (key, option, x_m) in [("start_x_m", "--start", ends[0]), ("goal_x_m", "--goal", ends[1])] {
-        if let Some(x_m) = x_m {
-            entries.set_by_option(option, "terrain", key, x_m.into());
+    for (end, key) in [(End::Start, "start_x_m"), (End::Goal, "goal_x_m")] {
+        if let Some(x_m) = ends.x_m[end as usize] {
+            entries.set_by_option(&ends.place(end), "terrain", key, x_m.into());
         }
     }
     let Some(SearchArgs { points_per_segment, node_spacing_max_m, effort }) = search else { return };

@@ -3,15 +3,14 @@
 mod args;
 mod commands;
 mod failure;
+mod help;
 mod load;
 mod output;
 mod progress;
 
 use std::process::ExitCode;
 
-use clap::Parser;
-
-use args::{Args, Command};
+use args::Command;
 pub(crate) use failure::Failure;
 
 /// What an analysis came to, as an exit status.
@@ -25,9 +24,10 @@ pub(crate) enum Answer {
 
 /// Runs the command line.
 pub(crate) fn run() -> ExitCode {
-    let answer = match Args::parse().command {
+    let answer = match help::parsed().command {
         Command::Run(args) => commands::run::run(&args),
         Command::Slice(args) => commands::slice::run(&args),
+        Command::Fan(args) => commands::fan::run(&args),
         Command::Hop(args) => commands::hop::run(&args),
         Command::Check(args) => commands::check::run(&args),
         Command::Plan(args) => commands::plan::run(&args),

@@ -5,7 +5,7 @@ use std::{
     path::Path,
 };
 
-use chta::{report::write_whole, terrain::MapProjection};
+use chta::{report::WholeFile, terrain::MapProjection};
 
 use super::Failure;
 
@@ -20,12 +20,50 @@ pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
     }
 }
 
+/// A file to be written at the end, opened before the work begins.
+#[derive(Debug)]
+pub(crate) struct Pending<'a> {
+    path: &'a Path,
+    file: WholeFile,
+}
+
+impl<'a> Pending<'a> {
+    /// Opens it.
+    pub(crate) fn begin(path: &'a Path) -> Result<Self, Failure> {
+        Ok(Self { path, file: WholeFile::begin(path).map_err(|error| unwritable(path, &error))? })
+    }
+}
+
+/// Writes files all or none: every one beside its place first, then all into their places.
+pub(crate) fn finish(mut files: Vec<(Pending<'_>, Vec<u8>)>) -> Result<(), Failure> {
+    for (pending, bytes) in &mut files {
+        pending.file.write(bytes).map_err(|error| unwritable(pending.path, &error))?;
+    }
+    for (Pending { path, file }, _) in files {
+        file.keep().map_err(|error| unwritable(path, &error))?;
+    }
+    Ok(())
+}
+
 /// Writes a file whole or not at all.
 pub(crate) fn to_file(path: &Path, data: &[u8]) -> Result<(), Failure> {
-    write_whole(path, data).map_err(|error| {
-        let help = "choose a folder that exists, may be written to and has space left";
-        Failure::message(format!("{}: cannot be written ({error}): {help}", path.display()))
-    })
+    finish(vec![(Pending::begin(path)?, data.to_vec())])
+}
+
+/// Whether files can be made in a folder, or in the nearest one above it that exists: asked before long work.
+pub(crate) fn check_folder(folder: &Path) -> Result<(), Failure> {
+    let existing = folder.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(Path::new("."));
+    // A file in the way is told when the folder is made.
+    if existing.is_file() {
+        return Ok(());
+    }
+    let existing = if existing.as_os_str().is_empty() { Path::new(".") } else { existing };
+    WholeFile::begin(&existing.join(".chta-probe")).map(drop).map_err(|error| unwritable(folder, &error))
+}
+
+fn unwritable(path: &Path, error: &io::Error) -> Failure {
+    let help = "choose a folder that exists, may be written to and has space left";
+    Failure::message(format!("{}: cannot be written ({error}): {help}", path.display()))
 }
 
 /// Writes to a file, or to standard output where that is `-` or absent.

@@ -1,9 +1,6 @@
 //! The hop graph: edges evaluated when asked for, through petgraph's traits.
 
-use std::{
-    cell::{Cell, RefCell},
-    collections::HashSet,
-};
+use std::{cell::RefCell, collections::HashSet};
 
 use petgraph::visit::{Data, EdgeRef, GraphBase, IntoEdgeReferences, IntoEdges, IntoNeighbors, Visitable};
 
@@ -32,7 +29,7 @@ pub struct HopGraph<'a> {
     effort: Effort,
     choice: TakeoffChoice,
     split: Split,
-    tally: Cell<Tally>,
+    tally: RefCell<Tally>,
     expanded: RefCell<Vec<bool>>,
 }
 
@@ -47,7 +44,7 @@ impl<'a> HopGraph<'a> {
     /// A graph over nodes, with the effort, choice of take-off angle and split that its costs are counted in.
     pub fn new(test: &'a HopTest<'a>, nodes: &'a NodeSet, effort: Effort, choice: TakeoffChoice, split: Split) -> Self {
         let expanded = RefCell::new(vec![false; nodes.stations().len()]);
-        Self { test, nodes, effort, choice, split, tally: Cell::default(), expanded }
+        Self { test, nodes, effort, choice, split, tally: RefCell::default(), expanded }
     }
 
     /// The nodes.
@@ -88,7 +85,7 @@ impl<'a> HopGraph<'a> {
 
     /// How many pairs were tested, and how the refused ones fell.
     pub fn tally(&self) -> (u64, RefusalCounts) {
-        let tally = self.tally.get();
+        let tally = self.tally.borrow();
         (tally.pairs, tally.refusals)
     }
 
@@ -171,16 +168,15 @@ impl Iterator for Edges<'_> {
                 continue;
             }
             let landing = self.graph.nodes.station(target);
-            let mut tally = self.graph.tally.get();
-            tally.pairs += 1;
             let edge = self.graph.edge(takeoff, landing);
-            if let Err(limit) = edge {
-                tally.refusals.count(limit);
-            }
-            self.graph.tally.set(tally);
-            if let Ok(edge) = edge {
-                let weight = self.graph.cost(takeoff, landing, edge);
-                return Some(EdgeReference { source: self.source, target, weight });
+            let mut tally = self.graph.tally.borrow_mut();
+            tally.pairs += 1;
+            match edge {
+                Ok(edge) => {
+                    let weight = self.graph.cost(takeoff, landing, edge);
+                    return Some(EdgeReference { source: self.source, target, weight });
+                }
+                Err(limit) => tally.refusals.count(limit),
             }
         }
         None

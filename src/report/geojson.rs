@@ -36,14 +36,18 @@ pub fn path_geojson(path: &HopPath, gravity_m_s2: f64, projection: Option<&MapPr
     Some(document(features, projection))
 }
 
-/// A slice as one line in three dimensions, with the name of what was sliced and, with a `projection`, where its ends lie on the body.
-pub fn slice_geojson(profile: &Profile, source: &str, projection: Option<&MapProjection>) -> String {
-    let coordinates = profile.points.iter().map(|point| Position::from([point.map.x, point.map.y, point.z_m])).collect();
+/// A slice, leg by leg, as one line in three dimensions, with the name of what was sliced and, with a `projection`, where its ends lie
+/// on the body.
+pub fn slice_geojson(legs: &[Profile], source: &str, projection: Option<&MapProjection>) -> String {
+    // A leg begins where the one before ended.
+    let further = legs.iter().skip(1).flat_map(|leg| leg.points.iter().skip(1));
+    let points: Vec<_> = legs.first().into_iter().flat_map(|leg| &leg.points).chain(further).collect();
+    let coordinates = points.iter().map(|point| Position::from([point.map.x, point.map.y, point.z_m])).collect();
     let mut properties = JsonObject::new();
     properties.insert("kind".to_owned(), "slice".into());
     properties.insert("source".to_owned(), source.into());
-    properties.insert("length_m".to_owned(), profile.length_m().into());
-    for (end, point) in [("from", profile.points.first()), ("to", profile.points.last())] {
+    properties.insert("length_m".to_owned(), legs.iter().map(Profile::length_m).sum::<f64>().into());
+    for (end, point) in [("from", points.first()), ("to", points.last())] {
         if let Some(point) = point {
             insert_lon_lat(&mut properties, &format!("{end}_"), point.map, projection);
         }

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::path_record::unsigned_zero;
 use crate::{
     ballistics::{Arc, Conflict, HopTest, LimitInterval, Shortfall, TakeoffChoice, TakeoffSet},
     chain::{Contact, Station},
@@ -31,8 +32,10 @@ pub struct HopAnswer {
     pub limits: Vec<LimitRecord>,
     /// What sets either end, or what conflicts.
     pub binding: BindingRecord,
-    /// The hop to fly.
+    /// The hop to fly, by the scenario's choice.
     pub best: Option<BestRecord>,
+    /// The hops of all three choices; none where there is no hop.
+    pub choices: Vec<BestRecord>,
     /// Hops along the segment that both points share, where they share one.
     pub segment_hops: Option<SegmentHopsRecord>,
 }
@@ -137,6 +140,7 @@ impl HopAnswer {
     pub fn new(test: &HopTest<'_>, takeoff: &Station, landing: &Station, choice: TakeoffChoice) -> Option<Self> {
         let set = test.takeoff_set(takeoff, landing)?;
         let angles = set.angles();
+        let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice));
         Some(Self {
             from_x_m: takeoff.point.x_m,
             to_x_m: landing.point.x_m,
@@ -145,10 +149,11 @@ impl HopAnswer {
             takeoff_angle_min_deg: angles.map(|a| a.min.degrees()),
             takeoff_angle_max_deg: angles.map(|a| a.max.degrees()),
             line_of_sight_m: set.line_of_sight().length_m(),
-            line_of_sight_angle_deg: set.line_of_sight().angle().degrees(),
+            line_of_sight_angle_deg: unsigned_zero(set.line_of_sight().angle().degrees()),
             limits: set.limits().iter().map(|limit| LimitRecord::new(test, &set, limit)).collect(),
             binding: BindingRecord::new(test, &set),
-            best: set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice)),
+            best: best(choice),
+            choices: TakeoffChoice::ALL.into_iter().filter_map(best).collect(),
             segment_hops: SegmentHopsRecord::new(test, takeoff, landing),
         })
     }
@@ -197,9 +202,10 @@ impl BindingRecord {
                 let (gap_deg, gap_m_s) = match alone.shortfall {
                     Some(Shortfall::Ground { refusal, .. }) => (refusal.excess_deg(), None),
                     Some(Shortfall::Speed { needed_m_s, limit_m_s }) => (None, Some(needed_m_s - limit_m_s)),
-                    Some(Shortfall::Height { .. }) | None => (None, None),
+                    Some(Shortfall::Height { .. } | Shortfall::Bend { .. }) | None => (None, None),
                 };
-                Self::Conflict { conflict: vec![alone.limit.name()], gap_deg, gap_m_s, vertex: None, sentence }
+                let vertex = alone.vertex.map(|vertex| VertexRecord::new(test, vertex));
+                Self::Conflict { conflict: vec![alone.limit.name()], gap_deg, gap_m_s, vertex, sentence }
             }
             Conflict::Pair { lower, upper, gap_deg } => Self::Conflict {
                 conflict: vec![lower.limit.name(), upper.limit.name()],

@@ -2,6 +2,7 @@
 
 mod check_answer;
 mod document;
+mod fan_answer;
 #[cfg(feature = "plot")]
 pub mod figure;
 mod geojson;
@@ -12,8 +13,9 @@ mod whole_file;
 
 pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, verdict_name};
 pub use document::{CrsRecord, Document, InputFile};
+pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, slice_geojson};
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
 pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv};
 pub use text::{check_text, hop_text, path_text};
-pub use whole_file::write_whole;
+pub use whole_file::{WholeFile, write_whole};

@@ -156,14 +156,19 @@ impl HopRecord {
 impl From<&Totals> for TotalsRecord {
     fn from(totals: &Totals) -> Self {
         Self {
-            flight_time_s: totals.flight_time_s,
-            energy_j_kg: totals.energy_j_kg,
+            flight_time_s: unsigned_zero(totals.flight_time_s),
+            energy_j_kg: unsigned_zero(totals.energy_j_kg),
             peak_takeoff_speed_m_s: totals.peak_takeoff_speed_m_s,
-            ground_distance_m: totals.ground_distance_m,
-            energy_j: totals.energy_j,
-            mission_time_s: totals.mission_time_s,
+            ground_distance_m: unsigned_zero(totals.ground_distance_m),
+            energy_j: totals.energy_j.map(unsigned_zero),
+            mission_time_s: totals.mission_time_s.map(unsigned_zero),
         }
     }
+}
+
+/// The sum over no hop at all is a negative zero in floating point, and so is a level line of sight seen backwards; nobody wants to read that.
+pub(super) fn unsigned_zero(number: f64) -> f64 {
+    if number == 0.0 { 0.0 } else { number }
 }
 
 /// The columns of path.csv that every chain has.

@@ -16,12 +16,23 @@ impl Sheet {
     }
 }
 
+/// A place along the chain to the millimetre, without idle zeros.
+fn place(x_m: f64) -> String {
+    let text = format!("{x_m:.3}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
 /// What `chta hop` prints.
 pub fn hop_text(answer: &HopAnswer) -> String {
     let mut sheet = Sheet::default();
     sheet.line(format_args!(
         "{} from x = {} m to x = {} m: {:.3} m of line of sight at {:.3} deg",
-        answer.direction, answer.from_x_m, answer.to_x_m, answer.line_of_sight_m, answer.line_of_sight_angle_deg
+        answer.direction,
+        place(answer.from_x_m),
+        place(answer.to_x_m),
+        answer.line_of_sight_m,
+        answer.line_of_sight_angle_deg
     ));
     match (answer.takeoff_angle_min_deg, answer.takeoff_angle_max_deg) {
         (Some(min), Some(max)) => sheet.line(format_args!("feasible: take-off angles {min:.6} to {max:.6} deg")),
@@ -34,21 +45,28 @@ pub fn hop_text(answer: &HopAnswer) -> String {
             (Some(min), Some(max)) => format!("{min:>14.6}{max:>14.6}"),
             _ => format!("{:>14}{:>14}", "-", "-"),
         };
-        let vertex = limit.vertex.map(|v| format!("  vertex {} at x = {} m", v.number, v.x_m)).unwrap_or_default();
+        let vertex = limit.vertex.map(|v| format!("  vertex {} at x = {} m", v.number, place(v.x_m))).unwrap_or_default();
         let refusal = limit.refusal.as_ref().map(|r| format!("  {r}")).unwrap_or_default();
         sheet.line(format_args!("{:<18}{ends}{vertex}{refusal}", limit.name));
     }
     if let Some(best) = answer.best {
         sheet.line(format_args!(
-            "\nto fly ({}): {:.6} deg at {:.6} m/s; lands at {:.6} deg with {:.6} m/s after {:.3} s, {:.3} m above the take-off at most",
-            best.choice,
-            best.takeoff_angle_deg,
-            best.takeoff_speed_m_s,
-            best.landing_angle_deg,
-            best.landing_speed_m_s,
-            best.flight_time_s,
-            best.apex_height_m
+            "\n{:<18}{:>10}{:>10}{:>11}{:>10}{:>10}{:>13}",
+            "to fly", "up (deg)", "m/s", "down (deg)", "m/s", "s", "highest (m)"
         ));
+        for choice in &answer.choices {
+            let chosen = if choice.choice == best.choice { "  <- chosen" } else { "" };
+            sheet.line(format_args!(
+                "{:<18}{:>10.4}{:>10.4}{:>11.4}{:>10.4}{:>10.3}{:>13.3}{chosen}",
+                choice.choice,
+                choice.takeoff_angle_deg,
+                choice.takeoff_speed_m_s,
+                choice.landing_angle_deg,
+                choice.landing_speed_m_s,
+                choice.flight_time_s,
+                choice.apex_height_m
+            ));
+        }
     }
     if let Some(along) = answer.segment_hops {
         sheet.line(format_args!(
@@ -70,7 +88,7 @@ pub fn hop_text(answer: &HopAnswer) -> String {
 fn binding_line(binding: &BindingRecord) -> String {
     match binding {
         BindingRecord::Ends { lower, upper, vertex } => {
-            let at = vertex.map(|v| format!(" (vertex {} at x = {} m)", v.number, v.x_m)).unwrap_or_default();
+            let at = vertex.map(|v| format!(" (vertex {} at x = {} m)", v.number, place(v.x_m))).unwrap_or_default();
             format!("the least angle is set by {lower}{at}, the greatest by {upper}")
         }
         BindingRecord::Conflict { sentence, .. } => format!("why: {sentence}"),
@@ -81,13 +99,18 @@ fn binding_line(binding: &BindingRecord) -> String {
 pub fn check_text(answer: &CheckAnswer) -> String {
     let mut sheet = Sheet::default();
     let hops = answer.hops.map_or(String::new(), |hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" }));
-    sheet.line(format_args!("{}{hops}: from x = {} m to x = {} m", answer.verdict, answer.start_x_m, answer.goal_x_m));
+    sheet.line(format_args!(
+        "{}{hops}: from x = {} m to x = {} m",
+        answer.verdict,
+        place(answer.start_x_m),
+        place(answer.goal_x_m)
+    ));
     if let Some(effort) = answer.effort {
         sheet.line(format_args!("{}: {:.6} {}", effort.name, effort.value, effort.unit));
     }
     sheet.line(format_args!(
-        "{} points in a segment at most, {} nodes, {} pairs tested",
-        answer.points_per_segment, answer.nodes, answer.pairs_tested
+        "{} nodes (up to {} inside a segment), pairs of them tested: {}",
+        answer.nodes, answer.points_per_segment, answer.pairs_tested
     ));
     if !answer.refusals.is_empty() {
         sheet.line(format_args!("refused by {}", ranked(&answer.refusals)));
@@ -95,19 +118,33 @@ pub fn check_text(answer: &CheckAnswer) -> String {
     for end in &answer.endpoint_refusals {
         let nearest = end
             .nearest_usable_x_m
-            .map_or("no point of the chain would do".to_owned(), |x| format!("the nearest usable point is x = {x} m"));
-        sheet.line(format_args!("the {} at x = {} m refuses ({}): {}; {nearest}", end.endpoint, end.x_m, end.limit, end.reason));
+            .map_or("no point of the chain would do".to_owned(), |x| format!("the nearest usable point is x = {} m", place(x)));
+        sheet.line(format_args!(
+            "the {} at x = {} m refuses ({}): {}; {nearest}",
+            end.endpoint,
+            place(end.x_m),
+            end.limit,
+            end.reason
+        ));
     }
     if let Some(frontier) = &answer.frontier {
         sheet.line(format_args!(
             "from the start one gets to x = {} m ({} nodes); the goal can be reached from x = {} m ({} nodes)",
-            frontier.reached_x_m, frontier.reached_nodes, frontier.leads_to_goal_from_x_m, frontier.leads_to_goal_nodes
+            place(frontier.reached_x_m),
+            frontier.reached_nodes,
+            place(frontier.leads_to_goal_from_x_m),
+            frontier.leads_to_goal_nodes
         ));
         if !frontier.refusals.is_empty() {
             sheet.line(format_args!("what refuses the hops out of there: {}", ranked(&frontier.refusals)));
         }
         if let Some(miss) = &frontier.nearest_miss {
-            sheet.line(format_args!("nearest miss, x = {} to {} m: {}", miss.from_x_m, miss.to_x_m, binding_line(&miss.binding)));
+            sheet.line(format_args!(
+                "nearest miss, x = {} to {} m: {}",
+                place(miss.from_x_m),
+                place(miss.to_x_m),
+                binding_line(&miss.binding)
+            ));
         }
         sheet.line(format_args!("more points per segment may find a path: this is no proof that there is none"));
     }

@@ -3,27 +3,81 @@
 use std::{
     fs,
     io::{self, Write},
-    path::Path,
+    path::{Path, PathBuf},
 };
 
-/// Writes a file whole or not at all: beside its place first, then renamed into it.
+/// A file being written, which takes its place whole or not at all: it is written beside its place first, then renamed into it.
 ///
-/// A place that exists and is no regular file (a device, a pipe) is written to directly, since renaming would replace it.
+/// A place that exists and is no regular file (a device, a pipe) is written to directly, since renaming would replace it; a symbolic
+/// link is followed. Dropped before [`keep`](Self::keep), nothing is left behind.
+#[derive(Debug)]
+pub struct WholeFile(Place);
+
+#[derive(Debug)]
+enum Place {
+    Direct(fs::File),
+    Beside { temporary: tempfile::NamedTempFile, target: PathBuf },
+}
+
+impl WholeFile {
+    /// Opens it, so that a place that cannot be written to is known before the work begins.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn begin(path: &Path) -> io::Result<Self> {
+        if fs::metadata(path).is_ok_and(|meta| !meta.is_file()) {
+            return Ok(Self(Place::Direct(fs::OpenOptions::new().write(true).open(path)?)));
+        }
+        let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let temporary = builder().tempfile_in(folder).map_err(|error| without_temporary_name(&error))?;
+        Ok(Self(Place::Beside { temporary, target }))
+    }
+
+    /// Writes its bytes.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+        match &mut self.0 {
+            Place::Direct(file) => file.write_all(bytes),
+            Place::Beside { temporary, .. } => {
+                temporary.write_all(bytes).map_err(|error| without_temporary_name(&error))?;
+                temporary.as_file().sync_all()
+            }
+        }
+    }
+
+    /// Puts it in its place.
+    ///
+    /// # Errors
+    /// What the file system says; a file that was there before stays as it was.
+    pub fn keep(self) -> io::Result<()> {
+        match self.0 {
+            Place::Direct(_) => Ok(()),
+            Place::Beside { temporary, target } => temporary.persist(target).map(|_| ()).map_err(|error| error.error),
+        }
+    }
+}
+
+/// Writes a file whole or not at all, in one go.
 ///
 /// # Errors
 /// What the file system says; then no part of the file is left behind, and one that was there before stays as it was.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    if fs::metadata(path).is_ok_and(|meta| !meta.is_file()) {
-        return fs::OpenOptions::new().write(true).open(path)?.write_all(bytes);
-    }
-    let folder = match path.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let mut file = builder().tempfile_in(folder)?;
-    file.write_all(bytes)?;
-    file.as_file().sync_all()?;
-    file.persist(path).map(|_| ()).map_err(|error| error.error)
+    let mut file = WholeFile::begin(path)?;
+    file.write(bytes)?;
+    file.keep()
+}
+
+/// The system's own error, without the name of a temporary file, which tells the user nothing and differs every time.
+fn without_temporary_name(error: &io::Error) -> io::Error {
+    let text = error.to_string();
+    let system = text.split_once(" at path ").map_or(text.as_str(), |(system, _)| system);
+    io::Error::new(error.kind(), system)
 }
 
 /// Temporary files with the permissions that any new file would get.
@@ -58,9 +112,28 @@ mod tests {
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "a temporary file was left behind");
     }
 
+    #[cfg(unix)]
+    #[test]
+    fn a_link_is_followed_and_a_file_given_up_leaves_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let (target, link) = (folder.path().join("target"), folder.path().join("link"));
+        fs::write(&target, b"old").unwrap();
+        std::os::unix::fs::symlink(&target, &link).unwrap();
+        let mut given_up = WholeFile::begin(&link).unwrap();
+        given_up.write(b"half").unwrap();
+        drop(given_up);
+        assert_eq!(fs::read(&target).unwrap(), b"old");
+        write_whole(&link, b"new").unwrap();
+        assert_eq!(fs::read(&target).unwrap(), b"new");
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink(), "the link was replaced by a file");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
     #[test]
     fn a_missing_folder_is_an_error() {
         let folder = tempfile::tempdir().unwrap();
-        assert!(write_whole(&folder.path().join("no/such/file"), b"x").is_err());
+        let error = write_whole(&folder.path().join("no/such/file"), b"x").unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::NotFound);
+        assert!(!error.to_string().contains(".chta-"), "{error} names a temporary file");
     }
 }

@@ -25,6 +25,8 @@ pub enum Kind {
     LonLat,
     /// `true` or `false`.
     Flag,
+    /// A list of points `[x, y]` on the map, in metres.
+    MapPoints,
     /// A whole number, or `"auto"`.
     CountOrAuto,
     /// One of these words.
@@ -62,17 +64,23 @@ impl Kind {
     /// What is expected, for messages.
     pub fn expected(&self) -> String {
         match self {
-            Self::Number { min, max } => format!("a number from {min:e} to {max:e}"),
+            Self::Number { min, max } => format!("a number from {} to {}", written(*min), written(*max)),
             Self::AngleOrUnlimited => "an angle from 0 to 90 degrees, or inf".to_owned(),
             Self::AngleRange => "two angles in degrees, [min, max], from -360 to 360, min not above max".to_owned(),
             Self::MapPoint => "two finite numbers in metres, [x, y]".to_owned(),
             Self::LonLat => "[longitude, latitude] in degrees, east positive, from -180 to 360 and from -90 to 90".to_owned(),
             Self::Flag => "true or false".to_owned(),
+            Self::MapPoints => "a list of points, each two finite numbers in metres, [[x, y], ...]".to_owned(),
             Self::CountOrAuto => "a whole number from 0 to 100000, or \"auto\"".to_owned(),
             Self::Word(words) => format!("one of {}", words.join(", ")),
             Self::Text => "a text in quotes, not empty".to_owned(),
         }
     }
+}
+
+/// A number as people write it: with an exponent only where it has many zeros.
+fn written(number: f64) -> String {
+    if number == 0.0 || (1e-3..1e4).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
 }
 
 const fn key(table: &'static str, name: &'static str, kind: Kind, help: &'static str) -> Key {
@@ -91,7 +99,7 @@ const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 31] = [
+pub const CATALOGUE: [Key; 36] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
@@ -113,13 +121,28 @@ pub const CATALOGUE: [Key; 31] = [
         Kind::AngleOrUnlimited,
         "steepest surface to rest on, degrees; absent: atan(friction); inf: none",
     ),
+    key(
+        "surface",
+        "friction_raster",
+        Kind::Text,
+        "raster of friction coefficients on the dem's map, path from this file; wins where it has data",
+    ),
+    key(
+        "surface",
+        "keep_out",
+        Kind::Text,
+        "GeoJSON polygons or mask raster on the dem's map, path from this file: no take-off, no landing",
+    ),
     key("terrain", "dem", Kind::Text, "elevation raster, path from this file"),
+    key("terrain", "mesh", Kind::Text, "triangulated surface, z up, path from this file"),
+    key("terrain", "mesh_scale", LENGTH, "metres per unit of the mesh; absent: 1"),
     key("terrain", "chain", Kind::Text, "chain CSV, path from this file"),
     key("terrain", "start_m", Kind::MapPoint, "start on the map, [x, y], m"),
     key("terrain", "goal_m", Kind::MapPoint, "goal on the map, [x, y], m"),
     key("terrain", "start_lonlat_deg", Kind::LonLat, "instead: start as [longitude, planetocentric latitude], degrees"),
     key("terrain", "goal_lonlat_deg", Kind::LonLat, "instead: goal as [longitude, planetocentric latitude], degrees"),
     key("terrain", "accept_map_scale", Kind::Flag, "take distances of a map whose scale is off by over 1 % as they are"),
+    key("terrain", "via_m", Kind::MapPoints, "points between, [[x, y], ...], m: the slice bends there, and no hop spans a bend"),
     key("terrain", "start_x_m", COORDINATE, "start along the chain, m"),
     key("terrain", "goal_x_m", COORDINATE, "goal along the chain, m"),
     key(
@@ -140,9 +163,16 @@ mod tests {
     use super::*;
 
     #[test]
+    fn bounds_are_written_as_people_write_them() {
+        assert_eq!(ELEVATION_ANGLE.expected(), "a number from -90 to 90");
+        assert_eq!(FROM_ZERO.expected(), "a number from 0 to 1e9");
+        assert_eq!(SPEED.expected(), "a number from 1e-9 to 1e5");
+    }
+
+    #[test]
     fn every_number_ends_in_its_unit() {
         let units = ["_m", "_m_s", "_m_s2", "_s", "_kg", "_deg"];
-        let pure = ["friction_coefficient", "points_per_segment"];
+        let pure = ["friction_coefficient", "points_per_segment", "mesh_scale"];
         for key in &CATALOGUE {
             let number = !matches!(key.kind, Kind::Word(_) | Kind::Text | Kind::Flag);
             assert!(

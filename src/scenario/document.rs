@@ -16,7 +16,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     let mut tables = Map::new();
     tables.insert("body".to_owned(), body(scenario));
     tables.insert("hopper".to_owned(), hopper(scenario));
-    tables.insert("surface".to_owned(), surface(scenario));
+    tables.insert("surface".to_owned(), surface(scenario, named));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
     tables.insert("report".to_owned(), object([("title", scenario.title.clone().map(Value::from))]));
@@ -66,7 +66,7 @@ fn hopper(scenario: &Scenario) -> Value {
     ])
 }
 
-fn surface(scenario: &Scenario) -> Value {
+fn surface(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> Value {
     let (friction, takeoff, landing) = match scenario.surface.grip {
         Some(Grip::Friction(cone)) => (Some(cone.coefficient().into()), None, None),
         Some(Grip::FromSlope { takeoff, landing }) => (None, Some(range(takeoff)), Some(range(landing))),
@@ -84,15 +84,22 @@ fn surface(scenario: &Scenario) -> Value {
                 RestSlope::Unlimited => Some("inf".into()),
             },
         ),
+        ("friction_raster", scenario.friction_raster.as_deref().map(|path| named(path).into())),
+        ("keep_out", scenario.keep_out.as_deref().map(|path| named(path).into())),
     ])
 }
 
 fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> Value {
-    let (dem, chain, ends) = match &scenario.terrain {
-        Some(TerrainSource::Dem { path, start, goal }) => (Some(named(path).into()), None, Some([start, goal])),
-        Some(TerrainSource::Chain { path }) => (None, Some(named(path).into()), None),
-        None => (None, None, None),
-    };
+    let source = scenario.terrain.as_ref();
+    let file = |path: &std::path::Path| Value::from(named(path));
+    let (mut dem, mut mesh, mut mesh_scale, mut chain) = (None, None, None, None);
+    match source {
+        Some(TerrainSource::Dem { path, .. }) => dem = Some(file(path)),
+        Some(TerrainSource::Mesh { path, scale, .. }) => (mesh, mesh_scale) = (Some(file(path)), Some((*scale).into())),
+        Some(TerrainSource::Chain { path }) => chain = Some(file(path)),
+        None => {}
+    }
+    let ends = source.and_then(TerrainSource::map_ends);
     let metres = |place: &MapPlace| match place {
         MapPlace::Metres(point) => Some(json!([point.x, point.y])),
         MapPlace::LonLat(_) => None,
@@ -103,12 +110,15 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
     };
     object([
         ("dem", dem),
+        ("mesh", mesh),
+        ("mesh_scale", mesh_scale),
         ("chain", chain),
-        ("start_m", ends.and_then(|[start, _]| metres(start))),
-        ("goal_m", ends.and_then(|[_, goal]| metres(goal))),
-        ("start_lonlat_deg", ends.and_then(|[start, _]| degrees(start))),
-        ("goal_lonlat_deg", ends.and_then(|[_, goal]| degrees(goal))),
+        ("start_m", ends.as_ref().and_then(|[start, _]| metres(start))),
+        ("goal_m", ends.as_ref().and_then(|[_, goal]| metres(goal))),
+        ("start_lonlat_deg", ends.as_ref().and_then(|[start, _]| degrees(start))),
+        ("goal_lonlat_deg", ends.as_ref().and_then(|[_, goal]| degrees(goal))),
         ("accept_map_scale", scenario.accept_map_scale.then_some(true.into())),
+        ("via_m", (!scenario.via.is_empty()).then(|| scenario.via.iter().map(|point| json!([point.x, point.y])).collect())),
         ("start_x_m", scenario.start_x_m.map(Value::from)),
         ("goal_x_m", scenario.goal_x_m.map(Value::from)),
     ])

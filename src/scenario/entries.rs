@@ -27,8 +27,10 @@ struct Entry {
 /// All keys given, later ones in place of earlier ones.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Entries {
-    entries: BTreeMap<(String, String), Entry>,
+    given: BTreeMap<(String, String), Entry>,
     problems: Vec<ScenarioProblem>,
+    /// The text could not be read at all, so what is absent tells nothing.
+    unreadable: bool,
 }
 
 impl Entries {
@@ -43,6 +45,7 @@ impl Entries {
                     message: format!("this is not TOML: {}", error.message().replace('\n', ", ")),
                     help: "see the example in README.md; texts stand in quotes, tables in [brackets]".to_owned(),
                 });
+                entries.unreadable = true;
                 return entries;
             }
         };
@@ -75,11 +78,24 @@ impl Entries {
     /// The keys of the `scenario` of a result that the program wrote.
     pub fn from_json(scenario: &serde_json::Value) -> Self {
         let mut entries = Self::default();
-        for (table, keys) in scenario.as_object().into_iter().flatten() {
-            for (name, value) in keys.as_object().into_iter().flatten() {
-                match toml::Value::try_from(value) {
-                    Ok(value) => entries.add(table, name, value, Place::Nowhere, Place::Nowhere),
-                    Err(_) => entries.unknown(table, name, Place::Nowhere),
+        let Some(tables) = scenario.as_object() else {
+            let message = format!("scenario is {}, expected an object of tables", shortened(&scenario.to_string()));
+            entries.problem(Place::Nowhere, message, "give a result.json that chta wrote");
+            entries.unreadable = true;
+            return entries;
+        };
+        for (table, keys) in tables {
+            let Some(keys) = keys.as_object() else {
+                entries.unknown("", table, Place::Nowhere);
+                continue;
+            };
+            for (name, value) in keys {
+                match from_json(value) {
+                    Some(value) => entries.add(table, name, value, Place::Nowhere, Place::Nowhere),
+                    None => match Key::find(table, name) {
+                        Some(key) => entries.misfit(key, &value.to_string(), Place::Nowhere),
+                        None => entries.unknown(table, name, Place::Nowhere),
+                    },
                 }
             }
         }
@@ -92,11 +108,12 @@ impl Entries {
         let parsed = assignment.split_once('=').and_then(|(path, value)| Some((path.trim().split_once('.')?, value.trim())));
         match parsed {
             Some(((table, name), value)) => {
-                let value = format!("v = {value}")
-                    .parse::<toml::Table>()
-                    .ok()
-                    .and_then(|mut table| table.remove("v"))
-                    .unwrap_or_else(|| toml::Value::String(value.to_owned()));
+                let text = || toml::Value::String(value.to_owned());
+                let parsed = format!("v = {value}").parse::<toml::Table>().ok().filter(|table| table.len() == 1);
+                let typed = parsed.and_then(|mut table| table.remove("v")).unwrap_or_else(text);
+                // A title of digits is a title: no one quotes it for a shell.
+                let takes_text = Key::find(table, name).is_some_and(|key| key.kind == Kind::Text);
+                let value = if takes_text && !typed.is_str() { text() } else { typed };
                 self.add(table, name, value, option.clone(), option);
             }
             None => self.problems.push(ScenarioProblem {
@@ -113,9 +130,9 @@ impl Entries {
         self.add(table, name, value, place.clone(), place);
     }
 
-    /// Forgets a key, where an option replaces it by another one.
-    pub fn forget(&mut self, table: &str, name: &str) {
-        self.entries.remove(&(table.to_owned(), name.to_owned()));
+    /// Forgets a key, where an option replaces it by another one; whether it was there.
+    pub fn forget(&mut self, table: &str, name: &str) -> bool {
+        self.given.remove(&(table.to_owned(), name.to_owned())).is_some()
     }
 
     /// The title of the report, where one was given.
@@ -130,6 +147,11 @@ impl Entries {
         }
     }
 
+    /// Whether the text could not be read at all.
+    pub(super) fn is_unreadable(&self) -> bool {
+        self.unreadable
+    }
+
     /// What was wrong so far.
     pub fn problems(&self) -> &[ScenarioProblem] {
         &self.problems
@@ -142,12 +164,12 @@ impl Entries {
 
     /// Where a key was given; `None` where it was not.
     pub(super) fn place(&self, table: &str, name: &str) -> Option<Place> {
-        self.entries.get(&(table.to_owned(), name.to_owned())).map(|entry| entry.place.clone())
+        self.given.get(&(table.to_owned(), name.to_owned())).map(|entry| entry.place.clone())
     }
 
     /// The value of a key; `None` where it was not given.
     pub(super) fn value(&self, table: &str, name: &str) -> Option<&toml::Value> {
-        self.entries.get(&(table.to_owned(), name.to_owned())).map(|entry| &entry.value)
+        self.given.get(&(table.to_owned(), name.to_owned())).map(|entry| &entry.value)
     }
 
     /// A number; `None` where it was not given.
@@ -170,35 +192,81 @@ impl Entries {
         self.value(table, name).and_then(pair)
     }
 
+    /// Points; none where they were not given.
+    pub(super) fn points(&self, table: &str, name: &str) -> Vec<[f64; 2]> {
+        self.value(table, name).and_then(toml::Value::as_array).into_iter().flatten().filter_map(pair).collect()
+    }
+
     /// Checks a value against its key's kind and keeps it.
     fn add(&mut self, table: &str, name: &str, value: toml::Value, place: Place, key_place: Place) {
         let Some(key) = Key::find(table, name) else { return self.unknown(table, name, key_place) };
         if fits(&value, key.kind) {
-            self.entries.insert((table.to_owned(), name.to_owned()), Entry { value, place });
+            self.given.insert((table.to_owned(), name.to_owned()), Entry { value, place });
         } else {
-            let message = format!("{} is {value}, expected {}", key.path(), key.kind.expected());
-            self.problem(place, message, format!("it means: {}", key.help));
+            self.misfit(key, &value.to_string(), place);
         }
     }
 
-    /// Names an unknown key and the nearest known one.
+    /// Tells that a value is none that its key takes.
+    fn misfit(&mut self, key: &Key, value: &str, place: Place) {
+        let message = format!("{} is {}, expected {}", key.path(), shortened(value), key.kind.expected());
+        self.problem(place, message, format!("it means: {}", key.help));
+    }
+
+    /// Names an unknown key or table and the nearest known one.
     fn unknown(&mut self, table: &str, name: &str, place: Place) {
-        let given = match (table, name) {
-            ("", name) => name.to_owned(),
-            (table, "") => format!("[{table}]"),
-            (table, name) => format!("{table}.{name}"),
+        if table.is_empty() && tables().any(|known| known == name) {
+            let help = format!("write [{name}] on a line of its own and its keys below");
+            return self.problem(place, format!("{name} is a value, expected a table"), help);
+        }
+        let near_table = tables().find(|known| strsim::damerau_levenshtein(table, known) <= 2);
+        let (given, help) = match (table, name, near_table) {
+            (table, "", Some(near)) => (format!("table [{table}]"), format!("the nearest known table is [{near}]")),
+            (table, "", None) => {
+                (format!("table [{table}]"), format!("the tables are {}", tables().collect::<Vec<_>>().join(", ")))
+            }
+            ("", name, _) => {
+                (format!("key {}", shortened(name)), format!("the nearest known key is {}", nearest_key("", name, None)))
+            }
+            (table, name, near) => {
+                let given = format!("key {}", shortened(&format!("{table}.{name}")));
+                (given, format!("the nearest known key is {}", nearest_key(table, name, near)))
+            }
         };
-        let distance = |key: &&Key| {
-            let own = strsim::damerau_levenshtein(name, key.name);
-            // A right name in a wrong table is nearer than any other name.
-            own * 10 + usize::from(key.table != table) * strsim::damerau_levenshtein(table, key.table).min(5)
-        };
-        let nearest = CATALOGUE.iter().min_by_key(distance).map(Key::path).unwrap_or_default();
-        let help = match () {
-            () if tables().any(|known| known == table) || !name.is_empty() => format!("the nearest known key is {nearest}"),
-            () => format!("the tables are {}", tables().collect::<Vec<_>>().join(", ")),
-        };
-        self.problem(place, format!("unknown key {given}"), help);
+        self.problem(place, format!("unknown {given}"), help);
+    }
+}
+
+/// The known key nearest to an unknown one: a right name in any table first, then the nearest name, in the table that was meant where
+/// that is plain.
+fn nearest_key(table: &str, name: &str, meant: Option<&str>) -> String {
+    let distance = |key: &&Key| {
+        let own = strsim::damerau_levenshtein(name, key.name);
+        let elsewhere = own > 0 && meant.is_some_and(|meant| meant != key.table && own > 2);
+        (elsewhere, own * 10 + usize::from(key.table != table) * strsim::damerau_levenshtein(table, key.table).min(5))
+    };
+    CATALOGUE.iter().min_by_key(distance).map(Key::path).unwrap_or_default()
+}
+
+/// A piece of the user's text that is short enough for one sentence.
+fn shortened(text: &str) -> String {
+    const LONGEST: usize = 80;
+    match text.char_indices().nth(LONGEST) {
+        Some((end, _)) => format!("{}...", &text[..end]),
+        None => text.to_owned(),
+    }
+}
+
+/// A JSON value as a TOML value; `None` for what no key takes.
+fn from_json(value: &serde_json::Value) -> Option<toml::Value> {
+    match value {
+        serde_json::Value::String(text) => Some(toml::Value::String(text.clone())),
+        serde_json::Value::Number(number) => {
+            number.as_i64().map(toml::Value::Integer).or_else(|| number.as_f64().map(toml::Value::Float))
+        }
+        serde_json::Value::Array(items) => items.iter().map(from_json).collect::<Option<_>>().map(toml::Value::Array),
+        serde_json::Value::Bool(boolean) => Some(toml::Value::Boolean(*boolean)),
+        serde_json::Value::Null | serde_json::Value::Object(_) => None,
     }
 }
 
@@ -252,6 +320,7 @@ fn fits(value: &toml::Value, kind: Kind) -> bool {
         Kind::MapPoint => pair(value).is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() <= 1e12)),
         Kind::LonLat => pair(value).is_some_and(|[lon, lat]| (-180.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat)),
         Kind::Flag => value.as_bool().is_some(),
+        Kind::MapPoints => value.as_array().is_some_and(|points| points.iter().all(|point| fits(point, Kind::MapPoint))),
         Kind::CountOrAuto => value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),

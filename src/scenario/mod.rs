@@ -10,6 +10,6 @@ mod read;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
-pub use pipeline::{Cut, Extremes, PipelineError, Prepared, constant_gravity_doubts, cut, friction, prepare, sha256_of};
+pub use pipeline::{Covers, Cut, Extremes, PipelineError, Prepared, constant_gravity_doubts, friction, prepare, sha256_of};
 pub use problem::{ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, Scenario, TerrainSource};

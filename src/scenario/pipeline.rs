@@ -13,7 +13,11 @@ use super::{BodyChoice, Scenario, TerrainSource};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     path::Hop,
-    terrain::{Dem, MapPlace, MapProjection, Profile, TerrainError, check_scale, read_dem, slice},
+    quantity::MapPoint,
+    terrain::{
+        CoordinateSystem, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection, Profile, TerrainError, check_scale,
+        open_dem, read_friction_raster, read_keep_out, read_mesh, slice_legs, slice_mesh,
+    },
     world::{Body, FrictionCone, Grip},
 };
 
@@ -66,7 +70,10 @@ pub enum PipelineError {
     },
 }
 
-/// Builds the chain of a scenario: slices its DEM or reads its chain, settles the constraints, finds start and goal on it.
+/// A chain, warnings, and where start and goal are if nothing else says it.
+type Geometry = (PolygonalChain, Option<MapProjection>, Vec<String>, (Option<f64>, Option<f64>));
+
+/// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, settles the constraints, finds start and goal on it.
 ///
 /// `base` is the folder that the scenario's paths start from.
 ///
@@ -75,11 +82,12 @@ pub enum PipelineError {
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let (geometry, projection, warnings, ends) = match source {
         TerrainSource::Dem { path, start, goal } => {
-            let file = base.join(path);
-            let cut = cut(&read_dem(&file)?, [start, goal], scenario.accept_map_scale, &file)?;
-            let chain = PolygonalChain::from_profile(&cut.profile, friction(scenario))?;
-            let (first_m, last_m) = chain.extent_m();
-            (chain, cut.projection, cut.warnings, (Some(first_m), Some(last_m)))
+            let cut = Cut::of_dem(&base.join(path), [start, goal], &scenario.via, scenario.accept_map_scale)?;
+            covered(scenario, base, cut)?
+        }
+        TerrainSource::Mesh { path, scale, start, goal } => {
+            let cut = Cut::of_mesh(&base.join(path), *scale, [*start, *goal], &scenario.via)?;
+            covered(scenario, base, cut)?
         }
         TerrainSource::Chain { path } => {
             let file = csv::read_chain_csv_file(base.join(path))?;
@@ -95,28 +103,117 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
     Ok(Prepared { chain, start, goal, projection, warnings })
 }
 
-/// A slice of a DEM with what is known of its map.
+/// The chain of a cut under what the scenario lays over it, with its ends as start and goal.
+fn covered(scenario: &Scenario, base: &Path, cut: Cut) -> Result<Geometry, PipelineError> {
+    let chain = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds)?.chain(cut.legs)?;
+    let (first_m, last_m) = chain.extent_m();
+    Ok((chain, cut.projection, cut.warnings, (Some(first_m), Some(last_m))))
+}
+
+/// The ground along a journey, leg by leg, and what is known of its map.
 #[derive(Clone, Debug)]
 pub struct Cut {
-    /// The ground along the transect.
-    pub profile: Profile,
+    /// One slice for each leg.
+    pub legs: Vec<Profile>,
+    /// What the terrain says of its map.
+    pub coordinates: Option<CoordinateSystem>,
     /// The map's projection, where it is known.
     pub projection: Option<MapProjection>,
-    /// What the analyst should know of the map.
+    /// What the terrain covers.
+    pub bounds: MapBounds,
+    /// What the analyst should know.
     pub warnings: Vec<String>,
 }
 
-/// Slices a DEM between two places, once the scale of its map along the transect is found right or accepted.
-///
-/// # Errors
-/// As [`slice`], [`check_scale`] and [`MapPlace::on_map`].
-pub fn cut(dem: &Dem, [from, to]: [&MapPlace; 2], accept_map_scale: bool, file: &Path) -> Result<Cut, TerrainError> {
-    let projection = dem.georeference().projection();
-    let known = projection.as_ref();
-    let (from, to) = (from.on_map("from", known, dem.bounds())?, to.on_map("to", known, dem.bounds())?);
-    let scale = check_scale(dem, known, [from, to], accept_map_scale, file)?;
-    let profile = slice(dem, from, to)?;
-    Ok(Cut { profile, warnings: scale.warning().into_iter().collect(), projection: projection.ok() })
+impl Cut {
+    /// Slices an elevation raster from the first end to the second over the points between, reading only what the slices cross, once
+    /// the scale of its map along every leg is found right or accepted.
+    ///
+    /// # Errors
+    /// As [`open_dem`], [`MapPlace::on_map`], [`check_scale`] and [`slice_legs`].
+    pub fn of_dem(file: &Path, [from, to]: [&MapPlace; 2], via: &[MapPoint], accept_map_scale: bool) -> Result<Self, TerrainError> {
+        let dem = open_dem(file)?;
+        let map = dem.georeference();
+        let bounds = map.bounds(dem.rows(), dem.cols());
+        let projection = map.projection();
+        let known = projection.as_ref();
+        let (from, to) = (from.on_map("from", known, bounds)?, to.on_map("to", known, bounds)?);
+        let mut warnings = Vec::new();
+        let mut begin = from;
+        for end in via.iter().copied().chain([to]) {
+            let scale = check_scale(dem.as_ref(), known, [begin, end], accept_map_scale, file)?;
+            warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
+            begin = end;
+        }
+        let legs = slice_legs(dem.as_ref(), from, via, to)?;
+        let coordinates = Some(map.coordinate_system.clone());
+        Ok(Self { legs, coordinates, projection: projection.ok(), bounds, warnings })
+    }
+
+    /// Slices a mesh from the first end to the second over the points between.
+    ///
+    /// # Errors
+    /// As [`read_mesh`] and [`slice_mesh`].
+    pub fn of_mesh(file: &Path, scale: f64, [from, to]: [MapPoint; 2], via: &[MapPoint]) -> Result<Self, TerrainError> {
+        let read = read_mesh(file, scale)?;
+        let (mut legs, mut warnings) = (Vec::new(), read.warnings);
+        let mut begin = from;
+        for end in via.iter().copied().chain([to]) {
+            let slice = slice_mesh(&read.mesh, begin, end)?;
+            warnings.extend(slice.warnings());
+            legs.push(slice.profile);
+            begin = end;
+        }
+        Ok(Self { legs, coordinates: None, projection: None, bounds: read.mesh.bounds().map, warnings })
+    }
+}
+
+/// What a scenario lays over its terrain: friction, and keep-out zones.
+#[derive(Clone, Debug)]
+pub struct Covers {
+    constant: Option<FrictionCone>,
+    raster: Option<FrictionRaster>,
+    keep_out: Option<KeepOut>,
+}
+
+impl Covers {
+    /// Reads the files that a scenario names, for a terrain that says this of its map and covers this.
+    ///
+    /// `base` is the folder that the scenario's paths start from.
+    ///
+    /// # Errors
+    /// [`TerrainError::Cover`].
+    pub fn read(
+        scenario: &Scenario,
+        base: &Path,
+        coordinates: Option<&CoordinateSystem>,
+        bounds: MapBounds,
+    ) -> Result<Self, TerrainError> {
+        let raster = scenario.friction_raster.as_deref().map(|path| read_friction_raster(&base.join(path), coordinates));
+        let keep_out = scenario.keep_out.as_deref().map(|path| read_keep_out(&base.join(path), coordinates, bounds));
+        Ok(Self { constant: friction(scenario), raster: raster.transpose()?, keep_out: keep_out.transpose()? })
+    }
+
+    /// The files of a scenario that are read, from its folder.
+    pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
+        [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
+    }
+
+    /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones.
+    ///
+    /// # Errors
+    /// [`TerrainError::Cover`] where a raster ends before the slice does.
+    pub fn chain(&self, mut legs: Vec<Profile>) -> Result<PolygonalChain, PipelineError> {
+        for leg in &mut legs {
+            if let Some(raster) = &self.raster {
+                raster.lay(leg, self.constant)?;
+            }
+            if let Some(keep_out) = &self.keep_out {
+                keep_out.mark(leg)?;
+            }
+        }
+        Ok(PolygonalChain::from_legs(&legs, self.constant)?)
+    }
 }
 
 /// The friction that a scenario gives the whole ground.
@@ -143,12 +240,11 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
         }
         digest.update(&piece[..count]);
     }
-    let mut hexadecimal = String::new();
-    for byte in digest.finalize() {
+    Ok(digest.finalize().iter().fold(String::with_capacity(64), |mut text, byte| {
         // Writing to a String cannot fail.
-        let _ = write!(hexadecimal, "{byte:02x}");
-    }
-    Ok(hexadecimal)
+        let _ = write!(text, "{byte:02x}");
+        text
+    }))
 }
 
 /// The largest figures of some hops, to be doubted.

@@ -1,6 +1,6 @@
 //! From keys as typed to a validated scenario in SI units.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::{Entries, Key, Place, ScenarioProblem};
 use crate::{
@@ -34,11 +34,40 @@ pub enum TerrainSource {
         /// Where it ends.
         goal: MapPlace,
     },
+    /// A slice of a triangulated surface between two map points.
+    Mesh {
+        /// The file, from the scenario's folder.
+        path: PathBuf,
+        /// Metres per unit of the file.
+        scale: f64,
+        /// Where the slice begins.
+        start: MapPoint,
+        /// Where it ends.
+        goal: MapPoint,
+    },
     /// A chain CSV.
     Chain {
         /// The file, from the scenario's folder.
         path: PathBuf,
     },
+}
+
+impl TerrainSource {
+    /// The file, from the scenario's folder.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Dem { path, .. } | Self::Mesh { path, .. } | Self::Chain { path } => path,
+        }
+    }
+
+    /// Where the slice begins and ends on the map; `None` where nothing is sliced.
+    pub fn map_ends(&self) -> Option<[MapPlace; 2]> {
+        match self {
+            Self::Dem { start, goal, .. } => Some([*start, *goal]),
+            Self::Mesh { start, goal, .. } => Some([*start, *goal].map(MapPlace::Metres)),
+            Self::Chain { .. } => None,
+        }
+    }
 }
 
 /// A validated scenario.
@@ -50,10 +79,16 @@ pub struct Scenario {
     pub hopper: Hopper,
     /// The ground's grip.
     pub surface: Surface,
+    /// Raster of friction coefficients, from the scenario's folder.
+    pub friction_raster: Option<PathBuf>,
+    /// Keep-out zones, from the scenario's folder.
+    pub keep_out: Option<PathBuf>,
     /// The terrain, where the scenario names it.
     pub terrain: Option<TerrainSource>,
     /// Whether a map whose scale along the transect is off by over 1 % is taken as it is.
     pub accept_map_scale: bool,
+    /// Points of the map between start and goal, where a slice bends.
+    pub via: Vec<MapPoint>,
     /// Start along the chain, m, where the scenario names it.
     pub start_x_m: Option<f64>,
     /// Goal along the chain, m, where the scenario names it.
@@ -70,10 +105,14 @@ impl Scenario {
     /// # Errors
     /// Every problem of the keys, in the order of the file.
     pub fn new(mut entries: Entries) -> Result<Self, Vec<ScenarioProblem>> {
+        if entries.is_unreadable() {
+            return Err(entries.problems().to_vec());
+        }
         let body = body(&mut entries);
         let hopper = hopper(&mut entries);
         let surface = surface(&mut entries);
         let terrain = terrain(&mut entries);
+        let [friction_raster, keep_out] = covers(&mut entries, &surface, terrain.as_ref());
         let search = search(&mut entries);
         let mut problems = entries.problems().to_vec();
         let Some(body) = body.filter(|_| problems.is_empty()) else {
@@ -88,8 +127,11 @@ impl Scenario {
             body,
             hopper,
             surface,
+            friction_raster,
+            keep_out,
             terrain,
             accept_map_scale: entries.flag("terrain", "accept_map_scale"),
+            via: entries.points("terrain", "via_m").into_iter().map(|[x, y]| MapPoint::new(x, y)).collect(),
             start_x_m: entries.number("terrain", "start_x_m"),
             goal_x_m: entries.number("terrain", "goal_x_m"),
             search,
@@ -106,10 +148,7 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
     match (&name, gravity) {
         (Some(name), _) => {
             let Some(known) = Body::named(name) else {
-                let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
-                let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
-                let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
-                entries.problem(place, message, "for any other body give gravity_m_s2 instead of a name");
+                unknown_body(entries, name);
                 return None;
             };
             Some(BodyChoice {
@@ -128,6 +167,17 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
             None
         }
     }
+}
+
+/// Tells that no known body has this name, and which comes nearest.
+fn unknown_body(entries: &mut Entries, name: &str) {
+    let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
+    let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
+    let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
+    let lower_case = name.to_lowercase();
+    let near = names.iter().min_by_key(|known| strsim::damerau_levenshtein(&lower_case, known)).copied().unwrap_or_default();
+    let help = format!("the nearest known name is {near}; for any other body give gravity_m_s2 instead of a name");
+    entries.problem(place, message, help);
 }
 
 /// The robot; what is absent does not limit.
@@ -193,41 +243,113 @@ fn surface(entries: &mut Entries) -> Surface {
     Surface { grip, rest }
 }
 
-/// Where the ground comes from.
-fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
-    let text = |name| entries.text("terrain", name).map(PathBuf::from);
-    let (dem, chain) = (text("dem"), text("chain"));
-    let along = ["start_x_m", "goal_x_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
-    match (dem, chain) {
-        (Some(_), Some(_)) => {
-            let place = entries.place("terrain", "chain").unwrap_or(Place::Nowhere);
-            entries.problem(place, "terrain has both dem and chain, expected one of the two".to_owned(), "remove one of them");
-            None
-        }
-        (Some(path), None) => {
-            let (start, goal) = (map_place(entries, "start"), map_place(entries, "goal"));
-            Some(TerrainSource::Dem { path, start: start?, goal: goal? })
-        }
-        (None, Some(path)) => {
-            for name in ["start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg"] {
-                if let Some(place) = entries.place("terrain", name) {
-                    let help = format!("for a chain give {}_x_m instead", name.split('_').next().unwrap_or(name));
-                    entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
-                }
+/// The files that lie over the terrain: friction raster and keep-out zones.
+fn covers(entries: &mut Entries, surface: &Surface, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 2] {
+    let own_columns = [("friction_raster", "friction_coefficient"), ("keep_out", "keep_out")];
+    if matches!(terrain, Some(TerrainSource::Chain { .. })) {
+        for (name, column) in own_columns {
+            if let Some(place) = entries.place("surface", name) {
+                let help = format!("give the chain a column {column} instead, as chta slice --scenario does");
+                entries.problem(place, format!("surface.{name} is laid over a dem, but terrain has a chain"), help);
             }
-            Some(TerrainSource::Chain { path })
         }
-        (None, None) => {
-            if let Some((name, place @ Place::File(_))) = along {
+    }
+    if let (Some(Grip::FromSlope { .. }), Some(place)) = (surface.grip, entries.place("surface", "friction_raster")) {
+        let message = "surface has both friction_raster and angles from the slope, expected one of the two".to_owned();
+        entries.problem(place, message, "remove friction_raster, or takeoff_from_slope_deg and landing_from_slope_deg");
+    }
+    own_columns.map(|(name, _)| entries.text("surface", name).map(PathBuf::from))
+}
+
+/// Where the ground comes from: one file at most.
+fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
+    let kinds = ["dem", "mesh", "chain"];
+    let given: Vec<(&str, PathBuf)> =
+        kinds.iter().filter_map(|&kind| Some((kind, PathBuf::from(entries.text("terrain", kind)?)))).collect();
+    let scale = entries.number("terrain", "mesh_scale");
+    if scale.is_some() && !given.iter().any(|(kind, _)| *kind == "mesh") {
+        let place = entries.place("terrain", "mesh_scale").unwrap_or(Place::Nowhere);
+        entries.problem(place, "terrain.mesh_scale without a mesh".to_owned(), "add mesh = \"file.obj\", or remove it");
+    }
+    match given.as_slice() {
+        [] => {
+            // Where a key of the terrain has told its own problem, dem, mesh or chain may be what was meant by it.
+            if entries.problems().iter().any(|problem| problem.message.contains("terrain.")) {
+                return None;
+            }
+            let on_map = ["start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg"]
+                .into_iter()
+                .find_map(|name| Some((name, entries.place("terrain", name)?)));
+            let along = ["start_x_m", "goal_x_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
+            if let Some((name, place)) = on_map {
+                entries.problem(place, format!("terrain.{name} without a dem"), "add dem = \"file.tif\", or mesh = \"file.obj\"");
+            } else if let Some((name, place @ Place::File(_))) = along {
                 entries.problem(place, format!("terrain.{name} without a chain"), "add chain = \"file.csv\"");
             }
+            None
+        }
+        [("chain", path)] => {
+            refuse_map_points(entries);
+            Some(TerrainSource::Chain { path: path.clone() })
+        }
+        [(kind, path)] => {
+            let [start, goal] = map_ends(entries, kind)?;
+            let path = path.clone();
+            Some(match *kind {
+                "mesh" => {
+                    let [start, goal] = on_mesh(entries, [start, goal])?;
+                    TerrainSource::Mesh { path, scale: scale.unwrap_or(1.0), start, goal }
+                }
+                _ => TerrainSource::Dem { path, start, goal },
+            })
+        }
+        [(first, _), .., (last, _)] => {
+            let place = entries.place("terrain", last).unwrap_or(Place::Nowhere);
+            let (message, help) = if given.len() == 2 {
+                (format!("terrain has both {first} and {last}, expected one of the two"), "remove one of them")
+            } else {
+                ("terrain has all of dem, mesh and chain, expected one of the three".to_owned(), "remove two of them")
+            };
+            entries.problem(place, message, help);
             None
         }
     }
 }
 
+/// Start and goal on the map, which a slice needs.
+fn map_ends(entries: &mut Entries, kind: &str) -> Option<[MapPlace; 2]> {
+    // Where both are missing, one sentence is enough.
+    let start = map_place(entries, "start", kind)?;
+    Some([start, map_place(entries, "goal", kind)?])
+}
+
+/// The ends of a slice of a mesh, which has no projection.
+fn on_mesh(entries: &mut Entries, ends: [MapPlace; 2]) -> Option<[MapPoint; 2]> {
+    if let [MapPlace::Metres(start), MapPlace::Metres(goal)] = ends {
+        return Some([start, goal]);
+    }
+    let given = ["start_lonlat_deg", "goal_lonlat_deg"].into_iter().find_map(|name| entries.place("terrain", name));
+    let message = "terrain has longitude and latitude beside a mesh, which has no projection".to_owned();
+    entries.problem(given.unwrap_or(Place::Nowhere), message, "give start_m and goal_m = [x, y], in the mesh's own metres");
+    None
+}
+
+/// Map points beside a chain.
+fn refuse_map_points(entries: &mut Entries) {
+    for name in ["start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg"] {
+        if let Some(place) = entries.place("terrain", name) {
+            let help = format!("for a chain give {}_x_m instead", name.split('_').next().unwrap_or(name));
+            entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
+        }
+    }
+    if let Some(place) = entries.place("terrain", "via_m") {
+        let message = "terrain.via_m is of a slice, but terrain has a chain".to_owned();
+        entries.problem(place, message, "give the chain a column bend instead, as chta slice --via does");
+    }
+}
+
 /// The start or goal of a transect: map coordinates, or longitude and latitude.
-fn map_place(entries: &mut Entries, end: &str) -> Option<MapPlace> {
+fn map_place(entries: &mut Entries, end: &str, kind: &str) -> Option<MapPlace> {
     let (metres, degrees) = (format!("{end}_m"), format!("{end}_lonlat_deg"));
     let point = entries.pair("terrain", &metres).map(|[x, y]| MapPoint::new(x, y));
     let place = entries.pair("terrain", &degrees).map(|[lon_deg, lat_deg]| LonLat { lon_deg, lat_deg });
@@ -243,9 +365,10 @@ fn map_place(entries: &mut Entries, end: &str) -> Option<MapPlace> {
             let told =
                 entries.problems().iter().any(|problem| problem.message.contains(&metres) || problem.message.contains(&degrees));
             if !told {
-                let at = entries.place("terrain", "dem").unwrap_or(Place::Nowhere);
-                let help = format!("add {metres} = [x, y], in map metres, or {degrees} = [longitude, latitude]");
-                entries.problem(at, format!("terrain has a dem but no {metres}"), help);
+                let at = entries.place("terrain", kind).unwrap_or(Place::Nowhere);
+                let instead = if kind == "dem" { format!(", or {degrees} = [longitude, latitude]") } else { String::new() };
+                let help = format!("add {metres} = [x, y], in map metres{instead}");
+                entries.problem(at, format!("terrain has a {kind} but no {metres}"), help);
             }
             None
         }

@@ -83,52 +83,24 @@ impl Dem {
     }
 
     fn from_posts(rows: usize, cols: usize, posts: Posts, georeference: GeoReference) -> Result<Self, TerrainError> {
-        if rows < 2 || cols < 2 {
-            return Err(TerrainError::InvalidDem(format!(
-                "the raster has {rows} rows and {cols} columns, expected at least 2 of each"
-            )));
-        }
+        check_sides(rows, cols)?;
         if rows.checked_mul(cols) != Some(posts.len()) {
             return Err(TerrainError::InvalidDem(format!(
                 "the raster has {} elevations, expected {rows} rows times {cols} columns",
                 posts.len()
             )));
         }
+        check_map(rows, cols, &georeference)?;
         let dem = Self { rows, cols, posts, georeference };
-        dem.check_map()?;
         dem.check_elevations()?;
         Ok(dem)
     }
 
-    /// Neighbouring posts must differ in their map coordinates: 1 mm posts 10^14 m from the origin do not.
-    fn check_map(&self) -> Result<(), TerrainError> {
-        let MapBounds { min, max } = self.bounds();
-        let near = |edge: f64, step: f64| (edge + step) - edge > 0.5 * step && (edge - step) - edge < -0.5 * step;
-        let (dx_m, dy_m) = (self.georeference.dx_m(), self.georeference.dy_m());
-        let told_apart = near(min.x, dx_m) && near(max.x, dx_m) && near(min.y, dy_m) && near(max.y, dy_m);
-        if told_apart && [min.x, min.y, max.x, max.y].iter().all(|value| value.is_finite()) {
-            return Ok(());
-        }
-        Err(TerrainError::InvalidDem(format!(
-            "the map has {bounds} with posts every {dx_m} m and {dy_m} m, expected coordinates that tell neighbouring posts apart",
-            bounds = self.bounds()
-        )))
-    }
-
     fn check_elevations(&self) -> Result<(), TerrainError> {
-        let mut any = false;
-        for index in 0..self.posts.len() {
-            let Some(z_m) = self.posts.at(index) else { continue };
-            any = true;
-            if z_m.abs() >= ELEVATION_LIMIT_M {
-                return Err(TerrainError::InvalidDem(format!(
-                    "row {}, column {} (from 0, from the north-west) holds {z_m:e} m, expected an elevation within {ELEVATION_LIMIT_M:e} m; \
-                     if it marks missing data, say so with: gdal_translate -a_nodata {z_m:e} in.tif out.tif",
-                    index / self.cols,
-                    index % self.cols,
-                )));
-            }
-        }
+        let any = match &self.posts {
+            Posts::Single(values) => any_elevation(values, self.cols)?,
+            Posts::Double(values) => any_elevation(values, self.cols)?,
+        };
         if any {
             return Ok(());
         }
@@ -176,12 +148,71 @@ impl Dem {
 
     /// Lowest and highest elevation, m.
     pub fn elevation_range_m(&self) -> (f64, f64) {
-        self.elevations().flatten().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)))
+        // The minimum and maximum of a number and NaN are the number.
+        match &self.posts {
+            Posts::Single(values) => {
+                let (low, high) =
+                    values.iter().fold((f32::INFINITY, f32::NEG_INFINITY), |(low, high), z| (low.min(*z), high.max(*z)));
+                (low.into(), high.into())
+            }
+            Posts::Double(values) => {
+                values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z| (low.min(*z), high.max(*z)))
+            }
+        }
     }
 
     pub(super) fn posts(&self) -> &Posts {
         &self.posts
     }
+}
+
+/// A square of posts is the least ground there is.
+fn check_sides(rows: usize, cols: usize) -> Result<(), TerrainError> {
+    if rows >= 2 && cols >= 2 {
+        return Ok(());
+    }
+    Err(TerrainError::InvalidDem(format!("the raster has {rows} rows and {cols} columns, expected at least 2 of each")))
+}
+
+/// Neighbouring posts must differ in their map coordinates: 1 mm posts 10^14 m from the origin do not.
+pub(super) fn check_map(rows: usize, cols: usize, map: &GeoReference) -> Result<(), TerrainError> {
+    check_sides(rows, cols)?;
+    let bounds = map.bounds(rows, cols);
+    let MapBounds { min, max } = bounds;
+    let near = |edge: f64, step: f64| (edge + step) - edge > 0.5 * step && (edge - step) - edge < -0.5 * step;
+    let (dx_m, dy_m) = (map.dx_m(), map.dy_m());
+    let told_apart = near(min.x, dx_m) && near(max.x, dx_m) && near(min.y, dy_m) && near(max.y, dy_m);
+    if told_apart && [min.x, min.y, max.x, max.y].iter().all(|value| value.is_finite()) {
+        return Ok(());
+    }
+    Err(TerrainError::InvalidDem(format!(
+        "the map has {bounds} with posts every {dx_m} m and {dy_m} m, expected coordinates that tell neighbouring posts apart"
+    )))
+}
+
+/// Whether there is any elevation; refuses what is none.
+fn any_elevation<T: Copy + Into<f64>>(posts: &[T], cols: usize) -> Result<bool, TerrainError> {
+    let mut any = false;
+    for (index, &post) in posts.iter().enumerate() {
+        let z_m: f64 = post.into();
+        any |= !z_m.is_nan();
+        // Without the call, which would hold up a loop over millions.
+        if z_m.abs() >= ELEVATION_LIMIT_M {
+            check_elevation(z_m, index / cols, index % cols)?;
+        }
+    }
+    Ok(any)
+}
+
+/// Refuses a number that no elevation has; NaN is a gap.
+pub(super) fn check_elevation(z_m: f64, row: usize, col: usize) -> Result<(), TerrainError> {
+    if z_m.is_nan() || z_m.abs() < ELEVATION_LIMIT_M {
+        return Ok(());
+    }
+    Err(TerrainError::InvalidDem(format!(
+        "row {row}, column {col} (from 0, from the north-west) holds {z_m:e} m, expected an elevation within {ELEVATION_LIMIT_M:e} m; \
+         if it marks missing data, say so with: gdal_translate -a_nodata {z_m:e} in.tif out.tif"
+    )))
 }
 
 /// Same posts at the same places: gaps equal gaps, and how the numbers are kept does not matter.

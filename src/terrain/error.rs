@@ -18,6 +18,16 @@ pub enum TerrainError {
         /// What is wrong with it.
         problem: Box<Self>,
     },
+    /// A problem of keep-out zones or of a raster of friction.
+    #[error("{what} '{}': {problem}", path.display())]
+    Cover {
+        /// "keep-out zones" or "friction raster".
+        what: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// What was found, what was expected and how to mend it.
+        problem: String,
+    },
     /// The operating system refused to read or write.
     #[error("cannot be {action}: {reason}")]
     Io {
@@ -52,7 +62,7 @@ pub enum TerrainError {
         /// A command that makes a usable file.
         mend: String,
     },
-    /// Every problem found in the text of an ASCII grid.
+    /// Every problem found in the text of an ASCII or XYZ grid.
     #[error("{}", list_problems(problems, *further))]
     AsciiGrid {
         /// The first problems, in the file's order.
@@ -134,6 +144,45 @@ pub enum TerrainError {
         /// How far from the first point.
         distance_m: f64,
     },
+    /// No reader of meshes knows the content.
+    #[error("the content is no known mesh format (it begins with {found}), expected one of: {expected}")]
+    NotAMesh {
+        /// The first bytes, printable.
+        found: String,
+        /// Names of the formats that can be read.
+        expected: String,
+    },
+    /// A line of a mesh's text.
+    #[error("the {format} has a fault in line {line}: {problem}")]
+    MeshText {
+        /// The format.
+        format: &'static str,
+        /// Line of the file, from 1.
+        line: usize,
+        /// What stands there, and what was expected.
+        problem: String,
+    },
+    /// Numbers that make no surface.
+    #[error("{0}")]
+    InvalidMesh(String),
+    /// The plane of a slice meets no triangle for a stretch.
+    #[error(
+        "the plane meets no triangle of the mesh from x = {begin_m} m to {end_m} m along the transect, map ({:.6}, {:.6}) m to ({:.6}, {:.6}) m{}, expected \
+         ground all the way; choose another transect, or close the hole in the mesh (narrow cracks: weld its vertices)",
+        begin.x, begin.y, end.x, end.y, further_gaps(*further)
+    )]
+    MeshGap {
+        /// Where the stretch begins along the transect, m.
+        begin_m: f64,
+        /// Where it ends, m.
+        end_m: f64,
+        /// Where it begins on the map.
+        begin: MapPoint,
+        /// Where it ends on the map.
+        end: MapPoint,
+        /// How many more stretches there are.
+        further: usize,
+    },
     /// An option of the synthetic terrain that makes no sense.
     #[error("synthetic terrain: {option} is {found}, expected {expected}")]
     InvalidOption {
@@ -161,7 +210,7 @@ impl TerrainError {
     }
 }
 
-/// One problem in the text of an ASCII grid.
+/// One problem in the text of an ASCII or XYZ grid.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct AsciiProblem {
     /// Line of the file, from 1.
@@ -186,6 +235,10 @@ fn lies(at: Option<MapPoint>) -> String {
         || "lies nowhere on the map".to_owned(),
         |at| format!("is off the map, at map point ({:.3} m, {:.3} m)", at.x, at.y),
     )
+}
+
+fn further_gaps(further: usize) -> String {
+    if further == 0 { String::new() } else { format!(" (and {further} more such stretches)") }
 }
 
 fn list_problems(problems: &[AsciiProblem], further: usize) -> String {

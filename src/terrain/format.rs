@@ -5,8 +5,12 @@ use std::io::Read;
 use std::path::Path;
 
 use super::ascii_grid::AsciiGridReader;
+#[cfg(not(feature = "gdal"))]
+use super::foreign;
 use super::geotiff::GeoTiffReader;
-use super::{Dem, TerrainError};
+use super::pds3::Pds3Reader;
+use super::xyz::XyzReader;
+use super::{Dem, DemFile, TerrainError};
 
 /// How many bytes of a file its readers get to see when asked whether it is theirs.
 const PROBE_BYTES: u64 = 4096;
@@ -30,30 +34,71 @@ pub trait DemReader: Sync {
     /// # Errors
     /// As [`DemReader::read_bytes`], and where the file cannot be read.
     fn read_path(&self, path: &Path) -> Result<Dem, TerrainError>;
+
+    /// Opens a file from disk to read parts of it. Formats that can only be read whole are.
+    ///
+    /// # Errors
+    /// As [`DemReader::read_path`], but for what is wrong with posts that nobody asks for.
+    fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
+        Ok(Box::new(self.read_path(path)?))
+    }
 }
 
 /// The readers, asked in this order.
-static READERS: [&dyn DemReader; 2] = [&GeoTiffReader, &AsciiGridReader];
+static READERS: [&dyn DemReader; 4] = [&GeoTiffReader, &AsciiGridReader, &Pds3Reader, &XyzReader];
 
 /// Names of the formats and one line about each, for help texts.
-pub const FORMATS: [(&str, &str); 2] = [
+pub const FORMATS: [(&str, &str); 4] = [
     ("GeoTIFF", "one band of integer or float elevations in metres, on a map in metres, north up (also BigTIFF, COG)"),
     ("ESRI ASCII grid", "ncols, nrows, xllcorner or xllcenter, yllcorner or yllcenter, cellsize or dx and dy, NODATA_value"),
+    ("PDS3 image", "an IMAGE object with its IMAGE_MAP_PROJECTION, label attached or beside it (give the label)"),
+    (
+        "XYZ grid",
+        "x, y, z in m, one post per line in any order, on a regular lattice; separated by comma, semicolon or white space",
+    ),
 ];
 
-/// Reads a DEM file, whatever its extension.
+/// Reads a DEM file, whatever its extension. With the feature `gdal`, what none of the formats is goes to GDAL.
 ///
 /// # Errors
 /// [`TerrainError::InFile`], around what is wrong: the file cannot be read, is of no known format, is damaged, or holds something
 /// other than elevations in metres on a north-up map in metres.
 pub fn read_dem(path: &Path) -> Result<Dem, TerrainError> {
-    let beginning = read_beginning(path).map_err(|error| error.in_file(path))?;
-    let reader = READERS.iter().find(|reader| reader.recognises(&beginning));
-    match reader {
-        Some(reader) => reader.read_path(path),
-        None => Err(not_recognised(&beginning)),
+    reader_of(path).and_then(|reader| reader.read_path(path)).map_err(|error| error.in_file(path))
+}
+
+/// Opens a DEM file, whatever its extension, to read parts of it: of a GeoTIFF or PDS3 image only what is asked for, of a text all.
+///
+/// # Errors
+/// As [`read_dem`], but what is wrong with posts that are not asked for goes unnoticed.
+pub fn open_dem(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
+    reader_of(path).and_then(|reader| reader.open_path(path)).map_err(|error| error.in_file(path))
+}
+
+fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {
+    let beginning = read_beginning(path)?;
+    if let Some(reader) = READERS.iter().copied().find(|reader| reader.recognises(&beginning)) {
+        return Ok(reader);
     }
-    .map_err(|error| error.in_file(path))
+    #[cfg(feature = "gdal")]
+    if !beginning.is_empty() {
+        return Ok(&super::gdal::GdalReader);
+    }
+    #[cfg(not(feature = "gdal"))]
+    if let Some(name) = foreign::name(&beginning) {
+        return Err(foreign::refusal(name));
+    }
+    Err(label_beside(path).unwrap_or_else(|| not_recognised(&beginning)))
+}
+
+/// What to say of an image whose PDS3 label lies beside it.
+fn label_beside(path: &Path) -> Option<TerrainError> {
+    let label = ["lbl", "LBL"].map(|extension| path.with_extension(extension)).into_iter().find(|label| label.is_file())?;
+    Some(TerrainError::Unsuitable {
+        found: "an image without a label in it".to_owned(),
+        expected: "the label, which names its image",
+        mend: format!("give {} instead", label.file_name()?.to_string_lossy()),
+    })
 }
 
 fn read_beginning(path: &Path) -> Result<Vec<u8>, TerrainError> {

@@ -147,6 +147,14 @@ impl GeoReference {
     }
 }
 
+impl GeoReference {
+    /// Whether coordinates of degrees could be these.
+    pub(super) fn may_be_degrees(&self, rows: usize, cols: usize) -> bool {
+        let MapBounds { min, max } = self.bounds(rows, cols);
+        min.x >= -180.0 && max.x <= 360.0 && min.y >= -90.0 && max.y <= 90.0
+    }
+}
+
 /// How many times its own map's width a terrain would have to rise before the map is taken to be in degrees.
 ///
 /// The steepest landscapes rise about once their width; a map in degrees is some 100 000 times too narrow (Earth, Mars; 30 000 on the
@@ -155,12 +163,14 @@ const RELIEF_TO_WIDTH_OF_DEGREES: f64 = 5.0;
 
 /// Refuses a raster without stated units whose numbers only make sense in degrees.
 pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
+    if !dem.georeference().may_be_degrees(dem.rows(), dem.cols()) {
+        return Ok(());
+    }
     let MapBounds { min, max } = dem.bounds();
-    let fits_degrees = min.x >= -180.0 && max.x <= 360.0 && min.y >= -90.0 && max.y <= 90.0;
     let width = (max.x - min.x).max(max.y - min.y);
     let (low_m, high_m) = dem.elevation_range_m();
     let relief_m = high_m - low_m;
-    if fits_degrees && relief_m > RELIEF_TO_WIDTH_OF_DEGREES * width {
+    if relief_m > RELIEF_TO_WIDTH_OF_DEGREES * width {
         return Err(TerrainError::Unsuitable {
             found: format!(
                 "the map spans {} by {} units but the elevations {relief_m} m, so its coordinates look like degrees",

@@ -3,7 +3,7 @@
 //! A [`Dem`] is posts of elevation on a map in metres, read from a file by content ([`read_dem`]), made up from a seed
 //! ([`synthesise`]), or built in memory. [`slice`](slice()) cuts it along a vertical plane into a [`Profile`], from which a polygonal
 //! chain is made. A further file format is one more [`DemReader`], listed
-//! in [`FORMATS`].
+//! in [`FORMATS`]. A [`Mesh`] is triangles that may overhang, and [`slice_mesh`] cuts it the same way.
 //!
 //! ```
 //! use chta::quantity::MapPoint;
@@ -18,23 +18,40 @@
 mod ascii_grid;
 mod dem;
 mod error;
+#[cfg(not(feature = "gdal"))]
+mod foreign;
 mod format;
+#[cfg(feature = "gdal")]
+mod gdal;
 mod georeference;
 mod geotiff;
+mod mesh;
+mod pds3;
 mod profile;
 mod projection;
 mod slice;
 mod synth;
+mod window;
+mod xyz;
+mod zones;
 
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M};
 pub use error::{AsciiProblem, TerrainError};
-pub use format::{DemReader, FORMATS, read_dem};
+pub use format::{DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{geotiff_bytes, read_geotiff_bytes, write_geotiff};
+pub use mesh::{
+    Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
+    slice_mesh,
+};
+pub use pds3::read_pds3_bytes;
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
 pub use projection::{
     Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, TransectScale, check_scale,
 };
-pub use slice::slice;
+pub use slice::{slice, slice_file, slice_legs};
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
+pub use window::{DemFile, Window};
+pub use xyz::read_xyz_bytes;
+pub use zones::{FrictionRaster, KeepOut, read_friction_raster, read_keep_out};

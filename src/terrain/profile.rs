@@ -2,7 +2,10 @@
 
 use nalgebra::{Vector2, Vector3};
 
-use crate::quantity::{Angle, MapPoint};
+use crate::{
+    quantity::{Angle, MapPoint},
+    world::FrictionCone,
+};
 
 /// The ground along a straight line on the map: a polygonal line, and the facet under each of its segments.
 ///
@@ -31,13 +34,17 @@ pub struct ProfilePoint {
     pub map: MapPoint,
 }
 
-/// The facet under a segment.
+/// The facet under a segment, and what lies over it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileFacet {
     /// Upward normal of length 1: east, north, up.
     pub normal: Vector3<f64>,
     /// Angle between the normal and the vertical plane of travel, 0 to 90 degrees.
     pub cross_slope: Angle,
+    /// No take-off, no landing: the segment lies in a keep-out zone.
+    pub keep_out: bool,
+    /// Friction of the segment where a raster gives it.
+    pub friction: Option<FrictionCone>,
 }
 
 impl Profile {
@@ -70,6 +77,30 @@ impl ProfileFacet {
         Self {
             normal: upward / upward.norm(),
             cross_slope: Angle::from_radians(libm::atan2(across.abs(), libm::sqrt(along * along + 1.0))),
+            keep_out: false,
+            friction: None,
+        }
+    }
+
+    /// The facet of a normal (east, north, up; any length above 0, either way up) as met along `heading`: as
+    /// [`from_gradient`](Self::from_gradient), and for upright facets too.
+    ///
+    /// ```
+    /// use chta::terrain::ProfileFacet;
+    /// use nalgebra::{Vector2, Vector3};
+    /// // A wall, walked along its foot.
+    /// let facet = ProfileFacet::from_normal(Vector3::new(0.0, 2.0, 0.0), Vector2::new(1.0, 0.0));
+    /// assert_eq!(facet.cross_slope.degrees(), 90.0);
+    /// ```
+    pub fn from_normal(normal: Vector3<f64>, heading: Vector2<f64>) -> Self {
+        let upward = if normal.z < 0.0 { -normal } else { normal };
+        let across = heading.perp(&upward.xy());
+        let along = heading.dot(&upward.xy());
+        Self {
+            normal: upward / upward.norm(),
+            cross_slope: Angle::from_radians(libm::atan2(across.abs(), libm::hypot(along, upward.z))),
+            keep_out: false,
+            friction: None,
         }
     }
 

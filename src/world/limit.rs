@@ -11,6 +11,8 @@ pub enum Limit {
     KeepOut,
     /// The surface is steeper than the hopper can rest on.
     RestSlope,
+    /// A hop is flown in one vertical plane: it spans no bend of the chain. It may begin or end at one.
+    Bend,
     /// The take-off direction must lie in the take-off cone of the ground.
     TakeoffCone,
     /// The landing direction must lie in the landing cone of the ground.
@@ -33,10 +35,11 @@ pub enum Limit {
 
 impl Limit {
     /// All limits, in the order in which results list them.
-    pub const ALL: [Self; 12] = [
+    pub const ALL: [Self; 13] = [
         Self::Direction,
         Self::KeepOut,
         Self::RestSlope,
+        Self::Bend,
         Self::TakeoffCone,
         Self::LandingCone,
         Self::TakeoffSpeed,
@@ -54,6 +57,7 @@ impl Limit {
             Self::Direction => "direction",
             Self::KeepOut => "keep-out",
             Self::RestSlope => "rest-slope",
+            Self::Bend => "bend",
             Self::TakeoffCone => "takeoff-cone",
             Self::LandingCone => "landing-cone",
             Self::TakeoffSpeed => "takeoff-speed",

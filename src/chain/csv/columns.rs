@@ -57,9 +57,11 @@ pub(super) const REVERSE: usize = FORWARD + SIX;
 pub(super) const SIX: usize = 6;
 pub(super) const MAP_X: usize = REVERSE + SIX;
 pub(super) const MAP_Y: usize = MAP_X + 1;
+/// Of the vertex, as the two before it.
+pub(super) const BEND: usize = MAP_Y + 1;
 
 /// All columns of a chain CSV.
-pub const CHAIN_COLUMNS: [CsvColumn; 19] = [
+pub const CHAIN_COLUMNS: [CsvColumn; 20] = [
     required("x_m", "along the plane of travel, strictly increasing (required)"),
     required("z_m", "elevation (required)"),
     optional("friction_coefficient", Kind::Friction, "of the segment that begins here; else that of the scenario's [surface]"),
@@ -83,6 +85,11 @@ pub const CHAIN_COLUMNS: [CsvColumn; 19] = [
     optional("reverse_landing_speed_max_m_s", Kind::Speed, "greatest landing speed towards -x; 0: not allowed there"),
     optional("map_x_m", Kind::Finite, "easting of the vertex on the map; with map_y_m in every row, or neither"),
     optional("map_y_m", Kind::Finite, "northing of the vertex on the map"),
+    optional(
+        "bend",
+        Kind::Flag,
+        "1: the plane of travel turns at the vertex, and no hop spans it; else 0; absent: the chain lies in one plane",
+    ),
 ];
 
 /// All columns of a CSV of pairs.
@@ -198,6 +205,7 @@ mod tests {
             (REVERSE, "reverse_takeoff_min_deg"),
             (MAP_X, "map_x_m"),
             (MAP_Y, "map_y_m"),
+            (BEND, "bend"),
         ];
         for (index, name) in named {
             assert_eq!(CHAIN_COLUMNS[index].name, name);

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use super::{
     CHAIN_COLUMNS, CsvFileError, CsvProblem, CsvProblems,
-    columns::{CROSS_SLOPE, FORWARD, FRICTION, KEEP_OUT, MAP_X, MAP_Y, REVERSE, SIX, X, Z},
+    columns::{BEND, CROSS_SLOPE, FORWARD, FRICTION, KEEP_OUT, MAP_X, MAP_Y, REVERSE, SIX, X, Z},
     problem::read_file,
     table::{Cell, Table},
 };
 use crate::{
     chain::{ChainProblem, ContactRule, Direction, Ground, GroundForm, LineConstraints, PolygonalChain},
-    quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
+    quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
     terrain::MapProjection,
     world::FrictionCone,
 };
@@ -309,7 +309,8 @@ impl<'a> Reading<'a> {
         let grounds = rows.clone().skip(1).map(|row| self.ground(row - 1)).collect();
         let map =
             self.fills(MAP_X).then(|| rows.filter_map(|row| Some(MapPoint::new(value(row, MAP_X)?, value(row, MAP_Y)?))).collect());
-        PolygonalChain::new(vertices, grounds, map)
+        let bends = (0..self.table.row_count()).filter(|&row| value(row, BEND) == Some(1.0)).map(VertexId).collect();
+        PolygonalChain::new(vertices, grounds, map)?.with_bends(bends)
     }
 
     /// What a row says of the segment that begins there.

@@ -4,12 +4,12 @@ use std::io::{self, Write};
 
 use super::{
     CHAIN_COLUMNS,
-    columns::{CROSS_SLOPE, FORWARD, FRICTION, KEEP_OUT, MAP_X, MAP_Y, REVERSE, SIX, X, Z},
+    columns::{BEND, CROSS_SLOPE, FORWARD, FRICTION, KEEP_OUT, MAP_X, MAP_Y, REVERSE, SIX, X, Z},
     degrees::degrees_text,
 };
 use crate::{
     chain::{ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
-    quantity::{Angle, AngleInterval, SegmentId},
+    quantity::{Angle, AngleInterval, SegmentId, VertexId},
 };
 
 /// Why a chain cannot be written as CSV.
@@ -79,6 +79,9 @@ pub fn write_chain_csv(chain: &PolygonalChain, mut out: impl Write, comments: &[
         if let Some(point) = map.and_then(|points| points.get(row)) {
             fields.extend([number_text(point.x), number_text(point.y)]);
         }
+        if layout.bends {
+            fields.push(if chain.bends().binary_search(&VertexId(row)).is_ok() { "1" } else { "0" }.to_owned());
+        }
         writer.write_record(fields).map_err(io::Error::from)?;
     }
     let bytes = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
@@ -103,11 +106,12 @@ struct Layout {
     forward: bool,
     reverse: bool,
     map: bool,
+    bends: bool,
 }
 
 impl Layout {
     fn of(chain: &PolygonalChain) -> Result<Self, ChainWriteError> {
-        let mut layout = Self { map: chain.map_points().is_some(), ..Self::default() };
+        let mut layout = Self { map: chain.map_points().is_some(), bends: !chain.bends().is_empty(), ..Self::default() };
         let Some(first) = chain.grounds().first() else { return Ok(layout) };
         for (i, ground) in chain.grounds().iter().enumerate() {
             layout.keep_out |= ground.keep_out;
@@ -148,6 +152,9 @@ impl Layout {
         columns.extend(self.segment_columns());
         if self.map {
             columns.extend([MAP_X, MAP_Y]);
+        }
+        if self.bends {
+            columns.push(BEND);
         }
         columns
     }

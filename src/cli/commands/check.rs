@@ -1,7 +1,12 @@
 //! `chta check`: does a path exist.
 
+use std::path::Path;
+
 use chta::{
-    chain::{Station, csv::read_pairs_csv_file},
+    chain::{
+        Station,
+        csv::{StartGoal, read_pairs_csv_file},
+    },
     graph::Outcome,
     path::generate,
     report::{CheckAnswer, Document, check_text},
@@ -13,7 +18,7 @@ use super::search::search;
 use crate::cli::{
     Answer, Failure,
     args::{CheckArgs, Format},
-    load::{Loaded, load},
+    load::{EndOptions, Loaded, load},
     output,
 };
 
@@ -25,50 +30,67 @@ struct PairsAnswer {
 
 /// Checks one pair or many.
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
-    let loaded = load(&args.chain, &args.common, Some(&args.search), [args.start, args.goal])?;
+    let loaded = load(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal))?;
+    let mut doubts = Vec::new();
     let answers = match &args.pairs {
-        None => vec![answer(&loaded, loaded.ends()?, args)?],
+        None => vec![answer(&loaded, loaded.ends()?, args, &mut doubts)?],
         Some(path) => {
             let file = read_pairs_csv_file(path)?;
-            for warning in &file.warnings {
-                output::warn(args.common.quiet, warning);
-            }
-            let station = |x_m: f64| {
-                let geometry = loaded.prepared.chain.geometry();
-                geometry.station(x_m).map_err(|problem| Failure::message(format!("{}: {problem}", path.display())))
-            };
-            let pairs = file.pairs.iter().map(|pair| Ok((station(pair.start_x_m)?, station(pair.goal_x_m)?)));
-            let pairs: Vec<_> = pairs.collect::<Result<_, Failure>>()?;
-            pairs.into_iter().map(|ends| answer(&loaded, ends, args)).collect::<Result<_, _>>()?
+            doubts.extend(file.warnings.iter().map(|warning| format!("{}: {warning}", path.display())));
+            let ends = stations(&loaded, path, &file.pairs)?;
+            ends.into_iter().map(|ends| answer(&loaded, ends, args, &mut doubts)).collect::<Result<_, _>>()?
         }
     };
+    for doubt in &doubts {
+        output::warn(args.common.quiet, doubt);
+    }
     let verdict = if answers.iter().all(CheckAnswer::is_traversable) { Answer::Yes } else { Answer::No };
-    output::to_stdout(written(args, loaded, answers)?.as_bytes())?;
+    output::to_stdout(written(args, loaded, answers, doubts)?.as_bytes())?;
     Ok(verdict)
 }
 
-/// One pair.
-fn answer(loaded: &Loaded, (start, goal): (Station, Station), args: &CheckArgs) -> Result<CheckAnswer, Failure> {
+/// The ends of all pairs, or the first that is off the chain.
+fn stations(loaded: &Loaded, file: &Path, pairs: &[StartGoal]) -> Result<Vec<(Station, Station)>, Failure> {
+    let geometry = loaded.prepared.chain.geometry();
+    let mut stations = Vec::with_capacity(pairs.len());
+    for (i, pair) in pairs.iter().enumerate() {
+        let station = |name: &str, x_m: f64| {
+            geometry
+                .station(x_m)
+                .map_err(|problem| Failure::message(format!("{}: pair {} ({name}): {problem}", file.display(), i + 1)))
+        };
+        stations.push((station("start_x_m", pair.start_x_m)?, station("goal_x_m", pair.goal_x_m)?));
+    }
+    Ok(stations)
+}
+
+/// One pair, and what is doubtful about its path.
+fn answer(
+    loaded: &Loaded,
+    (start, goal): (Station, Station),
+    args: &CheckArgs,
+    doubts: &mut Vec<String>,
+) -> Result<CheckAnswer, Failure> {
     let test = loaded.hop_test();
     let options = &loaded.scenario.search;
     let found = search(&test, start, goal, options, args.common.quiet)?;
     if let Outcome::Path { legs, .. } = &found.outcome
         && let Ok(path) = generate(&test, legs, options.takeoff, options.split)
     {
-        for doubt in constant_gravity_doubts(&loaded.scenario.body, Extremes::of(&path.hops)) {
-            output::warn(args.common.quiet, &doubt);
-        }
+        let of_path = constant_gravity_doubts(&loaded.scenario.body, Extremes::of(&path.hops));
+        doubts.extend(of_path.into_iter().filter(|doubt| !doubts.contains(doubt)).collect::<Vec<_>>());
     }
     Ok(CheckAnswer::new(&test, start.point.x_m, goal.point.x_m, &found, options.effort))
 }
 
 /// The answers as text or as one document.
-fn written(args: &CheckArgs, loaded: Loaded, mut answers: Vec<CheckAnswer>) -> Result<String, Failure> {
+fn written(args: &CheckArgs, loaded: Loaded, mut answers: Vec<CheckAnswer>, doubts: Vec<String>) -> Result<String, Failure> {
     if args.format == Format::Text {
         return Ok(answers.iter().map(check_text).collect::<Vec<_>>().join("\n"));
     }
+    let warnings = loaded.warnings_with(doubts);
     let Loaded { document, inputs, prepared, .. } = loaded;
-    let (warnings, projection) = (prepared.warnings, prepared.projection.as_ref());
+    let projection = prepared.projection.as_ref();
     Ok(match (&args.pairs, answers.pop()) {
         (None, Some(answer)) => Document::new("check", document, inputs, warnings, answer).on_map(projection).to_json()?,
         (_, last) => {

@@ -8,13 +8,13 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, HopArgs},
-    load::load,
+    load::{EndOptions, load},
     output,
 };
 
 /// Tests one hop.
 pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
-    let loaded = load(&args.chain, &args.common, None, [args.from, args.to])?;
+    let loaded = load(&args.chain, &args.common, None, EndOptions::of_hop(args.from, args.to))?;
     let (takeoff, landing) = loaded.ends()?;
     let test = loaded.hop_test();
     let answer = HopAnswer::new(&test, &takeoff, &landing, loaded.scenario.search.takeoff).ok_or_else(|| {
@@ -32,7 +32,7 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
     for doubt in &doubts {
         output::warn(args.common.quiet, doubt);
     }
-    let warnings = loaded.prepared.warnings.iter().cloned().chain(doubts).collect();
+    let warnings = loaded.warnings_with(doubts);
     let projection = loaded.prepared.projection.as_ref();
     let verdict = if answer.feasible { Answer::Yes } else { Answer::No };
     let text = match args.format {

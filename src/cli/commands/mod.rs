@@ -2,6 +2,7 @@
 
 pub(super) mod bodies;
 pub(super) mod check;
+pub(super) mod fan;
 pub(super) mod hop;
 pub(super) mod plan;
 pub(super) mod run;

@@ -1,5 +1,7 @@
 //! `chta plan`: the path of fewest hops, then least effort.
 
+use std::path::Path;
+
 use chta::{
     ballistics::HopTest,
     chain::Station,
@@ -20,8 +22,8 @@ use super::search::search;
 use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs},
-    load::{Loaded, load},
-    output,
+    load::{EndOptions, Loaded, load},
+    output::{self, Pending},
 };
 
 /// What a plan answers: the check, the path, its totals.
@@ -65,8 +67,7 @@ impl Planned {
         for doubt in &doubts {
             output::warn(quiet, doubt);
         }
-        // Those of the terrain were said when it was read.
-        let warnings = loaded.prepared.warnings.iter().cloned().chain(doubts).collect();
+        let warnings = loaded.warnings_with(doubts);
         let answer = PlanAnswer {
             check: CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &found, options.effort),
             verified: (verify && path.is_some()).then_some(true),
@@ -175,29 +176,41 @@ fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result
 
 /// Plans a path.
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
-    let loaded = load(&args.chain, &args.common, Some(&args.search), [args.start, args.goal])?;
+    let loaded = load(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal))?;
     let ends = loaded.ends()?;
     if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {
         return Err(Failure::message("--geojson: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"));
     }
+    let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
+    // Opened before the search, which may take long.
+    let plot = args.plot.as_deref().map(Pending::begin).transpose()?;
+    let geojson = args.geojson.as_deref().map(Pending::begin).transpose()?;
+    // Beside the GeoJSON, where no code of an authority says its reference system.
+    let uncoded = loaded.prepared.projection.as_ref().filter(|projection| projection.code().is_none());
+    let prj_path = args.geojson.as_deref().filter(|_| uncoded.is_some()).map(|path| path.with_extension("prj"));
+    let prj = prj_path.as_deref().map(Pending::begin).transpose()?;
+    let csv = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, args.verify, args.common.quiet)?;
-    if let Some(file) = &args.plot {
-        output::to_file(file, planned.picture(&loaded, &test, ends)?.as_bytes())?;
+    let mut files = Vec::new();
+    if let Some(file) = plot {
+        files.push((file, planned.picture(&loaded, &test, ends)?.into_bytes()));
     }
-    if let (Some(file), Some(geojson)) = (&args.geojson, planned.geojson(&loaded)) {
-        output::to_geojson_file(file, &geojson, loaded.prepared.projection.as_ref())?;
+    if let (Some(file), Some(geojson)) = (geojson, planned.geojson(&loaded)) {
+        files.push((file, geojson.into_bytes()));
+        if let (Some(file), Some(projection)) = (prj, uncoded) {
+            files.push((file, (projection.wkt() + "\n").into_bytes()));
+        }
     }
-    let csv_to_stdout = args.output.as_deref() == Some(std::path::Path::new("-"));
-    if let Some(file) = &args.output {
-        output::to_file_or_stdout(Some(file), &planned.csv(&loaded)?)?;
+    if let Some(file) = csv {
+        files.push((file, planned.csv(&loaded)?));
     }
-    if !csv_to_stdout {
-        let text = match args.format {
-            Format::Text => planned.text(),
-            Format::Json => planned.document("plan", &loaded)?,
-        };
-        output::to_stdout(text.as_bytes())?;
-    }
+    output::finish(files)?;
+    let text = match args.format {
+        _ if csv_to_stdout => planned.csv(&loaded)?,
+        Format::Text => planned.text().into_bytes(),
+        Format::Json => planned.document("plan", &loaded)?.into_bytes(),
+    };
+    output::to_stdout(&text)?;
     Ok(planned.verdict())
 }

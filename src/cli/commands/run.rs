@@ -8,8 +8,8 @@ use super::plan::Planned;
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, Format, RunArgs},
-    load::load,
-    output,
+    load::{EndOptions, load},
+    output::{self, Pending},
 };
 
 /// Runs a scenario and writes its results into a folder.
@@ -24,8 +24,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         accept_map_scale: *accept_map_scale,
         quiet: *quiet,
     };
-    let loaded = load(scenario, &common, None, [None, None])?;
+    let loaded = load(scenario, &common, None, EndOptions::NONE)?;
     let ends = loaded.ends()?;
+    output::check_folder(folder)?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, true, *quiet)?;
     let mut chain_csv = Vec::new();
@@ -49,18 +50,19 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     fs::create_dir_all(folder).map_err(|error| {
         Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
     })?;
-    for (name, bytes) in &files {
-        output::to_file(&folder.join(name), bytes)?;
-    }
+    let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
+    let paths: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
+    let pending: Result<Vec<_>, Failure> =
+        paths.iter().zip(files).map(|(path, (_, bytes))| Ok((Pending::begin(path)?, bytes))).collect();
+    output::finish(pending?)?;
     // Of an earlier run that had a path or another map: it would speak of another one.
     for stale in ["path.geojson", "path.prj"] {
-        if !files.iter().any(|(name, _)| *name == stale) {
+        if !names.contains(&stale) {
             let _ = fs::remove_file(folder.join(stale));
         }
     }
     let text = match format {
         Format::Text => {
-            let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
             format!("{}\nwritten to {}: {}\n", planned.text(), folder.display(), names.join(", "))
         }
         Format::Json => planned.document("run", &loaded)?,

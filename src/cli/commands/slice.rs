@@ -1,40 +1,102 @@
 //! `chta slice`: terrain along a vertical plane as a chain.
 
+use std::path::{Path, PathBuf};
+
 use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{Cut, cut, friction, sha256_of},
-    terrain::{LonLat, MapPlace, Profile, read_dem},
+    scenario::{Covers, Cut, Scenario, friction, sha256_of},
+    terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
 use crate::cli::{Answer, Failure, args::SliceArgs, load::scenario_alone, output};
 
-/// Slices a DEM.
+/// Slices a DEM or a mesh.
 pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
-    let scenario = args.scenario.as_deref().map(scenario_alone).transpose()?;
-    let accepted = args.accept_map_scale || scenario.as_ref().is_some_and(|scenario| scenario.accept_map_scale);
-    let from = place("from", args.from, args.from_lonlat)?;
-    let to = place("to", args.to, args.to_lonlat)?;
-    let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
-    let dem = read_dem(&args.dem).map_err(|e| failed(&e))?;
-    let cut = cut(&dem, [&from, &to], accepted, &args.dem).map_err(|e| failed(&e))?;
-    for warning in &cut.warnings {
-        output::warn(false, warning);
+    let SliceArgs { terrain, via, scenario, output: file, geojson, quiet, .. } = args;
+    let given = scenario.as_deref().map(scenario_alone).transpose()?;
+    if let (Some(path), Some((scenario, _))) = (scenario, &given)
+        && lays_nothing(scenario)
+    {
+        let name = path.display();
+        let reason = "has no friction_coefficient, so none goes into the chain: give the scenario again where the chain is used";
+        output::warn(*quiet, &format!("--scenario {name} {reason}"));
     }
-    let chain = PolygonalChain::from_profile(&cut.profile, scenario.as_ref().and_then(friction)).map_err(|e| failed(&e))?;
-    let name = args.dem.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-    let mut comments = vec![format!("chta {} slice of {name}, sha256 {}", env!("CARGO_PKG_VERSION"), sha256_of(&args.dem)?)];
-    comments.extend(ends(&cut.profile));
+    let failed = |error: &dyn std::error::Error| Failure::about(terrain, &error.to_string());
+    let accepted = args.accept_map_scale || given.as_ref().is_some_and(|(scenario, _)| scenario.accept_map_scale);
+    let cut = cut(args, accepted)?;
+    for warning in &cut.warnings {
+        output::warn(*quiet, warning);
+    }
+    let name = name_of(terrain);
+    let mut comments = vec![format!("chta {} slice of {name}, sha256 {}", env!("CARGO_PKG_VERSION"), sha256_of(terrain)?)];
+    comments.extend(ends(&cut.legs));
+    comments.extend(via.iter().map(|point| format!("via ({}, {}) m", point.x, point.y)));
     comments.extend(map_comments(&cut));
+    let line = slice_geojson(&cut.legs, &name, cut.projection.as_ref());
+    let chain = match &given {
+        Some((scenario, base)) => {
+            for file in Covers::files(scenario).map(|file| base.join(file)).collect::<Vec<PathBuf>>() {
+                comments.push(format!("under {}, sha256 {}", name_of(&file), sha256_of(&file)?));
+            }
+            let covers = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds).map_err(|e| failed(&e))?;
+            covers.chain(cut.legs).map_err(|e| failed(&e))?
+        }
+        None => PolygonalChain::from_legs(&cut.legs, None).map_err(|e| failed(&e))?,
+    };
     let mut csv = Vec::new();
     write_chain_csv(&chain, &mut csv, &comments).map_err(|e| failed(&e))?;
-    if let Some(file) = &args.geojson {
-        let projection = cut.projection.as_ref();
-        output::to_geojson_file(file, &slice_geojson(&cut.profile, &name, projection), projection)?;
+    if let Some(file) = geojson {
+        output::to_geojson_file(file, &line, cut.projection.as_ref())?;
     }
-    output::to_file_or_stdout(args.output.as_deref(), &csv)?;
+    output::to_file_or_stdout(file.as_deref(), &csv)?;
     Ok(Answer::Yes)
+}
+
+/// Whether a scenario has nothing that goes into a chain.
+fn lays_nothing(scenario: &Scenario) -> bool {
+    friction(scenario).is_none() && Covers::files(scenario).next().is_none()
+}
+
+/// A file's own name, for a comment.
+fn name_of(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+/// The ground along the slice, and what its user should know.
+fn cut(args: &SliceArgs, accept_map_scale: bool) -> Result<Cut, Failure> {
+    let SliceArgs { terrain, via, mesh_scale, .. } = args;
+    let from = place("from", args.from, args.from_lonlat)?;
+    let to = place("to", args.to, args.to_lonlat)?;
+    let failed = |error: TerrainError| Failure::about(terrain, &error.to_string());
+    let of_mesh = || match (&from, &to) {
+        (MapPlace::Metres(from), MapPlace::Metres(to)) => {
+            Cut::of_mesh(terrain, mesh_scale.unwrap_or(1.0), [*from, *to], via).map_err(failed)
+        }
+        _ => Err(Failure::message("--from-lonlat, --to-lonlat: a mesh has no projection; give --from X,Y and --to X,Y")),
+    };
+    if looks_like_mesh(terrain) {
+        return of_mesh();
+    }
+    let cut = match Cut::of_dem(terrain, [&from, &to], via, accept_map_scale) {
+        // A damaged mesh is told by the readers of meshes, who know why.
+        Err(_) if named_as_mesh(terrain) => return of_mesh(),
+        cut => cut.map_err(failed)?,
+    };
+    if let Some(scale) = mesh_scale {
+        let name = terrain.display();
+        return Err(Failure::message(format!(
+            "--mesh-scale {scale}: {name} is an elevation raster, expected a mesh; leave the option away"
+        )));
+    }
+    Ok(cut)
+}
+
+/// Whether a file's extension is that of a mesh.
+fn named_as_mesh(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default();
+    ["obj", "stl", "ply"].iter().any(|mesh| extension.eq_ignore_ascii_case(mesh))
 }
 
 /// One of the two ways to say a place; the command line asks for one.
@@ -44,8 +106,8 @@ fn place(which: &str, point: Option<MapPoint>, place: Option<LonLat>) -> Result<
 }
 
 /// Where a slice begins and ends, for its comments.
-fn ends(profile: &Profile) -> Option<String> {
-    let (from, to) = (profile.points.first()?.map, profile.points.last()?.map);
+fn ends(legs: &[Profile]) -> Option<String> {
+    let (from, to) = (legs.first()?.points.first()?.map, legs.last()?.points.last()?.map);
     Some(format!("from ({}, {}) m to ({}, {}) m on the map", from.x, from.y, to.x, to.y))
 }
 

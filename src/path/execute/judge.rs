@@ -78,11 +78,25 @@ impl Judge<'_> {
     pub(super) fn flight(&mut self, flight: &Flight) {
         self.takeoff(self.hop);
         self.landing(flight);
+        self.bends();
         self.mechanical_angle();
         self.terrain(flight);
         self.landing_point(flight);
         self.machine(flight);
         self.stated_values(flight);
+    }
+
+    /// A flight stays in one vertical plane: every bend strictly under it is one too many.
+    fn bends(&mut self) {
+        let ends_m = (self.hop.takeoff.point.x_m, self.hop.landing.point.x_m);
+        let geometry = self.chain.geometry();
+        for bend in geometry.bends() {
+            let x_m = geometry.vertices()[bend.index()].x_m;
+            if (x_m > ends_m.0 && x_m < ends_m.1) || (x_m < ends_m.0 && x_m > ends_m.1) {
+                let limit = ViolatedLimit::Limit(Limit::Bend);
+                self.violations.push(Violation { hop: self.number, limit, measure: None, at_x_m: x_m, vertex: Some(*bend) });
+            }
+        }
     }
 
     /// What holds at the take-off: commanded direction and speed are what is flown.

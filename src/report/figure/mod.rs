@@ -23,6 +23,7 @@ mod data;
 mod heading;
 mod legend;
 mod palette;
+mod rose;
 mod scale;
 mod sheet;
 mod spans;
@@ -35,6 +36,7 @@ mod ticks;
 mod tests;
 
 pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
+pub use rose::draw_rose;
 pub use scale::Scale;
 pub use spans::{Closure, GroundSpan, GroundUse};
 

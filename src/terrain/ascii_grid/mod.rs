@@ -5,6 +5,6 @@ mod read;
 mod tokens;
 mod write;
 
-pub(super) use read::AsciiGridReader;
 pub use read::read_ascii_grid_bytes;
+pub(super) use read::{AsciiGridReader, Problems};
 pub use write::write_ascii_grid;

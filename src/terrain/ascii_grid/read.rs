@@ -144,17 +144,17 @@ fn parse_elevation(token: &Token, no_data: f64) -> Option<f64> {
 
 /// Problems in the order found.
 #[derive(Debug, Default)]
-pub(super) struct Problems {
+pub(in crate::terrain) struct Problems {
     listed: Vec<AsciiProblem>,
     further: usize,
 }
 
 impl Problems {
-    pub(super) fn add(&mut self, token: &Token, found: &str, expected: &str) {
+    pub(in crate::terrain::ascii_grid) fn add(&mut self, token: &Token, found: &str, expected: &str) {
         self.add_at((token.line, token.column), found, expected);
     }
 
-    pub(super) fn add_at(&mut self, (line, column): (usize, usize), found: &str, expected: &str) {
+    pub(in crate::terrain) fn add_at(&mut self, (line, column): (usize, usize), found: &str, expected: &str) {
         if self.are_many() {
             self.further += 1;
         } else {
@@ -162,15 +162,15 @@ impl Problems {
         }
     }
 
-    pub(super) fn are_many(&self) -> bool {
+    pub(in crate::terrain) fn are_many(&self) -> bool {
         self.listed.len() >= LISTED_PROBLEMS
     }
 
-    pub(super) fn count(&self) -> usize {
+    pub(in crate::terrain) fn count(&self) -> usize {
         self.listed.len() + self.further
     }
 
-    fn into_error(self) -> TerrainError {
+    pub(in crate::terrain) fn into_error(self) -> TerrainError {
         TerrainError::AsciiGrid { problems: self.listed, further: self.further }
     }
 }

@@ -117,6 +117,11 @@ impl NoData {
         Ok(Some(Self { value, whole: trimmed.parse().ok() }))
     }
 
+    /// Whether the mark is a number: NaN is a gap anyway.
+    pub(super) fn is_a_number(self) -> bool {
+        !self.value.is_nan()
+    }
+
     /// Whether a 64-bit sample is the mark.
     pub(super) fn is_double(self, sample: f64) -> bool {
         let relative = (sample - self.value).abs() / self.value.abs();

@@ -8,10 +8,11 @@ use tiff_reader::{OpenOptions, TiffError, TiffFile};
 use super::image::{Images, damaged};
 use super::keys::{GeoTags, Placement};
 use super::metadata::{NoData, Scaling, read_scaling};
-use super::samples::{Elevations, largest_unpacked, read_elevations};
+use super::samples::{Decoder, Elevations, largest_unpacked};
 use super::tag;
+use crate::terrain::dem::check_map;
 use crate::terrain::georeference::refuse_degrees;
-use crate::terrain::{Dem, DemReader, TerrainError};
+use crate::terrain::{Dem, DemFile, DemReader, GeoReference, TerrainError, Window};
 
 /// GeoTIFF as a format.
 pub(in crate::terrain) struct GeoTiffReader;
@@ -31,7 +32,11 @@ impl DemReader for GeoTiffReader {
 
     fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
         let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
-        read_tiff(&TiffFile::open_with_options(path, open_options(length)).map_err(open_error)?)
+        read_tiff(&TiffFile::open_with_options(path, whole_options(length)).map_err(open_error)?)
+    }
+
+    fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
+        open_tiff(path)
     }
 }
 
@@ -45,7 +50,7 @@ impl DemReader for GeoTiffReader {
 /// [`TerrainError::Damaged`] where the bytes are no whole TIFF; [`TerrainError::Unsuitable`] where they are, but hold colours, several
 /// bands or images, degrees, other units, a rotated map or none; [`TerrainError::InvalidDem`] where the numbers make no raster.
 pub fn read_geotiff_bytes(bytes: Vec<u8>) -> Result<Dem, TerrainError> {
-    let options = open_options(bytes.len() as u64);
+    let options = whole_options(bytes.len() as u64);
     read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?)
 }
 
@@ -58,6 +63,11 @@ fn open_options(length: u64) -> OpenOptions {
     }
 }
 
+/// Read whole, no block is decoded twice: kept ones would only cost memory, and the time to ask the system for it.
+fn whole_options(length: u64) -> OpenOptions {
+    OpenOptions { block_cache_bytes: 0, ..open_options(length) }
+}
+
 fn open_error(error: TiffError) -> TerrainError {
     match error {
         TiffError::Io(reason, _) => TerrainError::reading(reason),
@@ -67,13 +77,9 @@ fn open_error(error: TiffError) -> TerrainError {
 
 fn read_tiff(file: &TiffFile) -> Result<Dem, TerrainError> {
     let images = Images::of(file)?;
-    let tags = GeoTags::of(images.elevations);
-    let no_data = tags.transform.no_data.as_deref().map(NoData::parse).transpose()?.flatten();
-    let metadata = images.elevations.tag(tag::GDAL_METADATA).and_then(|tag| tag.value.as_str());
-    let scaling = metadata.map_or(Ok(Scaling::NONE), read_scaling)?;
+    let (decoder, Placement { georeference, south_up, states_metres }) = judge(file, &images)?;
     let (rows, cols) = (images.layout.height, images.layout.width);
-    let Placement { georeference, south_up, states_metres } = tags.place(rows)?;
-    let dem = match read_elevations(file, &images, no_data, scaling)? {
+    let dem = match decoder.all(file, &images)? {
         Elevations::Single(mut posts) => {
             turn_round(&mut posts, cols, south_up);
             Dem::from_single(rows, cols, posts, georeference)?
@@ -89,10 +95,107 @@ fn read_tiff(file: &TiffFile) -> Result<Dem, TerrainError> {
     Ok(dem)
 }
 
+/// How the samples are meant and where they lie.
+fn judge(file: &TiffFile, images: &Images<'_>) -> Result<(Decoder, Placement), TerrainError> {
+    let tags = GeoTags::of(images.elevations);
+    let no_data = tags.transform.no_data.as_deref().map(NoData::parse).transpose()?.flatten();
+    let metadata = images.elevations.tag(tag::GDAL_METADATA).and_then(|tag| tag.value.as_str());
+    let scaling = metadata.map_or(Ok(Scaling::NONE), read_scaling)?;
+    let placement = tags.place(images.layout.height)?;
+    Ok((Decoder::new(file, images, no_data, scaling)?, placement))
+}
+
 /// The last row first.
 fn turn_round<T>(posts: &mut [T], cols: usize, south_up: bool) {
     if south_up {
         posts.reverse();
         posts.chunks_mut(cols).for_each(<[T]>::reverse);
     }
+}
+
+/// A GeoTIFF whose tiles or strips are decoded when they are asked for.
+struct OpenGeoTiff {
+    file: TiffFile,
+    decoder: Decoder,
+    georeference: GeoReference,
+    south_up: bool,
+    rows: usize,
+    cols: usize,
+}
+
+/// Decoded blocks that are kept, in bytes and in blocks: a transect goes back to none but those beside it.
+const KEPT_BYTES: usize = 8 << 20;
+const KEPT_BLOCKS: usize = 4;
+
+fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
+    let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
+    let mut options = open_options(length);
+    let block = {
+        let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
+        let images = Images::of(&file)?;
+        let (_, Placement { georeference, states_metres, .. }) = judge(&file, &images)?;
+        let (rows, cols) = (images.layout.height, images.layout.width);
+        // Degrees show only in the relief of the whole.
+        if !states_metres && georeference.may_be_degrees(rows, cols) {
+            return Ok(Box::new(read_tiff(&file)?));
+        }
+        check_map(rows, cols, &georeference)?;
+        block_bytes(&images)
+    };
+    options.block_cache_bytes = block.saturating_mul(KEPT_BLOCKS).max(KEPT_BYTES);
+    let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
+    let images = Images::of(&file)?;
+    let (decoder, Placement { georeference, south_up, .. }) = judge(&file, &images)?;
+    let (rows, cols) = (images.layout.height, images.layout.width);
+    Ok(Box::new(OpenGeoTiff { file, decoder, georeference, south_up, rows, cols }))
+}
+
+/// Bytes of a decoded tile or strip.
+fn block_bytes(images: &Images<'_>) -> usize {
+    let image = images.elevations;
+    let whole = |value: u32| usize::try_from(value).unwrap_or(usize::MAX);
+    let (rows, cols) = match (image.tile_height(), image.tile_width()) {
+        (Some(rows), Some(cols)) => (whole(rows), whole(cols)),
+        _ => (whole(image.rows_per_strip()).min(images.layout.height), images.layout.width),
+    };
+    rows.saturating_mul(cols).saturating_mul(usize::from(images.layout.bits_per_sample).div_ceil(8))
+}
+
+impl DemFile for OpenGeoTiff {
+    fn rows(&self) -> usize {
+        self.rows
+    }
+
+    fn cols(&self) -> usize {
+        self.cols
+    }
+
+    fn georeference(&self) -> &GeoReference {
+        &self.georeference
+    }
+
+    fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError> {
+        let first_row = if self.south_up { self.rows - window.first_row - window.rows } else { window.first_row };
+        let images = Images::of(&self.file)?;
+        let mut posts = self.decoder.window(&self.file, &images, Window { first_row, ..window })?.into_double();
+        turn_round(&mut posts, window.cols, self.south_up);
+        Ok(posts)
+    }
+}
+
+/// Where the tags of a GeoTIFF place a raster of so many rows.
+#[cfg(feature = "gdal")]
+pub(in crate::terrain) struct Placed {
+    pub(in crate::terrain) georeference: GeoReference,
+    pub(in crate::terrain) south_up: bool,
+    pub(in crate::terrain) states_metres: bool,
+}
+
+/// Judges the tags alone, whatever the image.
+#[cfg(feature = "gdal")]
+pub(in crate::terrain) fn place_by_tags(bytes: Vec<u8>, rows: usize) -> Result<Placed, TerrainError> {
+    let options = open_options(bytes.len() as u64);
+    let file = TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?;
+    let Placement { georeference, south_up, states_metres } = GeoTags::of(Images::of(&file)?.elevations).place(rows)?;
+    Ok(Placed { georeference, south_up, states_metres })
 }

@@ -4,7 +4,7 @@ use tiff_reader::{Ifd, RasterLayout, TiffFile, TiffSample};
 
 use super::image::{Images, damaged};
 use super::metadata::{NoData, Scaling};
-use crate::terrain::TerrainError;
+use crate::terrain::{TerrainError, Window};
 
 /// Rows decoded at once, at least: enough for the decoder's threads, little beside the raster.
 const ROWS_AT_ONCE: usize = 256;
@@ -23,45 +23,148 @@ pub(super) enum Elevations {
     Double(Vec<f64>),
 }
 
-/// Reads all posts in the file's order.
-pub(super) fn read_elevations(
-    file: &TiffFile,
-    images: &Images<'_>,
-    no_data: Option<NoData>,
-    scaling: Scaling,
-) -> Result<Elevations, TerrainError> {
-    check_size(file, images)?;
-    let missing = Missing::of(file, images, no_data)?;
-    let read = Reading { file, image: images.elevations, layout: &images.layout };
-    let layout = &images.layout;
-    if layout.sample_format == 3 && layout.bits_per_sample == 32 && scaling == Scaling::NONE {
-        let mut posts =
-            read.all(|sample: f32| if no_data.is_some_and(|mark| mark.is_single(sample)) { f32::NAN } else { sample })?;
-        missing.blank(&mut posts, f32::NAN);
-        return Ok(Elevations::Single(posts));
+/// What turns the samples of an image into elevations.
+pub(super) struct Decoder {
+    pub(super) no_data: Option<NoData>,
+    pub(super) scaling: Scaling,
+    /// Rectangles of blocks that were never written, where they stand for gaps.
+    holes: Vec<Window>,
+}
+
+impl Decoder {
+    /// # Errors
+    /// [`TerrainError::Damaged`] for a declared size that the file's length cannot back.
+    pub(super) fn new(
+        file: &TiffFile,
+        images: &Images<'_>,
+        no_data: Option<NoData>,
+        scaling: Scaling,
+    ) -> Result<Self, TerrainError> {
+        check_size(file, images)?;
+        // A block that was never written stands for the no-data value where there is one, for zeros where there is none.
+        let holes = if no_data.is_some() { holes(images) } else { Vec::new() };
+        Ok(Self { no_data, scaling, holes })
     }
-    let scaled = |is_mark: bool, sample: f64| if is_mark { f64::NAN } else { scaling.apply(sample) };
-    let marks_whole = |sample: i128| no_data.is_some_and(|mark| mark.is_whole(sample));
-    #[expect(clippy::cast_precision_loss, reason = "64-bit samples beyond 2^53 are no elevations and refused by their size")]
-    let mut posts = match (layout.sample_format, layout.bits_per_sample) {
-        (1, ..=8) => read.all(|z: u8| scaled(marks_whole(z.into()), z.into())),
-        (1, 9..=16) => read.all(|z: u16| scaled(marks_whole(z.into()), z.into())),
-        (1, 32) => read.all(|z: u32| scaled(marks_whole(z.into()), z.into())),
-        (1, 64) => read.all(|z: u64| scaled(marks_whole(z.into()), z as f64)),
-        (2, 8) => read.all(|z: i8| scaled(marks_whole(z.into()), z.into())),
-        (2, 16) => read.all(|z: i16| scaled(marks_whole(z.into()), z.into())),
-        (2, 32) => read.all(|z: i32| scaled(marks_whole(z.into()), z.into())),
-        (2, 64) => read.all(|z: i64| scaled(marks_whole(z.into()), z as f64)),
-        (3, 32) => read.all(|z: f32| scaled(no_data.is_some_and(|mark| mark.is_single(z)), z.into())),
-        (3, 64) => read.all(|z: f64| scaled(no_data.is_some_and(|mark| mark.is_double(z)), z)),
-        (format, bits) => Err(TerrainError::Unsuitable {
-            found: format!("samples of {bits} bits in sample format {format}"),
-            expected: "integers of 1 to 16, 32 or 64 bits or floats of 32 or 64 bits",
-            mend: "gdal_translate -ot Float32 in.tif out.tif".to_owned(),
-        }),
-    }?;
-    missing.blank(&mut posts, f64::NAN);
-    Ok(Elevations::Double(posts))
+
+    /// All posts in the file's order.
+    pub(super) fn all(&self, file: &TiffFile, images: &Images<'_>) -> Result<Elevations, TerrainError> {
+        let RasterLayout { width, height, .. } = images.layout;
+        let whole = |rows, first_row| Window { first_row, first_col: 0, rows, cols: width };
+        let step = rows_at_once(images.elevations, height);
+        let mut bands = (0..height).step_by(step).map(|first| self.window(file, images, whole(step.min(height - first), first)));
+        let mut posts = bands.next().unwrap_or_else(|| Err(damaged("it has no rows".to_owned())))?;
+        // Not before the first rows have shown that the file holds any.
+        posts.reserve(width * height)?;
+        for band in bands {
+            posts.append(band?);
+        }
+        if posts.len() == width * height {
+            Ok(posts)
+        } else {
+            Err(damaged(format!("it holds {} of {} posts", posts.len(), width * height)))
+        }
+    }
+
+    /// The posts of a window in the file's own rows and columns.
+    pub(super) fn window(&self, file: &TiffFile, images: &Images<'_>, window: Window) -> Result<Elevations, TerrainError> {
+        let Self { no_data, scaling, .. } = *self;
+        let read = Reading { file, image: images.elevations, window };
+        let layout = &images.layout;
+        if layout.sample_format == 3 && layout.bits_per_sample == 32 && scaling == Scaling::NONE {
+            let mut posts = read.samples::<f32>()?;
+            if let Some(mark) = no_data.filter(|mark| mark.is_a_number()) {
+                posts.iter_mut().filter(|post| mark.is_single(**post)).for_each(|post| *post = f32::NAN);
+            }
+            self.blank_missing(file, images, window, &mut posts, f32::NAN)?;
+            return Ok(Elevations::Single(posts));
+        }
+        let scaled = |is_mark: bool, sample: f64| if is_mark { f64::NAN } else { scaling.apply(sample) };
+        let marks_whole = |sample: i128| no_data.is_some_and(|mark| mark.is_whole(sample));
+        #[expect(clippy::cast_precision_loss, reason = "64-bit samples beyond 2^53 are no elevations and refused by their size")]
+        let mut posts = match (layout.sample_format, layout.bits_per_sample) {
+            (1, ..=8) => read.map(|z: u8| scaled(marks_whole(z.into()), z.into())),
+            (1, 9..=16) => read.map(|z: u16| scaled(marks_whole(z.into()), z.into())),
+            (1, 32) => read.map(|z: u32| scaled(marks_whole(z.into()), z.into())),
+            (1, 64) => read.map(|z: u64| scaled(marks_whole(z.into()), z as f64)),
+            (2, 8) => read.map(|z: i8| scaled(marks_whole(z.into()), z.into())),
+            (2, 16) => read.map(|z: i16| scaled(marks_whole(z.into()), z.into())),
+            (2, 32) => read.map(|z: i32| scaled(marks_whole(z.into()), z.into())),
+            (2, 64) => read.map(|z: i64| scaled(marks_whole(z.into()), z as f64)),
+            (3, 32) => read.map(|z: f32| scaled(no_data.is_some_and(|mark| mark.is_single(z)), z.into())),
+            (3, 64) => read.map(|z: f64| scaled(no_data.is_some_and(|mark| mark.is_double(z)), z)),
+            (format, bits) => Err(TerrainError::Unsuitable {
+                found: format!("samples of {bits} bits in sample format {format}"),
+                expected: "integers of 1 to 16, 32 or 64 bits or floats of 32 or 64 bits",
+                mend: "gdal_translate -ot Float32 in.tif out.tif".to_owned(),
+            }),
+        }?;
+        self.blank_missing(file, images, window, &mut posts, f64::NAN)?;
+        Ok(Elevations::Double(posts))
+    }
+
+    /// Blanks what the file leaves out otherwise than by its value: by a transparency mask (0: nothing there), by blocks never written.
+    fn blank_missing<T: Copy>(
+        &self,
+        file: &TiffFile,
+        images: &Images<'_>,
+        window: Window,
+        posts: &mut [T],
+        gap: T,
+    ) -> Result<(), TerrainError> {
+        if let Some(image) = images.mask {
+            let mask = Reading { file, image, window }.samples::<u8>()?;
+            for (post, _) in posts.iter_mut().zip(&mask).filter(|(_, shown)| **shown == 0) {
+                *post = gap;
+            }
+        }
+        for hole in &self.holes {
+            let rows = hole.first_row.max(window.first_row)..(hole.first_row + hole.rows).min(window.first_row + window.rows);
+            let first = hole.first_col.clamp(window.first_col, window.first_col + window.cols) - window.first_col;
+            let end = (hole.first_col + hole.cols).clamp(window.first_col, window.first_col + window.cols) - window.first_col;
+            for row in rows {
+                let start = (row - window.first_row) * window.cols;
+                if let Some(part) = posts.get_mut(start + first..start + end.max(first)) {
+                    part.fill(gap);
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Elevations {
+    fn len(&self) -> usize {
+        match self {
+            Self::Single(posts) => posts.len(),
+            Self::Double(posts) => posts.len(),
+        }
+    }
+
+    fn reserve(&mut self, posts: usize) -> Result<(), TerrainError> {
+        let more = posts.saturating_sub(self.len());
+        match self {
+            Self::Single(posts) => posts.try_reserve_exact(more),
+            Self::Double(posts) => posts.try_reserve_exact(more),
+        }
+        .map_err(|error| damaged(error.to_string()))
+    }
+
+    /// Bands of one image are all of one kind.
+    fn append(&mut self, band: Self) {
+        match (self, band) {
+            (Self::Single(posts), Self::Single(mut more)) => posts.append(&mut more),
+            (Self::Double(posts), Self::Double(mut more)) => posts.append(&mut more),
+            (Self::Double(posts), Self::Single(more)) => posts.extend(more.into_iter().map(f64::from)),
+            (Self::Single(_), Self::Double(_)) => {}
+        }
+    }
+
+    pub(super) fn into_double(self) -> Vec<f64> {
+        match self {
+            Self::Single(posts) => posts.into_iter().map(f64::from).collect(),
+            Self::Double(posts) => posts,
+        }
+    }
 }
 
 /// What a file of so many bytes may unpack to.
@@ -92,32 +195,28 @@ fn block_lengths(image: &Ifd) -> Vec<u64> {
     lengths.unwrap_or_default()
 }
 
+/// A window of one image.
 struct Reading<'a> {
     file: &'a TiffFile,
     image: &'a Ifd,
-    layout: &'a RasterLayout,
+    window: Window,
 }
 
 impl Reading<'_> {
-    fn all<T: TiffSample, U>(&self, convert: impl Fn(T) -> U) -> Result<Vec<U>, TerrainError> {
-        let RasterLayout { width, height, .. } = *self.layout;
-        let mut posts = Vec::new();
-        let step = rows_at_once(self.image, height);
-        for first in (0..height).step_by(step) {
-            let rows = step.min(height - first);
-            let band = self
-                .file
-                .read_window_from_ifd::<T>(self.image, first, 0, rows, width)
-                .map_err(|error| damaged(error.to_string()))?;
-            // Not before the first rows have shown that the file holds any.
-            posts.try_reserve_exact((width * height).saturating_sub(posts.len())).map_err(|error| damaged(error.to_string()))?;
-            posts.extend(band.into_iter().map(&convert));
-        }
-        if posts.len() == width * height {
-            Ok(posts)
+    fn samples<T: TiffSample>(&self) -> Result<Vec<T>, TerrainError> {
+        let Window { first_row, first_col, rows, cols } = self.window;
+        let read = self.file.read_window_from_ifd::<T>(self.image, first_row, first_col, rows, cols);
+        let samples = read.map_err(|error| damaged(error.to_string()))?;
+        let (samples, _) = samples.into_raw_vec_and_offset();
+        if samples.len() == rows * cols {
+            Ok(samples)
         } else {
-            Err(damaged(format!("it holds {} of {} posts", posts.len(), width * height)))
+            Err(damaged(format!("it holds {} of {} posts of a window", samples.len(), rows * cols)))
         }
+    }
+
+    fn map<T: TiffSample>(&self, convert: impl Fn(T) -> f64) -> Result<Vec<f64>, TerrainError> {
+        Ok(self.samples()?.into_iter().map(convert).collect())
     }
 }
 
@@ -128,50 +227,8 @@ fn rows_at_once(image: &Ifd, height: usize) -> usize {
     block * ROWS_AT_ONCE.div_ceil(block)
 }
 
-/// Posts that the file leaves out otherwise than by their value.
-struct Missing {
-    /// Of the transparency mask: one byte per post, 0 where there is nothing.
-    mask: Option<Vec<u8>>,
-    /// Rectangles of blocks that were never written: first row, first column, rows, columns.
-    holes: Vec<[usize; 4]>,
-    width: usize,
-    height: usize,
-}
-
-impl Missing {
-    fn of(file: &TiffFile, images: &Images<'_>, no_data: Option<NoData>) -> Result<Self, TerrainError> {
-        let RasterLayout { width, height, .. } = images.layout;
-        let mask = match images.mask {
-            Some(image) => {
-                let layout = image.raster_layout().map_err(|error| damaged(error.to_string()))?;
-                Some(Reading { file, image, layout: &layout }.all(|shown: u8| shown)?)
-            }
-            None => None,
-        };
-        // A block that was never written stands for the no-data value where there is one, for zeros where there is none.
-        let holes = if no_data.is_some() { holes(images) } else { Vec::new() };
-        Ok(Self { mask, holes, width, height })
-    }
-
-    fn blank<T: Copy>(&self, posts: &mut [T], gap: T) {
-        if let Some(mask) = &self.mask {
-            for (post, _) in posts.iter_mut().zip(mask).filter(|(_, shown)| **shown == 0) {
-                *post = gap;
-            }
-        }
-        for &[first_row, first_col, rows, cols] in &self.holes {
-            for row in first_row..(first_row + rows).min(self.height) {
-                let start = row * self.width;
-                let end = (first_col + cols).min(self.width);
-                if let Some(part) = posts.get_mut(start + first_col.min(end)..start + end) {
-                    part.fill(gap);
-                }
-            }
-        }
-    }
-}
-
-fn holes(images: &Images<'_>) -> Vec<[usize; 4]> {
+/// The blocks that were never written.
+fn holes(images: &Images<'_>) -> Vec<Window> {
     let image = images.elevations;
     let RasterLayout { width, height, .. } = images.layout;
     let whole = |value: u32| usize::try_from(value).unwrap_or(usize::MAX).max(1);
@@ -182,7 +239,12 @@ fn holes(images: &Images<'_>) -> Vec<[usize; 4]> {
     let across = width.div_ceil(cols);
     let empty = block_lengths(image).into_iter().enumerate().filter(|(_, length)| *length == 0);
     empty
-        .map(|(block, _)| [(block / across).saturating_mul(rows), (block % across) * cols, rows, cols])
-        .filter(|hole| hole[0] < height)
+        .map(|(block, _)| Window {
+            first_row: (block / across).saturating_mul(rows).min(height),
+            first_col: (block % across) * cols,
+            rows: rows.min(height),
+            cols: cols.min(width),
+        })
+        .filter(|hole| hole.first_row < height)
         .collect()
 }

@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::{Definition, LonLat, MapProjection, Method, NoProjection};
 use crate::quantity::MapPoint;
-use crate::terrain::{Dem, TerrainError};
+use crate::terrain::{DemFile, TerrainError};
 
 /// How far a map's scale may be off along a transect before a slice of it is refused.
 const SCALE_TOLERANCE: f64 = 0.01;
@@ -133,7 +133,7 @@ impl MapProjection {
 /// [`TerrainError::MapScale`] where the scale is off by more than 1 % and that was not accepted, with a `gdalwarp` line that makes a
 /// map that is true along this transect; [`TerrainError::OffTheBody`] where the line leaves the map of the body.
 pub fn check_scale(
-    dem: &Dem,
+    dem: &dyn DemFile,
     projection: Result<&MapProjection, &NoProjection>,
     [from, to]: [MapPoint; 2],
     accepted: bool,
@@ -145,7 +145,7 @@ pub fn check_scale(
         Err(unknown @ NoProjection::Unknown(_)) => return Ok(TransectScale::Unknown(unknown.to_string())),
     };
     // A line without a direction, or off the map, is the slice's to refuse.
-    if from == to || ![from, to].iter().all(|end| dem.bounds().contains(*end)) {
+    if from == to || ![from, to].iter().all(|end| dem.georeference().bounds(dem.rows(), dem.cols()).contains(*end)) {
         return Ok(TransectScale::Local);
     }
     let extreme = projection.extreme_scale(from, to).ok_or(TerrainError::OffTheBody { from, to })?;
@@ -160,7 +160,7 @@ pub fn check_scale(
 }
 
 /// The command that makes a map which is true to scale along a transect, or what else to do.
-fn mend(dem: &Dem, projection: &MapProjection, [from, to]: [MapPoint; 2], file: &std::path::Path) -> Option<String> {
+fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2], file: &std::path::Path) -> Option<String> {
     let local = projection.about(nalgebra::center(&from, &to))?;
     let place = |at| projection.lon_lat(at);
     let (begin, end) = (place(from)?, place(to)?);
@@ -179,13 +179,12 @@ fn mend(dem: &Dem, projection: &MapProjection, [from, to]: [MapPoint; 2], file: 
     let Definition { latitude_deg, longitude_deg, ellipsoid, .. } = local.definition;
     Some(format!(
         "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0={latitude_deg} +lon_0={longitude_deg} {} +units=m +no_defs' -te {} {} {} {} \
-         -tr {spacing_m} {spacing_m} -ot {} -dstnodata nan {} out.tif, then slice out.tif --from-lonlat {:.9},{:.9} --to-lonlat {:.9},{:.9}",
+         -tr {spacing_m} {spacing_m} -ot Float64 -dstnodata nan {} out.tif, then slice out.tif --from-lonlat {:.9},{:.9} --to-lonlat {:.9},{:.9}",
         ellipsoid.proj(),
         low(ends[0].x, ends[1].x),
         low(ends[0].y, ends[1].y),
         high(ends[0].x, ends[1].x),
         high(ends[0].y, ends[1].y),
-        if dem.is_single_precision() { "Float32" } else { "Float64" },
         shell_word(&file.display().to_string()),
         begin.lon_deg,
         begin.lat_deg,

@@ -3,15 +3,16 @@
 use nalgebra::Vector2;
 
 use crate::quantity::MapPoint;
-use crate::terrain::{Dem, GeoReference, ProfileFacet};
+use crate::terrain::window::Posts;
+use crate::terrain::{GeoReference, MapBounds, ProfileFacet};
 
 /// Within so many post spacings a point is on a line of the lattice. Rounding of a division reaches 1e-12 on the largest rasters;
 /// a micrometre of ground is a thousand times more than this on a 1 m raster.
 const ON_THE_LINE: f64 = 1.0e-9;
 
-/// A DEM seen as triangles over the lattice of its posts: u counts columns to the east, v rows to the south.
+/// Posts seen as triangles over the lattice of its posts: u counts columns to the east, v rows to the south.
 pub(super) struct Ground<'a> {
-    dem: &'a Dem,
+    posts: &'a dyn Posts,
     map: &'a GeoReference,
     tolerance: f64,
     last: Vector2<f64>,
@@ -26,18 +27,22 @@ struct Square {
 
 impl<'a> Ground<'a> {
     #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
-    pub(super) fn of(dem: &'a Dem) -> Self {
-        let map = dem.georeference();
-        let bounds = dem.bounds();
+    pub(super) fn of(posts: &'a dyn Posts) -> Self {
+        let map = posts.georeference();
+        let bounds = posts.bounds();
         // Map coordinates themselves are only this fine: a post's own can miss it by one unit in the last place.
         let resolution_x = f64::EPSILON * bounds.min.x.abs().max(bounds.max.x.abs()) / map.dx_m();
         let resolution_y = f64::EPSILON * bounds.min.y.abs().max(bounds.max.y.abs()) / map.dy_m();
         Self {
-            dem,
+            posts,
             map,
             tolerance: ON_THE_LINE.max(resolution_x).max(resolution_y),
-            last: Vector2::new((dem.cols() - 1) as f64, (dem.rows() - 1) as f64),
+            last: Vector2::new((posts.cols() - 1) as f64, (posts.rows() - 1) as f64),
         }
+    }
+
+    pub(super) fn bounds(&self) -> MapBounds {
+        self.posts.bounds()
     }
 
     pub(super) fn tolerance(&self) -> f64 {
@@ -135,6 +140,13 @@ impl<'a> Ground<'a> {
         [north_east_half, south_west_half]
     }
 
+    /// The posts that elevation and facet between two places may ask for: first and last row, first and last column.
+    pub(super) fn reach(&self, a: Vector2<f64>, b: Vector2<f64>) -> [usize; 4] {
+        let margin = Vector2::repeat(self.tolerance);
+        let (low, high) = (self.square(a.inf(&b) - margin), self.square(a.sup(&b) + margin));
+        [low.row, high.row + 1, low.col, high.col + 1]
+    }
+
     /// The square a point lies in; on the last row and column, the last square.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the raster first")]
     fn square(&self, lattice: Vector2<f64>) -> Square {
@@ -144,7 +156,7 @@ impl<'a> Ground<'a> {
 
     /// North-west, north-east, south-west, south-east.
     fn corners(&self, Square { row, col }: Square) -> [Option<f64>; 4] {
-        [(row, col), (row, col + 1), (row + 1, col), (row + 1, col + 1)].map(|(row, col)| self.dem.elevation(row, col))
+        [(row, col), (row, col + 1), (row + 1, col), (row + 1, col + 1)].map(|(row, col)| self.posts.elevation(row, col))
     }
 }
 

@@ -12,11 +12,13 @@
 
 mod crossings;
 mod facet;
+mod from_file;
 
 use nalgebra::Vector2;
 
 use self::crossings::{Crossing, crossings};
 use self::facet::Ground;
+pub use self::from_file::{slice_file, slice_legs};
 use super::{Dem, Profile, ProfilePoint, TerrainError};
 use crate::quantity::MapPoint;
 
@@ -54,36 +56,59 @@ use crate::quantity::MapPoint;
 /// ```
 pub fn slice(dem: &Dem, from: MapPoint, to: MapPoint) -> Result<Profile, TerrainError> {
     let ground = Ground::of(dem);
-    let ends = [ground.lattice(from), ground.lattice(to)];
-    for (which, at, lattice) in [("from", from, ends[0]), ("to", to, ends[1])] {
-        if !ground.covers(lattice) {
-            return Err(TerrainError::OffTheMap { which, at, bounds: dem.bounds() });
+    let transect = Transect::of(&ground, from, to)?;
+    let mut profile = transect.empty_profile();
+    transect.cut(&ground, 0, transect.crossings.len(), &mut profile)?;
+    Ok(profile)
+}
+
+/// The straight way from one map point to another, with its vertices on the lattice.
+struct Transect {
+    crossings: Vec<Crossing>,
+    heading: Vector2<f64>,
+}
+
+impl Transect {
+    fn of(ground: &Ground<'_>, from: MapPoint, to: MapPoint) -> Result<Self, TerrainError> {
+        let ends = [ground.lattice(from), ground.lattice(to)];
+        for (which, at, lattice) in [("from", from, ends[0]), ("to", to, ends[1])] {
+            if !ground.covers(lattice) {
+                return Err(TerrainError::OffTheMap { which, at, bounds: ground.bounds() });
+            }
         }
-    }
-    let along = to - from;
-    let length_m = libm::hypot(along.x, along.y);
-    if length_m < f64::MIN_POSITIVE || ends[0] == ends[1] {
-        return Err(TerrainError::SamePoint { at: from });
-    }
-    let heading = Vector2::new(along.x / length_m, along.y / length_m);
-    let crossings = crossings(&ground, from, to, length_m);
-    let mut points: Vec<ProfilePoint> = Vec::with_capacity(crossings.len());
-    let mut facets = Vec::with_capacity(crossings.len());
-    let mut previous: Option<&Crossing> = None;
-    for crossing in &crossings {
-        if let Some(begin) = previous {
-            let middle = (begin.lattice + crossing.lattice) * 0.5;
-            let missing = || TerrainError::NoData {
-                at: nalgebra::center(&begin.map, &crossing.map),
-                distance_m: 0.5 * (begin.x_m + crossing.x_m),
-            };
-            facets.push(ground.facet(middle, heading).ok_or_else(missing)?);
+        let along = to - from;
+        let length_m = libm::hypot(along.x, along.y);
+        if length_m < f64::MIN_POSITIVE || ends[0] == ends[1] {
+            return Err(TerrainError::SamePoint { at: from });
         }
-        let z_m = ground.elevation(crossing.lattice).ok_or(TerrainError::NoData { at: crossing.map, distance_m: crossing.x_m })?;
-        points.push(ProfilePoint { x_m: crossing.x_m, z_m, map: crossing.map });
-        previous = Some(crossing);
+        let heading = Vector2::new(along.x / length_m, along.y / length_m);
+        Ok(Self { crossings: crossings(ground, from, to, length_m), heading })
     }
-    Ok(Profile { points, facets, heading })
+
+    fn empty_profile(&self) -> Profile {
+        let vertices = self.crossings.len();
+        Profile { points: Vec::with_capacity(vertices), facets: Vec::with_capacity(vertices), heading: self.heading }
+    }
+
+    /// Adds the vertices `first..end` and the segments that end at them, but for a segment that ends at the first of all.
+    fn cut(&self, ground: &Ground<'_>, first: usize, end: usize, profile: &mut Profile) -> Result<(), TerrainError> {
+        let mut previous = first.checked_sub(1).and_then(|before| self.crossings.get(before));
+        for crossing in &self.crossings[first..end] {
+            if let Some(begin) = previous {
+                let middle = (begin.lattice + crossing.lattice) * 0.5;
+                let missing = || TerrainError::NoData {
+                    at: nalgebra::center(&begin.map, &crossing.map),
+                    distance_m: 0.5 * (begin.x_m + crossing.x_m),
+                };
+                profile.facets.push(ground.facet(middle, self.heading).ok_or_else(missing)?);
+            }
+            let missing = TerrainError::NoData { at: crossing.map, distance_m: crossing.x_m };
+            let z_m = ground.elevation(crossing.lattice).ok_or(missing)?;
+            profile.points.push(ProfilePoint { x_m: crossing.x_m, z_m, map: crossing.map });
+            previous = Some(crossing);
+        }
+        Ok(())
+    }
 }
 
 #[cfg(test)]

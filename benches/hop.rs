@@ -1,0 +1,42 @@
+//! The hop test: one pair, and one take-off against every landing in reach.
+//!
+//! `cargo bench --bench hop`. Compare lines of one run with each other: absolute times depend on the machine and its load.
+
+mod support;
+
+use chta::{ballistics::HopTest, quantity::VertexId};
+use divan::{Bencher, black_box, counter::ItemsCount};
+
+fn main() {
+    divan::main();
+}
+
+/// One pair 15 vertices apart, by the kernel: all limits, no explanation.
+#[divan::bench]
+fn one_pair_kernel(bencher: Bencher<'_, '_>) {
+    let (chain, hopper) = support::fractal_chain(200);
+    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let at = |i| chain.geometry().vertex_station(VertexId(i));
+    bencher.bench_local(|| test.loft(black_box(&at(100)), black_box(&at(115))));
+}
+
+/// The same pair explained: every limit by itself and what binds.
+#[divan::bench]
+fn one_pair_explained(bencher: Bencher<'_, '_>) {
+    let (chain, hopper) = support::fractal_chain(200);
+    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let at = |i| chain.geometry().vertex_station(VertexId(i));
+    bencher.bench_local(|| test.takeoff_set(black_box(&at(100)), black_box(&at(115))));
+}
+
+/// One take-off in the middle against all landings within a window of vertices on either side.
+#[divan::bench(args = [30, 200, 2000])]
+fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
+    let (chain, hopper) = support::fractal_chain(2 * window + 1);
+    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let stations: Vec<_> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
+    let takeoff = stations[window];
+    bencher
+        .counter(ItemsCount::new(2 * window))
+        .bench_local(|| stations.iter().filter(|landing| test.loft(black_box(&takeoff), black_box(landing)).is_ok()).count());
+}

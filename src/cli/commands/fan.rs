@@ -1,0 +1,91 @@
+//! `chta fan`: slices in all directions from one point.
+
+use chta::{
+    chain::ConstrainedChain,
+    graph::PointSpacing,
+    reach::{FanRequest, fan},
+    report::{Document, FanAnswer, figure::draw_rose},
+    scenario::Covers,
+    terrain::read_dem,
+};
+
+use crate::cli::{
+    Answer, Failure,
+    args::{FanArgs, Format},
+    load::{Bare, input_file, load_bare},
+    output,
+};
+
+/// What `auto` means here, where no single path answers.
+const POINTS_PER_SEGMENT: PointSpacing = PointSpacing::PerSegment(1);
+
+/// Analyses all directions.
+pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
+    let FanArgs { dem: file, from, headings, length, output: table, plot, threads, format, search, common } = args;
+    let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
+    let Bare { scenario, base, document } = load_bare(common, search)?;
+    let dem = read_dem(file).map_err(|e| failed(&e))?;
+    let covers =
+        Covers::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
+    let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
+    let request = FanRequest {
+        dem: &dem,
+        from: *from,
+        headings: *headings,
+        length_m: *length,
+        hopper: &scenario.hopper,
+        gravity_m_s2: scenario.body.gravity_m_s2,
+        spacing,
+    };
+    let ground = |profile| Ok(ConstrainedChain::new(covers.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?);
+    let rays = fan(&request, *threads, &ground).map_err(|e| failed(&e))?;
+    let mut answer = FanAnswer::new(*from, *length, &rays);
+    match spacing {
+        PointSpacing::PerSegment(points) => answer.points_per_segment = Some(points),
+        PointSpacing::AtMostM(spacing_m) => answer.node_spacing_max_m = Some(spacing_m),
+    }
+    let mut csv = Vec::new();
+    if table.is_some() {
+        answer.write_csv(&mut csv).map_err(|e| failed(&e))?;
+    }
+    if let Some(path) = plot {
+        let name = file.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        let title = format!("How far in how few hops: {name}");
+        let svg = draw_rose(&answer, &title, &subtitle(&answer, &scenario)).map_err(|e| failed(&e))?;
+        output::to_file(path, svg.as_bytes())?;
+    }
+    if let Some(path) = table {
+        output::to_file_or_stdout(Some(path), &csv)?;
+        if path == std::path::Path::new("-") {
+            return Ok(Answer::Yes);
+        }
+    }
+    let text = match format {
+        Format::Text => answer.text(),
+        Format::Json => {
+            let mut inputs = vec![input_file(file)?];
+            for cover in Covers::files(&scenario) {
+                inputs.push(input_file(&base.join(cover))?);
+            }
+            Document::new("fan", document, inputs, Vec::new(), answer).to_json()?
+        }
+    };
+    output::to_stdout(text.as_bytes())?;
+    Ok(Answer::Yes)
+}
+
+/// Numbers under the title of the picture.
+fn subtitle(answer: &FanAnswer, scenario: &chta::scenario::Scenario) -> String {
+    let [x, y] = answer.from_m;
+    let body = scenario.body.name.clone().map(|name| format!("{name}, ")).unwrap_or_default();
+    format!(
+        "{} headings from ({x}, {y}) m, at most {} m; {body}gravity {:.4} m/s²; take-off at most {} m/s, landing at most {} m/s; {} headings \
+         lead to their far end",
+        answer.headings,
+        answer.length_m,
+        scenario.body.gravity_m_s2,
+        scenario.hopper.takeoff_speed_max_m_s,
+        scenario.hopper.landing_speed_max_m_s,
+        answer.reached_ends()
+    )
+}

@@ -1,0 +1,70 @@
+//! Help that is made from the program's own lists, so that it cannot fall behind them.
+
+use std::fmt::Write;
+
+use chta::{
+    chain::csv::{CHAIN_COLUMNS, CsvColumn, PAIRS_COLUMNS},
+    scenario::CATALOGUE,
+    terrain::{FORMATS, MESH_FORMATS},
+};
+use clap::{CommandFactory, FromArgMatches};
+
+use super::args::Args;
+
+/// The command line, parsed with those lists in its long help.
+pub(super) fn parsed() -> Args {
+    let mut command = Args::command();
+    let lists = [
+        ("run", scenario_keys()),
+        ("slice", formats()),
+        ("hop", columns("Columns of a chain CSV", &CHAIN_COLUMNS)),
+        ("check", columns("Columns of a pairs CSV", &PAIRS_COLUMNS)),
+        ("plan", columns("Columns of a chain CSV", &CHAIN_COLUMNS)),
+    ];
+    for (name, list) in lists {
+        command = command.mut_subcommand(name, |sub| {
+            let example = sub.get_after_help().map(ToString::to_string).unwrap_or_default();
+            sub.after_long_help(format!("{list}\n{example}"))
+        });
+    }
+    let matches = command.get_matches();
+    Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+}
+
+/// Every key of a scenario.
+fn scenario_keys() -> String {
+    let mut text = "Keys of a scenario:\n".to_owned();
+    let mut table = "";
+    for key in &CATALOGUE {
+        if key.table != table {
+            table = key.table;
+            line(&mut text, format_args!("[{table}]"));
+        }
+        line(&mut text, format_args!("  {:<26} {}", key.name, key.help));
+    }
+    text
+}
+
+/// The formats of elevation rasters and meshes.
+fn formats() -> String {
+    let mut text = "Formats of elevation rasters and meshes:\n".to_owned();
+    for (name, what) in FORMATS.into_iter().chain(MESH_FORMATS) {
+        line(&mut text, format_args!("  {name:<16} {what}"));
+    }
+    text
+}
+
+/// The columns of a CSV file.
+fn columns(title: &str, columns: &[CsvColumn]) -> String {
+    let mut text = format!("{title}:\n");
+    for column in columns {
+        line(&mut text, format_args!("  {:<36} {}", column.name, column.help));
+    }
+    text
+}
+
+/// Adds a line; writing to a String cannot fail.
+fn line(text: &mut String, line: std::fmt::Arguments<'_>) {
+    let _ = text.write_fmt(line);
+    text.push('\n');
+}

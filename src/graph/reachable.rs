@@ -1,0 +1,39 @@
+//! How far one gets from a start in any direction along the chain.
+
+use petgraph::algo::dijkstra;
+
+use super::{HopGraph, NodeSet, PointSpacing, TooManyNodes, cost::Effort};
+use crate::{
+    ballistics::{HopTest, Split, TakeoffChoice},
+    chain::Station,
+    quantity::NodeId,
+    world::Limit,
+};
+
+/// The nodes of a chain, from left to right, with the fewest hops that a start needs to each.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reachable {
+    /// Each node and its hops; `None` where no hops over these nodes get there.
+    pub nodes: Vec<(Station, Option<u64>)>,
+    /// Of the node that the start reaches with the greatest x: which limit refuses the hop from it to the next node on. `None` where it
+    /// is the last node.
+    pub refusing_ahead: Option<Limit>,
+}
+
+/// The fewest hops from a start to every node, Dijkstra's algorithm without a goal.
+///
+/// # Errors
+/// [`TooManyNodes`].
+///
+/// # Complexity
+/// As [`search`](super::search()), for the nodes that are reached.
+pub fn reachable(test: &HopTest<'_>, start: Station, spacing: PointSpacing) -> Result<Reachable, TooManyNodes> {
+    let set = NodeSet::new(test.chain(), start, start, spacing)?;
+    let graph = HopGraph::new(test, &set, Effort::default(), TakeoffChoice::default(), Split::default());
+    let hops = dijkstra(&graph, set.start(), None, |edge| petgraph::visit::EdgeRef::weight(&edge).hops());
+    let stations = set.stations();
+    let nodes: Vec<_> = stations.iter().enumerate().map(|(i, station)| (*station, hops.get(&NodeId(i)).copied())).collect();
+    let farthest = nodes.iter().rposition(|(_, hops)| hops.is_some()).unwrap_or(0);
+    let refusing_ahead = stations.get(farthest).zip(stations.get(farthest + 1)).and_then(|(a, b)| graph.edge(a, b).err());
+    Ok(Reachable { nodes, refusing_ahead })
+}

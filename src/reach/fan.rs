@@ -1,0 +1,276 @@
+//! Slices in all directions from one point, each analysed.
+
+use std::error::Error;
+
+use nalgebra::Vector2;
+use rayon::prelude::*;
+
+use crate::{
+    ballistics::HopTest,
+    chain::ConstrainedChain,
+    graph::{PointSpacing, TooManyNodes, reachable},
+    quantity::MapPoint,
+    terrain::{Dem, Profile, TerrainError, slice},
+    world::{Hopper, Limit},
+};
+
+/// What a fan is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct FanRequest<'a> {
+    /// The terrain.
+    pub dem: &'a Dem,
+    /// Where all slices begin.
+    pub from: MapPoint,
+    /// How many there are, equally spaced clockwise from grid north.
+    pub headings: u32,
+    /// How long they are, m, where the map lets them.
+    pub length_m: f64,
+    /// The robot.
+    pub hopper: &'a Hopper,
+    /// Gravity, m/s^2.
+    pub gravity_m_s2: f64,
+    /// How densely the slices are filled with nodes.
+    pub spacing: PointSpacing,
+}
+
+/// What ends a slice before its length.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cut {
+    /// The map's border.
+    Border,
+    /// Posts without elevation.
+    NoData,
+}
+
+impl Cut {
+    /// The name in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Border => "border",
+            Self::NoData => "no-data",
+        }
+    }
+}
+
+/// A part of a slice whose nodes all need as many hops.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HopBand {
+    /// Where it begins, half-way from the last node with another count, m from the start.
+    pub from_m: f64,
+    /// Where it ends.
+    pub to_m: f64,
+    /// The hops; `None`: no hops over these nodes land there.
+    pub hops: Option<u64>,
+}
+
+/// One direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FanRay {
+    /// Clockwise from grid north, degrees.
+    pub heading_deg: f64,
+    /// How long the slice is, m.
+    pub length_m: f64,
+    /// What ends it before the length asked for.
+    pub cut: Option<Cut>,
+    /// The farthest node that can be reached, m from the start; 0 where none can.
+    pub farthest_m: f64,
+    /// The fewest hops to it.
+    pub hops_to_farthest: u64,
+    /// The fewest hops to the slice's far end; `None` where it is not reached.
+    pub hops_to_end: Option<u64>,
+    /// Which limit refuses the hop from the farthest node to the next one on; `None` where the far end is reached.
+    pub refusing: Option<Limit>,
+    /// The whole slice, from the start on.
+    pub bands: Vec<HopBand>,
+}
+
+/// Why there is no fan.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FanError {
+    /// A request that makes no sense.
+    #[error("{what} is {found}, expected {expected}")]
+    Request {
+        /// Of what.
+        what: &'static str,
+        /// What was given.
+        found: String,
+        /// What is allowed.
+        expected: &'static str,
+    },
+    /// The start lies off the map, or where there is no elevation.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    /// A slice that makes no chain.
+    #[error("heading {heading_deg} deg: {reason}")]
+    Ground {
+        /// Which slice.
+        heading_deg: f64,
+        /// Why not.
+        reason: Box<dyn Error + Send + Sync>,
+    },
+    /// More nodes than fit.
+    #[error("heading {heading_deg} deg: {problem}")]
+    TooManyNodes {
+        /// Which slice.
+        heading_deg: f64,
+        /// How many.
+        problem: TooManyNodes,
+    },
+    /// No threads to work with.
+    #[error("the threads cannot be started ({0}): ask for fewer with --threads")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+/// Analyses slices in all directions from one point, in parallel; the same for any number of threads.
+///
+/// A slice that leaves the map or meets no-data ends there. `ground` makes a chain of a slice: it knows friction, zones and hopper.
+///
+/// # Arguments
+/// `threads`: how many; 0: one for each core.
+///
+/// # Returns
+/// One ray for each heading, `360 k / headings` degrees for k = 0, 1, ..
+///
+/// # Errors
+/// [`FanError`]; of several, that of the least heading.
+pub fn fan<G>(request: &FanRequest<'_>, threads: usize, ground: &G) -> Result<Vec<FanRay>, FanError>
+where
+    G: Fn(Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> + Sync,
+{
+    let FanRequest { headings, length_m, .. } = *request;
+    let refused = |what, found: String, expected| Err(FanError::Request { what, found, expected });
+    if headings == 0 || headings > 36_000 {
+        return refused("headings", headings.to_string(), "a whole number from 1 to 36000");
+    }
+    if !(length_m.is_finite() && length_m > 0.0) {
+        return refused("length", format!("{length_m} m"), "a finite length above 0 m");
+    }
+    let bounds = request.dem.bounds();
+    let inside = |value: f64, low: f64, high: f64| low <= value && value <= high;
+    if !(inside(request.from.x, bounds.min.x, bounds.max.x) && inside(request.from.y, bounds.min.y, bounds.max.y)) {
+        return Err(TerrainError::OffTheMap { which: "from", at: request.from, bounds }.into());
+    }
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let rays: Vec<Result<FanRay, FanError>> =
+        pool.install(|| (0..headings).into_par_iter().map(|number| ray(request, number, ground)).collect());
+    let rays: Vec<FanRay> = rays.into_iter().collect::<Result<_, _>>()?;
+    // No direction has ground: the start itself has none.
+    if rays.iter().all(|ray| ray.length_m == 0.0 && ray.cut == Some(Cut::NoData)) {
+        return Err(TerrainError::NoData { at: request.from, distance_m: 0.0 }.into());
+    }
+    Ok(rays)
+}
+
+/// The direction on the map (east, north) of a heading `360 number / of` degrees, exact along the axes.
+pub fn heading_vector(number: u32, of: u32) -> Vector2<f64> {
+    let (quarters, rest) = (4 * u64::from(number) / u64::from(of), 4 * u64::from(number) % u64::from(of));
+    if rest == 0 {
+        return [Vector2::new(0.0, 1.0), Vector2::new(1.0, 0.0), Vector2::new(0.0, -1.0), Vector2::new(-1.0, 0.0)]
+            [usize::try_from(quarters % 4).unwrap_or(0)];
+    }
+    let angle = std::f64::consts::TAU * f64::from(number) / f64::from(of);
+    Vector2::new(libm::sin(angle), libm::cos(angle))
+}
+
+/// One direction.
+fn ray<G>(request: &FanRequest<'_>, number: u32, ground: &G) -> Result<FanRay, FanError>
+where
+    G: Fn(Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> + Sync,
+{
+    let heading_deg = 360.0 * f64::from(number) / f64::from(request.headings);
+    let (profile, cut) = cut_slice(request, heading_vector(number, request.headings))?;
+    let Some(profile) = profile else {
+        let bands = Vec::new();
+        return Ok(FanRay {
+            heading_deg,
+            length_m: 0.0,
+            cut,
+            farthest_m: 0.0,
+            hops_to_farthest: 0,
+            hops_to_end: None,
+            refusing: None,
+            bands,
+        });
+    };
+    let chain = ground(profile).map_err(|reason| FanError::Ground { heading_deg, reason })?;
+    let test = HopTest::new(&chain, request.hopper, request.gravity_m_s2);
+    let start = chain.geometry().vertex_station(crate::quantity::VertexId(0));
+    let found = reachable(&test, start, request.spacing).map_err(|problem| FanError::TooManyNodes { heading_deg, problem })?;
+    let farthest = found.nodes.iter().rev().find_map(|(station, hops)| Some((station.point.x_m, (*hops)?)));
+    let (farthest_m, hops_to_farthest) = farthest.unwrap_or((0.0, 0));
+    let nodes: Vec<(f64, Option<u64>)> = found.nodes.iter().map(|(station, hops)| (station.point.x_m, *hops)).collect();
+    Ok(FanRay {
+        heading_deg,
+        length_m: chain.geometry().extent_m().1,
+        cut,
+        farthest_m,
+        hops_to_farthest,
+        hops_to_end: nodes.last().and_then(|(_, hops)| *hops),
+        refusing: found.refusing_ahead,
+        bands: bands(&nodes),
+    })
+}
+
+/// Neighbouring nodes of as many hops as one band.
+fn bands(nodes: &[(f64, Option<u64>)]) -> Vec<HopBand> {
+    let mut found: Vec<HopBand> = Vec::new();
+    let mut previous_m = 0.0;
+    for &(x_m, hops) in nodes {
+        match found.last_mut() {
+            Some(last) if last.hops == hops => last.to_m = x_m,
+            last => {
+                let border_m = 0.5 * (previous_m + x_m);
+                if let Some(last) = last {
+                    last.to_m = border_m;
+                }
+                found.push(HopBand { from_m: border_m, to_m: x_m, hops });
+            }
+        }
+        previous_m = x_m;
+    }
+    found
+}
+
+/// The slice in a direction, as far as there is ground, and what ended it; no slice where there is none at all.
+fn cut_slice(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<Profile>, Option<Cut>), TerrainError> {
+    let (dem, from) = (request.dem, request.from);
+    let bounds = dem.bounds();
+    let room = |at: f64, step: f64, low: f64, high: f64| {
+        if step > 0.0 {
+            (high - at) / step
+        } else if step < 0.0 {
+            (low - at) / step
+        } else {
+            f64::INFINITY
+        }
+    };
+    let to_border_m = room(from.x, heading.x, bounds.min.x, bounds.max.x).min(room(from.y, heading.y, bounds.min.y, bounds.max.y));
+    let (length_m, cut) = if to_border_m < request.length_m { (to_border_m, Some(Cut::Border)) } else { (request.length_m, None) };
+    let end = |along_m: f64| {
+        let to = from + heading * along_m;
+        MapPoint::new(to.x.clamp(bounds.min.x, bounds.max.x), to.y.clamp(bounds.min.y, bounds.max.y))
+    };
+    // Closer to the border than this there is nothing to analyse.
+    let least_m = 1e-6 * dem.georeference().dx_m().min(dem.georeference().dy_m());
+    if length_m <= least_m {
+        return Ok((None, cut));
+    }
+    let gap_m = match slice(dem, from, end(length_m)) {
+        Ok(profile) => return Ok((Some(profile), cut)),
+        Err(TerrainError::NoData { distance_m, .. }) => distance_m,
+        Err(other) => return Err(other),
+    };
+    // The last ground before the gap, by halving: the gap's own place is only known to a segment.
+    let (mut ground_m, mut gap_m) = (0.0, gap_m.max(least_m));
+    let mut whole = None;
+    while gap_m - ground_m > least_m {
+        let middle_m = 0.5 * (ground_m + gap_m);
+        match slice(dem, from, end(middle_m)) {
+            Ok(profile) => (ground_m, whole) = (middle_m, Some(profile)),
+            Err(TerrainError::NoData { .. }) => gap_m = middle_m,
+            Err(other) => return Err(other),
+        }
+    }
+    Ok((whole, Some(Cut::NoData)))
+}

@@ -1,0 +1,151 @@
+//! The answer of a fan, as plain data, text and CSV.
+
+use std::{
+    fmt::Write as _,
+    io::{self, Write},
+};
+
+use serde::Serialize;
+
+use crate::{
+    quantity::MapPoint,
+    reach::{FanRay, HopBand},
+};
+
+/// What `chta fan` answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FanAnswer {
+    /// Where all slices begin, on the map, m.
+    pub from_m: [f64; 2],
+    /// How many there are.
+    pub headings: usize,
+    /// How long they were to be, m.
+    pub length_m: f64,
+    /// Points inside each segment, where they are counted so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub points_per_segment: Option<u32>,
+    /// The greatest node spacing, where it was asked for so.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub node_spacing_max_m: Option<f64>,
+    /// One for each direction.
+    pub rays: Vec<FanRecord>,
+}
+
+/// One direction of a fan.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct FanRecord {
+    /// Clockwise from grid north.
+    pub heading_deg: f64,
+    /// How long the slice is.
+    pub length_m: f64,
+    /// What ends it before the length asked for: `border`, `no-data` or nothing.
+    pub cut: Option<&'static str>,
+    /// The farthest node that can be reached.
+    pub farthest_m: f64,
+    /// The fewest hops to it.
+    pub hops_to_farthest: u64,
+    /// The fewest hops to the slice's far end.
+    pub hops_to_end: Option<u64>,
+    /// Which limit refuses the hop from the farthest node to the next one on.
+    pub first_refusing_limit: Option<&'static str>,
+    /// Hops by distance: `from_m`, `to_m`, `hops`.
+    pub bands: Vec<BandRecord>,
+}
+
+/// A part of a slice whose nodes all need as many hops.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct BandRecord {
+    /// Where it begins.
+    pub from_m: f64,
+    /// Where it ends.
+    pub to_m: f64,
+    /// The hops; null: not reached.
+    pub hops: Option<u64>,
+}
+
+impl FanAnswer {
+    /// Of the rays from a point; the caller says how they were filled with nodes.
+    pub fn new(from: MapPoint, length_m: f64, rays: &[FanRay]) -> Self {
+        let rays: Vec<_> = rays.iter().map(FanRecord::new).collect();
+        Self { from_m: [from.x, from.y], headings: rays.len(), length_m, points_per_segment: None, node_spacing_max_m: None, rays }
+    }
+
+    /// How many directions lead to their far end.
+    pub fn reached_ends(&self) -> usize {
+        self.rays.iter().filter(|ray| ray.hops_to_end.is_some()).count()
+    }
+
+    /// The table for reading.
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "{} headings from ({}, {}) m, at most {} m: {} lead to their far end\n\n",
+            self.headings,
+            self.from_m[0],
+            self.from_m[1],
+            self.length_m,
+            self.reached_ends()
+        );
+        let columns = ["heading", "length (m)", "farthest (m)", "hops", "hops to end", "refused by", "cut by"];
+        let [heading, length, farthest, hops, end, limit, cut] = columns;
+        // Writing to a String cannot fail.
+        let _ = writeln!(text, "{heading:>8}{length:>12}{farthest:>14}{hops:>6}{end:>13}  {limit:<18}{cut}");
+        for ray in &self.rays {
+            let _ = writeln!(
+                text,
+                "{:>8.2}{:>12.3}{:>14.3}{:>6}{:>13}  {:<18}{}",
+                ray.heading_deg,
+                ray.length_m,
+                ray.farthest_m,
+                ray.hops_to_farthest,
+                ray.hops_to_end.map_or("-".to_owned(), |hops| hops.to_string()),
+                ray.first_refusing_limit.unwrap_or("-"),
+                ray.cut.unwrap_or("-")
+            );
+        }
+        text
+    }
+
+    /// The table as CSV; what is absent is blank.
+    ///
+    /// # Errors
+    /// What the writer says.
+    pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
+        let mut writer = csv::Writer::from_writer(out);
+        writer.write_record([
+            "heading_deg",
+            "length_m",
+            "cut",
+            "farthest_m",
+            "hops_to_farthest",
+            "hops_to_end",
+            "first_refusing_limit",
+        ])?;
+        for ray in &self.rays {
+            writer.write_record([
+                ray.heading_deg.to_string(),
+                ray.length_m.to_string(),
+                ray.cut.unwrap_or_default().to_owned(),
+                ray.farthest_m.to_string(),
+                ray.hops_to_farthest.to_string(),
+                ray.hops_to_end.map(|hops| hops.to_string()).unwrap_or_default(),
+                ray.first_refusing_limit.unwrap_or_default().to_owned(),
+            ])?;
+        }
+        writer.flush()
+    }
+}
+
+impl FanRecord {
+    fn new(ray: &FanRay) -> Self {
+        Self {
+            heading_deg: ray.heading_deg,
+            length_m: ray.length_m,
+            cut: ray.cut.map(crate::reach::Cut::name),
+            farthest_m: ray.farthest_m,
+            hops_to_farthest: ray.hops_to_farthest,
+            hops_to_end: ray.hops_to_end,
+            first_refusing_limit: ray.refusing.map(crate::world::Limit::name),
+            bands: ray.bands.iter().map(|&HopBand { from_m, to_m, hops }| BandRecord { from_m, to_m, hops }).collect(),
+        }
+    }
+}

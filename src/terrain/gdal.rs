@@ -1,0 +1,167 @@
+//! Whatever raster GDAL reads, through its C library (feature `gdal`).
+//!
+//! Place, units and projection go through the same judgement as a GeoTIFF's: GDAL writes them into the tags of an empty one.
+
+use std::io::Write;
+use std::path::Path;
+
+use gdal::raster::{GdalDataType, ResampleAlg};
+use gdal::{Dataset, DriverManager};
+
+use super::dem::check_map;
+use super::georeference::refuse_degrees;
+use super::geotiff::{Placed, place_by_tags};
+use super::{Dem, DemFile, DemReader, GeoReference, TerrainError, Window};
+
+/// GDAL as a format.
+pub(super) struct GdalReader;
+
+impl DemReader for GdalReader {
+    fn name(&self) -> &'static str {
+        "GDAL raster"
+    }
+
+    /// GDAL is asked last, so it may try anything.
+    fn recognises(&self, _beginning: &[u8]) -> bool {
+        true
+    }
+
+    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError> {
+        let mut file = tempfile::NamedTempFile::new().map_err(TerrainError::writing)?;
+        file.write_all(&bytes).map_err(TerrainError::writing)?;
+        self.read_path(file.path())
+    }
+
+    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
+        let open = OpenRaster::open(path)?;
+        let OpenRaster { rows, cols, .. } = open;
+        let posts = open.window(Window { first_row: 0, first_col: 0, rows, cols })?;
+        let dem = Dem::new(rows, cols, posts, open.georeference)?;
+        if !open.states_metres {
+            refuse_degrees(&dem)?;
+        }
+        Ok(dem)
+    }
+
+    fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
+        let open = OpenRaster::open(path)?;
+        if !open.states_metres && open.georeference.may_be_degrees(open.rows, open.cols) {
+            return Ok(Box::new(self.read_path(path)?));
+        }
+        Ok(Box::new(open))
+    }
+}
+
+struct OpenRaster {
+    dataset: Dataset,
+    georeference: GeoReference,
+    south_up: bool,
+    states_metres: bool,
+    rows: usize,
+    cols: usize,
+    scale: f64,
+    offset: f64,
+    /// 1, or 1000 where the band says that it is in km.
+    metres_per_unit: f64,
+}
+
+impl OpenRaster {
+    fn open(path: &Path) -> Result<Self, TerrainError> {
+        let dataset = Dataset::open(path).map_err(|error| refused(&error))?;
+        if dataset.raster_count() != 1 {
+            return Err(unsuitable(
+                format!("{} bands", dataset.raster_count()),
+                "one band of elevations",
+                "gdal_translate -b 1 in out.tif",
+            ));
+        }
+        let (cols, rows) = dataset.raster_size();
+        let band = dataset.rasterband(1).map_err(|error| refused(&error))?;
+        if matches!(band.band_type(), GdalDataType::Unknown) {
+            return Err(unsuitable(
+                "samples of no plain number type".to_owned(),
+                "integers or reals",
+                "gdal_translate -ot Float32 in out.tif",
+            ));
+        }
+        let metres_per_unit = match band.unit().to_ascii_lowercase().as_str() {
+            "" | "m" | "metre" | "metres" | "meter" | "meters" => 1.0,
+            "km" | "kilometer" | "kilometers" | "kilometre" | "kilometres" => 1000.0,
+            unit => {
+                return Err(unsuitable(
+                    format!("elevations in '{unit}'"),
+                    "elevations in metres",
+                    "gdal_calc.py --calc='A*METRES_PER_UNIT'",
+                ));
+            }
+        };
+        let (scale, offset) = (band.scale().unwrap_or(1.0), band.offset().unwrap_or(0.0));
+        let Placed { georeference, south_up, states_metres } = place_by_tags(skeleton(&dataset)?, rows)?;
+        check_map(rows, cols, &georeference)?;
+        Ok(Self { dataset, georeference, south_up, states_metres, rows, cols, scale, offset, metres_per_unit })
+    }
+}
+
+/// A GeoTIFF of one post with the raster's transform and projection.
+fn skeleton(dataset: &Dataset) -> Result<Vec<u8>, TerrainError> {
+    let folder = tempfile::tempdir().map_err(TerrainError::writing)?;
+    let path = folder.path().join("place.tif");
+    let written = || -> gdal::errors::Result<()> {
+        let mut tags = DriverManager::get_driver_by_name("GTiff")?.create_with_band_type::<u8, _>(&path, 1, 1, 1)?;
+        // GDAL gives no transform where there is none: then the tags have none, and are refused as such.
+        if let Ok(transform) = dataset.geo_transform() {
+            tags.set_geo_transform(&transform)?;
+        }
+        if let Ok(system) = dataset.spatial_ref() {
+            tags.set_spatial_ref(&system)?;
+        }
+        tags.close()
+    };
+    written().map_err(|error| refused(&error))?;
+    std::fs::read(&path).map_err(TerrainError::reading)
+}
+
+fn refused(error: &gdal::errors::GdalError) -> TerrainError {
+    TerrainError::Damaged { format: "raster (read by GDAL)", reason: error.to_string() }
+}
+
+fn unsuitable(found: String, expected: &'static str, mend: &str) -> TerrainError {
+    TerrainError::Unsuitable { found, expected, mend: mend.to_owned() }
+}
+
+impl DemFile for OpenRaster {
+    fn rows(&self) -> usize {
+        self.rows
+    }
+
+    fn cols(&self) -> usize {
+        self.cols
+    }
+
+    fn georeference(&self) -> &GeoReference {
+        &self.georeference
+    }
+
+    fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError> {
+        let Window { first_col, rows, cols, .. } = window;
+        let first_row = if self.south_up { self.rows - window.first_row - rows } else { window.first_row };
+        let place = |value: usize| isize::try_from(value).unwrap_or(isize::MAX);
+        let read = || -> gdal::errors::Result<(Vec<f64>, Vec<u8>)> {
+            let band = self.dataset.rasterband(1)?;
+            let corner = (place(first_col), place(first_row));
+            let nearest = Some(ResampleAlg::NearestNeighbour);
+            let posts = band.read_as::<f64>(corner, (cols, rows), (cols, rows), nearest)?;
+            let shown = band.open_mask_band()?.read_as::<u8>(corner, (cols, rows), (cols, rows), nearest)?;
+            Ok((posts.data().to_vec(), shown.data().to_vec()))
+        };
+        let (mut posts, shown) = read().map_err(|error| refused(&error))?;
+        for (post, shown) in posts.iter_mut().zip(shown) {
+            *post = if shown == 0 { f64::NAN } else { (*post * self.scale + self.offset) * self.metres_per_unit };
+        }
+        if self.south_up {
+            posts.reverse();
+            posts.chunks_mut(cols).for_each(<[f64]>::reverse);
+        }
+        Ok(posts)
+    }
+}

@@ -1,0 +1,129 @@
+//! What all readers fill: vertices and polygons, scaled, and cut into triangles.
+
+use nalgebra::Point3;
+
+use super::model::{Mesh, normal_of};
+use crate::terrain::TerrainError;
+
+/// A mesh that is being read.
+#[derive(Debug)]
+pub(super) struct MeshBuilder {
+    scale: f64,
+    vertices: Vec<Point3<f64>>,
+    triangles: Vec<[u32; 3]>,
+    /// Polygons of more than three corners.
+    polygons: usize,
+}
+
+impl MeshBuilder {
+    pub(super) fn new(scale: f64) -> Self {
+        Self { scale, vertices: Vec::new(), triangles: Vec::new(), polygons: 0 }
+    }
+
+    /// Adds a vertex as it stands in the file.
+    ///
+    /// # Errors
+    /// What is wrong with it, for the reader to say where.
+    pub(super) fn vertex(&mut self, x: f64, y: f64, z: f64) -> Result<u32, String> {
+        if !(x.is_finite() && y.is_finite() && z.is_finite()) {
+            return Err(format!("found the vertex ({x}, {y}, {z}), expected three finite numbers"));
+        }
+        let index = u32::try_from(self.vertices.len()).map_err(|_| "found over 4294967295 vertices, expected fewer".to_owned())?;
+        self.vertices.push(Point3::new(x * self.scale, y * self.scale, z * self.scale));
+        Ok(index)
+    }
+
+    /// How many vertices there are so far.
+    pub(super) fn vertex_count(&self) -> usize {
+        self.vertices.len()
+    }
+
+    /// Adds a polygon, cut into a fan of triangles from its first corner.
+    ///
+    /// # Errors
+    /// What is wrong with it: fewer than three corners, a vertex that does not exist (yet), or a fan that would fold over itself.
+    pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<(), String> {
+        if let Some(corner) = corners.iter().find(|corner| **corner as usize >= self.vertices.len()) {
+            return Err(format!("found a face with vertex {}, expected 1 to {}", u64::from(*corner) + 1, self.vertices.len()));
+        }
+        let [first, middle @ .., _] = corners else {
+            return Err("found a face without corners, expected three or more".to_owned());
+        };
+        if corners.len() < 3 {
+            return Err(format!("found a face of {} corners, expected three or more", corners.len()));
+        }
+        let fan = middle.iter().zip(&corners[2..]).map(|(second, third)| [*first, *second, *third]);
+        if corners.len() > 3 {
+            self.polygons += 1;
+            // The fan of a convex polygon turns one way all over.
+            let normals: Vec<_> =
+                fan.clone().map(|corners| normal_of(corners.map(|corner| self.vertices[corner as usize]))).collect();
+            let longest = normals.iter().max_by(|a, b| a.norm().total_cmp(&b.norm()));
+            if let Some(longest) = longest
+                && normals.iter().any(|normal| normal.dot(longest) < -1.0e-9 * longest.norm_squared())
+            {
+                return Err(format!(
+                    "found a face of {} corners that is not convex, expected triangles or convex polygons; triangulate the mesh before \
+                     the export",
+                    corners.len()
+                ));
+            }
+        }
+        self.triangles.extend(fan);
+        Ok(())
+    }
+
+    /// The mesh, and what its user should know.
+    pub(super) fn finish(self) -> Result<(Mesh, Vec<String>), TerrainError> {
+        let whole = self.triangles.len();
+        let mesh = Mesh::new(self.vertices, self.triangles)?;
+        let mut warnings = Vec::new();
+        if self.polygons > 0 {
+            warnings.push(format!(
+                "{} faces of the mesh have more than three corners and were cut into triangles from their first corner",
+                self.polygons
+            ));
+        }
+        if mesh.dropped_triangles() > 0 {
+            warnings.push(format!("{} of {whole} triangles of the mesh have no area and were dropped", mesh.dropped_triangles()));
+        }
+        Ok((mesh, warnings))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn square() -> MeshBuilder {
+        let mut builder = MeshBuilder::new(2.0);
+        for (x, y) in [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (0.25, 0.25)] {
+            builder.vertex(x, y, 0.5).unwrap();
+        }
+        builder
+    }
+
+    #[test]
+    fn polygons_become_fans_and_are_counted() {
+        let mut builder = square();
+        builder.polygon(&[0, 1, 2, 3]).unwrap();
+        let (mesh, warnings) = builder.finish().unwrap();
+        assert_eq!(mesh.indices(), [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(mesh.vertices()[2], Point3::new(2.0, 2.0, 1.0));
+        assert_eq!(
+            warnings,
+            ["1 faces of the mesh have more than three corners and were cut into triangles from their first corner"]
+        );
+    }
+
+    #[test]
+    fn faces_that_make_no_triangles_are_refused() {
+        let mut builder = square();
+        assert!(builder.polygon(&[0, 1]).unwrap_err().contains("2 corners"));
+        assert!(builder.polygon(&[]).unwrap_err().contains("without corners"));
+        assert!(builder.polygon(&[0, 1, 5]).unwrap_err().contains("vertex 6, expected 1 to 5"));
+        // An arrow head: seen from its wing, the fan folds over the notch.
+        assert!(builder.polygon(&[3, 0, 1, 4]).is_err_and(|reason| reason.contains("not convex")));
+        assert!(builder.vertex(0.0, f64::NAN, 0.0).is_err());
+    }
+}

@@ -1,0 +1,163 @@
+//! The formats of meshes, told apart by content.
+
+use std::fs::{self, File};
+use std::io::Read;
+use std::path::Path;
+
+use super::build::MeshBuilder;
+use super::{Mesh, obj, ply, stl};
+use crate::terrain::TerrainError;
+
+/// How many bytes of a file are looked at to know whether it is a mesh: comments may stand before the first statement.
+const PROBE_BYTES: u64 = 1 << 16;
+
+/// Names of the formats and one line about each, for help texts.
+pub const MESH_FORMATS: [(&str, &str); 3] = [
+    ("OBJ", "vertices and polygons, z up; normals, texture and materials are not used"),
+    ("STL", "binary or ASCII, z up"),
+    ("PLY", "ascii, binary_little_endian or binary_big_endian, elements vertex (x, y, z) and face, z up"),
+];
+
+/// A mesh with what its reader noticed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshFile {
+    /// The surface.
+    pub mesh: Mesh,
+    /// What was dropped or cut, one sentence each.
+    pub warnings: Vec<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum MeshFormat {
+    Obj,
+    BinaryStl,
+    AsciiStl,
+    Ply,
+}
+
+impl MeshFormat {
+    /// The format of a file that begins like this and has this length. A binary STL may say `solid` in its title, so it goes first.
+    fn of(beginning: &[u8], length: u64) -> Option<Self> {
+        if ply::recognises(beginning) {
+            Some(Self::Ply)
+        } else if stl::recognises_binary(beginning, length) {
+            Some(Self::BinaryStl)
+        } else if stl::recognises_ascii(beginning) {
+            Some(Self::AsciiStl)
+        } else if obj::recognises(beginning) {
+            Some(Self::Obj)
+        } else {
+            None
+        }
+    }
+}
+
+/// Whether a file is a mesh by its content. A file that cannot be read is none.
+pub fn looks_like_mesh(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    let Ok(length) = file.metadata().map(|metadata| metadata.len()) else { return false };
+    let mut beginning = Vec::new();
+    file.take(PROBE_BYTES).read_to_end(&mut beginning).is_ok() && MeshFormat::of(&beginning, length).is_some()
+}
+
+/// Reads a mesh file, whatever its extension. `scale` is how many metres one unit of the file is.
+///
+/// # Errors
+/// [`TerrainError::InFile`], around what is wrong: the file cannot be read, is of no known format, is damaged, or holds no sound surface.
+pub fn read_mesh(path: &Path, scale: f64) -> Result<MeshFile, TerrainError> {
+    let bytes = fs::read(path).map_err(|error| TerrainError::reading(error).in_file(path))?;
+    read_mesh_bytes(&bytes, scale).map_err(|error| error.in_file(path))
+}
+
+/// Reads a whole mesh file held in memory. Memory stays within a small multiple of its length, whatever counts it claims.
+///
+/// # Errors
+/// [`TerrainError`] with what was found, what was expected, and how to mend it; for a scale that is no finite number above 0 too.
+///
+/// # Examples
+/// ```
+/// use chta::terrain::read_mesh_bytes;
+/// // A shape in kilometres.
+/// let file = read_mesh_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0.5\nf 1 2 3\n", 1000.0)?;
+/// assert_eq!((file.mesh.bounds().high_m, file.warnings.len()), (500.0, 0));
+/// # Ok::<(), chta::terrain::TerrainError>(())
+/// ```
+pub fn read_mesh_bytes(bytes: &[u8], scale: f64) -> Result<MeshFile, TerrainError> {
+    if !(scale > 0.0 && scale.is_finite()) {
+        return Err(TerrainError::InvalidMesh(format!("mesh_scale is {scale}, expected metres per unit of the file, more than 0")));
+    }
+    let mut builder = MeshBuilder::new(scale);
+    match MeshFormat::of(bytes, bytes.len() as u64) {
+        Some(MeshFormat::Obj) => obj::read(bytes, &mut builder),
+        Some(MeshFormat::BinaryStl) => stl::read_binary(bytes, &mut builder),
+        Some(MeshFormat::AsciiStl) => stl::read_ascii(bytes, &mut builder),
+        Some(MeshFormat::Ply) => ply::read(bytes, &mut builder),
+        None => Err(not_recognised(bytes)),
+    }?;
+    let (mesh, warnings) = builder.finish()?;
+    Ok(MeshFile { mesh, warnings })
+}
+
+fn not_recognised(bytes: &[u8]) -> TerrainError {
+    let shown: String = bytes.iter().take(24).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect();
+    let mut found = if bytes.is_empty() { "nothing: the file is empty".to_owned() } else { format!("'{shown}'") };
+    if let Some(length) = stl::binary_length(bytes).filter(|_| bytes.contains(&0)) {
+        let triangles = (length - stl::HEADER_BYTES as u64) / stl::TRIANGLE_BYTES;
+        let claim = format!("as a binary STL it would claim {triangles} triangles in {length} bytes");
+        found = format!("{found}; {claim}, but the file has {} bytes", bytes.len());
+    }
+    let expected = MESH_FORMATS.map(|(name, _)| name).join(", ");
+    TerrainError::NotAMesh { found, expected }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn formats_are_known_by_content_and_junk_is_refused_with_its_first_bytes() {
+        let format = |bytes: &[u8]| MeshFormat::of(bytes, bytes.len() as u64);
+        assert_eq!(format(b"ply\nformat ascii 1.0\n"), Some(MeshFormat::Ply));
+        assert_eq!(format(b"solid\nfacet normal 0 0 1"), Some(MeshFormat::AsciiStl));
+        assert_eq!(format(b"####\n# shape\n\nv 0.1 2 3\n"), Some(MeshFormat::Obj));
+        assert_eq!(format(&[0; 84]), Some(MeshFormat::BinaryStl));
+        for junk in [
+            &b""[..],
+            b"\x00\x01junk",
+            b"II*\0",
+            b"ncols 4\nnrows 5\n",
+            b"x_m,z_m\n0,1\n",
+            b"solid ground is here",
+            b"0 1 2\n",
+            &[7; 500],
+        ] {
+            assert!(format(junk).is_none() || junk.starts_with(b"solid"), "{junk:?}");
+            assert!(read_mesh_bytes(junk, 1.0).is_err());
+        }
+        let message = read_mesh_bytes(b"", 1.0).unwrap_err().to_string();
+        assert!(message.contains("empty") && message.contains("OBJ, STL, PLY"), "{message}");
+        let mut cut = vec![0; 84];
+        cut[80] = 2;
+        cut.extend([0; 99]);
+        let message = read_mesh_bytes(&cut, 1.0).unwrap_err().to_string();
+        assert!(message.contains("2 triangles in 184 bytes, but the file has 183 bytes"), "{message}");
+    }
+
+    #[test]
+    fn scales_that_are_no_scales_are_refused() {
+        for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(read_mesh_bytes(b"v 0 0 0\n", scale).unwrap_err().to_string().contains("mesh_scale"));
+        }
+    }
+
+    #[test]
+    fn files_are_named_in_every_problem() {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path().join("rock.obj");
+        assert!(!looks_like_mesh(&path) && read_mesh(&path, 1.0).unwrap_err().to_string().contains("rock.obj"));
+        fs::write(&path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 4\n").unwrap();
+        assert!(looks_like_mesh(&path) && !looks_like_mesh(directory.path()));
+        let message = read_mesh(&path, 1.0).unwrap_err().to_string();
+        assert!(message.contains("rock.obj") && message.contains("line 4"), "{message}");
+    }
+}

@@ -1,0 +1,30 @@
+//! Triangulated surfaces, closed and overhanging ones too, and what is cut from them.
+//!
+//! A [`Mesh`] is read from OBJ, STL or PLY by content ([`read_mesh`]), z up, or built in memory. [`slice_mesh`] cuts it along a vertical
+//! plane into the same [`Profile`](super::Profile) that a DEM gives, and says where it had to choose: the upper of several surfaces, and
+//! walls.
+//!
+//! ```
+//! use chta::quantity::MapPoint;
+//! use chta::terrain::{read_mesh_bytes, slice_mesh};
+//!
+//! let ramp = b"v 0 -1 0\nv 4 -1 2\nv 4 1 2\nv 0 1 0\nf 1 2 3 4\n";
+//! let mesh = read_mesh_bytes(ramp, 1.0)?.mesh;
+//! let slice = slice_mesh(&mesh, MapPoint::new(0.0, 0.0), MapPoint::new(4.0, 0.0))?;
+//! let heights: Vec<f64> = slice.profile.points.iter().map(|point| point.z_m).collect();
+//! assert_eq!(heights, [0.0, 1.0, 2.0]); // the polygon's diagonal is crossed half-way
+//! # Ok::<(), chta::terrain::TerrainError>(())
+//! ```
+
+mod build;
+mod format;
+mod model;
+mod obj;
+mod ply;
+mod slice;
+mod stl;
+mod text;
+
+pub use format::{MESH_FORMATS, MeshFile, looks_like_mesh, read_mesh, read_mesh_bytes};
+pub use model::{Mesh, MeshBounds};
+pub use slice::{Layers, MeshSlice, WALL_RUN_M, Wall, slice_mesh};

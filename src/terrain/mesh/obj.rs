@@ -1,0 +1,148 @@
+//! Wavefront OBJ: the lines `v` and `f`; names, materials, normals and texture do not matter here.
+
+use super::build::MeshBuilder;
+use super::text::{in_line, lines, shown, three};
+use crate::terrain::TerrainError;
+
+pub(super) const NAME: &str = "OBJ";
+
+/// Statements that carry no surface.
+const WITHOUT_SURFACE: [&str; 17] = [
+    "vn",
+    "vt",
+    "vp",
+    "o",
+    "g",
+    "s",
+    "usemtl",
+    "mtllib",
+    "l",
+    "p",
+    "mg",
+    "lod",
+    "usemap",
+    "maplib",
+    "shadow_obj",
+    "trace_obj",
+    "bevel",
+];
+
+/// Whether a text begins like an OBJ: its first line that is not empty or a comment is a statement.
+pub(super) fn recognises(beginning: &[u8]) -> bool {
+    let first = lines(beginning).find(|(_, line)| !line.is_empty() && !line.starts_with('#'));
+    first.is_some_and(|(_, line)| {
+        let word = line.split_ascii_whitespace().next().unwrap_or_default();
+        (["v", "f"].contains(&word) || WITHOUT_SURFACE.contains(&word)) && line.len() > word.len()
+    })
+}
+
+/// Reads an OBJ.
+pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), TerrainError> {
+    let mut corners = Vec::new();
+    let mut begun: Option<(usize, String)> = None;
+    for (number, line) in lines(bytes) {
+        // A backslash at the end joins the next line to this one.
+        let (number, line) = match begun.take() {
+            Some((first, before)) => (first, format!("{before} {line}").into()),
+            None => (number, line),
+        };
+        if let Some(before) = line.strip_suffix('\\') {
+            begun = Some((number, before.to_owned()));
+            continue;
+        }
+        statement(&line, builder, &mut corners).map_err(|problem| in_line(NAME, number, &problem))?;
+    }
+    match begun {
+        Some((number, _)) => Err(in_line(NAME, number, "the file ends after a backslash, expected one more line")),
+        None => Ok(()),
+    }
+}
+
+/// Reads one statement.
+fn statement(line: &str, builder: &mut MeshBuilder, corners: &mut Vec<u32>) -> Result<(), String> {
+    let content = line.split('#').next().unwrap_or_default();
+    let mut words = content.split_ascii_whitespace();
+    match words.next() {
+        None => Ok(()),
+        Some("v") => {
+            // A weight or a colour may follow.
+            let [x, y, z] = three(&mut words)?;
+            builder.vertex(x, y, z).map(|_| ())
+        }
+        Some("f") => {
+            corners.clear();
+            for word in words {
+                corners.push(corner(word, builder.vertex_count())?);
+            }
+            builder.polygon(corners)
+        }
+        Some(word) if WITHOUT_SURFACE.contains(&word) => Ok(()),
+        Some(word) => Err(format!(
+            "found the statement '{}', expected v, f or one without a surface; export the mesh as polygons, not as curved surfaces",
+            shown(word)
+        )),
+    }
+}
+
+/// The vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`: from 1, or from -1 backwards.
+fn corner(word: &str, count: usize) -> Result<u32, String> {
+    let wrong = || format!("found the corner '{}', expected a vertex from 1 to {count}, or from -1 to -{count}", shown(word));
+    let index: i64 = word.split('/').next().unwrap_or_default().parse().map_err(|_| wrong())?;
+    let count = i64::try_from(count).map_err(|_| wrong())?;
+    let from_zero = if index > 0 { index - 1 } else { count + index };
+    if index == 0 || !(0..count).contains(&from_zero) {
+        return Err(wrong());
+    }
+    u32::try_from(from_zero).map_err(|_| wrong())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh(text: &str) -> Result<Vec<[u32; 3]>, String> {
+        let mut builder = MeshBuilder::new(1.0);
+        read(text.as_bytes(), &mut builder).map_err(|error| error.to_string())?;
+        builder.finish().map(|(mesh, _)| mesh.indices().to_vec()).map_err(|error| error.to_string())
+    }
+
+    const POINTS: &str = "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1e0 0\n";
+
+    #[test]
+    fn all_ways_to_name_a_corner_are_read() {
+        for face in
+            ["f 1 2 3", "f 1/1 2/2 3/3 # face", "f 1//9 2//9 3//9", "f 1/4/9 2/4/9 3/4/9", "f -4 -3 -2", "f 1 \\\n 2 \\\n 3"]
+        {
+            assert_eq!(
+                mesh(&format!("# ours\nmtllib a.mtl\n\n{POINTS}g rock\nusemtl grey\n{face}\r\n")).unwrap(),
+                [[0, 1, 2]],
+                "{face}"
+            );
+        }
+    }
+
+    #[test]
+    fn faults_are_named_with_their_line() {
+        for (line, expected) in [
+            ("f 1 2 5", "vertex from 1 to 4"),
+            ("f 0 1 2", "corner '0'"),
+            ("f -5 1 2", "corner '-5'"),
+            ("f 1 2", "2 corners"),
+            ("f", "without corners"),
+            ("f 1 2 x", "corner 'x'"),
+            ("f 1 2 99999999999999999999", "corner"),
+            ("v 1 2", "the line ends"),
+            ("v 1 2 nan", "finite"),
+            ("v 1 inf 2", "finite"),
+            ("v 1 2 three", "found 'three', expected a number"),
+            ("surf 0 1 0 1", "statement 'surf'"),
+            ("\u{0}\u{1}\u{fffd}", "statement"),
+            ("f 1 2 \\", "backslash"),
+        ] {
+            let message = mesh(&format!("{POINTS}{line}")).unwrap_err();
+            assert!(message.contains("OBJ") && message.contains("line 5") && message.contains(expected), "{line}: {message}");
+        }
+        assert!(mesh(POINTS).unwrap_err().contains("no faces"));
+        assert!(mesh(&format!("f 1 2 3\n{POINTS}")).is_err(), "a face stands after its vertices");
+    }
+}

@@ -1,0 +1,187 @@
+//! The exact cut of a vertical plane through a mesh, and its upper outline.
+//!
+//! ```text
+//!   z      ___c___                 every triangle that meets the plane gives a segment (cut.rs);
+//!         /       \                of several above one another the uppermost counts (envelope.rs);
+//!   --a--/----b----\----d---- x    vertices: edges crossed, and where the uppermost changes; walls get a run (outline.rs)
+//! ```
+
+mod cut;
+mod envelope;
+mod outline;
+
+use nalgebra::Vector2;
+
+use self::cut::{Cut, Plane};
+use self::envelope::{Side, envelope};
+use self::outline::Outline;
+use super::Mesh;
+use crate::quantity::MapPoint;
+use crate::terrain::{Profile, TerrainError};
+
+/// A wall becomes a segment of this run, m, or of a quarter of the segment at its foot, where that is less. It lies on the wall's lower side:
+/// the outline is never below the surface, and its upper edge stays where it is.
+pub const WALL_RUN_M: f64 = 1.0e-3;
+
+/// So many median edges apart, points are in the same place; the plane runs along an edge this near.
+const SAME_PLACE: f64 = 1.0e-9;
+
+/// So many units in the last place of the largest coordinate are in the same place, where that is coarser.
+const RESOLUTION: f64 = 16.0;
+
+/// So many tolerances in height are no wall: surfaces that meet within the tolerance on a steep slope.
+const NO_WALL: f64 = 100.0;
+
+/// How many walls a warning names one by one.
+const WALLS_TOLD: usize = 20;
+
+/// The upper outline of a mesh along a vertical plane, and where it had to be chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshSlice {
+    /// The ground, as a DEM gives it.
+    pub profile: Profile,
+    /// Where the plane meets several surfaces.
+    pub layers: Layers,
+    /// Where the outline jumps, in the order of travel.
+    pub walls: Vec<Wall>,
+}
+
+/// How much of a transect has several surfaces one above another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Layers {
+    /// In how many separate places.
+    pub places: usize,
+    /// Over which length in all, m.
+    pub length_m: f64,
+}
+
+/// A vertical step of the outline.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wall {
+    /// Where it stands along the transect, m: its upper edge.
+    pub x_m: f64,
+    /// Where on the map.
+    pub map: MapPoint,
+    /// Elevation at its foot, m.
+    pub foot_m: f64,
+    /// Elevation of its upper edge, m.
+    pub top_m: f64,
+    /// The run that its segment got on the lower side, m.
+    pub run_m: f64,
+    /// Whether triangles stand there all the way up. Where not, the upper surface juts out, and nothing can stand on the step: its segment
+    /// has a cross-slope of 90 degrees.
+    pub closed: bool,
+}
+
+/// Cuts a mesh along the straight map line from one point to another and takes its upper outline.
+///
+/// Every edge of the upper surface that the plane crosses is a vertex, and so is every place where another surface becomes the uppermost. A
+/// segment takes the facet under it, its normal turned upward; where the plane runs along an edge (within 1e-9 median edges of the
+/// mesh, or the resolution of its coordinates), that of the edge's triangles with the larger cross-slope. A triangle that stands in the plane
+/// has 90 degrees. Where the outline jumps, at a wall or at the rim of an overhang, the step becomes a segment of [`WALL_RUN_M`] on its
+/// lower side, with the cross-slope of the wall's own triangles; a thin wall that stands on the ground becomes a spike.
+///
+/// # Units
+/// Map coordinates in m; `x_m` is the horizontal distance from `from`.
+///
+/// # Returns
+/// A profile from `from` at x = 0 to `to`. The way back has the same points, facets and walls. A mesh that triangulates a DEM as
+/// [`slice`](crate::terrain::slice()) does gives the slice of that DEM.
+///
+/// # Degenerate
+/// Points nearer than the tolerance above are one. A plane that only touches a corner of a triangle does not meet it.
+///
+/// # Errors
+/// [`TerrainError::SamePoint`], [`TerrainError::OffTheMap`] for coordinates that are not finite, and [`TerrainError::MeshGap`] where the
+/// plane meets no triangle.
+///
+/// # Examples
+/// ```
+/// use chta::quantity::MapPoint;
+/// use chta::terrain::{Mesh, slice_mesh};
+/// use nalgebra::Point3;
+/// // One triangle; the plane crosses it half-way between its base and its apex, which is 2 m up.
+/// let corners = vec![Point3::new(0.0, 0.0, 0.0), Point3::new(4.0, 0.0, 0.0), Point3::new(2.0, 2.0, 2.0)];
+/// let mesh = Mesh::new(corners, vec![[0, 1, 2]])?;
+/// let slice = slice_mesh(&mesh, MapPoint::new(1.0, 1.0), MapPoint::new(3.0, 1.0))?;
+/// assert!(slice.profile.points.iter().all(|point| point.z_m == 1.0));
+/// assert!((slice.profile.facets[0].cross_slope.degrees() - 45.0).abs() < 1e-12);
+/// assert!(slice_mesh(&mesh, MapPoint::new(0.0, 1.0), MapPoint::new(3.0, 1.0)).is_err(), "no ground from 0 to 1 m");
+/// # Ok::<(), chta::terrain::TerrainError>(())
+/// ```
+pub fn slice_mesh(mesh: &Mesh, from: MapPoint, to: MapPoint) -> Result<MeshSlice, TerrainError> {
+    for (which, at) in [("from", from), ("to", to)] {
+        if !(at.x.is_finite() && at.y.is_finite()) {
+            return Err(TerrainError::OffTheMap { which, at, bounds: mesh.bounds().map });
+        }
+    }
+    // One order of the ends, whichever the direction of travel, so that the way back is the same.
+    let backwards = (to.x, to.y) < (from.x, from.y);
+    let (first, last) = if backwards { (to, from) } else { (from, to) };
+    let tolerance_m = tolerance_m(mesh, first, last);
+    let along = last - first;
+    let length_m = libm::hypot(along.x, along.y);
+    if length_m.is_nan() || length_m <= 2.0 * tolerance_m {
+        return Err(TerrainError::SamePoint { at: from });
+    }
+    let heading = Vector2::new(along.x / length_m, along.y / length_m);
+    let plane = Plane { first, last, heading, length_m, tolerance_m };
+    let cut = Cut::new(mesh, &plane);
+    let upper = envelope(&cut.segments, Side::Upper, tolerance_m);
+    if let Some(gap) = outline::first_gap(&upper, &plane, backwards) {
+        return Err(gap);
+    }
+    let lower = envelope(&cut.segments, Side::Lower, tolerance_m);
+    let layers = outline::layers(&cut.segments, &upper, &lower, NO_WALL * tolerance_m);
+    let outline = Outline::new(&plane, &cut, &upper, NO_WALL * tolerance_m);
+    Ok(outline.oriented(&plane, backwards, layers))
+}
+
+/// Within this distance points are the same, m.
+fn tolerance_m(mesh: &Mesh, first: MapPoint, last: MapPoint) -> f64 {
+    let map = mesh.bounds().map;
+    let largest = [map.min, map.max, first, last].iter().map(|point| point.coords.amax()).fold(0.0, f64::max);
+    (SAME_PLACE * mesh.median_edge_m()).max(RESOLUTION * f64::EPSILON * largest)
+}
+
+impl MeshSlice {
+    /// What a user of the profile should know, one sentence each; nothing where the mesh is one sheet.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let length_m = self.profile.length_m();
+        if self.layers.places > 0 {
+            warnings.push(format!(
+                "the plane meets several surfaces of the mesh one above another in {} places, over {:.3} of {:.3} m ({:.1} %): the \
+                 uppermost counts there",
+                self.layers.places,
+                self.layers.length_m,
+                length_m,
+                100.0 * self.layers.length_m / length_m
+            ));
+        }
+        if !self.walls.is_empty() {
+            let told: Vec<String> = self.walls.iter().take(WALLS_TOLD).map(ToString::to_string).collect();
+            let more = match self.walls.len().saturating_sub(WALLS_TOLD) {
+                0 => String::new(),
+                more => format!("; and {more} more"),
+            };
+            warnings.push(format!(
+                "the upper surface jumps in {} places; each became a segment of {WALL_RUN_M} m run or less on its lower side: {}{more}",
+                self.walls.len(),
+                told.join("; ")
+            ));
+        }
+        warnings
+    }
+}
+
+impl std::fmt::Display for Wall {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let kind = if self.closed { "wall" } else { "overhang" };
+        let Self { x_m, map, foot_m, top_m, .. } = self;
+        write!(f, "{kind} of {:.3} m at x = {x_m:.3} m, map ({:.3}, {:.3}), from z = {foot_m:.3} m", top_m - foot_m, map.x, map.y)
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,155 @@
+//! STL, binary and text. The normals in the file are not used: the corners say more.
+
+use super::build::MeshBuilder;
+use super::text::{in_line, lines, shown, three};
+use crate::terrain::TerrainError;
+
+pub(super) const BINARY: &str = "binary STL";
+pub(super) const ASCII: &str = "ASCII STL";
+
+/// Title, then the count of triangles.
+pub(super) const HEADER_BYTES: usize = 84;
+/// A normal and three corners in 32-bit floats, and two bytes of no meaning.
+pub(super) const TRIANGLE_BYTES: u64 = 50;
+
+/// The bytes that a binary STL of this header has; `None` where the header is cut short.
+pub(super) fn binary_length(header: &[u8]) -> Option<u64> {
+    let count = header.get(80..HEADER_BYTES)?.try_into().ok().map(u32::from_le_bytes)?;
+    Some(HEADER_BYTES as u64 + TRIANGLE_BYTES * u64::from(count))
+}
+
+/// Whether a file of this beginning and whole length is a binary STL: its count of triangles and its length say the same.
+pub(super) fn recognises_binary(beginning: &[u8], length: u64) -> bool {
+    binary_length(beginning) == Some(length)
+}
+
+/// Whether a text begins like an STL.
+pub(super) fn recognises_ascii(beginning: &[u8]) -> bool {
+    let mut lines = lines(beginning).filter(|(_, line)| !line.is_empty());
+    let title = lines.next().is_some_and(|(_, line)| is_word(&line, "solid"));
+    title && lines.next().is_none_or(|(_, line)| is_word(&line, "facet") || is_word(&line, "endsolid"))
+}
+
+/// Whether the first word of a line is this one, in small letters or capitals.
+fn is_word(line: &str, word: &str) -> bool {
+    line.split_ascii_whitespace().next().is_some_and(|first| first.eq_ignore_ascii_case(word))
+}
+
+/// Reads a binary STL whose length was checked.
+pub(super) fn read_binary(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), TerrainError> {
+    let triangles = bytes.get(HEADER_BYTES..).unwrap_or_default().chunks_exact(50);
+    for (index, triangle) in triangles.enumerate() {
+        let damaged = |problem| TerrainError::Damaged { format: BINARY, reason: format!("triangle {}: {problem}", index + 1) };
+        let mut numbers = triangle.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).skip(3);
+        let mut corners = [0; 3];
+        for corner in &mut corners {
+            let mut number = || numbers.next().map_or(f64::NAN, f64::from);
+            *corner = builder.vertex(number(), number(), number()).map_err(damaged)?;
+        }
+        builder.polygon(&corners).map_err(damaged)?;
+    }
+    Ok(())
+}
+
+/// Where in the text of an STL one is.
+#[derive(Clone, Copy, PartialEq)]
+enum Inside {
+    File,
+    Solid,
+    Facet,
+    Loop,
+}
+
+/// Reads a text STL: one or more solids.
+pub(super) fn read_ascii(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), TerrainError> {
+    let mut inside = Inside::File;
+    let mut corners = Vec::new();
+    for (number, line) in lines(bytes) {
+        let mut words = line.split_ascii_whitespace();
+        let Some(word) = words.next() else { continue };
+        let word = word.to_ascii_lowercase();
+        let at_line = |problem: String| in_line(ASCII, number, &problem);
+        inside = match (inside, word.as_str()) {
+            (Inside::File, "solid") | (Inside::Facet, "endfacet") => Inside::Solid,
+            (Inside::Solid, "facet") => Inside::Facet,
+            (Inside::Solid, "endsolid") => Inside::File,
+            (Inside::Facet, "outer") => {
+                corners.clear();
+                Inside::Loop
+            }
+            (Inside::Loop, "vertex") => {
+                let [x, y, z] = three(&mut words).map_err(at_line)?;
+                corners.push(builder.vertex(x, y, z).map_err(at_line)?);
+                Inside::Loop
+            }
+            (Inside::Loop, "endloop") => {
+                builder.polygon(&corners).map_err(at_line)?;
+                Inside::Facet
+            }
+            (inside, _) => return Err(at_line(format!("found '{}', expected {}", shown(&word), inside.expected()))),
+        };
+    }
+    if inside == Inside::File {
+        return Ok(());
+    }
+    Err(TerrainError::Damaged { format: ASCII, reason: format!("the text ends where {} was expected", inside.expected()) })
+}
+
+impl Inside {
+    fn expected(self) -> &'static str {
+        match self {
+            Self::File => "solid",
+            Self::Solid => "facet or endsolid",
+            Self::Facet => "outer loop or endfacet",
+            Self::Loop => "vertex or endloop",
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const TEXT: &str = "solid rock\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n   vertex 0 1 0\n  endloop\n endfacet\nendsolid rock\n";
+
+    fn ascii(text: &str) -> Result<usize, String> {
+        let mut builder = MeshBuilder::new(1.0);
+        read_ascii(text.as_bytes(), &mut builder).map_err(|error| error.to_string())?;
+        builder.finish().map(|(mesh, _)| mesh.triangle_count()).map_err(|error| error.to_string())
+    }
+
+    #[test]
+    fn texts_of_one_or_several_solids_in_any_letters_are_read() {
+        assert!(recognises_ascii(TEXT.as_bytes()));
+        assert_eq!(ascii(TEXT), Ok(1));
+        assert_eq!(ascii(&format!("{TEXT}\r\n{}", TEXT.to_uppercase())), Ok(2));
+    }
+
+    #[test]
+    fn faults_of_texts_are_named_with_their_line() {
+        let cut = TEXT.find("endloop").unwrap();
+        assert!(ascii(&TEXT[..cut]).unwrap_err().contains("the text ends where vertex or endloop was expected"));
+        assert!(ascii(&TEXT.replace("vertex 1 0 0\n", "")).unwrap_err().contains("line 6: found a face of 2 corners"));
+        assert!(ascii(&TEXT.replace("1 0 0", "1 0 nan")).unwrap_err().contains("line 5"));
+        assert!(ascii(&TEXT.replace("outer loop", "inner loop")).unwrap_err().contains("found 'inner', expected outer loop"));
+        assert!(ascii("solid a\nendsolid\n").unwrap_err().contains("no faces"));
+    }
+
+    #[test]
+    fn a_binary_file_is_known_by_its_length_alone_even_where_its_title_says_solid() {
+        let mut bytes = vec![b' '; 80];
+        bytes[..5].copy_from_slice(b"solid");
+        bytes.extend(1_u32.to_le_bytes());
+        for number in [0.0_f32, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.5] {
+            bytes.extend(number.to_le_bytes());
+        }
+        bytes.extend([0, 0]);
+        assert!(recognises_binary(&bytes, bytes.len() as u64) && !recognises_binary(&bytes, 133));
+        let mut builder = MeshBuilder::new(10.0);
+        read_binary(&bytes, &mut builder).unwrap();
+        let (mesh, _) = builder.finish().unwrap();
+        assert_eq!(mesh.vertices()[2], nalgebra::Point3::new(0.0, 10.0, 5.0));
+        bytes[96..100].copy_from_slice(&f32::NAN.to_le_bytes());
+        assert!(read_binary(&bytes, &mut MeshBuilder::new(1.0)).unwrap_err().to_string().contains("triangle 1"));
+    }
+}

@@ -1,0 +1,121 @@
+//! The IMAGE object: how many samples, of which kind, and where in which file.
+
+use super::label::{Label, shown, unsuitable};
+use super::samples::{Mark, SampleType, mark};
+use crate::terrain::TerrainError;
+
+/// Keys whose values stand for no elevation.
+const MARKS: [&str; 9] = [
+    "MISSING_CONSTANT",
+    "MISSING",
+    "INVALID_CONSTANT",
+    "NULL_CONSTANT",
+    "UNKNOWN_CONSTANT",
+    "NOT_APPLICABLE_CONSTANT",
+    "CORE_NULL",
+    "CORE_LOW_REPR_SATURATION",
+    "CORE_HIGH_REPR_SATURATION",
+];
+
+/// Where the samples of an image lie and what they mean.
+#[derive(Clone, Debug)]
+pub(super) struct ImageObject {
+    pub(super) rows: usize,
+    pub(super) cols: usize,
+    pub(super) sample: SampleType,
+    /// The file with the samples; `None`: the label's own.
+    pub(super) file: Option<String>,
+    /// Where the first line begins, its prefix included.
+    pub(super) start: u64,
+    pub(super) prefix: usize,
+    pub(super) suffix: usize,
+    pub(super) marks: Vec<Mark>,
+    pub(super) scale: f64,
+    pub(super) offset: f64,
+    pub(super) metres_per_unit: f64,
+}
+
+impl ImageObject {
+    /// # Errors
+    /// [`TerrainError::Unsuitable`] with the first key that is missing or makes no elevations.
+    pub(super) fn of(label: &Label) -> Result<Self, TerrainError> {
+        if !label.has("IMAGE") {
+            return Err(unsuitable("no IMAGE object", "one (tables, spectra and cubes hold no raster of elevations)"));
+        }
+        for (key, others) in [("BANDS", "1 band"), ("ENCODING_TYPE", "an image without encoding")] {
+            if let Some(value) = label.value("IMAGE", key)?.filter(|value| !matches!(value.text.as_str(), "1" | "N/A" | "NONE")) {
+                return Err(unsuitable(format!("{key} {}", shown(&value.text)), others));
+            }
+        }
+        let missing =
+            |key: &str| unsuitable(format!("no {key} in its IMAGE object"), "LINES, LINE_SAMPLES, SAMPLE_TYPE, SAMPLE_BITS");
+        let count = |key: &str| label.count("IMAGE", key)?.ok_or_else(|| missing(key));
+        let sample_type = label.value("IMAGE", "SAMPLE_TYPE")?.ok_or_else(|| missing("SAMPLE_TYPE"))?;
+        let (file, start) = pointer(label)?;
+        let mut marks = Vec::new();
+        for key in MARKS {
+            for value in label.values("IMAGE", key)?.unwrap_or_default().iter().filter(|value| value.text != "N/A") {
+                marks.push(mark(key, value)?);
+            }
+        }
+        let scale = label.number("IMAGE", "SCALING_FACTOR")?.unwrap_or(1.0);
+        if scale == 0.0 {
+            return Err(unsuitable("SCALING_FACTOR 0", "another number"));
+        }
+        Ok(Self {
+            rows: count("LINES")?,
+            cols: count("LINE_SAMPLES")?,
+            sample: SampleType::of(&sample_type.text, count("SAMPLE_BITS")?)?,
+            file,
+            start,
+            prefix: label.count("IMAGE", "LINE_PREFIX_BYTES")?.unwrap_or(0),
+            suffix: label.count("IMAGE", "LINE_SUFFIX_BYTES")?.unwrap_or(0),
+            marks,
+            scale,
+            offset: label.number("IMAGE", "OFFSET")?.unwrap_or(0.0),
+            metres_per_unit: metres_per_unit(label)?,
+        })
+    }
+
+    /// Bytes from one line to the next, and the byte after the last; `None` beyond all files.
+    pub(super) fn extent(&self) -> Option<(usize, u64)> {
+        let line = self.cols.checked_mul(self.sample.bytes())?.checked_add(self.prefix)?.checked_add(self.suffix)?;
+        let all = u64::try_from(line.checked_mul(self.rows)?).ok()?;
+        Some((line, self.start.checked_add(all)?))
+    }
+
+    /// Elevation, m, of a stored number: stored * `SCALING_FACTOR` + OFFSET, in the label's unit.
+    pub(super) fn elevation(&self, stored: f64) -> f64 {
+        (stored * self.scale + self.offset) * self.metres_per_unit
+    }
+}
+
+/// `^IMAGE`: a record or byte, from 1, of this file, or of one that it names.
+fn pointer(label: &Label) -> Result<(Option<String>, u64), TerrainError> {
+    let values = label.values("", "^IMAGE")?.ok_or_else(|| unsuitable("no ^IMAGE", "where the image begins"))?;
+    let (file, place) = match values {
+        [one] if one.text.parse::<u64>().is_ok() => (None, Some(one)),
+        [name] => (Some(name.text.clone()), None),
+        [name, place] => (Some(name.text.clone()), Some(place)),
+        _ => return Err(unsuitable(format!("^IMAGE with {} values", values.len()), "a file, a place, or both")),
+    };
+    let Some(place) = place else { return Ok((file, 0)) };
+    let wrong = || unsuitable(format!("^IMAGE at {}", shown(&place.text)), "a record or byte counted from 1");
+    let number = place.text.parse::<u64>().ok().and_then(|number| number.checked_sub(1)).ok_or_else(wrong)?;
+    if place.unit.as_deref().is_some_and(|unit| unit.starts_with("BYTE")) || number == 0 {
+        return Ok((file, number));
+    }
+    let record = label
+        .count("", "RECORD_BYTES")?
+        .ok_or_else(|| unsuitable("^IMAGE counted in records but no RECORD_BYTES", "RECORD_BYTES, or a place in <BYTES>"))?;
+    Ok((file, number.checked_mul(record as u64).ok_or_else(wrong)?))
+}
+
+fn metres_per_unit(label: &Label) -> Result<f64, TerrainError> {
+    let Some(unit) = label.value("IMAGE", "UNIT")? else { return Ok(1.0) };
+    match unit.text.to_ascii_uppercase().as_str() {
+        "M" | "METER" | "METERS" | "METRE" | "METRES" | "N/A" => Ok(1.0),
+        "KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES" => Ok(1000.0),
+        _ => Err(unsuitable(format!("UNIT {}", shown(&unit.text)), "METER or KILOMETER")),
+    }
+}

@@ -1,0 +1,13 @@
+//! PDS3: a label in text (attached to its image, or beside it) and an image of plain samples.
+//!
+//! `label` reads the text, `image` understands the IMAGE object, `samples` the bytes, `projection` the `IMAGE_MAP_PROJECTION` object
+//! (Planetary Data System Standards Reference 3.8, chapters 5, 12 and appendices A to C; data dictionary for the map keywords).
+
+mod image;
+mod label;
+mod projection;
+mod read;
+mod samples;
+
+pub(super) use read::Pds3Reader;
+pub use read::read_pds3_bytes;

@@ -1,0 +1,198 @@
+//! Reading a PDS3 image, whole or in parts.
+
+use std::fs::File;
+use std::io::{Read, Seek, SeekFrom};
+use std::path::{Path, PathBuf};
+
+use super::image::ImageObject;
+use super::label::{LONGEST_LABEL, Label, shown, unsuitable};
+use super::projection::place;
+use crate::terrain::dem::check_map;
+use crate::terrain::{Dem, DemFile, DemReader, GeoReference, TerrainError, Window};
+
+/// PDS3 as a format.
+pub(in crate::terrain) struct Pds3Reader;
+
+impl DemReader for Pds3Reader {
+    fn name(&self) -> &'static str {
+        "PDS3 image"
+    }
+
+    fn recognises(&self, beginning: &[u8]) -> bool {
+        let head = &beginning[..beginning.len().min(512)];
+        (head.starts_with(b"CCSD") || head.trim_ascii_start().starts_with(b"PDS_VERSION_ID"))
+            && head.windows(14).any(|window| window == b"PDS_VERSION_ID")
+    }
+
+    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError> {
+        read_pds3_bytes(bytes)
+    }
+
+    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
+        open_file(path)?.read_all()
+    }
+
+    fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
+        Ok(Box::new(open_file(path)?))
+    }
+}
+
+/// Reads a PDS3 image with attached label held in memory.
+///
+/// One band of integers or reals of any of the standard's byte orders, `SCALING_FACTOR`, OFFSET and UNIT (m, km) applied, gaps from
+/// `MISSING_CONSTANT` and its like. Where OFFSET is a radius, elevations are distances from the body's centre, as the label says.
+///
+/// # Errors
+/// [`TerrainError::Damaged`] where the label or the image is cut short; [`TerrainError::Unsuitable`] where the label points to another
+/// file, or describes no north-up map of elevations; [`TerrainError::InvalidDem`] where the numbers make no raster.
+pub fn read_pds3_bytes(bytes: Vec<u8>) -> Result<Dem, TerrainError> {
+    let label = Label::parse(&bytes[..bytes.len().min(LONGEST_LABEL)])?;
+    let image = ImageObject::of(&label)?;
+    if let Some(name) = &image.file {
+        return Err(unsuitable(format!("its image in another file, {}", shown(name)), "label and image on disk side by side"));
+    }
+    OpenPds3::new(&label, image, Source::Bytes(bytes))?.read_all()
+}
+
+fn open_file(path: &Path) -> Result<OpenPds3, TerrainError> {
+    let mut beginning = Vec::new();
+    let file = File::open(path).map_err(TerrainError::reading)?;
+    (&file).take(LONGEST_LABEL as u64).read_to_end(&mut beginning).map_err(TerrainError::reading)?;
+    let label = Label::parse(&beginning)?;
+    let image = ImageObject::of(&label)?;
+    let file = match &image.file {
+        None => file,
+        Some(name) => {
+            let beside = beside(path, name)?;
+            File::open(&beside).map_err(|error| TerrainError::reading(error).in_file(&beside))?
+        }
+    };
+    OpenPds3::new(&label, image, Source::File(file))
+}
+
+/// The file of a detached label: of that name in its folder, in the label's case, lower or upper case.
+fn beside(label: &Path, name: &str) -> Result<PathBuf, TerrainError> {
+    if name.is_empty() || name.contains(['/', '\\']) || name == ".." {
+        return Err(unsuitable(format!("^IMAGE in {}", shown(name)), "the plain name of a file beside the label"));
+    }
+    let candidates = [name.to_owned(), name.to_ascii_lowercase(), name.to_ascii_uppercase()].map(|name| label.with_file_name(name));
+    let found = candidates.iter().find(|path| path.is_file());
+    found
+        .cloned()
+        .ok_or_else(|| unsuitable(format!("its image in {}, which is not there", shown(name)), "the image beside its label"))
+}
+
+/// Where the bytes come from.
+enum Source {
+    File(File),
+    Bytes(Vec<u8>),
+}
+
+impl Source {
+    fn length(&self) -> Result<u64, TerrainError> {
+        match self {
+            Self::File(file) => Ok(file.metadata().map_err(TerrainError::reading)?.len()),
+            Self::Bytes(bytes) => Ok(bytes.len() as u64),
+        }
+    }
+
+    /// Fills a buffer from a place.
+    fn read(&self, start: u64, buffer: &mut [u8]) -> Result<(), TerrainError> {
+        match self {
+            Self::File(file) => {
+                let mut file = file;
+                file.seek(SeekFrom::Start(start)).and_then(|_| file.read_exact(buffer)).map_err(TerrainError::reading)
+            }
+            Self::Bytes(bytes) => {
+                let from = usize::try_from(start).ok().and_then(|start| bytes.get(start..)?.get(..buffer.len()));
+                buffer.copy_from_slice(from.ok_or_else(|| damaged("the image ends early".to_owned()))?);
+                Ok(())
+            }
+        }
+    }
+}
+
+fn damaged(reason: String) -> TerrainError {
+    TerrainError::Damaged { format: "PDS3 image", reason }
+}
+
+/// A PDS3 image whose lines are read when they are asked for.
+struct OpenPds3 {
+    image: ImageObject,
+    line_bytes: usize,
+    source: Source,
+    georeference: GeoReference,
+}
+
+impl OpenPds3 {
+    fn new(label: &Label, image: ImageObject, source: Source) -> Result<Self, TerrainError> {
+        let georeference = place(label)?;
+        let length = source.length()?;
+        let Some((line_bytes, _)) = image.extent().filter(|(_, end)| *end <= length) else {
+            return Err(damaged(format!(
+                "its label declares {} lines of {} samples of {} bytes from byte {} on, which a file of {length} bytes cannot hold",
+                image.rows,
+                image.cols,
+                image.sample.bytes(),
+                image.start
+            )));
+        };
+        check_map(image.rows, image.cols, &georeference)?;
+        Ok(Self { image, line_bytes, source, georeference })
+    }
+
+    fn read_all(&self) -> Result<Dem, TerrainError> {
+        let ImageObject { rows, cols, .. } = self.image;
+        let mut posts = Vec::new();
+        posts.try_reserve_exact(rows * cols).map_err(|error| damaged(error.to_string()))?;
+        for row in 0..rows {
+            self.append(row, 0, cols, &mut posts)?;
+        }
+        Dem::new(rows, cols, posts, self.georeference.clone())
+    }
+
+    /// The elevations of a part of a line.
+    fn append(&self, row: usize, first_col: usize, cols: usize, posts: &mut Vec<f64>) -> Result<(), TerrainError> {
+        let image = &self.image;
+        let width = image.sample.bytes();
+        let skipped = row * self.line_bytes + image.prefix + first_col * width;
+        let mut bytes = vec![0; cols * width];
+        self.source.read(image.start + skipped as u64, &mut bytes)?;
+        for (index, sample) in bytes.chunks_exact(width).enumerate() {
+            let stored = image.sample.decode(sample, &image.marks);
+            if stored == -32768.0 && image.sample.is_16_bit_signed() {
+                return Err(unsuitable(
+                    format!(
+                        "the sample -32768 at line {row}, sample {} (from 0), which looks like missing data",
+                        first_col + index
+                    ),
+                    "MISSING_CONSTANT = -32768 in its IMAGE object",
+                ));
+            }
+            posts.push(image.elevation(stored));
+        }
+        Ok(())
+    }
+}
+
+impl DemFile for OpenPds3 {
+    fn rows(&self) -> usize {
+        self.image.rows
+    }
+
+    fn cols(&self) -> usize {
+        self.image.cols
+    }
+
+    fn georeference(&self) -> &GeoReference {
+        &self.georeference
+    }
+
+    fn window(&self, Window { first_row, first_col, rows, cols }: Window) -> Result<Vec<f64>, TerrainError> {
+        let mut posts = Vec::with_capacity(rows * cols);
+        for row in first_row..first_row + rows {
+            self.append(row, first_col, cols, &mut posts)?;
+        }
+        Ok(posts)
+    }
+}

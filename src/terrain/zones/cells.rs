@@ -1,0 +1,102 @@
+//! The cells of a raster along a straight line, and whether two rasters lie on one map.
+
+use super::line::{Line, Stretch};
+use crate::terrain::{CoordinateSystem, Dem, MapBounds};
+
+/// The values of the cells that a part of a line lies in: one, or those on both sides where it runs along a border.
+pub(super) type CellValues = Vec<Option<f64>>;
+
+/// The parts of a line from cell border to cell border, each with the values of its cells. A pixel's value holds all over its cell,
+/// half a spacing to every side of its post; no values at all beyond the raster's outermost cells.
+///
+/// At the middle of a part, a border within the line's tolerance is run along.
+pub(super) fn cells_on(line: &Line, raster: &Dem) -> Vec<Stretch<CellValues>> {
+    let map = raster.georeference();
+    let steps = [map.dx_m(), map.dy_m()];
+    let place = |along_m: f64| {
+        let at = line.map_point(along_m);
+        [(at.x - map.north_west().x) / steps[0] + 0.5, (map.north_west().y - at.y) / steps[1] + 0.5]
+    };
+    let counts = [raster.cols(), raster.rows()];
+    let (begin, end) = (place(0.0), place(line.length_m));
+    let mut cuts = vec![0.0, line.length_m];
+    for axis in 0..2 {
+        cuts.extend(border_shares(begin[axis], end[axis], counts[axis]).map(|share| share * line.length_m));
+    }
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup_by(|next, kept| *next - *kept <= line.tolerance_m);
+    if let Some(last) = cuts.last_mut() {
+        *last = line.length_m;
+    }
+    cuts.windows(2)
+        .map(|pair| {
+            let middle = place(0.5 * (pair[0] + pair[1]));
+            let of_axis = |axis: usize| indices(middle[axis], line.tolerance_m / steps[axis], counts[axis]);
+            let cols = of_axis(0);
+            let values = of_axis(1).iter().flat_map(|&row| cols.iter().map(move |&col| raster.elevation(row, col))).collect();
+            Stretch { from_m: pair[0], to_m: pair[1], value: values }
+        })
+        .collect()
+}
+
+/// Where a coordinate that goes from `begin` to `end` crosses the borders 0, 1, .. `count` of cells, as shares of the way.
+fn border_shares(begin: f64, end: f64, count: usize) -> impl Iterator<Item = f64> {
+    #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
+    let last = count as f64;
+    let (low, high) = (begin.min(end).max(0.0).ceil(), begin.max(end).min(last).floor());
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and the count of rows or columns")]
+    let borders = if low <= high && begin != end { low as u64..high as u64 + 1 } else { 0..0 };
+    #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
+    borders.map(move |border| ((border as f64 - begin) / (end - begin)).clamp(0.0, 1.0))
+}
+
+/// The cells, of so many, that a coordinate lies in: two on a border, none outside.
+fn indices(place: f64, near: f64, count: usize) -> Vec<usize> {
+    let border = place.round();
+    let candidates = if (place - border).abs() <= near { vec![border - 1.0, border] } else { vec![place.floor()] };
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
+    let inside = candidates.into_iter().filter(|cell| *cell >= 0.0).map(|cell| cell as usize).filter(|cell| *cell < count);
+    inside.collect()
+}
+
+/// Whether any part of a line lies on a raster.
+pub(super) fn is_on(stretches: &[Stretch<CellValues>]) -> bool {
+    stretches.iter().any(|stretch| !stretch.value.is_empty())
+}
+
+/// The rectangle of a raster's cells.
+pub(super) fn cell_bounds(raster: &Dem) -> MapBounds {
+    let MapBounds { min, max } = raster.bounds();
+    let half = nalgebra::Vector2::new(0.5 * raster.georeference().dx_m(), 0.5 * raster.georeference().dy_m());
+    MapBounds { min: min - half, max: max + half }
+}
+
+/// Keys of a GeoTIFF that two files on one map have in common: kind of coordinates, code of the projection, ellipsoid, method, unit and
+/// parameters of the projection (OGC GeoTIFF 1.1).
+const KEYS_OF_A_MAP: [u16; 26] = [
+    1024, 3072, 2057, 2058, 2059, 3075, 3076, 3077, 3078, 3079, 3080, 3081, 3082, 3083, 3084, 3085, 3086, 3087, 3088, 3089, 3090,
+    3091, 3092, 3093, 3094, 3095,
+];
+
+/// "User-defined", which says nothing.
+const USER_DEFINED: f64 = 32767.0;
+
+/// What two maps disagree about, in words; `None` where they agree in all that both state.
+pub(super) fn disagreement(of_zones: &CoordinateSystem, of_terrain: &CoordinateSystem) -> Option<String> {
+    KEYS_OF_A_MAP.into_iter().find_map(|key| {
+        let (found, expected) = (value_of(of_zones, key)?, value_of(of_terrain, key)?);
+        let same = (found - expected).abs() <= 1e-9 * found.abs().max(expected.abs());
+        (!same).then(|| format!("GeoTIFF key {key} is {found} in it and {expected} in the terrain"))
+    })
+}
+
+/// The number of a `GeoKey`; `None` where it is absent, no number or left open.
+fn value_of(system: &CoordinateSystem, wanted: u16) -> Option<f64> {
+    let entry = system.key_directory.chunks_exact(4).skip(1).find(|entry| entry[0] == wanted)?;
+    let value = match entry[1] {
+        0 => Some(f64::from(entry[3])),
+        34736 => system.double_parameters.get(usize::from(entry[3])).copied(),
+        _ => None,
+    };
+    value.filter(|value| *value != USER_DEFINED)
+}

@@ -1,0 +1,80 @@
+//! Friction from a raster.
+
+use std::path::{Path, PathBuf};
+
+use super::{
+    cells::{cells_on, disagreement},
+    keep_out::of_raster,
+    line::{Line, Stretch},
+};
+use crate::{
+    terrain::{CoordinateSystem, Dem, Profile, TerrainError, read_dem},
+    world::FrictionCone,
+};
+
+/// What the file is called in messages.
+const WHAT: &str = "friction raster";
+
+/// A raster of friction coefficients on the terrain's map.
+#[derive(Clone, Debug)]
+pub struct FrictionRaster {
+    path: PathBuf,
+    raster: Dem,
+}
+
+/// Reads a raster of friction coefficients (`GeoTIFF`, ESRI ASCII grid) on the terrain's map; `coordinates` is what the terrain says of
+/// that, where it says anything.
+///
+/// # Errors
+/// [`TerrainError::Cover`]: the file cannot be read, is no raster on a map in metres, lies on another map, or holds a negative number.
+pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>) -> Result<FrictionRaster, TerrainError> {
+    let failed = |problem: String| TerrainError::Cover { what: WHAT, path: path.to_path_buf(), problem };
+    let raster = read_dem(path).map_err(|error| failed(of_raster(error)))?;
+    if let Some(difference) = coordinates.and_then(|terrain| disagreement(&raster.georeference().coordinate_system, terrain)) {
+        return Err(failed(format!("the raster lies on another map ({difference}); warp it with: gdalwarp -r near -t_srs ..")));
+    }
+    let negative = raster.elevations().position(|value| value.is_some_and(|value| value < 0.0));
+    if let Some((index, value)) = negative.and_then(|index| Some((index, raster.elevations().nth(index)??))) {
+        return Err(failed(format!(
+            "row {}, column {} (from 0, from the north-west) holds {value}, expected friction coefficients of at least 0; if it marks missing \
+             data, say so with: gdal_translate -a_nodata {value} in.tif out.tif",
+            index / raster.cols(),
+            index % raster.cols()
+        )));
+    }
+    Ok(FrictionRaster { path: path.to_path_buf(), raster })
+}
+
+impl FrictionRaster {
+    /// Gives every segment of a profile its friction, and puts vertices where its line crosses into a pixel of another one.
+    ///
+    /// A segment has the coefficient of the pixel that covers its middle: a pixel's value holds for its cell, half a spacing to every
+    /// side of its centre, without interpolation. Along a border of two cells the smaller one counts. Where the raster has no data,
+    /// or does not reach, `constant` holds.
+    ///
+    /// # Errors
+    /// [`TerrainError::Cover`] where there is neither data nor a constant, naming where.
+    pub fn lay(&self, profile: &mut Profile, constant: Option<FrictionCone>) -> Result<(), TerrainError> {
+        let Some(line) = Line::of(profile) else { return Ok(()) };
+        let mut stretches = Vec::new();
+        for cell in cells_on(&line, &self.raster) {
+            let least = cell.value.iter().flatten().copied().reduce(f64::min);
+            let cone = match least {
+                Some(coefficient) => FrictionCone::new(coefficient).ok(),
+                None => constant,
+            };
+            let Some(cone) = cone else {
+                let at = line.map_point(0.5 * (cell.from_m + cell.to_m));
+                let problem = format!(
+                    "the raster has no data at map point ({:.3} m, {:.3} m), expected a friction coefficient all the way; give the \
+                     scenario a friction_coefficient for where it has none",
+                    at.x, at.y
+                );
+                return Err(TerrainError::Cover { what: WHAT, path: self.path.clone(), problem });
+            };
+            stretches.push(Stretch { from_m: cell.from_m, to_m: cell.to_m, value: cone });
+        }
+        line.lay(profile, &stretches, |profile, segment, cone| profile.facets[segment].friction = Some(cone));
+        Ok(())
+    }
+}

@@ -1,0 +1,140 @@
+//! Keep-out zones: polygons or a mask, where nothing takes off and nothing lands.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use super::{
+    cells::{cell_bounds, cells_on, disagreement, is_on},
+    geojson::polygons,
+    line::{Line, Stretch, covered},
+    polygons::Polygon,
+};
+use crate::terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem};
+
+/// What the file is called in messages.
+const WHAT: &str = "keep-out zones";
+
+/// The largest GeoJSON read: zones drawn by hand take kilobytes, traced rasters megabytes.
+const LARGEST_BYTES: u64 = 1 << 30;
+
+/// Where nothing takes off and nothing lands. Flying over is allowed.
+#[derive(Clone, Debug)]
+pub struct KeepOut {
+    path: PathBuf,
+    zones: Zones,
+}
+
+#[derive(Clone, Debug)]
+enum Zones {
+    Polygons(Vec<Polygon>),
+    Mask(Box<Dem>),
+}
+
+/// Reads keep-out zones for a terrain: a `GeoJSON` file of polygons in the terrain's map coordinates, or a raster (`GeoTIFF`, ESRI ASCII
+/// grid) on the same map whose non-zero pixels are kept out. The content decides which.
+///
+/// `coordinates` is what the terrain says of its map, where it says anything, and `bounds` what it covers.
+///
+/// In a raster each pixel holds for its cell, half a spacing to every side of its centre, and no-data keeps nothing out.
+///
+/// # Errors
+/// [`TerrainError::Cover`]: the file cannot be read, holds no polygons, one that is broken (named by feature and ring), coordinates
+/// in degrees or on another map, or lies wholly off the terrain.
+pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds: MapBounds) -> Result<KeepOut, TerrainError> {
+    let failed = |problem: String| TerrainError::Cover { what: WHAT, path: path.to_path_buf(), problem };
+    let zones = if looks_like_json(path).map_err(|error| failed(unread(&error)))? {
+        let size = fs::metadata(path).map_err(|error| failed(unread(&error)))?.len();
+        if size > LARGEST_BYTES {
+            return Err(failed(format!("the file has {size} bytes, expected at most {LARGEST_BYTES}: simplify the polygons")));
+        }
+        let bytes = fs::read(path).map_err(|error| failed(unread(&error)))?;
+        Zones::Polygons(polygons(&bytes, coordinates, bounds).map_err(failed)?)
+    } else {
+        let mask = read_dem(path).map_err(|error| failed(of_raster(error)))?;
+        if let Some(difference) = coordinates.and_then(|terrain| disagreement(&mask.georeference().coordinate_system, terrain)) {
+            return Err(failed(format!("the mask lies on another map ({difference}); warp it with: gdalwarp -r near -t_srs ..")));
+        }
+        Zones::Mask(Box::new(mask))
+    };
+    Ok(KeepOut { path: path.to_path_buf(), zones })
+}
+
+impl KeepOut {
+    /// Marks the segments of a profile that lie in a zone, and puts vertices where its line crosses a border between kept out and not.
+    ///
+    /// Zones are closed: a segment along a border, or along the border of a hole, lies inside. Each segment is then wholly inside or
+    /// outside; a vertex on a border obeys the segments that meet there, as everywhere. Zones met on less than a millionth of a millionth
+    /// of the map coordinates' size (0.1 micrometres at 100 km) are met at a point, which keeps nothing out.
+    ///
+    /// # Errors
+    /// [`TerrainError::Cover`] where a mask ends before the profile does.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{quantity::MapPoint, terrain::{Dem, GeoReference, read_keep_out, slice}};
+    /// let plain = Dem::new(2, 3, vec![0.0; 6], GeoReference::local(MapPoint::new(0.0, 10.0), 10.0, 10.0)?)?;
+    /// let folder = tempfile::tempdir()?;
+    /// let file = folder.path().join("zones.geojson");
+    /// std::fs::write(&file, r#"{"type": "Polygon", "coordinates": [[[3, 0], [4, 0], [4, 9], [3, 9], [3, 0]]]}"#)?;
+    /// let zones = read_keep_out(&file, None, plain.bounds())?;
+    /// let mut profile = slice(&plain, MapPoint::new(1.0, 1.0), MapPoint::new(6.0, 1.0))?;
+    /// zones.mark(&mut profile)?;
+    /// let kept: Vec<(f64, bool)> = profile.points.iter().zip(&profile.facets).map(|(p, f)| (p.x_m, f.keep_out)).collect();
+    /// assert_eq!(kept, [(0.0, false), (2.0, true), (3.0, false)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn mark(&self, profile: &mut Profile) -> Result<(), TerrainError> {
+        let Some(line) = Line::of(profile) else { return Ok(()) };
+        let parts = match &self.zones {
+            Zones::Polygons(polygons) => polygons.iter().flat_map(|polygon| polygon.parts_on(&line)).collect(),
+            Zones::Mask(mask) => self.masked(mask, &line)?,
+        };
+        let stretches: Vec<Stretch<bool>> = covered(&line, parts);
+        line.lay(profile, &stretches, |profile, segment, inside| profile.facets[segment].keep_out |= inside);
+        Ok(())
+    }
+
+    /// The parts of a line on pixels that are not 0.
+    fn masked(&self, mask: &Dem, line: &Line) -> Result<Vec<(f64, f64)>, TerrainError> {
+        let cells = cells_on(line, mask);
+        if let Some(beyond) = cells.iter().find(|cell| cell.value.is_empty()) {
+            let at = line.map_point(0.5 * (beyond.from_m + beyond.to_m));
+            let whole = if is_on(&cells) { "ends before the slice does" } else { "does not cover the slice" };
+            let problem = format!(
+                "the mask {whole}: nothing at map point ({:.3} m, {:.3} m), expected pixels all the way, and it covers {}; make one for the \
+                 whole terrain with: gdalwarp -te XMIN YMIN XMAX YMAX mask.tif whole.tif",
+                at.x,
+                at.y,
+                cell_bounds(mask)
+            );
+            return Err(TerrainError::Cover { what: WHAT, path: self.path.clone(), problem });
+        }
+        let kept = |values: &[Option<f64>]| values.iter().flatten().any(|value| *value != 0.0);
+        Ok(cells.iter().filter(|cell| kept(&cell.value)).map(|cell| (cell.from_m, cell.to_m)).collect())
+    }
+}
+
+/// Whether a file begins as JSON does.
+fn looks_like_json(path: &Path) -> std::io::Result<bool> {
+    use std::io::Read;
+    let mut beginning = Vec::new();
+    fs::File::open(path)?.take(4096).read_to_end(&mut beginning)?;
+    let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&beginning);
+    let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
+    Ok(matches!(first, Some(b'{' | b'[')))
+}
+
+/// What the system says of a file, with what to do.
+pub(super) fn unread(error: &std::io::Error) -> String {
+    format!("cannot be read ({error}): check the path and its permissions")
+}
+
+/// What is wrong with a raster, without its name.
+pub(super) fn of_raster(error: TerrainError) -> String {
+    match error {
+        TerrainError::InFile { problem, .. } => problem.to_string(),
+        other => other.to_string(),
+    }
+}

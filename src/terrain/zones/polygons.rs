@@ -1,0 +1,86 @@
+//! Polygons on the map, and where a straight line runs through them.
+
+use nalgebra::Vector2;
+
+use super::line::Line;
+use crate::{quantity::MapPoint, terrain::MapBounds};
+
+/// A polygon: its rings, outer and holes alike, without the repeated last point.
+///
+/// Inside is what an odd number of ring edges separates from far away: holes and rings that cross themselves need no special case.
+/// Border points belong to it, those of holes included.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Polygon {
+    rings: Vec<Vec<MapPoint>>,
+    bounds: MapBounds,
+}
+
+impl Polygon {
+    /// A polygon of rings with finite points; `None` without any point.
+    pub(super) fn new(rings: Vec<Vec<MapPoint>>) -> Option<Self> {
+        let first = *rings.first()?.first()?;
+        let bounds = rings.iter().flatten().fold(MapBounds { min: first, max: first }, |bounds, point| MapBounds {
+            min: bounds.min.inf(point),
+            max: bounds.max.sup(point),
+        });
+        Some(Self { rings, bounds })
+    }
+
+    /// The smallest rectangle around it.
+    pub(super) fn bounds(&self) -> MapBounds {
+        self.bounds
+    }
+
+    /// The parts of a line that lie in the polygon, m along it, in any order.
+    ///
+    /// In the line's own frame every edge has its two ends to the left (above), to the right or on the line. An edge that has one end
+    /// above and one not is met once by the line moved up a hair, so that those places, sorted, are the ends of the parts just above the
+    /// line; the same just below. A place of the line that is on no edge has the same answer above and below. Edges on the line
+    /// are parts themselves: the border belongs to the zone.
+    pub(super) fn parts_on(&self, line: &Line) -> Vec<(f64, f64)> {
+        if !self.may_meet(line) {
+            return Vec::new();
+        }
+        let mut parts = Vec::new();
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        for ring in &self.rings {
+            let points: Vec<Vector2<f64>> = ring.iter().map(|point| self.snapped(line, *point)).collect();
+            for (a, b) in points.iter().zip(points.iter().cycle().skip(1)) {
+                if a.y == 0.0 && b.y == 0.0 {
+                    parts.push((a.x.min(b.x), a.x.max(b.x)));
+                    continue;
+                }
+                let along_m = a.x + (b.x - a.x) * (a.y / (a.y - b.y));
+                if (a.y > 0.0) != (b.y > 0.0) {
+                    above.push(along_m);
+                }
+                if (a.y < 0.0) != (b.y < 0.0) {
+                    below.push(along_m);
+                }
+            }
+        }
+        for mut places in [above, below] {
+            places.sort_by(f64::total_cmp);
+            parts.extend(places.chunks_exact(2).map(|pair| (pair[0], pair[1])));
+        }
+        parts
+    }
+
+    /// A ring's point in the line's frame, on the line where it is nearly so.
+    fn snapped(&self, line: &Line, point: MapPoint) -> Vector2<f64> {
+        let frame = line.frame(point);
+        let far_m = [self.bounds.min.x, self.bounds.min.y, self.bounds.max.x, self.bounds.max.y];
+        let rounding_m = 8.0 * f64::EPSILON * far_m.into_iter().map(f64::abs).fold(0.0, f64::max);
+        if frame.y.abs() <= line.tolerance_m.max(rounding_m) { Vector2::new(frame.x, 0.0) } else { frame }
+    }
+
+    /// Whether the rectangle around the polygon touches the one around the line.
+    fn may_meet(&self, line: &Line) -> bool {
+        let (low, high) = (line.origin.inf(&line.end), line.origin.sup(&line.end));
+        let near = line.tolerance_m;
+        self.bounds.min.x <= high.x + near
+            && low.x - near <= self.bounds.max.x
+            && self.bounds.min.y <= high.y + near
+            && low.y - near <= self.bounds.max.y
+    }
+}

@@ -1,0 +1,326 @@
+//! Every option of every command does something, or is refused; every help text says what it is good for, and its example runs.
+
+#![cfg(feature = "cli")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
+#![allow(clippy::print_stderr, reason = "a skipped example says why")]
+
+mod command;
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+
+use command::{Desk, FORWARD_ONLY, Ran};
+
+const COMMANDS: [&str; 7] = ["run", "slice", "hop", "check", "plan", "synth", "bodies"];
+
+/// Options that need a projected map, tried in `maps_command.rs`.
+const ON_A_PROJECTED_MAP: [&str; 3] = ["--from-lonlat", "--to-lonlat", "--accept-map-scale"];
+
+/// An option, a command line without it, and one with it.
+type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
+
+const RUN: [Trial; 4] = [
+    ("--output", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "elsewhere"]),
+    ("--format", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--format", "json"]),
+    ("--set", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--set", "body.name=moon"]),
+    (
+        "--quiet",
+        &["run", "scenario.toml", "-o", "out", "--set", "body.name=bennu"],
+        &["run", "scenario.toml", "-o", "out", "--set", "body.name=bennu", "--quiet"],
+    ),
+];
+
+const SLICE: [Trial; 8] = [
+    (
+        "--geojson",
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "--geojson", "line.geojson"],
+    ),
+    (
+        "--via",
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "--via", "9,1"],
+    ),
+    ("--from", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], &["slice", "ground.tif", "--from", "2,1", "--to", "9,9"]),
+    ("--to", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], &["slice", "ground.tif", "--from", "1,1", "--to", "9,8"]),
+    (
+        "--scenario",
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "--scenario", "scenario.toml"],
+    ),
+    (
+        "--mesh-scale",
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3"],
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3", "--mesh-scale", "2"],
+    ),
+    (
+        "--quiet",
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3"],
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3", "--quiet"],
+    ),
+    (
+        "--output",
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "-o", "slice.csv"],
+    ),
+];
+
+const HOP: [Trial; 9] = [
+    ("--from", &["hop", "scenario.toml", "--to", "30"], &["hop", "scenario.toml", "--to", "30", "--from", "10"]),
+    ("--to", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--to", "10"]),
+    ("--format", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--format", "json"]),
+    ("--scenario", &["hop", "chain.csv", "--body", "mars"], &["hop", "chain.csv", "--body", "mars", "--scenario", "scenario.toml"]),
+    ("--set", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--set", "hopper.apex_height_max_m=1"]),
+    ("--body", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--body", "moon"]),
+    ("--gravity-m-s2", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--gravity-m-s2", "1.5"]),
+    ("--clearance-m", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--clearance-m", "0.5"]),
+    ("--quiet", &["hop", "scenario.toml", "--body", "bennu"], &["hop", "scenario.toml", "--body", "bennu", "--quiet"]),
+];
+
+const CHECK: [Trial; 13] = [
+    ("--start", &["check", "scenario.toml"], &["check", "scenario.toml", "--start", "10"]),
+    ("--goal", &["check", "scenario.toml"], &["check", "scenario.toml", "--goal", "30"]),
+    ("--pairs", &["check", "scenario.toml"], &["check", "scenario.toml", "--pairs", "pairs.csv"]),
+    ("--format", &["check", "scenario.toml"], &["check", "scenario.toml", "--format", "json"]),
+    ("--points-per-segment", &["check", "scenario.toml"], &["check", "scenario.toml", "--points-per-segment", "2"]),
+    ("--node-spacing-max-m", &["check", "scenario.toml"], &["check", "scenario.toml", "--node-spacing-max-m", "2"]),
+    ("--effort", &["check", "scenario.toml"], &["check", "scenario.toml", "--effort", "time"]),
+    (
+        "--scenario",
+        &["check", "chain.csv", "--body", "mars"],
+        &["check", "chain.csv", "--body", "mars", "--scenario", "scenario.toml"],
+    ),
+    ("--set", &["check", "scenario.toml"], &["check", "scenario.toml", "--set", "hopper.flight_time_max_s=1"]),
+    ("--body", &["check", "scenario.toml"], &["check", "scenario.toml", "--body", "moon"]),
+    ("--gravity-m-s2", &["check", "scenario.toml"], &["check", "scenario.toml", "--gravity-m-s2", "1.5"]),
+    ("--clearance-m", &["check", "scenario.toml"], &["check", "scenario.toml", "--clearance-m", "50"]),
+    ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
+];
+
+const PLAN: [Trial; 16] = [
+    ("--start", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--start", "10"]),
+    ("--goal", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--goal", "30"]),
+    ("--output", &["plan", "scenario.toml"], &["plan", "scenario.toml", "-o", "path.csv"]),
+    ("--geojson", &["plan", "map.toml"], &["plan", "map.toml", "--geojson", "path.geojson"]),
+    ("--plot", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--plot", "path.svg"]),
+    ("--verify", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--verify"]),
+    ("--format", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--format", "json"]),
+    ("--points-per-segment", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--points-per-segment", "2"]),
+    ("--node-spacing-max-m", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--node-spacing-max-m", "2"]),
+    ("--effort", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--effort", "peak-speed"]),
+    (
+        "--scenario",
+        &["plan", "chain.csv", "--body", "mars"],
+        &["plan", "chain.csv", "--body", "mars", "--scenario", "scenario.toml"],
+    ),
+    ("--set", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--set", "search.takeoff_angle=mid-range"]),
+    ("--body", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--body", "moon"]),
+    ("--gravity-m-s2", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--gravity-m-s2", "1.5"]),
+    ("--clearance-m", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--clearance-m", "50"]),
+    ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
+];
+
+/// Ground with all there is on it, small enough for a test.
+const SYNTH: [&str; 30] = [
+    "synth",
+    "-o",
+    "new.asc",
+    "--rows",
+    "40",
+    "--cols",
+    "40",
+    "--rock-abundance",
+    "0.4",
+    "--tilt-deg",
+    "3",
+    "--craters",
+    "--crater-density-per-km2",
+    "5000",
+    "--crater-diameter-max-m",
+    "30",
+    "--rille",
+    "--rille-width-m",
+    "30",
+    "--rille-depth-m",
+    "4",
+    "--rille-meander-amplitude-m",
+    "10",
+    "--rille-meander-length-m",
+    "60",
+    "--boulders",
+    "--boulder-diameter-min-m",
+    "1.5",
+    "--boulder-diameter-max-m",
+    "6",
+];
+
+/// Values for the options of `synth`, each other than the one in [`SYNTH`] or the default.
+const SYNTH_OPTIONS: [(&str, &str); 26] = [
+    ("--output", "other.asc"),
+    ("--seed", "2"),
+    ("--rows", "30"),
+    ("--cols", "30"),
+    ("--spacing-m", "1.2"),
+    ("--south-west-m", "-10,20"),
+    ("--mean-elevation-m", "-3000"),
+    ("--tilt-deg", "5"),
+    ("--tilt-towards-deg", "-30"),
+    ("--ground-hurst", "0.6"),
+    ("--ground-rms-m", "0.2"),
+    ("--ground-baseline-m", "2"),
+    ("--crater-diameter-min-m", "5"),
+    ("--crater-diameter-max-m", "25"),
+    ("--crater-density-per-km2", "9000"),
+    ("--crater-power-law-exponent", "2"),
+    ("--crater-depth-law", "mars"),
+    ("--crater-degradation-max", "0.2"),
+    ("--rille-width-m", "20"),
+    ("--rille-depth-m", "3"),
+    ("--rille-wall-slope-deg", "20"),
+    ("--rille-meander-amplitude-m", "5"),
+    ("--rille-meander-length-m", "50"),
+    ("--rock-abundance", "0.2"),
+    ("--boulder-diameter-min-m", "2"),
+    ("--boulder-diameter-max-m", "3"),
+];
+
+fn desk() -> Desk {
+    let desk = Desk::with_dem();
+    desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
+    desk.write("forward.csv", FORWARD_ONLY);
+    desk
+}
+
+/// What a user sees of a run: status, both streams, every file.
+fn seen(args: &[&str]) -> (Ran, BTreeMap<String, (u64, Vec<u8>)>) {
+    let desk = desk();
+    (desk.run(args), desk.files())
+}
+
+/// The long options that a command's help lists.
+fn options(command: &str) -> BTreeSet<String> {
+    let help = desk().run(&[command, "--help"]).stdout;
+    let long = |line: &str| {
+        let option = line.trim_start().trim_start_matches("-o, ").split([' ', ',']).next()?.to_owned();
+        (line.starts_with(' ') && option.starts_with("--")).then_some(option)
+    };
+    help.lines().filter_map(long).collect()
+}
+
+#[test]
+fn every_option_changes_what_one_sees() {
+    for (command, trials) in [("run", &RUN[..]), ("slice", &SLICE), ("hop", &HOP), ("check", &CHECK), ("plan", &PLAN)] {
+        let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
+        let here: BTreeSet<_> =
+            options(command).into_iter().filter(|option| !ON_A_PROJECTED_MAP.contains(&option.as_str())).collect();
+        assert_eq!(tried, here, "{command}: an option without a trial, or the reverse");
+        for (option, without, with) in trials {
+            let (before, after) = (seen(without), seen(with));
+            assert_ne!(before.0.status, 101, "{without:?}");
+            assert!(after.0.status < 2, "{with:?}: {:?}", after.0);
+            assert!(before != after, "{command} {option} changes nothing: {:?}", after.0);
+        }
+    }
+    assert!(options("bodies").is_empty());
+}
+
+#[test]
+fn every_option_of_synth_changes_the_ground() {
+    let base = &SYNTH[..];
+    let switches = ["--craters", "--rille", "--boulders", "--no-ground", "--boulder-burial"];
+    let tried = SYNTH_OPTIONS.iter().map(|option| option.0).chain(switches);
+    assert_eq!(tried.map(str::to_owned).collect::<BTreeSet<_>>(), options("synth"));
+    let desk = desk();
+    let ground = |args: &[&str]| {
+        let ran = desk.run(args);
+        assert_eq!(ran, Ran { status: 0, stdout: String::new(), stderr: String::new() }, "{args:?}");
+        let name = if args.contains(&"other.asc") { "other.asc" } else { "new.asc" };
+        let bytes = desk.read(name);
+        std::fs::remove_file(desk.path().join(name)).unwrap();
+        (name.to_owned(), bytes)
+    };
+    let before = ground(base);
+    assert!(before == ground(base), "the same options give the same bytes");
+    for (option, value) in SYNTH_OPTIONS.into_iter().chain([("--boulder-burial", "0.6")]) {
+        let mut with = base.to_vec();
+        // In place of the value it has, or behind.
+        let short = if option == "--output" { "-o" } else { option };
+        match with.iter().position(|known| *known == short) {
+            Some(at) => with[at + 1] = value,
+            None => with.extend([option, value]),
+        }
+        assert!(before != ground(&with), "{option} changes nothing");
+    }
+    assert!(before != ground(&[base, &["--no-ground"]].concat()), "--no-ground changes nothing");
+    let bare = ["synth", "-o", "new.asc", "--rows", "40", "--cols", "40"];
+    for switch in ["--craters", "--rille", "--boulders"] {
+        assert!(ground(&bare) != ground(&[&bare[..], &[switch]].concat()), "{switch} changes nothing");
+    }
+    assert_eq!(desk.run(&["synth", "-o", "new.asc", "--quiet"]).status, 2);
+}
+
+#[test]
+fn every_help_text_shows_units_defaults_and_an_example() {
+    let desk = desk();
+    for command in COMMANDS {
+        let ran = desk.run(&[command, "--help"]);
+        assert_eq!((ran.status, ran.stderr.as_str()), (0, ""));
+        assert!(ran.stdout.contains("Example:\n  chta "), "{command}: no example");
+        // One block per option: its own line and all that is said below it.
+        let mut blocks: Vec<String> = Vec::new();
+        for paragraph in ran.stdout.split("\n\n").skip_while(|paragraph| !paragraph.starts_with("Options:")) {
+            let paragraph = paragraph.trim_start_matches("Options:\n");
+            match blocks.last_mut() {
+                Some(last) if !paragraph.trim_start().starts_with('-') => last.push_str(paragraph),
+                _ => blocks.push(paragraph.to_owned()),
+            }
+        }
+        assert!(command == "bodies" || blocks.len() > 3, "{command}: {blocks:?}");
+        for block in blocks {
+            let one_line = block.split_whitespace().collect::<Vec<_>>().join(" ");
+            let name = one_line.trim_start_matches("-o, ").split([' ', ',']).next().unwrap().to_owned();
+            let units = [("-m-s2", "m/s^2"), ("-km2", "square kilometre"), ("-deg", "degrees"), ("-m", " m ")];
+            if let Some((_, unit)) = units.into_iter().find(|(suffix, _)| name.ends_with(suffix)) {
+                assert!(format!("{one_line} ").contains(unit), "{command} {name} does not name its unit: {one_line}");
+            }
+            let required = ["--from", "--to", "--output", "--from-lonlat", "--to-lonlat"].contains(&name.as_str());
+            let takes_value =
+                one_line.contains('<') && !["--scenario", "--set", "--body", "--gravity-m-s2"].contains(&name.as_str());
+            let writes = ["--geojson", "--plot", "--pairs"].contains(&name.as_str());
+            assert!(
+                !takes_value || required || writes || one_line.contains("[default: "),
+                "{command} {name} tells no default: {one_line}"
+            );
+        }
+    }
+}
+
+/// The example of a command's help, as words.
+fn example(command: &str) -> Vec<String> {
+    let help = desk().run(&[command, "--help"]).stdout;
+    let line = help.split("Example:\n  chta ").nth(1).unwrap().lines().next().unwrap().to_owned();
+    line.split_whitespace().map(str::to_owned).collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn every_example_runs() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    for command in COMMANDS {
+        let words = example(command);
+        assert_eq!(words[0], command);
+        let missing = words.iter().find(|word| word.starts_with("data/") && !data.join(&word["data/".len()..]).exists());
+        if let Some(missing) = missing {
+            eprintln!("skipped: the example of chta {command} needs {missing}, which is not there");
+            continue;
+        }
+        let desk = desk();
+        if data.exists() {
+            std::os::unix::fs::symlink(&data, desk.path().join("data")).unwrap();
+        }
+        let ran = desk.run(&words.iter().map(String::as_str).collect::<Vec<_>>());
+        assert!(ran.status < 2 && !ran.stderr.contains("error"), "chta {}: {ran:?}", words.join(" "));
+    }
+}

@@ -1,0 +1,162 @@
+//! A scenario that the program writes reads back as it was, whatever it was.
+
+use std::fmt::Write;
+
+use chta::scenario::{CATALOGUE, Entries, Key, Kind, Scenario, scenario_document};
+use proptest::{prelude::*, strategy::ValueTree};
+
+/// A number as TOML: whole, short, long, at either bound.
+fn number(min: f64, max: f64) -> BoxedStrategy<String> {
+    let within = move |number: f64| number.clamp(min, max);
+    prop_oneof![
+        Just(format!("{min:?}")),
+        Just(format!("{max:?}")),
+        (0..=100_i32).prop_map(move |whole| format!("{:?}", within(f64::from(whole)))),
+        (0.0..1.0_f64).prop_map(move |share| format!("{:?}", within(min + share * (max - min)))),
+        (-9.0..9.0_f64).prop_map(move |power| format!("{:?}", within(10_f64.powf(power)))),
+        (-9000..9000_i32).prop_map(move |hundredths| format!("{:?}", within(f64::from(hundredths) / 100.0))),
+    ]
+    .boxed()
+}
+
+/// A value that fits a key, as TOML.
+fn value(key: &Key) -> BoxedStrategy<String> {
+    let two = |min: f64, max: f64| (number(min, max), number(min, max));
+    match key.kind {
+        Kind::Number { min, max } => number(min, max),
+        Kind::AngleOrUnlimited => prop_oneof![number(0.0, 90.0), Just("inf".to_owned()), Just("\"inf\"".to_owned())].boxed(),
+        Kind::AngleRange => two(-360.0, 360.0)
+            .prop_map(|(a, b)| {
+                let order = a.parse::<f64>().unwrap_or(0.0) <= b.parse::<f64>().unwrap_or(0.0);
+                if order { format!("[{a}, {b}]") } else { format!("[{b}, {a}]") }
+            })
+            .boxed(),
+        Kind::MapPoint => two(-1e12, 1e12).prop_map(|(x, y)| format!("[{x}, {y}]")).boxed(),
+        Kind::LonLat => (number(-180.0, 360.0), number(-90.0, 90.0)).prop_map(|(lon, lat)| format!("[{lon}, {lat}]")).boxed(),
+        Kind::Flag => any::<bool>().prop_map(|flag| flag.to_string()).boxed(),
+        Kind::MapPoints => proptest::collection::vec(two(-1e12, 1e12).prop_map(|(x, y)| format!("[{x}, {y}]")), 1..4)
+            .prop_map(|points| format!("[{}]", points.join(", ")))
+            .boxed(),
+        Kind::CountOrAuto => prop_oneof![Just("\"auto\"".to_owned()), (0..=100_000_u32).prop_map(|k| k.to_string())].boxed(),
+        Kind::Word(words) => proptest::sample::select(words).prop_map(|word| format!("\"{word}\"")).boxed(),
+        Kind::Text if key.name == "name" => Just("\"Mars\"".to_owned()).boxed(),
+        Kind::Text => {
+            "[a-zäöü/ .\\-]{1,12}".prop_filter("not empty", |text| !text.trim().is_empty()).prop_map(|t| format!("{t:?}")).boxed()
+        }
+    }
+}
+
+/// Any keys, each with a value that fits it: often a valid scenario, often one whose keys do not go together.
+fn toml() -> impl Strategy<Value = String> {
+    let keys: Vec<_> = CATALOGUE.iter().map(|key| proptest::option::of(value(key)).prop_map(move |value| (key, value))).collect();
+    // Which of the keys that exclude each other may stay.
+    let choices = (0..4_u8, any::<bool>(), any::<bool>(), any::<bool>());
+    (keys, choices).prop_map(|(keys, (ground, friction, points, degrees))| {
+        let kept = |key: &Key| match (key.table, key.name) {
+            ("terrain", "dem") => ground == 1,
+            ("terrain", "mesh" | "mesh_scale") => ground == 3,
+            ("terrain", "start_m" | "goal_m") => (ground == 1 && !degrees) || ground == 3,
+            ("terrain", "start_lonlat_deg" | "goal_lonlat_deg") => ground == 1 && degrees,
+            ("terrain", "via_m") => ground == 1 || ground == 3,
+            ("surface", "keep_out") => ground != 2,
+            ("surface", "friction_raster") => friction && ground != 2,
+            ("terrain", "chain") => ground == 2,
+            ("terrain", _) => ground > 0,
+            ("surface", "friction_coefficient") => friction,
+            ("surface", "takeoff_from_slope_deg" | "landing_from_slope_deg") => !friction,
+            ("search", "points_per_segment") => points,
+            ("search", "node_spacing_max_m") => !points,
+            _ => true,
+        };
+        let mut text = String::new();
+        for (key, value) in keys {
+            if let Some(value) = value.filter(|_| kept(key)) {
+                // Dotted keys: no table needs a line of its own.
+                let _ = writeln!(text, "{}.{} = {value}", key.table, key.name);
+            }
+        }
+        text
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_is_written_reads_back_as_it_was(text in toml()) {
+        if let Ok(scenario) = Scenario::new(Entries::from_toml(&text)) {
+            let document = scenario_document(&scenario, &|path| path.to_string_lossy().into_owned());
+            let written = serde_json::to_string_pretty(&document).map_err(|error| TestCaseError::fail(error.to_string()))?;
+            let read: serde_json::Value = serde_json::from_str(&written).map_err(|error| TestCaseError::fail(error.to_string()))?;
+            let again = Scenario::new(Entries::from_json(&read));
+            prop_assert_eq!(again.as_ref(), Ok(&scenario), "{}\n{}", text, written);
+            // Written again, it has the same bytes.
+            let second = again.map(|again| scenario_document(&again, &|path| path.to_string_lossy().into_owned()));
+            prop_assert_eq!(second, Ok(document));
+        }
+    }
+}
+
+/// The generator above is worth something only while enough of its scenarios are valid.
+#[test]
+fn many_generated_scenarios_are_valid() {
+    let mut runner = proptest::test_runner::TestRunner::deterministic();
+    let valid = (0..500).filter(|_| {
+        let tree = toml().new_tree(&mut runner);
+        tree.is_ok_and(|tree| Scenario::new(Entries::from_toml(&tree.current())).is_ok())
+    });
+    let valid = valid.count();
+    assert!(valid > 50, "only {valid} of 500");
+}
+
+/// Every key that is given stands in the document, with the value that was given: none is lost on the way.
+#[test]
+fn every_key_reaches_the_document() {
+    let alone = |key: &Key| match key.kind {
+        Kind::Number { .. } => "12.5",
+        Kind::AngleOrUnlimited => "31.5",
+        Kind::AngleRange => "[12.5, 60.25]",
+        Kind::MapPoint | Kind::LonLat => "[12.5, -3.0]",
+        Kind::Flag => "true",
+        Kind::MapPoints => "[[12.5, -3.0], [1.0, 2.0]]",
+        Kind::CountOrAuto => "7",
+        Kind::Word(words) => words[words.len() - 1],
+        Kind::Text if key.name == "name" => "vesta",
+        Kind::Text => "some text",
+    };
+    for key in &CATALOGUE {
+        let mut entries = Entries::from_toml("body.gravity_m_s2 = 1\n");
+        let mut with = |table: &str, name: &str, value: &str| entries.set(&format!("{table}.{name}={value}"));
+        match (key.table, key.name) {
+            ("surface", "takeoff_from_slope_deg") => with("surface", "landing_from_slope_deg", "[1, 2]"),
+            ("surface", "landing_from_slope_deg") => with("surface", "takeoff_from_slope_deg", "[1, 2]"),
+            ("terrain", "dem" | "start_m" | "goal_m" | "via_m") => {
+                with("terrain", "dem", "x.tif");
+                with("terrain", "start_m", "[0, 0]");
+                with("terrain", "goal_m", "[0, 0]");
+            }
+            ("terrain", "start_lonlat_deg" | "goal_lonlat_deg") => {
+                with("terrain", "dem", "x.tif");
+                with("terrain", "start_lonlat_deg", "[0, 0]");
+                with("terrain", "goal_lonlat_deg", "[0, 0]");
+            }
+            ("terrain", "mesh" | "mesh_scale") => {
+                with("terrain", "mesh", "x.obj");
+                with("terrain", "start_m", "[0, 0]");
+                with("terrain", "goal_m", "[0, 0]");
+            }
+            ("terrain", "start_x_m" | "goal_x_m") => with("terrain", "chain", "x.csv"),
+            _ => {}
+        }
+        with(key.table, key.name, alone(key));
+        let scenario = Scenario::new(entries);
+        assert!(scenario.is_ok(), "{}: {scenario:?}", key.path());
+        let document = scenario.map(|scenario| scenario_document(&scenario, &|path| path.to_string_lossy().into_owned()));
+        let written = document.map(|document| document[key.table][key.name].clone());
+        let expected = alone(key).parse().unwrap_or_else(|_| serde_json::Value::from(alone(key)));
+        let same = written
+            .as_ref()
+            .is_ok_and(|written| *written == expected || (written.as_f64().is_some() && written.as_f64() == expected.as_f64()));
+        assert!(same, "{} is {written:?}, given {expected}", key.path());
+    }
+}
