@@ -157,8 +157,11 @@ pub(crate) struct FanArgs {
     #[arg(value_name = "DEM")]
     pub(crate) dem: PathBuf,
     /// Where all slices begin, map coordinates in m
-    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
-    pub(crate) from: MapPoint,
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, required_unless_present = "from_lonlat")]
+    pub(crate) from: Option<MapPoint>,
+    /// Instead: longitude and planetocentric latitude, degrees, east positive
+    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "from")]
+    pub(crate) from_lonlat: Option<LonLat>,
     /// How many, equally spaced clockwise from grid north
     #[arg(long, value_name = "N", default_value_t = 36)]
     pub(crate) headings: u32,

@@ -3,12 +3,15 @@
 use chta::{
     chain::ConstrainedChain,
     graph::PointSpacing,
+    quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer, figure::draw_rose},
     scenario::Covers,
-    terrain::read_dem,
+    terrain::{check_scale, read_dem},
 };
+use nalgebra::Vector2;
 
+use super::slice::place;
 use crate::cli::{
     Answer, Failure,
     args::{FanArgs, Format},
@@ -21,16 +24,18 @@ const POINTS_PER_SEGMENT: PointSpacing = PointSpacing::PerSegment(1);
 
 /// Analyses all directions.
 pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
-    let FanArgs { dem: file, from, headings, length, output: table, plot, threads, format, search, common } = args;
+    let FanArgs { dem: file, from, from_lonlat, headings, length, output: table, plot, threads, format, search, common } = args;
     let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
     let Bare { scenario, base, document } = load_bare(common, search)?;
     let dem = read_dem(file).map_err(|e| failed(&e))?;
+    let projection = dem.georeference().projection();
+    let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
     let covers =
         Covers::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
     let request = FanRequest {
         dem: &dem,
-        from: *from,
+        from,
         headings: *headings,
         length_m: *length,
         hopper: &scenario.hopper,
@@ -39,7 +44,18 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     };
     let ground = |profile| Ok(ConstrainedChain::new(covers.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?);
     let rays = fan(&request, *threads, &ground).map_err(|e| failed(&e))?;
-    let mut answer = FanAnswer::new(*from, *length, &rays);
+    let accepted = common.accept_map_scale || scenario.accept_map_scale;
+    let mut warnings: Vec<String> = Vec::new();
+    for ray in &rays {
+        let heading = Angle::from_degrees(ray.heading_deg).radians();
+        let end = from + Vector2::new(libm::sin(heading), libm::cos(heading)) * ray.length_m;
+        let scale = check_scale(&dem, projection.as_ref(), [from, end], accepted, file).map_err(|e| failed(&e))?;
+        warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
+    }
+    for warning in &warnings {
+        output::warn(common.quiet, warning);
+    }
+    let mut answer = FanAnswer::new(from, *length, &rays);
     match spacing {
         PointSpacing::PerSegment(points) => answer.points_per_segment = Some(points),
         PointSpacing::AtMostM(spacing_m) => answer.node_spacing_max_m = Some(spacing_m),
@@ -67,7 +83,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
             for cover in Covers::files(&scenario) {
                 inputs.push(input_file(&base.join(cover))?);
             }
-            Document::new("fan", document, inputs, Vec::new(), answer).to_json()?
+            Document::new("fan", document, inputs, warnings, answer).on_map(projection.as_ref().ok()).to_json()?
         }
     };
     output::to_stdout(text.as_bytes())?;

@@ -100,7 +100,7 @@ fn named_as_mesh(path: &Path) -> bool {
 }
 
 /// One of the two ways to say a place; the command line asks for one.
-fn place(which: &str, point: Option<MapPoint>, place: Option<LonLat>) -> Result<MapPlace, Failure> {
+pub(super) fn place(which: &str, point: Option<MapPoint>, place: Option<LonLat>) -> Result<MapPlace, Failure> {
     let missing = || Failure::message(format!("found no --{which}, expected --{which} X,Y or --{which}-lonlat LON,LAT"));
     point.map(MapPlace::Metres).or(place.map(MapPlace::LonLat)).ok_or_else(missing)
 }
