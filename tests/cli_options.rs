@@ -16,7 +16,7 @@ use command::{Desk, FORWARD_ONLY, Ran};
 const COMMANDS: [&str; 7] = ["run", "slice", "hop", "check", "plan", "synth", "bodies"];
 
 /// Options that need a projected map, tried in `maps_command.rs`.
-const ON_A_PROJECTED_MAP: [&str; 3] = ["--from-lonlat", "--to-lonlat", "--accept-map-scale"];
+const ON_A_PROJECTED_MAP: [&str; 4] = ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--accept-map-scale"];
 
 /// An option, a command line without it, and one with it.
 type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);

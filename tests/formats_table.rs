@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use chta::terrain::{Dem, FORMATS, TerrainError, read_dem};
+use chta::terrain::{Dem, FORMATS, TerrainError, looks_like_mesh, read_dem, read_mesh};
 
 const BEGIN: &str = "<!-- table: tests/formats_table.rs writes it -->\n";
 const END: &str = "<!-- end of table -->\n";
@@ -43,6 +43,18 @@ fn sentence(error: TerrainError) -> String {
 }
 
 fn verdict(path: &Path) -> String {
+    if looks_like_mesh(path) {
+        return match read_mesh(path, 1.0) {
+            Ok(file) => {
+                let bounds = file.mesh.bounds();
+                format!(
+                    "mesh, read by `slice` and `[terrain] mesh`: {}, heights from {} to {}, in the file's own unit",
+                    bounds.map, bounds.low_m, bounds.high_m
+                )
+            }
+            Err(error) => format!("refused: {}", sentence(error)),
+        };
+    }
     match read_dem(path) {
         Ok(dem) => {
             let (low_m, high_m) = dem.elevation_range_m();

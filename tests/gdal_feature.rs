@@ -1,7 +1,11 @@
 //! ISIS and PDS4 through the optional feature `gdal`: a file rewritten by GDAL into either gives the same slice.
 
 #![cfg(feature = "gdal")]
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "a test that cannot make its files should stop, and says why it skips")]
+#![allow(
+    clippy::unwrap_used,
+    clippy::print_stderr,
+    reason = "a test that cannot make its files should stop, and says why it skips"
+)]
 
 use std::{path::Path, process::Command};
 

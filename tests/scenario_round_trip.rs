@@ -33,6 +33,10 @@ fn value(key: &Key) -> BoxedStrategy<String> {
             .boxed(),
         Kind::MapPoint => two(-1e12, 1e12).prop_map(|(x, y)| format!("[{x}, {y}]")).boxed(),
         Kind::LonLat => (number(-180.0, 360.0), number(-90.0, 90.0)).prop_map(|(lon, lat)| format!("[{lon}, {lat}]")).boxed(),
+        Kind::LonLats => {
+            let place = (number(-180.0, 360.0), number(-90.0, 90.0)).prop_map(|(lon, lat)| format!("[{lon}, {lat}]"));
+            proptest::collection::vec(place, 1..4).prop_map(|places| format!("[{}]", places.join(", "))).boxed()
+        }
         Kind::Flag => any::<bool>().prop_map(|flag| flag.to_string()).boxed(),
         Kind::MapPoints => proptest::collection::vec(two(-1e12, 1e12).prop_map(|(x, y)| format!("[{x}, {y}]")), 1..4)
             .prop_map(|points| format!("[{}]", points.join(", ")))
@@ -55,9 +59,8 @@ fn toml() -> impl Strategy<Value = String> {
         let kept = |key: &Key| match (key.table, key.name) {
             ("terrain", "dem") => ground == 1,
             ("terrain", "mesh" | "mesh_scale") => ground == 3,
-            ("terrain", "start_m" | "goal_m") => (ground == 1 && !degrees) || ground == 3,
-            ("terrain", "start_lonlat_deg" | "goal_lonlat_deg") => ground == 1 && degrees,
-            ("terrain", "via_m") => ground == 1 || ground == 3,
+            ("terrain", "start_m" | "goal_m" | "via_m") => (ground == 1 && !degrees) || ground == 3,
+            ("terrain", "start_lonlat_deg" | "goal_lonlat_deg" | "via_lonlat_deg") => ground == 1 && degrees,
             ("surface", "keep_out") => ground != 2,
             ("surface", "friction_raster") => friction && ground != 2,
             ("terrain", "chain") => ground == 2,
@@ -118,7 +121,7 @@ fn every_key_reaches_the_document() {
         Kind::AngleRange => "[12.5, 60.25]",
         Kind::MapPoint | Kind::LonLat => "[12.5, -3.0]",
         Kind::Flag => "true",
-        Kind::MapPoints => "[[12.5, -3.0], [1.0, 2.0]]",
+        Kind::MapPoints | Kind::LonLats => "[[12.5, -3.0], [1.0, 2.0]]",
         Kind::CountOrAuto => "7",
         Kind::Word(words) => words[words.len() - 1],
         Kind::Text if key.name == "name" => "vesta",
@@ -130,7 +133,7 @@ fn every_key_reaches_the_document() {
         match (key.table, key.name) {
             ("surface", "takeoff_from_slope_deg") => with("surface", "landing_from_slope_deg", "[1, 2]"),
             ("surface", "landing_from_slope_deg") => with("surface", "takeoff_from_slope_deg", "[1, 2]"),
-            ("terrain", "dem" | "start_m" | "goal_m" | "via_m") => {
+            ("terrain", "dem" | "start_m" | "goal_m" | "via_m" | "via_lonlat_deg") => {
                 with("terrain", "dem", "x.tif");
                 with("terrain", "start_m", "[0, 0]");
                 with("terrain", "goal_m", "[0, 0]");

@@ -128,6 +128,9 @@ pub(crate) struct SliceArgs {
     /// A point between, map coordinates in m, where the slice bends; may be repeated, in the order of travel [default: none]
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
     pub(crate) via: Vec<MapPoint>,
+    /// Instead: longitude and planetocentric latitude, degrees, east positive; may be repeated [default: none]
+    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "via")]
+    pub(crate) via_lonlat: Vec<LonLat>,
     /// Scenario whose friction and keep-out zones go into the chain
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,

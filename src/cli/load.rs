@@ -148,7 +148,9 @@ pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArg
     };
     let chain_name = target.to_string_lossy().into_owned();
     if !is_scenario {
-        for key in ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m"] {
+        for key in
+            ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"]
+        {
             source.entries.forget("terrain", key);
         }
         for key in ["friction_raster", "keep_out"] {
@@ -236,7 +238,19 @@ pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure
 
 /// Forgets the terrain that a scenario names, where the command line brings another.
 fn forget_terrain(entries: &mut Entries) {
-    for key in ["dem", "mesh", "mesh_scale", "chain", "start_m", "goal_m", "via_m", "start_x_m", "goal_x_m"] {
+    let maps = [
+        "dem",
+        "mesh",
+        "mesh_scale",
+        "chain",
+        "start_m",
+        "goal_m",
+        "start_lonlat_deg",
+        "goal_lonlat_deg",
+        "via_m",
+        "via_lonlat_deg",
+    ];
+    for key in maps.into_iter().chain(["start_x_m", "goal_x_m"]) {
         entries.forget("terrain", key);
     }
 }

@@ -27,6 +27,8 @@ pub enum Kind {
     Flag,
     /// A list of points `[x, y]` on the map, in metres.
     MapPoints,
+    /// A list of places `[longitude, latitude]`, in degrees.
+    LonLats,
     /// A whole number, or `"auto"`.
     CountOrAuto,
     /// One of these words.
@@ -70,6 +72,7 @@ impl Kind {
             Self::MapPoint => "two finite numbers in metres, [x, y]".to_owned(),
             Self::LonLat => "[longitude, latitude] in degrees, east positive, from -180 to 360 and from -90 to 90".to_owned(),
             Self::Flag => "true or false".to_owned(),
+            Self::LonLats => "a list of places, each [longitude, latitude] in degrees, [[lon, lat], ...]".to_owned(),
             Self::MapPoints => "a list of points, each two finite numbers in metres, [[x, y], ...]".to_owned(),
             Self::CountOrAuto => "a whole number from 0 to 100000, or \"auto\"".to_owned(),
             Self::Word(words) => format!("one of {}", words.join(", ")),
@@ -99,7 +102,7 @@ const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 36] = [
+pub const CATALOGUE: [Key; 37] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
@@ -142,6 +145,12 @@ pub const CATALOGUE: [Key; 36] = [
     key("terrain", "start_lonlat_deg", Kind::LonLat, "instead: start as [longitude, planetocentric latitude], degrees"),
     key("terrain", "goal_lonlat_deg", Kind::LonLat, "instead: goal as [longitude, planetocentric latitude], degrees"),
     key("terrain", "accept_map_scale", Kind::Flag, "take distances of a map whose scale is off by over 1 % as they are"),
+    key(
+        "terrain",
+        "via_lonlat_deg",
+        Kind::LonLats,
+        "instead: points between as [[longitude, planetocentric latitude], ...], degrees",
+    ),
     key("terrain", "via_m", Kind::MapPoints, "points between, [[x, y], ...], m: the slice bends there, and no hop spans a bend"),
     key("terrain", "start_x_m", COORDINATE, "start along the chain, m"),
     key("terrain", "goal_x_m", COORDINATE, "goal along the chain, m"),

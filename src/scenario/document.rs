@@ -108,6 +108,11 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         MapPlace::Metres(_) => None,
         MapPlace::LonLat(place) => Some(json!([place.lon_deg, place.lat_deg])),
     };
+    // All of one kind, as they were read.
+    let list = |said: &dyn Fn(&MapPlace) -> Option<Value>| {
+        let places: Vec<Value> = scenario.via.iter().filter_map(said).collect();
+        (!places.is_empty()).then(|| places.into())
+    };
     object([
         ("dem", dem),
         ("mesh", mesh),
@@ -118,7 +123,8 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         ("start_lonlat_deg", ends.as_ref().and_then(|[start, _]| degrees(start))),
         ("goal_lonlat_deg", ends.as_ref().and_then(|[_, goal]| degrees(goal))),
         ("accept_map_scale", scenario.accept_map_scale.then_some(true.into())),
-        ("via_m", (!scenario.via.is_empty()).then(|| scenario.via.iter().map(|point| json!([point.x, point.y])).collect())),
+        ("via_m", list(&metres)),
+        ("via_lonlat_deg", list(&degrees)),
         ("start_x_m", scenario.start_x_m.map(Value::from)),
         ("goal_x_m", scenario.goal_x_m.map(Value::from)),
     ])

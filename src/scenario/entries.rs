@@ -320,6 +320,7 @@ fn fits(value: &toml::Value, kind: Kind) -> bool {
         Kind::MapPoint => pair(value).is_some_and(|p| p.iter().all(|c| c.is_finite() && c.abs() <= 1e12)),
         Kind::LonLat => pair(value).is_some_and(|[lon, lat]| (-180.0..=360.0).contains(&lon) && (-90.0..=90.0).contains(&lat)),
         Kind::Flag => value.as_bool().is_some(),
+        Kind::LonLats => value.as_array().is_some_and(|places| places.iter().all(|place| fits(place, Kind::LonLat))),
         Kind::MapPoints => value.as_array().is_some_and(|points| points.iter().all(|point| fits(point, Kind::MapPoint))),
         Kind::CountOrAuto => value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),

@@ -86,7 +86,8 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
             covered(scenario, base, cut)?
         }
         TerrainSource::Mesh { path, scale, start, goal } => {
-            let cut = Cut::of_mesh(&base.join(path), *scale, [*start, *goal], &scenario.via)?;
+            let via: Vec<MapPoint> = scenario.via.iter().filter_map(MapPlace::metres).collect();
+            let cut = Cut::of_mesh(&base.join(path), *scale, [*start, *goal], &via)?;
             covered(scenario, base, cut)?
         }
         TerrainSource::Chain { path } => {
@@ -131,13 +132,14 @@ impl Cut {
     ///
     /// # Errors
     /// As [`open_dem`], [`MapPlace::on_map`], [`check_scale`] and [`slice_legs`].
-    pub fn of_dem(file: &Path, [from, to]: [&MapPlace; 2], via: &[MapPoint], accept_map_scale: bool) -> Result<Self, TerrainError> {
+    pub fn of_dem(file: &Path, [from, to]: [&MapPlace; 2], via: &[MapPlace], accept_map_scale: bool) -> Result<Self, TerrainError> {
         let dem = open_dem(file)?;
         let map = dem.georeference();
         let bounds = map.bounds(dem.rows(), dem.cols());
         let projection = map.projection();
         let known = projection.as_ref();
         let (from, to) = (from.on_map("from", known, bounds)?, to.on_map("to", known, bounds)?);
+        let via = via.iter().map(|place| place.on_map("via", known, bounds)).collect::<Result<Vec<_>, _>>()?;
         let mut warnings = Vec::new();
         let mut begin = from;
         for end in via.iter().copied().chain([to]) {
@@ -145,7 +147,7 @@ impl Cut {
             warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
             begin = end;
         }
-        let legs = slice_legs(dem.as_ref(), from, via, to)?;
+        let legs = slice_legs(dem.as_ref(), from, &via, to)?;
         let coordinates = Some(map.coordinate_system.clone());
         Ok(Self { legs, coordinates, projection: projection.ok(), bounds, warnings })
     }

@@ -88,7 +88,7 @@ pub struct Scenario {
     /// Whether a map whose scale along the transect is off by over 1 % is taken as it is.
     pub accept_map_scale: bool,
     /// Points of the map between start and goal, where a slice bends.
-    pub via: Vec<MapPoint>,
+    pub via: Vec<MapPlace>,
     /// Start along the chain, m, where the scenario names it.
     pub start_x_m: Option<f64>,
     /// Goal along the chain, m, where the scenario names it.
@@ -112,6 +112,7 @@ impl Scenario {
         let hopper = hopper(&mut entries);
         let surface = surface(&mut entries);
         let terrain = terrain(&mut entries);
+        let via = via(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = covers(&mut entries, &surface, terrain.as_ref());
         let search = search(&mut entries);
         let mut problems = entries.problems().to_vec();
@@ -131,7 +132,7 @@ impl Scenario {
             keep_out,
             terrain,
             accept_map_scale: entries.flag("terrain", "accept_map_scale"),
-            via: entries.points("terrain", "via_m").into_iter().map(|[x, y]| MapPoint::new(x, y)).collect(),
+            via,
             start_x_m: entries.number("terrain", "start_x_m"),
             goal_x_m: entries.number("terrain", "goal_x_m"),
             search,
@@ -323,6 +324,23 @@ fn map_ends(entries: &mut Entries, kind: &str) -> Option<[MapPlace; 2]> {
     Some([start, map_place(entries, "goal", kind)?])
 }
 
+/// The points between start and goal, said in one of two ways.
+fn via(entries: &mut Entries, terrain: Option<&TerrainSource>) -> Vec<MapPlace> {
+    let metres = entries.points("terrain", "via_m").into_iter().map(|[x, y]| MapPlace::Metres(MapPoint::new(x, y)));
+    let degrees = entries.points("terrain", "via_lonlat_deg");
+    let degrees = degrees.into_iter().map(|[lon_deg, lat_deg]| MapPlace::LonLat(LonLat { lon_deg, lat_deg }));
+    let (metres, degrees): (Vec<_>, Vec<_>) = (metres.collect(), degrees.collect());
+    let at = entries.place("terrain", "via_lonlat_deg").unwrap_or(Place::Nowhere);
+    if !metres.is_empty() && !degrees.is_empty() {
+        let message = "terrain has both via_m and via_lonlat_deg, expected one of the two".to_owned();
+        entries.problem(at, message, "remove one of them");
+    } else if !degrees.is_empty() && matches!(terrain, Some(TerrainSource::Mesh { .. })) {
+        let message = "terrain has longitude and latitude beside a mesh, which has no projection".to_owned();
+        entries.problem(at, message, "give via_m = [[x, y], ...], in the mesh's own metres");
+    }
+    if metres.is_empty() { degrees } else { metres }
+}
+
 /// The ends of a slice of a mesh, which has no projection.
 fn on_mesh(entries: &mut Entries, ends: [MapPlace; 2]) -> Option<[MapPoint; 2]> {
     if let [MapPlace::Metres(start), MapPlace::Metres(goal)] = ends {
@@ -342,9 +360,11 @@ fn refuse_map_points(entries: &mut Entries) {
             entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
         }
     }
-    if let Some(place) = entries.place("terrain", "via_m") {
-        let message = "terrain.via_m is of a slice, but terrain has a chain".to_owned();
-        entries.problem(place, message, "give the chain a column bend instead, as chta slice --via does");
+    for name in ["via_m", "via_lonlat_deg"] {
+        if let Some(place) = entries.place("terrain", name) {
+            let message = format!("terrain.{name} is of a slice, but terrain has a chain");
+            entries.problem(place, message, "give the chain a column bend instead, as chta slice --via does");
+        }
     }
 }
 

@@ -14,7 +14,7 @@ use crate::cli::{Answer, Failure, args::SliceArgs, load::scenario_alone, output}
 
 /// Slices a DEM or a mesh.
 pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
-    let SliceArgs { terrain, via, scenario, output: file, geojson, quiet, .. } = args;
+    let SliceArgs { terrain, via, via_lonlat, scenario, output: file, geojson, quiet, .. } = args;
     let given = scenario.as_deref().map(scenario_alone).transpose()?;
     if let (Some(path), Some((scenario, _))) = (scenario, &given)
         && lays_nothing(scenario)
@@ -33,6 +33,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     let mut comments = vec![format!("chta {} slice of {name}, sha256 {}", env!("CARGO_PKG_VERSION"), sha256_of(terrain)?)];
     comments.extend(ends(&cut.legs));
     comments.extend(via.iter().map(|point| format!("via ({}, {}) m", point.x, point.y)));
+    comments.extend(via_lonlat.iter().map(|place| format!("via longitude {}, latitude {} deg", place.lon_deg, place.lat_deg)));
     comments.extend(map_comments(&cut));
     let line = slice_geojson(&cut.legs, &name, cut.projection.as_ref());
     let chain = match &given {
@@ -66,20 +67,24 @@ fn name_of(path: &Path) -> String {
 
 /// The ground along the slice, and what its user should know.
 fn cut(args: &SliceArgs, accept_map_scale: bool) -> Result<Cut, Failure> {
-    let SliceArgs { terrain, via, mesh_scale, .. } = args;
+    let SliceArgs { terrain, via, via_lonlat, mesh_scale, .. } = args;
     let from = place("from", args.from, args.from_lonlat)?;
     let to = place("to", args.to, args.to_lonlat)?;
     let failed = |error: TerrainError| Failure::about(terrain, &error.to_string());
     let of_mesh = || match (&from, &to) {
-        (MapPlace::Metres(from), MapPlace::Metres(to)) => {
+        (MapPlace::Metres(from), MapPlace::Metres(to)) if via_lonlat.is_empty() => {
             Cut::of_mesh(terrain, mesh_scale.unwrap_or(1.0), [*from, *to], via).map_err(failed)
         }
-        _ => Err(Failure::message("--from-lonlat, --to-lonlat: a mesh has no projection; give --from X,Y and --to X,Y")),
+        _ => Err(Failure::message(
+            "--from-lonlat, --to-lonlat, --via-lonlat: a mesh has no projection; give --from X,Y, --to X,Y and --via X,Y",
+        )),
     };
     if looks_like_mesh(terrain) {
         return of_mesh();
     }
-    let cut = match Cut::of_dem(terrain, [&from, &to], via, accept_map_scale) {
+    let between: Vec<MapPlace> =
+        via.iter().copied().map(MapPlace::Metres).chain(via_lonlat.iter().copied().map(MapPlace::LonLat)).collect();
+    let cut = match Cut::of_dem(terrain, [&from, &to], &between, accept_map_scale) {
         // A damaged mesh is told by the readers of meshes, who know why.
         Err(_) if named_as_mesh(terrain) => return of_mesh(),
         cut => cut.map_err(failed)?,

@@ -53,6 +53,14 @@ pub enum MapPlace {
 }
 
 impl MapPlace {
+    /// The point in metres, where it was said so.
+    pub fn metres(&self) -> Option<MapPoint> {
+        match self {
+            Self::Metres(point) => Some(*point),
+            Self::LonLat(_) => None,
+        }
+    }
+
     /// Where it lies on the map.
     ///
     /// `which` names the place in errors; `bounds` are those of the DEM.
