@@ -125,3 +125,19 @@ fn the_checker_uses_neither_ballistics_nor_graph() {
         assert!(forbidden.is_empty(), "{}: {forbidden:?}", file.display());
     }
 }
+
+#[test]
+fn the_limits_name_no_trigonometric_function() {
+    let limits = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/ballistics/limits");
+    let mut read = 0;
+    for entry in fs::read_dir(limits).unwrap() {
+        let path = entry.unwrap().path();
+        let source = fs::read_to_string(&path).unwrap();
+        let code: String = source.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+        for function in ["sin(", "cos(", "tan(", "atan", "libm", "Angle", "Vec"] {
+            assert!(!code.contains(function), "{} calls {function}", path.display());
+        }
+        read += 1;
+    }
+    assert!(read >= 5, "only {read} limits found");
+}
