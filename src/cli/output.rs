@@ -74,13 +74,19 @@ pub(crate) fn to_file_or_stdout(path: Option<&Path>, data: &[u8]) -> Result<(), 
     }
 }
 
-/// Writes a GeoJSON file and, where no code of an authority says its reference system, that as well-known text in a `.prj` beside it.
+/// What stands in a `.prj` beside a GeoJSON: the reference system as well-known text, where no code of an authority says it.
+pub(crate) fn prj(projection: Option<&MapProjection>) -> Option<Vec<u8>> {
+    projection.filter(|known| known.code().is_none()).map(|known| (known.wkt() + "\n").into_bytes())
+}
+
+/// Writes a GeoJSON file, with its `.prj` where it needs one.
 pub(crate) fn to_geojson_file(path: &Path, geojson: &str, projection: Option<&MapProjection>) -> Result<(), Failure> {
-    to_file(path, geojson.as_bytes())?;
-    match projection.filter(|projection| projection.code().is_none()) {
-        Some(projection) => to_file(&path.with_extension("prj"), (projection.wkt() + "\n").as_bytes()),
-        None => Ok(()),
+    let beside = path.with_extension("prj");
+    let mut files = vec![(Pending::begin(path)?, geojson.as_bytes().to_vec())];
+    if let Some(text) = prj(projection) {
+        files.push((Pending::begin(&beside)?, text));
     }
+    finish(files)
 }
 
 /// Says a warning on standard error.

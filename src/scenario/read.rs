@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Entries, Key, Place, ScenarioProblem};
+use super::{Entries, Place, ScenarioProblem};
 use crate::{
     ballistics::{Split, TakeoffChoice},
     graph::{Effort, PointSpacing, SearchOptions},
@@ -417,11 +417,4 @@ fn search(entries: &mut Entries) -> SearchOptions {
 /// The variant of a name; the default where none is given.
 fn named<T: Copy + Default>(all: &[T], name: fn(T) -> &'static str, word: Option<&str>) -> T {
     all.iter().copied().find(|variant| Some(name(*variant)) == word).unwrap_or_default()
-}
-
-impl Key {
-    /// The keys of a table, for help texts.
-    pub fn of_table(table: &str) -> impl Iterator<Item = &'static Self> {
-        super::CATALOGUE.iter().filter(move |key| key.table == table)
-    }
 }

@@ -3,6 +3,8 @@
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may fail, and says how much it has tried")]
 
 mod spoiled;
+#[path = "../support/mod.rs"]
+mod support;
 mod world;
 
 use chta::{

@@ -9,26 +9,19 @@ use chta::{
     world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
 
-/// Steele, Lea and Flood's splitmix64: small, and the same everywhere.
-pub(crate) struct Dice(u64);
+use super::support::Draw;
+
+/// The shared generator, with the draws that worlds are made of.
+pub(crate) struct Dice(Draw);
 
 impl Dice {
     pub(crate) fn new(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
+        Self(Draw::seeded(seed))
     }
 
     /// Uniform in [low, high).
-    #[expect(clippy::cast_precision_loss, reason = "53 bits fit")]
     pub(crate) fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * (self.next() >> 11) as f64 / (1u64 << 53) as f64
+        self.0.uniform(low, high)
     }
 
     /// Ten to a power uniform in [low, high).
@@ -41,7 +34,7 @@ impl Dice {
     }
 
     pub(crate) fn one_of<T: Copy>(&mut self, choices: &[T]) -> T {
-        choices[usize::try_from(self.next() % choices.len() as u64).unwrap()]
+        choices[self.0.below(choices.len())]
     }
 }
 

@@ -185,9 +185,8 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     // Opened before the search, which may take long.
     let plot = args.plot.as_deref().map(Pending::begin).transpose()?;
     let geojson = args.geojson.as_deref().map(Pending::begin).transpose()?;
-    // Beside the GeoJSON, where no code of an authority says its reference system.
-    let uncoded = loaded.prepared.projection.as_ref().filter(|projection| projection.code().is_none());
-    let prj_path = args.geojson.as_deref().filter(|_| uncoded.is_some()).map(|path| path.with_extension("prj"));
+    let prj_text = output::prj(loaded.prepared.projection.as_ref());
+    let prj_path = args.geojson.as_deref().filter(|_| prj_text.is_some()).map(|path| path.with_extension("prj"));
     let prj = prj_path.as_deref().map(Pending::begin).transpose()?;
     let csv = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let test = loaded.hop_test();
@@ -198,9 +197,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     }
     if let (Some(file), Some(geojson)) = (geojson, planned.geojson(&loaded)) {
         files.push((file, geojson.into_bytes()));
-        if let (Some(file), Some(projection)) = (prj, uncoded) {
-            files.push((file, (projection.wkt() + "\n").into_bytes()));
-        }
+        files.extend(prj.zip(prj_text));
     }
     if let Some(file) = csv {
         files.push((file, planned.csv(&loaded)?));

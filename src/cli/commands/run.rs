@@ -43,9 +43,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     ];
     if let Some(geojson) = planned.geojson(&loaded) {
         files.push(("path.geojson", geojson.into_bytes()));
-        // Where no code of an authority says the reference system.
-        files
-            .extend(projection.filter(|known| known.code().is_none()).map(|known| ("path.prj", (known.wkt() + "\n").into_bytes())));
+        files.extend(output::prj(projection).map(|text| ("path.prj", text)));
     }
     fs::create_dir_all(folder).map_err(|error| {
         Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))

@@ -35,7 +35,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     comments.extend(via.iter().map(|point| format!("via ({}, {}) m", point.x, point.y)));
     comments.extend(via_lonlat.iter().map(|place| format!("via longitude {}, latitude {} deg", place.lon_deg, place.lat_deg)));
     comments.extend(map_comments(&cut));
-    let line = slice_geojson(&cut.legs, &name, cut.projection.as_ref());
+    let line = geojson.as_deref().map(|file| (file, slice_geojson(&cut.legs, &name, cut.projection.as_ref())));
     let chain = match &given {
         Some((scenario, base)) => {
             for file in Covers::files(scenario).map(|file| base.join(file)).collect::<Vec<PathBuf>>() {
@@ -48,7 +48,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     };
     let mut csv = Vec::new();
     write_chain_csv(&chain, &mut csv, &comments).map_err(|e| failed(&e))?;
-    if let Some(file) = geojson {
+    if let Some((file, line)) = line {
         output::to_geojson_file(file, &line, cut.projection.as_ref())?;
     }
     output::to_file_or_stdout(file.as_deref(), &csv)?;
