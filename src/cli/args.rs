@@ -169,7 +169,7 @@ pub(crate) struct FanArgs {
     #[arg(long, value_name = "N", default_value_t = 36)]
     pub(crate) headings: u32,
     /// How long each is, m; the map's border and no-data cut it
-    #[arg(long, value_name = "L")]
+    #[arg(long, value_name = "L", allow_negative_numbers = true)]
     pub(crate) length: f64,
     /// Table (CSV) to write; -: to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
