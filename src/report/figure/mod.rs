@@ -19,6 +19,7 @@
 
 mod angle_panel;
 mod axes;
+mod bitmap;
 mod chains;
 mod data;
 mod heading;
