@@ -19,14 +19,14 @@ pub(super) const LEVEL: f64 = SUN.2;
 /// ```
 ///
 /// Slopes by Horn, "Hill shading and the reflectance map", Proc. IEEE 69 (1981) 14-47, as `gdaldem` has them; brightness by Lambert's
-/// cosine law. A missing neighbour (border, no-data) is replaced by the ground carried on straight from the one opposite.
+/// cosine law. A missing neighbour (border, no-data) is replaced by the ground carried on straight from the one opposite; where that is
+/// missing too, as at corners of the DEM, by the plane through the sides.
 pub(super) fn brightness(dem: &Dem, row: usize, col: usize) -> Option<f64> {
     let centre = dem.elevation(row, col)?;
     let at = |down: isize, right: isize| dem.elevation(row.checked_add_signed(down)?, col.checked_add_signed(right)?);
-    let z = |down: isize, right: isize| {
-        let opposite = || at(-down, -right).map(|beyond| 2.0 * centre - beyond);
-        at(down, right).or_else(opposite).unwrap_or(centre)
-    };
+    let carried_on = |down: isize, right: isize| at(down, right).or_else(|| Some(2.0 * centre - at(-down, -right)?));
+    let side = |down: isize, right: isize| carried_on(down, right).unwrap_or(centre);
+    let z = |down: isize, right: isize| carried_on(down, right).unwrap_or_else(|| side(down, 0) + side(0, right) - centre);
     let map = dem.georeference();
     let east = (z(-1, 1) + 2.0 * z(0, 1) + z(1, 1)) - (z(-1, -1) + 2.0 * z(0, -1) + z(1, -1));
     let north = (z(-1, -1) + 2.0 * z(-1, 0) + z(-1, 1)) - (z(1, -1) + 2.0 * z(1, 0) + z(1, 1));

@@ -28,11 +28,13 @@ const STRIP_MM: f64 = 8.0;
 const TICK_MM: f64 = 9.0;
 /// More goals than this are marked without words.
 const MOST_NAMED: usize = 12;
+/// By how much bold letters are wider than the estimate says.
+const BOLD: f64 = 0.1;
 /// Paths: black in a white casing, to be seen on every band.
 const CORE_PEN: Pen = Pen { colour: BLACK, width_mm: 0.35 };
 const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.9 };
 
-/// Where the map lies on the sheet.
+/// Where the map lies on the sheet; both axes at one scale.
 pub(super) struct MapPanel {
     panel: Panel,
     bounds: MapBounds,
@@ -108,7 +110,8 @@ impl MapPanel {
 
     /// Paths with their landings.
     pub(super) fn paths(&self, sheet: &mut Sheet, paths: &[Vec<MapPoint>]) {
-        let drawn: Vec<Vec<Place>> = paths.iter().map(|path| path.iter().map(|&at| self.place(at)).collect()).collect();
+        let drawn: Vec<Vec<Place>> =
+            paths.iter().filter(|path| !path.is_empty()).map(|path| path.iter().map(|&at| self.place(at)).collect()).collect();
         for points in &drawn {
             sheet.line(points.clone(), CASING_PEN);
         }
@@ -168,7 +171,14 @@ impl MapPanel {
         let free = places.iter().filter(inside).find(|label| !sheet.is_taken(label));
         let Some(label) = free.or_else(|| places.iter().find(|label| !sheet.is_taken(label))) else { return };
         let (left, top, right, bottom) = label.bounds_mm();
-        sheet.area(rectangle((left - 0.5, top - 0.3), (right + 0.9, bottom + 0.4)), WHITE, 0.75);
+        // Bold letters are wider than the estimate, away from where the text hangs.
+        let wider_mm = BOLD * (right - left);
+        let (before_mm, after_mm) = match label.anchor {
+            Anchor::Start => (0.0, wider_mm),
+            Anchor::Middle => (0.5 * wider_mm, 0.5 * wider_mm),
+            Anchor::End => (wider_mm, 0.0),
+        };
+        sheet.area(rectangle((left - before_mm - 0.5, top - 0.3), (right + after_mm + 0.5, bottom + 0.4)), WHITE, 0.75);
         sheet.label(label.clone());
     }
 }
