@@ -80,7 +80,8 @@ pub(super) fn about_raster(posts: &MapPosts<'_>, window: &Window) -> String {
         if x == y { format!("{} m", short(x * stride)) } else { format!("{} m by {} m", short(x * stride), short(y * stride)) }
     };
     let (rows, cols) = (window.rows.len(), window.cols.len());
-    let mut text = format!("Terrain: {rows} x {cols} posts, {} apart, lit from the north-west.", spacing(1));
+    let part = if *window == Window::whole(posts.dem) { "" } else { "part of the DEM, " };
+    let mut text = format!("Terrain: {part}{rows} x {cols} posts, {} apart, lit from the north-west.", spacing(1));
     if posts.stride > 1 {
         text.push_str(&format!(" Answers for one post in {} each way, {} apart.", posts.stride, spacing(posts.stride)));
     }

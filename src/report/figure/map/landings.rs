@@ -8,7 +8,7 @@ use super::{
         keys::{self, Swatch},
         palette::{BLACK, BLUE, SMALL_MM, VERMILION},
         picture::paragraph,
-        sheet::{Pen, Place, Sheet},
+        sheet::{Anchor, Hang, Label, Pen, Place, Sheet},
         ticks::short,
     },
     data::{LandingCloud, LandingEllipse, LandingMapFigure, MapPosts},
@@ -51,16 +51,16 @@ pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, Figure
         landing_dot(&mut sheet, map.place(*at));
     }
     let path: Vec<MapPoint> = figure.path.iter().copied().filter(|&at| map.shows(at)).collect();
-    map.paths(&mut sheet, &[path]);
     for ellipse in figure.clouds.iter().filter_map(|cloud| cloud.ellipse) {
         map.ellipse(&mut sheet, &ellipse);
     }
+    map.paths(&mut sheet, &[path]);
     if let Some(&start) = figure.path.first().filter(|&&at| map.shows(at)) {
         start_symbol(&mut sheet, map.place(start));
         map.name(&mut sheet, start, "start");
     }
     for cloud in figure.clouds.iter().filter(|cloud| map.shows(cloud.planned)) {
-        map.name(&mut sheet, cloud.planned, &cloud.hop.to_string());
+        map.number(&mut sheet, cloud);
     }
     let drawn = shown.iter().map(|landings| landings.len().div_ceil(every)).sum();
     let mut y = keys::draw(&mut sheet, &entries(figure, drawn, has_gaps), end_mm + 3.0) + 0.8;
@@ -116,6 +116,26 @@ impl MapPanel {
     }
 }
 
+impl MapPanel {
+    /// A hop's number outside its ellipse, so that it hides no landings; beside its planned landing where there is none.
+    fn number(&self, sheet: &mut Sheet, cloud: &LandingCloud) {
+        let text = cloud.hop.to_string();
+        let Some(ellipse) = cloud.ellipse else { return self.name(sheet, cloud.planned, &text) };
+        let rim: Vec<Place> = rim(&ellipse).into_iter().map(|at| self.place(at)).collect();
+        let end = |before: fn(&Place, &Place) -> bool| rim.iter().copied().reduce(|a, b| if before(&b, &a) { b } else { a });
+        let label = |at: Option<Place>, (dx, dy): Place, anchor| {
+            at.map(|(x, y)| Label::new(text.as_str(), (x + dx, y + dy), SMALL_MM).hung(anchor, Hang::Through))
+        };
+        let places = [
+            label(end(|a, b| a.1 < b.1), (0.0, -2.2), Anchor::Middle),
+            label(end(|a, b| a.1 > b.1), (0.0, 2.2), Anchor::Middle),
+            label(end(|a, b| a.0 > b.0), (1.2, 0.0), Anchor::Start),
+            label(end(|a, b| a.0 < b.0), (-1.2, 0.0), Anchor::End),
+        ];
+        self.name_on_one(sheet, &places.into_iter().flatten().collect::<Vec<_>>());
+    }
+}
+
 fn plus(sheet: &mut Sheet, (x, y): Place) {
     for pen in [Pen { width_mm: 0.7, ..CASING_PEN }, Pen { width_mm: 0.3, ..ELLIPSE_PEN }] {
         sheet.line(vec![(x - 0.9, y), (x + 0.9, y)], pen);
@@ -144,7 +164,7 @@ fn ellipse_symbol(sheet: &mut Sheet, (x, y): Place) {
     plus(sheet, (x, y));
 }
 
-/// A hop's number in a legend.
+/// A planned landing in a legend.
 fn planned_symbol(sheet: &mut Sheet, at: Place) {
     sheet.dot(at, 0.55, BLACK);
 }
@@ -157,7 +177,7 @@ fn entries(figure: &LandingMapFigure<'_>, drawn: usize, has_gaps: bool) -> Vec<(
         found.push((Swatch::Symbol(path_symbol), "planned path".to_owned()));
     }
     if !figure.clouds.is_empty() {
-        found.push((Swatch::Symbol(planned_symbol), "planned landing, with its hop".to_owned()));
+        found.push((Swatch::Symbol(planned_symbol), "planned landing".to_owned()));
     }
     if drawn > 0 {
         let all: u64 = figure.clouds.iter().map(|cloud| cloud.count).sum();
@@ -165,7 +185,7 @@ fn entries(figure: &LandingMapFigure<'_>, drawn: usize, has_gaps: bool) -> Vec<(
         found.push((Swatch::Symbol(landings_symbol), text));
     }
     if figure.clouds.iter().any(|cloud| cloud.ellipse.is_some()) {
-        found.push((Swatch::Symbol(ellipse_symbol), "ellipse of 95 % of the landings, its middle".to_owned()));
+        found.push((Swatch::Symbol(ellipse_symbol), "95 % ellipse with its hop and its middle".to_owned()));
     }
     if has_gaps {
         found.push((Swatch::Symbol(no_data_symbol), "no data".to_owned()));

@@ -84,27 +84,32 @@ impl MapPanel {
         let ticks: Vec<_> = up.values.iter().map(|&y| (self.place(MapPoint::new(min.x, y)).1, up.text(y))).collect();
         panel.y_axis(sheet, &ticks, "map y, north (m)", false);
         panel.outline(sheet);
-        self.scale_bar(sheet);
-        self.north(sheet);
+        let bar_end_mm = self.scale_bar(sheet);
+        self.north(sheet, bar_end_mm);
         panel.bottom + BELOW_MM
     }
 
-    /// A bar of a round length above the map's left end.
-    fn scale_bar(&self, sheet: &mut Sheet) {
+    /// A bar of a round length above the map's left end; returns where its length ends, mm.
+    fn scale_bar(&self, sheet: &mut Sheet) -> f64 {
         let lengths = Ticks::round(0.0, 0.3 * self.panel.width() / self.mm_per_m, 2.0);
-        let Some(&length_m) = lengths.values.last().filter(|&&length_m| length_m > 0.0) else { return };
+        let Some(&length_m) = lengths.values.last().filter(|&&length_m| length_m > 0.0) else { return self.panel.left };
         let (left, y) = (self.panel.left, self.panel.top - 2.6);
         let (middle, right) = (left + 0.5 * length_m * self.mm_per_m, left + length_m * self.mm_per_m);
         sheet.area(rectangle((left, y - 0.6), (middle, y + 0.6)), BLACK, 1.0);
         sheet.line(rectangle((left, y - 0.6), (right, y + 0.6)).into_iter().chain([(left, y - 0.6)]).collect(), CORE_PEN);
-        sheet.label(Label::new(format!("{} m", lengths.text(length_m)), (right + 1.5, y), SMALL_MM));
+        let label = Label::new(format!("{} m", lengths.text(length_m)), (right + 1.5, y), SMALL_MM);
+        let (.., end_mm, _) = label.bounds_mm();
+        sheet.label(label);
+        end_mm
     }
 
-    /// An arrow to grid north above the map's right end.
-    fn north(&self, sheet: &mut Sheet) {
-        let (x, y) = (self.panel.right - 1.8, self.panel.top - 1.4);
+    /// An arrow to grid north above the map's right end, of a narrow map right of the scale bar.
+    fn north(&self, sheet: &mut Sheet, bar_end_mm: f64) {
+        const NAME: &str = "N (grid)";
+        let after_bar = bar_end_mm + 4.0 + text_width_mm(NAME, TEXT_MM) + 2.4;
+        let (x, y) = ((self.panel.right - 1.8).max(after_bar), self.panel.top - 1.4);
         sheet.area(vec![(x, y - 5.0), (x + 1.3, y), (x, y - 1.0), (x - 1.3, y)], BLACK, 1.0);
-        let name = Label::new("N (grid)", (x - 2.4, y - 2.4), TEXT_MM).hung(Anchor::End, Hang::Through);
+        let name = Label::new(NAME, (x - 2.4, y - 2.4), TEXT_MM).hung(Anchor::End, Hang::Through);
         sheet.label(Label { bold: true, ..name });
     }
 
@@ -151,10 +156,7 @@ impl MapPanel {
     /// A name beside a place, on a light ground, where there is room.
     pub(super) fn name(&self, sheet: &mut Sheet, at: MapPoint, text: &str) {
         let (x, y) = self.place(at);
-        let label = |dx: f64, dy: f64, anchor| {
-            let label = Label::new(text, (x + dx, y + dy), SMALL_MM).hung(anchor, Hang::Through);
-            Label { bold: true, ..label }
-        };
+        let label = |dx: f64, dy: f64, anchor| Label::new(text, (x + dx, y + dy), SMALL_MM).hung(anchor, Hang::Through);
         let (s, m, e) = (Anchor::Start, Anchor::Middle, Anchor::End);
         let places = [
             label(2.2, 0.0, s),
@@ -164,6 +166,11 @@ impl MapPanel {
             label(2.2, 3.4, s),
             label(2.2, -3.4, s),
         ];
+        self.name_on_one(sheet, &places);
+    }
+
+    /// The first of some names that lies on the map and on no other, in bold on a light ground; else one beside the map, or none.
+    pub(super) fn name_on_one(&self, sheet: &mut Sheet, places: &[Label]) {
         let inside = |label: &&Label| {
             let (left, top, right, bottom) = label.bounds_mm();
             left > self.panel.left && right < self.panel.right && top > self.panel.top && bottom < self.panel.bottom
@@ -179,7 +186,7 @@ impl MapPanel {
             Anchor::End => (wider_mm, 0.0),
         };
         sheet.area(rectangle((left - before_mm - 0.5, top - 0.3), (right + after_mm + 0.5, bottom + 0.4)), WHITE, 0.75);
-        sheet.label(label.clone());
+        sheet.label(Label { bold: true, ..label.clone() });
     }
 }
 
