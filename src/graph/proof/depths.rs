@@ -44,23 +44,13 @@ struct Found {
 }
 
 impl Depths {
-    /// Before any test, from the distance to the end alone: no hop is longer than the greatest reach.
-    pub(super) fn new<F: Faults>(way: Way, prover: &Prover<'_, F>, cells: &[Cell<F::Rounding>], end: usize) -> Self {
-        let reach_m = prover.greatest_reach_m();
-        let at = &cells[end];
-        let depth = cells
-            .iter()
-            .map(|cell| {
-                let gap_m = (cell.from_m - at.to_m).max(at.from_m - cell.to_m).max(0.0);
-                // Rounded down, and one less for the rounding of the quotient.
-                #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is cut to a million")]
-                let hops = (gap_m / reach_m).clamp(0.0, 1e6) as u32;
-                hops.max(1)
-            })
-            .enumerate()
-            .map(|(i, depth)| if i == end { 0 } else { depth })
-            .collect();
-        Self { way, depth, parent: vec![NONE; cells.len()], tested: vec![false; cells.len()], pairs_tested: 0 }
+    /// Before any test: one hop from the end at least.
+    ///
+    /// The distance over the greatest reach would bound more, but not the may-graph: a cell is crossed for nothing there. A depth has to
+    /// be one that every may-path keeps to, or the level above holds no parent where one exists.
+    pub(super) fn new(way: Way, cells: usize, end: usize) -> Self {
+        let depth = (0..cells).map(|i| u32::from(i != end)).collect();
+        Self { way, depth, parent: vec![NONE; cells], tested: vec![false; cells], pairs_tested: 0 }
     }
 
     /// The least number of may-hops, as far as it was settled.

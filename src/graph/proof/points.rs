@@ -31,7 +31,6 @@ pub(super) struct Tried {
 /// How a point was reached.
 #[derive(Clone, Copy, Debug)]
 struct Reached {
-    hops: u32,
     /// From here, with these lofts; `None` for the start itself.
     by: Option<(usize, SlopeInterval)>,
 }
@@ -52,7 +51,7 @@ pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope
     let test = refinement.prover.test();
     let mut tried = Tried::over(refinement, scope);
     let at_most = if let Scope::Paths(at_most) = scope { at_most } else { CUT_OFF };
-    tried.reached[tried.start] = Some(Reached { hops: 0, by: None });
+    tried.reached[tried.start] = Some(Reached { by: None });
     let mut frontier = vec![tried.start];
     let mut hops = 0;
     let reach_m = test.greatest_reach_m();
@@ -67,7 +66,7 @@ pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope
         frontier.clear();
         for (&i, by) in open.iter().zip(&found) {
             if by.is_some() {
-                tried.reached[i] = Some(Reached { hops, by: *by });
+                tried.reached[i] = Some(Reached { by: *by });
                 frontier.push(i);
             }
         }
@@ -145,10 +144,5 @@ impl Tried {
     pub(super) fn reached_x_m(&self) -> Vec<f64> {
         let points = self.candidates.iter().zip(&self.reached);
         points.filter(|(_, reached)| reached.is_some()).map(|(candidate, _)| candidate.station.point.x_m).collect()
-    }
-
-    /// In how many hops the goal was reached.
-    pub(super) fn hops(&self) -> Option<u32> {
-        self.reached[self.goal].map(|reached| reached.hops)
     }
 }

@@ -26,8 +26,8 @@ impl<'a, F: Faults> Refinement<'a, F> {
         let cells = partition::<F>(prover.test().chain().geometry(), prover.slopes(), [start, goal]);
         let at = |station: &Station| place_of(&cells, station.point.x_m);
         let (start, goal) = (at(start), at(goal));
-        let from_start = Depths::new(Way::FromStart, &prover, &cells, start);
-        let to_goal = Depths::new(Way::ToGoal, &prover, &cells, goal);
+        let from_start = Depths::new(Way::FromStart, cells.len(), start);
+        let to_goal = Depths::new(Way::ToGoal, cells.len(), goal);
         Self { prover, cells, start, goal, from_start, to_goal, splits: 0 }
     }
 
