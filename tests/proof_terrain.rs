@@ -88,10 +88,12 @@ fn left_open(slices: u64) -> usize {
             if found.verdict() == ProofVerdict::Untraversable {
                 found_none += 1;
             }
-            if !found.is_proved() {
-                open += 1;
+            let is_open = !found.is_proved();
+            open += usize::from(is_open);
+            if is_open || took_s > 2.0 {
                 println!(
-                    "{name} seed {seed}: open, {} segments, lower {:?}, upper {:?}, {:?}, {took_s:.2} s",
+                    "{name} seed {seed}: {}, {} segments, lower {:?}, upper {:?}, {:?}, {took_s:.2} s",
+                    if is_open { "open" } else { "slow" },
                     chain.segments().len(),
                     found.lower,
                     found.upper(),

@@ -14,6 +14,17 @@ pub enum StretchClass {
     Open,
 }
 
+impl StretchClass {
+    /// The name in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Reachable => "reachable",
+            Self::Unreachable => "unreachable",
+            Self::Open => "open",
+        }
+    }
+}
+
 /// A stretch of chain of one class; of zero length it is a vertex, the start or the goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
@@ -38,8 +49,8 @@ pub struct Gap {
     pub reached_cells: usize,
     /// The cells from which the goal may be reached.
     pub leading_cells: usize,
-    /// What refused the hops from the cells that may be reached to those within reach that may lead to the goal: pairs of cells, each
-    /// under the first limit that left nothing. Empty where the gap is wider than any hop.
+    /// What refuses the hops out of the cells that may be reached to the others within reach: pairs of cells, each under the first limit
+    /// that left nothing.
     pub refusals: RefusalCounts,
 }
 
@@ -74,6 +85,7 @@ impl<F: Faults> Refinement<'_, F> {
         let of =
             |depths: &super::depths::Depths| -> Vec<usize> { (0..self.cells.len()).filter(|&i| depths.of(i) != CUT_OFF).collect() };
         let (reached, leading) = (of(&self.from_start), of(&self.to_goal));
+        let unreached: Vec<usize> = (0..self.cells.len()).filter(|i| reached.binary_search(i).is_err()).collect();
         let (start_m, goal_m) = (self.cells[self.start].from_m, self.cells[self.goal].from_m);
         let nearest = |cells: &[usize], to_m: f64| {
             let nearest_points = cells.iter().map(|&i| to_m.clamp(self.cells[i].from_m, self.cells[i].to_m));
@@ -84,7 +96,7 @@ impl<F: Faults> Refinement<'_, F> {
             leads_to_goal_x_m: nearest(&leading, start_m).unwrap_or(goal_m),
             reached_cells: reached.len(),
             leading_cells: leading.len(),
-            refusals: refusals_between(&self.prover, &self.cells, &reached, &leading),
+            refusals: refusals_between(&self.prover, &self.cells, &reached, &unreached),
         }
     }
 }
@@ -99,16 +111,16 @@ fn refusals_between<F: Faults>(
     prover: &Prover<'_, F>,
     cells: &[Cell<F::Rounding>],
     reached: &[usize],
-    leading: &[usize],
+    others: &[usize],
 ) -> RefusalCounts {
     let within = |from: usize, to: usize| {
         let (from, to) = (&cells[from], &cells[to]);
         (to.from_m - from.to_m).max(from.from_m - to.to_m) <= prover.reach_from_m(from)
     };
-    let step = (reached.len().saturating_mul(leading.len()) / MOST_PAIRS).max(1);
+    let step = (reached.len().saturating_mul(others.len()) / MOST_PAIRS).max(1);
     let mut counts = RefusalCounts::default();
     for &from in reached.iter().step_by(step) {
-        for &to in leading.iter().filter(|&&to| to != from && within(from, to)) {
+        for &to in others.iter().filter(|&&to| within(from, to)) {
             if let Err(limit) = prover.may(&cells[from], &cells[to]) {
                 counts.count(limit);
             }
