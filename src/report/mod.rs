@@ -9,6 +9,7 @@ mod geojson;
 mod hop_answer;
 mod path_record;
 mod proof_record;
+mod require_answer;
 mod text;
 mod whole_file;
 
@@ -19,5 +20,6 @@ pub use geojson::{path_geojson, slice_geojson};
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
 pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
-pub use text::{check_text, hop_text, path_text};
+pub use require_answer::{RequireAnswer, RequireTry};
+pub use text::{check_text, hop_text, path_text, require_text};
 pub use whole_file::{WholeFile, write_whole};

@@ -5,6 +5,7 @@ pub(super) mod check;
 pub(super) mod fan;
 pub(super) mod hop;
 pub(super) mod plan;
+pub(super) mod require;
 pub(super) mod run;
 mod search;
 pub(super) mod slice;
