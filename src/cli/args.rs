@@ -310,7 +310,7 @@ pub(crate) struct RequireArgs {
     #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
     pub(crate) resolution: f64,
     /// The most cells that the chain is cut into at each value
-    #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS, value_parser = cell_count, allow_negative_numbers = true)]
+    #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS / 5, value_parser = cell_count, allow_negative_numbers = true)]
     pub(crate) budget: usize,
     /// How the answer is written
     #[arg(long, value_enum, default_value = "text")]

@@ -3,7 +3,7 @@
 use chta::{
     graph::{
         Outcome,
-        proof::{Bounds, BoundsOptions, CapabilityRange, least_capability},
+        proof::{Bounds, BoundsOptions, CapabilityRange, Until, least_capability},
     },
     path::generate,
     report::{Document, GapRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord, require_text},
@@ -80,7 +80,12 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     let mut tries: Vec<Tried> = Vec::new();
     let threshold = least_capability(range, &mut |value| -> Result<_, Failure> {
         let loaded = with_value(args, value, true)?;
-        let options = BoundsOptions { budget_cells: args.budget, search: loaded.scenario.search.clone(), explain: false };
+        let options = BoundsOptions {
+            budget_cells: args.budget,
+            search: loaded.scenario.search.clone(),
+            until: Until::Decided,
+            explain: false,
+        };
         let bounds = proved(&loaded.hop_test(), ends, &options, args.common.quiet)?;
         let verdict = bounds.verdict();
         tries.push(Tried { value, loaded, bounds });
@@ -124,7 +129,7 @@ impl Tried {
     /// What stops the journey here.
     fn gap(&self, args: &RequireArgs) -> Result<Option<GapRecord>, Failure> {
         let search = self.loaded.scenario.search.clone();
-        let options = BoundsOptions { budget_cells: args.budget, search, explain: true };
+        let options = BoundsOptions { budget_cells: args.budget, search, until: Until::Decided, explain: true };
         let bounds = proved(&self.loaded.hop_test(), self.loaded.ends()?, &options, args.common.quiet)?;
         Ok(bounds.gap.as_ref().map(GapRecord::of))
     }

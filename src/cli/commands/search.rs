@@ -31,7 +31,8 @@ impl Searched {
         match prove.filter(|prove| prove.prove) {
             None => Ok(Self { found: search(test, ends, options, quiet)?, proof: None }),
             Some(ProveArgs { budget, .. }) => {
-                let options = BoundsOptions { budget_cells: budget, search: options.clone(), explain: true };
+                let options =
+                    BoundsOptions { budget_cells: budget, search: options.clone(), explain: true, ..BoundsOptions::default() };
                 let bounds = proved(test, ends, &options, quiet)?;
                 Ok(Self { found: bounds.answer.clone(), proof: Some((bounds, budget)) })
             }
