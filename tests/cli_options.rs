@@ -126,6 +126,294 @@ const PLAN: [Trial; 18] = [
     ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
+/// A question that other options change.
+const REQUIRED: [&str; 10] =
+    ["require", "scenario.toml", "--vary", "surface.friction_coefficient", "--from", "0.03", "--to", "2", "--resolution", "0.05"];
+
+const REQUIRE: [Trial; 17] = [
+    (
+        "--start",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--start",
+            "10",
+        ],
+    ),
+    (
+        "--goal",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--goal",
+            "30",
+        ],
+    ),
+    ("--vary", &REQUIRED, &["require", "scenario.toml", "--vary", "surface.rest_slope_max_deg", "--resolution", "0.05"]),
+    (
+        "--from",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.04",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+        ],
+    ),
+    (
+        "--to",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "1",
+            "--resolution",
+            "0.05",
+        ],
+    ),
+    (
+        "--resolution",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.2",
+        ],
+    ),
+    (
+        "--budget",
+        &["require", "scenario.toml", "--vary", "hopper.clearance_m", "--resolution", "0.05"],
+        &["require", "scenario.toml", "--vary", "hopper.clearance_m", "--resolution", "0.05", "--budget", "1"],
+    ),
+    (
+        "--format",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--points-per-segment",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--points-per-segment",
+            "7",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--node-spacing-max-m",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--node-spacing-max-m",
+            "3",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--effort",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--effort",
+            "time",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--scenario",
+        &["require", "chain.csv", "--body", "mars", "--vary", "hopper.clearance_m"],
+        &[
+            "require",
+            "chain.csv",
+            "--body",
+            "mars",
+            "--vary",
+            "hopper.clearance_m",
+            "--resolution",
+            "0.05",
+            "--scenario",
+            "scenario.toml",
+        ],
+    ),
+    (
+        "--set",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--set",
+            "hopper.flight_time_max_s=2",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--body",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--body",
+            "moon",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--gravity-m-s2",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--gravity-m-s2",
+            "1.5",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--clearance-m",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--clearance-m",
+            "2",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--quiet",
+        &["require", "forward.csv", "--body", "mars", "--start", "0", "--goal", "10", "--vary", "hopper.takeoff_speed_max_m_s"],
+        &[
+            "require",
+            "forward.csv",
+            "--body",
+            "mars",
+            "--start",
+            "0",
+            "--goal",
+            "10",
+            "--vary",
+            "hopper.takeoff_speed_max_m_s",
+            "--quiet",
+        ],
+    ),
+];
+
 /// Ground with all there is on it, small enough for a test.
 const SYNTH: [&str; 30] = [
     "synth",
@@ -215,7 +503,9 @@ fn options(command: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_option_changes_what_one_sees() {
-    for (command, trials) in [("run", &RUN[..]), ("slice", &SLICE), ("hop", &HOP), ("check", &CHECK), ("plan", &PLAN)] {
+    for (command, trials) in
+        [("run", &RUN[..]), ("slice", &SLICE), ("hop", &HOP), ("check", &CHECK), ("plan", &PLAN), ("require", &REQUIRE)]
+    {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
         let here: BTreeSet<_> =
             options(command).into_iter().filter(|option| !ON_A_PROJECTED_MAP.contains(&option.as_str())).collect();
@@ -289,7 +579,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
             if let Some((_, unit)) = units.into_iter().find(|(suffix, _)| name.ends_with(suffix)) {
                 assert!(format!("{one_line} ").contains(unit), "{command} {name} does not name its unit: {one_line}");
             }
-            let required = ["--from", "--to", "--output", "--from-lonlat", "--to-lonlat"].contains(&name.as_str());
+            let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat"].contains(&name.as_str());
             let takes_value =
                 one_line.contains('<') && !["--scenario", "--set", "--body", "--gravity-m-s2"].contains(&name.as_str());
             let writes = ["--geojson", "--plot", "--pairs"].contains(&name.as_str());
