@@ -80,6 +80,8 @@ impl Depths {
                 if self.has_parent(cell, level) {
                     settled.push(cell);
                 } else {
+                    // Without a depth until it has a parent, so that it is none itself.
+                    self.depth[cell as usize] = CUT_OFF;
                     waiting.insert(cell);
                 }
             }
