@@ -204,8 +204,12 @@ impl<'a> HopTest<'a> {
 
     /// The horizontal distance that no hop of this chain exceeds, m.
     pub fn greatest_reach_m(&self) -> f64 {
-        let range_m = self.heights_m.1 - self.heights_m.0;
-        self.farthest_m(range_m, range_m)
+        self.reach_over_relief_m(self.heights_m.1 - self.heights_m.0)
+    }
+
+    /// The horizontal distance that no hop exceeds over ground whose lowest and highest point differ by so much, m.
+    pub(crate) fn reach_over_relief_m(&self, relief_m: f64) -> f64 {
+        self.farthest_m(relief_m, relief_m)
     }
 
     /// The bound on one hop's distance from the greatest drop and the greatest climb it may take.

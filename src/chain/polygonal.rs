@@ -275,7 +275,12 @@ impl PolygonalChain {
         if self.vertices[next].x_m == x_m {
             return Ok(self.vertex_station(VertexId(next)));
         }
-        Ok(Station { point: self.point_inside(SegmentId(next - 1), x_m), site: Site::Inside(SegmentId(next - 1)) })
+        Ok(self.station_inside(SegmentId(next - 1), x_m))
+    }
+
+    /// The station at an `x_m` strictly between the ends of a segment.
+    pub(crate) fn station_inside(&self, segment: SegmentId, x_m: f64) -> Station {
+        Station { point: self.point_inside(segment, x_m), site: Site::Inside(segment) }
     }
 
     /// The station at a vertex.

@@ -8,7 +8,11 @@
 mod cost;
 mod edges;
 mod frontier;
+mod fronts;
+mod goals;
+mod local_reach;
 mod nodes;
+mod questions;
 mod reachable;
 mod refusals;
 mod search;
@@ -20,5 +24,5 @@ pub use frontier::{Frontier, NearestMiss};
 pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
-pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search};
+pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search, search_pairs};
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};
