@@ -113,7 +113,7 @@ impl<'a> HopTest<'a> {
 
     /// The rule that the ground grants a contact, or the limit by which it refuses.
     #[inline]
-    fn granted(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
+    pub(super) fn granted(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
         let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
         segment.granted(contact, direction).ok_or_else(|| match segment.judged(contact, direction) {
             Err(refusal) => refusal.limit(contact),
@@ -137,7 +137,7 @@ impl<'a> HopTest<'a> {
 
     /// The lofts that the machine's greatest height and longest flight allow.
     #[inline]
-    fn machine(&self, sight: LineOfSight) -> SlopeInterval {
+    pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
         let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
         match self.hopper.flight_time_max_s {
             Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),
@@ -145,18 +145,41 @@ impl<'a> HopTest<'a> {
         }
     }
 
+    /// Whether the machine has a greatest height or a longest flight.
+    #[inline]
+    pub(super) const fn has_machine_limits(&self) -> bool {
+        self.hopper.apex_height_max_m.is_some() || self.hopper.flight_time_max_s.is_some()
+    }
+
     /// Which limit left nothing, limits taken one after the other.
     #[cold]
     fn refusing(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Limit {
+        let takeoff = limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2);
+        if takeoff.is_empty() {
+            return Limit::TakeoffSpeed;
+        }
+        let both = takeoff.intersect(limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2));
+        if both.is_empty() {
+            return Limit::LandingSpeed;
+        }
+        self.refusing_after_speeds(sight, both, from.slopes(), to.slopes())
+    }
+
+    /// Which limit left nothing of what both speeds allow, limits taken one after the other.
+    pub(super) fn refusing_after_speeds(
+        &self,
+        sight: LineOfSight,
+        speeds: SlopeInterval,
+        takeoff_slopes: SlopeInterval,
+        landing_slopes: SlopeInterval,
+    ) -> Limit {
         let in_order = [
-            (Limit::TakeoffSpeed, limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2)),
-            (Limit::LandingSpeed, limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2)),
-            (Limit::TakeoffCone, limits::takeoff_cone(sight, from.slopes())),
-            (Limit::LandingCone, limits::landing_cone(sight, to.slopes())),
+            (Limit::TakeoffCone, limits::takeoff_cone(sight, takeoff_slopes)),
+            (Limit::LandingCone, limits::landing_cone(sight, landing_slopes)),
             (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical)),
             (Limit::ApexHeight, self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
         ];
-        let mut left = SlopeInterval { lower: 0.0, upper: f64::INFINITY };
+        let mut left = speeds;
         for (limit, loft) in in_order {
             left = left.intersect(loft);
             if left.is_empty() || left.upper <= 0.0 {

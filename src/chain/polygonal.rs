@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Ground, GroundForm, OffChain, Site, Station};
+use super::{Direction, Ground, GroundForm, OffChain, Site, Station};
 use crate::{
     quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
     terrain::{Profile, ProfilePoint},
@@ -229,6 +229,16 @@ impl PolygonalChain {
         let (low_m, high_m) = (a_m.min(b_m), a_m.max(b_m));
         let next = self.bends.partition_point(|v| self.vertices[v.index()].x_m <= low_m);
         self.bends.get(next).copied().filter(|v| self.vertices[v.index()].x_m < high_m)
+    }
+
+    /// The x of the next bend in a direction, strictly beyond `x_m`; `None` where there is none.
+    #[inline]
+    pub fn next_bend_m(&self, x_m: f64, direction: Direction) -> Option<f64> {
+        let at = |vertex: &VertexId| self.vertices[vertex.index()].x_m;
+        match direction {
+            Direction::Forward => self.bends.get(self.bends.partition_point(|v| at(v) <= x_m)).map(at),
+            Direction::Reverse => self.bends[..self.bends.partition_point(|v| at(v) < x_m)].last().map(at),
+        }
     }
 
     /// The vertices, in the direction of +x.
