@@ -15,6 +15,9 @@ use crate::{
     quantity::NodeId,
 };
 
+/// The least node set whose batches may be worth sharing among threads.
+const SHARED_FROM_NODES: usize = 4096;
+
 /// What one round of searches goes over.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round<'a> {
@@ -118,7 +121,12 @@ impl Questions {
             let start = self.questions[first].ends.0;
             let goals: Vec<Station> = open.iter().map(|&i| self.questions[i].ends.1).collect();
             let mut goals = Goals::new(&goals);
-            fronts.run(&start, &mut goals);
+            if round.nodes.stations().len() >= SHARED_FROM_NODES {
+                // From inside the pool, whose threads hear of each other sooner than of one outside.
+                rayon::scope(|_| fronts.run(&start, &mut goals));
+            } else {
+                fronts.run(&start, &mut goals);
+            }
             for (&i, way) in open.iter().zip(goals.ways()) {
                 let Question { ends, tally, answer } = &mut self.questions[i];
                 *tally += fronts.tally();
