@@ -367,3 +367,90 @@ impl Stretch<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        ballistics::{HopTest, Split, TakeoffChoice},
+        chain::{ConstrainedChain, PolygonalChain},
+        graph::{Effort, NodeSet, PointSpacing},
+        quantity::{ChainPoint, VertexId},
+        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    };
+
+    /// Level ground, where many hops cost the same to the last bit, with a needle here and there.
+    fn chain() -> ConstrainedChain {
+        let height = |i: u8| if i % 7 == 3 { 0.5 } else { 0.0 };
+        let points = (0..60).map(|i| ChainPoint::new(f64::from(i), height(i))).collect();
+        let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.8).unwrap())), rest: RestSlope::Unlimited };
+        ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &Hopper::with_speeds(5.0, 5.0), &surface).unwrap()
+    }
+
+    /// The order of a shuffle of cards, and back to front.
+    const ORDERS: [fn(&mut [Takeoff]); 3] = [
+        |_| {},
+        <[Takeoff]>::reverse,
+        |batch| {
+            let half = batch.len() / 2;
+            batch.rotate_left(half);
+            for i in (0..half).step_by(2) {
+                batch.swap(i, half + i);
+            }
+        },
+    ];
+
+    #[test]
+    fn neither_the_order_nor_the_threads_change_a_label() {
+        let chain = chain();
+        let test = HopTest::new(&chain, &Hopper::with_speeds(5.0, 5.0), 3.711);
+        let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(2)).unwrap();
+        let (table, reach) = (LandingTable::new(&test, nodes.stations()), LocalReach::of(&test));
+        let at = |i| chain.geometry().vertex_station(VertexId(i));
+        for effort in Effort::ALL {
+            let graph = HopGraph::new(&test, &nodes, effort, TakeoffChoice::LeastSpeed, Split::FullReach);
+            let mut expected = None;
+            for (arrange, threads) in ORDERS.into_iter().flat_map(|order| [1, 2, 7].map(|threads| (order, threads))) {
+                let mut goals = Goals::new(&[at(59), at(40)]);
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let found = pool.install(|| {
+                    let mut fronts = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+                    (fronts.arrange, fronts.shared_from_pairs) = (arrange, 0);
+                    fronts.run(&at(1), &mut goals);
+                    (fronts.labels.clone(), fronts.tally, goals.ways())
+                });
+                assert!(found.2.iter().all(Option::is_some));
+                assert!(expected.get_or_insert_with(|| found.clone()) == &found, "{effort:?}, {threads} threads");
+            }
+        }
+    }
+
+    #[test]
+    fn of_equal_offers_the_one_from_farthest_left_stays() {
+        let mut label = Label::UNKNOWN;
+        for (hops, from) in [(3, 8), (2, 9), (2, 4), (2, 6), (3, 0)] {
+            label.offer(Cost::of_hops(hops), Origin::node(from));
+        }
+        assert_eq!((label.cost.hops(), label.from), (2, Origin::node(4)));
+        label.offer(Cost::of_hops(2), Origin::START);
+        assert_eq!(label.from, Origin::START);
+    }
+
+    #[test]
+    fn a_start_leaves_nothing_to_the_next() {
+        let chain = chain();
+        let test = HopTest::new(&chain, &Hopper::with_speeds(5.0, 5.0), 3.711);
+        let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(1)).unwrap();
+        let graph = HopGraph::new(&test, &nodes, Effort::Time, TakeoffChoice::MidRange, Split::Equal);
+        let (table, reach) = (LandingTable::new(&test, nodes.stations()), LocalReach::of(&test));
+        let at = |i| chain.geometry().vertex_station(VertexId(i));
+        let mut one = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+        for start in [0, 30, 59, 12] {
+            let mut fresh = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+            let (mut goals, mut same) = (Goals::new(&[at(20), at(45)]), Goals::new(&[at(20), at(45)]));
+            one.run(&at(start), &mut goals);
+            fresh.run(&at(start), &mut same);
+            assert_eq!((one.labels.clone(), one.tally, goals.ways()), (fresh.labels, fresh.tally, same.ways()));
+        }
+    }
+}
