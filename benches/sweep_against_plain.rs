@@ -46,11 +46,11 @@ const SCENES: [Scene; 3] = [
 
 fn main() {
     println!(
-        "the least of {ROUNDS} rounds of {TAKEOFFS} take-offs each; shares: of all landings, those left after each limit in turn"
+        "ns and millions of pairs a second: the least of {ROUNDS} rounds; shares: of all landings, left after each limit in turn"
     );
     println!(
-        "{:<15} {:>6} {:>9} {:>9} {:>9} {:>6} {:>11}  left after",
-        "ground", "window", "plain ns", "sweep ns", "ratio", "M/s", "feasible"
+        "{:<15} {:>6} {:>9} {:>9} {:>7} {:>7} {:>7} {:>9}  left after",
+        "ground", "window", "plain ns", "sweep ns", "plain M", "sweep M", "ratio", "feasible"
     );
     for scene in &SCENES {
         for window in [30, 200, 2000] {
