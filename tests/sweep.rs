@@ -251,3 +251,67 @@ fn real_ground() {
     assert_eq!(compared.unlike, 0, "{compared:?}");
     assert!(compared.pairs == 0 || (compared.over_ground > 1000 && compared.refused_by(Limit::Terrain) > 1000), "{compared:?}");
 }
+
+/// No feasible pair lies beyond the reach from its take-off or to its landing, whatever the relief hides; and the reach is worth having.
+#[test]
+fn nothing_feasible_lies_beyond_reach() {
+    let draw = &mut Draw::seeded(404);
+    let (mut feasible, mut beyond, mut nearly) = (0, 0, 0);
+    for _ in 0..300 {
+        let (g, size_m) = (draw.gravity(), draw.log_uniform(1e-1, 1e2));
+        let segments = 2 + draw.below(60);
+        let mut points = draw.profile(segments, size_m);
+        if draw.chance(0.5) {
+            // A canyon, whose floor is in reach from above where nearer, higher ground is not.
+            let (from, to) = (draw.below(segments), draw.below(segments));
+            points.iter_mut().take(to).skip(from).for_each(|p| p.z_m -= 10.0 * size_m);
+        }
+        let speed = (g * size_m * draw.log_uniform(0.5, 20.0)).sqrt();
+        let lines: Vec<_> = (0..segments).map(|_| (draw.line(speed), draw.line(0.6 * speed))).collect();
+        let chain = explicit(&points, &lines, RestSlope::Unlimited);
+        let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
+        let stations = stations(&chain, 1);
+        let table = LandingTable::new(&test, &stations);
+        for takeoff in &stations {
+            for direction in Direction::BOTH {
+                let reach_m = test.landing_reach_m(takeoff, direction);
+                assert!(
+                    reach_m <= test.reach_bound_m(takeoff)
+                        && test.reach_bound_m(takeoff) <= test.greatest_reach_m() * (1.0 + 1e-12)
+                );
+                let in_reach = table.in_reach(takeoff, direction);
+                let ahead = stations
+                    .iter()
+                    .enumerate()
+                    .filter(|(_, landing)| Direction::between(takeoff.point.x_m, landing.point.x_m) == Some(direction));
+                for (i, landing) in ahead {
+                    let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
+                    assert_eq!(in_reach.contains(&i), run_m <= reach_m);
+                    if test.loft(takeoff, landing).is_ok() {
+                        feasible += 1;
+                        assert!(run_m <= reach_m, "{run_m} m in one hop, out of a reach of {reach_m} m");
+                        assert!(run_m <= test.takeoff_reach_m(landing, direction), "{run_m} m in one hop, seen from its landing");
+                        nearly += u32::from(run_m > 0.5 * reach_m);
+                    } else if run_m > reach_m {
+                        beyond += 1;
+                    }
+                }
+            }
+        }
+    }
+    assert!(feasible > 20_000 && beyond > 50_000 && nearly > 1000, "{feasible} feasible, {beyond} beyond, {nearly} nearly as far");
+}
+
+/// Two parabolas of safety meet at X = v_t v_l / g: with one speed all over, no relief makes the reach longer.
+#[test]
+fn reach_does_not_grow_with_the_chain() {
+    let draw = &mut Draw::seeded(405);
+    let points: Vec<ChainPoint> =
+        (0..=4000).map(|i| ChainPoint::new(f64::from(i), 300.0 * f64::from(i / 100 % 7) + draw.unit())).collect();
+    let chain = uniform(&points, line((-90.0, 90.0), 10.0, (-90.0, 90.0), 8.0));
+    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 2.0);
+    assert!((test.greatest_reach_m() - 40.0).abs() < 1e-6, "{} m", test.greatest_reach_m());
+    // On flat ground the slower end decides: 64 / 2 m and a little for the roughness of 1 m.
+    let flat = test.reach_bound_m(&chain.geometry().vertex_station(VertexId(50)));
+    assert!((32.0..34.0).contains(&flat), "{flat} m");
+}

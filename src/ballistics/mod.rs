@@ -31,6 +31,7 @@ mod conflict;
 mod hop_test;
 pub mod limits;
 mod line_of_sight;
+mod reach;
 mod segment_hops;
 mod sweep;
 mod takeoff_set;

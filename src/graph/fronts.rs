@@ -62,9 +62,14 @@ impl Label {
 
     /// Takes an offer where it is better, by cost, then by origin.
     pub(super) fn offer(&mut self, cost: Cost, from: Origin) {
-        if (cost, from) < (self.cost, self.from) {
+        if self.takes(cost, from) {
             (self.cost, self.from) = (cost, from);
         }
+    }
+
+    /// Whether an offer is better than what is known.
+    fn takes(&self, cost: Cost, from: Origin) -> bool {
+        (cost, from) < (self.cost, self.from)
     }
 
     /// Whether some way is known.
@@ -357,11 +362,15 @@ impl Stretch<'_> {
         let landing = &self.graph.nodes().stations()[node];
         match self.graph.edge_of(&takeoff.station, landing, single) {
             Ok(edge) => {
-                let cost = match self.aim {
-                    Aim::HopsThenEffort => self.graph.cost(&takeoff.station, landing, edge),
-                    Aim::Hops => Cost::of_hops(edge.hops()),
-                };
-                label.offer(takeoff.cost + cost, takeoff.origin);
+                let least = takeoff.cost + Cost::of_hops(edge.hops());
+                match self.aim {
+                    Aim::Hops => label.offer(least, takeoff.origin),
+                    // What would be too much without any effort for this edge need not be worked out.
+                    Aim::HopsThenEffort if label.takes(least, takeoff.origin) => {
+                        label.offer(takeoff.cost + self.graph.cost(&takeoff.station, landing, edge), takeoff.origin);
+                    }
+                    Aim::HopsThenEffort => {}
+                }
             }
             Err(limit) => tally.refusals.count(limit),
         }

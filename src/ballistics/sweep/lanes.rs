@@ -1,6 +1,6 @@
 //! All limits but the terrain, for a block of landings at once.
 
-use super::table::LandingRules;
+use super::table::{LandingRules, LandingTable};
 use crate::{
     ballistics::{HopTest, LineOfSight},
     quantity::SlopeInterval,
@@ -38,7 +38,7 @@ pub(super) struct Lanes {
 
 impl Lanes {
     /// How many landings one block has at most.
-    pub(super) const COUNT: usize = 64;
+    pub(super) const COUNT: usize = LandingTable::BLOCK;
 
     pub(super) const fn new() -> Self {
         let zeros = [0.0; Self::COUNT];
@@ -121,11 +121,11 @@ impl Lanes {
         run_m: f64,
         landing_cone: SlopeInterval,
     ) -> Limit {
-        if self.takeoff_excess[lane] < 0.0 {
-            return Limit::TakeoffSpeed;
-        }
-        if self.landing_excess[lane] < 0.0 {
-            return Limit::LandingSpeed;
+        for (excess, limit) in [(self.takeoff_excess[lane], Limit::TakeoffSpeed), (self.landing_excess[lane], Limit::LandingSpeed)]
+        {
+            if excess.is_nan() || excess < 0.0 {
+                return limit;
+            }
         }
         let left = SlopeInterval { lower: self.slowest[lane], upper: self.fastest[lane] };
         test.refusing_after_speeds(LineOfSight::along(run_m, self.slope[lane]), left, from.cone, landing_cone)

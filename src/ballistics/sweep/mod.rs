@@ -93,6 +93,10 @@ impl<'a> Sweep<'a> {
         self.overflight.begin(takeoff, direction);
         while !left.is_empty() {
             let block = next_block(&mut left, direction);
+            if let Some(limit) = table.out_of_reach(&from, &block, direction) {
+                outwards(block, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(limit))));
+                continue;
+            }
             self.lanes.judge(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
             for i in outwards(block.clone(), direction) {
                 let verdict = match refusals[i] {
@@ -137,17 +141,18 @@ fn outwards(range: Range<usize>, direction: Direction) -> impl Iterator<Item = u
     range.map(move |i| if direction == Direction::Forward { i } else { end - 1 - (i - start) })
 }
 
-/// Takes the nearest block off what is left.
+/// Takes the nearest block off what is left: landings of one block of the table's indices.
 fn next_block(left: &mut Range<usize>, direction: Direction) -> Range<usize> {
-    let count = left.len().min(Lanes::COUNT);
     match direction {
         Direction::Forward => {
-            left.start += count;
-            left.start - count..left.start
+            let start = left.start;
+            left.start = ((start / LandingTable::BLOCK + 1) * LandingTable::BLOCK).min(left.end);
+            start..left.start
         }
         Direction::Reverse => {
-            left.end -= count;
-            left.end..left.end + count
+            let end = left.end;
+            left.end = ((end - 1) / LandingTable::BLOCK * LandingTable::BLOCK).max(left.start);
+            left.end..end
         }
     }
 }

@@ -2,8 +2,9 @@
 
 use std::ops::Range;
 
+use super::lanes::Departure;
 use crate::{
-    ballistics::HopTest,
+    ballistics::{HopTest, LineOfSight},
     chain::{Contact, Direction, Station},
     world::{Limit, tolerant_speed_m_s},
 };
@@ -22,6 +23,16 @@ pub struct LandingTable<'a> {
     pub(super) z_m: Vec<f64>,
     /// By direction of travel.
     rules: [LandingRules; 2],
+    blocks: Vec<Block>,
+}
+
+/// The ends of height and speed over one block of stations.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    lowest_m: f64,
+    highest_m: f64,
+    /// The greatest squared landing speed by direction, m^2/s^2.
+    speed_squared: [f64; 2],
 }
 
 /// What the ground grants to landings in one direction of travel, column by column.
@@ -40,13 +51,44 @@ pub(super) struct LandingRules {
 impl<'a> LandingTable<'a> {
     /// The landings on stations that rise in x, no two at the same x.
     pub fn new(test: &'a HopTest<'a>, stations: &'a [Station]) -> Self {
-        Self {
-            test,
-            stations,
-            x_m: stations.iter().map(|station| station.point.x_m).collect(),
-            z_m: stations.iter().map(|station| station.point.z_m).collect(),
-            rules: Direction::BOTH.map(|direction| LandingRules::new(test, stations, direction)),
+        let z_m: Vec<f64> = stations.iter().map(|station| station.point.z_m).collect();
+        let rules = Direction::BOTH.map(|direction| LandingRules::new(test, stations, direction));
+        let greatest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let blocks = (0..stations.len())
+            .step_by(Self::BLOCK)
+            .map(|start| start..(start + Self::BLOCK).min(stations.len()))
+            .map(|block| Block {
+                lowest_m: z_m[block.clone()].iter().copied().fold(f64::INFINITY, f64::min),
+                highest_m: greatest(&z_m[block.clone()]),
+                speed_squared: [0, 1].map(|direction: usize| greatest(&rules[direction].speed_squared[block.clone()])),
+            })
+            .collect();
+        Self { test, stations, x_m: stations.iter().map(|station| station.point.x_m).collect(), z_m, rules, blocks }
+    }
+
+    /// How many stations the sweep takes at once: those of one block of indices, so that what is known of the block holds.
+    pub(super) const BLOCK: usize = 64;
+
+    /// Whether no landing of a block of indices (or part of one) can be reached, and by which speed: the nearest, lowest place there lies
+    /// outside the parabola of safety of the take-off, or all places inside that one and outside the parabola of the landing.
+    ///
+    /// By more than rounding: what is close to a parabola is left to the formulas of the hop test.
+    pub(super) fn out_of_reach(&self, from: &Departure, block: &Range<usize>, direction: Direction) -> Option<Limit> {
+        /// Much more than rounding.
+        const CLEARLY: f64 = 1.0 + 1e-9;
+        let ends = &self.blocks[block.start / Self::BLOCK];
+        let landing_squared = ends.speed_squared[direction as usize];
+        let gravity = self.test.gravity_m_s2();
+        let (left_m, right_m) = ((self.x_m[block.start] - from.x_m).abs(), (self.x_m[block.end - 1] - from.x_m).abs());
+        let (near_m, far_m) = (left_m.min(right_m), left_m.max(right_m));
+        let (low_m, high_m) = (ends.lowest_m - from.z_m, ends.highest_m - from.z_m);
+        let squared = |run_m: f64, lift: f64| gravity * run_m * lift;
+        if squared(near_m, LineOfSight::new(near_m, low_m).lift()) > from.speed_squared * CLEARLY {
+            return Some(Limit::TakeoffSpeed);
         }
+        let all_inside = squared(far_m, LineOfSight::new(far_m, high_m).lift()) * CLEARLY < from.speed_squared;
+        let landing = squared(near_m, LineOfSight::new(near_m, high_m).reversed_lift());
+        (all_inside && landing > landing_squared * CLEARLY).then_some(Limit::LandingSpeed)
     }
 
     /// The hop test behind the verdicts.
@@ -66,7 +108,6 @@ impl<'a> LandingTable<'a> {
 
     /// The stations that lie in a direction from a take-off, and no farther than a horizontal distance, m.
     ///
-    /// With [`HopTest::landing_reach_m`] as the distance: all that one hop may reach.
     pub fn within(&self, takeoff: &Station, direction: Direction, distance_m: f64) -> Range<usize> {
         let x_m = takeoff.point.x_m;
         match direction {
@@ -79,6 +120,12 @@ impl<'a> LandingTable<'a> {
                 self.x_m[..end].partition_point(|&x| x_m - x > distance_m)..end
             }
         }
+    }
+
+    /// The stations that one hop from a take-off may reach in a direction: none beyond
+    /// [`landing_reach_m`](HopTest::landing_reach_m).
+    pub fn in_reach(&self, takeoff: &Station, direction: Direction) -> Range<usize> {
+        self.within(takeoff, direction, self.test.landing_reach_m(takeoff, direction))
     }
 
     /// Of a range of stations, those that lie in a direction from a take-off.
