@@ -160,6 +160,54 @@ impl<F: Fn(f64, f64) -> bool> Extreme<F> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::{
+        ballistics::{Split, TakeoffChoice},
+        chain::{ConstrainedChain, PolygonalChain},
+        graph::{Effort, HopGraph, NodeSet, PointSpacing},
+        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    };
+
+    /// A plain, a canyon and a hill, with short and long segments; fast landings, so that it is the relief that bounds a hop.
+    fn chain(hopper: &Hopper) -> ConstrainedChain {
+        let height = |i: i32| match i {
+            20..=24 => -6.0 - f64::from(i % 2),
+            35..=40 => f64::from(i - 34) * 0.8,
+            41..=50 => 4.8,
+            _ => 0.2 * f64::from(i % 3),
+        };
+        let points = (0..60).map(|i| ChainPoint::new(f64::from(i) * if i > 50 { 2.0 } else { 1.0 }, height(i))).collect();
+        let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.9).unwrap())), rest: RestSlope::Unlimited };
+        ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), hopper, &surface).unwrap()
+    }
+
+    #[test]
+    fn no_edge_is_longer_than_the_bound_along_it_or_takes_the_potential_farther_than_its_hops() {
+        let hopper = Hopper::with_speeds(5.0, 25.0);
+        let chain = chain(&hopper);
+        let test = HopTest::new(&chain, &hopper, 3.711);
+        let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(2)).unwrap();
+        let graph = HopGraph::new(&test, &nodes, Effort::Time, TakeoffChoice::LeastSpeed, Split::FullReach);
+        let reach = LocalReach::of(&test);
+        let stations = nodes.stations();
+        let (mut edges, mut greatest_share) = (0, 0.0f64);
+        for (i, takeoff) in stations.iter().enumerate() {
+            for (j, landing) in stations.iter().enumerate().filter(|(j, _)| *j != i) {
+                let Ok(edge) = graph.edge(takeoff, landing) else { continue };
+                let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
+                let gained = (reach.potential_at(landing) - reach.potential_at(takeoff)).abs();
+                if edge.hops() == 1 {
+                    assert!(stations[i.min(j)..=i.max(j)].iter().all(|over| reach.at_m(over) >= run_m), "from {i} to {j}");
+                    greatest_share = greatest_share.max(gained);
+                }
+                assert!(gained < f64::from(u32::try_from(edge.hops()).unwrap()), "from {i} to {j}: {gained}");
+                let goal = HopsLeft::to(&reach, &[stations[90]]);
+                assert!(goal.from(takeoff) <= edge.hops() + goal.from(landing), "the bound falls faster than hops are made");
+                edges += 1;
+            }
+        }
+        assert!(edges > 1000 && greatest_share > 0.5, "{edges} edges, of the bound up to {greatest_share}");
+        assert!(reach.reach_m.iter().copied().fold(f64::INFINITY, f64::min) < test.greatest_reach_m(), "local where the ground is");
+    }
 
     #[test]
     fn reliefs_are_those_of_the_windows_taken_one_by_one() {

@@ -1,7 +1,8 @@
 //! The hop graph over points of the chain, and the search for the path of fewest hops.
 //!
 //! Nodes are the vertices, points between them, start and goal; an edge is one hop, or several along one segment, in either
-//! direction of travel. Edges are evaluated when the search asks for them and never stored, so memory grows with the nodes alone.
+//! direction of travel. Edges are evaluated when the node they leave from is settled and never stored, so memory grows with the nodes
+//! alone. Nodes are settled in batches of one hop count, each by as many threads as are worth it.
 //!
 //! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing.
 

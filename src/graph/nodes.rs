@@ -34,7 +34,7 @@ pub struct NodeSet {
 }
 
 impl NodeSet {
-    /// The largest set: some 100 bytes a node in nodes and search, so 2 GB.
+    /// The largest set: some 150 bytes a node in nodes, landings and search, so 3 GB.
     pub const MAX_NODES: u64 = 20_000_000;
 
     /// All vertices, equidistant points inside each segment, start and goal (P section IV-B).
