@@ -4,6 +4,7 @@
 #
 #   benches/scale.sh                    prints the table
 #   RUNS=5 benches/scale.sh             more runs of each case
+#   BUILD=no benches/scale.sh           with the program as it was built last
 #   benches/scale.sh --assert           and fails where a target of docs/performance.md is missed, by wall clock
 #   benches/scale.sh --assert user      the same by processor time over two, for a machine with other work on it
 #
@@ -14,7 +15,7 @@ cd "$(dirname "$0")/.."
 by=none
 if [ "${1:-}" = --assert ]; then by=${2:-wall}; fi
 runs=${RUNS:-3}
-cargo build --quiet --release --bin chta --example long_chain
+if [ "${BUILD:-yes}" = yes ]; then cargo build --quiet --release --bin chta --example long_chain; fi
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cat > "$work/mars.toml" <<'TOML'

@@ -110,9 +110,13 @@ const SLACK: f64 = 1.0 + 1e-9;
 /// Speeds in m/s (their tolerance is added here), heights in m, gravity in m/s^2.
 pub(super) fn farthest_m(takeoff_m_s: f64, landing_m_s: f64, drop_m: f64, climb_m: f64, gravity_m_s2: f64) -> f64 {
     let (takeoff, landing) = (tolerant_speed_m_s(takeoff_m_s), tolerant_speed_m_s(landing_m_s));
-    let safe = |v: f64, height_m: f64| v / gravity_m_s2 * (v * v + 2.0 * gravity_m_s2 * height_m.max(0.0)).sqrt();
     let meeting = takeoff / gravity_m_s2 * landing;
-    safe(takeoff, drop_m).min(safe(landing, climb_m)).min(meeting) * SLACK
+    safe_m(takeoff, drop_m, gravity_m_s2).min(safe_m(landing, climb_m, gravity_m_s2)).min(meeting) * SLACK
+}
+
+/// The parabola of safety's distance, where it has come down by a height.
+fn safe_m(speed_m_s: f64, height_m: f64, gravity_m_s2: f64) -> f64 {
+    speed_m_s / gravity_m_s2 * (speed_m_s * speed_m_s + 2.0 * gravity_m_s2 * height_m.max(0.0)).sqrt()
 }
 
 impl HopTest<'_> {
@@ -165,6 +169,18 @@ impl HopTest<'_> {
     pub(crate) fn reach_over_relief_m(&self, relief_m: f64) -> f64 {
         let (takeoff_m_s, landing_m_s) = self.chain().speed_bounds_m_s();
         farthest_m(takeoff_m_s, landing_m_s, relief_m, relief_m, self.gravity_m_s2())
+    }
+
+    /// The distance within which refused hops from a station are counted, m: what the greatest speeds, the greatest drop and the greatest
+    /// climb of the whole chain leave possible.
+    ///
+    /// Not the sharpest bound there is, but one that says the same of a chain however sharp the search's own bounds get.
+    pub(crate) fn counted_reach_m(&self, takeoff: &Station) -> f64 {
+        let ground = self.relief().over(0..self.chain().geometry().vertices().len());
+        let (drop_m, climb_m) = (takeoff.point.z_m - ground.lowest_m, ground.highest_m - takeoff.point.z_m);
+        let [takeoff_m_s, landing_m_s] = [ground.takeoff_m_s, ground.landing_m_s].map(tolerant_speed_m_s);
+        let g = self.gravity_m_s2();
+        safe_m(takeoff_m_s, drop_m, g).min(safe_m(landing_m_s, climb_m, g)) * (1.0 + 1e-12)
     }
 
     /// A bound that shrinks with the ground that it has within it: from that of the whole chain until it stands.

@@ -97,10 +97,10 @@ impl<'a> HopGraph<'a> {
         }
     }
 
-    /// The candidate landings of a station: within reach of one hop, or on a segment that it lies on, along which many hops reach
-    /// farther.
+    /// The candidate landings of a station: where the chain's speeds and heights do not rule out one hop, or on a segment that it lies
+    /// on, along which many hops reach farther.
     pub(super) fn landings(&self, takeoff: &Station) -> Range<usize> {
-        around(self.nodes.stations(), takeoff, self.test.reach_bound_m(takeoff))
+        around(self.nodes.stations(), takeoff, self.test.counted_reach_m(takeoff))
     }
 }
 
