@@ -100,7 +100,7 @@ fn sweep_count(sweep: &mut Sweep<'_>, takeoff: &Station, among: Range<usize>) ->
     let mut feasible = 0;
     for direction in Direction::BOTH {
         sweep.landings(black_box(takeoff), among.clone(), direction, |_, verdict| {
-            feasible += usize::from(black_box(verdict).is_ok())
+            feasible += usize::from(black_box(verdict).is_ok());
         });
     }
     feasible
@@ -123,12 +123,11 @@ fn survivors<'a>(
     let mut over_ground = 0u32;
     for (takeoff, among) in takeoffs {
         for landing in stations[among].iter().filter(|landing| landing.point.x_m != takeoff.point.x_m) {
-            match test.loft(takeoff, landing) {
-                Err(limit) => refused[limit.index()] += 1,
-                Ok(_) => {
-                    let lower = test.takeoff_set(takeoff, landing).and_then(|set| set.binding()).map(|binding| binding.lower.limit);
-                    over_ground += u32::from(lower == Some(Limit::Terrain));
-                }
+            if let Err(limit) = test.loft(takeoff, landing) {
+                refused[limit.index()] += 1;
+            } else {
+                let lower = test.takeoff_set(takeoff, landing).and_then(|set| set.binding()).map(|binding| binding.lower.limit);
+                over_ground += u32::from(lower == Some(Limit::Terrain));
             }
         }
     }

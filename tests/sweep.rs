@@ -302,7 +302,7 @@ fn nothing_feasible_lies_beyond_reach() {
     assert!(feasible > 20_000 && beyond > 50_000 && nearly > 1000, "{feasible} feasible, {beyond} beyond, {nearly} nearly as far");
 }
 
-/// Two parabolas of safety meet at X = v_t v_l / g: with one speed all over, no relief makes the reach longer.
+/// Two parabolas of safety meet at `X = v_t v_l / g`: with one speed all over, no relief makes the reach longer.
 #[test]
 fn reach_does_not_grow_with_the_chain() {
     let draw = &mut Draw::seeded(405);

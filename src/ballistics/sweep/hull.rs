@@ -18,7 +18,7 @@ use crate::quantity::ChainPoint;
 /// greatest over all vertices, to the last bit.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hull {
-    /// Columns of equal length, at least [`PADDING`] longer than the hull.
+    /// Columns of equal length, at least `PADDING` longer than the hull.
     x_m: Vec<f64>,
     z_m: Vec<f64>,
     distance_m: Vec<f64>,
@@ -35,7 +35,7 @@ const PADDING: usize = 4;
 const SCANNED: usize = 32;
 
 /// A vertex is kept unless it is this far below the hull, times the steepest slope: 512 roundings, of which a tangent commits some 32.
-const KEPT: f64 = 1.0 / (1u64 << 44) as f64;
+const KEPT: f64 = 256.0 * f64::EPSILON;
 
 impl Hull {
     /// Forgets all vertices; keeps its memory. Slopes up to `steepest` will be told apart rightly.
@@ -90,7 +90,7 @@ impl Hull {
         self.tangent(landing, run_m, clearance_m)
     }
 
-    /// The greatest loft over a stretch of the hull (and at most [`PADDING`] more vertices).
+    /// The greatest loft over a stretch of the hull (and at most `PADDING` more vertices).
     #[inline]
     fn greatest(&self, first: usize, end: usize, landing: ChainPoint, clearance_m: f64) -> f64 {
         let end = first + (end - first).next_multiple_of(PADDING);

@@ -97,8 +97,8 @@ impl Lanes {
             upper[i] = if excess >= 0.0 { greatest } else { f64::NEG_INFINITY };
         }
         if test.has_machine_limits() {
-            for i in 0..count {
-                let machine = test.machine(LineOfSight::along((x_m[i] - from.x_m).abs(), self.slope[i]));
+            for (i, x_m) in x_m.iter().enumerate() {
+                let machine = test.machine(LineOfSight::along((x_m - from.x_m).abs(), self.slope[i]));
                 self.lower[i] = self.lower[i].max(machine.lower);
                 self.upper[i] = self.upper[i].min(machine.upper);
             }
