@@ -1,5 +1,4 @@
 //! Bounds on the fewest hops: time against segments. `cargo bench --bench proof`
-#![expect(missing_docs, reason = "the entry of a bench")]
 #![expect(clippy::unwrap_used, reason = "a bench that cannot build its ground should stop")]
 
 use chta::{
