@@ -315,6 +315,9 @@ pub(crate) struct RequireArgs {
     /// Greatest value to try, in the key's unit [default: by key]
     #[arg(long, value_name = "V", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
     /// How close to bring the two values, as a share of them
     #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
     pub(crate) resolution: f64,

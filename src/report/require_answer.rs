@@ -25,7 +25,7 @@ pub struct RequireAnswer {
     pub tries: Vec<RequireTry>,
     /// How many hops the path at `reachable_at` has.
     pub hops: Option<u64>,
-    /// That path.
+    /// That path; empty also where it has too many hops to list.
     pub path: Vec<HopRecord>,
     /// What it adds up to.
     pub totals: Option<TotalsRecord>,

@@ -10,7 +10,7 @@ use chta::{
     scenario::{Key, Kind},
 };
 
-use super::search::proved;
+use super::search::{proved, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, RequireArgs},
@@ -56,6 +56,7 @@ struct Tried {
 /// Finds the least capability.
 pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     let (capability, [from, to]) = asked(args)?;
+    use_threads(args.threads)?;
     let (mut weakest, strongest) = if capability.more_is_more { (from, to) } else { (to, from) };
     let first = with_value(args, strongest, args.common.quiet)?;
     if let Some(other) = other_angle_deg(capability, &first).filter(|_| args.from.is_none() || args.to.is_none()) {
@@ -108,7 +109,7 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     };
     let reached = at(threshold.reachable_at);
     if let Some(tried) = reached {
-        tried.add_path(&mut answer)?;
+        tried.add_path(&mut answer);
     }
     // With the value that the path needs, so that `chta run` on the result flies it.
     let shown = reached.map_or(&first, |tried| &tried.loaded);
@@ -134,17 +135,17 @@ impl Tried {
         Ok(bounds.gap.as_ref().map(GapRecord::of))
     }
 
-    /// The path that was found here.
-    fn add_path(&self, answer: &mut RequireAnswer) -> Result<(), Failure> {
+    /// The path that was found here; its hops are only counted where they are too many to list.
+    fn add_path(&self, answer: &mut RequireAnswer) {
         let options = &self.loaded.scenario.search;
         if let Outcome::Path { legs, .. } = &self.bounds.answer.outcome {
             let test = self.loaded.hop_test();
-            let path = generate(&test, legs, options.takeoff, options.split).map_err(|e| Failure::message(e.to_string()))?;
             answer.hops = self.bounds.upper();
-            answer.path = HopRecord::rows(&path, self.loaded.prepared.projection.as_ref());
-            answer.totals = Some(TotalsRecord::from(&path.totals));
+            if let Ok(path) = generate(&test, legs, options.takeoff, options.split) {
+                answer.path = HopRecord::rows(&path, self.loaded.prepared.projection.as_ref());
+                answer.totals = Some(TotalsRecord::from(&path.totals));
+            }
         }
-        Ok(())
     }
 }
 

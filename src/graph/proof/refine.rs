@@ -79,17 +79,14 @@ impl<'a, F: Faults> Refinement<'a, F> {
         for (i, cell) in self.cells.iter().enumerate() {
             let first = u32::try_from(cells.len()).unwrap_or(u32::MAX);
             let is_chosen = next.next_if_eq(&i).is_some();
-            match (cell.site, cell.middle_m().filter(|_| is_chosen)) {
-                (Site::Inside(segment), Some(middle_m)) => {
-                    cells.push(stretch::<F>(geometry, self.prover.slopes(), segment, cell.from_m, middle_m));
-                    cells.push(stretch::<F>(geometry, self.prover.slopes(), segment, middle_m, cell.to_m));
-                    halves.push((first, 2));
-                    self.splits += 1;
-                }
-                _ => {
-                    cells.push(*cell);
-                    halves.push((first, 1));
-                }
+            if let (Site::Inside(segment), Some(middle_m)) = (cell.site, cell.middle_m().filter(|_| is_chosen)) {
+                cells.push(stretch::<F>(geometry, self.prover.slopes(), segment, cell.from_m, middle_m));
+                cells.push(stretch::<F>(geometry, self.prover.slopes(), segment, middle_m, cell.to_m));
+                halves.push((first, 2));
+                self.splits += 1;
+            } else {
+                cells.push(*cell);
+                halves.push((first, 1));
             }
         }
         self.from_start.after_split(&halves, cells.len());
