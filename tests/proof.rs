@@ -271,7 +271,6 @@ fn no_density_of_points_beats_the_lower_bound() {
             (_, false) => open += 1,
         }
     }
-    println!("{untraversable} untraversable, {met} met, {open} open");
     assert!(untraversable > 150 && met > 600 && open < 50, "{untraversable} untraversable, {met} met, {open} open");
 }
 
@@ -283,7 +282,6 @@ fn bounds_meet_on_chains_of_the_prototypes_kind() {
         let journey = Journey::rough(draw, 8);
         let found = journey.bounds(50_000);
         journey.verify(&found);
-        println!("{i}: {:?} {:?} {:?}", found.lower, found.upper(), found.summary);
         if !found.is_proved() {
             open.push((i, found.lower, found.upper()));
         }

@@ -2,6 +2,7 @@
 //!
 //! The files are read from ../shared/dem and skipped with a printed reason where they are absent.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
+#![allow(clippy::print_stdout, reason = "a skipped DEM and every slice left open are told")]
 
 mod support;
 
