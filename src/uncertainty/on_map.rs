@@ -1,5 +1,7 @@
 //! Flights in three dimensions, over the triangles of a DEM.
 
+use std::sync::Arc;
+
 use nalgebra::{Point3, Vector2};
 
 use super::{
@@ -8,7 +10,7 @@ use super::{
     on_chain::comes_down_m,
 };
 use crate::{
-    ballistics::{Arc, HopTest, LineOfSight, limits},
+    ballistics::{self, HopTest, LineOfSight, limits},
     chain::{Contact, ContactRule, Direction, Ground as SegmentGround, GroundForm, LineConstraints, settle},
     graph::{Cost, CostToGo},
     quantity::{ChainPoint, MapPoint, SegmentId},
@@ -32,7 +34,7 @@ pub(super) struct DemGround<'a> {
     triangles: Triangles<'a>,
     to_go: Option<&'a CostToGo>,
     /// The nodes of the costs-to-go on the map.
-    nodes: &'a [MapSpot],
+    nodes: Arc<[MapSpot]>,
     height_rounding_m: f64,
     place_rounding_m: f64,
     /// What the rest slope is where friction does not say it.
@@ -56,7 +58,7 @@ impl<'a> DemGround<'a> {
         surface: &'a Surface,
         map: MapGround<'a>,
         to_go: Option<&'a CostToGo>,
-        nodes: &'a [MapSpot],
+        nodes: Arc<[MapSpot]>,
     ) -> Self {
         let (low_m, high_m) = map.dem.elevation_range_m();
         let bounds = map.dem.bounds();
@@ -76,6 +78,11 @@ impl<'a> DemGround<'a> {
             },
             varied: Variation::default(),
         }
+    }
+
+    /// A place of the nominal ground; `None` where there is none.
+    pub(super) fn nominal(&self, at: MapPoint) -> Option<MapSpot> {
+        self.triangles.at(at, self.triangles.nominal()).map(|(z_m, _)| MapSpot { at, z_m })
     }
 
     /// Height of a post as this trial finds it.
@@ -161,7 +168,14 @@ impl<'a> DemGround<'a> {
     }
 
     /// The arc to fly to a place, by every limit along the slice to it; `None` where there is none.
-    fn arc(&self, to_go: &CostToGo, from: &MapSpot, to: &MapSpot, sight: LineOfSight, heading: Vector2<f64>) -> Option<Arc> {
+    fn arc(
+        &self,
+        to_go: &CostToGo,
+        from: &MapSpot,
+        to: &MapSpot,
+        sight: LineOfSight,
+        heading: Vector2<f64>,
+    ) -> Option<ballistics::Arc> {
         let run_m = sight.run_m();
         let end_m = run_m - self.place_rounding_m - BESIDE_M;
         let mut walk = self.triangles.walk(from.at, heading, self.triangles.nominal());
@@ -181,7 +195,8 @@ impl<'a> DemGround<'a> {
         let landing = self.granted(last.gradient, heading, to.at - heading * BESIDE_M, Contact::Landing)?;
         let mut lofts = self.test.open_air(sight, &takeoff, &landing).ok()?;
         lofts.lower = lofts.lower.max(lower);
-        (!lofts.is_empty()).then(|| Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), self.test.gravity_m_s2()))
+        (!lofts.is_empty())
+            .then(|| ballistics::Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), self.test.gravity_m_s2()))
     }
 
     /// How far off its aim, ahead and across, an arc may pass and still land on it.
@@ -339,8 +354,7 @@ impl Ground for DemGround<'_> {
         if along_m == 0.0 && across_m == 0.0 && self.varied.heights.is_none() {
             return Some(*spot);
         }
-        let at = spot.at + Vector2::new(along_m, across_m);
-        self.triangles.at(at, self.triangles.nominal()).map(|(z_m, _)| MapSpot { at, z_m })
+        self.nominal(spot.at + Vector2::new(along_m, across_m))
     }
 
     fn replanned(&self, believed: &MapSpot) -> Option<Command<MapSpot>> {

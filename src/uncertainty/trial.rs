@@ -123,7 +123,7 @@ pub(super) fn fly<G: Ground>(
             break TrialOutcome::HopLimit;
         }
         let launch = rules.launched(&command.launch, command.speed_m_s, &errors);
-        if !journey.ground.holds_takeoff(&journey.spot, &launch) {
+        if !launch.stays() && !journey.ground.holds_takeoff(&journey.spot, &launch) {
             break TrialOutcome::SlidAtTakeoff;
         }
         let ended = journey.hop(&launch, &command.aim, &errors, |landing, hop| {
@@ -195,6 +195,8 @@ impl<G: Ground> Journey<'_, G> {
         let arrival = Arrival::after(launch, flight.time_s, self.rules.gravity_m_s2);
         let drift_m = [uncertainty.drift_along_sigma_m * errors.drift[0], uncertainty.drift_across_sigma_m * errors.drift[1]];
         let failure = match &flight.footing {
+            // Nothing happens to a robot that does not move.
+            _ if launch.stays() => None,
             None => Some(TrialOutcome::Lost),
             Some(footing) => ground.landing_failure(&flight.end, footing, &arrival),
         };
@@ -207,7 +209,7 @@ impl<G: Ground> Journey<'_, G> {
         };
         let (aim_m, rest_m) = (ground.point(aim), ground.point(&rest));
         let error_m = (rest_m - aim_m).xy().norm();
-        let landed = flight.footing.is_some();
+        let landed = flight.footing.is_some() || launch.stays();
         let landing = landed.then(|| Landing { hop: self.hops, error_m, rest: rest_m.xy() });
         self.hops += 1;
         self.spot = rest;

@@ -2,5 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene should stop")]
 
+mod contact;
+mod outcomes;
 mod plans;
 mod scene;
+#[path = "../support/mod.rs"]
+mod support;
