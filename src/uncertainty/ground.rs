@@ -55,7 +55,7 @@ pub(super) struct Flight<S, F> {
 pub(super) struct Variation {
     /// Added to every friction coefficient.
     pub(super) friction: f64,
-    pub(super) heights: Option<HeightField>,
+    pub(super) heights: Option<Box<HeightField>>,
 }
 
 /// Ground to fly over: nominal, or as one trial finds it.

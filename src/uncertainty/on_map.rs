@@ -99,6 +99,11 @@ impl<'a> DemGround<'a> {
         }
     }
 
+    /// The facet that a take-off leaves from: the one ahead. `None` where the known ground ends.
+    fn facet_ahead(&self, at: MapPoint, heading: Vector2<f64>) -> Option<Gradient> {
+        self.triangles.walk(at, heading, self.heights()).next().map(|span| span.gradient)
+    }
+
     /// The friction at a place; `None` where angles are stated instead.
     fn friction(&self, at: MapPoint) -> Option<f64> {
         let constant = match self.surface.grip {
@@ -211,16 +216,16 @@ impl<'a> DemGround<'a> {
         let over_m = run_m * (slope - curvature * run_m) - rise_m;
         let height_slack_m = slack_m * steepness + self.height_rounding_m;
         let hits = run_m > 0.0 && across_m <= slack_m && over_m.abs() <= height_slack_m && self.varied.heights.is_none();
-        hits.then_some(Aimed { run_m, slack_m, height_slack_m })
+        hits.then_some(Aimed { run: run_m, slack: slack_m, height_slack: height_slack_m })
     }
 }
 
-/// A landing point that a flight passes as closely as rounding allows.
+/// A landing point that a flight passes as closely as rounding allows, all in m.
 #[derive(Clone, Copy)]
 struct Aimed {
-    run_m: f64,
-    slack_m: f64,
-    height_slack_m: f64,
+    run: f64,
+    slack: f64,
+    height_slack: f64,
 }
 
 impl Ground for DemGround<'_> {
@@ -243,7 +248,7 @@ impl Ground for DemGround<'_> {
     }
 
     fn holds_takeoff(&self, from: &MapSpot, launch: &Launch) -> bool {
-        let Some(first) = self.triangles.walk(from.at, launch.heading, self.heights()).next() else {
+        let Some(gradient) = self.facet_ahead(from.at, launch.heading) else {
             // Beyond the edge of the known ground: nothing is known against it.
             return true;
         };
@@ -252,11 +257,11 @@ impl Ground for DemGround<'_> {
             return false;
         }
         let friction = self.friction(ahead);
-        if !self.rests(first.gradient, friction) {
+        if !self.rests(gradient, friction) {
             return false;
         }
-        match (friction, self.stated(first.gradient, launch.heading)) {
-            (Some(friction), _) => holds_on(first.gradient, friction, velocity(launch), ANGLE_TOLERANCE_RAD),
+        match (friction, self.stated(gradient, launch.heading)) {
+            (Some(friction), _) => holds_on(gradient, friction, velocity(launch), ANGLE_TOLERANCE_RAD),
             (None, Some(stated)) => holds(Ok(stated.takeoff), launch),
             (None, None) => false,
         }
@@ -267,19 +272,18 @@ impl Ground for DemGround<'_> {
         let across = launch.horizontal_m_s;
         let (slope, curvature) = (launch.vertical_m_s / across, g / (2.0 * across * across));
         let mut last = FacetSpan { from_m: 0.0, to_m: 0.0, from_z_m: from.z_m, to_z_m: from.z_m, gradient: Gradient::zeros() };
-        let mut walk = self.triangles.walk(from.at, launch.heading, self.heights());
         if !(curvature.is_finite() && slope.is_finite()) {
             // Straight up, and down where it began.
             let time_s = (2.0 * launch.vertical_m_s / g).max(0.0);
-            return Flight { end: *from, footing: walk.next().map(|span| span.gradient), time_s };
+            return Flight { end: *from, footing: self.facet_ahead(from.at, launch.heading), time_s };
         }
         let aimed = self.aimed_at(from, launch, aim, slope, curvature);
         let mut over_m = 0.0;
-        while let Some(span) = walk.next() {
+        for span in self.triangles.walk(from.at, launch.heading, self.heights()) {
             if let Some(aimed) = aimed
-                && span.to_m >= aimed.run_m - aimed.slack_m
+                && span.to_m >= aimed.run - aimed.slack
             {
-                return Flight { end: *aim, footing: Some(span.gradient), time_s: aimed.run_m / across };
+                return Flight { end: *aim, footing: Some(span.gradient), time_s: aimed.run / across };
             }
             if span.to_m == span.from_m {
                 continue;
@@ -291,7 +295,7 @@ impl Ground for DemGround<'_> {
             } else {
                 (from.z_m - span.to_z_m) + span.to_m * (slope - curvature * span.to_m)
             };
-            if over_next_m <= 0.0 && aimed.is_none_or(|aimed| over_next_m < -aimed.height_slack_m) {
+            if over_next_m <= 0.0 && aimed.is_none_or(|aimed| over_next_m < -aimed.height_slack) {
                 let climb = slope - 2.0 * curvature * span.from_m - ground;
                 let further_m = comes_down_m(over_m, climb, curvature).min(span.to_m - span.from_m);
                 let distance_m = span.from_m + further_m;

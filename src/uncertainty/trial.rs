@@ -69,7 +69,8 @@ impl Rules {
     fn variation(&self, draws: &mut TrialDraws, trial: u64) -> Option<Variation> {
         let u = &self.uncertainty;
         let friction = if u.friction_sigma > 0.0 { u.friction_sigma * draws.friction(trial) } else { 0.0 };
-        let heights = (u.height_sigma_m > 0.0).then(|| HeightField::of(draws, trial, u.height_sigma_m, u.height_correlation_m));
+        let heights =
+            (u.height_sigma_m > 0.0).then(|| Box::new(HeightField::of(draws, trial, u.height_sigma_m, u.height_correlation_m)));
         (u.friction_sigma > 0.0 || heights.is_some()).then_some(Variation { friction, heights })
     }
 

@@ -210,7 +210,6 @@ fn landings_on_flat_ground_follow_their_analytic_distribution() {
             let share = below(range_m);
             largest.max((share - i as f64 / n).abs()).max((share - (i as f64 + 1.0) / n).abs())
         });
-        println!("sqrt(n) D = {}", largest * n.sqrt());
         assert!(largest * n.sqrt() < 1.628, "sqrt(n) D = {}, more than the 1.628 of level 0.01", largest * n.sqrt());
         // The summary's quantiles against the same landings, sorted.
         let mut errors: Vec<f64> = listener.hops.iter().map(|hop| hop.error_m).collect();

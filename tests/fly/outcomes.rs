@@ -20,7 +20,6 @@ use super::{
 fn count(scene: &Scene, uncertainty: Uncertainty, options: &TrialOptions, outcome: TrialOutcome) -> u64 {
     let summary = scene.planned().run(uncertainty, options);
     assert_eq!(summary.outcomes.total(), options.trials);
-    println!("{}: {:?}", outcome.name(), summary.outcomes);
     summary.outcomes.of(outcome)
 }
 
@@ -109,7 +108,6 @@ fn zones_gaps_and_borders_lose_the_robot() {
         let options = TrialOptions { trials: 200, goal_tolerance_m: 8.0, ..HUNDRED };
         let mut listener = Listener::default();
         let summary = Simulation::new(mission, uncertainty).unwrap().run(&options, &mut listener).unwrap();
-        println!("{:?}", summary.outcomes);
         (summary.outcomes.of(TrialOutcome::Lost), listener)
     };
     let map = MapGround { keep_out: Some(&zones), ..planned.mission().map.unwrap() };

@@ -68,7 +68,6 @@ fn each_error_alone_changes_the_outcomes() {
         for (name, uncertainty) in each_error(on_a_map) {
             let policy = if name == "position" { Policy::Replan } else { Policy::OpenLoop };
             let summary = planned.run(uncertainty, &options(300, policy));
-            println!("map {on_a_map}, {name}: {:?}", summary.outcomes.each().collect::<Vec<_>>());
             assert_eq!(summary.outcomes.total(), 300);
             assert!(summary.outcomes.of(TrialOutcome::Reached) < 300, "{name} changes nothing");
         }
@@ -117,7 +116,6 @@ fn success_falls_as_errors_grow_on_the_same_draws() {
                 planned.run(uncertainty, &options(500, policy)).outcomes.of(TrialOutcome::Reached)
             })
             .to_vec();
-        println!("{policy:?}: {reached:?}");
         assert!(reached.windows(2).all(|pair| pair[1] <= pair[0]) && reached[0] == 500 && reached[4] < reached[0], "{reached:?}");
     }
 }
@@ -146,7 +144,6 @@ fn replanning_makes_up_for_drift() {
             .simulation(drift)
             .compare(&TrialOptions { goal_tolerance_m: 3.0, ..options(300, Policy::OpenLoop) }, &mut ())
             .unwrap();
-        println!("{:?}\n{:?}", open_loop.outcomes, replan.outcomes);
         assert_eq!((open_loop.policy, replan.policy), (Policy::OpenLoop, Policy::Replan));
         assert!(replan.success.low > open_loop.success.high, "{:?} {:?}", open_loop.success, replan.success);
     }
