@@ -128,3 +128,80 @@ fn settled(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
     }
     costs
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        chain::{ConstrainedChain, PolygonalChain},
+        graph::{Outcome, PointSpacing, search},
+        quantity::ChainPoint,
+        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    };
+
+    fn rough_chain() -> (ConstrainedChain, Hopper) {
+        let points = (0..60).map(|i| ChainPoint::new(f64::from(i), 0.5 * f64::from(i * i % 7) - 0.02 * f64::from(i))).collect();
+        let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(6.0, 6.0) };
+        let grip = Some(Grip::Friction(FrictionCone::new(1.1).unwrap()));
+        let surface = Surface { grip, rest: RestSlope::Unlimited };
+        (ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, &surface).unwrap(), hopper)
+    }
+
+    #[test]
+    fn every_node_has_to_go_what_a_search_from_it_costs() {
+        let (chain, hopper) = rough_chain();
+        let test = HopTest::new(&chain, &hopper, 1.6);
+        let station = |x_m| chain.geometry().station(x_m).unwrap();
+        for effort in Effort::ALL {
+            let spacing = PointSpacing::PerSegment(1);
+            let options = SearchOptions { spacing: Some(spacing), effort, ..SearchOptions::default() };
+            let nodes = NodeSet::new(&chain, station(3.0), station(50.0), spacing).unwrap();
+            let to_go = CostToGo::of(&test, nodes, &options);
+            let (mut reached, mut cut_off) = (0, 0);
+            for (i, from) in to_go.nodes().stations().iter().enumerate().step_by(5) {
+                let answer = search(&test, *from, station(50.0), &options, &mut |_| {}).unwrap();
+                match (answer.outcome, to_go.of_node(NodeId(i))) {
+                    (Outcome::Path { cost, .. }, Some(found)) => {
+                        assert_eq!(cost.hops(), found.hops());
+                        assert!((cost.effort() - found.effort()).abs() <= 1e-9 * cost.effort(), "{cost:?} {found:?}");
+                        reached += 1;
+                    }
+                    (Outcome::Path { .. }, None) => panic!("node {i} leads to the goal"),
+                    (_, found) => {
+                        assert_eq!(found, None, "node {i} does not lead to the goal");
+                        cut_off += 1;
+                    }
+                }
+            }
+            assert!(reached > 10 && reached + cut_off > 20, "{reached} reached, {cut_off} cut off");
+        }
+    }
+
+    #[test]
+    fn the_best_leg_is_the_best_of_all_legs() {
+        let (chain, hopper) = rough_chain();
+        let test = HopTest::new(&chain, &hopper, 1.6);
+        let station = |x_m| chain.geometry().station(x_m).unwrap();
+        let spacing = PointSpacing::PerSegment(1);
+        for effort in Effort::ALL {
+            let options = SearchOptions { spacing: Some(spacing), effort, ..SearchOptions::default() };
+            let nodes = NodeSet::new(&chain, station(3.0), station(50.0), spacing).unwrap();
+            let to_go = CostToGo::of(&test, nodes, &options);
+            let counted = (options.effort, options.takeoff, options.split);
+            let mut found = 0;
+            for i in 0..200 {
+                let from = station(0.05 + 0.29 * f64::from(i));
+                let of_all = (0..to_go.nodes().stations().len())
+                    .filter_map(|node| {
+                        let landing = to_go.nodes().station(NodeId(node));
+                        let edge = Edge::between(&test, &from, landing).ok()?;
+                        Some(edge.cost(&test, &from, landing, counted) + to_go.of_node(NodeId(node))?)
+                    })
+                    .min();
+                assert_eq!(to_go.best_leg(&test, &from).map(|(_, cost)| cost), of_all, "from {from:?}");
+                found += u32::from(of_all.is_some());
+            }
+            assert!(found > 50, "only {found} places lead on");
+        }
+    }
+}
