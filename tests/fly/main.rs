@@ -14,3 +14,4 @@ mod plans;
 mod scene;
 #[path = "../support/mod.rs"]
 mod support;
+mod terrains;
