@@ -35,7 +35,7 @@ const ERRORS: Uncertainty = Uncertainty {
 
 /// A slower robot on ground of less grip plans, so that the real one has some of both to spare.
 fn robots() -> [(Hopper, Surface); 2] {
-    [(7.0, 0.8), (10.0, 1.5)].map(|(speed_m_s, friction)| {
+    [(7.0, 0.8), (10.0, 3.0)].map(|(speed_m_s, friction)| {
         let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(speed_m_s, speed_m_s) };
         let grip = Some(Grip::Friction(FrictionCone::new(friction).expect("a friction coefficient")));
         (hopper, Surface { grip, rest: RestSlope::AsFrictionHolds })
@@ -57,7 +57,8 @@ fn fly(
     let test = HopTest::new(&chains[0], &planner.0, support::MARS_M_S2);
     let (first_m, last_m) = geometry.extent_m();
     let station = |x_m| geometry.station(x_m).expect("an end of the chain");
-    let (start, goal) = (station(first_m), station(last_m));
+    // Ground behind the start and beyond the goal, for those that fly too short or too far.
+    let (start, goal) = (station(first_m + 5.0), station(last_m - 10.0));
     let spacing = PointSpacing::AtMostM(spacing_m);
     let options = SearchOptions { spacing: Some(spacing), takeoff: TakeoffChoice::MidRange, ..SearchOptions::default() };
     let answer = search(&test, start, goal, &options, &mut |_| {}).expect("few nodes");
@@ -96,7 +97,7 @@ fn on_the_chain(bencher: Bencher<'_, '_>, policy: &str) {
 #[divan::bench(args = ["open-loop", "replan"])]
 fn on_the_map(bencher: Bencher<'_, '_>, policy: &str) {
     let dem = read_dem(&data("terrain/mars_crater_field.tif")).expect("the shipped DEM");
-    let profile = slice(&dem, MapPoint::new(12.0, 84.0), MapPoint::new(90.0, 58.0)).expect("a slice");
+    let profile = slice(&dem, MapPoint::new(12.0, 84.0), MapPoint::new(114.0, 50.0)).expect("a slice");
     let chain = PolygonalChain::from_profile(&profile, None).expect("a chain");
     let errors = Uncertainty { heading_sigma: Angle::from_radians(0.01), drift_across_sigma_m: 0.1, ..ERRORS };
     fly(bencher, &chain, Some(&dem), 2.0, errors, named(policy));

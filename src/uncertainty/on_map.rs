@@ -104,14 +104,18 @@ impl<'a> DemGround<'a> {
         self.triangles.walk(at, heading, self.heights()).next().map(|span| span.gradient)
     }
 
-    /// The friction at a place; `None` where angles are stated instead.
-    fn friction(&self, at: MapPoint) -> Option<f64> {
+    /// The friction that a place is thought to have; `None` where angles are stated instead.
+    fn nominal_friction(&self, at: MapPoint) -> Option<FrictionCone> {
         let constant = match self.surface.grip {
             Some(Grip::Friction(cone)) => Some(cone),
             Some(Grip::FromSlope { .. }) | None => None,
         };
-        let cone = self.map.friction.and_then(|raster| raster.at(at)).or(constant)?;
-        Some((cone.coefficient() + self.varied.friction).max(0.0))
+        self.map.friction.and_then(|raster| raster.at(at)).or(constant)
+    }
+
+    /// The friction that a place has in this trial.
+    fn friction(&self, at: MapPoint) -> Option<f64> {
+        self.nominal_friction(at).map(|cone| (cone.coefficient() + self.varied.friction).max(0.0))
     }
 
     fn is_kept_out(&self, at: MapPoint) -> bool {
@@ -138,7 +142,7 @@ impl<'a> DemGround<'a> {
 
     /// What the nominal ground grants a contact on a facet met along a heading: as a slice along that heading has it.
     fn granted(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint, contact: Contact) -> Option<ContactRule> {
-        let friction = self.friction(beside).and_then(|coefficient| FrictionCone::new(coefficient).ok());
+        let friction = self.nominal_friction(beside);
         let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
         let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out: self.is_kept_out(beside) };
         let settled = settle(SegmentId(0), gradient.dot(&heading), &ground, self.test.hopper(), self.surface).ok()?;

@@ -149,3 +149,32 @@ fn replanning_makes_up_for_drift() {
         assert!(replan.success.low > open_loop.success.high, "{:?} {:?}", open_loop.success, replan.success);
     }
 }
+
+/// Friction and height errors are what the ground is; the robot plans by its map.
+#[test]
+fn the_robot_does_not_know_what_ground_it_drew() {
+    for scene in [Scene::rolling(), Scene::craters()] {
+        let planned = scene.planned();
+        let position = Uncertainty { position_sigma_m: 0.5, ..Uncertainty::NONE };
+        let first_hops = |uncertainty| {
+            let mut listener = Listener::default();
+            planned.simulation(uncertainty).run(&options(60, Policy::Replan), &mut listener).unwrap();
+            listener.hops.into_iter().filter(|hop| hop.hop == 1).collect::<Vec<_>>()
+        };
+        let nominal = first_hops(position);
+        for other in [
+            Uncertainty { friction_sigma: 0.2, ..position },
+            Uncertainty { height_sigma_m: 0.1, height_correlation_m: 20.0, ..position },
+        ] {
+            let mut compared = 0;
+            for hop in first_hops(other) {
+                // Those that slid at their take-off have no hop, in either run.
+                let Some(same) = nominal.iter().find(|known| known.trial == hop.trial) else { continue };
+                assert_eq!((hop.heading, hop.horizontal_m_s), (same.heading, same.horizontal_m_s), "{hop:?}");
+                assert_eq!(hop.takeoff_vertical_m_s, same.takeoff_vertical_m_s);
+                compared += 1;
+            }
+            assert!(compared > 5, "only {compared} first hops in both");
+        }
+    }
+}
