@@ -4,6 +4,7 @@
 //! `cargo bench --bench fly`. Items are flown hops, so the throughput is hops a second a core. Compare lines of one run with each other.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
+#![allow(clippy::print_stdout, reason = "how the trials end belongs to the figures")]
 
 mod support;
 

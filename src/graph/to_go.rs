@@ -75,7 +75,8 @@ impl CostToGo {
     /// The best way on from any station of the chain, which need not be a node: the first leg, and what the whole journey then costs.
     /// `None` where no node that leads to the goal is in reach.
     ///
-    /// Of two that cost the same the one to the node with the smaller x.
+    /// Nodes are tried from the goal's side on: those with the least to go come early, and the others need no hop test. Of two legs that
+    /// make the journey cost the same, the one tried first is taken.
     ///
     /// # Complexity
     /// A hop test for each node in reach that could still be better than the best known.
@@ -83,7 +84,11 @@ impl CostToGo {
         let counted = (self.options.effort, self.options.takeoff, self.options.split);
         let stations = self.nodes.stations();
         let mut best: Option<(Leg, Cost)> = None;
-        for node in self.nodes.around(from, test.reach_bound_m(from)) {
+        let in_reach = self.nodes.around(from, test.reach_bound_m(from));
+        let goal_ahead = self.nodes.station(self.nodes.goal()).point.x_m > from.point.x_m;
+        let count = in_reach.len();
+        for i in 0..count {
+            let node = if goal_ahead { in_reach.end - 1 - i } else { in_reach.start + i };
             let landing = &stations[node];
             let (Some(to_go), Some(sight)) = (self.costs[node], test.line_of_sight(from, landing)) else { continue };
             let too_dear = |cost: Cost| best.as_ref().is_some_and(|(_, known)| cost >= *known);

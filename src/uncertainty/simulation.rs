@@ -64,6 +64,9 @@ impl<'a> Simulation<'a> {
         let course = match mission.map {
             None => Course::Chain(ChainGround::new(test, surface, to_go), chain_plan(&mission)),
             Some(map) => {
+                if surface.grip.is_none() && map.friction.is_none() {
+                    return Err(SimulationError::NoGrip);
+                }
                 let nodes = map_nodes(&mission, map)?;
                 Course::Map(DemGround::new(test, surface, map, to_go, nodes), map_plan(&mission, map)?)
             }

@@ -159,6 +159,24 @@ fn a_rate_known_well_enough_ends_the_run_after_whole_thousands() {
     assert!(summary.trajectories.iter().all(|t| t.hops.len() == t.trial.hops as usize));
 }
 
+#[test]
+fn a_map_needs_grip_and_the_path_must_lie_on_it() {
+    let scene = plain();
+    let planned = scene.planned();
+    let bare = Surface { grip: None, rest: RestSlope::Unlimited };
+    let error = Simulation::new(Mission { surface: &bare, ..planned.mission() }, Uncertainty::NONE).unwrap_err();
+    assert!(matches!(error, SimulationError::NoGrip), "{error}");
+    let map = GeoReference::local(MapPoint::new(0.0, 100.0), 10.0, 10.0).unwrap();
+    let small = Dem::new(11, 6, vec![5.0; 66], map).unwrap();
+    let map = Some(MapGround { dem: &small, friction: None, keep_out: None });
+    let error = Simulation::new(Mission { map, to_go: None, ..planned.mission() }, Uncertainty::NONE).unwrap_err().to_string();
+    assert!(error.contains("the goal lies at (93 m, 47 m)"), "{error}");
+    let mut path = planned.path.clone();
+    path.hops[0].map = None;
+    let error = Simulation::new(Mission { path: &path, ..planned.mission() }, Uncertainty::NONE).unwrap_err();
+    assert!(matches!(error, SimulationError::NotOnMap { hop: 1 }), "{error}");
+}
+
 /// Wants no more after the second batch.
 struct Impatient(Vec<Progress>);
 
