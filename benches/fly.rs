@@ -87,11 +87,18 @@ fn data(file: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(file)
 }
 
-/// The shipped chain, no points inside its segments of a metre.
+/// The shipped chain, its vertices a metre apart as nodes.
 #[divan::bench(args = ["open-loop", "replan"])]
 fn on_the_chain(bencher: Bencher<'_, '_>, policy: &str) {
     let chain = read_chain_csv_file(data("chains/rolling_100.csv")).expect("the shipped chain").chain;
     fly(bencher, &chain, None, 2.0, ERRORS, named(policy));
+}
+
+/// Replanning over more nodes: their spacing, m.
+#[divan::bench(args = [0.5, 0.25])]
+fn on_the_chain_replanned_over(bencher: Bencher<'_, '_>, spacing_m: f64) {
+    let chain = read_chain_csv_file(data("chains/rolling_100.csv")).expect("the shipped chain").chain;
+    fly(bencher, &chain, None, spacing_m, ERRORS, Policy::Replan);
 }
 
 /// The shipped crater field.

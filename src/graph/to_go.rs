@@ -90,9 +90,13 @@ impl CostToGo {
         for i in 0..count {
             let node = if goal_ahead { in_reach.end - 1 - i } else { in_reach.start + i };
             let landing = &stations[node];
-            let (Some(to_go), Some(sight)) = (self.costs[node], test.line_of_sight(from, landing)) else { continue };
+            let Some(to_go) = self.costs[node] else { continue };
             let too_dear = |cost: Cost| best.as_ref().is_some_and(|(_, known)| cost >= *known);
-            if too_dear(Cost::of_hops(1) + to_go) || too_dear(self.least_cost(sight, test.gravity_m_s2()) + to_go) {
+            if too_dear(Cost::of_hops(1) + to_go) {
+                continue;
+            }
+            let Some(sight) = test.line_of_sight(from, landing) else { continue };
+            if too_dear(self.least_cost(sight, test.gravity_m_s2()) + to_go) {
                 continue;
             }
             let Ok(edge) = Edge::between(test, from, landing) else { continue };
