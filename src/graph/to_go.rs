@@ -2,11 +2,12 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use super::{Cost, Edge, Effort, HopGraph, Leg, NodeSet, SearchOptions};
+use super::{Cost, Effort, HopGraph, Leg, NodeSet, SearchOptions, nodes::around};
 use crate::{
     ballistics::{Arc, HopTest, LineOfSight},
-    chain::Station,
+    chain::{Direction, Station},
     quantity::NodeId,
+    world::tolerant_speed_m_s,
 };
 
 /// The cost of the cheapest way from every node to the goal, computed once: what a robot needs that finds itself elsewhere than planned.
@@ -30,11 +31,15 @@ impl CostToGo {
     /// # Complexity
     /// With V nodes, W of them in reach of each and S vertices flown past: O(V W S + V W log V) time, O(V W) heap entries at worst.
     pub fn of(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions) -> Self {
-        let graph = HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split);
-        let costs = settled(&graph);
+        let costs = settled(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split));
         let mut in_order: Vec<NodeId> = (0..costs.len()).map(NodeId).filter(|node| costs[node.index()].is_some()).collect();
         in_order.sort_by_key(|node| (costs[node.index()], *node));
         Self { nodes, options: options.clone(), costs, in_order }
+    }
+
+    /// The graph that the costs are counted in.
+    fn graph<'g>(&'g self, test: &'g HopTest<'g>) -> HopGraph<'g> {
+        HopGraph::new(test, &self.nodes, self.options.effort, self.options.takeoff, self.options.split)
     }
 
     /// The nodes.
@@ -81,10 +86,11 @@ impl CostToGo {
     /// # Complexity
     /// A hop test for each node in reach that could still be better than the best known.
     pub fn best_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<(Leg, Cost)> {
-        let counted = (self.options.effort, self.options.takeoff, self.options.split);
+        let graph = self.graph(test);
         let stations = self.nodes.stations();
+        let reach = OneHop::of(test);
         let mut best: Option<(Leg, Cost)> = None;
-        let in_reach = self.nodes.around(from, test.reach_bound_m(from));
+        let in_reach = around(stations, from, test.reach_bound_m(from));
         let goal_ahead = self.nodes.station(self.nodes.goal()).point.x_m > from.point.x_m;
         let count = in_reach.len();
         for i in 0..count {
@@ -96,16 +102,41 @@ impl CostToGo {
                 continue;
             }
             let Some(sight) = test.line_of_sight(from, landing) else { continue };
-            if too_dear(self.least_cost(sight, test.gravity_m_s2()) + to_go) {
+            let too_far = reach.excludes(sight) && from.shared_segment(landing).is_none();
+            if too_far || too_dear(self.least_cost(sight, test.gravity_m_s2()) + to_go) {
                 continue;
             }
-            let Ok(edge) = Edge::between(test, from, landing) else { continue };
-            let cost = edge.cost(test, from, landing, counted) + to_go;
+            let Ok(edge) = graph.edge(from, landing) else { continue };
+            let cost = graph.cost(from, landing, edge) + to_go;
             if !too_dear(cost) {
                 best = Some((Leg { takeoff: *from, landing: *landing, edge }, cost));
             }
         }
         best
+    }
+}
+
+/// The parabolas of safety of a chain's greatest speeds, squared.
+#[derive(Clone, Copy)]
+struct OneHop {
+    takeoff_m2_s2: f64,
+    landing_m2_s2: f64,
+    gravity_m_s2: f64,
+}
+
+impl OneHop {
+    fn of(test: &HopTest<'_>) -> Self {
+        // A billionth more than the tolerance allows: rounding must not lose a hop that touches.
+        let squared = |speed_m_s: f64| tolerant_speed_m_s(tolerant_speed_m_s(speed_m_s)) * tolerant_speed_m_s(speed_m_s);
+        let (takeoff_m_s, landing_m_s) = test.chain().speed_bounds_m_s();
+        Self { takeoff_m2_s2: squared(takeoff_m_s), landing_m2_s2: squared(landing_m_s), gravity_m_s2: test.gravity_m_s2() }
+    }
+
+    /// Whether no hop reaches over a line of sight.
+    #[inline]
+    fn excludes(&self, sight: LineOfSight) -> bool {
+        let g_x = self.gravity_m_s2 * sight.run_m();
+        g_x * sight.lift() > self.takeoff_m2_s2 || g_x * sight.reversed_lift() > self.landing_m2_s2
     }
 }
 
@@ -122,7 +153,9 @@ fn settled(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
             continue;
         }
         let landing = nodes.station(node);
-        for from in graph.takeoffs(node) {
+        let reach_m =
+            Direction::BOTH.map(|direction| graph.test().takeoff_reach_m(landing, direction)).into_iter().fold(0.0, f64::max);
+        for from in around(nodes.stations(), landing, reach_m) {
             if done[from] {
                 continue;
             }
@@ -196,15 +229,15 @@ mod tests {
             let options = SearchOptions { spacing: Some(spacing), effort, ..SearchOptions::default() };
             let nodes = NodeSet::new(&chain, station(3.0), station(50.0), spacing).unwrap();
             let to_go = CostToGo::of(&test, nodes, &options);
-            let counted = (options.effort, options.takeoff, options.split);
+            let graph = to_go.graph(&test);
             let mut found = 0;
             for i in 0..200 {
                 let from = station(0.05 + 0.29 * f64::from(i));
                 let of_all = (0..to_go.nodes().stations().len())
                     .filter_map(|node| {
                         let landing = to_go.nodes().station(NodeId(node));
-                        let edge = Edge::between(&test, &from, landing).ok()?;
-                        Some(edge.cost(&test, &from, landing, counted) + to_go.of_node(NodeId(node))?)
+                        let edge = graph.edge(&from, landing).ok()?;
+                        Some(graph.cost(&from, landing, edge) + to_go.of_node(NodeId(node))?)
                     })
                     .min();
                 assert_eq!(to_go.best_leg(&test, &from).map(|(_, cost)| cost), of_all, "from {from:?}");
