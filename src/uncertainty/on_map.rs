@@ -15,7 +15,7 @@ use crate::{
     graph::{Cost, CostToGo},
     quantity::{ChainPoint, MapPoint, SegmentId},
     terrain::{FacetSpan, ProfileFacet, Triangles},
-    world::{FrictionCone, Grip, RestSlope, Surface, tolerant_speed_m_s},
+    world::{FrictionCone, Grip, RestSlope, SPEED_TOLERANCE, Surface, tolerant_speed_m_s},
 };
 
 /// How far before a landing, or beyond a take-off, friction and keep-out zones are asked for, m: a landing obeys the ground just flown
@@ -160,8 +160,9 @@ impl<'a> DemGround<'a> {
             return None;
         }
         let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
-        let speed_m_s = tolerant_speed_m_s(hopper.takeoff_speed_max_m_s);
-        let too_far = g * run_m * sight.lift() > speed_m_s * speed_m_s;
+        let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
+        let too_far = g * run_m * sight.lift() > squared(hopper.takeoff_speed_max_m_s)
+            || g * run_m * sight.reversed_lift() > squared(hopper.landing_speed_max_m_s);
         if too_far || best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
             return None;
         }
@@ -176,7 +177,7 @@ impl<'a> DemGround<'a> {
         Some((Command::new(launch, target), cost))
     }
 
-    /// The arc to fly to a place, by every limit along the slice to it; `None` where there is none.
+    /// The arc to fly to a place, by every limit along the slice to it, the ground in between last; `None` where there is none.
     fn arc(
         &self,
         to_go: &CostToGo,
@@ -185,26 +186,30 @@ impl<'a> DemGround<'a> {
         sight: LineOfSight,
         heading: Vector2<f64>,
     ) -> Option<ballistics::Arc> {
-        let run_m = sight.run_m();
-        let end_m = run_m - self.place_rounding_m - BESIDE_M;
-        let mut walk = self.triangles.walk(from.at, heading, self.triangles.nominal());
-        let first = walk.next()?;
-        let takeoff = self.granted(first.gradient, heading, from.at + heading * BESIDE_M, Contact::Takeoff)?;
-        let clearance_m = self.test.hopper().clearance_m;
-        let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(run_m, to.z_m));
-        let mut lower = f64::NEG_INFINITY;
-        let mut last = first;
-        while last.to_m < end_m {
-            let crossing = ChainPoint::new(last.to_m, last.to_z_m);
-            if last.to_m > BESIDE_M {
-                lower = lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance_m));
-            }
-            last = walk.next()?;
-        }
-        let landing = self.granted(last.gradient, heading, to.at - heading * BESIDE_M, Contact::Landing)?;
+        let nominal = self.triangles.nominal();
+        let (ahead, before) = (from.at + heading * BESIDE_M, to.at - heading * BESIDE_M);
+        let takeoff = self.granted(self.triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
+        let landing = self.granted(self.triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
         let mut lofts = self.test.open_air(sight, &takeoff, &landing).ok()?;
-        lofts.lower = lofts.lower.max(lower);
-        (!lofts.is_empty())
+        let end_m = sight.run_m() - self.place_rounding_m - BESIDE_M;
+        let clearance_m = self.test.hopper().clearance_m;
+        let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(sight.run_m(), to.z_m));
+        let mut reached_m = 0.0;
+        for span in self.triangles.walk(from.at, heading, nominal) {
+            reached_m = span.to_m;
+            if reached_m >= end_m {
+                break;
+            }
+            if reached_m > BESIDE_M {
+                let crossing = ChainPoint::new(span.to_m, span.to_z_m);
+                lofts.lower = lofts.lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance_m));
+                if lofts.is_empty() {
+                    return None;
+                }
+            }
+        }
+        // A walk that ends before has met no-data.
+        (reached_m >= end_m)
             .then(|| ballistics::Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), self.test.gravity_m_s2()))
     }
 
