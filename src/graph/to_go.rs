@@ -116,12 +116,12 @@ impl CostToGo {
     }
 }
 
-/// The parabolas of safety of a chain's greatest speeds, squared.
+/// The parabolas of safety of a chain's greatest speeds: those speeds squared, m^2/s^2, and gravity, m/s^2.
 #[derive(Clone, Copy)]
 struct OneHop {
-    takeoff_m2_s2: f64,
-    landing_m2_s2: f64,
-    gravity_m_s2: f64,
+    takeoff_squared: f64,
+    landing_squared: f64,
+    gravity: f64,
 }
 
 impl OneHop {
@@ -129,14 +129,14 @@ impl OneHop {
         // A billionth more than the tolerance allows: rounding must not lose a hop that touches.
         let squared = |speed_m_s: f64| tolerant_speed_m_s(tolerant_speed_m_s(speed_m_s)) * tolerant_speed_m_s(speed_m_s);
         let (takeoff_m_s, landing_m_s) = test.chain().speed_bounds_m_s();
-        Self { takeoff_m2_s2: squared(takeoff_m_s), landing_m2_s2: squared(landing_m_s), gravity_m_s2: test.gravity_m_s2() }
+        Self { takeoff_squared: squared(takeoff_m_s), landing_squared: squared(landing_m_s), gravity: test.gravity_m_s2() }
     }
 
     /// Whether no hop reaches over a line of sight.
     #[inline]
     fn excludes(&self, sight: LineOfSight) -> bool {
-        let g_x = self.gravity_m_s2 * sight.run_m();
-        g_x * sight.lift() > self.takeoff_m2_s2 || g_x * sight.reversed_lift() > self.landing_m2_s2
+        let g_x = self.gravity * sight.run_m();
+        g_x * sight.lift() > self.takeoff_squared || g_x * sight.reversed_lift() > self.landing_squared
     }
 }
 

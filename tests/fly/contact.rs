@@ -280,11 +280,8 @@ fn along_a_slice_chain_and_map_replan_the_same_hops() {
         let (on_chain, on_map) = (of(&chain), of(&map));
         let agree = on_chain.len() == on_map.len()
             && on_chain.iter().zip(&on_map).all(|(a, b)| ((b.contact_m.xy() - start).norm() - a.contact_m.x).abs() < 1e-6);
-        if agree {
-            same += 1
-        } else {
-            different += 1
-        }
+        let counted = if agree { &mut same } else { &mut different };
+        *counted += 1;
         off_plan += on_map.len().saturating_sub(1);
     }
     // Nodes that cost the same to the last digits but one may be chosen either way.
