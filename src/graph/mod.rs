@@ -19,6 +19,7 @@ mod questions;
 mod reachable;
 mod refusals;
 mod search;
+mod to_go;
 mod usable;
 
 pub use cost::{Cost, Effort};
@@ -28,4 +29,5 @@ pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search, search_pairs};
+pub use to_go::CostToGo;
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};
