@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use chta::{quantity::MapPoint, terrain::LonLat};
+use chta::{graph::proof::DEFAULT_BUDGET_CELLS, quantity::MapPoint, terrain::LonLat};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 /// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?
@@ -77,6 +77,17 @@ pub(crate) struct SearchArgs {
     /// Second criterion after hops: takeoff-speed, energy, time, peak-speed [default: takeoff-speed]
     #[arg(long, value_name = "EFFORT")]
     pub(crate) effort: Option<String>,
+}
+
+/// What a proof takes.
+#[derive(Clone, Copy, Debug, ClapArgs)]
+pub(crate) struct ProveArgs {
+    /// Bound the fewest hops from both sides, for every choice of points: "untraversable" is said where it is proved
+    #[arg(long)]
+    pub(crate) prove: bool,
+    /// The most cells that the chain is cut into for the proof
+    #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS, value_parser = cell_count, requires = "prove", allow_negative_numbers = true)]
+    pub(crate) budget: usize,
 }
 
 /// Do everything a scenario asks for: chain.csv, path.csv, path.geojson (on a map), result.json and path.svg
@@ -229,6 +240,8 @@ pub(crate) struct CheckArgs {
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
     #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    #[command(flatten)]
     pub(crate) search: SearchArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
@@ -262,6 +275,8 @@ pub(crate) struct PlanArgs {
     /// How the answer is written
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
     #[command(flatten)]
     pub(crate) search: SearchArgs,
     #[command(flatten)]
@@ -377,6 +392,14 @@ pub(crate) enum DepthLawArg {
     Moon,
     /// Robbins and Hynek 2012.
     Mars,
+}
+
+/// Reads a number of cells.
+fn cell_count(text: &str) -> Result<usize, String> {
+    const MOST: usize = 10_000_000;
+    let count = text.trim().parse().ok().filter(|count| (1..=MOST).contains(count));
+    count
+        .ok_or_else(|| format!("found `{text}`, expected a whole number of cells from 1 to {MOST}, such as {DEFAULT_BUDGET_CELLS}"))
 }
 
 /// Reads `X,Y`.

@@ -3,12 +3,14 @@
 //! Nodes are the vertices, points between them, start and goal; an edge is one hop, or several along one segment, in either
 //! direction of travel. Edges are evaluated when the search asks for them and never stored, so memory grows with the nodes alone.
 //!
-//! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing.
+//! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing. [`proof`] bounds the
+//! fewest hops from both sides, for every density.
 
 mod cost;
 mod edges;
 mod frontier;
 mod nodes;
+pub mod proof;
 mod reachable;
 mod refusals;
 mod search;

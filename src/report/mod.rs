@@ -8,6 +8,7 @@ pub mod figure;
 mod geojson;
 mod hop_answer;
 mod path_record;
+mod proof_record;
 mod text;
 mod whole_file;
 
@@ -17,5 +18,6 @@ pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, slice_geojson};
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
 pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv};
+pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use text::{check_text, hop_text, path_text};
 pub use whole_file::{WholeFile, write_whole};

@@ -14,7 +14,7 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::search::search;
+use super::search::Searched;
 use crate::cli::{
     Answer, Failure,
     args::{CheckArgs, Format},
@@ -65,22 +65,17 @@ fn stations(loaded: &Loaded, file: &Path, pairs: &[StartGoal]) -> Result<Vec<(St
 }
 
 /// One pair, and what is doubtful about its path.
-fn answer(
-    loaded: &Loaded,
-    (start, goal): (Station, Station),
-    args: &CheckArgs,
-    doubts: &mut Vec<String>,
-) -> Result<CheckAnswer, Failure> {
+fn answer(loaded: &Loaded, ends: (Station, Station), args: &CheckArgs, doubts: &mut Vec<String>) -> Result<CheckAnswer, Failure> {
     let test = loaded.hop_test();
     let options = &loaded.scenario.search;
-    let found = search(&test, start, goal, options, args.common.quiet)?;
-    if let Outcome::Path { legs, .. } = &found.outcome
+    let searched = Searched::new(&test, ends, options, Some(args.prove), args.common.quiet)?;
+    if let Outcome::Path { legs, .. } = &searched.found.outcome
         && let Ok(path) = generate(&test, legs, options.takeoff, options.split)
     {
         let of_path = constant_gravity_doubts(&loaded.scenario.body, Extremes::of(&path.hops));
         doubts.extend(of_path.into_iter().filter(|doubt| !doubts.contains(doubt)).collect::<Vec<_>>());
     }
-    Ok(CheckAnswer::new(&test, start.point.x_m, goal.point.x_m, &found, options.effort))
+    Ok(searched.answer(&test, ends, options.effort))
 }
 
 /// The answers as text or as one document.
