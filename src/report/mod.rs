@@ -1,6 +1,7 @@
 //! Results: plain data first; text, JSON, CSV, GeoJSON and the picture are views of it.
 
 mod check_answer;
+mod compare_answer;
 mod document;
 mod fan_answer;
 #[cfg(feature = "plot")]
@@ -10,9 +11,11 @@ mod hop_answer;
 mod path_record;
 mod proof_record;
 mod text;
+mod trade_answer;
 mod whole_file;
 
 pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, verdict_name};
+pub use compare_answer::{CompareAnswer, CompareRow, MarginsRecord};
 pub use document::{CrsRecord, Document, InputFile};
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, slice_geojson};
@@ -20,4 +23,5 @@ pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentH
 pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use text::{check_text, hop_text, path_text};
+pub use trade_answer::{TradeAnswer, TradeRow, TradeVariation};
 pub use whole_file::{WholeFile, write_whole};
