@@ -288,7 +288,7 @@ pub(crate) struct PlanArgs {
 /// One or two keys of the scenario varied: the fewest hops, or that there is no path, for every value or pair of values
 #[derive(Debug, ClapArgs)]
 #[command(
-    after_help = "Example:\n  chta trade data/scenarios/mars_crater_field.toml --vary hopper.takeoff_speed_max_m_s=4:10:7 \\\n    --vary surface.friction_coefficient=0.4:1:7 --points-per-segment 0 --plot trade.svg"
+    after_help = "Example:\n  chta trade data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s=2:6:9 --plot trade.svg"
 )]
 pub(crate) struct TradeArgs {
     /// Chain (CSV), scenario (TOML) or result (JSON)

@@ -110,11 +110,16 @@ impl CompareRow {
 impl CompareAnswer {
     /// The table for reading: a line for each figure, a column for each scenario.
     pub fn text(&self) -> String {
-        let mut lines: Vec<Vec<String>> = vec![
-            self.line("", |row| row.name.clone()),
-            self.line("verdict", |row| row.verdict.to_owned()),
-            self.line("hops", CompareRow::hops_words),
-        ];
+        let mut text = String::new();
+        let mut numbers = vec![String::new()];
+        for (i, row) in self.compared.iter().enumerate() {
+            // Writing to a String cannot fail.
+            let _ = writeln!(text, "({}) {}: {}", i + 1, row.file, row.name);
+            numbers.push(format!("({})", i + 1));
+        }
+        text.push('\n');
+        let mut lines: Vec<Vec<String>> =
+            vec![numbers, self.line("verdict", |row| row.verdict.to_owned()), self.line("hops", CompareRow::hops_words)];
         for (i, column) in COLUMNS.into_iter().enumerate() {
             if self.compared.iter().any(|row| row.numbers()[i].is_some()) {
                 lines.push(self.line(column, |row| row.numbers()[i].map_or("-".to_owned(), |number| format!("{number:.3}"))));
@@ -123,9 +128,7 @@ impl CompareAnswer {
         let columns = self.compared.len() + 1;
         let widths: Vec<usize> =
             (0..columns).map(|i| lines.iter().map(|line| line[i].chars().count()).max().unwrap_or(0)).collect();
-        let mut text = String::new();
         for line in lines {
-            // Writing to a String cannot fail.
             let _ = write!(text, "{:<width$}", line[0], width = widths[0]);
             for (field, width) in line.iter().zip(&widths).skip(1) {
                 let _ = write!(text, "  {field:>width$}");
