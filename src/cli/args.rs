@@ -24,6 +24,7 @@ pub(crate) enum Command {
     Hop(HopArgs),
     Check(CheckArgs),
     Plan(PlanArgs),
+    Require(RequireArgs),
     Trade(TradeArgs),
     Compare(CompareArgs),
     Synth(Box<SynthArgs>),
@@ -42,7 +43,7 @@ pub(crate) enum Format {
 }
 
 /// What all analyses take.
-#[derive(Debug, ClapArgs)]
+#[derive(Clone, Debug, ClapArgs)]
 pub(crate) struct CommonArgs {
     /// Scenario (TOML) with body, hopper, surface and search
     #[arg(long, value_name = "FILE")]
@@ -285,10 +286,47 @@ pub(crate) struct PlanArgs {
     pub(crate) common: CommonArgs,
 }
 
+/// The least capability with which the goal can be reached, between a value proved too little and one with a path
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta require data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s")]
+pub(crate) struct RequireArgs {
+    /// Chain (CSV), scenario (TOML) or result (JSON)
+    #[arg(value_name = "CHAIN")]
+    pub(crate) chain: PathBuf,
+    /// Start along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) start: Option<f64>,
+    /// Goal along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) goal: Option<f64>,
+    /// Scenario key to vary, such as `hopper.takeoff_speed_max_m_s`
+    #[arg(long, value_name = "TABLE.KEY")]
+    pub(crate) vary: String,
+    /// Least value to try, in the key's unit [default: by key]
+    #[arg(long, value_name = "V", allow_negative_numbers = true)]
+    pub(crate) from: Option<f64>,
+    /// Greatest value to try, in the key's unit [default: by key]
+    #[arg(long, value_name = "V", allow_negative_numbers = true)]
+    pub(crate) to: Option<f64>,
+    /// How close to bring the two values, as a share of them
+    #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
+    pub(crate) resolution: f64,
+    /// The most cells that the chain is cut into at each value
+    #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS / 5, value_parser = cell_count, allow_negative_numbers = true)]
+    pub(crate) budget: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
 /// One or two keys of the scenario varied: the fewest hops, or that there is no path, for every value or pair of values
 #[derive(Debug, ClapArgs)]
 #[command(
-    after_help = "Example:\n  chta trade data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s=2:6:9 --plot trade.svg"
+    after_help = "Example:\n  chta trade data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s=2:6:9"
 )]
 pub(crate) struct TradeArgs {
     /// Chain (CSV), scenario (TOML) or result (JSON)

@@ -97,7 +97,8 @@ impl ProofRecord {
 }
 
 impl GapRecord {
-    fn of(gap: &Gap) -> Self {
+    /// Of a gap.
+    pub fn of(gap: &Gap) -> Self {
         Self { reached_x_m: gap.reached_x_m, leads_to_goal_from_x_m: gap.leads_to_goal_x_m, refusals: counts(&gap.refusals) }
     }
 }

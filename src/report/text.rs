@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{BindingRecord, CheckAnswer, HopAnswer, HopRecord, ProofRecord, TotalsRecord};
+use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, ProofRecord, RequireAnswer, TotalsRecord};
 
 /// A sheet of text; writing to it does not fail.
 #[derive(Default)]
@@ -95,6 +95,41 @@ fn binding_line(binding: &BindingRecord) -> String {
     }
 }
 
+/// What `chta require` prints.
+pub fn require_text(answer: &RequireAnswer) -> String {
+    let mut sheet = Sheet::default();
+    let RequireAnswer { vary, from, to, .. } = answer;
+    sheet.line(format_args!("{vary}: from x = {} m to x = {} m", place(answer.start_x_m), place(answer.goal_x_m)));
+    match answer.reachable_at {
+        Some(value) => {
+            let hops = answer.hops.unwrap_or(0);
+            sheet.line(format_args!("reachable at {value}, in {hops} hop{}", plural(hops)));
+        }
+        None => sheet.line(format_args!("no path found at any value from {from} to {to}")),
+    }
+    match answer.unreachable_at {
+        Some(value) => sheet.line(format_args!("proved unreachable at {value}")),
+        None => sheet.line(format_args!("proved unreachable at no value from {from} to {to}")),
+    }
+    if let Some(gap) = &answer.gap {
+        gap_lines(&mut sheet, gap);
+    }
+    sheet.line(format_args!("{} values tried, from {from} to {to}", answer.tries.len()));
+    sheet.0
+}
+
+/// How far one gets, and what stops it there.
+fn gap_lines(sheet: &mut Sheet, gap: &GapRecord) {
+    sheet.line(format_args!(
+        "no path comes nearer to the goal than x = {} m; no place nearer to the start than x = {} m leads to it",
+        place(gap.reached_x_m),
+        place(gap.leads_to_goal_from_x_m)
+    ));
+    if !gap.refusals.is_empty() {
+        sheet.line(format_args!("what refuses all hops on from there, by pairs of cells: {}", ranked(&gap.refusals)));
+    }
+}
+
 /// What is proved, in a few lines.
 fn proof_lines(sheet: &mut Sheet, proof: &ProofRecord) {
     match (proof.lower_bound, proof.upper_bound) {
@@ -113,14 +148,8 @@ fn proof_lines(sheet: &mut Sheet, proof: &ProofRecord) {
         "proof: {} cells, {} split, {} rounds, {} pairs of cells tested",
         summary.cells, summary.splits, summary.rounds, summary.pairs_tested
     ));
-    let Some(gap) = &proof.gap else { return };
-    sheet.line(format_args!(
-        "no path comes nearer to the goal than x = {} m; no place nearer to the start than x = {} m leads to it",
-        place(gap.reached_x_m),
-        place(gap.leads_to_goal_from_x_m)
-    ));
-    if !gap.refusals.is_empty() {
-        sheet.line(format_args!("what refuses all hops on from there, by pairs of cells: {}", ranked(&gap.refusals)));
+    if let Some(gap) = &proof.gap {
+        gap_lines(sheet, gap);
     }
 }
 

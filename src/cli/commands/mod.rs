@@ -6,6 +6,7 @@ pub(super) mod compare;
 pub(super) mod fan;
 pub(super) mod hop;
 pub(super) mod plan;
+pub(super) mod require;
 pub(super) mod run;
 mod search;
 pub(super) mod slice;

@@ -31,16 +31,12 @@ impl Searched {
         match prove.filter(|prove| prove.prove) {
             None => Ok(Self { found: search(test, ends, options, quiet)?, proof: None }),
             Some(ProveArgs { budget, .. }) => {
-                let options = BoundsOptions { budget_cells: budget, search: options.clone(), explain: true };
+                let options =
+                    BoundsOptions { budget_cells: budget, search: options.clone(), explain: true, ..BoundsOptions::default() };
                 let bounds = proved(test, ends, &options, quiet)?;
                 Ok(Self { found: bounds.answer.clone(), proof: Some((bounds, budget)) })
             }
         }
-    }
-
-    /// The bounds, where a proof was asked for.
-    pub(super) fn bounds(&self) -> Option<&Bounds> {
-        self.proof.as_ref().map(|(bounds, _)| bounds)
     }
 
     /// The answer as plain data.

@@ -23,14 +23,26 @@ pub struct BoundsOptions {
     /// How to search for the first path, and how its effort is counted. Without a spacing the few first choices of "auto" are tried; the
     /// points inside may-cells take over from there.
     pub search: SearchOptions,
+    /// When to stop.
+    pub until: Until,
     /// Whether to say of every cell what is proved of it, and why there is no path.
     pub explain: bool,
 }
 
 impl Default for BoundsOptions {
     fn default() -> Self {
-        Self { budget_cells: DEFAULT_BUDGET_CELLS, search: SearchOptions::default(), explain: false }
+        Self { budget_cells: DEFAULT_BUDGET_CELLS, search: SearchOptions::default(), until: Until::BoundsMeet, explain: false }
     }
+}
+
+/// When bounds are close enough.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Until {
+    /// When they meet, or the goal is cut off.
+    #[default]
+    BoundsMeet,
+    /// When it is known whether there is a path, in however many hops.
+    Decided,
 }
 
 /// What bounds come to.
@@ -203,7 +215,8 @@ impl<F: Faults> Closing<'_, '_, F> {
             if lower == CUT_OFF {
                 return None;
             }
-            if upper.is_some_and(|upper| lower >= upper) {
+            let decided = upper.is_some() && self.options.until == Until::Decided;
+            if decided || upper.is_some_and(|upper| lower >= upper) {
                 return Some(u64::from(lower));
             }
             // Only may-paths shorter than the best path can change the answer.

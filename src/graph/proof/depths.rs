@@ -1,5 +1,7 @@
 //! How many may-hops a cell lies from one end of the journey: breadth first, kept up while cells are split.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use rayon::prelude::*;
 
 use super::{Faults, Prover, cell::Cell};
@@ -60,63 +62,69 @@ impl Depths {
 
     /// Settles all depths up to a limit; deeper ones are only known to be deeper.
     pub(super) fn settle<F: Faults>(&mut self, prover: &Prover<'_, F>, cells: &[Cell<F::Rounding>], limit: u32) {
-        let mut levels: std::collections::BTreeMap<u32, Vec<u32>> = std::collections::BTreeMap::new();
+        let reach_m = prover.greatest_reach_m();
+        let mut by_depth: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (i, &depth) in (0u32..).zip(&self.depth) {
             if depth <= limit && depth < CUT_OFF {
-                levels.entry(depth).or_default().push(i);
+                by_depth.entry(depth).or_default().push(i);
             }
         }
-        let mut above = levels.remove(&0).unwrap_or_default();
-        let mut level = 1;
-        while let Some((&next, _)) = levels.first_key_value() {
-            if above.is_empty() {
-                for cell in levels.into_values().flatten() {
-                    self.depth[cell as usize] = CUT_OFF;
+        let mut above = by_depth.remove(&0).unwrap_or_default();
+        // Cells that are no nearer than the level at hand and still without a parent.
+        let mut waiting: BTreeSet<u32> = BTreeSet::new();
+        let mut level = 0;
+        while level < limit && !above.is_empty() && !(waiting.is_empty() && by_depth.is_empty()) {
+            level += 1;
+            let mut settled = Vec::new();
+            for cell in by_depth.remove(&level).unwrap_or_default() {
+                if self.has_parent(cell, level) {
+                    settled.push(cell);
+                } else {
+                    waiting.insert(cell);
                 }
-                return self.cut_off_beyond(limit);
             }
-            let mut pending = if next == level { levels.remove(&level).unwrap_or_default() } else { Vec::new() };
-            pending.sort_unstable();
-            let found: Vec<Found> = pending.par_iter().map(|&cell| self.look(prover, cells, cell, level, &above)).collect();
-            let (mut settled, mut deeper) = (Vec::new(), Vec::new());
-            for (&cell, found) in pending.iter().zip(&found) {
+            // Only cells within reach of the level above can have a parent there.
+            let looking: Vec<u32> = waiting.range(within_reach(cells, &above, reach_m)).copied().collect();
+            let found: Vec<Found> = looking.par_iter().map(|&cell| self.look(prover, cells, cell, level, &above)).collect();
+            for (&cell, found) in looking.iter().zip(&found) {
                 self.pairs_tested += found.pairs_tested;
                 let i = cell as usize;
                 self.tested[i] = found.parent.is_some();
                 if let Some(parent) = found.parent {
-                    self.parent[i] = parent;
+                    (self.parent[i], self.depth[i]) = (parent, level);
+                    waiting.remove(&cell);
                     settled.push(cell);
-                } else {
-                    self.depth[i] = level + 1;
-                    deeper.push(cell);
                 }
             }
-            if level < limit && !deeper.is_empty() {
-                levels.entry(level + 1).or_default().append(&mut deeper);
-            }
+            settled.sort_unstable();
             above = settled;
-            level += 1;
+        }
+        // Beyond an empty level there is nothing; else the rest is deeper than the limit.
+        let rest = if above.is_empty() { CUT_OFF } else { limit.saturating_add(1) };
+        for cell in waiting.into_iter().chain(by_depth.into_values().flatten()) {
+            self.depth[cell as usize] = rest;
         }
         if above.is_empty() {
-            self.cut_off_beyond(limit);
+            for depth in self.depth.iter_mut().filter(|depth| **depth > limit) {
+                *depth = CUT_OFF;
+            }
         }
     }
 
-    /// Where a whole level is empty, nothing lies beyond it.
-    fn cut_off_beyond(&mut self, limit: u32) {
-        for depth in self.depth.iter_mut().filter(|depth| **depth > limit) {
-            *depth = CUT_OFF;
-        }
+    /// Whether the parent known still gives a cell this depth.
+    fn has_parent(&self, cell: u32, level: u32) -> bool {
+        self.tested[cell as usize] && self.is_above(self.parent[cell as usize], level)
+    }
+
+    /// Whether a cell is one level nearer.
+    fn is_above(&self, cell: u32, level: u32) -> bool {
+        self.depth.get(cell as usize) == Some(&(level - 1))
     }
 
     /// Looks for a cell of the level above from which (or to which) a hop may lead: the one known, then the nearest first.
     fn look<F: Faults>(&self, prover: &Prover<'_, F>, cells: &[Cell<F::Rounding>], cell: u32, level: u32, above: &[u32]) -> Found {
         let i = cell as usize;
         let known = self.parent[i];
-        let is_above = |other: u32| self.depth.get(other as usize) == Some(&(level - 1));
-        if known != NONE && self.tested[i] && is_above(known) {
-            return Found { parent: Some(known), pairs_tested: 0 };
-        }
         let mut pairs_tested = 0;
         let mut may = |other: u32| {
             pairs_tested += 1;
@@ -129,7 +137,7 @@ impl Depths {
         if known != NONE {
             // Where it was split, its halves stand in its place.
             for candidate in [known, known + 1] {
-                if candidate != cell && is_above(candidate) && may(candidate) {
+                if candidate != cell && self.is_above(candidate, level) && may(candidate) {
                     return Found { parent: Some(candidate), pairs_tested };
                 }
             }
@@ -138,7 +146,7 @@ impl Depths {
             Way::FromStart => prover.reach_to_m(&cells[i]),
             Way::ToGoal => prover.reach_from_m(&cells[i]),
         };
-        let parent = nearest_first(cells, cell, reach_m, above).find(|&other| may(other));
+        let parent = nearest_cells(cells, cell, reach_m, above).find(|&other| may(other));
         Found { parent, pairs_tested }
     }
 
@@ -162,23 +170,44 @@ impl Depths {
     }
 }
 
+/// The range of cells within a distance of any of a rising list.
+fn within_reach<R: crate::quantity::Rounding>(cells: &[Cell<R>], list: &[u32], reach_m: f64) -> std::ops::Range<u32> {
+    let (Some(&first), Some(&last)) = (list.first(), list.last()) else { return 0..0 };
+    let (low_m, high_m) = (cells[first as usize].from_m - reach_m, cells[last as usize].to_m + reach_m);
+    let begin = cells.partition_point(|cell| cell.to_m < low_m.next_down());
+    let end = cells.partition_point(|cell| cell.from_m <= high_m.next_up());
+    let index = |i: usize| u32::try_from(i).unwrap_or(u32::MAX);
+    index(begin)..index(end.max(begin))
+}
+
 /// The cells of a rising list within a distance of a cell, the nearest first.
-fn nearest_first<'c, R: crate::quantity::Rounding>(
+fn nearest_cells<'c, R: crate::quantity::Rounding>(
     cells: &'c [Cell<R>],
     cell: u32,
     reach_m: f64,
     among: &'c [u32],
 ) -> impl Iterator<Item = u32> + 'c {
     let own = &cells[cell as usize];
-    let mut right = among.partition_point(|&other| other <= cell);
-    let mut left = among.partition_point(|&other| other < cell);
     let gap_m = move |other: u32| {
         let other = &cells[other as usize];
         (other.from_m - own.to_m).max(own.from_m - other.to_m).next_down()
     };
+    let around = among.partition_point(|&other| other < cell)..among.partition_point(|&other| other <= cell);
+    nearest_first(among, around, gap_m, reach_m)
+}
+
+/// The items of a list within a distance, the nearest first, given how far each is; from `around` on the distances grow to either side.
+pub(super) fn nearest_first<I: Copy>(
+    list: &[I],
+    around: std::ops::Range<usize>,
+    gap_m: impl Fn(I) -> f64,
+    reach_m: f64,
+) -> impl Iterator<Item = I> {
+    let std::ops::Range { start: mut left, end: mut right } = around;
     std::iter::from_fn(move || {
-        let before = left.checked_sub(1).map(|i| (gap_m(among[i]), among[i])).filter(|(gap_m, _)| *gap_m <= reach_m);
-        let after = among.get(right).map(|&other| (gap_m(other), other)).filter(|(gap_m, _)| *gap_m <= reach_m);
+        let near = |item: &I| Some((gap_m(*item), *item)).filter(|(gap_m, _)| *gap_m <= reach_m);
+        let before = left.checked_sub(1).and_then(|i| near(&list[i]));
+        let after = list.get(right).and_then(near);
         let take_left = match (before, after) {
             (Some((a, _)), Some((b, _))) => a <= b,
             (Some(_), None) => true,
@@ -187,10 +216,10 @@ fn nearest_first<'c, R: crate::quantity::Rounding>(
         };
         if take_left {
             left -= 1;
-            before.map(|(_, other)| other)
+            before.map(|(_, item)| item)
         } else {
             right += 1;
-            after.map(|(_, other)| other)
+            after.map(|(_, item)| item)
         }
     })
 }

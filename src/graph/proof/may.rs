@@ -255,6 +255,12 @@ impl<'a, F: Faults> Prover<'a, F> {
         self.farthest_m(self.heights_m.1 - low_m, high_m - self.heights_m.0)
     }
 
+    /// The horizontal distance that no hop of this chain exceeds, m, rounded up.
+    pub(super) fn greatest_reach_m(&self) -> f64 {
+        let range_m = self.heights_m.1 - self.heights_m.0;
+        self.farthest_m(range_m, range_m)
+    }
+
     /// `X <= (v / g) sqrt(v^2 + 2 g h)`, the parabola of safety, for the greatest drop at take-off and climb at landing.
     fn farthest_m(&self, drop_m: f64, climb_m: f64) -> f64 {
         let g = Interval::<F::Rounding>::point(self.test.gravity_m_s2());

@@ -25,10 +25,12 @@ mod gap;
 mod may;
 mod points;
 mod refine;
+mod require;
 
-pub use bounds::{Bounds, BoundsOptions, DEFAULT_BUDGET_CELLS, ProofSummary, ProofVerdict, bounds};
+pub use bounds::{Bounds, BoundsOptions, DEFAULT_BUDGET_CELLS, ProofSummary, ProofVerdict, Until, bounds};
 pub use gap::{Gap, Stretch, StretchClass};
 use may::Prover;
+pub use require::{CapabilityRange, Threshold, least_capability};
 
 use crate::quantity::{Outwards, Rounding};
 

@@ -1,8 +1,14 @@
 //! Paths through points inside the may-cells: the upper bound, where equidistant points miss it.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use rayon::prelude::*;
 
-use super::{Faults, depths::CUT_OFF, refine::Refinement};
+use super::{
+    Faults,
+    depths::{CUT_OFF, nearest_first},
+    refine::Refinement,
+};
 use crate::{
     ballistics::{Arc, HopTest},
     chain::Station,
@@ -35,6 +41,9 @@ struct Reached {
     by: Option<(usize, SlopeInterval)>,
 }
 
+/// From so many cells on only their middles are tried.
+const MANY_CELLS: usize = 4000;
+
 /// Which points to try.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scope {
@@ -55,18 +64,24 @@ pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope
     let mut frontier = vec![tried.start];
     let mut hops = 0;
     let reach_m = test.greatest_reach_m();
+    let (mut by_depth, mut open) = (tried.by_depth(), BTreeSet::new());
     while !frontier.is_empty() && hops < at_most && (scope == Scope::FromStart || tried.reached[tried.goal].is_none()) {
         hops += 1;
-        let open = |i: &usize| {
-            let point = &tried.candidates[*i];
-            tried.reached[*i].is_none() && point.from_start <= hops && point.to_goal.saturating_add(hops) <= at_most
-        };
-        let open: Vec<usize> = (0..tried.candidates.len()).filter(open).collect();
-        let found: Vec<_> = open.par_iter().map(|&i| tried.first_hop(test, reach_m, &frontier, i)).collect();
+        while let Some(entry) = by_depth.first_entry().filter(|entry| *entry.key() <= hops) {
+            open.extend(entry.remove());
+        }
+        let within: Vec<usize> = open.range(tried.within_reach(&frontier, reach_m)).copied().collect();
+        let (within, late): (Vec<_>, Vec<_>) =
+            within.into_iter().partition(|&i| tried.candidates[i].to_goal.saturating_add(hops) <= at_most);
+        for i in late {
+            open.remove(&i);
+        }
+        let found: Vec<_> = within.par_iter().map(|&i| tried.first_hop(test, reach_m, &frontier, i)).collect();
         frontier.clear();
-        for (&i, by) in open.iter().zip(&found) {
+        for (&i, by) in within.iter().zip(&found) {
             if by.is_some() {
                 tried.reached[i] = Some(Reached { by: *by });
+                open.remove(&i);
                 frontier.push(i);
             }
         }
@@ -88,7 +103,11 @@ impl Tried {
             if !asked && i != refinement.start && i != refinement.goal {
                 continue;
             }
-            let places = [Some(cell.from_m), cell.middle_m(), (cell.from_m < cell.to_m).then_some(cell.to_m)];
+            let width = cell.from_m < cell.to_m;
+            let middle = if width { cell.middle_m() } else { Some(cell.from_m) };
+            // Many cells are dense enough by their middles.
+            let ends = if width && refinement.cells.len() < MANY_CELLS { [Some(cell.from_m), Some(cell.to_m)] } else { [None; 2] };
+            let places = [ends[0], middle, ends[1]];
             for station in places.into_iter().flatten().filter_map(|x_m| geometry.station(x_m).ok()) {
                 // An end of a stretch that is a vertex has a cell of its own.
                 if station.site == cell.site {
@@ -113,14 +132,30 @@ impl Tried {
         Self { reached: vec![None; candidates.len()], candidates, start, goal }
     }
 
-    /// The first point of a rising frontier, from the left, that reaches a point by one hop.
+    /// All points but the start, by the least hops to their cells.
+    fn by_depth(&self) -> BTreeMap<u32, Vec<usize>> {
+        let mut by_depth: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
+        for (i, candidate) in self.candidates.iter().enumerate().filter(|(i, _)| *i != self.start) {
+            by_depth.entry(candidate.from_start).or_default().push(i);
+        }
+        by_depth
+    }
+
+    /// The range of points within a distance of any of a rising frontier.
+    fn within_reach(&self, frontier: &[usize], reach_m: f64) -> std::ops::Range<usize> {
+        let x_m = |i: usize| self.candidates[i].station.point.x_m;
+        let (Some(&first), Some(&last)) = (frontier.first(), frontier.last()) else { return 0..0 };
+        let begin = self.candidates.partition_point(|c| c.station.point.x_m < x_m(first) - reach_m);
+        let end = self.candidates.partition_point(|c| c.station.point.x_m <= x_m(last) + reach_m);
+        begin..end.max(begin)
+    }
+
+    /// The nearest point of a rising frontier from which one hop leads to a point.
     fn first_hop(&self, test: &HopTest<'_>, reach_m: f64, frontier: &[usize], to: usize) -> Option<(usize, SlopeInterval)> {
         let x_m = |i: usize| self.candidates[i].station.point.x_m;
-        let (low_m, high_m) = (x_m(to) - reach_m, x_m(to) + reach_m);
-        let first = frontier.partition_point(|&i| x_m(i) < low_m);
-        let within = frontier[first..].iter().take_while(|&&i| x_m(i) <= high_m);
-        within
-            .copied()
+        let around = frontier.partition_point(|&i| i < to);
+        let mut nearest = nearest_first(frontier, around..around, |i| (x_m(i) - x_m(to)).abs(), reach_m);
+        nearest
             .find_map(|from| test.loft(&self.candidates[from].station, &self.candidates[to].station).ok().map(|loft| (from, loft)))
     }
 
