@@ -325,9 +325,7 @@ pub(crate) struct RequireArgs {
 
 /// One or two keys of the scenario varied: the fewest hops, or that there is no path, for every value or pair of values
 #[derive(Debug, ClapArgs)]
-#[command(
-    after_help = "Example:\n  chta trade data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s=2:6:9"
-)]
+#[command(after_help = "Example:\n  chta trade data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s=2:6:9")]
 pub(crate) struct TradeArgs {
     /// Chain (CSV), scenario (TOML) or result (JSON)
     #[arg(value_name = "CHAIN")]

@@ -246,7 +246,7 @@ pub fn judged(
         let verdict = if hops.is_some() { ProofVerdict::Traversable } else { ProofVerdict::Open };
         return Ok(Varied { verdict, hops, lower_bound: None });
     };
-    let options = BoundsOptions { budget_cells, search: options.clone(), explain: false };
+    let options = BoundsOptions { budget_cells, search: options.clone(), ..BoundsOptions::default() };
     let bounds = bounds(test, start, goal, &options, &mut |_| {})?;
     Ok(Varied { verdict: bounds.verdict(), hops: bounds.upper(), lower_bound: Some(bounds.lower) })
 }

@@ -98,7 +98,7 @@ impl Compared {
             goal_x_m: check.goal_x_m,
             verdict: check.verdict,
             hops: check.hops,
-            lower_bound: searched.bounds().map(|bounds| bounds.lower),
+            lower_bound: check.proof.as_ref().map(|proof| proof.lower_bound),
             totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
             margins: path.as_ref().and_then(MarginsRecord::of),
         };
