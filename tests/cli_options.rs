@@ -141,8 +141,8 @@ const TRADE: [Trial; 17] = [
     ("--prove", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--prove"]),
     (
         "--budget",
-        &["trade", "scenario.toml", "--vary", VARY, "--set", "hopper.landing_speed_max_m_s=3", "--prove"],
-        &["trade", "scenario.toml", "--vary", VARY, "--set", "hopper.landing_speed_max_m_s=3", "--prove", "--budget", "1"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove", "--budget", "1"],
     ),
     (
         "--points-per-segment",
@@ -198,8 +198,8 @@ const COMPARE: [Trial; 7] = [
     ),
     (
         "--budget",
-        &["compare", "scenario.toml", "map.toml", "--set", "hopper.landing_speed_max_m_s=3", "--prove"],
-        &["compare", "scenario.toml", "map.toml", "--set", "hopper.landing_speed_max_m_s=3", "--prove", "--budget", "1"],
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove"],
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove", "--budget", "1"],
     ),
     ("--set", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--set", "body.name=moon"]),
     (

@@ -16,7 +16,7 @@ fn json(desk: &Desk, args: &[&str]) -> Value {
 
 /// What `check` says with the keys of a row set one by one.
 fn checked(desk: &Desk, target: &[&str], row: &Value, keys: &[&str], more: &[&str]) -> Value {
-    let settings: Vec<String> = keys.iter().map(|key| format!("{key}={}", row[*key])).collect();
+    let settings: Vec<String> = keys.iter().map(|key| format!("{key}={}", row[*key].as_f64().unwrap())).collect();
     let mut args = vec!["check", "--format", "json"];
     args.extend(target);
     args.extend(more);
@@ -53,7 +53,7 @@ fn agrees(desk: &Desk, target: &[&str], vary: &[(&str, &str)], more: &[&str]) ->
 fn every_field_is_what_check_says_with_its_values_set() {
     let desk = Desk::with_dem();
     let speeds = ("hopper.takeoff_speed_max_m_s", "3:9:3");
-    let grid = agrees(&desk, &["scenario.toml"], &[speeds, ("surface.friction_coefficient", "0.3:0.9:3")], &[]);
+    let grid = agrees(&desk, &["scenario.toml"], &[speeds, ("surface.friction_coefficient", "0.1:0.7:3")], &[]);
     assert!(grid.iter().any(|verdict| verdict == "traversable") && grid.iter().any(|verdict| verdict != "traversable"), "{grid:?}");
     // A slice carries its friction in the chain, which each value has to replace.
     let sliced = agrees(&desk, &["map.toml"], &[("surface.friction_coefficient", "0.2:0.8:3")], &[]);
@@ -74,7 +74,7 @@ fn every_field_is_what_check_says_with_its_values_set() {
 #[test]
 fn with_a_proof_fields_are_what_check_proves() {
     let desk = Desk::new();
-    let verdicts = agrees(&desk, &["scenario.toml"], &[("hopper.takeoff_speed_max_m_s", "1:9:3")], &["--prove"]);
+    let verdicts = agrees(&desk, &["scenario.toml"], &[("surface.friction_coefficient", "0.1:0.7:3")], &["--prove"]);
     assert_eq!(verdicts.first().map(String::as_str), Some("untraversable"));
     assert_eq!(verdicts.last().map(String::as_str), Some("traversable"));
 }
@@ -115,7 +115,7 @@ fn threads_and_files_change_no_byte() {
     assert_eq!(desk.read("trade.csv"), csv);
     let (_, again) = trade(&["--plot", "trade.svg", "--threads", "1"]);
     assert_eq!(desk.read("trade.svg"), again.read("trade.svg"));
-    assert!(desk.read("trade.svg").contains("hopper.takeoff_speed_max_m_s"));
+    assert!(desk.read("trade.svg").starts_with("<svg"));
 
     // CSV and JSON say the same.
     let mut lines = csv.lines();
@@ -195,8 +195,9 @@ fn what_cannot_be_varied_is_refused_in_one_sentence() {
 #[test]
 fn compared_scenarios_are_what_plan_says_of_each() {
     let desk = Desk::with_dem();
-    desk.write("slow.toml", command::SCENARIO.replace("takeoff_speed_max_m_s = 10.0", "takeoff_speed_max_m_s = 1.0"));
-    let files = ["scenario.toml", "map.toml", "slow.toml"];
+    // Slopes of 0.2 on ice of 0.1.
+    desk.write("ice.toml", command::SCENARIO.replace("friction_coefficient = 0.6", "friction_coefficient = 0.1"));
+    let files = ["scenario.toml", "map.toml", "ice.toml"];
     let all = json(&desk, &["compare", files[0], files[1], files[2], "--format", "json", "-o", "all.csv", "--plot", "all.svg"]);
     assert_eq!(all["schema"], "chta/compare/1");
     let rows = all["compared"].as_array().unwrap();
@@ -216,14 +217,14 @@ fn compared_scenarios_are_what_plan_says_of_each() {
         assert_eq!(row["margins"]["angle_span_least_deg"].as_f64(), span, "{file}");
         speeds.push(row["totals"]["peak_takeoff_speed_m_s"].as_f64());
     }
-    assert!(speeds[0].is_some() && speeds[2].is_none(), "1 m/s carries no one over the bumps: {speeds:?}");
+    assert!(speeds[0].is_some() && speeds[2].is_none(), "{speeds:?}");
     let table = desk.read("all.csv");
     assert!(table.starts_with("file,name,start_x_m,goal_x_m,verdict,hops,flight_time_s,"), "{table}");
-    assert!(table.lines().nth(3).unwrap().starts_with("slow.toml,slow,0,40,no-path-found,,"), "{table}");
+    assert!(table.lines().nth(3).unwrap().starts_with("ice.toml,ice,0,40,no-path-found,,"), "{table}");
     assert!(desk.read("all.svg").contains("traversable"));
     let text = desk.run(&["compare", files[0], files[2]]);
     assert_eq!((text.status, text.stderr.as_str()), (0, ""), "no path is no failure of a comparison");
-    assert!(text.stdout.contains("(2) slow.toml: slow") && text.stdout.contains("no-path-found"), "{}", text.stdout);
+    assert!(text.stdout.contains("(2) ice.toml: ice") && text.stdout.contains("no-path-found"), "{}", text.stdout);
     assert_eq!(desk.run(&["compare", files[0]]).status, 2, "one is no comparison");
     let chain = desk.run(&["compare", "scenario.toml", "chain.csv"]);
     assert!(chain.status == 2 && chain.stderr.contains("chain.csv: expected a scenario"), "{chain:?}");

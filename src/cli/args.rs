@@ -362,9 +362,7 @@ pub(crate) struct TradeArgs {
 
 /// Several scenarios side by side: verdict, hops, totals, least margins, and their paths in one picture
 #[derive(Debug, ClapArgs)]
-#[command(
-    after_help = "Example:\n  chta compare data/scenarios/simple.toml data/scenarios/simple_reduced.toml --set search.points_per_segment=2"
-)]
+#[command(after_help = "Example:\n  chta compare data/scenarios/simple.toml data/scenarios/simple_reduced.toml")]
 pub(crate) struct CompareArgs {
     /// Scenarios (TOML) or results (JSON), two or more
     #[arg(value_name = "SCENARIO", required = true, num_args = 2..)]
