@@ -97,7 +97,7 @@ pub struct Survey {
 #[derive(Clone, Debug)]
 enum Surveyed {
     /// A slice, and what is laid over it.
-    Slice { legs: Vec<Profile>, covers: Covers },
+    Slice { legs: Vec<Profile>, covers: Box<Covers> },
     /// A chain as it was given.
     Chain(PolygonalChain),
 }
@@ -124,7 +124,7 @@ impl Survey {
             }
         };
         let covers = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds)?;
-        let ground = Surveyed::Slice { legs: cut.legs, covers };
+        let ground = Surveyed::Slice { legs: cut.legs, covers: Box::new(covers) };
         Ok(Self { ground, projection: cut.projection, warnings: cut.warnings })
     }
 

@@ -403,9 +403,8 @@ impl Trade<'_> {
 /// One key or two different ones, and not too many fields.
 fn checked(variations: &[Variation]) -> Result<(), TradeError> {
     match variations {
-        [_] => {}
         [first, second] if first.key == second.key => return Err(TradeError::Twice { path: first.key.path() }),
-        [_, _] => {}
+        [_] | [_, _] => {}
         _ => return Err(TradeError::Count { found: variations.len() }),
     }
     match fields(variations) {

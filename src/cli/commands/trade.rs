@@ -10,7 +10,7 @@ use chta::{
         Document, TradeAnswer,
         figure::{Picture, draw_trade},
     },
-    scenario::{Trade, Variation},
+    scenario::{Trade, TradeError, Variation},
 };
 
 use crate::cli::{
@@ -20,6 +20,12 @@ use crate::cli::{
     output::{self, Pending, TableFormat},
     progress::Progress,
 };
+
+/// What is wrong with a variation.
+#[expect(clippy::needless_pass_by_value, reason = "as map_err gives it")]
+fn refused(error: TradeError) -> Failure {
+    Failure::message(format!("--vary: {error}"))
+}
 
 /// Answers every field.
 pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
@@ -55,10 +61,6 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     };
     output::to_stdout(&text)?;
     Ok(Answer::Yes)
-}
-
-fn refused(error: chta::scenario::TradeError) -> Failure {
-    Failure::message(format!("--vary: {error}"))
 }
 
 /// The rows as CSV.
