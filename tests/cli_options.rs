@@ -13,7 +13,8 @@ use std::{
 
 use command::{CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 9] = ["run", "slice", "hop", "check", "plan", "trade", "compare", "synth", "bodies"];
+const COMMANDS: [&str; 10] =
+    ["run", "slice", "hop", "check", "plan", "require", "trade", "compare", "synth", "bodies"];
 
 /// Options that need a projected map, tried in `maps_command.rs`.
 const ON_A_PROJECTED_MAP: [&str; 4] = ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--accept-map-scale"];
@@ -82,10 +83,12 @@ const HOP: [Trial; 9] = [
     ("--quiet", &["hop", "scenario.toml", "--body", "bennu"], &["hop", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const CHECK: [Trial; 13] = [
+const CHECK: [Trial; 15] = [
     ("--start", &["check", "scenario.toml"], &["check", "scenario.toml", "--start", "10"]),
     ("--goal", &["check", "scenario.toml"], &["check", "scenario.toml", "--goal", "30"]),
     ("--pairs", &["check", "scenario.toml"], &["check", "scenario.toml", "--pairs", "pairs.csv"]),
+    ("--prove", &["check", "scenario.toml"], &["check", "scenario.toml", "--prove"]),
+    ("--budget", &["check", "scenario.toml", "--prove"], &["check", "scenario.toml", "--prove", "--budget", "1"]),
     ("--format", &["check", "scenario.toml"], &["check", "scenario.toml", "--format", "json"]),
     ("--points-per-segment", &["check", "scenario.toml"], &["check", "scenario.toml", "--points-per-segment", "2"]),
     ("--node-spacing-max-m", &["check", "scenario.toml"], &["check", "scenario.toml", "--node-spacing-max-m", "2"]),
@@ -102,12 +105,14 @@ const CHECK: [Trial; 13] = [
     ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const PLAN: [Trial; 16] = [
+const PLAN: [Trial; 18] = [
     ("--start", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--start", "10"]),
     ("--goal", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--goal", "30"]),
     ("--output", &["plan", "scenario.toml"], &["plan", "scenario.toml", "-o", "path.csv"]),
     ("--geojson", &["plan", "map.toml"], &["plan", "map.toml", "--geojson", "path.geojson"]),
     ("--plot", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--plot", "path.svg"]),
+    ("--prove", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--prove"]),
+    ("--budget", &["plan", "scenario.toml", "--prove"], &["plan", "scenario.toml", "--prove", "--budget", "1"]),
     ("--verify", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--verify"]),
     ("--format", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--format", "json"]),
     ("--points-per-segment", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--points-per-segment", "2"]),

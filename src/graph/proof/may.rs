@@ -56,7 +56,7 @@ impl<'a, F: Faults> Prover<'a, F> {
     /// Of a hop test, every limit relaxed.
     pub(super) fn new(test: &'a HopTest<'a>) -> Self {
         let chain = test.chain();
-        let rules: Vec<_> = chain.segments().iter().map(|segment| Direction::BOTH.map(|d| contacts(segment, d))).collect();
+        let rules: Vec<_> = chain.segments().iter().map(|segment| Direction::BOTH.map(|d| contacts::<F>(segment, d))).collect();
         let fastest = |contact: usize| {
             let granted = rules.iter().flatten().filter_map(|contacts: &Contacts<F::Rounding>| contacts[contact].ok());
             granted.map(|rule| rule.speed_squared).fold(0.0, f64::max)
@@ -76,10 +76,10 @@ impl<'a, F: Faults> Prover<'a, F> {
             slopes: slopes::<F>(chain.geometry()),
             speeds_squared: [fastest(0), fastest(1)],
             rules,
-            mechanical: relaxed(test.mechanical()),
-            clearance_m: hopper.clearance_m * (1.0 - RELAXATION),
-            apex_height_max_m: hopper.apex_height_max_m.map(|height_m| height_m * (1.0 + RELAXATION)),
-            flight_time_max_s: hopper.flight_time_max_s.map(|time_s| time_s * (1.0 + RELAXATION)),
+            mechanical: relaxed::<F>(test.mechanical()),
+            clearance_m: hopper.clearance_m * (1.0 - RELAXATION * F::SLACK),
+            apex_height_max_m: hopper.apex_height_max_m.map(|height_m| height_m * (1.0 + RELAXATION * F::SLACK)),
+            flight_time_max_s: hopper.flight_time_max_s.map(|time_s| time_s * (1.0 + RELAXATION * F::SLACK)),
             bends_before,
             heights_m: (heights.clone().fold(f64::INFINITY, f64::min), heights.fold(f64::NEG_INFINITY, f64::max)),
         }
@@ -287,24 +287,25 @@ fn quotient_down<R: Rounding>(dividend: f64, distance: f64) -> f64 {
 }
 
 /// The relaxed rules of a segment for one direction.
-fn contacts<R: Rounding>(segment: &SegmentConstraints, direction: Direction) -> Contacts<R> {
-    [Contact::Takeoff, Contact::Landing]
-        .map(|contact| segment.judged(contact, direction).map(|rule| Rule::of(&rule)).map_err(|refusal| refusal.limit(contact)))
+fn contacts<F: Faults>(segment: &SegmentConstraints, direction: Direction) -> Contacts<F::Rounding> {
+    [Contact::Takeoff, Contact::Landing].map(|contact| {
+        segment.judged(contact, direction).map(|rule| relaxed_rule::<F>(&rule)).map_err(|refusal| refusal.limit(contact))
+    })
 }
 
-impl<R: Rounding> Rule<R> {
-    /// A rule with its slopes and its speed relaxed.
-    fn of(rule: &ContactRule) -> Self {
-        let tolerance = Interval::<R>::point(1.0) + Interval::point(SPEED_TOLERANCE * (1.0 + SPEED_MARGIN));
-        let speed = Interval::point(rule.speed_max_m_s()) * tolerance;
-        Self { slopes: relaxed(rule.slopes()), speed_squared: speed.squared().upper }
-    }
+/// A rule with its slopes and its speed relaxed.
+fn relaxed_rule<F: Faults>(rule: &ContactRule) -> Rule<F::Rounding> {
+    let tolerance = SPEED_TOLERANCE * (1.0 + SPEED_MARGIN) * F::SLACK;
+    let speed = Interval::<F::Rounding>::point(rule.speed_max_m_s());
+    // Added up, not multiplied by one and a bit, so that no tolerance at all is the limit itself.
+    let speed = if tolerance > 0.0 { speed + speed * Interval::point(tolerance) } else { speed };
+    Rule { slopes: relaxed::<F>(rule.slopes()), speed_squared: speed.squared().upper }
 }
 
 /// Slopes widened by a nanoradian at either end: `tan(theta + d) = (m + tan d) / (1 - m tan d)`.
-fn relaxed<R: Rounding>(slopes: SlopeInterval) -> Interval<R> {
+fn relaxed<F: Faults>(slopes: SlopeInterval) -> Interval<F::Rounding> {
     let raised = |slope: f64| {
-        let (m, t) = (Interval::<R>::point(slope), Interval::point(RELAXATION));
+        let (m, t) = (Interval::<F::Rounding>::point(slope), Interval::point(RELAXATION * F::SLACK));
         let divisor = Interval::point(1.0) - m * t;
         if slope.is_infinite() || divisor.lower <= 0.0 { f64::INFINITY } else { ((m + t) / divisor).upper }
     };

@@ -43,6 +43,8 @@ trait Faults: std::fmt::Debug + Send + Sync + 'static {
     const DROPS_VERTICES: bool = false;
     /// Whether hops towards -x are forgotten.
     const FORGETS_REVERSE: bool = false;
+    /// The share of every tolerance that is given away: all of it.
+    const SLACK: f64 = 1.0;
 }
 
 /// No faults.
