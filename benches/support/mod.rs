@@ -2,6 +2,8 @@
 
 #![allow(dead_code, clippy::expect_used, reason = "not every bench uses all of it; a bench that cannot set its scene should stop")]
 
+pub(crate) mod plain;
+
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
     quantity::{ChainPoint, MapPoint},
@@ -66,6 +68,11 @@ pub(crate) fn long_chain(segments: usize, seed: u64) -> Vec<ChainPoint> {
 
 /// With friction 0.6 all over.
 pub(crate) fn constrained(geometry: PolygonalChain, hopper: &Hopper) -> ConstrainedChain {
-    let grip = Some(Grip::Friction(FrictionCone::new(0.6).expect("a friction coefficient")));
+    constrained_by(geometry, hopper, 0.6)
+}
+
+/// With the same friction all over.
+pub(crate) fn constrained_by(geometry: PolygonalChain, hopper: &Hopper, friction: f64) -> ConstrainedChain {
+    let grip = Some(Grip::Friction(FrictionCone::new(friction).expect("a friction coefficient")));
     ConstrainedChain::new(geometry, hopper, &Surface { grip, rest: RestSlope::AsFrictionHolds }).expect("sound constraints")
 }

@@ -31,7 +31,9 @@ mod conflict;
 mod hop_test;
 pub mod limits;
 mod line_of_sight;
+mod reach;
 mod segment_hops;
+mod sweep;
 mod takeoff_set;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
@@ -40,4 +42,5 @@ pub use conflict::{Conflict, Shortfall};
 pub use hop_test::HopTest;
 pub use line_of_sight::LineOfSight;
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
+pub use sweep::{LandingTable, Sweep};
 pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};
