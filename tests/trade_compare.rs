@@ -222,6 +222,8 @@ fn compared_scenarios_are_what_plan_says_of_each() {
     assert!(table.starts_with("file,name,start_x_m,goal_x_m,verdict,hops,flight_time_s,"), "{table}");
     assert!(table.lines().nth(3).unwrap().starts_with("ice.toml,ice,0,40,no-path-found,,"), "{table}");
     assert!(desk.read("all.svg").contains("traversable"));
+    let one_thread = json(&desk, &["compare", files[0], files[1], files[2], "--format", "json", "--threads", "1"]);
+    assert_eq!(one_thread, all);
     let text = desk.run(&["compare", files[0], files[2]]);
     assert_eq!((text.status, text.stderr.as_str()), (0, ""), "no path is no failure of a comparison");
     assert!(text.stdout.contains("(2) ice.toml: ice") && text.stdout.contains("no-path-found"), "{}", text.stdout);

@@ -11,7 +11,7 @@ use chta::{
     scenario::{Extremes, constant_gravity_doubts},
 };
 
-use super::search::Searched;
+use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, CompareArgs, Format},
@@ -34,6 +34,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
     // Opened before the work, which may take long.
     let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let plot = args.plot.as_deref().map(|path| Ok::<_, Failure>((output::begin_picture(path)?, path))).transpose()?;
+    use_threads(args.threads)?;
     let compared: Vec<_> = args.scenarios.iter().map(|file| Compared::new(file, args)).collect::<Result<_, _>>()?;
     let answer = CompareAnswer { compared: compared.iter().map(|one| one.row.clone()).collect() };
     let mut files = Vec::new();
