@@ -5,11 +5,8 @@ none, or where chta finds more hops than anyone or takes longer.
 """
 
 import json
-import os
 import subprocess
 import sys
-import tempfile
-import threading
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +14,7 @@ from pathlib import Path
 WORK = Path("target/peers")
 HERE = Path("benches/peers")
 SCENARIO = HERE / "scenario.toml"
-LIMIT_S = 120.0
+LIMIT_S = 120
 LIMIT_MIB = 12 * 1024
 ANYTIME_S = 5
 SEEDS = (1, 2, 3)
@@ -40,32 +37,37 @@ class Row:
 
 def ended(command):
     """What a process printed, its wall time in s, its peak memory in MiB, and why it was stopped, if it was."""
-    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        began = time.perf_counter()
-        process = subprocess.Popen(["prlimit", f"--data={LIMIT_MIB << 20}", *command], stdout=out, stderr=err)
-        stop = threading.Timer(LIMIT_S, process.kill)
-        stop.start()
-        _, status, usage = os.wait4(process.pid, 0)
-        wall_s = time.perf_counter() - began
-        stop.cancel()
-        process.returncode = os.waitstatus_to_exitcode(status)
-        out.seek(0)
-        err.seek(0)
-        text, said = out.read().decode(), err.read().decode().strip().splitlines()
-    if process.returncode not in (0, 1) or not text.strip():
-        why = f"no answer within {LIMIT_S:.0f} s" if wall_s >= LIMIT_S else (said or ["no answer"])[-1]
-        return None, wall_s, usage.ru_maxrss / 1024, why
-    return json.loads(text), wall_s, usage.ru_maxrss / 1024, ""
+    record = WORK / "peak"
+    # GNU time between: a process begun from here would count the pages of this interpreter as its own peak.
+    limited = ["timeout", str(LIMIT_S), "prlimit", f"--data={LIMIT_MIB << 20}", "/usr/bin/time", "-q", "-o", record, "-f", "%M", *command]
+    began = time.perf_counter()
+    process = subprocess.run(limited, capture_output=True, text=True, check=False)
+    wall_s = time.perf_counter() - began
+    if process.returncode not in (0, 1) or not process.stdout.strip():
+        said = process.stderr.strip().splitlines() or ["no answer"]
+        return None, wall_s, None, f"no answer within {LIMIT_S} s" if wall_s >= LIMIT_S else said[-1]
+    return json.loads(process.stdout), wall_s, int(record.read_text()) / 1024, ""
+
+
+def least_of(command):
+    """The same, the fastest of up to five runs, or of as many as begin within two seconds."""
+    best, began = ended(command), time.perf_counter()
+    for _ in range(4):
+        if best[0] is None or time.perf_counter() - began > 2.0:
+            break
+        best = min(best, ended(command), key=lambda run: run[1])
+    return best
 
 
 def row(tool, chain, whole, inside=None):
     """A row from one run of the whole process, and one that repeats the solving inside."""
-    answer, wall_s, peak_mib, why = ended(whole)
+    answer, wall_s, peak_mib, why = least_of(whole)
     if answer is None:
         return Row(tool, chain, note=why, wall_s=wall_s, peak_mib=peak_mib)
-    again = ended(inside)[0] if inside else answer
+    # Where the repeats take longer than the limit, the one run counts.
+    again = (ended(inside)[0] if inside else None) or answer
     hops = answer["hops"]
-    if inside and again["hops"] != hops:
+    if again["hops"] != hops:
         sys.exit(f"{tool}, {chain}: {hops} hops in one run, {again['hops']} in another")
     note = "" if answer.get("sound", True) else "a hop of this path is none"
     return Row(tool, chain, hops, again["solve_s"], wall_s, peak_mib, note)
