@@ -70,7 +70,7 @@ def row(tool, chain, whole, inside=None):
     if again["hops"] != hops:
         sys.exit(f"{tool}, {chain}: {hops} hops in one run, {again['hops']} in another")
     note = "" if answer.get("sound", True) else "a hop of this path is none"
-    return Row(tool, chain, hops, again["solve_s"], wall_s, peak_mib, note)
+    return Row(tool, chain, hops, again.get("solve_s"), wall_s, peak_mib, note)
 
 
 def rows_of(segments):
@@ -125,7 +125,9 @@ def complaints(rows):
             against = same_points or ours["k = 0"]
             if against.hops is None or min(o.hops for o in ours.values() if o.hops is not None) > r.hops:
                 yield f"{chain}: {r.tool} finds {r.hops} hops, fewer than chta"
-            if against.solve_s >= r.solve_s:
+            if against.solve_s is None or r.solve_s is None:
+                yield f"{chain}: {r.tool}: not all was measured"
+            elif against.solve_s >= r.solve_s:
                 yield f"{chain}: {r.tool} solves in {r.solve_s * 1e3:.2f} ms, chta in {against.solve_s * 1e3:.2f} ms"
             if against.wall_s >= r.wall_s:
                 yield f"{chain}: the whole process of {r.tool} takes {r.wall_s * 1e3:.1f} ms, chta's {against.wall_s * 1e3:.1f} ms"
