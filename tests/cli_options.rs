@@ -11,14 +11,14 @@ use std::{
     path::Path,
 };
 
-use command::{Desk, FORWARD_ONLY, Ran};
+use command::{CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 8] = ["run", "slice", "hop", "check", "plan", "require", "synth", "bodies"];
+const COMMANDS: [&str; 10] = ["run", "slice", "hop", "check", "plan", "require", "trade", "compare", "synth", "bodies"];
 
 /// Options that need a projected map, tried in `maps_command.rs`.
 const ON_A_PROJECTED_MAP: [&str; 4] = ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--accept-map-scale"];
 
-/// Options that must change nothing but the time it takes, tried below.
+/// Options that must change nothing but the time it takes, tried below and in `trade_compare.rs`.
 const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
 
 /// An option, a command line without it, and one with it.
@@ -441,6 +441,90 @@ const REQUIRE: [Trial; 17] = [
     ),
 ];
 
+const VARY: &str = "hopper.takeoff_speed_max_m_s=6:9:2";
+
+const TRADE: [Trial; 17] = [
+    ("--start", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--start", "30"]),
+    ("--goal", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--goal", "10"]),
+    (
+        "--vary",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s=6:9:3"],
+    ),
+    ("--output", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "-o", "trade.csv"]),
+    ("--plot", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--plot", "trade.svg"]),
+    ("--format", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--format", "json"]),
+    ("--prove", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--prove"]),
+    (
+        "--budget",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove", "--budget", "1"],
+    ),
+    (
+        "--points-per-segment",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--points-per-segment", "2"],
+    ),
+    (
+        "--node-spacing-max-m",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--node-spacing-max-m", "2"],
+    ),
+    (
+        "--effort",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--effort", "time"],
+    ),
+    (
+        "--scenario",
+        &["trade", "chain.csv", "--body", "mars", "--vary", VARY],
+        &["trade", "chain.csv", "--body", "mars", "--vary", VARY, "--scenario", "scenario.toml"],
+    ),
+    (
+        "--set",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", VARY, "--set", "hopper.flight_time_max_s=1"],
+    ),
+    ("--body", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--body", "moon"]),
+    (
+        "--gravity-m-s2",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", VARY, "--gravity-m-s2", "1.5"],
+    ),
+    (
+        "--clearance-m",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", VARY, "--clearance-m", "50"],
+    ),
+    (
+        "--quiet",
+        &["trade", "odd.csv", "--scenario", "scenario.toml", "--vary", VARY],
+        &["trade", "odd.csv", "--scenario", "scenario.toml", "--vary", VARY, "--quiet"],
+    ),
+];
+
+const COMPARE: [Trial; 7] = [
+    ("--output", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "-o", "compare.csv"]),
+    ("--plot", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--plot", "compare.svg"]),
+    ("--format", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--format", "json"]),
+    (
+        "--prove",
+        &["compare", "scenario.toml", "map.toml", "--format", "json"],
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove"],
+    ),
+    (
+        "--budget",
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove"],
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove", "--budget", "1"],
+    ),
+    ("--set", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--set", "body.name=moon"]),
+    (
+        "--quiet",
+        &["compare", "scenario.toml", "map.toml", "--set", "body.name=bennu"],
+        &["compare", "scenario.toml", "map.toml", "--set", "body.name=bennu", "--quiet"],
+    ),
+];
+
 /// Ground with all there is on it, small enough for a test.
 const SYNTH: [&str; 30] = [
     "synth",
@@ -511,6 +595,11 @@ fn desk() -> Desk {
     desk.write("forward.csv", FORWARD_ONLY);
     // Walls too steep to rest on around a pit: what it takes to cross it is found by splitting cells.
     desk.write("pit.csv", "x_m,z_m\n0,0\n10,0\n11,-3\n20,-3\n21,0\n40,0\n");
+
+    desk.write(
+        "odd.csv",
+        CHAIN.replace("z_m", "z_m,colour").replace(",2\n", ",2,red\n").replace(",0\n", ",0,\n").replace(",1\n", ",1,\n"),
+    );
     desk
 }
 
@@ -532,9 +621,17 @@ fn options(command: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_option_changes_what_one_sees() {
-    for (command, trials) in
-        [("run", &RUN[..]), ("slice", &SLICE), ("hop", &HOP), ("check", &CHECK), ("plan", &PLAN), ("require", &REQUIRE)]
-    {
+    let all = [
+        ("run", &RUN[..]),
+        ("slice", &SLICE),
+        ("hop", &HOP),
+        ("check", &CHECK),
+        ("plan", &PLAN),
+        ("require", &REQUIRE),
+        ("trade", &TRADE),
+        ("compare", &COMPARE),
+    ];
+    for (command, trials) in all {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
         let elsewhere = |option: &str| ON_A_PROJECTED_MAP.contains(&option) || ON_THE_TIME_ALONE.contains(&option);
         let here: BTreeSet<_> = options(command).into_iter().filter(|option| !elsewhere(option)).collect();
@@ -629,6 +726,8 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 assert!(format!("{one_line} ").contains(unit), "{command} {name} does not name its unit: {one_line}");
             }
             let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat"].contains(&name.as_str());
+
+            let required = ["--from", "--to", "--output", "--from-lonlat", "--to-lonlat", "--vary"].contains(&name.as_str());
             let takes_value =
                 one_line.contains('<') && !["--scenario", "--set", "--body", "--gravity-m-s2"].contains(&name.as_str());
             let writes = ["--geojson", "--plot", "--pairs"].contains(&name.as_str());

@@ -25,6 +25,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     Plan(PlanArgs),
     Require(RequireArgs),
+    Trade(TradeArgs),
+    Compare(CompareArgs),
     Synth(Box<SynthArgs>),
     /// List the known bodies with gravity, radius and their source
     #[command(after_help = "Example:\n  chta bodies")]
@@ -331,6 +333,75 @@ pub(crate) struct RequireArgs {
     pub(crate) search: SearchArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+/// One or two keys of the scenario varied: the fewest hops, or that there is no path, for every value or pair of values
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta trade data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s=2:6:9")]
+pub(crate) struct TradeArgs {
+    /// Chain (CSV), scenario (TOML) or result (JSON)
+    #[arg(value_name = "CHAIN")]
+    pub(crate) chain: PathBuf,
+    /// Start along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) start: Option<f64>,
+    /// Goal along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) goal: Option<f64>,
+    /// Scenario key that takes STEPS values from FROM to TO, both included; given twice: a grid [example: `--vary
+    /// hopper.takeoff_speed_max_m_s=4:10:7`]
+    #[arg(long, value_name = "TABLE.KEY=FROM:TO:STEPS", required = true)]
+    pub(crate) vary: Vec<String>,
+    /// Rows to write, .csv or .json by its name; -: CSV to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Picture to write (.svg or .png): a heat map with every field's number
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Several scenarios side by side: verdict, hops, totals, least margins, and their paths in one picture
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta compare data/scenarios/simple.toml data/scenarios/simple_reduced.toml")]
+pub(crate) struct CompareArgs {
+    /// Scenarios (TOML) or results (JSON), two or more
+    #[arg(value_name = "SCENARIO", required = true, num_args = 2..)]
+    pub(crate) scenarios: Vec<PathBuf>,
+    /// Table to write, .csv or .json by its name; -: CSV to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Picture to write (.svg or .png): all paths overlaid
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    /// Set any scenario key in all of them; wins over the scenarios [example: `--set hopper.takeoff_speed_max_m_s=8`]
+    #[arg(long, value_name = "TABLE.KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    #[arg(long)]
+    pub(crate) accept_map_scale: bool,
+    /// No warnings and no progress on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 /// Make terrain up from a seed: fractal ground, craters, a rille, boulders

@@ -32,6 +32,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Check(args) => commands::check::run(&args),
         Command::Plan(args) => commands::plan::run(&args),
         Command::Require(args) => commands::require::run(&args),
+        Command::Trade(args) => commands::trade::run(&args),
+        Command::Compare(args) => commands::compare::run(&args),
         Command::Synth(args) => commands::synth::run(&args),
         Command::Bodies => commands::bodies::run(),
     };

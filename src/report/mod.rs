@@ -1,6 +1,7 @@
 //! Results: plain data first; text, JSON, CSV, GeoJSON and the picture are views of it.
 
 mod check_answer;
+mod compare_answer;
 mod document;
 mod fan_answer;
 #[cfg(feature = "plot")]
@@ -11,9 +12,11 @@ mod path_record;
 mod proof_record;
 mod require_answer;
 mod text;
+mod trade_answer;
 mod whole_file;
 
 pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, verdict_name};
+pub use compare_answer::{CompareAnswer, CompareRow, MarginsRecord};
 pub use document::{CrsRecord, Document, InputFile};
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, slice_geojson};
@@ -22,4 +25,5 @@ pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRe
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use require_answer::{RequireAnswer, RequireTry};
 pub use text::{check_text, hop_text, path_text, require_text};
+pub use trade_answer::{TradeAnswer, TradeRow, TradeVariation};
 pub use whole_file::{WholeFile, write_whole};

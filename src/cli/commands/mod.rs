@@ -2,6 +2,7 @@
 
 pub(super) mod bodies;
 pub(super) mod check;
+pub(super) mod compare;
 pub(super) mod fan;
 pub(super) mod hop;
 pub(super) mod plan;
@@ -10,3 +11,4 @@ pub(super) mod run;
 mod search;
 pub(super) mod slice;
 pub(super) mod synth;
+pub(super) mod trade;
