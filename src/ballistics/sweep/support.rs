@@ -26,8 +26,8 @@ pub(super) struct Support {
 }
 
 impl Support {
-    /// Two cells an octave: from the greatest `c` of interest down to a fifth of it.
-    const NODES: usize = 6;
+    /// Two cells an octave: from the greatest `c` of interest down to a tenth of it.
+    const NODES: usize = 8;
 
     /// So many bits of a double tell places within a cell; those above number the cells.
     const WITHIN: u32 = 51;

@@ -171,6 +171,12 @@ impl<'a> Overflight<'a> {
         self.support.bound(open.fall) + self.blur < open.slope
     }
 
+    /// A vertex flown past, counted from the take-off, as this one sees it.
+    #[inline]
+    fn seen_at(&self, i: usize) -> Seen {
+        Seen { distance_m: self.distance_m[i], slope: self.seen[i] }
+    }
+
     /// The greatest loft that the first `count` vertices ask for.
     fn by_hull(&mut self, landing: ChainPoint, count: usize, open: &OpenLanding) -> f64 {
         let steepest = self.steepest_seen.max(open.sight_slope.abs());
@@ -181,11 +187,8 @@ impl<'a> Overflight<'a> {
         }
         while self.hulled < count {
             let i = self.hulled;
-            let hidden = i > 0
-                && i + 1 < count
-                && self.hull.hides([i - 1, i, i + 1].map(|i| Seen { distance_m: self.distance_m[i], slope: self.seen[i] }));
-            if !hidden {
-                self.hull.push(self.vertex(i), Seen { distance_m: self.distance_m[i], slope: self.seen[i] });
+            if i == 0 || i + 1 >= count || !self.hull.hides([self.seen_at(i - 1), self.seen_at(i), self.seen_at(i + 1)]) {
+                self.hull.push(self.vertex(i), self.seen_at(i));
             }
             self.hulled += 1;
         }
