@@ -1,9 +1,9 @@
 //! The hop test: may one hop join two stations, and with which take-off slopes?
 
-use super::{LineOfSight, SegmentHops, SegmentReach, TakeoffSet, limits};
+use super::{GroundGrant, LineOfSight, OpenAir, SegmentHops, SegmentReach, TakeoffSet, limits};
 use crate::{
     chain::{ConstrainedChain, Contact, ContactRule, Direction, Station},
-    quantity::{Angle, SegmentId, SlopeInterval},
+    quantity::{SegmentId, SlopeInterval},
     world::{Hopper, Limit, tolerant_speed_m_s},
 };
 
@@ -13,10 +13,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct HopTest<'a> {
     chain: &'a ConstrainedChain,
-    hopper: Hopper,
-    gravity_m_s2: f64,
-    /// The machine's own take-off slopes.
-    mechanical: SlopeInterval,
+    air: OpenAir,
     /// Lowest and highest vertex, m.
     heights_m: (f64, f64),
     /// How far one hop carries on each segment, by direction.
@@ -33,12 +30,7 @@ impl<'a> HopTest<'a> {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v.z_m), high.max(v.z_m)));
         let mut test = Self {
             chain,
-            hopper: *hopper,
-            gravity_m_s2,
-            mechanical: SlopeInterval {
-                lower: hopper.takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
-                upper: hopper.takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
-            },
+            air: OpenAir::new(hopper, gravity_m_s2),
             heights_m,
             reaches: Vec::new(),
         };
@@ -55,17 +47,17 @@ impl<'a> HopTest<'a> {
 
     /// The hopper it answers for.
     pub const fn hopper(&self) -> &Hopper {
-        &self.hopper
+        self.air.hopper()
     }
 
     /// Gravity, m/s^2.
     pub const fn gravity_m_s2(&self) -> f64 {
-        self.gravity_m_s2
+        self.air.gravity_m_s2()
     }
 
     /// The machine's own take-off slopes.
     pub const fn mechanical(&self) -> SlopeInterval {
-        self.mechanical
+        self.air.mechanical()
     }
 
     /// The line of sight between two stations in the direction of travel; `None` where they share the same x.
@@ -103,7 +95,7 @@ impl<'a> HopTest<'a> {
         let vertices = self.chain.geometry().vertices();
         let mut lower = open_air.lower;
         for point in &vertices[limits::flown_past(takeoff, landing)] {
-            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.hopper.clearance_m));
+            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.hopper().clearance_m));
             if lower > open_air.upper {
                 return Err(Limit::Terrain);
             }
@@ -127,34 +119,21 @@ impl<'a> HopTest<'a> {
     /// The limit that left nothing.
     #[inline]
     pub(crate) fn open_air(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Result<SlopeInterval, Limit> {
-        let speeds = limits::speeds(sight, from.speed_max_m_s(), to.speed_max_m_s(), self.gravity_m_s2);
-        let loft = speeds
-            .intersect(limits::takeoff_cone(sight, from.slopes().intersect(self.mechanical)))
-            .intersect(limits::landing_cone(sight, to.slopes()))
-            .intersect(self.machine(sight));
+        let grant = |rule: &ContactRule| GroundGrant { slopes: rule.slopes(), speed_max_m_s: rule.speed_max_m_s() };
+        let loft = self.air.lofts(sight, grant(from), grant(to));
         if loft.is_empty() || loft.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(loft) }
-    }
-
-    /// The lofts that the machine's greatest height and longest flight allow.
-    #[inline]
-    fn machine(&self, sight: LineOfSight) -> SlopeInterval {
-        let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
-        match self.hopper.flight_time_max_s {
-            Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),
-            None => apex,
-        }
     }
 
     /// Which limit left nothing, limits taken one after the other.
     #[cold]
     fn refusing(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Limit {
         let in_order = [
-            (Limit::TakeoffSpeed, limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2)),
-            (Limit::LandingSpeed, limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2)),
+            (Limit::TakeoffSpeed, limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2())),
+            (Limit::LandingSpeed, limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2())),
             (Limit::TakeoffCone, limits::takeoff_cone(sight, from.slopes())),
             (Limit::LandingCone, limits::landing_cone(sight, to.slopes())),
-            (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical)),
-            (Limit::ApexHeight, self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
+            (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical())),
+            (Limit::ApexHeight, self.hopper().apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
         ];
         let mut left = SlopeInterval { lower: 0.0, upper: f64::INFINITY };
         for (limit, loft) in in_order {
@@ -210,7 +189,7 @@ impl<'a> HopTest<'a> {
 
     /// The bound on one hop's distance from the greatest drop and the greatest climb it may take.
     fn farthest_m(&self, drop_m: f64, climb_m: f64) -> f64 {
-        let g = self.gravity_m_s2;
+        let g = self.gravity_m_s2();
         let safe = |speed_max_m_s: f64, height_m: f64| {
             let v = tolerant_speed_m_s(speed_max_m_s);
             v / g * (v * v + 2.0 * g * height_m.max(0.0)).sqrt()

@@ -31,6 +31,8 @@ mod conflict;
 mod hop_test;
 pub mod limits;
 mod line_of_sight;
+mod open_air;
+mod safety;
 mod segment_hops;
 mod takeoff_set;
 
@@ -39,5 +41,7 @@ pub use choice::TakeoffChoice;
 pub use conflict::{Conflict, Shortfall};
 pub use hop_test::HopTest;
 pub use line_of_sight::LineOfSight;
+pub use open_air::{GroundGrant, OpenAir};
+pub use safety::{safety_ceiling_m, safety_range_m};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
 pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};

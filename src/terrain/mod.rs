@@ -36,7 +36,7 @@ mod xyz;
 mod zones;
 
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
-pub use dem::{Dem, ELEVATION_LIMIT_M};
+pub use dem::{Dem, ELEVATION_LIMIT_M, Samples};
 pub use error::{AsciiProblem, TerrainError};
 pub use format::{DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};

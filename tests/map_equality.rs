@@ -1,0 +1,204 @@
+//! Hop maps against the plain way: every pair of posts with the slice and the hop test themselves.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its terrain should stop")]
+#![allow(clippy::print_stderr, reason = "skipped tests say why")]
+
+mod support;
+
+use std::{error::Error, path::Path};
+
+use chta::{
+    ballistics::HopTest,
+    chain::{ConstrainedChain, PolygonalChain},
+    quantity::{Angle, AngleInterval, MapPoint, SlopeInterval, VertexId},
+    reach::map::{MapRequest, NO_GROUND, Post, PostHops, Search, UNREACHED, Way, search},
+    terrain::{Dem, FrictionRaster, GeoReference, KeepOut, Profile, read_dem, read_friction_raster, read_keep_out, slice},
+    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+};
+use support::Draw;
+
+/// A terrain, a robot, and what lies over the ground.
+struct World {
+    dem: Dem,
+    hopper: Hopper,
+    surface: Surface,
+    gravity_m_s2: f64,
+    friction: Option<FrictionRaster>,
+    keep_out: Option<KeepOut>,
+}
+
+impl World {
+    fn new(dem: Dem, hopper: Hopper, surface: Surface, gravity_m_s2: f64) -> Self {
+        Self { dem, hopper, surface, gravity_m_s2, friction: None, keep_out: None }
+    }
+
+    /// What `chta slice` and the reading of its chain do to a profile.
+    fn chain(&self, mut profile: Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> {
+        let constant = match self.surface.grip {
+            Some(Grip::Friction(cone)) => Some(cone),
+            _ => None,
+        };
+        if let Some(raster) = &self.friction {
+            raster.lay(&mut profile, constant)?;
+        }
+        if let Some(zones) = &self.keep_out {
+            zones.mark(&mut profile)?;
+        }
+        let geometry = PolygonalChain::from_profile(&profile, constant)?;
+        Ok(ConstrainedChain::new(geometry, &self.hopper, &self.surface)?)
+    }
+
+    fn request(&self, stride: usize) -> MapRequest<'_> {
+        MapRequest {
+            dem: &self.dem,
+            stride,
+            hopper: &self.hopper,
+            surface: &self.surface,
+            gravity_m_s2: self.gravity_m_s2,
+            friction: self.friction.as_ref(),
+            keep_out: self.keep_out.as_ref(),
+        }
+    }
+
+    /// The plain way: slice, chain, hop test.
+    fn lofts(&self, from: Post, to: Post) -> Option<SlopeInterval> {
+        let map = self.dem.georeference();
+        let profile = slice(&self.dem, map.post(from.row, from.col), map.post(to.row, to.col)).ok()?;
+        let chain = self.chain(profile).unwrap();
+        let test = HopTest::new(&chain, &self.hopper, self.gravity_m_s2);
+        let geometry = chain.geometry();
+        test.loft(&geometry.vertex_station(VertexId(0)), &geometry.vertex_station(VertexId(geometry.segment_count()))).ok()
+    }
+
+    fn posts(&self, stride: usize) -> Vec<Post> {
+        let rows = (0..self.dem.rows()).step_by(stride);
+        rows.flat_map(|row| (0..self.dem.cols()).step_by(stride).map(move |col| Post { row, col })).collect()
+    }
+
+    /// Fewest hops the plain way.
+    fn plain_map(&self, start: Post, stride: usize, way: Way) -> Vec<i16> {
+        let posts = self.posts(stride);
+        let no_ground = |post: &Post| self.dem.elevation(post.row, post.col).is_none();
+        let mut hops: Vec<i16> = posts.iter().map(|post| if no_ground(post) { NO_GROUND } else { UNREACHED }).collect();
+        hops[posts.iter().position(|&post| post == start).unwrap()] = 0;
+        for front in 0.. {
+            let fronts: Vec<usize> = (0..posts.len()).filter(|&i| hops[i] == front).collect();
+            if fronts.is_empty() {
+                break;
+            }
+            for to in 0..posts.len() {
+                let joins = |&from: &usize| {
+                    let (from, to) = if way == Way::Out { (posts[from], posts[to]) } else { (posts[to], posts[from]) };
+                    self.lofts(from, to).is_some()
+                };
+                if hops[to] == UNREACHED && fronts.iter().any(joins) {
+                    hops[to] = front + 1;
+                }
+            }
+        }
+        hops
+    }
+}
+
+fn friction(mu: f64) -> Surface {
+    Surface { grip: Some(Grip::Friction(FrictionCone::new(mu).unwrap())), rest: RestSlope::AsFrictionHolds }
+}
+
+/// Every pair of posts: the same answer, and the same lofts to rounding.
+fn compare_pairs(world: &World, what: &str) -> (usize, usize) {
+    let ground = |profile| world.chain(profile);
+    let hops = PostHops::new(world.request(1), &ground).unwrap();
+    let (mut yes, mut no) = (0, 0);
+    for from in world.posts(1) {
+        let mut found = std::collections::HashMap::new();
+        for offset in 0..hops.offset_count() {
+            if let Some(to) = hops.landing(from, offset) {
+                found.extend(hops.lofts(from, offset).unwrap().map(|(_, lofts)| (to, lofts)));
+            }
+        }
+        for to in world.posts(1) {
+            let expected = if to == from { None } else { world.lofts(from, to) };
+            let quick = found.get(&to);
+            assert_eq!(quick.is_some(), expected.is_some(), "{what}: {from:?} to {to:?}: {quick:?} against {expected:?}");
+            if let (Some(quick), Some(expected)) = (quick, expected) {
+                let near = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-7 * (1.0 + a.abs().max(b.abs()));
+                assert!(near(quick.lower, expected.lower) && near(quick.upper, expected.upper), "{what}: {from:?} to {to:?}");
+                yes += 1;
+            } else {
+                no += 1;
+            }
+        }
+    }
+    (yes, no)
+}
+
+/// Ground for tests: rough or of steps on round numbers, with or without holes.
+fn random_dem(draw: &mut Draw, side: usize) -> Dem {
+    let stepped = draw.chance(0.4);
+    let relief_m = draw.log_uniform(0.02, 6.0);
+    let holes = if draw.chance(0.4) { 0.06 } else { 0.0 };
+    let tilt = draw.uniform(-0.4, 0.4);
+    let mut heights = Vec::new();
+    for row in 0..side {
+        for _ in 0..side {
+            let rough = if stepped { f64::from(u8::try_from(draw.below(3)).unwrap()) * 0.5 } else { draw.unit() * relief_m };
+            let plane = if stepped { 0.0 } else { tilt * f64::from(u8::try_from(row).unwrap()) };
+            heights.push(if draw.chance(holes) { f64::NAN } else { rough + plane });
+        }
+    }
+    let (dx_m, dy_m) = if draw.chance(0.3) { (1.0, 1.7) } else { (1.0, 1.0) };
+    let north_west = if draw.chance(0.3) { MapPoint::new(-98_765.4, 1.0e6 + 0.3) } else { MapPoint::new(0.0, 0.0) };
+    Dem::new(side, side, heights, GeoReference::local(north_west, dx_m, dy_m).unwrap()).unwrap()
+}
+
+fn random_hopper(draw: &mut Draw) -> (Hopper, f64) {
+    let gravity = draw.log_uniform(0.05, 10.0);
+    let speed = (gravity * draw.uniform(2.0, 9.0)).sqrt();
+    let mut hopper = Hopper {
+        clearance_m: if draw.chance(0.5) { 0.0 } else { draw.log_uniform(0.001, 0.5) },
+        ..Hopper::with_speeds(speed, speed * draw.uniform(0.7, 1.4))
+    };
+    if draw.chance(0.25) {
+        hopper.apex_height_max_m = Some(draw.uniform(0.3, 4.0));
+    }
+    if draw.chance(0.25) {
+        hopper.flight_time_max_s = Some(draw.uniform(0.5, 3.0) * speed / gravity);
+    }
+    if draw.chance(0.25) {
+        hopper.takeoff_angle_min = Some(Angle::from_degrees(draw.uniform(0.0, 50.0)));
+        hopper.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(50.0, 90.0)));
+    }
+    (hopper, gravity)
+}
+
+fn random_surface(draw: &mut Draw) -> Surface {
+    let rest = match draw.below(3) {
+        0 => RestSlope::Unlimited,
+        1 => RestSlope::AtMost(Angle::from_degrees(draw.uniform(5.0, 50.0))),
+        _ => RestSlope::AsFrictionHolds,
+    };
+    let grip = if draw.chance(0.3) {
+        Grip::FromSlope {
+            takeoff: AngleInterval::from_degrees(draw.uniform(-100.0, 60.0), draw.uniform(60.0, 100.0)),
+            landing: AngleInterval::from_degrees(draw.uniform(-100.0, -60.0), draw.uniform(-60.0, 100.0)),
+        }
+    } else {
+        Grip::Friction(FrictionCone::new(draw.log_uniform(0.1, 3.0)).unwrap())
+    };
+    Surface { grip: Some(grip), rest }
+}
+
+#[test]
+fn every_pair_of_random_grids_has_the_answer_of_slice_and_hop() {
+    let mut draw = Draw::seeded(7);
+    let (mut yes, mut no) = (0, 0);
+    for number in 0..60 {
+        let dem = random_dem(&mut draw, 8);
+        let (hopper, gravity) = random_hopper(&mut draw);
+        let world = World::new(dem, hopper, random_surface(&mut draw), gravity);
+        let (joined, apart) = compare_pairs(&world, &format!("grid {number}"));
+        yes += joined;
+        no += apart;
+    }
+    assert!(yes > 10_000 && no > 10_000, "{yes} pairs joined, {no} not");
+}
