@@ -7,13 +7,17 @@ mod covers;
 mod facets;
 mod ground;
 mod lattice;
+mod mobility;
 mod offsets;
+mod paths;
 mod post_hops;
 mod request;
 mod samples;
 mod search;
 
 pub use lattice::{NodeLattice, Post};
+pub use mobility::{Mobility, SECTORS, mobility};
+pub use paths::{MapHop, joined, way_hops};
 pub use post_hops::{GroundOf, Lofts, PostHops};
 pub use request::{MapError, MapRequest};
 pub use search::{FrontProgress, HopMap, NO_GROUND, Search, UNREACHED, Way, search};
