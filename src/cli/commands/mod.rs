@@ -4,6 +4,8 @@ pub(super) mod bodies;
 pub(super) mod check;
 pub(super) mod fan;
 pub(super) mod hop;
+pub(super) mod map;
+mod map_profiles;
 pub(super) mod plan;
 pub(super) mod run;
 mod search;
