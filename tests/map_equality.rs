@@ -314,7 +314,8 @@ fn every_pair_under_zones_and_friction_has_the_answer_of_slice_and_hop() {
                 [[[6.2, 6.2], [6.4, 6.2], [6.3, 6.5], [6.2, 6.2]]]]}}"#
         );
         let raster = |values: &[f64], name: &str| {
-            let rows: Vec<String> = values.chunks(4).map(|row| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")).collect();
+            let rows: Vec<String> =
+                values.chunks(4).map(|row| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" ")).collect();
             let header = "ncols 4\nnrows 4\nxllcorner -0.5\nyllcorner -0.5\ncellsize 2\nNODATA_value -9\n";
             let path = folder.path().join(format!("{name}_{number}.asc"));
             std::fs::write(&path, format!("{header}{}\n", rows.join("\n"))).unwrap();
@@ -371,10 +372,14 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
     };
     let mut draw = Draw::seeded(55);
     let mut compared = 0;
-    for (effort, choice) in
-        Effort::ALL.into_iter().zip([TakeoffChoice::LeastSpeed, TakeoffChoice::LeastSpeed, TakeoffChoice::LeastTime, TakeoffChoice::MidRange])
-    {
-        let dem = Dem::new(9, 9, (0..81).map(|_| draw.unit()).collect(), GeoReference::local(MapPoint::new(0.0, 0.0), 1.0, 1.0).unwrap());
+    for (effort, choice) in Effort::ALL.into_iter().zip([
+        TakeoffChoice::LeastSpeed,
+        TakeoffChoice::LeastSpeed,
+        TakeoffChoice::LeastTime,
+        TakeoffChoice::MidRange,
+    ]) {
+        let dem =
+            Dem::new(9, 9, (0..81).map(|_| draw.unit()).collect(), GeoReference::local(MapPoint::new(0.0, 0.0), 1.0, 1.0).unwrap());
         let world = World::new(dem.unwrap(), Hopper { clearance_m: 0.05, ..Hopper::with_speeds(2.6, 2.8) }, friction(1.2), 1.62);
         let start = Post { row: 2, col: 1 };
         let posts = world.posts(1);
@@ -386,7 +391,8 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
                 let mut least = f64::INFINITY;
                 for from in (0..posts.len()).filter(|&from| hops[from] == front - 1) {
                     let Some(lofts) = world.lofts(posts[from], posts[to]) else { continue };
-                    let run_m = (posts[to].row as f64 - posts[from].row as f64).hypot(posts[to].col as f64 - posts[from].col as f64);
+                    let run_m =
+                        (posts[to].row as f64 - posts[from].row as f64).hypot(posts[to].col as f64 - posts[from].col as f64);
                     let height = |post: Post| world.dem.elevation(post.row, post.col).unwrap();
                     let sight = LineOfSight::new(run_m, height(posts[to]) - height(posts[from]));
                     let arc = Arc::new(sight, choice.loft(sight, lofts), 1.62);
@@ -496,8 +502,7 @@ fn planes_have_the_analytic_shape() {
         let landing = -1.0 / libm::tan(alpha + phi);
         let mut farthest = 0.0f64;
         for step in 0..400_000 {
-            let m = flattest.max(2.0 * b - landing) .max(2.0 * b - landing) + f64::from(step) * 1e-5;
-            let m = m.max(flattest).min(steepest);
+            let m = (flattest.max(2.0 * b - landing) + f64::from(step) * 1e-5).min(steepest);
             let n = m - b;
             let range = |slope_at: f64| 2.0 * speed * speed * n / (gravity * (1.0 + slope_at * slope_at));
             farthest = farthest.max(range(m).min(range(b - n)));

@@ -28,12 +28,7 @@ impl<'a> HopTest<'a> {
             .vertices()
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v.z_m), high.max(v.z_m)));
-        let mut test = Self {
-            chain,
-            air: OpenAir::new(hopper, gravity_m_s2),
-            heights_m,
-            reaches: Vec::new(),
-        };
+        let mut test = Self { chain, air: OpenAir::new(hopper, gravity_m_s2), heights_m, reaches: Vec::new() };
         test.reaches = (0..chain.segments().len())
             .map(|i| Direction::BOTH.map(|direction| SegmentReach::on(&test, SegmentId(i), direction)))
             .collect();

@@ -111,8 +111,7 @@ impl QuickGrip {
 /// The friction cone's directions towards +x on a facet.
 #[inline]
 fn cone_ahead(mu_squared: f64, slope: f64, steepness_squared: f64) -> QuickCone {
-    let tangent_squared =
-        (mu_squared - steepness_squared + (1.0 + mu_squared) * (slope * slope)) / (1.0 + steepness_squared);
+    let tangent_squared = (mu_squared - steepness_squared + (1.0 + mu_squared) * (slope * slope)) / (1.0 + steepness_squared);
     if tangent_squared < -FADING {
         return QuickCone::Closed;
     }
@@ -202,7 +201,10 @@ mod tests {
                                 closed += 1;
                             }
                             QuickCone::Open(found) => {
-                                assert!(same(found, slopes.unwrap()), "mu {mu} along {along} across {across}: {found:?} {slopes:?}");
+                                assert!(
+                                    same(found, slopes.unwrap()),
+                                    "mu {mu} along {along} across {across}: {found:?} {slopes:?}"
+                                );
                                 open += 1;
                             }
                             QuickCone::Doubtful => doubtful += 1,

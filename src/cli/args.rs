@@ -195,7 +195,7 @@ pub(crate) struct FanArgs {
 /// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it.
 #[derive(Debug, ClapArgs)]
 #[command(
-    after_help = "Example:\n  chta map data/terrain/mars_crater_field.tif --start 100,80 --goal 180,150 \\\n    --scenario data/scenarios/mars_crater_field.toml -o hops.tif --plot map.png"
+    after_help = "Example:\n  chta map data/terrain/mars_crater_field.tif --start 100,80 --scenario data/scenarios/mars_crater_field.toml -o hops.tif"
 )]
 pub(crate) struct MapArgs {
     /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres

@@ -230,7 +230,11 @@ impl MapAnswer {
                 Some(None) => ", no way back".to_owned(),
                 None => String::new(),
             };
-            let _ = writeln!(text, "goal ({}, {}) m, {:.3} m from the place asked for: {hops}{back}", goal.x_m, goal.y_m, goal.offset_m);
+            let _ = writeln!(
+                text,
+                "goal ({}, {}) m, {:.3} m from the place asked for: {hops}{back}",
+                goal.x_m, goal.y_m, goal.offset_m
+            );
         }
         if !self.hops_histogram.is_empty() {
             let _ = writeln!(text, "\n{:>6}{:>12}", "hops", "posts");

@@ -8,8 +8,8 @@ use chta::{
     path::HopPath,
     quantity::MapPoint,
     reach::map::{
-        FrontProgress, GroundOf, HopMap, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, Way,
-        joined, mobility, search, way_hops,
+        FrontProgress, GroundOf, HopMap, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search,
+        Way, joined, mobility, search, way_hops,
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, TotalsRecord,
@@ -127,7 +127,10 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     let goals = places.map(|place| spot("goal", place)).collect::<Result<Vec<_>, _>>()?;
     let Post { row, col } = lattice.post(start.post);
     if dem.elevation(row, col).is_none() {
-        let message = format!("--start: the nearest post, ({}, {}) m, has no elevation; start where the DEM has data", start.at.x, start.at.y);
+        let message = format!(
+            "--start: the nearest post, ({}, {}) m, has no elevation; start where the DEM has data",
+            start.at.x, start.at.y
+        );
         return Err(failed(&std::io::Error::other(message)));
     }
     let mut warnings = Vec::new();
@@ -169,11 +172,14 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
         let front = |what: &str, found: FrontProgress| progress.say(front_words(what, found, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
         let out = search(&hops, start.post, Search { way: Way::Out, effort }, &mut |found| front("there", found))?;
-        let back = args.back.then(|| search(&hops, start.post, Search { way: Way::Back, effort: None }, &mut |found| front("back", found)));
+        let back = args
+            .back
+            .then(|| search(&hops, start.post, Search { way: Way::Back, effort: None }, &mut |found| front("back", found)));
         let begun = std::time::Instant::now();
-        let mobile = args.mobility.as_ref().map(|_| {
-            mobility(&hops, &|done, of| progress.say(share_words("mobility", done, of, begun.elapsed().as_secs_f64())))
-        });
+        let mobile = args
+            .mobility
+            .as_ref()
+            .map(|_| mobility(&hops, &|done, of| progress.say(share_words("mobility", done, of, begun.elapsed().as_secs_f64()))));
         let way = |goal: &Spot| {
             let nodes = out.way(&hops, goal.post);
             nodes.map(|nodes| way_hops(&hops, &nodes, scenario.search.takeoff)).transpose()

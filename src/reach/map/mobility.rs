@@ -2,11 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{
-    MapError, PostHops,
-    lattice::Post,
-    offsets::Offset,
-};
+use super::{MapError, PostHops, lattice::Post, offsets::Offset};
 use crate::{ballistics::safety_range_m, world::tolerant_speed_m_s};
 
 /// Directions are counted in so many equal sectors, the first about grid north.
@@ -46,14 +42,15 @@ pub fn mobility(hops: &PostHops<'_>, tell: &(dyn Fn(usize, usize) + Sync)) -> Re
             let found = lattice
                 .nodes_of(block)
                 .filter(|&node| hops.has_ground(node))
-                .map(|node| from_node(hops, node, &disc, &sectors).map(|(share, directions)| (lattice.index(node), share, directions)))
+                .map(|node| {
+                    from_node(hops, node, &disc, &sectors).map(|(share, directions)| (lattice.index(node), share, directions))
+                })
                 .collect();
             tell(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1, down * across);
             found
         })
         .collect();
-    let mut map =
-        Mobility { disc_radius_m, share: vec![f32::NAN; lattice.count()], directions: vec![f32::NAN; lattice.count()] };
+    let mut map = Mobility { disc_radius_m, share: vec![f32::NAN; lattice.count()], directions: vec![f32::NAN; lattice.count()] };
     for block in blocks {
         for (node, share, directions) in block? {
             map.share[node] = share;

@@ -75,7 +75,10 @@ pub(super) fn crossings(cols: i32, rows: i32, run_m: f64, post_cols: usize) -> V
     }
     places.sort_by(|a, b| (a.0 * b.1).cmp(&(b.0 * a.1)));
     places.dedup_by(|a, b| a.0 * b.1 == b.0 * a.1);
-    places.into_iter().map(|(number, count)| crossing(i64::from(cols), i64::from(rows), (number, count), run_m, post_cols)).collect()
+    places
+        .into_iter()
+        .map(|(number, count)| crossing(i64::from(cols), i64::from(rows), (number, count), run_m, post_cols))
+        .collect()
 }
 
 /// The vertex `number / count` along the way.
@@ -140,15 +143,9 @@ impl OffsetTable {
     }
 
     /// The table, where `rises_m` says which rises a distance allows (none: the offset is left out).
-    pub(super) fn new(
-        spacing: Spacing,
-        range_m: f64,
-        bounds: (usize, usize),
-        rises_m: impl Fn(f64) -> (f64, f64),
-    ) -> Self {
-        let mut found: Vec<(f64, i32, i32)> = Self::within(spacing, range_m, bounds)
-            .map(|(cols, rows)| (spacing.metres(cols, rows).norm(), rows, cols))
-            .collect();
+    pub(super) fn new(spacing: Spacing, range_m: f64, bounds: (usize, usize), rises_m: impl Fn(f64) -> (f64, f64)) -> Self {
+        let mut found: Vec<(f64, i32, i32)> =
+            Self::within(spacing, range_m, bounds).map(|(cols, rows)| (spacing.metres(cols, rows).norm(), rows, cols)).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let mut table = Self::default();
         for (run_m, rows, cols) in found {

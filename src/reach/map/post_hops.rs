@@ -332,7 +332,9 @@ impl<'a> PostHops<'a> {
     /// Whether a way along edges of facets has one on either side all the way.
     fn has_facets_along(&self, takeoff: usize, offset: &Offset) -> bool {
         let posts = self.table.crossings_of(offset).iter();
-        posts.map(|crossing| takeoff.wrapping_add_signed(crossing.first as isize)).all(|post| self.ground.has_any(post, offset.departure))
+        posts
+            .map(|crossing| takeoff.wrapping_add_signed(crossing.first as isize))
+            .all(|post| self.ground.has_any(post, offset.departure))
     }
 
     /// The slice and the hop test themselves.
@@ -407,12 +409,17 @@ impl PostHops<'_> {
         let mut longest_m = if speeds.iter().all(|&v| v > 0.0) && all.0 <= all.1 { range_m(all.1 - all.0) } else { 0.0 };
         if !longest_m.is_finite() {
             let found = format!("{longest_m} m");
-            return Err(MapError::Request { what: "the reach of one hop", found, expected: "a finite one: give speed limits and gravity" });
+            return Err(MapError::Request {
+                what: "the reach of one hop",
+                found,
+                expected: "a finite one: give speed limits and gravity",
+            });
         }
         // Within a shorter range there is less relief, which makes the range shorter still.
         let mut ranges_m = Vec::new();
         for _ in 0..8 {
-            ranges_m = self.block_reliefs(&blocks, longest_m).into_iter().map(|relief_m| range_m(relief_m).min(longest_m)).collect();
+            ranges_m =
+                self.block_reliefs(&blocks, longest_m).into_iter().map(|relief_m| range_m(relief_m).min(longest_m)).collect();
             let next_m = ranges_m.iter().copied().fold(0.0, f64::max);
             let settled = next_m > 0.95 * longest_m;
             longest_m = next_m;

@@ -5,11 +5,7 @@
 
 use rayon::prelude::*;
 
-use super::{
-    MapError, PostHops,
-    lattice::Post,
-    offsets::Offset,
-};
+use super::{MapError, PostHops, lattice::Post, offsets::Offset};
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     graph::Effort,
@@ -80,12 +76,7 @@ struct Found {
 ///
 /// # Errors
 /// [`MapError`]; of several, that of the first block.
-pub fn search(
-    hops: &PostHops<'_>,
-    start: Post,
-    asked: Search,
-    tell: &mut dyn FnMut(FrontProgress),
-) -> Result<HopMap, MapError> {
+pub fn search(hops: &PostHops<'_>, start: Post, asked: Search, tell: &mut dyn FnMut(FrontProgress)) -> Result<HopMap, MapError> {
     let lattice = hops.lattice();
     let nodes = lattice.count();
     let mut map = HopMap {
@@ -156,8 +147,9 @@ fn blocks_near(hops: &PostHops<'_>, front: &[bool], open: &[u32]) -> Vec<usize> 
             }
             let (rows, cols) = hops.blocks_within(hops.offsets()[within - 1].run_m);
             let (row, col) = (block / across, block % across);
-            (row.saturating_sub(rows)..=(row + rows).min(down - 1))
-                .any(|row| front[row * across + col.saturating_sub(cols)..=row * across + (col + cols).min(across - 1)].contains(&true))
+            (row.saturating_sub(rows)..=(row + rows).min(down - 1)).any(|row| {
+                front[row * across + col.saturating_sub(cols)..=row * across + (col + cols).min(across - 1)].contains(&true)
+            })
         })
         .collect()
 }
