@@ -11,7 +11,7 @@ use chta::{
     ballistics::HopTest,
     chain::{ConstrainedChain, PolygonalChain},
     quantity::{Angle, AngleInterval, MapPoint, SlopeInterval, VertexId},
-    reach::map::{MapRequest, NO_GROUND, Post, PostHops, Search, UNREACHED, Way, search},
+    reach::map::{MapRequest, NO_GROUND, Post, PostHops, SECTORS, Search, UNREACHED, Way, mobility, search},
     terrain::{Dem, FrictionRaster, GeoReference, KeepOut, Profile, read_dem, read_friction_raster, read_keep_out, slice},
     world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
@@ -490,6 +490,17 @@ fn planes_have_the_analytic_shape() {
             assert_eq!(hops == 1, distance > 0.0 && distance <= reach, "({row}, {col}) in {hops} hops");
         }
     }
+    let (disc, within) = (
+        (1 - 20..21).flat_map(|row| (1 - 20..21).map(move |col: i32| f64::from(row * row + col * col).sqrt())),
+        speed * speed / gravity,
+    );
+    let counted = |most: f64| disc.clone().filter(|&distance| distance > 0.0 && distance <= most).count() as f64;
+    let world = World::new(plane(0.0), Hopper::with_speeds(speed, speed), friction(mu), gravity);
+    let ground = |profile| world.chain(profile);
+    let mobile = mobility(&PostHops::new(world.request(1), &ground).unwrap(), &|_, _| ()).unwrap();
+    assert!((mobile.disc_radius_m - within).abs() < 1e-6);
+    assert!((f64::from(mobile.share[20 * 41 + 20]) - counted(reach) / counted(within)).abs() < 1e-6);
+    assert_eq!(mobile.directions[20 * 41 + 20], f32::from(SECTORS));
     // Along a slope b the reach is 2 v^2 n / (g (1 + m^2)) for m = b + n, within take-off cone and both speeds.
     let slope = 0.2f64;
     let tilted = map(slope);

@@ -195,7 +195,7 @@ pub(crate) struct FanArgs {
 /// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it.
 #[derive(Debug, ClapArgs)]
 #[command(
-    after_help = "Example:\n  chta map data/terrain/mars_crater_field.tif --start 100,80 --scenario data/scenarios/mars_crater_field.toml -o hops.tif"
+    after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
 )]
 pub(crate) struct MapArgs {
     /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
