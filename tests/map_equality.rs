@@ -269,7 +269,7 @@ fn compare_cut_outs(file: &str, hopper: Hopper, surface: Surface, gravity_m_s2: 
         let hops = PostHops::new(world.request(1), &ground).unwrap();
         let map = search(&hops, start, Search::default(), &mut |_| {}).unwrap();
         let reached = map.hops.iter().filter(|&&hops| hops > 0).count();
-        if reached < SIDE * SIDE / 4 || reached > SIDE * SIDE * 4 / 5 {
+        if !(SIDE * SIDE / 4..=SIDE * SIDE * 4 / 5).contains(&reached) {
             continue;
         }
         let what = format!("{file} from row {}, column {}", first.row, first.col);
@@ -363,6 +363,7 @@ fn ways_back_and_strides_have_the_hops_of_every_pair() {
 
 /// The least effort among ways of fewest hops, against a plain search over all pairs of neighbouring fronts; and the paths themselves.
 #[test]
+#[expect(clippy::cast_precision_loss, reason = "small numbers")]
 fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
     use chta::{
         ballistics::{Arc, LineOfSight, TakeoffChoice},
@@ -464,6 +465,7 @@ fn raising_a_speed_limit_never_makes_a_post_unreachable_nor_farther() {
 /// A level plane: one hop reaches `v^2 sin(2 theta) / g` at the steepest of its cone's lower end and 45 degrees, so that hops go by
 /// distance alone. A tilted plane: the parabola of safety, hop by hop, along its line of fall and against it.
 #[test]
+#[expect(clippy::cast_precision_loss, reason = "small numbers")]
 fn planes_have_the_analytic_shape() {
     let plane = |slope: f64| {
         let side = 41;

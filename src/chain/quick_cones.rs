@@ -45,9 +45,11 @@ pub struct Turn {
 }
 
 /// Squares of tangents below this, and differences of tangents below its square root, are doubtful: from there on the square root and the
-/// quotient of what is left lose more than half of a double's digits. Some pairs in a thousand are; larger would only ask the exact
-/// code more often.
+/// quotient of what is left lose more than half of a double's digits. Larger would only ask the exact code more often.
 const FADING: f64 = 1.0e-6;
+
+/// The square root of [`FADING`]: next to the vertical a difference of tangents is an angle, and this a twentieth of a degree.
+const NEAR: f64 = 1.0e-3;
 
 impl QuickGrip {
     /// Of friction.
@@ -117,8 +119,6 @@ fn cone_ahead(mu_squared: f64, slope: f64, steepness_squared: f64) -> QuickCone 
     }
     let tangent = tangent_squared.max(0.0).sqrt();
     let (ahead, behind) = (tangent - slope, tangent + slope);
-    // Differences of tangents are angles here; the square root of the threshold is a twentieth of a degree.
-    const NEAR: f64 = 1.0e-3;
     if ahead < -NEAR && tangent_squared > FADING {
         return QuickCone::Closed;
     }

@@ -13,9 +13,6 @@
 //!        S---SE
 //! ```
 
-/// How many there are.
-pub(super) const COUNT: usize = 6;
-
 /// A neighbour of a post: columns to the east, rows to the south.
 type Neighbour = (i32, i32);
 
@@ -29,7 +26,7 @@ const NORTH: Neighbour = (0, -1);
 
 /// Of each facet the posts whose heights give its gradient: (east less west) / dx and (north less south) / dy. All three of its posts
 /// are among them.
-pub(super) const CORNERS: [[Neighbour; 4]; COUNT] = [
+pub(super) const CORNERS: [[Neighbour; 4]; 6] = [
     [EAST, HERE, EAST, SOUTH_EAST],
     [SOUTH_EAST, SOUTH, HERE, SOUTH],
     [HERE, WEST, HERE, SOUTH],

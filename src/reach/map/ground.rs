@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::{
-    facets::{self, CORNERS, Facets},
+    facets::{CORNERS, Facets},
     samples::Heights,
 };
 
@@ -82,8 +82,8 @@ impl GroundTable {
 fn around(heights: Heights<'_>, row: usize, col: usize, rest: Option<f64>) -> [u8; 3] {
     let (rows, cols) = (heights.rows(), heights.cols);
     let mut bits = [0u8; 3];
-    for facet in 0..facets::COUNT {
-        let inside = CORNERS[facet].iter().all(|&(east, south)| {
+    for (facet, corners) in CORNERS.iter().enumerate() {
+        let inside = corners.iter().all(|&(east, south)| {
             col.checked_add_signed(east as isize).is_some_and(|col| col < cols)
                 && row.checked_add_signed(south as isize).is_some_and(|row| row < rows)
         });

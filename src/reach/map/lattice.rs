@@ -5,8 +5,8 @@ use crate::{
     terrain::{Dem, GeoReference},
 };
 
-/// Side of a block, nodes. Smaller blocks know their relief, and so their reach, more closely; larger ones cost less to keep.
-/// From 8 to 32 makes no difference that could be measured.
+/// Side of a block, nodes. Smaller blocks know their relief, and so their reach, more closely; larger ones cost less to keep and to hand
+/// out to threads. Not tuned: a block of 256 nodes is some milliseconds of work.
 pub(super) const BLOCK: usize = 16;
 
 /// A post by row and column from the north-west.

@@ -36,7 +36,7 @@ pub fn mobility(hops: &PostHops<'_>, tell: &(dyn Fn(usize, usize) + Sync)) -> Re
     let sectors: Vec<u16> = disc.iter().map(|(_, offset)| 1 << sector(offset)).collect();
     let (down, across) = lattice.blocks();
     let done = std::sync::atomic::AtomicUsize::new(0);
-    let blocks: Vec<Result<Vec<(usize, f32, f32)>, MapError>> = (0..down * across)
+    let blocks: Vec<Result<Vec<OfNode>, MapError>> = (0..down * across)
         .into_par_iter()
         .map(|block| {
             let found = lattice
@@ -59,6 +59,9 @@ pub fn mobility(hops: &PostHops<'_>, tell: &(dyn Fn(usize, usize) + Sync)) -> Re
     }
     Ok(map)
 }
+
+/// A node's number, its share and its directions.
+type OfNode = (usize, f32, f32);
 
 /// Share and directions of one node.
 fn from_node(hops: &PostHops<'_>, node: Post, disc: &[(usize, &Offset)], sectors: &[u16]) -> Result<(f32, f32), MapError> {

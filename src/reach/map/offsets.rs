@@ -91,7 +91,9 @@ fn crossing(cols: i64, rows: i64, (number, count): (i64, i64), run_m: f64, post_
     // On a row, a column or a diagonal: along it to the next post; on a post both rests are 0.
     let rest = rest_east.max(rest_south);
     let next = (col + i64::from(rest_east > 0), row + i64::from(rest_south > 0));
-    let step = |(col, row): (i64, i64)| (row * post_cols as i64 + col) as i32;
+    #[expect(clippy::cast_possible_wrap, reason = "a raster's columns")]
+    let post_cols = post_cols as i64;
+    let step = |(col, row): (i64, i64)| (row * post_cols + col) as i32;
     let along = number as f64 / count as f64;
     Crossing {
         first: step((col, row)),
@@ -204,7 +206,7 @@ mod tests {
 
     /// The slice between two posts has the table's vertices, place by place and height by height, over every offset of a square.
     #[test]
-    #[expect(clippy::cast_possible_truncation, clippy::cast_precision_loss, clippy::cast_possible_wrap, reason = "small numbers")]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap, reason = "small numbers")]
     fn crossings_are_those_of_the_slice() {
         const SIDE: usize = 21;
         let heights: Vec<f64> = (0..SIDE * SIDE).map(|i| f64::from((i as u32 * 7919) % 1009) / 64.0).collect();

@@ -27,8 +27,7 @@ use crate::{
 pub type GroundOf<'a> = dyn Fn(Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> + Sync + 'a;
 
 /// Lofts closer than this, as a share of one plus their size, are left to the exact code. The quick ones are off by some 1e-8 of
-/// themselves next to the end of a cone (see [`QuickGrip`]) and by 1e-13 elsewhere; at a thousand times that, one pair in some
-/// ten thousand is asked again.
+/// themselves next to the end of a cone (see [`QuickGrip`]) and by 1e-13 elsewhere. Larger only asks the exact code more often.
 const NEAR: f64 = 1.0e-5;
 
 /// Map coordinates and heights must be this fine, as a share of the post spacing, for quick arithmetic to be within [`NEAR`]: 1 m posts

@@ -77,61 +77,69 @@ struct Found {
 /// # Errors
 /// [`MapError`]; of several, that of the first block.
 pub fn search(hops: &PostHops<'_>, start: Post, asked: Search, tell: &mut dyn FnMut(FrontProgress)) -> Result<HopMap, MapError> {
-    let lattice = hops.lattice();
-    let nodes = lattice.count();
-    let mut map = HopMap {
-        hops: (0..nodes)
-            .into_par_iter()
-            .map(|index| if hops.has_ground(lattice.node(index)) { UNREACHED } else { NO_GROUND })
-            .collect(),
-        effort: if asked.effort.is_some() { vec![f64::NAN; nodes] } else { Vec::new() },
-        previous: vec![NONE; nodes],
-        way: asked.way,
-    };
-    let (down, across) = lattice.blocks();
-    // Nodes of each block that may still get hops.
-    let mut open: Vec<u32> = (0..down * across)
-        .into_par_iter()
-        .map(|block| lattice.nodes_of(block).map(|node| u32::from(hops.usable(node))).sum())
-        .collect();
-    let start_index = lattice.index(start);
-    map.hops[start_index] = 0;
-    if let Some(effort) = map.effort.get_mut(start_index) {
-        *effort = 0.0;
-    }
-    let mut settle = |node: Post| {
-        let open = &mut open[lattice.block_of(node)];
-        *open = open.saturating_sub(u32::from(hops.usable(node)));
-    };
-    settle(start);
-    let mut reached = 1;
-    let mut front_blocks = vec![false; down * across];
-    front_blocks[lattice.block_of(start)] = true;
+    let mut state = State::new(hops, start, asked);
     let mut front: i16 = 0;
     loop {
-        tell(FrontProgress { front, reached, open: open.iter().map(|&count| count as usize).sum() });
-        let pull = Pull { hops, map: &map, asked, front };
-        let near = blocks_near(hops, &front_blocks, &open);
+        tell(FrontProgress { front, reached: state.reached, open: state.open.iter().map(|&count| count as usize).sum() });
+        let pull = Pull { hops, map: &state.map, asked, front };
+        let near = blocks_near(hops, &state.front_blocks, &state.open);
         let found: Vec<Result<Vec<Found>, MapError>> = near.par_iter().map(|&block| pull.block(block)).collect();
-        let found = found.into_iter().collect::<Result<Vec<_>, _>>()?;
-        front_blocks.fill(false);
-        let next = front.checked_add(1).ok_or(MapError::TooManyHops { most: i16::MAX })?;
-        let before = reached;
-        for Found { node, offset, effort } in found.into_iter().flatten() {
-            map.hops[node] = next;
-            map.previous[node] = offset;
-            if let Some(known) = map.effort.get_mut(node) {
-                *known = effort;
-            }
-            let block = lattice.block_of(lattice.node(node));
-            front_blocks[block] = true;
-            open[block] = open[block].saturating_sub(1);
-            reached += 1;
+        let found = found.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
+        if found.is_empty() {
+            return Ok(state.map);
         }
-        if reached == before {
-            return Ok(map);
+        front = front.checked_add(1).ok_or(MapError::TooManyHops { most: i16::MAX })?;
+        state.front_blocks.fill(false);
+        for node in found {
+            state.settle(hops, node, front);
         }
-        front = next;
+    }
+}
+
+/// What is known between two fronts.
+struct State {
+    map: HopMap,
+    /// Of each block, nodes that may still get hops.
+    open: Vec<u32>,
+    /// Blocks with nodes of the front.
+    front_blocks: Vec<bool>,
+    /// Nodes that have their hops.
+    reached: usize,
+}
+
+impl State {
+    /// Only the start has its hops.
+    fn new(hops: &PostHops<'_>, start: Post, asked: Search) -> Self {
+        let lattice = hops.lattice();
+        let (nodes, (down, across)) = (lattice.count(), lattice.blocks());
+        let ground = |index| if hops.has_ground(lattice.node(index)) { UNREACHED } else { NO_GROUND };
+        let usable = |block| lattice.nodes_of(block).map(|node| u32::from(hops.usable(node))).sum();
+        let map = HopMap {
+            hops: (0..nodes).into_par_iter().map(ground).collect(),
+            effort: if asked.effort.is_some() { vec![f64::NAN; nodes] } else { Vec::new() },
+            previous: vec![NONE; nodes],
+            way: asked.way,
+        };
+        let open = (0..down * across).into_par_iter().map(usable).collect();
+        let mut state = Self { map, open, front_blocks: vec![false; down * across], reached: 0 };
+        state.settle(hops, Found { node: lattice.index(start), offset: NONE, effort: 0.0 }, 0);
+        state
+    }
+
+    /// Gives a node its hops.
+    fn settle(&mut self, hops: &PostHops<'_>, Found { node, offset, effort }: Found, count: i16) {
+        let lattice = hops.lattice();
+        self.map.hops[node] = count;
+        self.map.previous[node] = offset;
+        if let Some(known) = self.map.effort.get_mut(node) {
+            *known = effort;
+        }
+        let post = lattice.node(node);
+        let block = lattice.block_of(post);
+        self.front_blocks[block] = true;
+        // The start may lie where no hop begins or ends.
+        self.open[block] -= u32::from(hops.usable(post)).min(self.open[block]);
+        self.reached += 1;
     }
 }
 
