@@ -19,6 +19,9 @@ const COMMANDS: [&str; 8] = ["run", "slice", "map", "hop", "check", "plan", "syn
 const ON_A_PROJECTED_MAP: [&str; 6] =
     ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--start-lonlat", "--goal-lonlat", "--accept-map-scale"];
 
+/// Options that must change nothing but the time it takes, tried below.
+const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
+
 /// An option, a command line without it, and one with it.
 type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
 
@@ -380,11 +383,8 @@ fn every_option_changes_what_one_sees() {
         [("run", &RUN[..]), ("slice", &SLICE), ("map", &MAP), ("hop", &HOP), ("check", &CHECK), ("plan", &PLAN)]
     {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
-        let here: BTreeSet<_> = options(command)
-            .into_iter()
-            // That nothing hangs on the number of threads is tried in `map_command.rs`.
-            .filter(|option| option != "--threads" && !ON_A_PROJECTED_MAP.contains(&option.as_str()))
-            .collect();
+        let elsewhere = |option: &str| ON_A_PROJECTED_MAP.contains(&option) || ON_THE_TIME_ALONE.contains(&option);
+        let here: BTreeSet<_> = options(command).into_iter().filter(|option| !elsewhere(option)).collect();
         assert_eq!(tried, here, "{command}: an option without a trial, or the reverse");
         for (option, without, with) in trials {
             let (before, after) = (seen(without), seen(with));
@@ -394,6 +394,26 @@ fn every_option_changes_what_one_sees() {
         }
     }
     assert!(options("bodies").is_empty());
+}
+
+#[test]
+fn threads_change_nothing() {
+    for words in [
+        &["check", "scenario.toml"][..],
+        &["check", "scenario.toml", "--pairs", "pairs.csv", "--format", "json"],
+        &["plan", "scenario.toml", "--verify", "--plot", "path.svg"],
+        &["run", "scenario.toml", "-o", "out"],
+    ] {
+        let expected = seen(words);
+        assert_eq!(expected.0.status, 0, "{words:?}: {:?}", expected.0);
+        for threads in ["0", "1", "2", "7"] {
+            let (ran, files) = seen(&[words, &["--threads", threads]].concat());
+            assert_eq!(ran, expected.0, "{words:?} with {threads} threads");
+            assert!(files.keys().eq(expected.1.keys()), "{words:?} with {threads} threads");
+            assert!(files.values().map(|file| &file.1).eq(expected.1.values().map(|file| &file.1)), "{words:?}: {threads} threads");
+        }
+        assert_eq!(desk().run(&[words, &["--threads", "many"]].concat()).status, 2);
+    }
 }
 
 #[test]

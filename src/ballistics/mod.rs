@@ -32,8 +32,10 @@ mod hop_test;
 pub mod limits;
 mod line_of_sight;
 mod open_air;
+mod reach;
 mod safety;
 mod segment_hops;
+mod sweep;
 mod takeoff_set;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
@@ -44,4 +46,5 @@ pub use line_of_sight::LineOfSight;
 pub use open_air::{GroundGrant, OpenAir};
 pub use safety::{safety_ceiling_m, safety_range_m};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
+pub use sweep::{LandingTable, Sweep};
 pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};

@@ -8,7 +8,19 @@ use chta::{
 
 use crate::cli::{Failure, progress::Progress};
 
-/// Searches, and shows what is being tried on a terminal.
+/// Makes as many threads as asked for; 0: one for each core.
+pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
+    if threads == 0 {
+        // As it is anyway, and small searches never start them.
+        return Ok(());
+    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| Failure::message(format!("the threads cannot be started ({error}): ask for fewer with --threads")))
+}
+
+/// Searches for one pair, and shows what is being tried on a terminal.
 pub(super) fn search(
     test: &HopTest<'_>,
     start: Station,
@@ -16,12 +28,26 @@ pub(super) fn search(
     options: &SearchOptions,
     quiet: bool,
 ) -> Result<graph::Answer, Failure> {
+    graph::search(test, start, goal, options, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
+}
+
+/// Searches for many pairs, once from each start.
+pub(super) fn search_pairs(
+    test: &HopTest<'_>,
+    pairs: &[(Station, Station)],
+    options: &SearchOptions,
+    quiet: bool,
+) -> Result<Vec<graph::Answer>, Failure> {
+    graph::search_pairs(test, pairs, options, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
+}
+
+/// Tells what is being tried.
+fn told(quiet: bool) -> impl FnMut(PointSpacing) {
     let progress = Progress::new(quiet);
-    let mut tell = |spacing: PointSpacing| {
+    move |spacing| {
         progress.say(match spacing {
             PointSpacing::PerSegment(points) => format!("searching with {points} points inside each segment"),
             PointSpacing::AtMostM(spacing_m) => format!("searching with nodes at most {spacing_m} m apart"),
         });
-    };
-    graph::search(test, start, goal, options, &mut tell).map_err(|error| Failure::message(error.to_string()))
+    }
 }
