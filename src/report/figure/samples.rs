@@ -42,8 +42,9 @@ pub(super) fn check_picture(name: &str, draw: impl Fn() -> Picture) -> Picture {
     check_well_formed(&svg);
     assert!(svg.len() < 500_000, "{name}: {} bytes", svg.len());
     assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{name}");
-    assert_eq!(picture, draw(), "{name} is not the same twice");
-    assert_eq!(svg, draw().to_svg().unwrap());
+    let again = draw();
+    assert_eq!(picture, again, "{name} is not the same twice");
+    assert_eq!(svg, again.to_svg().unwrap());
     assert!(picture.height_mm.is_finite() && picture.height_mm < 400.0, "{name}: {} mm", picture.height_mm);
     if let Some(folder) = std::env::var_os("CHTA_FIGURES_TO").map(PathBuf::from) {
         std::fs::write(folder.join(name).with_extension("svg"), &svg).unwrap();
