@@ -13,10 +13,11 @@ use std::{
 
 use command::{CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 10] = ["run", "slice", "hop", "check", "plan", "require", "trade", "compare", "synth", "bodies"];
+const COMMANDS: [&str; 11] = ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "synth", "bodies"];
 
 /// Options that need a projected map, tried in `maps_command.rs`.
-const ON_A_PROJECTED_MAP: [&str; 4] = ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--accept-map-scale"];
+const ON_A_PROJECTED_MAP: [&str; 6] =
+    ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--start-lonlat", "--goal-lonlat", "--accept-map-scale"];
 
 /// Options that must change nothing but the time it takes, tried below and in `trade_compare.rs`.
 const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
@@ -67,6 +68,170 @@ const SLICE: [Trial; 8] = [
         "--output",
         &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
         &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "-o", "slice.csv"],
+    ),
+];
+
+const MAP: [Trial; 20] = [
+    (
+        "--start",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "6,5", "--scenario", "map.toml"],
+    ),
+    (
+        "--goal",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+    ),
+    (
+        "--stride",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--stride", "2"],
+    ),
+    (
+        "--effort",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--effort", "time"],
+    ),
+    (
+        "--return",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--return"],
+    ),
+    (
+        "--output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "-o", "hops.tif"],
+    ),
+    (
+        "--effort-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--effort"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--effort", "--effort-output", "e.tif"],
+    ),
+    (
+        "--return-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--return"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--return", "--return-output", "b.tif"],
+    ),
+    (
+        "--mobility",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--mobility", "m.tif"],
+    ),
+    (
+        "--paths",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--paths", "p.csv"],
+    ),
+    (
+        "--geojson",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--geojson", "p.geojson"],
+    ),
+    (
+        "--profiles",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--profiles", "p.svg"],
+    ),
+    (
+        "--plot",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--plot", "map.svg"],
+    ),
+    (
+        "--format",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--format", "json"],
+    ),
+    (
+        "--scenario",
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--body",
+            "mars",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=3",
+            "--set",
+            "hopper.landing_speed_max_m_s=3",
+            "--set",
+            "surface.friction_coefficient=0.5",
+        ],
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--body",
+            "mars",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=3",
+            "--set",
+            "hopper.landing_speed_max_m_s=3",
+            "--set",
+            "surface.friction_coefficient=0.5",
+            "--format",
+            "json",
+            "--scenario",
+            "map.toml",
+        ],
+    ),
+    (
+        "--set",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--set", "hopper.takeoff_speed_max_m_s=3"],
+    ),
+    (
+        "--body",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--body", "moon"],
+    ),
+    (
+        "--gravity-m-s2",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--gravity-m-s2", "2.5"],
+    ),
+    (
+        "--clearance-m",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--clearance-m", "2.5"],
+    ),
+    (
+        "--quiet",
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--goal",
+            "9,9",
+            "--scenario",
+            "map.toml",
+            "--body",
+            "bennu",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=0.02",
+            "--set",
+            "hopper.landing_speed_max_m_s=0.02",
+        ],
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--goal",
+            "9,9",
+            "--scenario",
+            "map.toml",
+            "--body",
+            "bennu",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=0.02",
+            "--set",
+            "hopper.landing_speed_max_m_s=0.02",
+            "--quiet",
+        ],
     ),
 ];
 
@@ -624,6 +789,7 @@ fn every_option_changes_what_one_sees() {
     let all = [
         ("run", &RUN[..]),
         ("slice", &SLICE),
+        ("map", &MAP),
         ("hop", &HOP),
         ("check", &CHECK),
         ("plan", &PLAN),
@@ -725,12 +891,14 @@ fn every_help_text_shows_units_defaults_and_an_example() {
             if let Some((_, unit)) = units.into_iter().find(|(suffix, _)| name.ends_with(suffix)) {
                 assert!(format!("{one_line} ").contains(unit), "{command} {name} does not name its unit: {one_line}");
             }
-            let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat"].contains(&name.as_str());
-
-            let required = ["--from", "--to", "--output", "--from-lonlat", "--to-lonlat", "--vary"].contains(&name.as_str());
+            let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat", "--start-lonlat"]
+                .contains(&name.as_str())
+                || (command == "map" && name == "--start");
             let takes_value =
                 one_line.contains('<') && !["--scenario", "--set", "--body", "--gravity-m-s2"].contains(&name.as_str());
-            let writes = ["--geojson", "--plot", "--pairs"].contains(&name.as_str());
+            let writes =
+                ["--geojson", "--plot", "--pairs", "--effort-output", "--return-output", "--mobility", "--paths", "--profiles"]
+                    .contains(&name.as_str());
             assert!(
                 !takes_value || required || writes || one_line.contains("[default: "),
                 "{command} {name} tells no default: {one_line}"

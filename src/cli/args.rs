@@ -21,6 +21,7 @@ pub(crate) enum Command {
     Run(RunArgs),
     Slice(SliceArgs),
     Fan(FanArgs),
+    Map(Box<MapArgs>),
     Hop(HopArgs),
     Check(CheckArgs),
     Plan(PlanArgs),
@@ -202,6 +203,73 @@ pub(crate) struct FanArgs {
     pub(crate) format: Format,
     #[command(flatten)]
     pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Fewest hops from one post of a DEM to every other, in any direction
+///
+/// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it.
+#[derive(Debug, ClapArgs)]
+#[command(
+    after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
+)]
+pub(crate) struct MapArgs {
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
+    #[arg(value_name = "DEM")]
+    pub(crate) dem: PathBuf,
+    /// Where all hops start, map coordinates in m; the nearest post counts
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, required_unless_present = "start_lonlat")]
+    pub(crate) start: Option<MapPoint>,
+    /// Instead: longitude and planetocentric latitude, degrees, east positive
+    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "start")]
+    pub(crate) start_lonlat: Option<LonLat>,
+    /// A place to get to, map coordinates in m; may be repeated [default: none]
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, group = "goals")]
+    pub(crate) goal: Vec<MapPoint>,
+    /// Instead: longitude and planetocentric latitude, degrees, east positive; may be repeated [default: none]
+    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "goal", group = "goals")]
+    pub(crate) goal_lonlat: Vec<LonLat>,
+    /// Land only on every N-th post; the terrain in the way is always the full DEM
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
+    pub(crate) stride: u32,
+    /// Also the least effort among fewest hops: takeoff-speed, energy, time, peak-speed [default: not asked; alone: the scenario's]
+    #[arg(long, value_name = "EFFORT", num_args = 0..=1)]
+    #[expect(clippy::option_option, reason = "absent, given alone, or with a value")]
+    pub(crate) effort: Option<Option<String>>,
+    /// Also from which posts the start can be reached again
+    #[arg(long = "return")]
+    pub(crate) back: bool,
+    /// Hops (GeoTIFF) to write: int16, -1 unreachable, -32768 no-data
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Least effort (GeoTIFF) to write: float32, NaN where there is no way
+    #[arg(long, value_name = "FILE", requires = "effort")]
+    pub(crate) effort_output: Option<PathBuf>,
+    /// Hops back to the start (GeoTIFF) to write
+    #[arg(long, value_name = "FILE", requires = "back")]
+    pub(crate) return_output: Option<PathBuf>,
+    /// Mobility (GeoTIFF) to work out and write: share of its reach disc that one hop from each post reaches, and in how many of 16 directions
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mobility: Option<PathBuf>,
+    /// Hops to every goal (CSV) to write
+    #[arg(long, value_name = "FILE", requires = "goals")]
+    pub(crate) paths: Option<PathBuf>,
+    /// The same in three dimensions (GeoJSON)
+    #[arg(long, value_name = "FILE", requires = "goals")]
+    pub(crate) geojson: Option<PathBuf>,
+    /// Profile of every hop to every goal, one picture below the other (SVG), to write
+    #[arg(long, value_name = "FILE", requires = "goals")]
+    pub(crate) profiles: Option<PathBuf>,
+    /// Map picture (SVG or PNG) to write
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
 }

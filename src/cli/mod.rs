@@ -28,6 +28,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Run(args) => commands::run::run(&args),
         Command::Slice(args) => commands::slice::run(&args),
         Command::Fan(args) => commands::fan::run(&args),
+        Command::Map(args) => commands::map::run(&args),
         Command::Hop(args) => commands::hop::run(&args),
         Command::Check(args) => commands::check::run(&args),
         Command::Plan(args) => commands::plan::run(&args),

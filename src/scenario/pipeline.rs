@@ -249,6 +249,16 @@ impl Covers {
         Ok(Self { constant: friction(scenario), raster: raster.transpose()?, keep_out: keep_out.transpose()? })
     }
 
+    /// Friction from a raster, where the scenario names one.
+    pub const fn friction_raster(&self) -> Option<&FrictionRaster> {
+        self.raster.as_ref()
+    }
+
+    /// Zones, where the scenario names some.
+    pub const fn keep_out(&self) -> Option<&KeepOut> {
+        self.keep_out.as_ref()
+    }
+
     /// The files of a scenario that are read, from its folder.
     pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
         [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)

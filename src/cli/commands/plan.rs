@@ -151,7 +151,7 @@ impl Planned {
 }
 
 /// The ground's grip in a few words.
-fn ground_words(scenario: &Scenario) -> String {
+pub(super) fn ground_words(scenario: &Scenario) -> String {
     match scenario.surface.grip {
         Some(Grip::Friction(cone)) => format!("friction coefficient {}", cone.coefficient()),
         Some(Grip::FromSlope { takeoff, landing }) => {

@@ -31,6 +31,24 @@ impl MapPosts<'_> {
         let stride = self.stride.max(1);
         (self.dem.rows().div_ceil(stride), self.dem.cols().div_ceil(stride))
     }
+
+    /// The place, in a raster of these posts, of the one nearest to a post of the DEM; `None` where that lies beyond the last one.
+    pub(super) fn index(&self, row: usize, col: usize) -> Option<usize> {
+        let stride = self.stride.max(1);
+        let (rows, cols) = self.size();
+        let nearest = |post: usize| (post + stride / 2) / stride;
+        let (row, col) = (nearest(row), nearest(col));
+        (row < rows && col < cols).then_some(row * cols + col)
+    }
+
+    /// How many of the posts have no elevation.
+    pub(super) fn gaps(&self) -> usize {
+        let stride = self.stride.max(1);
+        let rows = (0..self.dem.rows()).step_by(stride);
+        rows.flat_map(|row| (0..self.dem.cols()).step_by(stride).map(move |col| (row, col)))
+            .filter(|&(row, col)| self.dem.elevation(row, col).is_none())
+            .count()
+    }
 }
 
 /// A goal on a map.
