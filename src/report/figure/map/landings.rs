@@ -60,6 +60,7 @@ pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, Figure
         map.name(&mut sheet, start, "start");
     }
     for cloud in figure.clouds.iter().filter(|cloud| map.shows(cloud.planned)) {
+        planned_symbol(&mut sheet, map.place(cloud.planned));
         map.number(&mut sheet, cloud);
     }
     let drawn = shown.iter().map(|landings| landings.len().div_ceil(every)).sum();

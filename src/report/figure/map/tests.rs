@@ -90,12 +90,12 @@ fn maps_with_a_stride_of_holes_and_of_many_posts_are_whole_and_say_so() {
     let picture = drawn("hops-stride", MapPosts { dem: &small, stride: 4 }, 3.0, 300.0, false);
     let told = texts(&picture);
     assert!(told.contains("no data: ") && told.contains("one post in 4 each way, 10 m apart"), "{told}");
-    let large = made_up(2100, 400, 5.0);
+    let large = made_up(2100, 300, 5.0);
     let picture = drawn("hops-large", MapPosts { dem: &large, stride: 1 }, 12.0, 1000.0, false);
     assert!(texts(&picture).contains("Drawn: one post in 2 each way"));
     let image = &picture.sheet.images[0].pixels;
-    assert_eq!((image.width, image.height), (200, 1050));
-    assert!((picture.sheet.images[0].height_mm / picture.sheet.images[0].width_mm - 2100.0 / 400.0).abs() < 1e-9, "one scale");
+    assert_eq!((image.width, image.height), (150, 1050));
+    assert!((picture.sheet.images[0].height_mm / picture.sheet.images[0].width_mm - 2100.0 / 300.0).abs() < 1e-9, "one scale");
 }
 
 #[test]
