@@ -25,7 +25,7 @@ use super::{
 /// Height of the panel.
 pub(super) const HIGH_MM: f64 = 58.0;
 /// More boxes than this and every n-th landing is drawn.
-const MOST_BOXES: usize = 100;
+const MOST_BOXES: usize = 80;
 /// The widest half of a box.
 const HALF_MM: f64 = 3.2;
 /// The largest errors are drawn to scale as long as they are no farther than this many times the whiskers.
@@ -189,7 +189,7 @@ fn one_of(boxes: usize) -> usize {
     boxes.div_ceil(MOST_BOXES).max(1)
 }
 
-#[expect(clippy::cast_precision_loss, reason = "some hundred boxes")]
+#[expect(clippy::cast_precision_loss, reason = "some dozens of boxes")]
 const fn counts_as_number(count: usize) -> f64 {
     count as f64
 }

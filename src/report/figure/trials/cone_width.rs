@@ -1,4 +1,5 @@
-//! Distance errors against the width of the cones, with the hops of the planned path at each width.
+//! Distance errors against the width of the cones, with the hops of the planned path at each width. Of one width given twice the first
+//! is drawn.
 
 use super::{
     super::{
@@ -26,6 +27,7 @@ const MEDIANS_PEN: Pen = Pen { colour: BLUE, width_mm: 0.25 };
 pub(super) fn draw(sheet: &mut Sheet, points: &[ConeWidthPoint], top_mm: f64) -> (f64, Vec<(Swatch, String)>) {
     let mut points: Vec<ConeWidthPoint> = points.iter().filter(|point| point.width_deg.is_finite()).copied().collect();
     points.sort_by(|a, b| a.width_deg.total_cmp(&b.width_deg));
+    points.dedup_by_key(|point| point.width_deg.to_bits());
     let flown = || points.iter().filter(|point| point.hops.is_some()).map(|point| &point.errors);
     let plot = Plot::new(range(flown()), top_mm + STRIP_MM, HIGH_MM - STRIP_MM);
     let ends = (points.first().map_or(0.0, |p| p.width_deg), points.last().map_or(1.0, |p| p.width_deg));

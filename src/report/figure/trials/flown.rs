@@ -30,6 +30,8 @@ use crate::quantity::ChainPoint;
 /// Room above the highest flight and below the lowest ground.
 const ABOVE_MM: f64 = 4.0;
 const DEPTH_MM: f64 = 5.0;
+/// The least height of the panel: the name of its axis needs that much.
+const LOWEST_MM: f64 = 24.0;
 /// Room between trajectories and landings.
 const GAP_MM: f64 = 2.0;
 /// The landings of one hop; all of them together at most.
@@ -41,9 +43,12 @@ const TICK_MM: f64 = 6.5;
 const BESIDE: f64 = 0.06;
 /// More flights, or more points of drawn lines, than this and every n-th trial is drawn.
 const MOST_FLIGHTS: usize = 400;
-const MOST_POINTS: usize = 9000;
+const MOST_POINTS: usize = 5000;
+/// The planned path has so many points at most, and its take-offs and landings are marked up to so many hops.
+const MOST_PLANNED_POINTS: usize = 2500;
+const MOST_MARKED_HOPS: usize = 60;
 /// More landings than this and every n-th trial's are drawn.
-const MOST_LANDINGS: usize = 900;
+const MOST_LANDINGS: usize = 600;
 /// How far a drawn flight may leave the parabola.
 const FLATNESS_MM: f64 = 0.025;
 /// The golden ratio's fraction spreads the dots of a row evenly, the same way each time.
@@ -126,7 +131,8 @@ impl View {
         let (from_m, to_m) = (low_m - DEPTH_MM * per_mm, high_m + ABOVE_MM * per_mm);
         let left = LEFT_MM.max(1.0 + left_room_mm(&Ticks::round(from_m, to_m, (to_m - from_m) / per_mm / TICK_MM)));
         let scale = Scale::new(length_m, high_m - low_m, RIGHT_MM - left);
-        let panel = Panel { left, top: top_mm, right: RIGHT_MM, bottom: top_mm + ABOVE_MM + scale.height_mm + DEPTH_MM };
+        let high_mm = (ABOVE_MM + scale.height_mm + DEPTH_MM).max(LOWEST_MM);
+        let panel = Panel { left, top: top_mm, right: RIGHT_MM, bottom: top_mm + high_mm };
         let frame = Frame {
             scale,
             origin: ChainPoint::new(0.5 * (x_m.0 + x_m.1), low_m),
@@ -192,13 +198,13 @@ impl View {
 
     /// The planned hops, in a white casing.
     fn planned(&self, sheet: &mut Sheet, bundle: &Bundle<'_>) {
-        let points = self.line(&bundle.planned, MOST_POINTS);
+        let points = self.line(&bundle.planned, MOST_PLANNED_POINTS);
         if points.is_empty() {
             return;
         }
         sheet.line(points.clone(), CASING_PEN);
         sheet.line(points, PLANNED_PEN);
-        if bundle.planned.len() <= MOST_FLIGHTS {
+        if bundle.planned.len() <= MOST_MARKED_HOPS {
             for flight in &bundle.planned {
                 symbols::takeoff(sheet, self.frame.place(flight.from));
                 symbols::landing(sheet, self.frame.place(flight.to));

@@ -66,7 +66,7 @@ pub fn draw_flown(caption: &Caption, flown: &FlownFigure) -> Result<Picture, Fig
 /// Draws box plots of the distance error per landing, one group of boxes for each series (the paper's Fig. 6b).
 ///
 /// Boxes reach from the lower to the upper quartile, whiskers from 5 % to 95 %. Largest errors far beyond the whiskers are told by their
-/// numbers, so that the boxes stay readable. Of more than a hundred boxes every n-th landing is drawn, which the axis says.
+/// numbers, so that the boxes stay readable. Of more than eighty boxes every n-th landing is drawn, which the axis says.
 ///
 /// # Errors
 /// None today; [`FigureError`] as for the other pictures.
