@@ -1,20 +1,15 @@
 //! Pictures of several answers: the proof along a chain, trades of capabilities, and scenarios compared.
 
 mod data;
+mod profile;
+mod proof;
 
 pub use data::{
     CompareFigure, ComparedScenario, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch, TradeAxis, TradeField, TradeFigure,
 };
+pub use proof::draw_proof;
 
 use super::{FigureError, Picture, todo_picture};
-
-/// Draws a chain by what is proved of it: reachable, proved unreachable, open.
-///
-/// # Errors
-/// [`FigureError::NoGround`] where the ground has fewer than two points.
-pub fn draw_proof(figure: &ProofFigure) -> Result<Picture, FigureError> {
-    todo_picture(&figure.caption)
-}
 
 /// Draws the fewest hops over a grid of two capabilities, or over a row of one, each field with its number.
 ///
@@ -31,3 +26,6 @@ pub fn draw_trade(figure: &TradeFigure) -> Result<Picture, FigureError> {
 pub fn draw_compare(figure: &CompareFigure) -> Result<Picture, FigureError> {
     todo_picture(&figure.caption)
 }
+
+#[cfg(test)]
+mod tests;
