@@ -1,14 +1,17 @@
 //! Proofs, trades and comparisons: what they show, what they say, and that they can be read.
 
+use plotters::style::RGBColor;
+
 use super::{
     super::{
         Caption, Picture,
+        palette::{BLUE, ORANGE, VERMILION},
         samples::{check_picture, texts},
         sheet::Mark,
     },
     *,
 };
-use crate::quantity::ChainPoint;
+use crate::{quantity::ChainPoint, report::figure::FigureError};
 
 /// Waves between two x, a point every metre.
 fn waves(from_x_m: f64, points: usize, height_m: f64) -> Vec<ChainPoint> {
@@ -61,7 +64,7 @@ fn stopped_proof() -> ProofFigure {
 }
 
 /// How often a colour is drawn as a line or an area.
-fn marks_of(picture: &Picture, wanted: plotters::style::RGBColor) -> usize {
+fn marks_of(picture: &Picture, wanted: RGBColor) -> usize {
     let is_wanted = |mark: &&Mark| match mark {
         Mark::Line { pen, .. } | Mark::Dot { pen, .. } => pen.colour == wanted,
         Mark::Area { colour, .. } => *colour == wanted,
@@ -101,6 +104,9 @@ fn a_proof_of_no_path_tells_classes_gap_and_limits() {
             "goal",
         ],
     );
+    let (solid, hatched, dotted) = (marks_of(&picture, BLUE), marks_of(&picture, VERMILION), marks_of(&picture, ORANGE));
+    assert_eq!(solid, 3, "two stretches and the legend's sample");
+    assert!(hatched > 60 && dotted > 20, "strokes into the ground: {hatched}, dots: {dotted}");
     let svg = picture.to_svg().unwrap();
     assert!(svg.contains("A pit &amp; &lt;walls&gt;"), "escaped");
 }
@@ -182,4 +188,126 @@ fn proofs_of_odd_grounds_are_whole() {
         let picture = check_picture(name, || draw_proof(&figure).unwrap());
         assert_says(&picture, &["No other cell was within reach", "start"]);
     }
+}
+
+/// A grid of two capabilities; hops fall with both.
+fn trade(cols: usize, rows: usize, most: u64) -> TradeFigure {
+    let axis = |name: &str, count: usize, from: f64, step: f64| TradeAxis {
+        name: name.to_owned(),
+        values: (0..count).map(|i| from + step * i as f64).collect(),
+    };
+    let field = |i: usize| {
+        let (row, col) = ((i / cols) as u64, (i % cols) as u64);
+        match row + col {
+            0 => TradeField::Untraversable,
+            1 => TradeField::Open,
+            sum => TradeField::Hops(most / sum + 1),
+        }
+    };
+    TradeFigure {
+        caption: Caption::new("Fewest hops", "Moon, g = 1.624 m/s²; friction coefficient 0.6"),
+        x: axis("hopper.takeoff_speed_max_m_s (m/s)", cols, 4.0, 0.5),
+        y: (rows > 0).then(|| axis("hopper.landing_speed_max_m_s (m/s)", rows, 5.0, 1.0)),
+        fields: (0..cols * rows.max(1)).map(field).collect(),
+    }
+}
+
+#[test]
+fn a_trade_has_its_number_in_every_field() {
+    for (name, cols, rows, most) in
+        [("trade", 10, 7, 60), ("trade-row", 8, 0, 9), ("trade-two", 2, 2, 5), ("trade-many", 40, 30, 900)]
+    {
+        let figure = trade(cols, rows, most);
+        let picture = check_picture(name, || draw_trade(&figure).unwrap());
+        let said = texts(&picture);
+        for field in &figure.fields {
+            if let TradeField::Hops(hops) = field {
+                let count = |hops: u64| figure.fields.iter().filter(|field| **field == TradeField::Hops(hops)).count();
+                let words = hops.to_string();
+                assert!(said.lines().filter(|line| *line == words).count() >= count(*hops), "{name}: {hops}");
+            }
+        }
+        assert_says(&picture, &["hopper.takeoff_speed_max_m_s (m/s)", "proved: no path (1)", "?"]);
+        assert_eq!(said.contains("hopper.landing_speed_max_m_s (m/s)"), rows > 0);
+    }
+}
+
+#[test]
+fn trades_too_fine_for_numbers_say_so_and_stay_small() {
+    let figure = trade(120, 110, 4000);
+    let picture = check_picture("trade-fine", || draw_trade(&figure).unwrap());
+    assert_says(&picture, &["110 x 120 fields: too small for a number each"]);
+}
+
+#[test]
+fn odd_trades_are_whole() {
+    let mut huge = trade(6, 3, u64::MAX - 1);
+    huge.x.name = "an & axis <of words> ".repeat(20);
+    huge.x.values = (0..6).map(|i| 1.0e4 + 1.0e-3 * f64::from(i)).collect();
+    let picture = check_picture("trade-huge", || draw_trade(&huge).unwrap());
+    assert_says(&picture, &["10000.001", "10000.005"]);
+    assert!(picture.to_svg().unwrap().contains("&amp;"));
+    let mut one = trade(1, 1, 3);
+    check_picture("trade-one", || draw_trade(&one).unwrap());
+    one.fields = vec![TradeField::Hops(0)];
+    assert_says(&check_picture("trade-zero", || draw_trade(&one).unwrap()), &["0 hops"]);
+    one.fields.clear();
+    let wrong = draw_trade(&one).unwrap_err();
+    assert_eq!(wrong, FigureError::RasterSize { what: "trade", found: 0, rows: 1, cols: 1 });
+    assert_says(&check_picture("trade-empty", || draw_trade(&TradeFigure::default()).unwrap()), &["There are no fields."]);
+}
+
+fn scenario(name: &str, ground: Vec<ChainPoint>, hop_m: f64, hops: usize) -> ComparedScenario {
+    let from_x_m = ground[0].x_m + 4.0;
+    let flights = flights(&ground, from_x_m, hop_m, hops);
+    ComparedScenario {
+        name: name.to_owned(),
+        verdict: if hops > 0 { "traversable" } else { "untraversable" }.to_owned(),
+        hops: (hops > 0).then_some(hops as u64),
+        start: profile::at_x(&ground, from_x_m),
+        goal: profile::at_x(&ground, from_x_m + 90.0),
+        ground,
+        flights,
+    }
+}
+
+#[test]
+fn comparisons_name_every_scenario_with_verdict_and_hops() {
+    let ground = waves(0.0, 101, 3.0);
+    let same = vec![
+        scenario("Slow <hopper>", ground.clone(), 6.0, 15),
+        scenario("Fast hopper", ground.clone(), 15.0, 6),
+        scenario("Weak hopper", ground.clone(), 1.0, 0),
+    ];
+    let figure = CompareFigure { caption: Caption::new("Hoppers", "on one ground"), scenarios: same };
+    let picture = check_picture("compare-same", || draw_compare(&figure).unwrap());
+    let said =
+        ["1. Slow <hopper>: traversable, 15 hops", "3. Weak hopper: untraversable", "distance along the chain", "start", "goal"];
+    assert_says(&picture, &said);
+    let other = vec![scenario("Here", waves(500.0, 101, 5.0), 9.0, 10), scenario("There", waves(-40.0, 131, 2.0), 18.0, 5)];
+    let figure = CompareFigure { scenarios: other, ..figure };
+    let picture = check_picture("compare-grounds", || draw_compare(&figure).unwrap());
+    assert_says(&picture, &["distance from the start along the chain (m)", "goal 1", "goal 2", "start"]);
+}
+
+#[test]
+fn odd_comparisons_are_whole() {
+    let empty = draw_compare(&CompareFigure::default()).unwrap_err();
+    assert!(empty.to_string().contains("no scenario"), "{empty}");
+    let mut one = scenario("One", waves(0.0, 101, 3.0), 6.0, 15);
+    one.ground.truncate(1);
+    let bare = draw_compare(&CompareFigure { scenarios: vec![one], ..CompareFigure::default() }).unwrap_err();
+    assert_eq!(bare, FigureError::NoGround { what: "One".to_owned(), points: 1 });
+    let long = "a name that does not end ".repeat(12);
+    let many = (0..16).map(|i| {
+        let mut one = scenario(&long, waves(0.0, 101, 3.0), 3.0 + f64::from(i), 5);
+        one.goal = profile::at_x(&one.ground, 20.0 + 5.0 * f64::from(i));
+        one.hops = Some(u64::MAX);
+        one
+    });
+    let mut scenarios: Vec<_> = many.collect();
+    scenarios.push(scenario("very many hops", waves(0.0, 101, 3.0), 0.01, 9_000));
+    let figure = CompareFigure { caption: Caption::default(), scenarios };
+    let picture = check_picture("compare-many", || draw_compare(&figure).unwrap());
+    assert_says(&picture, &["1 hop in 30 of 9000 shown", &u64::MAX.to_string()]);
 }
