@@ -13,10 +13,13 @@ mod constraints;
 pub mod csv;
 mod ground;
 mod polygonal;
+mod quick_cones;
 mod station;
 
+pub(crate) use constrained::settle;
 pub use constrained::{ConstrainedChain, ConstraintProblem, ConstraintProblems};
 pub use constraints::{ContactRule, GroundRefusal, LineConstraints, SegmentConstraints};
 pub use ground::{Ground, GroundForm};
 pub use polygonal::{ChainProblem, InvalidChain, PolygonalChain};
+pub use quick_cones::{QuickCone, QuickGrip, Turn};
 pub use station::{Contact, Direction, OffChain, Site, Station};

@@ -28,9 +28,13 @@ pub(crate) fn run() -> ExitCode {
         Command::Run(args) => commands::run::run(&args),
         Command::Slice(args) => commands::slice::run(&args),
         Command::Fan(args) => commands::fan::run(&args),
+        Command::Map(args) => commands::map::run(&args),
         Command::Hop(args) => commands::hop::run(&args),
         Command::Check(args) => commands::check::run(&args),
         Command::Plan(args) => commands::plan::run(&args),
+        Command::Require(args) => commands::require::run(&args),
+        Command::Trade(args) => commands::trade::run(&args),
+        Command::Compare(args) => commands::compare::run(&args),
         Command::Synth(args) => commands::synth::run(&args),
         Command::Bodies => commands::bodies::run(),
     };

@@ -18,10 +18,10 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::search::search;
+use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
-    args::{Format, PlanArgs},
+    args::{Format, PlanArgs, ProveArgs},
     load::{EndOptions, Loaded, load},
     output::{self, Pending},
 };
@@ -48,19 +48,25 @@ pub(super) struct Planned {
 }
 
 impl Planned {
-    /// Searches, generates the path, and flies it again where asked.
-    pub(super) fn new(loaded: &Loaded, test: &HopTest<'_>, verify: bool, quiet: bool) -> Result<Self, Failure> {
-        let (start, goal) = loaded.ends()?;
+    /// Searches (and proves where asked), generates the path, and flies it again where asked.
+    pub(super) fn new(
+        loaded: &Loaded,
+        test: &HopTest<'_>,
+        prove: Option<ProveArgs>,
+        verify: bool,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
+        let ends = loaded.ends()?;
         let options = &loaded.scenario.search;
-        let found = search(test, start, goal, options, quiet)?;
-        let path = match &found.outcome {
+        let searched = Searched::new(test, ends, options, prove, quiet)?;
+        let path = match &searched.found.outcome {
             Outcome::Path { legs, .. } => {
                 Some(generate(test, legs, options.takeoff, options.split).map_err(|e| Failure::message(e.to_string()))?)
             }
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
         if let Some(path) = path.as_ref().filter(|_| verify) {
-            verified(loaded, path, (start, goal))?;
+            verified(loaded, path, ends)?;
         }
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
         let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
@@ -69,12 +75,12 @@ impl Planned {
         }
         let warnings = loaded.warnings_with(doubts);
         let answer = PlanAnswer {
-            check: CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &found, options.effort),
+            check: searched.answer(test, ends, options.effort),
             verified: (verify && path.is_some()).then_some(true),
             path: path.as_ref().map(|path| HopRecord::rows(path, loaded.prepared.projection.as_ref())).unwrap_or_default(),
             totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
         };
-        Ok(Self { found, path, answer, warnings })
+        Ok(Self { found: searched.found, path, answer, warnings })
     }
 
     /// Yes with a path, no without.
@@ -145,7 +151,7 @@ impl Planned {
 }
 
 /// The ground's grip in a few words.
-fn ground_words(scenario: &Scenario) -> String {
+pub(super) fn ground_words(scenario: &Scenario) -> String {
     match scenario.surface.grip {
         Some(Grip::Friction(cone)) => format!("friction coefficient {}", cone.coefficient()),
         Some(Grip::FromSlope { takeoff, landing }) => {
@@ -176,6 +182,7 @@ fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result
 
 /// Plans a path.
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
+    use_threads(args.threads)?;
     let loaded = load(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal))?;
     let ends = loaded.ends()?;
     if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {
@@ -190,7 +197,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     let prj = prj_path.as_deref().map(Pending::begin).transpose()?;
     let csv = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let test = loaded.hop_test();
-    let planned = Planned::new(&loaded, &test, args.verify, args.common.quiet)?;
+    let planned = Planned::new(&loaded, &test, Some(args.prove), args.verify, args.common.quiet)?;
     let mut files = Vec::new();
     if let Some(file) = plot {
         files.push((file, planned.picture(&loaded, &test, ends)?.into_bytes()));

@@ -4,7 +4,7 @@ use std::fs;
 
 use chta::{chain::csv::write_chain_csv, report::CrsRecord};
 
-use super::plan::Planned;
+use super::{plan::Planned, search::use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, Format, RunArgs},
@@ -14,7 +14,8 @@ use crate::cli::{
 
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
-    let RunArgs { scenario, output: folder, format, set, accept_map_scale, quiet } = args;
+    let RunArgs { scenario, output: folder, threads, format, set, accept_map_scale, quiet } = args;
+    use_threads(*threads)?;
     let common = CommonArgs {
         scenario: None,
         set: set.clone(),
@@ -28,7 +29,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let ends = loaded.ends()?;
     output::check_folder(folder)?;
     let test = loaded.hop_test();
-    let planned = Planned::new(&loaded, &test, true, *quiet)?;
+    let planned = Planned::new(&loaded, &test, None, true, *quiet)?;
     let mut chain_csv = Vec::new();
     let projection = loaded.prepared.projection.as_ref();
     let mut comments =

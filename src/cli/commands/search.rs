@@ -1,27 +1,120 @@
-//! The search with its progress, shared by check, plan and run.
+//! The search and the proof with their progress, shared by check, plan, run and require.
 
 use chta::{
     ballistics::HopTest,
     chain::Station,
-    graph::{self, PointSpacing, SearchOptions},
+    graph::{
+        self, PointSpacing, SearchOptions,
+        proof::{Bounds, BoundsOptions, ProofSummary, bounds},
+    },
+    report::CheckAnswer,
 };
 
-use crate::cli::{Failure, progress::Progress};
+use crate::cli::{Failure, args::ProveArgs, progress::Progress};
 
-/// Searches, and shows what is being tried on a terminal.
-pub(super) fn search(
+/// What a search came to, with bounds where a proof was asked for.
+#[derive(Debug)]
+pub(super) struct Searched {
+    pub(super) found: graph::Answer,
+    proof: Option<(Bounds, usize)>,
+}
+
+impl Searched {
+    /// Searches, and proves where that is asked for.
+    pub(super) fn new(
+        test: &HopTest<'_>,
+        ends: (Station, Station),
+        options: &SearchOptions,
+        prove: Option<ProveArgs>,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
+        match prove.filter(|prove| prove.prove) {
+            None => Ok(Self { found: search(test, ends, options, quiet)?, proof: None }),
+            Some(ProveArgs { budget, .. }) => {
+                let options =
+                    BoundsOptions { budget_cells: budget, search: options.clone(), explain: true, ..BoundsOptions::default() };
+                let bounds = proved(test, ends, &options, quiet)?;
+                Ok(Self { found: bounds.answer.clone(), proof: Some((bounds, budget)) })
+            }
+        }
+    }
+
+    /// The same for many pairs: one search from each start, or a proof for each pair.
+    pub(super) fn all(
+        test: &HopTest<'_>,
+        pairs: &[(Station, Station)],
+        options: &SearchOptions,
+        prove: ProveArgs,
+        quiet: bool,
+    ) -> Result<Vec<Self>, Failure> {
+        if prove.prove {
+            return pairs.iter().map(|&ends| Self::new(test, ends, options, Some(prove), quiet)).collect();
+        }
+        let found = search_pairs(test, pairs, options, quiet)?;
+        Ok(found.into_iter().map(|found| Self { found, proof: None }).collect())
+    }
+
+    /// The answer as plain data.
+    pub(super) fn answer(&self, test: &HopTest<'_>, (start, goal): (Station, Station), effort: graph::Effort) -> CheckAnswer {
+        let answer = CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &self.found, effort);
+        match &self.proof {
+            None => answer,
+            Some((bounds, budget)) => answer.with_bounds(bounds, *budget),
+        }
+    }
+}
+
+/// Makes as many threads as asked for; 0: one for each core.
+pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
+    if threads == 0 {
+        // As it is anyway, and small searches never start them.
+        return Ok(());
+    }
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()
+        .map_err(|error| Failure::message(format!("the threads cannot be started ({error}): ask for fewer with --threads")))
+}
+
+/// Searches for one pair, and shows what is being tried on a terminal.
+fn search(
     test: &HopTest<'_>,
-    start: Station,
-    goal: Station,
+    (start, goal): (Station, Station),
     options: &SearchOptions,
     quiet: bool,
 ) -> Result<graph::Answer, Failure> {
+    graph::search(test, start, goal, options, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
+}
+
+/// Searches for many pairs, once from each start.
+fn search_pairs(
+    test: &HopTest<'_>,
+    pairs: &[(Station, Station)],
+    options: &SearchOptions,
+    quiet: bool,
+) -> Result<Vec<graph::Answer>, Failure> {
+    graph::search_pairs(test, pairs, options, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
+}
+
+/// Tells what is being tried.
+fn told(quiet: bool) -> impl FnMut(PointSpacing) {
     let progress = Progress::new(quiet);
-    let mut tell = |spacing: PointSpacing| {
+    move |spacing| {
         progress.say(match spacing {
             PointSpacing::PerSegment(points) => format!("searching with {points} points inside each segment"),
             PointSpacing::AtMostM(spacing_m) => format!("searching with nodes at most {spacing_m} m apart"),
         });
-    };
-    graph::search(test, start, goal, options, &mut tell).map_err(|error| Failure::message(error.to_string()))
+    }
+}
+
+/// Bounds the fewest hops, and shows how far the proof is on a terminal.
+pub(super) fn proved(
+    test: &HopTest<'_>,
+    (start, goal): (Station, Station),
+    options: &BoundsOptions,
+    quiet: bool,
+) -> Result<Bounds, Failure> {
+    let progress = Progress::new(quiet);
+    let mut tell = |summary: ProofSummary| progress.say(format!("proving with {} cells, round {}", summary.cells, summary.rounds));
+    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::message(error.to_string()))
 }

@@ -12,6 +12,9 @@ const BANDS: [RGBColor; 6] = [
     RGBColor(68, 1, 84),
 ];
 
+/// The most classes of even width: more shades than these are mistaken for each other under a hillshade.
+const MOST_EVEN: u64 = 8;
+
 /// Classes of hops: the most hops of each, rising.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct HopClasses(pub(super) Vec<u64>);
@@ -22,6 +25,14 @@ impl HopClasses {
         Self(classes(most))
     }
 
+    /// For hops up to a number over an area, of which far hops take the most: one class for each count up to eight, else eight classes
+    /// as even as whole numbers allow.
+    pub(super) fn even(most: u64) -> Self {
+        let count = most.min(MOST_EVEN);
+        // i / count of the most, rounded up, without leaving 64 bits.
+        Self((1..=count).map(|i| most / count * i + (most % count * i).div_ceil(count)).collect())
+    }
+
     /// The class of a number of hops.
     pub(super) fn of(&self, hops: u64) -> usize {
         self.0.iter().position(|&most| hops <= most).unwrap_or(self.0.len().saturating_sub(1))
@@ -30,6 +41,10 @@ impl HopClasses {
     /// The colour of a class: the classes there are, spread over all colours.
     pub(super) fn colour(&self, class: usize) -> RGBColor {
         let steps = self.0.len().max(2) - 1;
+        if steps >= BANDS.len() {
+            #[expect(clippy::cast_precision_loss, reason = "at most eight classes")]
+            return ramp(class as f64 / steps as f64);
+        }
         BANDS[(class * (BANDS.len() - 1) / steps).min(BANDS.len() - 1)]
     }
 
@@ -76,7 +91,7 @@ pub(super) fn ramp(share: f64) -> RGBColor {
     let last = BANDS.len() - 1;
     #[expect(clippy::cast_precision_loss, reason = "a handful of colours")]
     let at = share.clamp(0.0, 1.0) * last as f64;
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 5; NaN is 0")]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and 5")]
     let below = (at.floor() as usize).min(last - 1);
     #[expect(clippy::cast_precision_loss, reason = "a handful of colours")]
     let part = at - below as f64;
@@ -118,10 +133,28 @@ mod tests {
     }
 
     #[test]
+    fn even_classes_differ_by_at_most_one_hop_and_have_their_own_colours() {
+        assert_eq!(HopClasses::even(7).0, [1, 2, 3, 4, 5, 6, 7]);
+        assert_eq!(HopClasses::even(30).0, [4, 8, 12, 15, 19, 23, 27, 30]);
+        assert!(HopClasses::even(0).0.is_empty());
+        for most in (9..500).chain([u64::MAX]) {
+            let classes = HopClasses::even(most);
+            assert_eq!((classes.0.len(), classes.0.last()), (8, Some(&most)));
+            let widths: Vec<u64> = std::iter::once(&0).chain(&classes.0).zip(&classes.0).map(|(low, high)| high - low).collect();
+            assert!(widths.iter().all(|width| (most / 8..=most.div_ceil(8)).contains(width)), "{widths:?}");
+        }
+        let classes = HopClasses::even(8);
+        let mut colours: Vec<_> = (0..8).map(|class| classes.colour(class)).collect();
+        assert_eq!((colours[0], colours[7]), (BANDS[0], BANDS[5]));
+        colours.dedup();
+        assert_eq!(colours.len(), 8);
+    }
+
+    #[test]
     fn the_ramp_darkens_steadily() {
         let light = |c: RGBColor| 0.3 * f64::from(c.0) + 0.59 * f64::from(c.1) + 0.11 * f64::from(c.2);
         let all: Vec<f64> = (0..=50).map(|i| light(ramp(f64::from(i) / 50.0))).collect();
         assert!(all.windows(2).all(|pair| pair[0] > pair[1]), "{all:?}");
-        assert_eq!((ramp(0.0), ramp(1.0), ramp(f64::NAN)), (BANDS[0], BANDS[5], BANDS[0]));
+        assert_eq!((ramp(0.0), ramp(1.0), ramp(7.0)), (BANDS[0], BANDS[5], BANDS[5]));
     }
 }

@@ -41,9 +41,14 @@ pub(super) fn check_picture(name: &str, draw: impl Fn() -> Picture) -> Picture {
     let svg = picture.to_svg().unwrap();
     check_well_formed(&svg);
     assert!(svg.len() < 500_000, "{name}: {} bytes", svg.len());
-    assert!(!svg.contains("NaN") && !svg.contains("inf\""), "{name}");
-    assert_eq!(picture, draw(), "{name} is not the same twice");
-    assert_eq!(svg, draw().to_svg().unwrap());
+    // The letters of an image may spell anything.
+    let without_images =
+        svg.split("base64,").enumerate().map(|(i, part)| if i == 0 { part } else { &part[part.find('"').unwrap()..] });
+    let numbers: String = without_images.collect();
+    assert!(!numbers.contains("NaN") && !numbers.contains("inf\""), "{name}");
+    let again = draw();
+    assert_eq!(picture, again, "{name} is not the same twice");
+    assert_eq!(svg, again.to_svg().unwrap());
     assert!(picture.height_mm.is_finite() && picture.height_mm < 400.0, "{name}: {} mm", picture.height_mm);
     if let Some(folder) = std::env::var_os("CHTA_FIGURES_TO").map(PathBuf::from) {
         std::fs::write(folder.join(name).with_extension("svg"), &svg).unwrap();

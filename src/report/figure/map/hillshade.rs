@@ -19,17 +19,18 @@ pub(super) const LEVEL: f64 = SUN.2;
 /// ```
 ///
 /// Slopes by Horn, "Hill shading and the reflectance map", Proc. IEEE 69 (1981) 14-47, as `gdaldem` has them; brightness by Lambert's
-/// cosine law. A missing neighbour (border, no-data) is replaced by the ground carried on straight from the one opposite.
+/// cosine law. A missing neighbour (border, no-data) is replaced by
+/// the ground carried on straight from the one opposite, or at a corner from the two beside it.
 pub(super) fn brightness(dem: &Dem, row: usize, col: usize) -> Option<f64> {
     let centre = dem.elevation(row, col)?;
     let at = |down: isize, right: isize| dem.elevation(row.checked_add_signed(down)?, col.checked_add_signed(right)?);
-    let z = |down: isize, right: isize| {
-        let opposite = || at(-down, -right).map(|beyond| 2.0 * centre - beyond);
-        at(down, right).or_else(opposite).unwrap_or(centre)
-    };
+    let or_straight = |down: isize, right: isize| at(down, right).or_else(|| Some(2.0 * centre - at(-down, -right)?));
+    let beside = |down: isize, right: isize| or_straight(down, right).unwrap_or(centre);
+    let (b, d, f, h) = (beside(-1, 0), beside(0, -1), beside(0, 1), beside(1, 0));
+    let corner = |down: isize, right: isize, beside: [f64; 2]| or_straight(down, right).unwrap_or(beside[0] + beside[1] - centre);
+    let (a, c, g, i) = (corner(-1, -1, [b, d]), corner(-1, 1, [b, f]), corner(1, -1, [h, d]), corner(1, 1, [h, f]));
     let map = dem.georeference();
-    let east = (z(-1, 1) + 2.0 * z(0, 1) + z(1, 1)) - (z(-1, -1) + 2.0 * z(0, -1) + z(1, -1));
-    let north = (z(-1, -1) + 2.0 * z(-1, 0) + z(-1, 1)) - (z(1, -1) + 2.0 * z(1, 0) + z(1, 1));
+    let (east, north) = ((c + 2.0 * f + i) - (a + 2.0 * d + g), (a + 2.0 * b + c) - (g + 2.0 * h + i));
     let (p, q) = (east / (8.0 * map.dx_m()), north / (8.0 * map.dy_m()));
     let facing = (-SUN.0 * p - SUN.1 * q + SUN.2) / (1.0 + p * p + q * q).sqrt();
     Some(facing.max(0.0))

@@ -3,6 +3,7 @@
 mod data;
 mod hillshade;
 mod hops;
+mod landings;
 mod panel;
 mod raster;
 mod values;
@@ -12,17 +13,10 @@ pub use data::{
     ValueMapFigure,
 };
 pub use hops::draw_hop_map;
+pub use landings::draw_landing_map;
 pub use values::draw_value_map;
 
-use super::{FigureError, Picture, todo_picture};
-
-/// Draws where the hops of a path really landed, with 95 % ellipses, over a hillshade.
-///
-/// # Errors
-/// [`FigureError::Drawing`].
-pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, FigureError> {
-    todo_picture(&figure.caption)
-}
+use super::FigureError;
 
 /// Whether a raster has one number for each post.
 fn check_size(what: &'static str, posts: &MapPosts<'_>, found: usize) -> Result<(), FigureError> {

@@ -28,11 +28,13 @@ const STRIP_MM: f64 = 8.0;
 const TICK_MM: f64 = 9.0;
 /// More goals than this are marked without words.
 const MOST_NAMED: usize = 12;
+/// By how much bold letters are wider than the estimate says.
+const BOLD: f64 = 0.1;
 /// Paths: black in a white casing, to be seen on every band.
 const CORE_PEN: Pen = Pen { colour: BLACK, width_mm: 0.35 };
 const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.9 };
 
-/// Where the map lies on the sheet.
+/// Where the map lies on the sheet; both axes at one scale.
 pub(super) struct MapPanel {
     panel: Panel,
     bounds: MapBounds,
@@ -82,33 +84,39 @@ impl MapPanel {
         let ticks: Vec<_> = up.values.iter().map(|&y| (self.place(MapPoint::new(min.x, y)).1, up.text(y))).collect();
         panel.y_axis(sheet, &ticks, "map y, north (m)", false);
         panel.outline(sheet);
-        self.scale_bar(sheet);
-        self.north(sheet);
+        let bar_end_mm = self.scale_bar(sheet);
+        self.north(sheet, bar_end_mm);
         panel.bottom + BELOW_MM
     }
 
-    /// A bar of a round length above the map's left end.
-    fn scale_bar(&self, sheet: &mut Sheet) {
+    /// A bar of a round length above the map's left end; returns where its length ends, mm.
+    fn scale_bar(&self, sheet: &mut Sheet) -> f64 {
         let lengths = Ticks::round(0.0, 0.3 * self.panel.width() / self.mm_per_m, 2.0);
-        let Some(&length_m) = lengths.values.last().filter(|&&length_m| length_m > 0.0) else { return };
+        let Some(&length_m) = lengths.values.last().filter(|&&length_m| length_m > 0.0) else { return self.panel.left };
         let (left, y) = (self.panel.left, self.panel.top - 2.6);
         let (middle, right) = (left + 0.5 * length_m * self.mm_per_m, left + length_m * self.mm_per_m);
         sheet.area(rectangle((left, y - 0.6), (middle, y + 0.6)), BLACK, 1.0);
         sheet.line(rectangle((left, y - 0.6), (right, y + 0.6)).into_iter().chain([(left, y - 0.6)]).collect(), CORE_PEN);
-        sheet.label(Label::new(format!("{} m", lengths.text(length_m)), (right + 1.5, y), SMALL_MM));
+        let label = Label::new(format!("{} m", lengths.text(length_m)), (right + 1.5, y), SMALL_MM);
+        let (.., end_mm, _) = label.bounds_mm();
+        sheet.label(label);
+        end_mm
     }
 
-    /// An arrow to grid north above the map's right end.
-    fn north(&self, sheet: &mut Sheet) {
-        let (x, y) = (self.panel.right - 1.8, self.panel.top - 1.4);
+    /// An arrow to grid north above the map's right end, of a narrow map right of the scale bar.
+    fn north(&self, sheet: &mut Sheet, bar_end_mm: f64) {
+        const NAME: &str = "N (grid)";
+        let after_bar = bar_end_mm + 4.0 + text_width_mm(NAME, TEXT_MM) + 2.4;
+        let (x, y) = ((self.panel.right - 1.8).max(after_bar), self.panel.top - 1.4);
         sheet.area(vec![(x, y - 5.0), (x + 1.3, y), (x, y - 1.0), (x - 1.3, y)], BLACK, 1.0);
-        let name = Label::new("N (grid)", (x - 2.4, y - 2.4), TEXT_MM).hung(Anchor::End, Hang::Through);
+        let name = Label::new(NAME, (x - 2.4, y - 2.4), TEXT_MM).hung(Anchor::End, Hang::Through);
         sheet.label(Label { bold: true, ..name });
     }
 
     /// Paths with their landings.
     pub(super) fn paths(&self, sheet: &mut Sheet, paths: &[Vec<MapPoint>]) {
-        let drawn: Vec<Vec<Place>> = paths.iter().map(|path| path.iter().map(|&at| self.place(at)).collect()).collect();
+        let drawn: Vec<Vec<Place>> =
+            paths.iter().filter(|path| !path.is_empty()).map(|path| path.iter().map(|&at| self.place(at)).collect()).collect();
         for points in &drawn {
             sheet.line(points.clone(), CASING_PEN);
         }
@@ -148,10 +156,7 @@ impl MapPanel {
     /// A name beside a place, on a light ground, where there is room.
     pub(super) fn name(&self, sheet: &mut Sheet, at: MapPoint, text: &str) {
         let (x, y) = self.place(at);
-        let label = |dx: f64, dy: f64, anchor| {
-            let label = Label::new(text, (x + dx, y + dy), SMALL_MM).hung(anchor, Hang::Through);
-            Label { bold: true, ..label }
-        };
+        let label = |dx: f64, dy: f64, anchor| Label::new(text, (x + dx, y + dy), SMALL_MM).hung(anchor, Hang::Through);
         let (s, m, e) = (Anchor::Start, Anchor::Middle, Anchor::End);
         let places = [
             label(2.2, 0.0, s),
@@ -161,6 +166,11 @@ impl MapPanel {
             label(2.2, 3.4, s),
             label(2.2, -3.4, s),
         ];
+        self.name_on_one(sheet, &places);
+    }
+
+    /// The first of some names that lies on the map and on no other, in bold on a light ground; else one beside the map, or none.
+    pub(super) fn name_on_one(&self, sheet: &mut Sheet, places: &[Label]) {
         let inside = |label: &&Label| {
             let (left, top, right, bottom) = label.bounds_mm();
             left > self.panel.left && right < self.panel.right && top > self.panel.top && bottom < self.panel.bottom
@@ -168,8 +178,15 @@ impl MapPanel {
         let free = places.iter().filter(inside).find(|label| !sheet.is_taken(label));
         let Some(label) = free.or_else(|| places.iter().find(|label| !sheet.is_taken(label))) else { return };
         let (left, top, right, bottom) = label.bounds_mm();
-        sheet.area(rectangle((left - 0.5, top - 0.3), (right + 0.9, bottom + 0.4)), WHITE, 0.75);
-        sheet.label(label.clone());
+        // Bold letters are wider than the estimate, away from where the text hangs.
+        let wider_mm = BOLD * (right - left);
+        let (before_mm, after_mm) = match label.anchor {
+            Anchor::Start => (0.0, wider_mm),
+            Anchor::Middle => (0.5 * wider_mm, 0.5 * wider_mm),
+            Anchor::End => (wider_mm, 0.0),
+        };
+        sheet.area(rectangle((left - before_mm - 0.5, top - 0.3), (right + after_mm + 0.5, bottom + 0.4)), WHITE, 0.75);
+        sheet.label(Label { bold: true, ..label.clone() });
     }
 }
 

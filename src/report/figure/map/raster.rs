@@ -9,7 +9,7 @@ use super::{
     },
     hillshade::{LEVEL, brightness},
 };
-use crate::terrain::Dem;
+use crate::{quantity::MapPoint, terrain::Dem};
 
 /// The most pixels a side; of larger rasters every n-th post is drawn, which the map says.
 pub(super) const MOST_PIXELS: usize = 2000;
@@ -35,10 +35,44 @@ impl Window {
         Self { rows: 0..dem.rows(), cols: 0..dem.cols() }
     }
 
+    /// The posts around some places, with a margin of a tenth of their extent and at least four posts; all posts without a place.
+    pub(super) fn around(dem: &Dem, places: impl Iterator<Item = MapPoint>) -> Self {
+        let map = dem.georeference();
+        let first = map.north_west();
+        // Rows and columns as real numbers, growing to the south and to the east.
+        let posts = places.map(|at| ((first.y - at.y) / map.dy_m(), (at.x - first.x) / map.dx_m()));
+        let (mut low, mut high) = ((f64::INFINITY, f64::INFINITY), (f64::NEG_INFINITY, f64::NEG_INFINITY));
+        for (row, col) in posts.filter(|(row, col)| row.is_finite() && col.is_finite()) {
+            (low, high) = ((low.0.min(row), low.1.min(col)), (high.0.max(row), high.1.max(col)));
+        }
+        if low.0 > high.0 {
+            return Self::whole(dem);
+        }
+        let margin = (0.1 * (high.0 - low.0).max(high.1 - low.1)).max(4.0);
+        Self { rows: span(low.0 - margin, high.0 + margin, dem.rows()), cols: span(low.1 - margin, high.1 + margin, dem.cols()) }
+    }
+
+    /// Whether one of the posts has no elevation.
+    pub(super) fn has_gaps(&self, dem: &Dem) -> bool {
+        self.rows.clone().any(|row| self.cols.clone().any(|col| dem.elevation(row, col).is_none()))
+    }
+
     /// One in how many posts is drawn.
     pub(super) fn every(&self) -> usize {
         self.rows.len().max(self.cols.len()).div_ceil(MOST_PIXELS).max(1)
     }
+}
+
+/// The posts from a real number to another, of so many; where none lies between, the nearest one.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the cast saturates, and the ends are clipped to the posts"
+)]
+fn span(from: f64, to: f64, count: usize) -> std::ops::Range<usize> {
+    let last = count.saturating_sub(1);
+    let (from, to) = ((from.floor() as usize).min(last), (to.ceil() as usize).min(last));
+    from..to + 1
 }
 
 /// What is drawn over a class's colour.
@@ -67,10 +101,15 @@ pub(super) fn tone(colour: RGBColor) -> RGBColor {
     mixed(colour, RGBColor(255, 255, 255), 0.2)
 }
 
-/// Draws a class for each post over the hillshade, white where there is no elevation.
+/// Draws a class for each post over the hillshade, white where there is no elevation or no class.
 ///
 /// `class` tells, for a row and a column of the DEM, the place of its colour in `tones` and its pattern.
-pub(super) fn draw(dem: &Dem, window: &Window, tones: &[RGBColor], class: impl Fn(usize, usize) -> (usize, Pattern)) -> Pixels {
+pub(super) fn draw(
+    dem: &Dem,
+    window: &Window,
+    tones: &[RGBColor],
+    class: impl Fn(usize, usize) -> Option<(usize, Pattern)>,
+) -> Pixels {
     let every = window.every();
     let side = window.rows.len().max(window.cols.len());
     let up = if every > 1 { 1 } else { (ENOUGH_PIXELS / side.max(1)).max(1) };
@@ -86,9 +125,9 @@ pub(super) fn draw(dem: &Dem, window: &Window, tones: &[RGBColor], class: impl F
         let line: Vec<_> = (0..cols)
             .map(|col| {
                 let at = (window.rows.start + row * every, window.cols.start + col * every);
-                let (tone, pattern) = class(at.0, at.1);
-                let index = mean_brightness(dem, at, every).map_or(0, |light| 2 + tone * shades + shade_of(light, shades));
-                (u8::try_from(index).unwrap_or(0), pattern)
+                let light = mean_brightness(dem, at, every);
+                let Some(((tone, pattern), light)) = class(at.0, at.1).zip(light) else { return (0, Pattern::Plain) };
+                (u8::try_from(2 + tone * shades + shade_of(light, shades)).unwrap_or(0), pattern)
             })
             .collect();
         for down in 0..up {

@@ -6,6 +6,8 @@ use super::{
         bitmap::Form,
         samples::{check_picture, real_dem, texts},
     },
+    landings::rim,
+    raster::Window,
     *,
 };
 use crate::{
@@ -33,7 +35,7 @@ fn made_up_hops(posts: &MapPosts<'_>, start: (usize, usize), posts_per_hop: f64,
     let (rows, cols) = posts.size();
     let hops = |i: usize| {
         let (row, col) = (i / cols * posts.stride, i % cols * posts.stride);
-        let Some(light) = super::hillshade::brightness(posts.dem, row, col) else { return HOPS_NO_DATA };
+        let Some(light) = hillshade::brightness(posts.dem, row, col) else { return HOPS_NO_DATA };
         let away = libm::hypot(row as f64 - start.0 as f64, col as f64 - start.1 as f64) / posts_per_hop;
         if light < 0.4 || away.ceil() > most { HOPS_UNREACHABLE } else { away.ceil() as i16 }
     };
@@ -88,12 +90,12 @@ fn maps_with_a_stride_of_holes_and_of_many_posts_are_whole_and_say_so() {
     let picture = drawn("hops-stride", MapPosts { dem: &small, stride: 4 }, 3.0, 300.0, false);
     let told = texts(&picture);
     assert!(told.contains("no data: ") && told.contains("one post in 4 each way, 10 m apart"), "{told}");
-    let large = made_up(2100, 1300, 5.0);
+    let large = made_up(2100, 300, 5.0);
     let picture = drawn("hops-large", MapPosts { dem: &large, stride: 1 }, 12.0, 1000.0, false);
     assert!(texts(&picture).contains("Drawn: one post in 2 each way"));
     let image = &picture.sheet.images[0].pixels;
-    assert_eq!((image.width, image.height), (650, 1050));
-    assert!((picture.sheet.images[0].height_mm / picture.sheet.images[0].width_mm - 2100.0 / 1300.0).abs() < 1e-9, "one scale");
+    assert_eq!((image.width, image.height), (150, 1050));
+    assert!((picture.sheet.images[0].height_mm / picture.sheet.images[0].width_mm - 2100.0 / 300.0).abs() < 1e-9, "one scale");
 }
 
 #[test]
@@ -105,7 +107,7 @@ fn pixels_show_the_class_of_their_post() {
     let picture = draw_hop_map(&hop_map(posts, &hops, None)).unwrap();
     let image = &picture.sheet.images[0].pixels;
     let Form::Palette(colours) = &image.form else { panic!("a palette") };
-    let (up, shades) = (image.width / 20, (colours.len() - 2) / 4);
+    let (up, shades) = (image.width / 20, (colours.len() - 2) / 3);
     for (i, &hops) in hops.iter().enumerate() {
         for corner in [0, up - 1] {
             let index = usize::from(image.bytes[(i / 20 * up + corner) * image.width + i % 20 * up + corner]);
@@ -181,4 +183,106 @@ fn value_maps_have_round_classes_and_survive_odd_values() {
         assert_eq!(texts(&picture).contains("not reached"), !value.is_finite(), "{name}: {}", texts(&picture));
     }
     assert!(draw_value_map(&value_map(posts, &[0.0], "share")).is_err());
+}
+
+/// A path along a row with a cloud around every landing: points of ellipses with known axes, the longer one towards `heading_deg`.
+fn landing_map(dem: &Dem, hops: usize, landings: usize, semi_m: (f64, f64), heading_deg: f64) -> LandingMapFigure<'_> {
+    let post = |hop: usize| dem.georeference().post(dem.rows() / 2 - hop % 3, dem.cols() / 4 + hop * dem.cols() / (3 * hops));
+    let cloud = |hop: usize| {
+        let planned = post(hop);
+        let growth = 1.0 + 0.3 * hop as f64;
+        let centre = MapPoint::new(planned.x + 0.2 * semi_m.0, planned.y - 0.1 * semi_m.0);
+        let ellipse = LandingEllipse {
+            centre,
+            semi_major_m: growth * semi_m.0,
+            semi_minor_m: growth * semi_m.1,
+            heading_deg: heading_deg + hop as f64,
+        };
+        // The golden angle spreads points evenly, thinning out from the middle.
+        let landing = |i: usize| {
+            let share = libm::sqrt(-2.0 * libm::log((i as f64 + 0.5) / landings as f64) / 5.991);
+            let rim = rim(&ellipse);
+            let on_rim = rim[i * 29 % rim.len()];
+            MapPoint::new(centre.x + share * (on_rim.x - centre.x), centre.y + share * (on_rim.y - centre.y))
+        };
+        let landings = (0..landings).map(landing).collect();
+        LandingCloud { hop, planned, landings, count: 10_000, ellipse: Some(ellipse) }
+    };
+    LandingMapFigure {
+        caption: Caption::new("Landings of 10 000 trials", "Mars, g = 3.711 m/s²; open loop"),
+        dem,
+        path: (0..=hops).map(post).collect(),
+        clouds: (1..=hops).map(cloud).collect(),
+    }
+}
+
+#[test]
+fn landing_maps_of_real_terrain_show_path_landings_and_ellipses() {
+    for (name, file, hops, semi_m) in [("landings-mars", MARS, 4, (3.0, 1.2)), ("landings-moon", MOON, 15, (11.0, 8.0))] {
+        let Some(dem) = real_dem(file) else { continue };
+        let figure = landing_map(&dem, hops, 400, semi_m, 80.0);
+        let picture = check_picture(name, || draw_landing_map(&figure).unwrap());
+        let texts = texts(&picture);
+        for words in ["planned path", "planned landing", "95 % ellipse", "map x, east (m)", "N (grid)", "start"] {
+            assert!(texts.contains(words), "{words:?} is missing in {texts}");
+        }
+        assert!(texts.lines().any(|line| line == hops.to_string()), "the last hop's number: {texts}");
+        if name == "landings-mars" {
+            assert!(texts.contains("landing (1600 of 40000 drawn)"), "{texts}");
+            assert!(
+                texts.replace('\n', " ").contains("hop 1: 3.9 m by 1.56 m, 81\u{b0}; hop 2: 4.8 m by 1.92 m, 82\u{b0};"),
+                "{texts}"
+            );
+        } else {
+            assert!(texts.contains("landing (2010 of 150000 drawn)"), "every third of 400, 15 times: {texts}");
+            assert!(texts.contains("half the longer axis 14.3 m to 60.5 m, half the shorter one 10.4 m to 44 m"), "{texts}");
+        }
+    }
+}
+
+#[test]
+fn landing_maps_are_cut_to_what_happened_and_count_what_left_the_map() {
+    let dem = made_up(200, 300, 2.0);
+    let mut figure = landing_map(&dem, 3, 50, (4.0, 2.0), 0.0);
+    let whole = dem.georeference().bounds(200, 300);
+    let far = MapPoint::new(whole.max.x + 500.0, whole.min.y);
+    figure.clouds[2].landings[7] = far;
+    let picture = check_picture("landings-left", || draw_landing_map(&figure).unwrap());
+    let told = texts(&picture);
+    assert!(told.contains("Landings beyond the DEM, not drawn: 1.") && told.contains("landing (149 of 30000 drawn)"), "{told}");
+    let image = &picture.sheet.images[0];
+    assert!(image.width_mm / image.height_mm > 1.2, "cut to the path, which runs east: {} by {}", image.width_mm, image.height_mm);
+    // Nothing at all, and a path without landings.
+    for clouds in [Vec::new(), vec![LandingCloud { hop: 1, planned: whole.min, landings: Vec::new(), count: 0, ellipse: None }]] {
+        let figure = LandingMapFigure { caption: Caption::default(), dem: &dem, path: Vec::new(), clouds };
+        let picture = check_picture("landings-none", || draw_landing_map(&figure).unwrap());
+        assert!(!texts(&picture).contains("ellipse"), "{}", texts(&picture));
+    }
+}
+
+#[test]
+fn the_rim_of_an_ellipse_has_its_axes_and_its_heading() {
+    let centre = MapPoint::new(10.0, -20.0);
+    let ellipse = LandingEllipse { centre, semi_major_m: 5.0, semi_minor_m: 2.0, heading_deg: 30.0 };
+    let rim = rim(&ellipse);
+    // The second road: the equation of an ellipse in axes turned by hand, 30 degrees from north being (1/2, sqrt 3 / 2).
+    let along = (0.5, libm::sqrt(3.0) / 2.0);
+    for at in &rim {
+        let (x, y) = (at.x - centre.x, at.y - centre.y);
+        let (u, v) = (x * along.0 + y * along.1, x * along.1 - y * along.0);
+        assert!((u * u / 25.0 + v * v / 4.0 - 1.0).abs() < 1e-12, "{at:?}");
+    }
+    assert!((rim[0].x - 12.5).abs() < 1e-12 && (rim[0].y - (-20.0 + 5.0 * along.1)).abs() < 1e-12, "{:?}", rim[0]);
+}
+
+#[test]
+fn windows_hold_their_places_with_a_margin_and_stay_on_the_dem() {
+    let dem = made_up(60, 90, 2.0);
+    let post = |row, col| dem.georeference().post(row, col);
+    let window = Window::around(&dem, [post(20, 30), post(30, 80)].into_iter());
+    assert_eq!(window, Window { rows: 15..36, cols: 25..86 }, "5 posts, a tenth of 50, on each side");
+    let corner = Window::around(&dem, [post(0, 89)].into_iter());
+    assert_eq!(corner, Window { rows: 0..5, cols: 85..90 });
+    assert_eq!(Window::around(&dem, std::iter::empty()), Window::whole(&dem));
+    assert_eq!(Window::around(&dem, [MapPoint::new(f64::NAN, 0.0)].into_iter()), Window::whole(&dem));
 }

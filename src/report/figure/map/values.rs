@@ -37,8 +37,8 @@ pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureErro
     tones.push(NOT_REACHED);
     let window = Window::whole(posts.dem);
     let pixels = raster::draw(posts.dem, &window, &tones, |row, col| {
-        let value = posts.index(row, col).map_or(f64::NAN, |at| figure.values[at]);
-        (steps.class(value).unwrap_or(tones.len() - 1), Pattern::Plain)
+        let at = posts.index(row, col);
+        (!posts.is_gap(at)).then(|| (steps.class(figure.values[at]).unwrap_or(tones.len() - 1), Pattern::Plain))
     });
     let mut sheet = Sheet::default();
     let top_mm = figure.caption.draw(&mut sheet);
@@ -58,7 +58,7 @@ pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureErro
     }
     entries.extend(end_keys(figure.start, &figure.goals, &figure.paths));
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 2.5);
-    let height_mm = notes(&mut sheet, &posts, &window, end_mm) + 2.0;
+    let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
     Ok(Picture { sheet, height_mm })
 }
 
