@@ -218,7 +218,8 @@ pub(super) fn gap(sheet: &mut Sheet, panel: &Panel, [a, b]: [Place; 2], gap_m: f
     sheet.label(Label::new(text, (x, y - 1.2), SMALL_MM).hung(Anchor::Middle, Hang::Above));
 }
 
-/// Start or goal: a pin in the ground with its name below or, where the ground falls away, beside it.
+/// Start or goal: a pin in the ground with its name below or, where the ground falls away, beside it; without it where all
+/// places are taken.
 pub(super) fn pin(sheet: &mut Sheet, panel: &Panel, (x, y): Place, name: &str, is_buried: impl Fn(&Label) -> bool) {
     sheet.area(vec![(x, y + 0.4), (x - 1.2, y + 3.0), (x + 1.2, y + 3.0)], BLACK, 1.0);
     let half = 0.5 * text_width_mm(name, SMALL_MM) + 0.8;
@@ -230,7 +231,9 @@ pub(super) fn pin(sheet: &mut Sheet, panel: &Panel, (x, y): Place, name: &str, i
     let places = [&below, &beside[0], &beside[1], &lower];
     let buried = places.into_iter().find(|label| is_buried(label) && !sheet.is_taken(label));
     let free = buried.or_else(|| places.into_iter().find(|label| !sheet.is_taken(label)));
-    sheet.label(free.unwrap_or(&lower).clone());
+    if let Some(label) = free {
+        sheet.label(label.clone());
+    }
 }
 
 /// The lowest and the highest of ground and flights in view, m.

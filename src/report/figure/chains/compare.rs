@@ -51,7 +51,7 @@ pub fn draw_compare(figure: &CompareFigure) -> Result<Picture, FigureError> {
     let (x_name, y_name) = if common {
         ("distance along the chain, x (m)", "height, z (m)")
     } else {
-        ("distance from the start along the chain (m)", "height above the start (m)")
+        ("distance x and height z from each scenario's own start (m)", "height, z (m)")
     };
     profile.axes(&mut sheet, x_name, y_name);
     if let Some(one) = drawn.first().filter(|_| common) {

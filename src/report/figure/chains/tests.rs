@@ -234,9 +234,9 @@ fn a_trade_has_its_number_in_every_field() {
 
 #[test]
 fn trades_too_fine_for_numbers_say_so_and_stay_small() {
-    let figure = trade(120, 110, 4000);
+    let figure = trade(100, 90, 4000);
     let picture = check_picture("trade-fine", || draw_trade(&figure).unwrap());
-    assert_says(&picture, &["110 x 120 fields: too small for a number each"]);
+    assert_says(&picture, &["90 x 100 fields: too small for a number each"]);
 }
 
 #[test]
@@ -287,7 +287,7 @@ fn comparisons_name_every_scenario_with_verdict_and_hops() {
     let other = vec![scenario("Here", waves(500.0, 101, 5.0), 9.0, 10), scenario("There", waves(-40.0, 131, 2.0), 18.0, 5)];
     let figure = CompareFigure { scenarios: other, ..figure };
     let picture = check_picture("compare-grounds", || draw_compare(&figure).unwrap());
-    assert_says(&picture, &["distance from the start along the chain (m)", "goal 1", "goal 2", "start"]);
+    assert_says(&picture, &["distance x and height z from each scenario's own start (m)", "goal 1", "goal 2", "start"]);
 }
 
 #[test]
