@@ -29,7 +29,7 @@ impl Panel {
         self.bottom - self.top
     }
 
-    /// Grid and numbers at places along the lower edge, and what they mean.
+    /// Grid and numbers at places along the lower edge, and what they mean; no name where that is empty.
     pub(super) fn x_axis(&self, sheet: &mut Sheet, ticks: &[(f64, String)], name: &str, grid: bool) {
         for (x, text) in ticks {
             if grid {
@@ -40,10 +40,13 @@ impl Panel {
             sheet.label(label);
         }
         let middle = 0.5 * (self.left + self.right);
+        if name.is_empty() {
+            return;
+        }
         sheet.label(Label::new(name, (middle, self.bottom + 5.2), TEXT_MM).hung(Anchor::Middle, Hang::Below));
     }
 
-    /// Grid and numbers at places along the left edge, and what they mean.
+    /// Grid and numbers at places along the left edge, and what they mean; no name where that is empty.
     pub(super) fn y_axis(&self, sheet: &mut Sheet, ticks: &[(f64, String)], name: &str, grid: bool) {
         let mut widest: f64 = 0.0;
         for (y, text) in ticks {
@@ -53,6 +56,9 @@ impl Panel {
             sheet.line(vec![(self.left - 1.0, *y), (self.left, *y)], AXIS_PEN);
             sheet.label(Label::new(text.as_str(), (self.left - 1.5, *y), SMALL_MM).hung(Anchor::End, Hang::Through));
             widest = widest.max(text_width_mm(text, SMALL_MM));
+        }
+        if name.is_empty() {
+            return;
         }
         let at = (self.left - 2.5 - widest - 0.5 * TEXT_MM, 0.5 * (self.top + self.bottom));
         sheet.label(Label::new(name, at, TEXT_MM).hung(Anchor::Middle, Hang::Through).turned());

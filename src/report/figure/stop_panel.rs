@@ -14,34 +14,42 @@ const ROW_MM: f64 = 5.0;
 const BAR_MM: f64 = 2.8;
 
 /// Draws the panel below a height; returns where it ends.
-#[expect(clippy::cast_precision_loss, reason = "counts of pairs stay far below 2^53")]
 pub(super) fn draw(sheet: &mut Sheet, stop: &StoppedFigure, top_mm: f64) -> f64 {
-    let Some(&(_, most)) = stop.refusals.first() else {
+    if stop.refusals.is_empty() {
         let text = "No hop out of the reached stretch was within reach of any other node.";
         sheet.label(Label::new(text, (LEFT_MM, top_mm + 3.0), SMALL_MM));
         return top_mm + 6.0;
-    };
-    let names_mm = stop.refusals.iter().map(|(limit, _)| text_width_mm(limit.name(), SMALL_MM)).fold(0.0, f64::max);
-    let rows = stop.refusals.len() as f64;
+    }
+    let refusals: Vec<_> = stop.refusals.iter().map(|(limit, count)| (limit.name(), *count)).collect();
+    bars(sheet, &refusals, "refused hops out of the reached stretch, by the first limit that left nothing", top_mm)
+}
+
+/// A bar and its number for each name; returns where the panel ends.
+#[expect(clippy::cast_precision_loss, reason = "counts of pairs stay far below 2^53")]
+pub(super) fn bars(sheet: &mut Sheet, counts: &[(&str, u64)], axis: &str, top_mm: f64) -> f64 {
+    let most = counts.iter().map(|(_, count)| *count).max().unwrap_or(0).max(1);
+    let names_mm = counts.iter().map(|(name, _)| text_width_mm(name, SMALL_MM)).fold(0.0, f64::max);
+    let rows = counts.len() as f64;
     let panel = Panel { left: 6.0 + names_mm, top: top_mm, right: RIGHT_MM, bottom: top_mm + rows * ROW_MM + 1.5 };
     // Room for the number behind the longest bar.
     let numbers_mm = text_width_mm(&most.to_string(), SMALL_MM) + 3.0;
     let per_refusal = (panel.width() - numbers_mm) / most as f64;
-    let ticks = Ticks::round(0.0, panel.width() / per_refusal, 6.0);
-    let counts: Vec<_> = ticks
+    let widest_mm = numbers_mm.max(panel.width() / 6.0);
+    let ticks = Ticks::round(0.0, panel.width() / per_refusal, panel.width() / widest_mm);
+    let numbers: Vec<_> = ticks
         .values
         .iter()
         .filter(|count| count.fract() == 0.0)
         .map(|&count| (panel.left + count * per_refusal, format!("{count:.0}")))
         .collect();
-    panel.x_axis(sheet, &counts, "refused hops out of the reached stretch, by the first limit that left nothing", true);
-    for (i, (limit, count)) in stop.refusals.iter().enumerate() {
+    panel.x_axis(sheet, &numbers, axis, true);
+    for (i, (name, count)) in counts.iter().enumerate() {
         let y = panel.top + (i as f64 + 0.5) * ROW_MM + 0.75;
         let end = panel.left + *count as f64 * per_refusal;
         let (top, bottom) = (y - 0.5 * BAR_MM, y + 0.5 * BAR_MM);
         sheet.area(vec![(panel.left, top), (end, top), (end, bottom), (panel.left, bottom)], VERMILION, 0.7);
         sheet.line(vec![(end, top), (end, bottom)], Pen { colour: VERMILION, width_mm: 0.3 });
-        sheet.label(Label::new(limit.name(), (panel.left - 1.5, y), SMALL_MM).hung(Anchor::End, Hang::Through));
+        sheet.label(Label::new(*name, (panel.left - 1.5, y), SMALL_MM).hung(Anchor::End, Hang::Through));
         sheet.label(Label::new(count.to_string(), (end + 1.0, y), SMALL_MM));
     }
     panel.outline(sheet);

@@ -17,7 +17,7 @@ const ABOVE_MM: f64 = 8.0;
 /// Ground drawn below the lowest point, for start, goal and hatching.
 const DEPTH_MM: f64 = 9.5;
 /// Room beside an end of the chain.
-const BESIDE_MM: f64 = 3.0;
+pub(super) const BESIDE_MM: f64 = 3.0;
 /// Least distance of the numbers of the height axis.
 const TICK_MM: f64 = 6.5;
 /// Columns within which only the lowest and the highest ground can be seen.
@@ -36,22 +36,10 @@ pub(super) struct TerrainPanel<'a> {
 impl<'a> TerrainPanel<'a> {
     /// Lays the panel out below a height of the sheet.
     pub(super) fn new(data: &'a FigureData, chain: &'a ConstrainedChain, top_mm: f64) -> Self {
-        let (low_m, high_m) = heights(data, chain);
-        let length_m = data.view_x_m.1 - data.view_x_m.0;
-        // The numbers of the axis decide where the panel begins, and depend themselves on its scale: a first guess is enough.
-        let guess = Scale::new(length_m, high_m - low_m, RIGHT_MM - LEFT_MM);
-        let left = LEFT_MM.max(1.0 + left_room_mm(&height_ticks(&guess, low_m, high_m)));
         // Beside the ends of the chain there is room for what stands on them.
         let beside = |seen: f64, end: f64| if seen == end { BESIDE_MM } else { 0.0 };
-        let (before, after) = (beside(data.view_x_m.0, data.chain_x_m.0), beside(data.view_x_m.1, data.chain_x_m.1));
-        let scale = Scale::new(length_m, high_m - low_m, RIGHT_MM - left - before - after);
-        let panel = Panel { left, top: top_mm, right: RIGHT_MM, bottom: top_mm + ABOVE_MM + scale.height_mm + DEPTH_MM };
-        let centre_m = 0.5 * (data.view_x_m.0 + data.view_x_m.1);
-        let frame = Frame {
-            scale,
-            origin: ChainPoint::new(centre_m, low_m),
-            place: (0.5 * (panel.left + before + panel.right - after), panel.bottom - DEPTH_MM),
-        };
+        let sides_mm = (beside(data.view_x_m.0, data.chain_x_m.0), beside(data.view_x_m.1, data.chain_x_m.1));
+        let (panel, frame) = laid_out(data.view_x_m, heights(data, chain), sides_mm, top_mm);
         Self { data, chain, panel, frame }
     }
 
@@ -79,20 +67,10 @@ impl<'a> TerrainPanel<'a> {
 
     /// Axes with the scale's statement.
     fn axes(&self, sheet: &mut Sheet) {
-        let (panel, frame) = (&self.panel, &self.frame);
-        let along = Ticks::round(frame.x_m(panel.left), frame.x_m(panel.right), panel.width() / 16.0);
-        let along_widest = text_width_mm(&along.longest(), SMALL_MM) + 3.0;
-        let along = Ticks::round(frame.x_m(panel.left), frame.x_m(panel.right), panel.width() / along_widest.max(16.0));
-        let at = |x_m: f64| frame.place(ChainPoint::new(x_m, frame.origin.z_m)).0;
-        let ticks: Vec<_> = along.values.iter().map(|&x_m| (at(x_m), along.text(x_m))).collect();
         let (from, to) = self.data.chain_x_m;
         let cut =
             if self.data.is_cut() { format!("; part of a chain from {} to {} m", short(from), short(to)) } else { String::new() };
-        panel.x_axis(sheet, &ticks, &format!("distance along the chain, x (m){cut}; {}", frame.scale.text()), true);
-        let up = Ticks::round(frame.z_m(panel.bottom), frame.z_m(panel.top), panel.height() / TICK_MM);
-        let ticks: Vec<_> =
-            up.values.iter().map(|&z_m| (frame.place(ChainPoint::new(frame.origin.x_m, z_m)).1, up.text(z_m))).collect();
-        panel.y_axis(sheet, &ticks, "height, z (m)", true);
+        axes(sheet, &self.panel, &self.frame, &format!("distance along the chain, x (m){cut}"), "height, z (m)");
     }
 
     /// The profile, its nodes and what it allows.
@@ -173,38 +151,13 @@ impl<'a> TerrainPanel<'a> {
         let towards = (self.data.goal.x_m - self.data.start.x_m).signum();
         let gap_m = (leads.x_m - reached.x_m) * towards;
         if gap_m > 0.0 {
-            self.gap(sheet, self.frame.place(reached), self.frame.place(leads), gap_m);
+            gap(sheet, &self.panel, [self.frame.place(reached), self.frame.place(leads)], gap_m);
         }
     }
 
-    /// A measured distance at the top of the panel.
-    fn gap(&self, sheet: &mut Sheet, a: Place, b: Place, gap_m: f64) {
-        let pen = Pen { colour: BLACK, width_mm: 0.2 };
-        let y = self.panel.top + 5.0;
-        for (x, down) in [a, b] {
-            sheet.dashed(&[(x, y - 1.0), (x, down)], 0.7, 0.7, Pen { colour: AXIS, width_mm: 0.15 });
-        }
-        sheet.line(vec![(a.0, y), (b.0, y)], pen);
-        let text = format!("gap {} m", short(gap_m));
-        let half = 0.5 * text_width_mm(&text, SMALL_MM);
-        let x = (0.5 * (a.0 + b.0)).clamp(self.panel.left + half + 1.0, self.panel.right - half - 1.0);
-        sheet.label(Label::new(text, (x, y - 1.2), SMALL_MM).hung(Anchor::Middle, Hang::Above));
-    }
-
-    /// Start or goal: a pin in the ground with its name below or, where the ground falls away, beside it.
+    /// Start or goal.
     fn end(&self, sheet: &mut Sheet, point: ChainPoint, name: &str) {
-        let (x, y) = self.frame.place(point);
-        sheet.area(vec![(x, y + 0.4), (x - 1.2, y + 3.0), (x + 1.2, y + 3.0)], BLACK, 1.0);
-        let half = 0.5 * text_width_mm(name, SMALL_MM) + 0.8;
-        let middle = x.clamp(self.panel.left + half, self.panel.right - half);
-        let hung = |at, anchor| Label { bold: true, ..Label::new(name, at, SMALL_MM).hung(anchor, Hang::Below) };
-        let below = hung((middle, y + 3.5), Anchor::Middle);
-        let beside = [hung((x + 2.2, y + 2.2), Anchor::Start), hung((x - 2.2, y + 2.2), Anchor::End)];
-        let lower = hung((middle, y + 3.8 + SMALL_MM), Anchor::Middle);
-        let places = [&below, &beside[0], &beside[1], &lower];
-        let buried = places.into_iter().find(|label| self.is_buried(label) && !sheet.is_taken(label));
-        let free = buried.or_else(|| places.into_iter().find(|label| !sheet.is_taken(label)));
-        sheet.label(free.unwrap_or(&lower).clone());
+        pin(sheet, &self.panel, self.frame.place(point), name, |label| self.is_buried(label));
     }
 
     /// Whether a text lies in the drawn ground.
@@ -217,6 +170,69 @@ impl<'a> TerrainPanel<'a> {
                 let ground = self.chain.geometry().station(self.frame.x_m(x_mm).clamp(first, last));
                 ground.is_ok_and(|station| self.frame.place(station.point).1 <= top)
             })
+    }
+}
+
+/// Panel and scale for a range of x, a range of heights, and free room at the two sides, below a height of the sheet.
+pub(super) fn laid_out(view_x_m: (f64, f64), heights_m: (f64, f64), sides_mm: (f64, f64), top_mm: f64) -> (Panel, Frame) {
+    let ((low_m, high_m), (before, after)) = (heights_m, sides_mm);
+    let length_m = view_x_m.1 - view_x_m.0;
+    // The numbers of the axis decide where the panel begins, and depend themselves on its scale: a first guess is enough.
+    let guess = Scale::new(length_m, high_m - low_m, RIGHT_MM - LEFT_MM);
+    let left = LEFT_MM.max(1.0 + left_room_mm(&height_ticks(&guess, low_m, high_m)));
+    let scale = Scale::new(length_m, high_m - low_m, RIGHT_MM - left - before - after);
+    let panel = Panel { left, top: top_mm, right: RIGHT_MM, bottom: top_mm + ABOVE_MM + scale.height_mm + DEPTH_MM };
+    let frame = Frame {
+        scale,
+        origin: ChainPoint::new(0.5 * (view_x_m.0 + view_x_m.1), low_m),
+        place: (0.5 * (panel.left + before + panel.right - after), panel.bottom - DEPTH_MM),
+    };
+    (panel, frame)
+}
+
+/// Both axes with round numbers; the lower one states the scale.
+pub(super) fn axes(sheet: &mut Sheet, panel: &Panel, frame: &Frame, x_name: &str, y_name: &str) {
+    let along = Ticks::round(frame.x_m(panel.left), frame.x_m(panel.right), panel.width() / 16.0);
+    let along_widest = text_width_mm(&along.longest(), SMALL_MM) + 3.0;
+    let along = Ticks::round(frame.x_m(panel.left), frame.x_m(panel.right), panel.width() / along_widest.max(16.0));
+    let at = |x_m: f64| frame.place(ChainPoint::new(x_m, frame.origin.z_m)).0;
+    let ticks: Vec<_> = along.values.iter().map(|&x_m| (at(x_m), along.text(x_m))).collect();
+    panel.x_axis(sheet, &ticks, &format!("{x_name}; {}", frame.scale.text()), true);
+    let up = Ticks::round(frame.z_m(panel.bottom), frame.z_m(panel.top), panel.height() / TICK_MM);
+    let ticks: Vec<_> =
+        up.values.iter().map(|&z_m| (frame.place(ChainPoint::new(frame.origin.x_m, z_m)).1, up.text(z_m))).collect();
+    panel.y_axis(sheet, &ticks, y_name, true);
+}
+
+/// A measured distance at the top of a panel.
+pub(super) fn gap(sheet: &mut Sheet, panel: &Panel, [a, b]: [Place; 2], gap_m: f64) {
+    let pen = Pen { colour: BLACK, width_mm: 0.2 };
+    let y = panel.top + 5.0;
+    for (x, down) in [a, b] {
+        sheet.dashed(&[(x, y - 1.0), (x, down)], 0.7, 0.7, Pen { colour: AXIS, width_mm: 0.15 });
+    }
+    sheet.line(vec![(a.0, y), (b.0, y)], pen);
+    let text = format!("gap {} m", short(gap_m));
+    let half = 0.5 * text_width_mm(&text, SMALL_MM);
+    let x = (0.5 * (a.0 + b.0)).clamp(panel.left + half + 1.0, panel.right - half - 1.0);
+    sheet.label(Label::new(text, (x, y - 1.2), SMALL_MM).hung(Anchor::Middle, Hang::Above));
+}
+
+/// Start or goal: a pin in the ground with its name below or, where the ground falls away, beside it; without it where all
+/// places are taken.
+pub(super) fn pin(sheet: &mut Sheet, panel: &Panel, (x, y): Place, name: &str, is_buried: impl Fn(&Label) -> bool) {
+    sheet.area(vec![(x, y + 0.4), (x - 1.2, y + 3.0), (x + 1.2, y + 3.0)], BLACK, 1.0);
+    let half = 0.5 * text_width_mm(name, SMALL_MM) + 0.8;
+    let middle = x.clamp(panel.left + half, panel.right - half);
+    let hung = |at, anchor| Label { bold: true, ..Label::new(name, at, SMALL_MM).hung(anchor, Hang::Below) };
+    let below = hung((middle, y + 3.5), Anchor::Middle);
+    let beside = [hung((x + 2.2, y + 2.2), Anchor::Start), hung((x - 2.2, y + 2.2), Anchor::End)];
+    let lower = hung((middle, y + 3.8 + SMALL_MM), Anchor::Middle);
+    let places = [&below, &beside[0], &beside[1], &lower];
+    let buried = places.into_iter().find(|label| is_buried(label) && !sheet.is_taken(label));
+    let free = buried.or_else(|| places.into_iter().find(|label| !sheet.is_taken(label)));
+    if let Some(label) = free {
+        sheet.label(label.clone());
     }
 }
 
@@ -239,15 +255,20 @@ fn height_ticks(scale: &Scale, low_m: f64, high_m: f64) -> Ticks {
     Ticks::round(from, to, (to - from) / per_mm / TICK_MM)
 }
 
-/// A flight on the sheet, with as many points as its curvature needs.
+/// A flight on the sheet.
 fn flight(frame: &Frame, hop: &HopFigure) -> Vec<Place> {
+    parabola(frame, hop.arc.loft() * hop.arc.line_of_sight().run_m(), |share| hop.point_at(share))
+}
+
+/// A parabola on the sheet, with as many points as its curvature needs: its loft times its length, m, and its point at a share of it.
+pub(super) fn parabola(frame: &Frame, lift_m: f64, point_at: impl Fn(f64) -> ChainPoint) -> Vec<Place> {
     // The sagitta of one of N pieces of the parabola is n X / (4 N^2).
-    let bow_mm = 0.25 * hop.arc.loft() * hop.arc.line_of_sight().run_m() * frame.scale.mm_per_m * frame.scale.exaggeration;
+    let bow_mm = 0.25 * lift_m * frame.scale.mm_per_m * frame.scale.exaggeration;
     let pieces = (bow_mm / FLATNESS_MM).sqrt().ceil().clamp(8.0, 160.0);
     let mut points = Vec::new();
     let mut i = 0.0;
     while i <= pieces {
-        points.push(frame.place(hop.point_at(i / pieces)));
+        points.push(frame.place(point_at(i / pieces)));
         i += 1.0;
     }
     points

@@ -1,0 +1,205 @@
+//! Several scenarios over one another.
+
+use plotters::style::RGBColor;
+
+use super::{
+    super::{
+        FigureError, Picture,
+        palette::{BLACK, BLUE, GREEN, GROUND, ORANGE, PURPLE, RIGHT_MM, SKY, SMALL_MM, VERMILION},
+        sheet::{Label, Pen, Place, Sheet},
+        symbols,
+    },
+    CompareFigure, ComparedScenario, Flight,
+    profile::{self, Profile, fitted},
+};
+use crate::quantity::ChainPoint;
+
+/// Colours, and the dash and gap of each, mm; scenarios beyond the last begin again with the next marks.
+const LINES: [(RGBColor, Option<(f64, f64)>); 7] = [
+    (BLUE, None),
+    (VERMILION, Some((2.4, 0.8))),
+    (GREEN, Some((0.7, 0.6))),
+    (PURPLE, None),
+    (ORANGE, Some((1.4, 0.5))),
+    (SKY, Some((3.5, 1.2))),
+    (BLACK, Some((0.4, 0.8))),
+];
+/// Length of a sample in the legend.
+const SAMPLE_MM: f64 = 10.0;
+/// Distance of the legend's rows.
+const ROW_MM: f64 = 4.6;
+
+/// Draws the paths of several scenarios over one another, each with its own colour, dashes and mark at its landings.
+///
+/// On one common ground they are drawn where they are; on several, each from its own start, the ground a thin line of the scenario's colour.
+///
+/// # Errors
+/// [`FigureError::NoGround`] where there is no scenario, or one whose ground has fewer than two points.
+pub fn draw_compare(figure: &CompareFigure) -> Result<Picture, FigureError> {
+    let Some(first) = figure.scenarios.first() else {
+        return Err(FigureError::NoGround { what: "the comparison, which has no scenario,".to_owned(), points: 0 });
+    };
+    for scenario in &figure.scenarios {
+        profile::check_ground(&scenario.name, &scenario.ground)?;
+    }
+    let mut sheet = Sheet::default();
+    let top_mm = figure.caption.draw(&mut sheet);
+    let common = figure.scenarios.iter().all(|scenario| scenario.ground == first.ground);
+    let drawn: Vec<Drawn<'_>> = figure.scenarios.iter().enumerate().map(|(i, s)| Drawn::new(s, i, common)).collect();
+    let points = drawn.iter().flat_map(|one| one.ground.iter().copied().chain([one.start, one.goal]));
+    let profile = Profile::new(points, drawn.iter().flat_map(|one| one.flights.iter().copied()), top_mm);
+    let (x_name, y_name) = if common {
+        ("distance along the chain, x (m)", "height, z (m)")
+    } else {
+        ("distance x and height z from each scenario's own start (m)", "height, z (m)")
+    };
+    profile.axes(&mut sheet, x_name, y_name);
+    if let Some(one) = drawn.first().filter(|_| common) {
+        let surface = profile.line(&one.ground);
+        if let (Some(&first), Some(&last)) = (surface.first(), surface.last()) {
+            let base = [(last.0, profile.panel.bottom), (first.0, profile.panel.bottom)];
+            sheet.area(surface.iter().copied().chain(base).collect(), GROUND, 1.0);
+        }
+        sheet.line(surface, symbols::SURFACE_PEN);
+    }
+    for one in &drawn {
+        one.draw(&mut sheet, &profile, !common);
+    }
+    ends(&mut sheet, &profile, &drawn);
+    profile.panel.outline(&mut sheet);
+    let end_mm = legend(&mut sheet, &drawn, profile.end_mm() + 2.5);
+    Ok(Picture { sheet, height_mm: end_mm + 2.0 })
+}
+
+/// One scenario as it is drawn.
+struct Drawn<'a> {
+    scenario: &'a ComparedScenario,
+    index: usize,
+    ground: Vec<ChainPoint>,
+    start: ChainPoint,
+    goal: ChainPoint,
+    flights: Vec<Flight>,
+    /// One of how many flights is shown.
+    every: usize,
+}
+
+impl<'a> Drawn<'a> {
+    /// Where it is, or moved so that it starts at the origin.
+    fn new(scenario: &'a ComparedScenario, index: usize, in_place: bool) -> Self {
+        let origin = if in_place { ChainPoint::new(0.0, 0.0) } else { scenario.start };
+        let moved = |point: ChainPoint| ChainPoint::new(point.x_m - origin.x_m, point.z_m - origin.z_m);
+        let (flights, every) = profile::shown(&scenario.flights);
+        Self {
+            scenario,
+            index,
+            ground: scenario.ground.iter().copied().map(moved).collect(),
+            start: moved(scenario.start),
+            goal: moved(scenario.goal),
+            flights: flights.into_iter().map(|f| Flight { from: moved(f.from), to: moved(f.to), ..f }).collect(),
+            every,
+        }
+    }
+
+    fn colour(&self) -> RGBColor {
+        LINES[self.index % LINES.len()].0
+    }
+
+    /// A line in the scenario's colour and dashes.
+    fn line(&self, sheet: &mut Sheet, points: Vec<Place>, width_mm: f64) {
+        let (colour, dashes) = LINES[self.index % LINES.len()];
+        let pen = Pen { colour, width_mm };
+        match dashes {
+            None => sheet.line(points, pen),
+            Some((dash_mm, gap_mm)) => sheet.dashed(&points, dash_mm, gap_mm, pen),
+        }
+    }
+
+    /// The scenario's mark of a landing: its corners tell it from others whatever the colour.
+    fn mark(&self, sheet: &mut Sheet, (x, y): Place) {
+        let (colour, r) = (self.colour(), 0.75);
+        match (self.index + self.index / LINES.len()) % LINES.len() {
+            0 => sheet.dot((x, y), r, colour),
+            1 => sheet.area(vec![(x - r, y - r), (x + r, y - r), (x + r, y + r), (x - r, y + r)], colour, 1.0),
+            2 => sheet.area(vec![(x, y - 1.3 * r), (x + 1.2 * r, y + r), (x - 1.2 * r, y + r)], colour, 1.0),
+            3 => sheet.area(vec![(x, y - 1.4 * r), (x + 1.4 * r, y), (x, y + 1.4 * r), (x - 1.4 * r, y)], colour, 1.0),
+            4 => sheet.ring((x, y), r, Pen { colour, width_mm: 0.3 }),
+            5 => sheet.area(vec![(x, y + 1.3 * r), (x + 1.2 * r, y - r), (x - 1.2 * r, y - r)], colour, 1.0),
+            _ => {
+                for (dx, dy) in [(r, r), (r, -r)] {
+                    sheet.line(vec![(x - dx, y - dy), (x + dx, y + dy)], Pen { colour, width_mm: 0.35 });
+                }
+            }
+        }
+    }
+
+    /// Its flights with their landings, and its own ground.
+    fn draw(&self, sheet: &mut Sheet, profile: &Profile, own_ground: bool) {
+        if own_ground {
+            let pen = Pen { colour: self.colour(), width_mm: 0.2 };
+            sheet.line(profile.line(&self.ground), pen);
+        }
+        for flight in &self.flights {
+            self.line(sheet, profile.flight(flight), 0.4);
+        }
+        for flight in &self.flights {
+            self.mark(sheet, profile.frame.place(flight.to));
+        }
+    }
+
+    /// What the legend says.
+    fn text(&self) -> String {
+        let hops = match self.scenario.hops {
+            Some(1) => ", 1 hop".to_owned(),
+            Some(hops) => format!(", {hops} hops"),
+            None => String::new(),
+        };
+        let of = self.scenario.flights.len();
+        let thinned = if self.every > 1 { format!(" (1 hop in {} of {of} shown)", self.every) } else { String::new() };
+        let said = format!(": {}{hops}{thinned}", self.scenario.verdict);
+        let name_mm = RIGHT_MM - TEXT_LEFT_MM - super::super::sheet::text_width_mm(&said, SMALL_MM);
+        fitted(&(fitted(&self.scenario.name, SMALL_MM, name_mm.max(30.0)) + &said), SMALL_MM, RIGHT_MM - TEXT_LEFT_MM)
+    }
+}
+
+/// Where the legend's samples and texts begin.
+const LEFT_MM: f64 = 6.0;
+const TEXT_LEFT_MM: f64 = LEFT_MM + SAMPLE_MM + 1.5;
+
+/// Start and goal: those that all share with their name, others with the number of their scenario.
+fn ends(sheet: &mut Sheet, profile: &Profile, drawn: &[Drawn<'_>]) {
+    let Some(first) = drawn.first() else { return };
+    let mut pinned: Vec<ChainPoint> = Vec::new();
+    for (name, of) in [("start", (|one: &Drawn<'_>| one.start) as fn(&Drawn<'_>) -> ChainPoint), ("goal", |one| one.goal)] {
+        let shared = drawn.iter().all(|one| of(one) == of(first));
+        for one in drawn.iter().take(if shared { 1 } else { MOST_NAMED }) {
+            if pinned.contains(&of(one)) {
+                continue;
+            }
+            pinned.push(of(one));
+            let same: Vec<String> =
+                drawn.iter().filter(|other| of(other) == of(one)).map(|other| (other.index + 1).to_string()).collect();
+            let text = if shared { name.to_owned() } else { fitted(&format!("{name} {}", same.join(", ")), SMALL_MM, 30.0) };
+            profile.pin(sheet, &one.ground, of(one), &text);
+        }
+    }
+}
+
+/// Most ends named one by one.
+const MOST_NAMED: usize = 8;
+
+/// A row for each scenario; returns where they end.
+fn legend(sheet: &mut Sheet, drawn: &[Drawn<'_>], top_mm: f64) -> f64 {
+    let mut y = top_mm;
+    for one in drawn {
+        one.line(sheet, vec![(LEFT_MM, y), (LEFT_MM + SAMPLE_MM, y)], 0.5);
+        one.mark(sheet, (LEFT_MM + 0.5 * SAMPLE_MM, y));
+        let number = if drawn.len() > 1 { format!("{}. ", one.index + 1) } else { String::new() };
+        sheet.label(Label::new(
+            fitted(&(number + &one.text()), SMALL_MM, RIGHT_MM - TEXT_LEFT_MM + 4.0),
+            (TEXT_LEFT_MM, y),
+            SMALL_MM,
+        ));
+        y += ROW_MM;
+    }
+    y - 0.5 * ROW_MM
+}

@@ -1,0 +1,313 @@
+//! Proofs, trades and comparisons: what they show, what they say, and that they can be read.
+
+use plotters::style::RGBColor;
+
+use super::{
+    super::{
+        Caption, Picture,
+        palette::{BLUE, ORANGE, VERMILION},
+        samples::{check_picture, texts},
+        sheet::Mark,
+    },
+    *,
+};
+use crate::{quantity::ChainPoint, report::figure::FigureError};
+
+/// Waves between two x, a point every metre.
+fn waves(from_x_m: f64, points: usize, height_m: f64) -> Vec<ChainPoint> {
+    let point = |i: usize| {
+        let x_m = i as f64;
+        ChainPoint::new(from_x_m + x_m, height_m * (libm::sin(0.13 * x_m) + 0.4 * libm::cos(0.37 * x_m)))
+    };
+    (0..points).map(point).collect()
+}
+
+/// Flights of one length over a ground, left to right, each with a slope of take-off of 1.2.
+fn flights(ground: &[ChainPoint], from_x_m: f64, hop_m: f64, hops: usize) -> Vec<Flight> {
+    let at = |i: usize| profile::at_x(ground, from_x_m + i as f64 * hop_m);
+    (0..hops).map(|i| Flight { from: at(i), to: at(i + 1), takeoff_slope: 1.2 }).collect()
+}
+
+fn stretch(from_x_m: f64, to_x_m: f64, class: ProofClass) -> ProofStretch {
+    ProofStretch { from_x_m, to_x_m, class }
+}
+
+/// A pit that stops the journey.
+fn stopped_proof() -> ProofFigure {
+    use ProofClass::{Open, Reachable, Unreachable};
+    let ground = waves(0.0, 101, 4.0);
+    let at = |x_m| profile::at_x(&ground, x_m);
+    ProofFigure {
+        caption: Caption::new("A pit & <walls>", "from x = 5 m to x = 95 m; Moon, g = 1.624 m/s²; take-off speed ≤ 8 m/s"),
+        start: at(5.0),
+        goal: at(95.0),
+        stretches: vec![
+            stretch(0.0, 20.0, Reachable),
+            stretch(20.0, 20.0, Unreachable),
+            stretch(20.0, 38.0, Reachable),
+            stretch(38.0, 44.0, Open),
+            stretch(44.0, 44.0, Unreachable),
+            stretch(44.0, 100.0, Unreachable),
+        ],
+        cell_boundaries_x_m: (0..=100).map(f64::from).collect(),
+        path: Vec::new(),
+        lower_bound: None,
+        upper_bound: None,
+        cells: 200,
+        gap: Some(ProofGap {
+            reached_x_m: 44.0,
+            leads_to_goal_x_m: 61.25,
+            refusals: vec![("take-off speed".to_owned(), 1234), ("landing cone".to_owned(), 87), ("clearance".to_owned(), 3)],
+        }),
+        ground,
+    }
+}
+
+/// How often a colour is drawn as a line or an area.
+fn marks_of(picture: &Picture, wanted: RGBColor) -> usize {
+    let is_wanted = |mark: &&Mark| match mark {
+        Mark::Line { pen, .. } | Mark::Dot { pen, .. } => pen.colour == wanted,
+        Mark::Area { colour, .. } => *colour == wanted,
+        Mark::Label(_) => false,
+    };
+    picture.sheet.marks.iter().filter(is_wanted).count()
+}
+
+fn assert_says(picture: &Picture, words: &[&str]) {
+    let texts = texts(picture).replace('\n', " ");
+    for words in words {
+        assert!(texts.contains(words), "{words:?} is missing in {texts}");
+    }
+}
+
+#[test]
+fn a_proof_of_no_path_tells_classes_gap_and_limits() {
+    let figure = stopped_proof();
+    let picture = check_picture("proof-stopped", || draw_proof(&figure).unwrap());
+    assert_says(
+        &picture,
+        &[
+            "proved: no path, at any resolution (200 cells)",
+            "reachable: 38 m",
+            "proved unreachable: 56 m",
+            "open: 6 m",
+            "gap 17.25 m",
+            "x = 44 m",
+            "x = 61.25 m",
+            "take-off speed",
+            "1234",
+            "clearance",
+            "ends of cells",
+            "distance along the chain, x (m)",
+            "height, z (m)",
+            "start",
+            "goal",
+        ],
+    );
+    let (solid, hatched, dotted) = (marks_of(&picture, BLUE), marks_of(&picture, VERMILION), marks_of(&picture, ORANGE));
+    assert_eq!(solid, 3, "two stretches and the legend's sample");
+    assert!(hatched > 60 && dotted > 20, "strokes into the ground: {hatched}, dots: {dotted}");
+    let svg = picture.to_svg().unwrap();
+    assert!(svg.contains("A pit &amp; &lt;walls&gt;"), "escaped");
+}
+
+#[test]
+fn a_proof_with_a_path_tells_both_bounds() {
+    let mut figure = stopped_proof();
+    figure.gap = None;
+    figure.path = flights(&figure.ground, 5.0, 9.0, 10);
+    figure.stretches = vec![stretch(0.0, 100.0, ProofClass::Reachable)];
+    (figure.lower_bound, figure.upper_bound) = (Some(10), Some(10));
+    let picture = check_picture("proof-path", || draw_proof(&figure).unwrap());
+    assert_says(&picture, &["proved: 10 hops and no fewer", "best path known", "reachable: 100 m"]);
+    for (lower, upper, words) in [
+        (Some(7), Some(10), "at least 7, at most 10"),
+        (Some(1), None, "at least 1 hop"),
+        (None, Some(1), "a path of 1 hop is known"),
+    ] {
+        let picture = draw_proof(&ProofFigure { lower_bound: lower, upper_bound: upper, ..figure.clone() }).unwrap();
+        assert_says(&picture, &[words]);
+    }
+}
+
+#[test]
+fn long_proofs_with_many_stretches_and_hops_stay_small() {
+    let classes = [ProofClass::Reachable, ProofClass::Unreachable, ProofClass::Open];
+    let mut figure = stopped_proof();
+    figure.ground = waves(0.0, 30_001, 20.0);
+    (figure.start, figure.goal) = (figure.ground[0], figure.ground[30_000]);
+    figure.stretches = (0..30_000).map(|i| stretch(f64::from(i), f64::from(i + 1), classes[(i % 7 / 3) as usize])).collect();
+    figure.cell_boundaries_x_m = (0..30_000).map(f64::from).collect();
+    figure.path = flights(&figure.ground, 0.0, 10.0, 3_000);
+    (figure.cells, figure.upper_bound, figure.lower_bound) = (u64::MAX, Some(3_000), Some(u64::MAX));
+    let refusals = (0..40).map(|i| (format!("limit number {i} with a long name ").repeat(4), u64::MAX - i)).collect();
+    figure.gap = Some(ProofGap { reached_x_m: 3.0, leads_to_goal_x_m: 29_000.0, refusals });
+    let picture = check_picture("proof-long", || draw_proof(&figure).unwrap());
+    assert_says(&picture, &["1 hop in 10 of 3000 shown", "all others"]);
+    assert!(!texts(&picture).contains("ends of cells"), "too close to be told apart");
+}
+
+#[test]
+fn columns_take_the_class_of_their_longest_part_and_leave_bare_ground_bare() {
+    use ProofClass::{Open, Reachable, Unreachable};
+    let fine =
+        [stretch(0.0, 0.9, Reachable), stretch(0.9, 1.0, Open), stretch(1.0, 1.4, Reachable), stretch(4.0, 5.0, Unreachable)];
+    let found = proof::in_columns(&fine, 1.0);
+    assert_eq!(found, [stretch(0.0, 2.0, Reachable), stretch(4.0, 5.0, Unreachable)]);
+    assert!(proof::in_columns(&[], 1.0).is_empty());
+}
+
+#[test]
+fn proofs_of_odd_grounds_are_whole() {
+    let point = ChainPoint::new(3.0, 2.0);
+    let empty = ProofFigure {
+        ground: Vec::new(),
+        stretches: Vec::new(),
+        gap: None,
+        start: point,
+        goal: point,
+        cell_boundaries_x_m: Vec::new(),
+        cells: 0,
+        ..stopped_proof()
+    };
+    for ground in [vec![], vec![point]] {
+        let points = ground.len();
+        let error = draw_proof(&ProofFigure { ground, ..empty.clone() }).unwrap_err();
+        assert_eq!(error, FigureError::NoGround { what: "the proof".to_owned(), points });
+    }
+    let flat = vec![ChainPoint::new(0.0, 2.0), ChainPoint::new(6.0, 2.0)];
+    let cliff =
+        vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 0.0), ChainPoint::new(1.001, 900.0), ChainPoint::new(2.0, 900.0)];
+    for (name, ground) in [("proof-flat", flat), ("proof-cliff", cliff), ("proof-one-place", vec![point, point])] {
+        let (start, goal) = (ground[0], ground[ground.len() - 1]);
+        let stretches = vec![stretch(start.x_m, start.x_m, ProofClass::Reachable), stretch(start.x_m, goal.x_m, ProofClass::Open)];
+        let path =
+            vec![Flight { from: start, to: start, takeoff_slope: 1.0 }, Flight { from: goal, to: start, takeoff_slope: 2.0 }];
+        let gap = Some(ProofGap { reached_x_m: goal.x_m, leads_to_goal_x_m: start.x_m, refusals: Vec::new() });
+        let figure = ProofFigure { ground, start, goal, stretches, path, gap, ..empty.clone() };
+        let picture = check_picture(name, || draw_proof(&figure).unwrap());
+        assert_says(&picture, &["No other cell was within reach", "start"]);
+    }
+}
+
+/// A grid of two capabilities; hops fall with both.
+fn trade(cols: usize, rows: usize, most: u64) -> TradeFigure {
+    let axis = |name: &str, count: usize, from: f64, step: f64| TradeAxis {
+        name: name.to_owned(),
+        values: (0..count).map(|i| from + step * i as f64).collect(),
+    };
+    let field = |i: usize| {
+        let (row, col) = ((i / cols) as u64, (i % cols) as u64);
+        match row + col {
+            0 => TradeField::Untraversable,
+            1 => TradeField::Open,
+            sum => TradeField::Hops(most / sum + 1),
+        }
+    };
+    TradeFigure {
+        caption: Caption::new("Fewest hops", "Moon, g = 1.624 m/s²; friction coefficient 0.6"),
+        x: axis("hopper.takeoff_speed_max_m_s (m/s)", cols, 4.0, 0.5),
+        y: (rows > 0).then(|| axis("hopper.landing_speed_max_m_s (m/s)", rows, 5.0, 1.0)),
+        fields: (0..cols * rows.max(1)).map(field).collect(),
+    }
+}
+
+#[test]
+fn a_trade_has_its_number_in_every_field() {
+    for (name, cols, rows, most) in
+        [("trade", 10, 7, 60), ("trade-row", 8, 0, 9), ("trade-two", 2, 2, 5), ("trade-many", 40, 30, 900)]
+    {
+        let figure = trade(cols, rows, most);
+        let picture = check_picture(name, || draw_trade(&figure).unwrap());
+        let said = texts(&picture);
+        for field in &figure.fields {
+            if let TradeField::Hops(hops) = field {
+                let count = |hops: u64| figure.fields.iter().filter(|field| **field == TradeField::Hops(hops)).count();
+                let words = hops.to_string();
+                assert!(said.lines().filter(|line| *line == words).count() >= count(*hops), "{name}: {hops}");
+            }
+        }
+        assert_says(&picture, &["hopper.takeoff_speed_max_m_s (m/s)", "proved: no path (1)", "?"]);
+        assert_eq!(said.contains("hopper.landing_speed_max_m_s (m/s)"), rows > 0);
+    }
+}
+
+#[test]
+fn trades_too_fine_for_numbers_say_so_and_stay_small() {
+    let figure = trade(100, 90, 4000);
+    let picture = check_picture("trade-fine", || draw_trade(&figure).unwrap());
+    assert_says(&picture, &["90 x 100 fields: too small for a number each"]);
+}
+
+#[test]
+fn odd_trades_are_whole() {
+    let mut huge = trade(6, 3, u64::MAX - 1);
+    huge.x.name = "an & axis <of words> ".repeat(20);
+    huge.x.values = (0..6).map(|i| 1.0e4 + 1.0e-3 * f64::from(i)).collect();
+    let picture = check_picture("trade-huge", || draw_trade(&huge).unwrap());
+    assert_says(&picture, &["10000.001", "10000.005"]);
+    assert!(picture.to_svg().unwrap().contains("&amp;"));
+    let mut one = trade(1, 1, 3);
+    check_picture("trade-one", || draw_trade(&one).unwrap());
+    one.fields = vec![TradeField::Hops(0)];
+    assert_says(&check_picture("trade-zero", || draw_trade(&one).unwrap()), &["0 hops"]);
+    one.fields.clear();
+    let wrong = draw_trade(&one).unwrap_err();
+    assert_eq!(wrong, FigureError::RasterSize { what: "trade", found: 0, rows: 1, cols: 1 });
+    assert_says(&check_picture("trade-empty", || draw_trade(&TradeFigure::default()).unwrap()), &["There are no fields."]);
+}
+
+fn scenario(name: &str, ground: Vec<ChainPoint>, hop_m: f64, hops: usize) -> ComparedScenario {
+    let from_x_m = ground[0].x_m + 4.0;
+    let flights = flights(&ground, from_x_m, hop_m, hops);
+    ComparedScenario {
+        name: name.to_owned(),
+        verdict: if hops > 0 { "traversable" } else { "untraversable" }.to_owned(),
+        hops: (hops > 0).then_some(hops as u64),
+        start: profile::at_x(&ground, from_x_m),
+        goal: profile::at_x(&ground, from_x_m + 90.0),
+        ground,
+        flights,
+    }
+}
+
+#[test]
+fn comparisons_name_every_scenario_with_verdict_and_hops() {
+    let ground = waves(0.0, 101, 3.0);
+    let same = vec![
+        scenario("Slow <hopper>", ground.clone(), 6.0, 15),
+        scenario("Fast hopper", ground.clone(), 15.0, 6),
+        scenario("Weak hopper", ground.clone(), 1.0, 0),
+    ];
+    let figure = CompareFigure { caption: Caption::new("Hoppers", "on one ground"), scenarios: same };
+    let picture = check_picture("compare-same", || draw_compare(&figure).unwrap());
+    let said =
+        ["1. Slow <hopper>: traversable, 15 hops", "3. Weak hopper: untraversable", "distance along the chain", "start", "goal"];
+    assert_says(&picture, &said);
+    let other = vec![scenario("Here", waves(500.0, 101, 5.0), 9.0, 10), scenario("There", waves(-40.0, 131, 2.0), 18.0, 5)];
+    let figure = CompareFigure { scenarios: other, ..figure };
+    let picture = check_picture("compare-grounds", || draw_compare(&figure).unwrap());
+    assert_says(&picture, &["distance x and height z from each scenario's own start (m)", "goal 1", "goal 2", "start"]);
+}
+
+#[test]
+fn odd_comparisons_are_whole() {
+    let empty = draw_compare(&CompareFigure::default()).unwrap_err();
+    assert!(empty.to_string().contains("no scenario"), "{empty}");
+    let mut one = scenario("One", waves(0.0, 101, 3.0), 6.0, 15);
+    one.ground.truncate(1);
+    let bare = draw_compare(&CompareFigure { scenarios: vec![one], ..CompareFigure::default() }).unwrap_err();
+    assert_eq!(bare, FigureError::NoGround { what: "One".to_owned(), points: 1 });
+    let long = "a name that does not end ".repeat(12);
+    let many = (0..16).map(|i| {
+        let mut one = scenario(&long, waves(0.0, 101, 3.0), 3.0 + f64::from(i), 5);
+        one.goal = profile::at_x(&one.ground, 20.0 + 5.0 * f64::from(i));
+        one.hops = Some(u64::MAX);
+        one
+    });
+    let mut scenarios: Vec<_> = many.collect();
+    scenarios.push(scenario("very many hops", waves(0.0, 101, 3.0), 0.01, 9_000));
+    let figure = CompareFigure { caption: Caption::default(), scenarios };
+    let picture = check_picture("compare-many", || draw_compare(&figure).unwrap());
+    assert_says(&picture, &["1 hop in 30 of 9000 shown", &u64::MAX.to_string()]);
+}
