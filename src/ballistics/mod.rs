@@ -31,6 +31,7 @@ mod conflict;
 mod hop_test;
 pub mod limits;
 mod line_of_sight;
+mod risk;
 mod segment_hops;
 mod takeoff_set;
 
@@ -39,5 +40,6 @@ pub use choice::TakeoffChoice;
 pub use conflict::{Conflict, Shortfall};
 pub use hop_test::HopTest;
 pub use line_of_sight::LineOfSight;
+pub use risk::{HopDeviations, PlannedHop, RiskModel};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
 pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};

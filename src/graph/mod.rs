@@ -12,6 +12,7 @@ mod nodes;
 mod reachable;
 mod refusals;
 mod search;
+mod surest;
 mod usable;
 
 pub use cost::{Cost, Effort};
@@ -21,4 +22,5 @@ pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search};
+pub use surest::{SurestPath, SuretyOptions, search_surest, surest_paths};
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};
