@@ -13,6 +13,7 @@ mod reachable;
 mod refusals;
 mod search;
 mod surest;
+mod to_go;
 mod usable;
 
 pub use cost::{Cost, Effort};
@@ -23,4 +24,5 @@ pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search};
 pub use surest::{SurestPath, SuretyOptions, search_surest, surest_paths};
+pub use to_go::CostToGo;
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};

@@ -1,0 +1,104 @@
+//! What happened in a trial, hop by hop.
+
+use nalgebra::{Point3, Vector2};
+
+use super::TrialOutcome;
+use crate::quantity::Angle;
+
+/// One flown hop of one trial.
+///
+/// Places are (x, y, z) in m. On a map x is east and y north. On a chain x runs along it and y is the offset to the left of its plane,
+/// which only drift to the side changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HopRecord {
+    /// Which trial, from 0.
+    pub trial: u64,
+    /// Which hop of it, from 1.
+    pub hop: u32,
+    /// Where it really took off.
+    pub takeoff_m: Point3<f64>,
+    /// Its real direction on the map (east, north), of length 1; on a chain (1, 0) or (-1, 0).
+    pub heading: Vector2<f64>,
+    /// Its real horizontal speed, constant over the flight, m/s.
+    pub horizontal_m_s: f64,
+    /// Its real vertical speed at the take-off, m/s.
+    pub takeoff_vertical_m_s: f64,
+    /// Its vertical speed where the flight ends, negative on the way down, m/s.
+    pub landing_vertical_m_s: f64,
+    /// Time from take-off to the end of the flight, s.
+    pub flight_time_s: f64,
+    /// The landing that it aimed at.
+    pub planned_m: Point3<f64>,
+    /// Where it first met the ground; where it left the known ground in flight, for a hop that did not land.
+    pub contact_m: Point3<f64>,
+    /// Where it came to rest after the drift; the contact itself where the trial ended with it.
+    pub rest_m: Point3<f64>,
+    /// Horizontal distance from the planned landing to the place of rest, m.
+    pub error_m: f64,
+    /// Whether it met the ground at all.
+    pub landed: bool,
+    /// How the trial ended, where it ended with this hop.
+    pub outcome: Option<TrialOutcome>,
+}
+
+impl HopRecord {
+    /// Real take-off speed, m/s.
+    pub fn takeoff_speed_m_s(&self) -> f64 {
+        libm::hypot(self.horizontal_m_s, self.takeoff_vertical_m_s)
+    }
+
+    /// Real take-off angle above the horizontal, in the real direction of travel.
+    pub fn takeoff_angle(&self) -> Angle {
+        Angle::from_radians(libm::atan2(self.takeoff_vertical_m_s, self.horizontal_m_s))
+    }
+
+    /// Landing speed, m/s.
+    pub fn landing_speed_m_s(&self) -> f64 {
+        libm::hypot(self.horizontal_m_s, self.landing_vertical_m_s)
+    }
+
+    /// Landing angle, negative on the way down.
+    pub fn landing_angle(&self) -> Angle {
+        Angle::from_radians(libm::atan2(self.landing_vertical_m_s, self.horizontal_m_s))
+    }
+
+    /// Points of the flight at equal times, both ends included; at least two.
+    pub fn flight_points(&self, gravity_m_s2: f64, count: u32) -> Vec<Point3<f64>> {
+        let last = count.max(2) - 1;
+        (0..=last)
+            .map(|i| {
+                if i == last {
+                    return self.contact_m;
+                }
+                let time_s = self.flight_time_s * (f64::from(i) / f64::from(last));
+                let away = self.heading * (self.horizontal_m_s * time_s);
+                let up_m = time_s * (self.takeoff_vertical_m_s - 0.5 * gravity_m_s2 * time_s);
+                Point3::new(self.takeoff_m.x + away.x, self.takeoff_m.y + away.y, self.takeoff_m.z + up_m)
+            })
+            .collect()
+    }
+}
+
+/// One trial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrialRecord {
+    /// Which one, from 0.
+    pub trial: u64,
+    /// How it ended.
+    pub outcome: TrialOutcome,
+    /// How many hops were flown, the last included, whether it landed or not.
+    pub hops: u32,
+    /// Where it ended.
+    pub end_m: Point3<f64>,
+    /// Horizontal distance from there to the goal, m.
+    pub goal_distance_m: f64,
+}
+
+/// A trial with all its hops, kept for a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trajectory {
+    /// How it went.
+    pub trial: TrialRecord,
+    /// Its hops in the order of flight.
+    pub hops: Vec<HopRecord>,
+}
