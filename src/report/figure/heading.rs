@@ -3,8 +3,9 @@
 use super::{
     FigureInput, angle_panel,
     data::{FigureData, Subject},
-    palette::{RIGHT_MM, TEXT_MM, TITLE_MM},
-    sheet::{Label, Sheet, wrapped},
+    palette::{TEXT_MM, TITLE_MM},
+    picture::paragraph,
+    sheet::Sheet,
     ticks::short,
 };
 use crate::{
@@ -12,11 +13,6 @@ use crate::{
     graph::{Answer, EndpointRefusal},
     path::Totals,
 };
-
-/// Distance of lines over their size.
-const LEADING: f64 = 1.4;
-/// Where texts begin.
-const MARGIN_MM: f64 = 4.0;
 
 /// Title, what was asked under which limits, and the verdict; returns where they end.
 pub(super) fn above(sheet: &mut Sheet, input: &FigureInput<'_>, data: &FigureData) -> f64 {
@@ -34,18 +30,6 @@ pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
     let mut y = top_mm;
     for text in remarks(data) {
         y = paragraph(sheet, &text, TEXT_MM, false, y);
-    }
-    y
-}
-
-/// A text over as many lines as it needs.
-fn paragraph(sheet: &mut Sheet, text: &str, size_mm: f64, bold: bool, top_mm: f64) -> f64 {
-    let mut y = top_mm;
-    // Bold letters are wider.
-    let width = (RIGHT_MM - MARGIN_MM) * if bold { 0.88 } else { 1.0 };
-    for line in wrapped(text, size_mm, width) {
-        sheet.label(Label { bold, ..Label::new(line, (MARGIN_MM, y + 0.5 * LEADING * size_mm), size_mm) });
-        y += LEADING * size_mm;
     }
     y
 }

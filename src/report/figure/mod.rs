@@ -19,10 +19,13 @@
 
 mod angle_panel;
 mod axes;
+mod chains;
 mod data;
 mod heading;
 mod legend;
+mod map;
 mod palette;
+mod picture;
 mod rose;
 mod scale;
 mod sheet;
@@ -31,14 +34,29 @@ mod stop_panel;
 mod symbols;
 mod terrain_panel;
 mod ticks;
+mod trials;
 
 #[cfg(test)]
 mod tests;
 
+pub use chains::{
+    CompareFigure, ComparedScenario, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch, TradeAxis, TradeField, TradeFigure,
+    draw_compare, draw_proof, draw_trade,
+};
 pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
+pub use map::{
+    GoalMark, HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure, MapPosts,
+    ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
+};
+pub use picture::{Caption, Picture};
 pub use rose::draw_rose;
 pub use scale::Scale;
 pub use spans::{Closure, GroundSpan, GroundUse};
+pub use trials::{
+    ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, LandingBoxes, LandingErrorFigure,
+    OutcomeBars, SimulationFigure, Success, draw_cone_width, draw_convergence, draw_flown, draw_landing_errors, draw_outcomes,
+    draw_simulation,
+};
 
 use crate::{
     ballistics::HopTest,
@@ -86,6 +104,32 @@ pub enum FigureError {
     /// The nodes of the search cannot be laid out again.
     #[error(transparent)]
     TooManyNodes(#[from] TooManyNodes),
+    /// A raster, or the fields of a trade, of the wrong size.
+    #[error("the {what} has {found} values, expected {rows} rows times {cols} columns")]
+    RasterSize {
+        /// What was to be drawn.
+        what: &'static str,
+        /// How many numbers it has.
+        found: usize,
+        /// Rows there should be.
+        rows: usize,
+        /// Columns there should be.
+        cols: usize,
+    },
+    /// No ground to draw.
+    #[error("the ground of {what} has {points} points, expected at least 2")]
+    NoGround {
+        /// Whose ground.
+        what: String,
+        /// How many points it has.
+        points: usize,
+    },
+    /// The file's ending names no format.
+    #[error("'{file}' does not end in .svg or .png, the two formats of pictures")]
+    UnknownFormat {
+        /// The file's name.
+        file: String,
+    },
     /// plotters failed.
     #[error("the figure could not be drawn: {0}")]
     Drawing(String),
@@ -133,4 +177,10 @@ fn laid_out(input: &FigureInput<'_>, data: &FigureData) -> (Sheet, f64) {
     };
     let end = heading::below(&mut sheet, data, end + 1.0);
     (sheet, end + 2.5)
+}
+
+fn todo_picture(caption: &Caption) -> Result<Picture, FigureError> {
+    let mut sheet = Sheet::default();
+    let height_mm = caption.draw(&mut sheet) + 2.0;
+    Ok(Picture { sheet, height_mm })
 }

@@ -1,0 +1,85 @@
+//! A finished picture, its words on top, and the two ways to write it.
+
+use std::path::Path;
+
+use super::{
+    FigureError,
+    palette::{PAGE_WIDTH_MM, RIGHT_MM, TEXT_MM, TITLE_MM},
+    sheet::{Anchor, Hang, Label, Sheet, wrapped},
+};
+
+/// Where texts begin.
+pub(super) const MARGIN_MM: f64 = 4.0;
+/// Distance of lines over their size.
+const LEADING: f64 = 1.4;
+/// Bold letters are wider than the estimate says.
+const BOLD: f64 = 0.88;
+
+/// The words above a picture.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Caption {
+    /// In bold, such as the scenario's name; empty: none.
+    pub title: String,
+    /// Below it, a paragraph each: what was asked, under which limits, and what came of it.
+    pub lines: Vec<String>,
+}
+
+impl Caption {
+    /// A title and one line below it.
+    pub fn new(title: impl Into<String>, line: impl Into<String>) -> Self {
+        Self { title: title.into(), lines: vec![line.into()] }
+    }
+
+    /// Puts the words on top of a sheet; returns where they end.
+    pub(super) fn draw(&self, sheet: &mut Sheet) -> f64 {
+        let mut y = 3.0;
+        if !self.title.is_empty() {
+            y = paragraph(sheet, &self.title, TITLE_MM, true, y);
+        }
+        for line in &self.lines {
+            y = paragraph(sheet, line, TEXT_MM, false, y);
+        }
+        y + 1.5
+    }
+}
+
+/// A text over as many lines as it needs; returns where it ends.
+pub(super) fn paragraph(sheet: &mut Sheet, text: &str, size_mm: f64, bold: bool, top_mm: f64) -> f64 {
+    let mut y = top_mm;
+    let width = (RIGHT_MM - MARGIN_MM) * if bold { BOLD } else { 1.0 };
+    for line in wrapped(text, size_mm, width) {
+        let label = Label::new(line, (MARGIN_MM, y + 0.5 * LEADING * size_mm), size_mm).hung(Anchor::Start, Hang::Through);
+        sheet.label(Label { bold, ..label });
+        y += LEADING * size_mm;
+    }
+    y
+}
+
+/// A picture that is drawn but not yet written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    pub(super) sheet: Sheet,
+    pub(super) height_mm: f64,
+}
+
+impl Picture {
+    /// The picture as SVG, 170 mm wide. The same picture gives the same bytes.
+    ///
+    /// # Errors
+    /// [`FigureError::Drawing`] with what plotters says.
+    pub fn to_svg(&self) -> Result<String, FigureError> {
+        self.sheet.to_svg(PAGE_WIDTH_MM, self.height_mm)
+    }
+
+    /// The picture in the format that a file name asks for: `.svg`.
+    ///
+    /// # Errors
+    /// [`FigureError::UnknownFormat`] for any other ending; as [`Picture::to_svg`].
+    pub fn encoded_for(&self, file: &Path) -> Result<Vec<u8>, FigureError> {
+        let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("svg") => Ok(self.to_svg()?.into_bytes()),
+            _ => Err(FigureError::UnknownFormat { file: file.display().to_string() }),
+        }
+    }
+}
