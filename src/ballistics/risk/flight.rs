@@ -12,20 +12,34 @@ pub(super) fn normal(x: f64) -> f64 {
     0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// The cells that a normal deviation is cut into, one standard deviation wide, the outermost open: the middle of each.
-const CELLS: [f64; 7] = [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0];
+/// A cell of a normal deviation: its mean, its probability and the standard deviation inside it.
+#[derive(Clone, Copy)]
+pub(super) struct Cell {
+    pub(super) mean: f64,
+    pub(super) probability: f64,
+    pub(super) sigma: f64,
+}
 
-/// The standard deviation inside a cell: one wide, so `1 / sqrt(12)`.
-const WITHIN_CELL: f64 = 0.288_675_134_594_812_9;
+/// No deviation at all.
+const ALL_IN_ONE: [Cell; 1] = [Cell { mean: 0.0, probability: 1.0, sigma: 0.0 }];
 
-/// The cells of a deviation with their probabilities, as `(middle, probability)`; one cell where there is no deviation.
-pub(super) fn cells(sigma: f64) -> impl Iterator<Item = (f64, f64)> {
-    let all: &[f64] = if sigma > 0.0 { &CELLS } else { &[0.0] };
-    all.iter().map(move |&z| {
-        let open = |bound: f64| if bound.abs() > 3.0 { f64::INFINITY.copysign(bound) } else { bound };
-        let probability = if sigma > 0.0 { normal(open(z + 0.5)) - normal(open(z - 0.5)) } else { 1.0 };
-        (z * sigma, probability)
-    })
+/// The standard normal cut at 0, 0.5, 1 and 2 on either side. One cut is in the middle because a command on the very edge of a cone is the
+/// commonest of all: its take-off and its landing then fail on the same side.
+const CELLS: [Cell; 8] = [
+    Cell { mean: -2.373_215_533, probability: 0.022_750_132, sigma: 0.338_051_920 },
+    Cell { mean: -1.383_169_047, probability: 0.135_905_122, sigma: 0.269_708_891 },
+    Cell { mean: -0.734_540_459, probability: 0.149_882_285, sigma: 0.143_241_039 },
+    Cell { mean: -0.244_836_264, probability: 0.191_462_461, sigma: 0.143_681_448 },
+    Cell { mean: 0.244_836_264, probability: 0.191_462_461, sigma: 0.143_681_448 },
+    Cell { mean: 0.734_540_459, probability: 0.149_882_285, sigma: 0.143_241_039 },
+    Cell { mean: 1.383_169_047, probability: 0.135_905_122, sigma: 0.269_708_891 },
+    Cell { mean: 2.373_215_533, probability: 0.022_750_132, sigma: 0.338_051_920 },
+];
+
+/// The cells of a deviation; one where there is none.
+pub(super) fn cells(sigma: f64) -> impl Iterator<Item = Cell> {
+    let all: &[Cell] = if sigma > 0.0 { &CELLS } else { &ALL_IN_ONE };
+    all.iter().map(move |cell| Cell { mean: cell.mean * sigma, sigma: cell.sigma * sigma, ..*cell })
 }
 
 /// What all flights of a hop share.
@@ -81,11 +95,10 @@ impl Flight {
         test: &HopTest<'_>,
         hop: &PlannedHop,
         ground: &Ground,
-        [speed_shift_m_s, angle_shift]: [f64; 2],
+        [speed, angle]: [Cell; 2],
     ) -> Option<Self> {
-        let angle = hop.arc.takeoff_angle().radians() + angle_shift;
-        let (planned_m_s, slope) = (hop.arc.takeoff_speed_m_s(), Angle::from_radians(angle).slope());
-        let speed_m_s = planned_m_s + speed_shift_m_s;
+        let (angle, angle_sigma) = (hop.arc.takeoff_angle().radians() + angle.mean, angle.sigma);
+        let (speed_m_s, slope) = (hop.arc.takeoff_speed_m_s() + speed.mean, Angle::from_radians(angle).slope());
         if speed_m_s <= 0.0 || !slope.is_finite() {
             return None;
         }
@@ -108,8 +121,8 @@ impl Flight {
             landing_slope,
             landing_speed_m_s: horizontal_m_s * libm::hypot(1.0, landing_slope),
             landing_sigma_m: 0.0,
-            angle_sigma: deviations.takeoff_angle.radians() * WITHIN_CELL,
-            speed_sigma_m_s: deviations.speed_sigma_m_s(planned_m_s) * WITHIN_CELL,
+            angle_sigma,
+            speed_sigma_m_s: speed.sigma,
         };
         let closing = ground.landing - landing_slope;
         flight.landing_sigma_m = flight.height_sigma_m(deviations, ground, run_m) / closing;

@@ -1,12 +1,13 @@
 //! How surely one hop comes off: an estimate of its probability to fail, without a single draw.
 //!
-//! Deviations of speed and angle are cut into seven cells each; in every pair of cells the hop is one parabola, whose landing scatters
+//! Deviations of speed and angle are cut into eight cells each; in every pair of cells the hop is one parabola, whose landing scatters
 //! further by deviations of place and height through the flight's own derivatives. What ground lies within that scatter, and how wide
 //! its cones and speed limits are, gives the probability. The same hop always weighs the same, so paths can be compared.
 //!
 //! What it leaves out: errors of the hops before (right where a robot replans from where it really is, too bright where it flies an
 //! old plan), headings (a hop is flown in its plane), and how errors of friction and height, one draw for a whole traverse, bind its
-//! hops together. `chta simulate` counts instead; this estimate only has to rank hops.
+//! hops together. On the very edge of its cones it calls a hop up to 0.2 too risky. `chta simulate` counts instead; this estimate only
+//! has to rank hops.
 
 mod contact;
 mod flight;
@@ -106,11 +107,11 @@ impl HopDeviations {
         let speed_sigma_m_s = self.speed_sigma_m_s(hop.arc.takeoff_speed_m_s());
         let mut success = 0.0;
         // Speed and angle decide on take-off, way and landing together, so these are taken cell by cell; the rest scatters within.
-        for (angle_shift, angle_probability) in cells(self.takeoff_angle.radians()) {
-            for (speed_shift_m_s, speed_probability) in cells(speed_sigma_m_s) {
-                let Some(flight) = Flight::new(self, test, hop, &ground, [speed_shift_m_s, angle_shift]) else { continue };
-                success += angle_probability
-                    * speed_probability
+        for angle in cells(self.takeoff_angle.radians()) {
+            for speed in cells(speed_sigma_m_s) {
+                let Some(flight) = Flight::new(self, test, hop, &ground, [speed, angle]) else { continue };
+                success += angle.probability
+                    * speed.probability
                     * contact_success(test, &hop.takeoff, direction, self.friction, &flight.takeoff(self))
                     * (1.0 - flight.strike_probability(self, test, hop, &ground))
                     * contact_success(test, &hop.landing, direction, self.friction, &flight.landing(hop));
