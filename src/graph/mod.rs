@@ -23,6 +23,6 @@ pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search};
-pub use surest::{SurestPath, SuretyOptions, search_surest, surest_paths};
+pub use surest::{RiskUse, SurestPath, SuretyOptions, search_surest, surest_paths};
 pub use to_go::CostToGo;
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};

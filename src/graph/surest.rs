@@ -9,6 +9,32 @@ use crate::{
     quantity::NodeId,
 };
 
+/// Whether surety weighs in the choice of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum RiskUse {
+    /// It does not.
+    #[default]
+    Ignored,
+    /// The surest path among those with the fewest hops.
+    FewestHops,
+    /// Hops are traded for surety: the surest path with some hops more than the fewest.
+    Traded,
+}
+
+impl RiskUse {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Ignored, Self::FewestHops, Self::Traded];
+
+    /// The name in scenarios.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ignored => "ignored",
+            Self::FewestHops => "fewest-hops",
+            Self::Traded => "traded",
+        }
+    }
+}
+
 /// How surety weighs in the choice of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SuretyOptions {

@@ -6,6 +6,7 @@ mod entries;
 mod pipeline;
 mod problem;
 mod read;
+mod trials;
 
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
@@ -13,3 +14,4 @@ pub use entries::{Entries, Place};
 pub use pipeline::{Covers, Cut, Extremes, PipelineError, Prepared, constant_gravity_doubts, friction, prepare, sha256_of};
 pub use problem::{ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, Scenario, TerrainSource};
+pub use trials::UncertaintyKeys;

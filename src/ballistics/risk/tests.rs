@@ -132,7 +132,7 @@ fn a_flat_hop_to_a_goal_misses_as_its_landing_spreads() {
     let hop = PlannedHop { tolerance_m: Some(2.0 * 20.0 * 0.01), ..planned(&test, 10.0, 30.0, TakeoffChoice::LeastSpeed) };
     let deviations = HopDeviations { takeoff_speed_fraction: 0.01, ..HopDeviations::default() };
     let failed = RiskModel::Deviations(deviations).failure_probability(&test, &hop);
-    assert!((failed - 0.317_310_507_863).abs() < 0.01, "{failed}");
+    assert!((failed - 0.317_310_507_863).abs() < 0.03, "{failed}");
 }
 
 #[test]
