@@ -7,7 +7,9 @@ mod fan_answer;
 pub mod figure;
 mod geojson;
 mod hop_answer;
+pub mod landings;
 mod path_record;
+mod simulate_answer;
 mod text;
 mod whole_file;
 
@@ -17,5 +19,6 @@ pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, slice_geojson};
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
 pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv};
+pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulationRecord};
 pub use text::{check_text, hop_text, path_text};
 pub use whole_file::{WholeFile, write_whole};

@@ -9,6 +9,7 @@
 //! ```
 
 mod deviations;
+pub mod experiments;
 mod options;
 mod outcome;
 mod quantiles;
