@@ -33,6 +33,8 @@ pub(crate) struct Loaded {
     pub(crate) document: serde_json::Value,
     /// The files that were read.
     pub(crate) inputs: Vec<InputFile>,
+    /// The folder that the scenario's paths start from.
+    pub(crate) base: PathBuf,
     /// How start and goal are given on the command line.
     ends: EndOptions,
 }
@@ -133,6 +135,17 @@ struct Source {
 
 /// Loads a chain, scenario or result with the options beside it.
 pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Loaded, Failure> {
+    load_with(target, common, search, ends, &[])
+}
+
+/// Loads the same with keys that a command's own options set: option, table, key and value.
+pub(crate) fn load_with(
+    target: &Path,
+    common: &CommonArgs,
+    search: Option<&SearchArgs>,
+    ends: EndOptions,
+    own: &[(&str, &str, &str, toml::Value)],
+) -> Result<Loaded, Failure> {
     let is_scenario = is_scenario(target);
     let mut source = match (is_scenario, &common.scenario) {
         (true, None) => read_source(target)?,
@@ -164,6 +177,9 @@ pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArg
         source.base = PathBuf::new();
     }
     apply_options(&mut source.entries, common, search, ends);
+    for (option, table, key, value) in own {
+        source.entries.set_by_option(option, table, key, value.clone());
+    }
     let base = source.base;
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
@@ -185,7 +201,7 @@ pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArg
         inputs.push(input_file(&base.join(cover))?);
     }
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
-    Ok(Loaded { scenario, prepared, document, inputs, ends })
+    Ok(Loaded { scenario, prepared, document, inputs, base, ends })
 }
 
 /// Why a terrain gives no chain, with the file or the option that says so.

@@ -10,6 +10,7 @@ mod hop_answer;
 pub mod landings;
 mod path_record;
 mod simulate_answer;
+mod surest_record;
 mod text;
 mod whole_file;
 
@@ -20,5 +21,6 @@ pub use geojson::{path_geojson, slice_geojson};
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
 pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv};
 pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulationRecord};
+pub use surest_record::{SurestRecord, surest_text};
 pub use text::{check_text, hop_text, path_text};
 pub use whole_file::{WholeFile, write_whole};

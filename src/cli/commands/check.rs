@@ -73,7 +73,7 @@ fn answer(
 ) -> Result<CheckAnswer, Failure> {
     let test = loaded.hop_test();
     let options = &loaded.scenario.search;
-    let found = search(&test, start, goal, options, args.common.quiet)?;
+    let (found, _) = search(&test, start, goal, &loaded.scenario, args.common.quiet)?;
     if let Outcome::Path { legs, .. } = &found.outcome
         && let Ok(path) = generate(&test, legs, options.takeoff, options.split)
     {

@@ -7,5 +7,6 @@ pub(super) mod hop;
 pub(super) mod plan;
 pub(super) mod run;
 mod search;
+pub(super) mod simulate;
 pub(super) mod slice;
 pub(super) mod synth;
