@@ -117,8 +117,8 @@ impl ConstrainedChain {
     }
 }
 
-/// Settles one segment.
-fn settle(
+/// Settles one segment: what its ground, as met along a slope, allows this hopper.
+pub(crate) fn settle(
     id: SegmentId,
     slope: f64,
     ground: &Ground,

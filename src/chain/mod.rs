@@ -15,6 +15,7 @@ mod ground;
 mod polygonal;
 mod station;
 
+pub(crate) use constrained::settle;
 pub use constrained::{ConstrainedChain, ConstraintProblem, ConstraintProblems};
 pub use constraints::{ContactRule, GroundRefusal, LineConstraints, SegmentConstraints};
 pub use ground::{Ground, GroundForm};

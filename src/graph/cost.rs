@@ -75,6 +75,11 @@ pub struct Cost {
 }
 
 impl Cost {
+    /// So many hops without any effort: no journey of as many hops costs less.
+    pub const fn of_hops(hops: u64) -> Self {
+        Self { hops, sum: 0.0, peak: 0.0 }
+    }
+
     /// The number of hops.
     pub const fn hops(self) -> u64 {
         self.hops

@@ -21,6 +21,36 @@ pub enum Edge {
     Along(SegmentHops),
 }
 
+impl Edge {
+    /// What joins two stations; see [`HopGraph::edge`].
+    #[inline]
+    pub(super) fn between(test: &HopTest<'_>, takeoff: &Station, landing: &Station) -> Result<Self, Limit> {
+        match test.loft(takeoff, landing) {
+            Ok(loft) => Ok(Self::Hop(loft)),
+            Err(limit) => test.segment_hops(takeoff, landing).map(Self::Along).ok_or(limit),
+        }
+    }
+
+    /// What it costs between two stations, in an effort at a choice of angle and a split.
+    pub(super) fn cost(
+        self,
+        test: &HopTest<'_>,
+        takeoff: &Station,
+        landing: &Station,
+        (effort, choice, split): (Effort, TakeoffChoice, Split),
+    ) -> Cost {
+        let Some(sight) = test.line_of_sight(takeoff, landing) else { return Cost::default() };
+        match self {
+            Self::Hop(loft) => effort.cost(&Arc::new(sight, choice.loft(sight, loft), test.gravity_m_s2()), 1),
+            Self::Along(along) => {
+                let (each_m, last_m) = along.lengths_m(split);
+                let arc = |length_m| along.arc(test, length_m, choice);
+                effort.cost(&arc(each_m), along.hops() - 1) + effort.cost(&arc(last_m), 1)
+            }
+        }
+    }
+}
+
 /// The hop graph over a node set. Edges are computed when visited and never stored.
 #[derive(Debug)]
 pub struct HopGraph<'a> {
@@ -63,24 +93,12 @@ impl<'a> HopGraph<'a> {
     /// The limit that refuses the single hop, where there are no hops along a segment either.
     #[inline]
     pub fn edge(&self, takeoff: &Station, landing: &Station) -> Result<Edge, Limit> {
-        match self.test.loft(takeoff, landing) {
-            Ok(loft) => Ok(Edge::Hop(loft)),
-            Err(limit) => self.test.segment_hops(takeoff, landing).map(Edge::Along).ok_or(limit),
-        }
+        Edge::between(self.test, takeoff, landing)
     }
 
     /// The cost of an edge between two stations.
     pub fn cost(&self, takeoff: &Station, landing: &Station, edge: Edge) -> Cost {
-        let Some(sight) = self.test.line_of_sight(takeoff, landing) else { return Cost::default() };
-        let g = self.test.gravity_m_s2();
-        match edge {
-            Edge::Hop(loft) => self.effort.cost(&Arc::new(sight, self.choice.loft(sight, loft), g), 1),
-            Edge::Along(along) => {
-                let (each_m, last_m) = along.lengths_m(self.split);
-                let arc = |length_m| along.arc(self.test, length_m, self.choice);
-                self.effort.cost(&arc(each_m), along.hops() - 1) + self.effort.cost(&arc(last_m), 1)
-            }
-        }
+        edge.cost(self.test, takeoff, landing, (self.effort, self.choice, self.split))
     }
 
     /// How many pairs were tested, and how the refused ones fell.
@@ -97,26 +115,12 @@ impl<'a> HopGraph<'a> {
     /// The candidate landings of a node: within reach of one hop, or on a segment that the node lies on, along which many hops reach
     /// farther.
     pub(super) fn landings(&self, node: NodeId) -> std::ops::Range<usize> {
-        self.around(node, self.test.reach_bound_m(self.nodes.station(node)))
+        self.nodes.around(self.nodes.station(node), self.test.reach_bound_m(self.nodes.station(node)))
     }
 
     /// The candidate take-offs for a landing on a node: as [`landings`](Self::landings), with the reach of the whole chain.
     pub(super) fn takeoffs(&self, node: NodeId) -> std::ops::Range<usize> {
-        self.around(node, self.test.greatest_reach_m())
-    }
-
-    /// The nodes within a distance of a node or on a segment that it lies on.
-    fn around(&self, node: NodeId, distance_m: f64) -> std::ops::Range<usize> {
-        let stations = self.nodes.stations();
-        let station = self.nodes.station(node);
-        let mut range = self.nodes.within(station, distance_m);
-        while range.start > 0 && stations[range.start - 1].shared_segment(station).is_some() {
-            range.start -= 1;
-        }
-        while range.end < stations.len() && stations[range.end].shared_segment(station).is_some() {
-            range.end += 1;
-        }
-        range
+        self.nodes.around(self.nodes.station(node), self.test.greatest_reach_m())
     }
 }
 

@@ -112,6 +112,19 @@ impl NodeSet {
         let end = self.stations.partition_point(|s| s.point.x_m <= high);
         first..end.max(first)
     }
+
+    /// The nodes within a distance of a station, or on a segment that it lies on.
+    pub fn around(&self, station: &Station, distance_m: f64) -> std::ops::Range<usize> {
+        let mut range = self.within(station, distance_m);
+        let shares = |other: &Station| other.shared_segment(station).is_some();
+        while range.start > 0 && shares(&self.stations[range.start - 1]) {
+            range.start -= 1;
+        }
+        while range.end < self.stations.len() && shares(&self.stations[range.end]) {
+            range.end += 1;
+        }
+        range
+    }
 }
 
 /// Points inside a stretch so that neighbours are no farther apart than the spacing.

@@ -31,6 +31,7 @@ mod profile;
 mod projection;
 mod slice;
 mod synth;
+mod walk;
 mod window;
 mod xyz;
 mod zones;
@@ -52,6 +53,7 @@ pub use projection::{
 };
 pub use slice::{slice, slice_file, slice_legs};
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
+pub use walk::{FacetSpan, FacetWalk, Triangles};
 pub use window::{DemFile, Window};
 pub use xyz::read_xyz_bytes;
 pub use zones::{FrictionRaster, KeepOut, read_friction_raster, read_keep_out};

@@ -9,20 +9,28 @@
 //! ```
 
 mod deviations;
+mod draws;
 pub mod experiments;
+mod field;
+mod ground;
+mod on_chain;
+mod on_map;
 mod options;
 mod outcome;
 mod quantiles;
 mod record;
 mod simulation;
 mod summary;
+mod tally;
+mod trial;
 mod wilson;
 
 pub use deviations::{Uncertainty, UncertaintyProblem};
+pub use ground::Launch;
 pub use options::{MapGround, Mission, Observer, Progress, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
 pub use quantiles::QuantileSketch;
 pub use record::{HopRecord, Trajectory, TrialRecord};
-pub use simulation::{FlightEnd, Launch, Simulation};
+pub use simulation::{FlightEnd, Simulation};
 pub use summary::{ErrorSummary, LandingEllipse, LandingSummary, RatePoint, Summary};
 pub use wilson::Wilson;

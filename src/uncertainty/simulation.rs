@@ -1,31 +1,51 @@
 //! Many trials of one mission.
 
-use nalgebra::{Point3, Vector2};
+use std::ops::ControlFlow;
 
-use super::{Mission, Observer, SimulationError, Summary, TrialOptions, Uncertainty};
+use nalgebra::{Point2, Point3, Vector2};
+use rayon::prelude::*;
+
+use super::{
+    Launch, MapGround, Mission, Observer, Policy, Progress, SimulationError, Summary, Trajectory, TrialOptions, Uncertainty,
+    draws::TrialDraws,
+    ground::{Command, Ground},
+    on_chain::{ChainGround, ChainSpot},
+    on_map::{DemGround, MapSpot},
+    tally::Tally,
+    trial::{Flown, Plan, PlannedHop, Rules, fly},
+};
+use crate::{
+    chain::Station,
+    graph::CostToGo,
+    path::{Hop, HopPath},
+    terrain::Triangles,
+};
+
+/// After so many trials the rate is looked at.
+const BATCH: u64 = 1000;
+
+/// Trials that one thread flies at a stretch: a batch then keeps twenty threads busy, and starting costs next to nothing of each.
+const STRETCH: u64 = 50;
 
 /// A mission made ready to be flown again and again.
 #[derive(Debug)]
 pub struct Simulation<'a> {
     mission: Mission<'a>,
     uncertainty: Uncertainty,
+    course: Course<'a>,
 }
 
-/// How a hop really leaves the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Launch {
-    /// Direction on the map (east, north), of length 1; on a chain (1, 0) or (-1, 0).
-    pub heading: Vector2<f64>,
-    /// Horizontal speed, m/s.
-    pub horizontal_m_s: f64,
-    /// Vertical speed, m/s.
-    pub vertical_m_s: f64,
+/// The mission's plan over the ground that it is flown on.
+#[derive(Debug)]
+enum Course<'a> {
+    Chain(Plan<ChainSpot>),
+    Map { map: MapGround<'a>, plan: Plan<MapSpot>, nodes: Vec<MapSpot> },
 }
 
 /// Where a flight ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightEnd {
-    /// The first contact with the ground, or where the known ground ends under the flight.
+    /// The first contact with the ground, or the ground below the place where the flight leaves all that is known of it.
     pub at_m: Point3<f64>,
     /// Whether it is a contact.
     pub landed: bool,
@@ -40,31 +60,221 @@ impl<'a> Simulation<'a> {
     /// [`SimulationError`] where the deviations make no sense, or path and map do not belong together.
     pub fn new(mission: Mission<'a>, uncertainty: Uncertainty) -> Result<Self, SimulationError> {
         uncertainty.check(mission.map.is_some())?;
-        Ok(Self { mission, uncertainty })
+        let course = match mission.map {
+            None => Course::Chain(chain_plan(&mission)),
+            Some(map) => Course::Map { map, plan: map_plan(&mission, map)?, nodes: map_nodes(&mission, map)? },
+        };
+        Ok(Self { mission, uncertainty, course })
     }
 
     /// Flies the trials.
     ///
-    /// # Errors
-    /// [`SimulationError`].
-    pub fn run(&self, options: &TrialOptions, observer: &mut dyn Observer) -> Result<Summary, SimulationError> {
-        let _ = (&self.mission, self.uncertainty, options, observer);
-        Err(SimulationError::NoTrials)
-    }
-
-    /// Flies the trials under both policies on the same draws.
+    /// Batches of 1 000 are shared out to the threads and added up in the order of trials, so that the results are the same for any
+    /// number of threads. Memory does not grow with the number of trials.
     ///
     /// # Errors
-    /// [`SimulationError`].
+    /// [`SimulationError`]: options that make no sense, [`Policy::Replan`] without costs-to-go, no threads, or the observer's wish.
+    pub fn run(&self, options: &TrialOptions, observer: &mut dyn Observer) -> Result<Summary, SimulationError> {
+        self.check(options)?;
+        let Mission { test, surface, to_go, .. } = self.mission;
+        match &self.course {
+            Course::Chain(plan) => self.fly_all(&ChainGround::new(test, surface, to_go), plan, options, observer),
+            Course::Map { map, plan, nodes } => {
+                self.fly_all(&DemGround::new(test, surface, *map, to_go, nodes), plan, options, observer)
+            }
+        }
+    }
+
+    /// Flies the trials under both policies, open loop first, on the same draws.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
     pub fn compare(&self, options: &TrialOptions, observer: &mut dyn Observer) -> Result<[Summary; 2], SimulationError> {
         let mut of = |policy| self.run(&TrialOptions { policy, ..*options }, observer);
-        let [open_loop, replan] = super::Policy::ALL;
+        let [open_loop, replan] = Policy::ALL;
         Ok([of(open_loop)?, of(replan)?])
     }
 
-    /// Flies one hop from a place of the nominal ground to its first contact; `None` where there is no ground at that place.
-    pub fn fly(&self, from: Point3<f64>, launch: Launch) -> Option<FlightEnd> {
-        let _ = (from, launch);
-        None
+    /// Flies one hop from a place of the nominal ground to its first contact, which may be the take-off itself for a launch into the
+    /// ground. Nothing is judged. `None` where there is no ground at that place.
+    ///
+    /// `from`: x and y as in [`HopRecord`](super::HopRecord).
+    pub fn fly(&self, from: Point2<f64>, launch: Launch) -> Option<FlightEnd> {
+        let Mission { test, surface, .. } = self.mission;
+        match &self.course {
+            Course::Chain(_) => {
+                let station = test.chain().geometry().station(from.x).ok()?;
+                let spot = ChainSpot { station, left_m: from.y };
+                Some(flown(&ChainGround::new(test, surface, None), &spot, &launch))
+            }
+            Course::Map { map, .. } => {
+                let triangles = Triangles::of(map.dem);
+                let (z_m, _) = triangles.at(from, triangles.nominal())?;
+                Some(flown(&DemGround::new(test, surface, *map, None, &[]), &MapSpot { at: from, z_m }, &launch))
+            }
+        }
     }
+
+    /// Refuses options that make no sense.
+    fn check(&self, options: &TrialOptions) -> Result<(), SimulationError> {
+        let TrialOptions { trials, policy, hop_limit, goal_tolerance_m: found, until_half_width, .. } = *options;
+        if trials == 0 {
+            return Err(SimulationError::NoTrials);
+        }
+        if hop_limit == Some(0) {
+            return Err(SimulationError::NoHops);
+        }
+        if !(found.is_finite() && found >= 0.0) {
+            return Err(SimulationError::GoalTolerance { found });
+        }
+        if let Some(found) = until_half_width.filter(|width| !(*width > 0.0 && *width < 0.5)) {
+            return Err(SimulationError::HalfWidth { found });
+        }
+        if policy == Policy::Replan && self.mission.to_go.is_none() {
+            return Err(SimulationError::NoCostsToGo);
+        }
+        Ok(())
+    }
+
+    fn fly_all<G: Ground>(
+        &self,
+        ground: &G,
+        plan: &Plan<G::Spot>,
+        options: &TrialOptions,
+        observer: &mut dyn Observer,
+    ) -> Result<Summary, SimulationError> {
+        let rules = Rules {
+            uncertainty: self.uncertainty,
+            wanted: Rules::wanted(&self.uncertainty, options.policy),
+            policy: options.policy,
+            hop_limit: options.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(plan.hops.len())),
+            goal_tolerance_m: options.goal_tolerance_m,
+            gravity_m_s2: self.mission.test.gravity_m_s2(),
+        };
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
+        let keep_records = observer.wants_records();
+        let mut tally = Tally::default();
+        let mut trajectories = Vec::new();
+        let mut done = 0;
+        while done < options.trials {
+            let end = options.trials.min(done + BATCH);
+            let starts: Vec<u64> = (done..end).step_by(usize::try_from(STRETCH).unwrap_or(usize::MAX)).collect();
+            let stretch = |first: u64| {
+                let mut ground = ground.clone();
+                let mut draws = TrialDraws::seeded(options.seed);
+                let mut flown = Flown::default();
+                for trial in first..end.min(first + STRETCH) {
+                    let keep = keep_records || trial < options.trajectories;
+                    fly(&mut ground, &mut draws, plan, &rules, trial, keep, &mut flown);
+                }
+                flown
+            };
+            let stretches: Vec<Flown> = pool.install(|| starts.into_par_iter().map(stretch).collect());
+            for flown in &stretches {
+                add(flown, &mut tally, &mut trajectories, options.trajectories);
+                if keep_records {
+                    tell(flown, observer);
+                }
+            }
+            done = end;
+            tally.end_batch();
+            let progress = Progress { done, of: options.trials, outcomes: tally.outcomes, success: tally.success() };
+            if observer.progress(&progress) == ControlFlow::Break(()) {
+                return Err(SimulationError::Stopped { trials: done });
+            }
+            if options.until_half_width.is_some_and(|width| progress.success.half_width() <= width) {
+                break;
+            }
+        }
+        Ok(Summary {
+            policy: options.policy,
+            seed: options.seed,
+            trials: done,
+            outcomes: tally.outcomes,
+            success: tally.success(),
+            hops_flown: tally.hops_flown,
+            landings: tally.landings(matches!(self.course, Course::Map { .. })),
+            convergence: tally.convergence(),
+            trajectories,
+        })
+    }
+}
+
+/// Adds what some trials gave, in their order.
+fn add(flown: &Flown, tally: &mut Tally, trajectories: &mut Vec<Trajectory>, wanted: u64) {
+    for trial in &flown.trials {
+        tally.trial(trial.outcome, trial.hops);
+        if trial.trial < wanted {
+            let hops = flown.hops.iter().filter(|hop| hop.trial == trial.trial).copied().collect();
+            trajectories.push(Trajectory { trial: *trial, hops });
+        }
+    }
+    for landing in &flown.landings {
+        tally.landing(landing);
+    }
+}
+
+/// Tells an observer of some trials, in their order.
+fn tell(flown: &Flown, observer: &mut dyn Observer) {
+    let mut hops = flown.hops.iter().peekable();
+    for trial in &flown.trials {
+        while let Some(hop) = hops.next_if(|hop| hop.trial == trial.trial) {
+            observer.hop(hop);
+        }
+        observer.trial(trial);
+    }
+}
+
+/// A flight that aims at nothing.
+fn flown<G: Ground>(ground: &G, from: &G::Spot, launch: &Launch) -> FlightEnd {
+    let flight = ground.fly(from, launch, from);
+    FlightEnd { at_m: ground.point(&flight.end), landed: flight.footing.is_some(), time_s: flight.time_s }
+}
+
+/// The command of a planned hop along a heading.
+fn command<S>(hop: &Hop, heading: Vector2<f64>, aim: S) -> Command<S> {
+    let (sine, cosine) = libm::sincos(hop.takeoff_angle.radians());
+    let speed_m_s = hop.takeoff_speed_m_s;
+    let launch = Launch { heading, horizontal_m_s: speed_m_s * cosine, vertical_m_s: speed_m_s * sine };
+    Command { launch, speed_m_s, aim }
+}
+
+/// The plan along the chain.
+fn chain_plan(mission: &Mission<'_>) -> Plan<ChainSpot> {
+    let spot = ChainSpot::on_chain;
+    let hops = mission.path.hops.iter().map(|hop| PlannedHop {
+        from: spot(hop.takeoff),
+        command: command(hop, Vector2::new(hop.direction.sign(), 0.0), spot(hop.landing)),
+    });
+    Plan { start: spot(mission.start), goal: Point2::new(mission.goal.point.x_m, 0.0), hops: hops.collect() }
+}
+
+/// The plan on the map.
+fn map_plan(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Plan<MapSpot>, SimulationError> {
+    let HopPath { hops, .. } = mission.path;
+    let planned = hops.iter().enumerate().map(|(i, hop)| {
+        let ends = hop.map.ok_or(SimulationError::NotOnMap { hop: i + 1 })?;
+        let away = ends.landing - ends.takeoff;
+        let aim = MapSpot { at: ends.landing, z_m: hop.landing.point.z_m };
+        let from = MapSpot { at: ends.takeoff, z_m: hop.takeoff.point.z_m };
+        Ok(PlannedHop { from, command: command(hop, away / away.norm(), aim) })
+    });
+    let hops = planned.collect::<Result<_, SimulationError>>()?;
+    let (start, goal) = (on_map(mission, map, &mission.start, "start")?, on_map(mission, map, &mission.goal, "goal")?);
+    Ok(Plan { start, goal: goal.at, hops })
+}
+
+/// The nodes of the costs-to-go on the map.
+fn map_nodes(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Vec<MapSpot>, SimulationError> {
+    let stations = mission.to_go.map(CostToGo::nodes).map_or(&[][..], |nodes| nodes.stations());
+    stations.iter().map(|station| on_map(mission, map, station, "node")).collect()
+}
+
+/// A station of the chain on the map, which must have ground there.
+fn on_map(mission: &Mission<'_>, map: MapGround<'_>, station: &Station, which: &'static str) -> Result<MapSpot, SimulationError> {
+    let at = mission.test.chain().geometry().map_point(station).ok_or(SimulationError::NotOnMap { hop: 1 })?;
+    if !Triangles::of(map.dem).covers(at) {
+        return Err(SimulationError::NoGround { which, x_m: at.x, y_m: at.y });
+    }
+    Ok(MapSpot { at, z_m: station.point.z_m })
 }

@@ -1,7 +1,10 @@
 //! The cells of a raster along a straight line, and whether two rasters lie on one map.
 
 use super::line::{Line, Stretch};
-use crate::terrain::{CoordinateSystem, Dem, MapBounds};
+use crate::{
+    quantity::MapPoint,
+    terrain::{CoordinateSystem, Dem, MapBounds},
+};
 
 /// The values of the cells that a part of a line lies in: one, or those on both sides where it runs along a border.
 pub(super) type CellValues = Vec<Option<f64>>;
@@ -39,6 +42,28 @@ pub(super) fn cells_on(line: &Line, raster: &Dem) -> Vec<Stretch<CellValues>> {
         .collect()
 }
 
+/// The values of the cells that a place lies in: one, or those on both sides of a border (within a billionth of a cell); none off the
+/// raster.
+pub(super) fn cells_at(at: MapPoint, raster: &Dem) -> impl Iterator<Item = Option<f64>> + '_ {
+    let map = raster.georeference();
+    let place = [(at.x - map.north_west().x) / map.dx_m() + 0.5, (map.north_west().y - at.y) / map.dy_m() + 0.5];
+    let [cols, rows] = place.map(|value| [(value - NEAR_A_BORDER).floor(), (value + NEAR_A_BORDER).floor()]);
+    let both = |[low, high]: [f64; 2]| [Some(low), (high != low).then_some(high)].into_iter().flatten().filter_map(as_index);
+    both(rows).flat_map(move |row| both(cols).map(move |col| (row, col))).filter_map(|(row, col)| {
+        let inside = row < raster.rows() && col < raster.cols();
+        inside.then(|| raster.elevation(row, col))
+    })
+}
+
+/// Within this share of a cell a place lies on its border.
+const NEAR_A_BORDER: f64 = 1e-9;
+
+/// A whole number that is not negative as an index.
+fn as_index(whole: f64) -> Option<usize> {
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
+    (whole >= 0.0).then_some(whole as usize)
+}
+
 /// Where a coordinate that goes from `begin` to `end` crosses the borders 0, 1, .. `count` of cells, as shares of the way.
 fn border_shares(begin: f64, end: f64, count: usize) -> impl Iterator<Item = f64> {
     #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
@@ -54,9 +79,7 @@ fn border_shares(begin: f64, end: f64, count: usize) -> impl Iterator<Item = f64
 fn indices(place: f64, near: f64, count: usize) -> Vec<usize> {
     let border = place.round();
     let candidates = if (place - border).abs() <= near { vec![border - 1.0, border] } else { vec![place.floor()] };
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
-    let inside = candidates.into_iter().filter(|cell| *cell >= 0.0).map(|cell| cell as usize).filter(|cell| *cell < count);
-    inside.collect()
+    candidates.into_iter().filter_map(as_index).filter(|cell| *cell < count).collect()
 }
 
 /// Whether any part of a line lies on a raster.

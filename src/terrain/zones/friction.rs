@@ -3,11 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    cells::{cells_on, disagreement},
+    cells::{cells_at, cells_on, disagreement},
     keep_out::of_raster,
     line::{Line, Stretch},
 };
 use crate::{
+    quantity::MapPoint,
     terrain::{CoordinateSystem, Dem, Profile, TerrainError, read_dem},
     world::FrictionCone,
 };
@@ -46,6 +47,13 @@ pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>)
 }
 
 impl FrictionRaster {
+    /// The friction of a place: that of the pixel it lies in, the smaller one on a border; `None` where the raster has no data or does not
+    /// reach.
+    pub fn at(&self, place: MapPoint) -> Option<FrictionCone> {
+        let least = cells_at(place, &self.raster).flatten().reduce(f64::min)?;
+        FrictionCone::new(least).ok()
+    }
+
     /// Gives every segment of a profile its friction, and puts vertices where its line crosses into a pixel of another one.
     ///
     /// A segment has the coefficient of the pixel that covers its middle: a pixel's value holds for its cell, half a spacing to every

@@ -6,12 +6,15 @@ use std::{
 };
 
 use super::{
-    cells::{cell_bounds, cells_on, disagreement, is_on},
+    cells::{cell_bounds, cells_at, cells_on, disagreement, is_on},
     geojson::polygons,
     line::{Line, Stretch, covered},
     polygons::Polygon,
 };
-use crate::terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem};
+use crate::{
+    quantity::MapPoint,
+    terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem},
+};
 
 /// What the file is called in messages.
 const WHAT: &str = "keep-out zones";
@@ -62,6 +65,27 @@ pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds
 }
 
 impl KeepOut {
+    /// Whether a place lies in a zone, borders included; a mask keeps nothing out beyond its pixels.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{quantity::MapPoint, terrain::{MapBounds, read_keep_out}};
+    /// let folder = tempfile::tempdir()?;
+    /// let file = folder.path().join("zones.geojson");
+    /// std::fs::write(&file, r#"{"type": "Polygon", "coordinates": [[[3, 0], [4, 0], [4, 9], [3, 9], [3, 0]]]}"#)?;
+    /// let bounds = MapBounds { min: MapPoint::new(0.0, 0.0), max: MapPoint::new(20.0, 10.0) };
+    /// let zones = read_keep_out(&file, None, bounds)?;
+    /// let kept = [2.5, 3.0, 3.5, 4.0, 4.5].map(|x| zones.keeps_out(MapPoint::new(x, 4.0)));
+    /// assert_eq!(kept, [false, true, true, true, false]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn keeps_out(&self, place: MapPoint) -> bool {
+        match &self.zones {
+            Zones::Polygons(polygons) => polygons.iter().any(|polygon| polygon.contains(place)),
+            Zones::Mask(mask) => cells_at(place, mask).flatten().any(|value| value != 0.0),
+        }
+    }
+
     /// Marks the segments of a profile that lie in a zone, and puts vertices where its line crosses a border between kept out and not.
     ///
     /// Zones are closed: a segment along a border, or along the border of a hole, lies inside. Each segment is then wholly inside or

@@ -66,11 +66,42 @@ impl Polygon {
         parts
     }
 
+    /// Whether a place lies in the polygon; its border, within the rounding of its coordinates, belongs to it.
+    ///
+    /// Edges that a line eastward from the place meets are counted, each with its southern end and without its northern one.
+    pub(super) fn contains(&self, at: MapPoint) -> bool {
+        if !self.bounds.contains(at) {
+            return false;
+        }
+        let near_m = 8.0 * f64::EPSILON * self.largest_m();
+        let mut inside = false;
+        for ring in &self.rings {
+            for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+                let (edge, away) = (b - a, at - a);
+                let share = (away.dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
+                // An edge of no length is its one point.
+                let foot = if share.is_nan() { away } else { away - edge * share };
+                if foot.norm() <= near_m {
+                    return true;
+                }
+                if (a.y > at.y) != (b.y > at.y) && at.x < a.x + edge.x * (away.y / edge.y) {
+                    inside = !inside;
+                }
+            }
+        }
+        inside
+    }
+
+    /// The size of its largest coordinate.
+    fn largest_m(&self) -> f64 {
+        let MapBounds { min, max } = self.bounds;
+        [min.x, min.y, max.x, max.y].into_iter().map(f64::abs).fold(0.0, f64::max)
+    }
+
     /// A ring's point in the line's frame, on the line where it is nearly so.
     fn snapped(&self, line: &Line, point: MapPoint) -> Vector2<f64> {
         let frame = line.frame(point);
-        let far_m = [self.bounds.min.x, self.bounds.min.y, self.bounds.max.x, self.bounds.max.y];
-        let rounding_m = 8.0 * f64::EPSILON * far_m.into_iter().map(f64::abs).fold(0.0, f64::max);
+        let rounding_m = 8.0 * f64::EPSILON * self.largest_m();
         if frame.y.abs() <= line.tolerance_m.max(rounding_m) { Vector2::new(frame.x, 0.0) } else { frame }
     }
 

@@ -31,9 +31,3 @@ impl Experiment {
         }
     }
 }
-
-fn normals([radius, turn]: [f64; 2]) -> [f64; 2] {
-    let radius = (-2.0 * libm::log(1.0 - radius)).sqrt();
-    let (sine, cosine) = libm::sincos(std::f64::consts::TAU * turn);
-    [radius * cosine, radius * sine]
-}

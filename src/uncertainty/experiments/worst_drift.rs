@@ -3,14 +3,12 @@
 use nalgebra::Point3;
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
-use super::{
-    ground::{FreeArc, comes_down},
-    normals,
-};
+use super::ground::{FreeArc, comes_down};
 use crate::{
     chain::{ConstrainedChain, Direction},
     path::Hop,
     quantity::ChainPoint,
+    uncertainty::draws::normals,
 };
 
 /// How the paper's sentence is read, which leaves two things open: at what rate the noise acts, and which landing is farthest.

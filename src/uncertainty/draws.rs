@@ -1,0 +1,147 @@
+//! The random draws of one trial: a function of seed and trial number alone.
+
+use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
+
+/// Words of 32 bits in a block of the cipher: eight draws of 64 bits, all that a hop takes.
+const WORDS_PER_BLOCK: u128 = 16;
+
+/// The block where the draws of the whole trial begin: no trial has so many hops.
+const WHOLE_TRIAL: u128 = 1 << 40;
+
+/// The stream of one trial.
+///
+/// ```text
+///   block 0, 1, 2 ..      hop 1, 2, 3 ..: speed (2 draws), direction (2), drift (2), position (2)
+///   block 2^40            friction (2)
+///   blocks from 2^40 + 4  terrain height (4 for each wave)
+/// ```
+///
+/// Every hop takes its whole block whether or not a deviation is zero and whatever the policy, so that runs with other deviations or
+/// policies compare on the same draws.
+pub(super) struct TrialDraws {
+    source: ChaCha8Rng,
+}
+
+/// Which pairs of normals are used; the others are left at zero and cost nothing.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Wanted {
+    pub(super) speed: bool,
+    pub(super) direction: bool,
+    pub(super) drift: bool,
+    pub(super) position: bool,
+}
+
+/// Independent standard normals of one hop.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct HopDraws {
+    /// Of the absolute and of the relative error of speed.
+    pub(super) speed: [f64; 2],
+    /// Of elevation and heading.
+    pub(super) direction: [f64; 2],
+    /// Of the drift along and across.
+    pub(super) drift: [f64; 2],
+    /// Of the believed position, along or east, and north.
+    pub(super) position: [f64; 2],
+}
+
+impl TrialDraws {
+    pub(super) fn seeded(seed: u64) -> Self {
+        Self { source: ChaCha8Rng::seed_from_u64(seed) }
+    }
+
+    /// Goes to the first hop of a trial.
+    pub(super) fn begin(&mut self, trial: u64) {
+        self.source.set_stream(trial);
+    }
+
+    /// The draws of the next hop.
+    pub(super) fn hop(&mut self, wanted: Wanted) -> HopDraws {
+        let mut pair = |wanted: bool| {
+            let uniforms = [self.uniform(), self.uniform()];
+            if wanted { normals(uniforms) } else { [0.0; 2] }
+        };
+        HopDraws {
+            speed: pair(wanted.speed),
+            direction: pair(wanted.direction),
+            drift: pair(wanted.drift),
+            position: pair(wanted.position),
+        }
+    }
+
+    /// The friction draw of a trial, a standard normal.
+    pub(super) fn friction(&mut self, trial: u64) -> f64 {
+        self.source.set_stream(trial);
+        self.source.set_word_pos(WHOLE_TRIAL * WORDS_PER_BLOCK);
+        normals([self.uniform(), self.uniform()])[0]
+    }
+
+    /// Goes to the draws of a trial's height field: uniforms in [0, 1) follow.
+    pub(super) fn height_field(&mut self, trial: u64) -> impl FnMut() -> f64 + '_ {
+        self.source.set_stream(trial);
+        self.source.set_word_pos((WHOLE_TRIAL + 4) * WORDS_PER_BLOCK);
+        || self.uniform()
+    }
+
+    /// In [0, 1): 53 random bits.
+    fn uniform(&mut self) -> f64 {
+        self.source.random::<f64>()
+    }
+}
+
+/// Two independent standard normals from two uniforms in [0, 1) (Box and Muller 1958), through `libm`, so that no platform's own
+/// logarithm comes in. None is larger than 8.6.
+pub(super) fn normals([radius, turn]: [f64; 2]) -> [f64; 2] {
+    let radius = (-2.0 * libm::log(1.0 - radius)).sqrt();
+    let (sine, cosine) = libm::sincos(std::f64::consts::TAU * turn);
+    [radius * cosine, radius * sine]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ALL: Wanted = Wanted { speed: true, direction: true, drift: true, position: true };
+
+    #[test]
+    fn a_hop_takes_the_same_draws_whatever_else_is_wanted_or_came_before() {
+        let mut draws = TrialDraws::seeded(5);
+        draws.begin(17);
+        let all: Vec<HopDraws> = (0..9).map(|_| draws.hop(ALL)).collect();
+        let _ = draws.friction(17);
+        let _ = draws.height_field(17)();
+        draws.begin(17);
+        for known in &all {
+            let drift = draws.hop(Wanted { drift: true, ..Wanted::default() });
+            assert_eq!(drift, HopDraws { drift: known.drift, ..HopDraws::default() });
+        }
+        draws.begin(18);
+        assert_ne!(draws.hop(ALL), all[0]);
+        let mut other = TrialDraws::seeded(6);
+        other.begin(17);
+        assert_ne!(other.hop(ALL), all[0]);
+    }
+
+    #[test]
+    fn normals_are_standard_and_uncorrelated() {
+        let mut draws = TrialDraws::seeded(1);
+        let mut columns = [[0.0; 4]; 8];
+        let count = 20_000;
+        for trial in 0..count / 4 {
+            draws.begin(trial);
+            for _ in 0..4 {
+                let d = draws.hop(ALL);
+                let row = [d.speed, d.direction, d.drift, d.position].concat();
+                for (i, column) in columns.iter_mut().enumerate() {
+                    let (x, next) = (row[i], row[(i + 1) % 8]);
+                    for (sum, value) in column.iter_mut().zip([x, x * x, x * x * x * x, x * next]) {
+                        *sum += value / count as f64;
+                    }
+                }
+            }
+        }
+        // Five standard errors of each moment of 20 000 normals.
+        for [mean, square, fourth, mixed] in columns {
+            assert!(mean.abs() < 0.036 && (square - 1.0).abs() < 0.05 && (fourth - 3.0).abs() < 0.35 && mixed.abs() < 0.036);
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! What a trial asks of the ground, whether a chain or a map.
+
+use nalgebra::{Point3, Vector2};
+
+use super::{TrialOutcome, field::HeightField};
+use crate::{
+    chain::{ContactRule, GroundRefusal},
+    world::tolerant_speed_m_s,
+};
+
+/// How a hop really leaves the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Launch {
+    /// Direction on the map (east, north), of length 1; on a chain (1, 0) or (-1, 0).
+    pub heading: Vector2<f64>,
+    /// Horizontal speed, not negative, m/s.
+    pub horizontal_m_s: f64,
+    /// Vertical speed, m/s.
+    pub vertical_m_s: f64,
+}
+
+/// A command, and the landing that it aims at.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Command<S> {
+    pub(super) launch: Launch,
+    pub(super) speed_m_s: f64,
+    pub(super) aim: S,
+}
+
+impl<S> Command<S> {
+    pub(super) fn new(launch: Launch, aim: S) -> Self {
+        Self { launch, speed_m_s: libm::hypot(launch.horizontal_m_s, launch.vertical_m_s), aim }
+    }
+}
+
+/// How one flight went.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Flight<S, F> {
+    /// The first contact, or the last place over known ground.
+    pub(super) end: S,
+    /// What it meets there; `None` where it leaves the known ground in flight.
+    pub(super) footing: Option<F>,
+    pub(super) time_s: f64,
+}
+
+/// What is otherwise in one trial than on the map.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Variation {
+    /// Added to every friction coefficient.
+    pub(super) friction: f64,
+    pub(super) heights: Option<HeightField>,
+}
+
+/// Ground to fly over: nominal, or as one trial finds it.
+pub(super) trait Ground: Clone + Send + Sync {
+    /// Where the robot can stand.
+    type Spot: Copy + PartialEq + Send + Sync + std::fmt::Debug;
+    /// The ground under a landing.
+    type Footing: Copy;
+
+    /// Makes it the ground of another trial.
+    fn vary(&mut self, variation: Variation);
+
+    /// A place of the plan as it really is.
+    fn real(&self, planned: Self::Spot) -> Self::Spot;
+
+    /// Where that is: x, y, z.
+    fn point(&self, spot: &Self::Spot) -> Point3<f64>;
+
+    /// Whether the ground holds a take-off in this direction.
+    fn holds_takeoff(&self, from: &Self::Spot, launch: &Launch) -> bool;
+
+    /// Flies to the first contact. A flight that passes its aim as closely as rounding allows lands on it.
+    fn fly(&self, from: &Self::Spot, launch: &Launch, aim: &Self::Spot) -> Flight<Self::Spot, Self::Footing>;
+
+    /// What the landing does to the robot; `None` where it holds.
+    fn landing_failure(&self, end: &Self::Spot, footing: &Self::Footing, arrival: &Arrival) -> Option<TrialOutcome>;
+
+    /// Where it comes to rest after a drift along and to the left of its heading, or what becomes of it there.
+    fn drifted(&self, from: &Self::Spot, heading: Vector2<f64>, along_m: f64, left_m: f64) -> Result<Self::Spot, TrialOutcome>;
+
+    /// Where the robot believes to be, so far off: a place of the nominal ground; `None` where that has no ground.
+    fn believed(&self, spot: &Self::Spot, along_m: f64, across_m: f64) -> Option<Self::Spot>;
+
+    /// The best next hop from a place of the nominal ground; `None` where none leads on.
+    fn replanned(&self, believed: &Self::Spot) -> Option<Command<Self::Spot>>;
+}
+
+/// How far rounding may carry a flight from its place, as a share of its size: the tolerance of `path::execute`, for the same reasons.
+pub(super) const PLACE_TOLERANCE: f64 = 1e-12;
+
+/// How far a direction may lie over its limit, rad, as in `path::execute`: a tangent and its arc tangent on the way from a limit to a
+/// command leave some 1e-15.
+pub(super) const ANGLE_TOLERANCE_RAD: f64 = 1e-9;
+
+/// What may be lost of a speed by the formulas that gave it, as a share.
+const SPEED_ROUNDING: f64 = 1e-12;
+
+/// How a robot meets the ground.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arrival {
+    pub(super) heading: Vector2<f64>,
+    pub(super) horizontal_m_s: f64,
+    pub(super) vertical_m_s: f64,
+    pub(super) speed_m_s: f64,
+    /// How uncertain rounding leaves direction and speed.
+    pub(super) angle_tolerance_rad: f64,
+    speed_tolerance_m_s: f64,
+}
+
+impl Arrival {
+    /// After so much time of flight under gravity.
+    pub(super) fn after(launch: &Launch, time_s: f64, gravity_m_s2: f64) -> Self {
+        let vertical_m_s = launch.vertical_m_s - gravity_m_s2 * time_s;
+        let (across, up) = (launch.horizontal_m_s, vertical_m_s);
+        let speed_m_s = (across * across + up * up).sqrt();
+        // A place uncertain by e turns the direction by e g v_x / v^3 and changes the speed by e g v_z / v^2.
+        let size_m = across * time_s + launch.vertical_m_s.abs() * time_s;
+        let along_s = PLACE_TOLERANCE * size_m * gravity_m_s2 / (speed_m_s * speed_m_s);
+        let uncertain = if along_s.is_finite() { along_s } else { 0.0 };
+        Self {
+            heading: launch.heading,
+            horizontal_m_s: across,
+            vertical_m_s,
+            speed_m_s,
+            angle_tolerance_rad: ANGLE_TOLERANCE_RAD + if speed_m_s > 0.0 { uncertain * across / speed_m_s } else { 0.0 },
+            speed_tolerance_m_s: SPEED_ROUNDING * speed_m_s + uncertain * up.abs(),
+        }
+    }
+
+    /// Whether it is faster than a limit allows.
+    pub(super) fn is_over(&self, speed_max_m_s: f64) -> bool {
+        self.speed_m_s > tolerant_speed_m_s(speed_max_m_s) + self.speed_tolerance_m_s
+    }
+}
+
+/// Whether a direction lies within the slopes of a rule; straight up or down is infinite.
+pub(super) fn within(rule: &ContactRule, horizontal_m_s: f64, vertical_m_s: f64, tolerance_rad: f64) -> bool {
+    let slope = vertical_m_s / horizontal_m_s;
+    if !slope.is_finite() {
+        return rule.slopes().contains(if vertical_m_s > 0.0 { f64::INFINITY } else { f64::NEG_INFINITY });
+    }
+    let tolerance = tolerance_rad * (1.0 + slope * slope);
+    rule.slopes().lower - tolerance <= slope && slope <= rule.slopes().upper + tolerance
+}
+
+/// Whether a rule, or what the ground says instead, holds a take-off.
+pub(super) fn holds(rule: Result<ContactRule, GroundRefusal>, launch: &Launch) -> bool {
+    rule.is_ok_and(|rule| within(&rule, launch.horizontal_m_s, launch.vertical_m_s, ANGLE_TOLERANCE_RAD))
+}
+
+/// What a landing under a rule, or what the ground says instead, does to the robot.
+pub(super) fn failure(
+    rule: Result<ContactRule, GroundRefusal>,
+    landing_speed_max_m_s: f64,
+    arrival: &Arrival,
+) -> Option<TrialOutcome> {
+    match rule {
+        Err(GroundRefusal::KeepOut) => Some(TrialOutcome::Lost),
+        Err(GroundRefusal::SpeedZero) => Some(TrialOutcome::Damaged),
+        Err(_) if arrival.is_over(landing_speed_max_m_s) => Some(TrialOutcome::Damaged),
+        Err(_) => Some(TrialOutcome::SlidAtLanding),
+        Ok(rule) if arrival.is_over(rule.speed_max_m_s()) => Some(TrialOutcome::Damaged),
+        Ok(rule) => {
+            let stays = within(&rule, arrival.horizontal_m_s, arrival.vertical_m_s, arrival.angle_tolerance_rad);
+            (!stays).then_some(TrialOutcome::SlidAtLanding)
+        }
+    }
+}

@@ -1,0 +1,382 @@
+//! Flights in three dimensions, over the triangles of a DEM.
+
+use nalgebra::{Point3, Vector2};
+
+use super::{
+    Launch, MapGround, TrialOutcome,
+    ground::{ANGLE_TOLERANCE_RAD, Arrival, Command, Flight, Ground, PLACE_TOLERANCE, Variation, failure, holds},
+    on_chain::comes_down_m,
+};
+use crate::{
+    ballistics::{Arc, HopTest, LineOfSight, limits},
+    chain::{Contact, ContactRule, Direction, Ground as SegmentGround, GroundForm, LineConstraints, settle},
+    graph::{Cost, CostToGo},
+    quantity::{ChainPoint, MapPoint, SegmentId},
+    terrain::{FacetSpan, ProfileFacet, Triangles},
+    world::{FrictionCone, Grip, RestSlope, Surface, tolerant_speed_m_s},
+};
+
+/// How far before a landing, or beyond a take-off, friction and keep-out zones are asked for, m: a landing obeys the ground just flown
+/// over and a take-off the ground ahead, also where a border runs through the very place.
+const BESIDE_M: f64 = 1e-6;
+
+/// Units in the last place that a height or a coordinate may be off.
+const ULPS: f64 = 4.0;
+
+/// A DEM as the ground of a trial.
+#[derive(Clone, Debug)]
+pub(super) struct DemGround<'a> {
+    test: &'a HopTest<'a>,
+    surface: &'a Surface,
+    map: MapGround<'a>,
+    triangles: Triangles<'a>,
+    to_go: Option<&'a CostToGo>,
+    /// The nodes of the costs-to-go on the map.
+    nodes: &'a [MapSpot],
+    height_rounding_m: f64,
+    place_rounding_m: f64,
+    /// What the rest slope is where friction does not say it.
+    rest_slope: Option<f64>,
+    varied: Variation,
+}
+
+/// A place on the map and its height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct MapSpot {
+    pub(super) at: MapPoint,
+    pub(super) z_m: f64,
+}
+
+/// The facet of a landing: its slope towards east and north.
+pub(super) type Gradient = Vector2<f64>;
+
+impl<'a> DemGround<'a> {
+    pub(super) fn new(
+        test: &'a HopTest<'a>,
+        surface: &'a Surface,
+        map: MapGround<'a>,
+        to_go: Option<&'a CostToGo>,
+        nodes: &'a [MapSpot],
+    ) -> Self {
+        let (low_m, high_m) = map.dem.elevation_range_m();
+        let bounds = map.dem.bounds();
+        let farthest_m = [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y].into_iter().map(f64::abs).fold(0.0, f64::max);
+        Self {
+            test,
+            surface,
+            map,
+            triangles: Triangles::of(map.dem),
+            to_go,
+            nodes,
+            height_rounding_m: ULPS * f64::EPSILON * low_m.abs().max(high_m.abs()),
+            place_rounding_m: ULPS * f64::EPSILON * farthest_m,
+            rest_slope: match surface.rest {
+                RestSlope::AtMost(angle) => Some(angle.slope()),
+                RestSlope::AsFrictionHolds | RestSlope::Unlimited => None,
+            },
+            varied: Variation::default(),
+        }
+    }
+
+    /// Height of a post as this trial finds it.
+    #[inline]
+    fn heights(&self) -> impl Fn(usize, usize) -> f64 + '_ {
+        let nominal = self.triangles.nominal();
+        let origin = self.map.dem.georeference().north_west();
+        move |row, col| match &self.varied.heights {
+            None => nominal(row, col),
+            Some(field) => {
+                let away = self.triangles.post(row, col) - origin;
+                nominal(row, col) + field.at(away.x, away.y)
+            }
+        }
+    }
+
+    /// The friction at a place; `None` where angles are stated instead.
+    fn friction(&self, at: MapPoint) -> Option<f64> {
+        let constant = match self.surface.grip {
+            Some(Grip::Friction(cone)) => Some(cone),
+            Some(Grip::FromSlope { .. }) | None => None,
+        };
+        let cone = self.map.friction.and_then(|raster| raster.at(at)).or(constant)?;
+        Some((cone.coefficient() + self.varied.friction).max(0.0))
+    }
+
+    fn is_kept_out(&self, at: MapPoint) -> bool {
+        self.map.keep_out.is_some_and(|zones| zones.keeps_out(at))
+    }
+
+    /// Whether the robot rests on a facet with such friction.
+    fn rests(&self, gradient: Gradient, friction: Option<f64>) -> bool {
+        let max = match self.surface.rest {
+            RestSlope::AsFrictionHolds => friction,
+            RestSlope::AtMost(_) => self.rest_slope,
+            RestSlope::Unlimited => None,
+        };
+        max.is_none_or(|max| gradient.norm() <= max + ANGLE_TOLERANCE_RAD * (1.0 + max * max))
+    }
+
+    /// The stated angles of a facet met along a heading, where they are stated.
+    fn stated(&self, gradient: Gradient, heading: Vector2<f64>) -> Option<LineConstraints> {
+        let Some(Grip::FromSlope { takeoff, landing }) = self.surface.grip else { return None };
+        let hopper = self.test.hopper();
+        let slope = gradient.dot(&heading);
+        Some(LineConstraints::from_offsets(slope, takeoff, landing, hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s))
+    }
+
+    /// What the nominal ground grants a contact on a facet met along a heading: as a slice along that heading has it.
+    fn granted(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint, contact: Contact) -> Option<ContactRule> {
+        let friction = self.friction(beside).and_then(|coefficient| FrictionCone::new(coefficient).ok());
+        let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
+        let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out: self.is_kept_out(beside) };
+        let settled = settle(SegmentId(0), gradient.dot(&heading), &ground, self.test.hopper(), self.surface).ok()?;
+        settled.granted(contact, Direction::Forward).copied()
+    }
+
+    /// The best hop to a node, and what the journey then costs, where it could be better than the best known.
+    fn tried(&self, to_go: &CostToGo, from: &MapSpot, node: usize, best: Option<Cost>) -> Option<(Command<MapSpot>, Cost)> {
+        let target = self.nodes[node];
+        let rest = to_go.of_node(crate::quantity::NodeId(node))?;
+        let away = target.at - from.at;
+        let run_m = away.norm();
+        let (hopper, g) = (self.test.hopper(), self.test.gravity_m_s2());
+        if run_m <= self.place_rounding_m {
+            return None;
+        }
+        let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
+        let speed_m_s = tolerant_speed_m_s(hopper.takeoff_speed_max_m_s);
+        let too_far = g * run_m * sight.lift() > speed_m_s * speed_m_s;
+        if too_far || best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
+            return None;
+        }
+        let heading = away / run_m;
+        let arc = self.arc(to_go, from, &target, sight, heading)?;
+        let cost = to_go.options().effort.cost(&arc, 1) + rest;
+        if best.is_some_and(|best| cost >= best) {
+            return None;
+        }
+        let across = arc.horizontal_speed_m_s();
+        let launch = Launch { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() };
+        Some((Command::new(launch, target), cost))
+    }
+
+    /// The arc to fly to a place, by every limit along the slice to it; `None` where there is none.
+    fn arc(&self, to_go: &CostToGo, from: &MapSpot, to: &MapSpot, sight: LineOfSight, heading: Vector2<f64>) -> Option<Arc> {
+        let run_m = sight.run_m();
+        let end_m = run_m - self.place_rounding_m - BESIDE_M;
+        let mut walk = self.triangles.walk(from.at, heading, self.triangles.nominal());
+        let first = walk.next()?;
+        let takeoff = self.granted(first.gradient, heading, from.at + heading * BESIDE_M, Contact::Takeoff)?;
+        let clearance_m = self.test.hopper().clearance_m;
+        let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(run_m, to.z_m));
+        let mut lower = f64::NEG_INFINITY;
+        let mut last = first;
+        while last.to_m < end_m {
+            let crossing = ChainPoint::new(last.to_m, last.to_z_m);
+            if last.to_m > BESIDE_M {
+                lower = lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance_m));
+            }
+            last = walk.next()?;
+        }
+        let landing = self.granted(last.gradient, heading, to.at - heading * BESIDE_M, Contact::Landing)?;
+        let mut lofts = self.test.open_air(sight, &takeoff, &landing).ok()?;
+        lofts.lower = lofts.lower.max(lower);
+        (!lofts.is_empty()).then(|| Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), self.test.gravity_m_s2()))
+    }
+
+    /// How far off its aim, ahead and across, an arc may pass and still land on it.
+    fn aimed_at(&self, from: &MapSpot, launch: &Launch, aim: &MapSpot, slope: f64, curvature: f64) -> Option<Aimed> {
+        let away = aim.at - from.at;
+        let run_m = away.dot(&launch.heading);
+        let rise_m = aim.z_m - from.z_m;
+        let top_m = launch.vertical_m_s * launch.vertical_m_s / (2.0 * self.test.gravity_m_s2());
+        let slack_m = PLACE_TOLERANCE * (run_m + top_m + rise_m.abs()) + self.place_rounding_m;
+        let across_m = launch.heading.perp(&away).abs();
+        let steepness = 1.0 + (slope - 2.0 * curvature * run_m).abs();
+        let over_m = run_m * (slope - curvature * run_m) - rise_m;
+        let height_slack_m = slack_m * steepness + self.height_rounding_m;
+        let hits = run_m > 0.0 && across_m <= slack_m && over_m.abs() <= height_slack_m && self.varied.heights.is_none();
+        hits.then_some(Aimed { run_m, slack_m, height_slack_m })
+    }
+}
+
+/// A landing point that a flight passes as closely as rounding allows.
+#[derive(Clone, Copy)]
+struct Aimed {
+    run_m: f64,
+    slack_m: f64,
+    height_slack_m: f64,
+}
+
+impl Ground for DemGround<'_> {
+    type Spot = MapSpot;
+    type Footing = Gradient;
+
+    fn vary(&mut self, variation: Variation) {
+        self.varied = variation;
+    }
+
+    fn real(&self, planned: MapSpot) -> MapSpot {
+        if self.varied.heights.is_none() {
+            return planned;
+        }
+        self.triangles.at(planned.at, self.heights()).map_or(planned, |(z_m, _)| MapSpot { z_m, ..planned })
+    }
+
+    fn point(&self, spot: &MapSpot) -> Point3<f64> {
+        Point3::new(spot.at.x, spot.at.y, spot.z_m)
+    }
+
+    fn holds_takeoff(&self, from: &MapSpot, launch: &Launch) -> bool {
+        let Some(first) = self.triangles.walk(from.at, launch.heading, self.heights()).next() else {
+            // Beyond the edge of the known ground: nothing is known against it.
+            return true;
+        };
+        let ahead = from.at + launch.heading * BESIDE_M;
+        if self.is_kept_out(ahead) {
+            return false;
+        }
+        let friction = self.friction(ahead);
+        if !self.rests(first.gradient, friction) {
+            return false;
+        }
+        match (friction, self.stated(first.gradient, launch.heading)) {
+            (Some(friction), _) => holds_on(first.gradient, friction, velocity(launch), ANGLE_TOLERANCE_RAD),
+            (None, Some(stated)) => holds(Ok(stated.takeoff), launch),
+            (None, None) => false,
+        }
+    }
+
+    fn fly(&self, from: &MapSpot, launch: &Launch, aim: &MapSpot) -> Flight<MapSpot, Gradient> {
+        let g = self.test.gravity_m_s2();
+        let across = launch.horizontal_m_s;
+        let (slope, curvature) = (launch.vertical_m_s / across, g / (2.0 * across * across));
+        let mut last = FacetSpan { from_m: 0.0, to_m: 0.0, from_z_m: from.z_m, to_z_m: from.z_m, gradient: Gradient::zeros() };
+        let mut walk = self.triangles.walk(from.at, launch.heading, self.heights());
+        if !(curvature.is_finite() && slope.is_finite()) {
+            // Straight up, and down where it began.
+            let time_s = (2.0 * launch.vertical_m_s / g).max(0.0);
+            return Flight { end: *from, footing: walk.next().map(|span| span.gradient), time_s };
+        }
+        let aimed = self.aimed_at(from, launch, aim, slope, curvature);
+        let mut over_m = 0.0;
+        while let Some(span) = walk.next() {
+            if let Some(aimed) = aimed
+                && span.to_m >= aimed.run_m - aimed.slack_m
+            {
+                return Flight { end: *aim, footing: Some(span.gradient), time_s: aimed.run_m / across };
+            }
+            if span.to_m == span.from_m {
+                continue;
+            }
+            let ground = span.gradient.dot(&launch.heading);
+            // The first facet passes through the take-off itself, whatever the rounding of its posts' plane.
+            let over_next_m = if last.to_m == 0.0 {
+                span.to_m * ((slope - ground) - curvature * span.to_m)
+            } else {
+                (from.z_m - span.to_z_m) + span.to_m * (slope - curvature * span.to_m)
+            };
+            if over_next_m <= 0.0 && aimed.is_none_or(|aimed| over_next_m < -aimed.height_slack_m) {
+                let climb = slope - 2.0 * curvature * span.from_m - ground;
+                let further_m = comes_down_m(over_m, climb, curvature).min(span.to_m - span.from_m);
+                let distance_m = span.from_m + further_m;
+                let end = if distance_m == 0.0 {
+                    *from
+                } else {
+                    let share = further_m / (span.to_m - span.from_m);
+                    let z_m = span.from_z_m + (span.to_z_m - span.from_z_m) * share;
+                    MapSpot { at: from.at + launch.heading * distance_m, z_m }
+                };
+                return Flight { end, footing: Some(span.gradient), time_s: distance_m / across };
+            }
+            over_m = over_next_m.max(0.0);
+            last = span;
+        }
+        let end = MapSpot { at: from.at + launch.heading * last.to_m, z_m: last.to_z_m };
+        Flight { end, footing: None, time_s: last.to_m / across }
+    }
+
+    fn landing_failure(&self, end: &MapSpot, footing: &Gradient, arrival: &Arrival) -> Option<TrialOutcome> {
+        let flown_over = end.at - arrival.heading * BESIDE_M;
+        if self.is_kept_out(flown_over) {
+            return Some(TrialOutcome::Lost);
+        }
+        if arrival.is_over(self.test.hopper().landing_speed_max_m_s) {
+            return Some(TrialOutcome::Damaged);
+        }
+        let friction = self.friction(flown_over);
+        if !self.rests(*footing, friction) {
+            return Some(TrialOutcome::SlidAtLanding);
+        }
+        match (friction, self.stated(*footing, arrival.heading)) {
+            (Some(friction), _) => {
+                let back = -nalgebra::Vector3::new(
+                    arrival.heading.x * arrival.horizontal_m_s,
+                    arrival.heading.y * arrival.horizontal_m_s,
+                    arrival.vertical_m_s,
+                );
+                (!holds_on(*footing, friction, back, arrival.angle_tolerance_rad)).then_some(TrialOutcome::SlidAtLanding)
+            }
+            (None, Some(stated)) => failure(Ok(stated.landing), self.test.hopper().landing_speed_max_m_s, arrival),
+            (None, None) => Some(TrialOutcome::SlidAtLanding),
+        }
+    }
+
+    fn drifted(&self, from: &MapSpot, heading: Vector2<f64>, along_m: f64, left_m: f64) -> Result<MapSpot, TrialOutcome> {
+        if along_m == 0.0 && left_m == 0.0 {
+            return Ok(*from);
+        }
+        let left = Vector2::new(-heading.y, heading.x);
+        let at = from.at + heading * along_m + left * left_m;
+        let (z_m, gradient) = self.triangles.at(at, self.heights()).ok_or(TrialOutcome::Lost)?;
+        if self.is_kept_out(at) {
+            return Err(TrialOutcome::Lost);
+        }
+        if self.rests(gradient, self.friction(at)) { Ok(MapSpot { at, z_m }) } else { Err(TrialOutcome::SlidAtLanding) }
+    }
+
+    fn believed(&self, spot: &MapSpot, along_m: f64, across_m: f64) -> Option<MapSpot> {
+        if along_m == 0.0 && across_m == 0.0 && self.varied.heights.is_none() {
+            return Some(*spot);
+        }
+        let at = spot.at + Vector2::new(along_m, across_m);
+        self.triangles.at(at, self.triangles.nominal()).map(|(z_m, _)| MapSpot { at, z_m })
+    }
+
+    fn replanned(&self, believed: &MapSpot) -> Option<Command<MapSpot>> {
+        let to_go = self.to_go?;
+        let mut best: Option<(Command<MapSpot>, Cost)> = None;
+        for node in to_go.in_order() {
+            let known = best.as_ref().map(|(_, cost)| *cost);
+            let rest = to_go.of_node(*node)?;
+            if known.is_some_and(|known| Cost::of_hops(1) + rest >= known) {
+                // The nodes that follow have no less to go.
+                break;
+            }
+            if let Some(better) = self.tried(to_go, believed, node.index(), known) {
+                best = Some(better);
+            }
+        }
+        best.map(|(command, _)| command)
+    }
+}
+
+fn velocity(launch: &Launch) -> nalgebra::Vector3<f64> {
+    nalgebra::Vector3::new(launch.heading.x * launch.horizontal_m_s, launch.heading.y * launch.horizontal_m_s, launch.vertical_m_s)
+}
+
+/// Whether a facet of a gradient, with such friction, holds a direction away from it.
+///
+/// ```text
+///     |v - (n . v) n| <= mu (n . v)
+/// ```
+///
+/// The friction cone itself, where a slice has its cut by the plane of travel.
+fn holds_on(gradient: Gradient, friction: f64, away: nalgebra::Vector3<f64>, tolerance_rad: f64) -> bool {
+    let normal = nalgebra::Vector3::new(-gradient.x, -gradient.y, 1.0);
+    let upward = normal.dot(&away);
+    // |n x v| is the length of n times the part of v along the facet.
+    let along2 = normal.cross(&away).norm_squared();
+    let friction = friction + tolerance_rad * (1.0 + friction * friction);
+    upward > 0.0 && along2 <= (friction * upward) * (friction * upward)
+}

@@ -1,0 +1,243 @@
+//! One trial: hop after hop until it ends.
+
+use nalgebra::{Point2, Point3, Vector2};
+
+use super::{
+    HopRecord, Launch, Policy, TrialOutcome, TrialRecord, Uncertainty,
+    draws::{HopDraws, TrialDraws, Wanted},
+    field::HeightField,
+    ground::{Arrival, Command, Ground, Variation},
+};
+
+/// The planned journey over one kind of ground.
+#[derive(Clone, Debug)]
+pub(super) struct Plan<S> {
+    pub(super) start: S,
+    pub(super) goal: Point2<f64>,
+    pub(super) hops: Vec<PlannedHop<S>>,
+}
+
+/// A planned hop.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlannedHop<S> {
+    pub(super) from: S,
+    pub(super) command: Command<S>,
+}
+
+/// What holds for every trial of a run.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rules {
+    pub(super) uncertainty: Uncertainty,
+    pub(super) wanted: Wanted,
+    pub(super) policy: Policy,
+    pub(super) hop_limit: u32,
+    pub(super) goal_tolerance_m: f64,
+    pub(super) gravity_m_s2: f64,
+}
+
+/// A landing as the statistics need it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Landing {
+    /// From 0.
+    pub(super) hop: u32,
+    pub(super) error_m: f64,
+    pub(super) rest: Point2<f64>,
+}
+
+/// What some trials gave, in the order of trials and hops.
+#[derive(Debug, Default)]
+pub(super) struct Flown {
+    pub(super) trials: Vec<TrialRecord>,
+    pub(super) landings: Vec<Landing>,
+    /// Empty where no records are wanted.
+    pub(super) hops: Vec<HopRecord>,
+}
+
+impl Rules {
+    /// Which draws these errors and this policy use.
+    pub(super) fn wanted(uncertainty: &Uncertainty, policy: Policy) -> Wanted {
+        let u = uncertainty;
+        Wanted {
+            speed: u.takeoff_speed_sigma_m_s > 0.0 || u.takeoff_speed_sigma_fraction > 0.0,
+            direction: u.takeoff_angle_sigma.radians() > 0.0 || u.heading_sigma.radians() > 0.0,
+            drift: u.drift_along_sigma_m > 0.0 || u.drift_across_sigma_m > 0.0,
+            position: u.position_sigma_m > 0.0 && policy == Policy::Replan,
+        }
+    }
+
+    /// What is otherwise in a trial than on the map.
+    fn variation(&self, draws: &mut TrialDraws, trial: u64) -> Option<Variation> {
+        let u = &self.uncertainty;
+        let friction = if u.friction_sigma > 0.0 { u.friction_sigma * draws.friction(trial) } else { 0.0 };
+        let heights = (u.height_sigma_m > 0.0).then(|| HeightField::of(draws, trial, u.height_sigma_m, u.height_correlation_m));
+        (u.friction_sigma > 0.0 || heights.is_some()).then_some(Variation { friction, heights })
+    }
+
+    /// A command as it is really given: its speed first, then its elevation, then its heading.
+    fn launched(&self, launch: &Launch, speed_m_s: f64, draws: &HopDraws) -> Launch {
+        let u = &self.uncertainty;
+        let real_m_s =
+            speed_m_s * (1.0 + u.takeoff_speed_sigma_fraction * draws.speed[1]) + u.takeoff_speed_sigma_m_s * draws.speed[0];
+        let scale = if self.wanted.speed { real_m_s.max(0.0) / speed_m_s } else { 1.0 };
+        let (across, up) = (launch.horizontal_m_s * scale, launch.vertical_m_s * scale);
+        if !self.wanted.direction {
+            return Launch { heading: launch.heading, horizontal_m_s: across, vertical_m_s: up };
+        }
+        let (sine, cosine) = libm::sincos(u.takeoff_angle_sigma.radians() * draws.direction[0]);
+        let (across, up) = (across * cosine - up * sine, across * sine + up * cosine);
+        let mut heading = launch.heading;
+        if u.heading_sigma.radians() > 0.0 {
+            let (sine, cosine) = libm::sincos(u.heading_sigma.radians() * draws.direction[1]);
+            heading = Vector2::new(heading.x * cosine + heading.y * sine, heading.y * cosine - heading.x * sine);
+        }
+        // Beyond the vertical it flies the other way.
+        if across < 0.0 {
+            return Launch { heading: -heading, horizontal_m_s: -across, vertical_m_s: up };
+        }
+        Launch { heading, horizontal_m_s: across, vertical_m_s: up }
+    }
+}
+
+/// Flies one trial.
+pub(super) fn fly<G: Ground>(
+    ground: &mut G,
+    draws: &mut TrialDraws,
+    plan: &Plan<G::Spot>,
+    rules: &Rules,
+    trial: u64,
+    keep_hops: bool,
+    flown: &mut Flown,
+) {
+    if let Some(variation) = rules.variation(draws, trial) {
+        ground.vary(variation);
+    }
+    draws.begin(trial);
+    let mut journey = Journey { ground, plan, rules, spot: ground.real(plan.start), hops: 0 };
+    let outcome = loop {
+        let errors = draws.hop(rules.wanted);
+        let command = match journey.decide(&errors) {
+            Ok(command) => command,
+            Err(outcome) => break outcome,
+        };
+        if journey.hops == rules.hop_limit {
+            break TrialOutcome::HopLimit;
+        }
+        let launch = rules.launched(&command.launch, command.speed_m_s, &errors);
+        if !journey.ground.holds_takeoff(&journey.spot, &launch) {
+            break TrialOutcome::SlidAtTakeoff;
+        }
+        let ended = journey.hop(&launch, &command.aim, &errors, |landing, hop| {
+            flown.landings.extend(landing);
+            if keep_hops {
+                flown.hops.push(HopRecord { trial, ..hop() });
+            }
+        });
+        if let Some(outcome) = ended {
+            break outcome;
+        }
+    };
+    let end_m = journey.ground.point(&journey.spot);
+    let goal_distance_m = (end_m.xy() - plan.goal).norm();
+    flown.trials.push(TrialRecord { trial, outcome, hops: journey.hops, end_m, goal_distance_m });
+}
+
+/// A trial on its way.
+struct Journey<'t, G: Ground> {
+    ground: &'t G,
+    plan: &'t Plan<G::Spot>,
+    rules: &'t Rules,
+    spot: G::Spot,
+    hops: u32,
+}
+
+impl<G: Ground> Journey<'_, G> {
+    /// The next command, or how the journey ends here.
+    fn decide(&self, errors: &HopDraws) -> Result<Command<G::Spot>, TrialOutcome> {
+        let planned = usize::try_from(self.hops).ok().and_then(|hop| self.plan.hops.get(hop));
+        match self.rules.policy {
+            Policy::OpenLoop => planned.map(|hop| hop.command).ok_or_else(|| self.arrived()),
+            Policy::Replan => {
+                let sigma_m = self.rules.uncertainty.position_sigma_m;
+                let [along_m, across_m] = errors.position.map(|normal| sigma_m * normal);
+                let believed = self.ground.believed(&self.spot, along_m, across_m).ok_or(TrialOutcome::Stuck)?;
+                if self.is_at_goal(&believed) {
+                    return Err(self.arrived());
+                }
+                // Where it believes to be on the plan, the plan is as good as any other.
+                match planned {
+                    Some(hop) if hop.from == believed => Ok(hop.command),
+                    _ => self.ground.replanned(&believed).ok_or(TrialOutcome::Stuck),
+                }
+            }
+        }
+    }
+
+    fn is_at_goal(&self, spot: &G::Spot) -> bool {
+        (self.ground.point(spot).xy() - self.plan.goal).norm() <= self.rules.goal_tolerance_m
+    }
+
+    /// How a journey ends that stops here on purpose.
+    fn arrived(&self) -> TrialOutcome {
+        if self.is_at_goal(&self.spot) { TrialOutcome::Reached } else { TrialOutcome::Missed }
+    }
+
+    /// Flies a hop and drifts; tells of it, and how the trial ends where it ends with it.
+    fn hop(
+        &mut self,
+        launch: &Launch,
+        aim: &G::Spot,
+        errors: &HopDraws,
+        mut tell: impl FnMut(Option<Landing>, &dyn Fn() -> HopRecord),
+    ) -> Option<TrialOutcome> {
+        let (ground, uncertainty) = (self.ground, &self.rules.uncertainty);
+        let from = self.spot;
+        let flight = ground.fly(&from, launch, aim);
+        let arrival = Arrival::after(launch, flight.time_s, self.rules.gravity_m_s2);
+        let drift_m = [uncertainty.drift_along_sigma_m * errors.drift[0], uncertainty.drift_across_sigma_m * errors.drift[1]];
+        let failure = match &flight.footing {
+            None => Some(TrialOutcome::Lost),
+            Some(footing) => ground.landing_failure(&flight.end, footing, &arrival),
+        };
+        let (rest, outcome) = match failure {
+            Some(outcome) => (flight.end, Some(outcome)),
+            None => match ground.drifted(&flight.end, launch.heading, drift_m[0], drift_m[1]) {
+                Ok(rest) => (rest, None),
+                Err(outcome) => (flight.end, Some(outcome)),
+            },
+        };
+        let (aim_m, rest_m) = (ground.point(aim), ground.point(&rest));
+        let error_m = (rest_m - aim_m).xy().norm();
+        let landed = flight.footing.is_some();
+        let landing = landed.then(|| Landing { hop: self.hops, error_m, rest: rest_m.xy() });
+        self.hops += 1;
+        self.spot = rest;
+        let record = || HopRecord {
+            trial: 0,
+            hop: self.hops,
+            takeoff_m: ground.point(&from),
+            heading: launch.heading,
+            horizontal_m_s: launch.horizontal_m_s,
+            takeoff_vertical_m_s: launch.vertical_m_s,
+            landing_vertical_m_s: arrival.vertical_m_s,
+            flight_time_s: flight.time_s,
+            planned_m: aim_m,
+            contact_m: self.end_of_flight(&flight.end, &from, launch, flight.time_s, landed),
+            rest_m,
+            error_m,
+            landed,
+            outcome,
+        };
+        tell(landing, &record);
+        outcome
+    }
+
+    /// The contact; of a flight that left the known ground, where it was then, in the air.
+    fn end_of_flight(&self, end: &G::Spot, from: &G::Spot, launch: &Launch, time_s: f64, landed: bool) -> Point3<f64> {
+        let end_m = self.ground.point(end);
+        if landed {
+            return end_m;
+        }
+        let up_m = time_s * (launch.vertical_m_s - 0.5 * self.rules.gravity_m_s2 * time_s);
+        Point3::new(end_m.x, end_m.y, self.ground.point(from).z + up_m)
+    }
+}
