@@ -2,6 +2,7 @@
 
 mod check_answer;
 mod document;
+mod experiment_answer;
 mod fan_answer;
 #[cfg(feature = "plot")]
 pub mod figure;
@@ -16,6 +17,7 @@ mod whole_file;
 
 pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, verdict_name};
 pub use document::{CrsRecord, Document, InputFile};
+pub use experiment_answer::{ConeWidthAnswer, ConeWidthRecord, DriftRecord, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer};
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, slice_geojson};
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};

@@ -201,6 +201,16 @@ impl Covers {
         [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
     }
 
+    /// The raster of friction, where there is one.
+    pub const fn raster(&self) -> Option<&FrictionRaster> {
+        self.raster.as_ref()
+    }
+
+    /// The zones to keep out of, where there are any.
+    pub const fn keep_out(&self) -> Option<&KeepOut> {
+        self.keep_out.as_ref()
+    }
+
     /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones.
     ///
     /// # Errors

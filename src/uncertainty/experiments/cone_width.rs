@@ -33,19 +33,6 @@ impl DriftLaw {
     }
 }
 
-/// What one width of the cones came to under one law of drift.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ConeWidth {
-    /// The landings of the path planned at this width.
-    pub landings: Vec<DriftLanding>,
-}
-
-impl ConeWidth {
-    /// Median error of the last landing, m; `None` where no flight came down.
-    pub fn last_median_m(&self) -> Option<f64> {
-        self.landings.last().and_then(|landing| median(&landing.errors_m))
-    }
-}
 
 /// Flies the paper's experiment along a path under a law of drift.
 ///
@@ -56,28 +43,16 @@ pub fn cone_width(
     gravity_m_s2: f64,
     experiment: &DriftExperiment,
     (law, reference_m_s): (DriftLaw, f64),
-) -> ConeWidth {
+) -> Vec<DriftLanding> {
     let sigmas_m = experiment.takeoff_variances_m2.map(f64::sqrt);
     let scatter = |hop: &Hop| {
         let share = match law {
             DriftLaw::Fixed => 1.0,
-            DriftLaw::WithHorizontalSpeed => horizontal_speed_m_s(hop) / reference_m_s,
+            DriftLaw::WithHorizontalSpeed => hop.horizontal_speed_m_s() / reference_m_s,
         };
         sigmas_m.map(|sigma_m| sigma_m * share)
     };
-    ConeWidth { landings: drift_with(chain, hops, gravity_m_s2, experiment, &scatter) }
-}
-
-/// The horizontal speed of a hop, constant over its flight, m/s.
-pub(super) fn horizontal_speed_m_s(hop: &Hop) -> f64 {
-    hop.takeoff_speed_m_s / libm::hypot(1.0, hop.takeoff_angle.slope())
-}
-
-/// The middle of some numbers: of an even count the lower of the two in the middle.
-fn median(numbers: &[f64]) -> Option<f64> {
-    let mut sorted = numbers.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len().saturating_sub(1) / 2).copied()
+    drift_with(chain, hops, gravity_m_s2, experiment, &scatter)
 }
 
 /// A chain with all its cones narrowed about the vertical: every bound keeps this share of its distance from straight up (take-off) or

@@ -4,7 +4,7 @@ mod cone_width;
 mod ground;
 mod worst_drift;
 
-pub use cone_width::{CONE_SHARES, ConeWidth, DriftLaw, cone_width, narrowed};
+pub use cone_width::{CONE_SHARES, DriftLaw, cone_width, narrowed};
 pub use worst_drift::{DriftExperiment, DriftLanding, DriftReading, worst_drift};
 
 /// The experiments, by the names they are asked for.

@@ -174,8 +174,7 @@ fn noise_sigma_m(hop: &Hop, experiment: &DriftExperiment) -> f64 {
 
 /// Where a hop flown as planned from elsewhere comes down.
 fn flown(chain: &ConstrainedChain, hop: &Hop, gravity_m_s2: f64, from: Point3<f64>) -> Option<Point3<f64>> {
-    let slope = hop.takeoff_angle.slope();
-    let horizontal_m_s = hop.takeoff_speed_m_s / libm::hypot(1.0, slope);
+    let (slope, horizontal_m_s) = (hop.takeoff_angle.slope(), hop.horizontal_speed_m_s());
     let sign = if hop.direction == Direction::Forward { 1.0 } else { -1.0 };
     let bend_per_m = gravity_m_s2 / (2.0 * horizontal_m_s * horizontal_m_s);
     let (x_m, z_m) = comes_down(chain.geometry(), &FreeArc { x_m: from.x, z_m: from.z, sign, slope, bend_per_m })?;

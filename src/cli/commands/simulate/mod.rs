@@ -19,7 +19,7 @@ use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
     load::{EndOptions, Loaded, load_with},
-    output::{self, Pending},
+    output,
 };
 use listen::RowFile;
 pub(super) use pictures::{landing_map, sheet};
@@ -76,7 +76,16 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let policies: &[Policy] = if args.compare { &Policy::ALL } else { std::slice::from_ref(&keys.policy) };
     let flyer = Flyer::new(&loaded, &test, path, &planned.found, policies)?;
     let flown = flyer.fly(policies, &trials_asked(args, &keys), rows, args.common.quiet)?;
-    finish_pictures(&loaded, &flyer, &flown, plot, plot_map)?;
+    let mut files = Vec::new();
+    if let (Some(file), Some(path)) = (plot, args.plot.as_deref()) {
+        files.push((file, sheet(&flyer, &flown, path)?));
+    }
+    if let (Some(file), Some(path)) = (plot_map, args.plot_map.as_deref())
+        && let Some(picture) = landing_map(&flyer, &flown, path)?
+    {
+        files.push((file, picture));
+    }
+    output::finish(files)?;
     if to_stdout {
         return Ok(Answer::Yes);
     }
@@ -99,24 +108,6 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     };
     output::to_stdout(text.as_bytes())?;
     Ok(Answer::Yes)
-}
-
-/// The pictures that were asked for.
-fn finish_pictures(
-    loaded: &Loaded,
-    flyer: &Flyer<'_>,
-    flown: &[Flown],
-    plot: Option<Pending<'_>>,
-    plot_map: Option<Pending<'_>>,
-) -> Result<(), Failure> {
-    let mut files = Vec::new();
-    if let Some(file) = plot {
-        files.push((file, sheet(loaded, flyer, flown)?));
-    }
-    if let (Some(file), Some(picture)) = (plot_map, landing_map(loaded, flyer, flown)?) {
-        files.push((file, picture));
-    }
-    output::finish(files)
 }
 
 /// The answer where there is nothing to fly.
