@@ -4,7 +4,11 @@
 
 mod support;
 
-use chta::{ballistics::HopTest, quantity::VertexId};
+use chta::{
+    ballistics::{HopTest, LandingTable, Sweep},
+    chain::Direction,
+    quantity::VertexId,
+};
 use divan::{Bencher, black_box, counter::ItemsCount};
 
 fn main() {
@@ -39,4 +43,32 @@ fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
     bencher
         .counter(ItemsCount::new(2 * window))
         .bench_local(|| stations.iter().filter(|landing| test.loft(black_box(&takeoff), black_box(landing)).is_ok()).count());
+}
+
+/// The same by a sweep: speeds cut the far landings, as they do in a search (`sweep_against_plain` has windows that they do not cut).
+#[divan::bench(args = [30, 200, 2000])]
+fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
+    let (chain, hopper) = support::fractal_chain(2 * window + 1);
+    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let stations: Vec<_> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
+    let takeoff = stations[window];
+    let table = LandingTable::new(&test, &stations);
+    let mut sweep = Sweep::new(&table);
+    bencher.counter(ItemsCount::new(2 * window)).bench_local(|| {
+        let mut feasible = 0;
+        for direction in Direction::BOTH {
+            let all = 0..stations.len();
+            sweep.landings(black_box(&takeoff), all, direction, |_, verdict| feasible += usize::from(verdict.is_ok()));
+        }
+        feasible
+    });
+}
+
+/// The bound on reach that a search asks for at every take-off, on a chain of 100 000 segments.
+#[divan::bench]
+fn reach_of_one_takeoff(bencher: Bencher<'_, '_>) {
+    let (chain, hopper) = support::fractal_chain(100_000);
+    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let takeoff = chain.geometry().vertex_station(VertexId(50_000));
+    bencher.bench_local(|| test.reach_bound_m(black_box(&takeoff)));
 }

@@ -18,6 +18,9 @@ const COMMANDS: [&str; 7] = ["run", "slice", "hop", "check", "plan", "synth", "b
 /// Options that need a projected map, tried in `maps_command.rs`.
 const ON_A_PROJECTED_MAP: [&str; 4] = ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--accept-map-scale"];
 
+/// Options that must change nothing but the time it takes, tried below.
+const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
+
 /// An option, a command line without it, and one with it.
 type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
 
@@ -213,8 +216,8 @@ fn options(command: &str) -> BTreeSet<String> {
 fn every_option_changes_what_one_sees() {
     for (command, trials) in [("run", &RUN[..]), ("slice", &SLICE), ("hop", &HOP), ("check", &CHECK), ("plan", &PLAN)] {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
-        let here: BTreeSet<_> =
-            options(command).into_iter().filter(|option| !ON_A_PROJECTED_MAP.contains(&option.as_str())).collect();
+        let elsewhere = |option: &str| ON_A_PROJECTED_MAP.contains(&option) || ON_THE_TIME_ALONE.contains(&option);
+        let here: BTreeSet<_> = options(command).into_iter().filter(|option| !elsewhere(option)).collect();
         assert_eq!(tried, here, "{command}: an option without a trial, or the reverse");
         for (option, without, with) in trials {
             let (before, after) = (seen(without), seen(with));
@@ -224,6 +227,26 @@ fn every_option_changes_what_one_sees() {
         }
     }
     assert!(options("bodies").is_empty());
+}
+
+#[test]
+fn threads_change_nothing() {
+    for words in [
+        &["check", "scenario.toml"][..],
+        &["check", "scenario.toml", "--pairs", "pairs.csv", "--format", "json"],
+        &["plan", "scenario.toml", "--verify", "--plot", "path.svg"],
+        &["run", "scenario.toml", "-o", "out"],
+    ] {
+        let expected = seen(words);
+        assert_eq!(expected.0.status, 0, "{words:?}: {:?}", expected.0);
+        for threads in ["0", "1", "2", "7"] {
+            let (ran, files) = seen(&[words, &["--threads", threads]].concat());
+            assert_eq!(ran, expected.0, "{words:?} with {threads} threads");
+            assert!(files.keys().eq(expected.1.keys()), "{words:?} with {threads} threads");
+            assert!(files.values().map(|file| &file.1).eq(expected.1.values().map(|file| &file.1)), "{words:?}: {threads} threads");
+        }
+        assert_eq!(desk().run(&[words, &["--threads", "many"]].concat()).status, 2);
+    }
 }
 
 #[test]

@@ -1,6 +1,8 @@
 //! The search against an edge list built pair by pair, the frontier against closures, and what more limits may and may not do.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
+#[path = "graph/own_search.rs"]
+mod own_search;
 mod support;
 
 use chta::{

@@ -1,10 +1,10 @@
 //! The hop test: may one hop join two stations, and with which take-off slopes?
 
-use super::{LineOfSight, SegmentHops, SegmentReach, TakeoffSet, limits};
+use super::{LineOfSight, SegmentHops, SegmentReach, TakeoffSet, limits, reach::Relief};
 use crate::{
     chain::{ConstrainedChain, Contact, ContactRule, Direction, Station},
     quantity::{Angle, SegmentId, SlopeInterval},
-    world::{Hopper, Limit, tolerant_speed_m_s},
+    world::{Hopper, Limit},
 };
 
 /// A chain, a hopper and a gravity, ready to answer for any pair of stations.
@@ -17,8 +17,8 @@ pub struct HopTest<'a> {
     gravity_m_s2: f64,
     /// The machine's own take-off slopes.
     mechanical: SlopeInterval,
-    /// Lowest and highest vertex, m.
-    heights_m: (f64, f64),
+    /// Heights and speeds over any stretch.
+    relief: Relief,
     /// How far one hop carries on each segment, by direction.
     reaches: Vec<[Option<SegmentReach>; 2]>,
 }
@@ -26,11 +26,6 @@ pub struct HopTest<'a> {
 impl<'a> HopTest<'a> {
     /// For a chain, a hopper and a gravity above 0 in m/s^2.
     pub fn new(chain: &'a ConstrainedChain, hopper: &Hopper, gravity_m_s2: f64) -> Self {
-        let heights_m = chain
-            .geometry()
-            .vertices()
-            .iter()
-            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v.z_m), high.max(v.z_m)));
         let mut test = Self {
             chain,
             hopper: *hopper,
@@ -39,7 +34,7 @@ impl<'a> HopTest<'a> {
                 lower: hopper.takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
                 upper: hopper.takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
             },
-            heights_m,
+            relief: Relief::of(chain),
             reaches: Vec::new(),
         };
         test.reaches = (0..chain.segments().len())
@@ -61,6 +56,11 @@ impl<'a> HopTest<'a> {
     /// Gravity, m/s^2.
     pub const fn gravity_m_s2(&self) -> f64 {
         self.gravity_m_s2
+    }
+
+    /// Heights and speeds over any stretch of the chain.
+    pub(super) const fn relief(&self) -> &Relief {
+        &self.relief
     }
 
     /// The machine's own take-off slopes.
@@ -113,7 +113,7 @@ impl<'a> HopTest<'a> {
 
     /// The rule that the ground grants a contact, or the limit by which it refuses.
     #[inline]
-    fn granted(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
+    pub(super) fn granted(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
         let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
         segment.granted(contact, direction).ok_or_else(|| match segment.judged(contact, direction) {
             Err(refusal) => refusal.limit(contact),
@@ -137,7 +137,7 @@ impl<'a> HopTest<'a> {
 
     /// The lofts that the machine's greatest height and longest flight allow.
     #[inline]
-    fn machine(&self, sight: LineOfSight) -> SlopeInterval {
+    pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
         let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
         match self.hopper.flight_time_max_s {
             Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),
@@ -145,18 +145,41 @@ impl<'a> HopTest<'a> {
         }
     }
 
+    /// Whether the machine has a greatest height or a longest flight.
+    #[inline]
+    pub(super) const fn has_machine_limits(&self) -> bool {
+        self.hopper.apex_height_max_m.is_some() || self.hopper.flight_time_max_s.is_some()
+    }
+
     /// Which limit left nothing, limits taken one after the other.
     #[cold]
     fn refusing(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Limit {
+        let takeoff = limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2);
+        if takeoff.is_empty() {
+            return Limit::TakeoffSpeed;
+        }
+        let both = takeoff.intersect(limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2));
+        if both.is_empty() {
+            return Limit::LandingSpeed;
+        }
+        self.refusing_after_speeds(sight, both, from.slopes(), to.slopes())
+    }
+
+    /// Which limit left nothing of what both speeds allow, limits taken one after the other.
+    pub(super) fn refusing_after_speeds(
+        &self,
+        sight: LineOfSight,
+        speeds: SlopeInterval,
+        takeoff_slopes: SlopeInterval,
+        landing_slopes: SlopeInterval,
+    ) -> Limit {
         let in_order = [
-            (Limit::TakeoffSpeed, limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2)),
-            (Limit::LandingSpeed, limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2)),
-            (Limit::TakeoffCone, limits::takeoff_cone(sight, from.slopes())),
-            (Limit::LandingCone, limits::landing_cone(sight, to.slopes())),
+            (Limit::TakeoffCone, limits::takeoff_cone(sight, takeoff_slopes)),
+            (Limit::LandingCone, limits::landing_cone(sight, landing_slopes)),
             (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical)),
             (Limit::ApexHeight, self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
         ];
-        let mut left = SlopeInterval { lower: 0.0, upper: f64::INFINITY };
+        let mut left = speeds;
         for (limit, loft) in in_order {
             left = left.intersect(loft);
             if left.is_empty() || left.upper <= 0.0 {
@@ -188,35 +211,5 @@ impl<'a> HopTest<'a> {
     /// How far one hop carries along a segment; `None` where its ground allows no hop along it.
     pub fn segment_reach(&self, segment: SegmentId, direction: Direction) -> Option<SegmentReach> {
         self.reaches.get(segment.index()).and_then(|both| both[direction as usize])
-    }
-
-    /// The horizontal distance beyond which no hop from this station lands, in either direction, m.
-    ///
-    /// ```text
-    ///     X <= (v / g) sqrt(v^2 + 2 g h)
-    /// ```
-    ///
-    /// from the parabola of safety with the greatest drop `h` the chain offers; the same for the greatest landing speed, flown
-    /// backwards, with the greatest climb.
-    pub fn reach_bound_m(&self, takeoff: &Station) -> f64 {
-        self.farthest_m(takeoff.point.z_m - self.heights_m.0, self.heights_m.1 - takeoff.point.z_m)
-    }
-
-    /// The horizontal distance that no hop of this chain exceeds, m.
-    pub fn greatest_reach_m(&self) -> f64 {
-        let range_m = self.heights_m.1 - self.heights_m.0;
-        self.farthest_m(range_m, range_m)
-    }
-
-    /// The bound on one hop's distance from the greatest drop and the greatest climb it may take.
-    fn farthest_m(&self, drop_m: f64, climb_m: f64) -> f64 {
-        let g = self.gravity_m_s2;
-        let safe = |speed_max_m_s: f64, height_m: f64| {
-            let v = tolerant_speed_m_s(speed_max_m_s);
-            v / g * (v * v + 2.0 * g * height_m.max(0.0)).sqrt()
-        };
-        let (takeoff_speed, landing_speed) = self.chain.speed_bounds_m_s();
-        // Rounding of this bound itself: a few units in the last place.
-        safe(takeoff_speed, drop_m).min(safe(landing_speed, climb_m)) * (1.0 + 1e-12)
     }
 }

@@ -31,8 +31,10 @@ mod conflict;
 mod hop_test;
 pub mod limits;
 mod line_of_sight;
+mod reach;
 mod risk;
 mod segment_hops;
+mod sweep;
 mod takeoff_set;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
@@ -42,4 +44,5 @@ pub use hop_test::HopTest;
 pub use line_of_sight::LineOfSight;
 pub use risk::{HopDeviations, PlannedHop, RiskModel};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
+pub use sweep::{LandingTable, Sweep};
 pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Ground, GroundForm, OffChain, Site, Station};
+use super::{Direction, Ground, GroundForm, OffChain, Site, Station};
 use crate::{
     quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
     terrain::{Profile, ProfilePoint},
@@ -231,6 +231,16 @@ impl PolygonalChain {
         self.bends.get(next).copied().filter(|v| self.vertices[v.index()].x_m < high_m)
     }
 
+    /// The x of the next bend in a direction, strictly beyond `x_m`; `None` where there is none.
+    #[inline]
+    pub fn next_bend_m(&self, x_m: f64, direction: Direction) -> Option<f64> {
+        let at = |vertex: &VertexId| self.vertices[vertex.index()].x_m;
+        match direction {
+            Direction::Forward => self.bends.get(self.bends.partition_point(|v| at(v) <= x_m)).map(at),
+            Direction::Reverse => self.bends[..self.bends.partition_point(|v| at(v) < x_m)].last().map(at),
+        }
+    }
+
     /// The vertices, in the direction of +x.
     pub fn vertices(&self) -> &[ChainPoint] {
         &self.vertices
@@ -275,7 +285,12 @@ impl PolygonalChain {
         if self.vertices[next].x_m == x_m {
             return Ok(self.vertex_station(VertexId(next)));
         }
-        Ok(Station { point: self.point_inside(SegmentId(next - 1), x_m), site: Site::Inside(SegmentId(next - 1)) })
+        Ok(self.station_inside(SegmentId(next - 1), x_m))
+    }
+
+    /// The station at an `x_m` strictly between the ends of a segment.
+    pub(crate) fn station_inside(&self, segment: SegmentId, x_m: f64) -> Station {
+        Station { point: self.point_inside(segment, x_m), site: Site::Inside(segment) }
     }
 
     /// The station at a vertex.

@@ -90,6 +90,9 @@ pub(crate) struct RunArgs {
     /// Folder for the results, made where it does not exist
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
     /// How the answer is written to standard output
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
@@ -226,6 +229,9 @@ pub(crate) struct CheckArgs {
     /// Many questions at once: CSV with `start_x_m,goal_x_m`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["start", "goal"])]
     pub(crate) pairs: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
     /// How the answer is written
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
@@ -260,6 +266,9 @@ pub(crate) struct PlanArgs {
     /// Fly the path again by direct simulation and judge every limit
     #[arg(long)]
     pub(crate) verify: bool,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
     /// How the answer is written
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,

@@ -75,6 +75,9 @@ pub struct Cost {
 }
 
 impl Cost {
+    /// More than any path costs.
+    pub(super) const UNREACHED: Self = Self { hops: u64::MAX, sum: f64::INFINITY, peak: f64::INFINITY };
+
     /// So many hops without any effort: no journey of as many hops costs less.
     pub const fn of_hops(hops: u64) -> Self {
         Self { hops, sum: 0.0, peak: 0.0 }

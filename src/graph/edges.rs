@@ -1,10 +1,10 @@
 //! The hop graph: edges evaluated when asked for, through petgraph's traits.
 
-use std::{cell::RefCell, collections::HashSet};
+use std::{collections::HashSet, ops::Range};
 
 use petgraph::visit::{Data, EdgeRef, GraphBase, IntoEdgeReferences, IntoEdges, IntoNeighbors, Visitable};
 
-use super::{Cost, Effort, NodeSet, RefusalCounts};
+use super::{Cost, Effort, NodeSet, nodes::around};
 use crate::{
     ballistics::{Arc, HopTest, SegmentHops, Split, TakeoffChoice},
     chain::Station,
@@ -22,36 +22,19 @@ pub enum Edge {
 }
 
 impl Edge {
-    /// What joins two stations; see [`HopGraph::edge`].
-    #[inline]
-    pub(super) fn between(test: &HopTest<'_>, takeoff: &Station, landing: &Station) -> Result<Self, Limit> {
-        match test.loft(takeoff, landing) {
-            Ok(loft) => Ok(Self::Hop(loft)),
-            Err(limit) => test.segment_hops(takeoff, landing).map(Self::Along).ok_or(limit),
-        }
-    }
-
-    /// What it costs between two stations, in an effort at a choice of angle and a split.
-    pub(super) fn cost(
-        self,
-        test: &HopTest<'_>,
-        takeoff: &Station,
-        landing: &Station,
-        (effort, choice, split): (Effort, TakeoffChoice, Split),
-    ) -> Cost {
-        let Some(sight) = test.line_of_sight(takeoff, landing) else { return Cost::default() };
+    /// How many hops it takes.
+    pub const fn hops(&self) -> u64 {
         match self {
-            Self::Hop(loft) => effort.cost(&Arc::new(sight, choice.loft(sight, loft), test.gravity_m_s2()), 1),
-            Self::Along(along) => {
-                let (each_m, last_m) = along.lengths_m(split);
-                let arc = |length_m| along.arc(test, length_m, choice);
-                effort.cost(&arc(each_m), along.hops() - 1) + effort.cost(&arc(last_m), 1)
-            }
+            Self::Hop(_) => 1,
+            Self::Along(along) => along.hops(),
         }
     }
 }
 
 /// The hop graph over a node set. Edges are computed when visited and never stored.
+///
+/// petgraph's algorithms run on it as they are; [`search`](super::search()) has a faster way of its own, against which its tests hold
+/// petgraph's.
 #[derive(Debug)]
 pub struct HopGraph<'a> {
     test: &'a HopTest<'a>,
@@ -59,22 +42,12 @@ pub struct HopGraph<'a> {
     effort: Effort,
     choice: TakeoffChoice,
     split: Split,
-    tally: RefCell<Tally>,
-    expanded: RefCell<Vec<bool>>,
-}
-
-/// What the search has looked at so far.
-#[derive(Clone, Copy, Debug, Default)]
-struct Tally {
-    pairs: u64,
-    refusals: RefusalCounts,
 }
 
 impl<'a> HopGraph<'a> {
     /// A graph over nodes, with the effort, choice of take-off angle and split that its costs are counted in.
-    pub fn new(test: &'a HopTest<'a>, nodes: &'a NodeSet, effort: Effort, choice: TakeoffChoice, split: Split) -> Self {
-        let expanded = RefCell::new(vec![false; nodes.stations().len()]);
-        Self { test, nodes, effort, choice, split, tally: RefCell::default(), expanded }
+    pub const fn new(test: &'a HopTest<'a>, nodes: &'a NodeSet, effort: Effort, choice: TakeoffChoice, split: Split) -> Self {
+        Self { test, nodes, effort, choice, split }
     }
 
     /// The nodes.
@@ -93,34 +66,41 @@ impl<'a> HopGraph<'a> {
     /// The limit that refuses the single hop, where there are no hops along a segment either.
     #[inline]
     pub fn edge(&self, takeoff: &Station, landing: &Station) -> Result<Edge, Limit> {
-        Edge::between(self.test, takeoff, landing)
+        self.edge_of(takeoff, landing, self.test.loft(takeoff, landing))
+    }
+
+    /// As [`edge`](Self::edge), where it is known what the hop test says of the single hop.
+    #[inline]
+    pub(super) fn edge_of(
+        &self,
+        takeoff: &Station,
+        landing: &Station,
+        single: Result<SlopeInterval, Limit>,
+    ) -> Result<Edge, Limit> {
+        match single {
+            Ok(loft) => Ok(Edge::Hop(loft)),
+            Err(limit) => self.test.segment_hops(takeoff, landing).map(Edge::Along).ok_or(limit),
+        }
     }
 
     /// The cost of an edge between two stations.
     pub fn cost(&self, takeoff: &Station, landing: &Station, edge: Edge) -> Cost {
-        edge.cost(self.test, takeoff, landing, (self.effort, self.choice, self.split))
+        let Some(sight) = self.test.line_of_sight(takeoff, landing) else { return Cost::default() };
+        let g = self.test.gravity_m_s2();
+        match edge {
+            Edge::Hop(loft) => self.effort.cost(&Arc::new(sight, self.choice.loft(sight, loft), g), 1),
+            Edge::Along(along) => {
+                let (each_m, last_m) = along.lengths_m(self.split);
+                let arc = |length_m| along.arc(self.test, length_m, self.choice);
+                self.effort.cost(&arc(each_m), along.hops() - 1) + self.effort.cost(&arc(last_m), 1)
+            }
+        }
     }
 
-    /// How many pairs were tested, and how the refused ones fell.
-    pub fn tally(&self) -> (u64, RefusalCounts) {
-        let tally = self.tally.borrow();
-        (tally.pairs, tally.refusals)
-    }
-
-    /// Which nodes the search has left from: after a search without success, all that can be reached.
-    pub fn expanded(&self) -> Vec<bool> {
-        self.expanded.borrow().clone()
-    }
-
-    /// The candidate landings of a node: within reach of one hop, or on a segment that the node lies on, along which many hops reach
-    /// farther.
-    pub(super) fn landings(&self, node: NodeId) -> std::ops::Range<usize> {
-        self.nodes.around(self.nodes.station(node), self.test.reach_bound_m(self.nodes.station(node)))
-    }
-
-    /// The candidate take-offs for a landing on a node: as [`landings`](Self::landings), with the reach of the whole chain.
-    pub(super) fn takeoffs(&self, node: NodeId) -> std::ops::Range<usize> {
-        self.nodes.around(self.nodes.station(node), self.test.greatest_reach_m())
+    /// The candidate landings of a station: where the chain's speeds and heights do not rule out one hop, or on a segment that it lies
+    /// on, along which many hops reach farther.
+    pub(super) fn landings(&self, takeoff: &Station) -> Range<usize> {
+        around(self.nodes.stations(), takeoff, self.test.counted_reach_m(takeoff))
     }
 }
 
@@ -159,7 +139,7 @@ impl EdgeRef for EdgeReference {
 pub struct Edges<'g> {
     graph: &'g HopGraph<'g>,
     source: NodeId,
-    candidates: std::ops::Range<usize>,
+    candidates: Range<usize>,
 }
 
 impl Iterator for Edges<'_> {
@@ -172,15 +152,9 @@ impl Iterator for Edges<'_> {
                 continue;
             }
             let landing = self.graph.nodes.station(target);
-            let edge = self.graph.edge(takeoff, landing);
-            let mut tally = self.graph.tally.borrow_mut();
-            tally.pairs += 1;
-            match edge {
-                Ok(edge) => {
-                    let weight = self.graph.cost(takeoff, landing, edge);
-                    return Some(EdgeReference { source: self.source, target, weight });
-                }
-                Err(limit) => tally.refusals.count(limit),
+            if let Ok(edge) = self.graph.edge(takeoff, landing) {
+                let weight = self.graph.cost(takeoff, landing, edge);
+                return Some(EdgeReference { source: self.source, target, weight });
             }
         }
         None
@@ -255,7 +229,6 @@ impl<'g> IntoEdges for &'g HopGraph<'g> {
     type Edges = Edges<'g>;
 
     fn edges(self, node: NodeId) -> Edges<'g> {
-        self.expanded.borrow_mut()[node.index()] = true;
-        Edges { graph: self, source: node, candidates: self.landings(node) }
+        Edges { graph: self, source: node, candidates: self.landings(self.nodes.station(node)) }
     }
 }

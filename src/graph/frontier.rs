@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{HopGraph, RefusalCounts};
+use super::{HopGraph, RefusalCounts, local_reach::LocalReach, nodes::around};
 use crate::{ballistics::Conflict, chain::Station, quantity::NodeId};
 
 /// How far one gets from start and towards goal over the nodes of one graph, and what refuses in between.
@@ -39,21 +39,20 @@ impl Frontier {
     /// Taking a refusal apart costs some microseconds, so this bounds the work to about a second.
     const EXPLAINED: usize = 200_000;
 
-    /// Of a graph whose search found no path.
-    pub(super) fn of(graph: &HopGraph<'_>) -> Self {
+    /// Of a graph whose search found no path, by its nodes that were reached.
+    pub(super) fn of(graph: &HopGraph<'_>, reach: &LocalReach, reached: &[bool]) -> Self {
         let nodes = graph.nodes();
-        let reached = graph.expanded();
-        let leads = leading_to_goal(graph);
+        let leads = leading_to_goal(graph, reach);
         let of = |flags: &[bool]| -> Vec<Station> {
             nodes.stations().iter().zip(flags).filter(|(_, flag)| **flag).map(|(station, _)| *station).collect()
         };
-        let (reached_stations, leads_stations) = (of(&reached), of(&leads));
+        let (reached_stations, leads_stations) = (of(reached), of(&leads));
         let nearest = |stations: &[Station], to: &Station| {
             let away = |s: &&Station| (s.point.x_m - to.point.x_m).abs();
             stations.iter().min_by(|a, b| away(a).total_cmp(&away(b))).copied()
         };
         let (start, goal) = (*nodes.station(nodes.start()), *nodes.station(nodes.goal()));
-        let (refusals, nearest_miss) = refusals_out_of(graph, &reached);
+        let (refusals, nearest_miss) = refusals_out_of(graph, reached);
         Self {
             nearest_to_goal: nearest(&reached_stations, &goal).unwrap_or(start),
             nearest_to_start: nearest(&leads_stations, &start).unwrap_or(goal),
@@ -66,14 +65,15 @@ impl Frontier {
 }
 
 /// Which nodes lead to the goal: breadth-first, against the direction of the hops.
-fn leading_to_goal(graph: &HopGraph<'_>) -> Vec<bool> {
+fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach) -> Vec<bool> {
     let nodes = graph.nodes();
     let mut leads = vec![false; nodes.stations().len()];
     let mut queue = VecDeque::from([nodes.goal()]);
     leads[nodes.goal().index()] = true;
     while let Some(landing) = queue.pop_front() {
-        for takeoff in graph.takeoffs(landing) {
-            if !leads[takeoff] && graph.edge(&nodes.stations()[takeoff], nodes.station(landing)).is_ok() {
+        let landing = nodes.station(landing);
+        for takeoff in around(nodes.stations(), landing, reach.at_m(landing)) {
+            if !leads[takeoff] && graph.edge(&nodes.stations()[takeoff], landing).is_ok() {
                 leads[takeoff] = true;
                 queue.push_back(NodeId(takeoff));
             }
@@ -88,8 +88,8 @@ fn refusals_out_of(graph: &HopGraph<'_>, reached: &[bool]) -> (RefusalCounts, Op
     let mut counts = RefusalCounts::default();
     let mut explained = 0;
     let mut best: Option<(f64, NearestMiss)> = None;
-    for (i, takeoff) in stations.iter().enumerate().filter(|(i, _)| reached[*i]) {
-        for j in graph.landings(NodeId(i)).filter(|&j| !reached[j]) {
+    for (takeoff, _) in stations.iter().zip(reached).filter(|(_, reached)| **reached) {
+        for j in graph.landings(takeoff).filter(|&j| !reached[j]) {
             let landing = stations[j];
             let Err(limit) = graph.edge(takeoff, &landing) else { continue };
             counts.count(limit);

@@ -1,14 +1,19 @@
 //! The hop graph over points of the chain, and the search for the path of fewest hops.
 //!
 //! Nodes are the vertices, points between them, start and goal; an edge is one hop, or several along one segment, in either
-//! direction of travel. Edges are evaluated when the search asks for them and never stored, so memory grows with the nodes alone.
+//! direction of travel. Edges are evaluated when the node they leave from is settled and never stored, so memory grows with the nodes
+//! alone. Nodes are settled in batches of one hop count, each by as many threads as are worth it.
 //!
 //! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing.
 
 mod cost;
 mod edges;
 mod frontier;
+mod fronts;
+mod goals;
+mod local_reach;
 mod nodes;
+mod questions;
 mod reachable;
 mod refusals;
 mod search;
@@ -22,7 +27,7 @@ pub use frontier::{Frontier, NearestMiss};
 pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
-pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search};
+pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search, search_pairs};
 pub use surest::{RiskUse, SurestPath, SuretyOptions, search_surest, surest_paths};
 pub use to_go::CostToGo;
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};

@@ -1,8 +1,10 @@
 //! The points of the chain between which hops are tried.
 
+use std::ops::Range;
+
 use crate::{
     chain::{ConstrainedChain, Station},
-    quantity::{NodeId, VertexId},
+    quantity::{ChainPoint, NodeId, SegmentId, VertexId},
 };
 
 /// How densely the segments are filled with points.
@@ -32,7 +34,7 @@ pub struct NodeSet {
 }
 
 impl NodeSet {
-    /// The largest set: some 100 bytes a node in nodes and search, so 2 GB.
+    /// The largest set: some 150 bytes a node in nodes, landings and search, so 3 GB.
     pub const MAX_NODES: u64 = 20_000_000;
 
     /// All vertices, equidistant points inside each segment, start and goal (P section IV-B).
@@ -40,40 +42,69 @@ impl NodeSet {
     /// # Errors
     /// [`TooManyNodes`] above [`NodeSet::MAX_NODES`].
     pub fn new(chain: &ConstrainedChain, start: Station, goal: Station, spacing: PointSpacing) -> Result<Self, TooManyNodes> {
+        let mut nodes = Self::of_chain(chain, spacing)?;
+        nodes.insert(start);
+        nodes.insert(goal);
+        (nodes.start, nodes.goal) = (nodes.at(&start), nodes.at(&goal));
+        Ok(nodes)
+    }
+
+    /// All vertices and equidistant points inside each segment: what every journey over a chain has in common. It starts at the first
+    /// vertex and its goal is the last.
+    ///
+    /// # Errors
+    /// [`TooManyNodes`] above [`NodeSet::MAX_NODES`], a start and a goal of their own counted.
+    pub fn of_chain(chain: &ConstrainedChain, spacing: PointSpacing) -> Result<Self, TooManyNodes> {
         let geometry = chain.geometry();
-        let counts: Vec<u64> = geometry
-            .vertices()
-            .windows(2)
-            .map(|pair| match spacing {
-                PointSpacing::PerSegment(k) => u64::from(k),
-                PointSpacing::AtMostM(spacing_m) => {
-                    points_needed(libm::hypot(pair[1].x_m - pair[0].x_m, pair[1].z_m - pair[0].z_m), spacing_m)
-                }
-            })
-            .collect();
-        let nodes = counts.iter().fold(geometry.vertices().len() as u64 + 2, |sum, &k| sum.saturating_add(k));
+        let inside = |pair: &[ChainPoint]| match spacing {
+            PointSpacing::PerSegment(k) => u64::from(k),
+            PointSpacing::AtMostM(spacing_m) => {
+                points_needed(libm::hypot(pair[1].x_m - pair[0].x_m, pair[1].z_m - pair[0].z_m), spacing_m)
+            }
+        };
+        let segments = || geometry.vertices().windows(2);
+        let nodes = segments().map(inside).fold(geometry.vertices().len() as u64 + 2, u64::saturating_add);
         if nodes > Self::MAX_NODES {
             return Err(TooManyNodes { nodes });
         }
-        let mut stations = Vec::with_capacity(usize::try_from(nodes).unwrap_or(0));
-        for (i, (pair, &k)) in geometry.vertices().windows(2).zip(&counts).enumerate() {
+        let mut stations: Vec<Station> = Vec::with_capacity(usize::try_from(nodes).unwrap_or(0));
+        let mut most = 0;
+        for (i, pair) in segments().enumerate() {
+            let k = inside(pair);
+            most = most.max(k);
             stations.push(geometry.vertex_station(VertexId(i)));
             for j in 1..=k {
                 #[expect(clippy::cast_precision_loss, reason = "fewer points than 2^53")]
                 let fraction = j as f64 / (k + 1) as f64;
                 let x_m = pair[0].x_m + (pair[1].x_m - pair[0].x_m) * fraction;
-                stations.extend(geometry.station(x_m));
+                // Segments too short for their points fold them together.
+                if stations.last().is_some_and(|last| last.point.x_m < x_m) && x_m < pair[1].x_m {
+                    stations.push(geometry.station_inside(SegmentId(i), x_m));
+                }
             }
         }
         stations.push(geometry.vertex_station(VertexId(geometry.segment_count())));
-        stations.extend([start, goal]);
-        stations.sort_by(|a, b| a.point.x_m.total_cmp(&b.point.x_m));
-        // The same x is the same place; segments too short for their points fold them together.
-        stations.dedup_by(|a, b| a.point.x_m == b.point.x_m);
-        let at = |station: &Station| NodeId(stations.partition_point(|s| s.point.x_m < station.point.x_m));
-        let (start, goal) = (at(&start), at(&goal));
-        let most = counts.iter().copied().max().unwrap_or(0);
-        Ok(Self { stations, start, goal, most_per_segment: u32::try_from(most).unwrap_or(u32::MAX) })
+        let goal = NodeId(stations.len() - 1);
+        Ok(Self { stations, start: NodeId(0), goal, most_per_segment: u32::try_from(most).unwrap_or(u32::MAX) })
+    }
+
+    /// Makes a station a node, unless there is one at its x: the same x is the same place.
+    fn insert(&mut self, station: Station) {
+        if self.find(&station).is_none() {
+            let at = self.at(&station);
+            self.stations.insert(at.index(), station);
+        }
+    }
+
+    /// The first node at a station's x or beyond.
+    fn at(&self, station: &Station) -> NodeId {
+        NodeId(self.stations.partition_point(|s| s.point.x_m < station.point.x_m))
+    }
+
+    /// The node at a station's x; `None` where there is none.
+    pub fn find(&self, station: &Station) -> Option<NodeId> {
+        let at = self.at(station);
+        self.stations.get(at.index()).is_some_and(|s| s.point.x_m == station.point.x_m).then_some(at)
     }
 
     /// The stations of all nodes, from left to right.
@@ -106,25 +137,30 @@ impl NodeSet {
     }
 
     /// The nodes whose x lies within `distance_m` of a station's.
-    pub fn within(&self, station: &Station, distance_m: f64) -> std::ops::Range<usize> {
-        let (low, high) = (station.point.x_m - distance_m, station.point.x_m + distance_m);
-        let first = self.stations.partition_point(|s| s.point.x_m < low);
-        let end = self.stations.partition_point(|s| s.point.x_m <= high);
-        first..end.max(first)
+    pub fn within(&self, station: &Station, distance_m: f64) -> Range<usize> {
+        within(&self.stations, station, distance_m)
     }
+}
 
-    /// The nodes within a distance of a station, or on a segment that it lies on.
-    pub fn around(&self, station: &Station, distance_m: f64) -> std::ops::Range<usize> {
-        let mut range = self.within(station, distance_m);
-        let shares = |other: &Station| other.shared_segment(station).is_some();
-        while range.start > 0 && shares(&self.stations[range.start - 1]) {
-            range.start -= 1;
-        }
-        while range.end < self.stations.len() && shares(&self.stations[range.end]) {
-            range.end += 1;
-        }
-        range
+/// The stations, of some that rise in x, whose x lies within `distance_m` of another's.
+fn within(stations: &[Station], station: &Station, distance_m: f64) -> Range<usize> {
+    let (low, high) = (station.point.x_m - distance_m, station.point.x_m + distance_m);
+    let first = stations.partition_point(|s| s.point.x_m < low);
+    let end = stations.partition_point(|s| s.point.x_m <= high);
+    first..end.max(first)
+}
+
+/// The stations, of some that rise in x, within a distance of another or on a segment that it lies on: with one hop's reach for the
+/// distance, all that hops or hops along a segment join to it.
+pub(super) fn around(stations: &[Station], station: &Station, distance_m: f64) -> Range<usize> {
+    let mut range = within(stations, station, distance_m);
+    while range.start > 0 && stations[range.start - 1].shared_segment(station).is_some() {
+        range.start -= 1;
     }
+    while range.end < stations.len() && stations[range.end].shared_segment(station).is_some() {
+        range.end += 1;
+    }
+    range
 }
 
 /// Points inside a stretch so that neighbours are no farther apart than the spacing.

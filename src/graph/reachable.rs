@@ -1,10 +1,13 @@
 //! How far one gets from a start in any direction along the chain.
 
-use petgraph::algo::dijkstra;
-
-use super::{HopGraph, NodeSet, PointSpacing, TooManyNodes, cost::Effort};
+use super::{
+    Effort, HopGraph, NodeSet, PointSpacing, TooManyNodes,
+    fronts::{Aim, Fronts},
+    goals::Goals,
+    local_reach::LocalReach,
+};
 use crate::{
-    ballistics::{HopTest, Split, TakeoffChoice},
+    ballistics::{HopTest, LandingTable, Split, TakeoffChoice},
     chain::Station,
     quantity::NodeId,
     world::Limit,
@@ -20,7 +23,7 @@ pub struct Reachable {
     pub refusing_ahead: Option<Limit>,
 }
 
-/// The fewest hops from a start to every node, Dijkstra's algorithm without a goal.
+/// The fewest hops from a start to every node: the search without a goal.
 ///
 /// # Errors
 /// [`TooManyNodes`].
@@ -30,9 +33,12 @@ pub struct Reachable {
 pub fn reachable(test: &HopTest<'_>, start: Station, spacing: PointSpacing) -> Result<Reachable, TooManyNodes> {
     let set = NodeSet::new(test.chain(), start, start, spacing)?;
     let graph = HopGraph::new(test, &set, Effort::default(), TakeoffChoice::default(), Split::default());
-    let hops = dijkstra(&graph, set.start(), None, |edge| petgraph::visit::EdgeRef::weight(&edge).hops());
+    let table = LandingTable::new(test, set.stations());
+    let reach = LocalReach::of(test);
+    let mut fronts = Fronts::new(&graph, &table, &reach, Aim::Hops);
+    fronts.run(&start, &mut Goals::new(&[]));
     let stations = set.stations();
-    let nodes: Vec<_> = stations.iter().enumerate().map(|(i, station)| (*station, hops.get(&NodeId(i)).copied())).collect();
+    let nodes: Vec<_> = stations.iter().enumerate().map(|(i, station)| (*station, fronts.hops(NodeId(i)))).collect();
     let farthest = nodes.iter().rposition(|(_, hops)| hops.is_some()).unwrap_or(0);
     let refusing_ahead = stations.get(farthest).zip(stations.get(farthest + 1)).and_then(|(a, b)| graph.edge(a, b).err());
     Ok(Reachable { nodes, refusing_ahead })

@@ -1,13 +1,13 @@
-//! The search for the path of fewest hops, then least effort, with petgraph.
-
-use petgraph::algo::astar;
+//! The search for the path of fewest hops, then least effort.
 
 use super::{
-    Cost, Edge, Effort, EndpointRefusal, Frontier, HopGraph, NodeSet, PointSpacing, RefusalCounts, TooManyNodes, endpoint_refusal,
+    Cost, Edge, Effort, EndpointRefusal, Frontier, NodeSet, PointSpacing, RefusalCounts, TooManyNodes,
+    local_reach::LocalReach,
+    questions::{Questions, Round},
 };
 use crate::{
     ballistics::{HopTest, Split, TakeoffChoice},
-    chain::{Contact, Direction, Station},
+    chain::Station,
 };
 
 /// The points per segment that "auto" tries, the first that finds a path answering.
@@ -67,7 +67,7 @@ pub struct Answer {
     pub points_per_segment: u32,
     /// How many nodes there were.
     pub nodes: usize,
-    /// How many pairs were tested, over all spacings tried.
+    /// How many pairs were tested, over all spacings tried. Questions with one start share the search and its counts.
     pub pairs_tested: u64,
     /// How the refused pairs fell.
     pub refusals: RefusalCounts,
@@ -85,14 +85,17 @@ impl Answer {
 
 /// Finds the path of fewest hops, and of least effort among those, over the nodes asked for (P Algorithm 3).
 ///
+/// Of several such paths it gives the one whose nodes, compared from the goal backwards, come first along the chain. The answer does
+/// not depend on the number of threads (those of the rayon pool it is called in).
+///
 /// `progress` is told each spacing before it is tried.
 ///
 /// # Errors
 /// [`TooManyNodes`].
 ///
 /// # Complexity
-/// With V nodes, W of them in reach of each and S vertices flown past: at most O(V W S + V W log(V W)) time, O(V W) heap entries in
-/// petgraph's queue at worst, no stored edges.
+/// With V nodes, W of them in reach of each ahead of the nodes of as many hops, and S vertices flown past: about O(V W), as
+/// [`Sweep`](crate::ballistics::Sweep) judges one take-off, in time; some 150 bytes a node in memory, no stored edges.
 pub fn search(
     test: &HopTest<'_>,
     start: Station,
@@ -100,68 +103,42 @@ pub fn search(
     options: &SearchOptions,
     progress: &mut dyn FnMut(PointSpacing),
 ) -> Result<Answer, TooManyNodes> {
+    let mut answers = search_pairs(test, &[(start, goal)], options, progress)?;
+    // One question, one answer.
+    answers.pop().ok_or(TooManyNodes { nodes: 0 })
+}
+
+/// Answers many questions, each a start and a goal, with one search for each start.
+///
+/// Every answer is that of [`search`] for its pair, but for the counts of pairs tested and refused, which are those of the shared
+/// search: goals lead no farther, so that none is in the way of another.
+///
+/// # Errors
+/// [`TooManyNodes`].
+pub fn search_pairs(
+    test: &HopTest<'_>,
+    pairs: &[(Station, Station)],
+    options: &SearchOptions,
+    progress: &mut dyn FnMut(PointSpacing),
+) -> Result<Vec<Answer>, TooManyNodes> {
     let automatic = AUTO_POINTS_PER_SEGMENT.map(PointSpacing::PerSegment);
     let spacings: &[PointSpacing] = match &options.spacing {
         Some(spacing) => std::slice::from_ref(spacing),
         None => &automatic,
     };
-    let refusing = refusing_endpoints(test, &start, &goal);
-    let mut pairs_tested = 0;
-    let mut refusals = RefusalCounts::default();
-    let mut last = None;
+    let reach = LocalReach::of(test);
+    let mut questions = Questions::new(pairs);
     for (i, &spacing) in spacings.iter().enumerate() {
-        let nodes = NodeSet::new(test.chain(), start, goal, spacing)?;
-        let answer = |outcome, pairs_tested, refusals| Answer {
-            outcome,
-            spacing,
-            points_per_segment: nodes.most_per_segment(),
-            nodes: nodes.stations().len(),
-            pairs_tested,
-            refusals,
-        };
-        if !refusing.is_empty() {
-            return Ok(answer(Outcome::EndpointsRefuse(refusing), 0, refusals));
+        let nodes = NodeSet::of_chain(test.chain(), spacing)?;
+        let round = Round { test, reach: &reach, nodes: &nodes, spacing, options, is_last: i + 1 == spacings.len() };
+        if i == 0 {
+            questions.refuse_ends(&round);
+        }
+        if questions.are_answered() {
+            break;
         }
         progress(spacing);
-        let graph = HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split);
-        let found = shortest(&graph);
-        let (pairs, refused) = graph.tally();
-        pairs_tested += pairs;
-        refusals += refused;
-        if let Some((cost, legs)) = found {
-            return Ok(answer(Outcome::Path { legs, cost }, pairs_tested, refusals));
-        }
-        if i + 1 == spacings.len() {
-            let frontier = Box::new(Frontier::of(&graph));
-            last = Some(answer(Outcome::NoPath(frontier), pairs_tested, refusals));
-        }
+        questions.ask(&round)?;
     }
-    // There is always a last spacing.
-    last.ok_or(TooManyNodes { nodes: 0 })
-}
-
-/// Which of start and goal refuse whatever the hop. A journey of no hop asks nothing of either.
-fn refusing_endpoints(test: &HopTest<'_>, start: &Station, goal: &Station) -> Vec<EndpointRefusal> {
-    let Some(towards) = Direction::between(start.point.x_m, goal.point.x_m) else { return Vec::new() };
-    [(start, Contact::Takeoff), (goal, Contact::Landing)]
-        .into_iter()
-        .filter_map(|(station, contact)| endpoint_refusal(test.chain(), station, contact, towards))
-        .collect()
-}
-
-/// The cheapest path, by petgraph's A* without an estimate, that is Dijkstra's algorithm with predecessors.
-fn shortest(graph: &HopGraph<'_>) -> Option<(Cost, Vec<Leg>)> {
-    use petgraph::visit::EdgeRef;
-
-    let nodes = graph.nodes();
-    let goal = nodes.goal();
-    let (cost, path) = astar(graph, nodes.start(), |node| node == goal, |edge| *edge.weight(), |_| Cost::default())?;
-    let legs = path
-        .windows(2)
-        .filter_map(|pair| {
-            let (takeoff, landing) = (*nodes.station(pair[0]), *nodes.station(pair[1]));
-            graph.edge(&takeoff, &landing).ok().map(|edge| Leg { takeoff, landing, edge })
-        })
-        .collect();
-    Some((cost, legs))
+    Ok(questions.into_answers())
 }

@@ -217,7 +217,7 @@ fn steps_from(graph: &HopGraph<'_>, node: usize) -> Vec<Step> {
         let edge = graph.edge(takeoff, nodes.station(NodeId(target))).ok()?;
         Some(Step { target, hops: hops_of(edge) })
     };
-    graph.landings(NodeId(node)).filter(|&target| target != node).filter_map(step).collect()
+    graph.landings(takeoff).filter(|&target| target != node).filter_map(step).collect()
 }
 
 const fn hops_of(edge: Edge) -> u64 {

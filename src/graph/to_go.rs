@@ -2,11 +2,12 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use super::{Cost, Edge, Effort, HopGraph, Leg, NodeSet, SearchOptions};
+use super::{Cost, Effort, HopGraph, Leg, NodeSet, SearchOptions, nodes::around};
 use crate::{
     ballistics::{Arc, HopTest, LineOfSight},
-    chain::Station,
+    chain::{Direction, Station},
     quantity::NodeId,
+    world::tolerant_speed_m_s,
 };
 
 /// The cost of the cheapest way from every node to the goal, computed once: what a robot needs that finds itself elsewhere than planned.
@@ -30,11 +31,15 @@ impl CostToGo {
     /// # Complexity
     /// With V nodes, W of them in reach of each and S vertices flown past: O(V W S + V W log V) time, O(V W) heap entries at worst.
     pub fn of(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions) -> Self {
-        let graph = HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split);
-        let costs = settled(&graph);
+        let costs = settled(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split));
         let mut in_order: Vec<NodeId> = (0..costs.len()).map(NodeId).filter(|node| costs[node.index()].is_some()).collect();
         in_order.sort_by_key(|node| (costs[node.index()], *node));
         Self { nodes, options: options.clone(), costs, in_order }
+    }
+
+    /// The graph that the costs are counted in.
+    fn graph<'g>(&'g self, test: &'g HopTest<'g>) -> HopGraph<'g> {
+        HopGraph::new(test, &self.nodes, self.options.effort, self.options.takeoff, self.options.split)
     }
 
     /// The nodes.
@@ -75,28 +80,63 @@ impl CostToGo {
     /// The best way on from any station of the chain, which need not be a node: the first leg, and what the whole journey then costs.
     /// `None` where no node that leads to the goal is in reach.
     ///
-    /// Of two that cost the same the one to the node with the smaller x.
+    /// Nodes are tried from the goal's side on: those with the least to go come early, and the others need no hop test. Of two legs that
+    /// make the journey cost the same, the one tried first is taken.
     ///
     /// # Complexity
     /// A hop test for each node in reach that could still be better than the best known.
     pub fn best_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<(Leg, Cost)> {
-        let counted = (self.options.effort, self.options.takeoff, self.options.split);
+        let graph = self.graph(test);
         let stations = self.nodes.stations();
+        let reach = OneHop::of(test);
         let mut best: Option<(Leg, Cost)> = None;
-        for node in self.nodes.around(from, test.reach_bound_m(from)) {
+        let in_reach = around(stations, from, test.reach_bound_m(from));
+        let goal_ahead = self.nodes.station(self.nodes.goal()).point.x_m > from.point.x_m;
+        let count = in_reach.len();
+        for i in 0..count {
+            let node = if goal_ahead { in_reach.end - 1 - i } else { in_reach.start + i };
             let landing = &stations[node];
-            let (Some(to_go), Some(sight)) = (self.costs[node], test.line_of_sight(from, landing)) else { continue };
+            let Some(to_go) = self.costs[node] else { continue };
             let too_dear = |cost: Cost| best.as_ref().is_some_and(|(_, known)| cost >= *known);
-            if too_dear(Cost::of_hops(1) + to_go) || too_dear(self.least_cost(sight, test.gravity_m_s2()) + to_go) {
+            if too_dear(Cost::of_hops(1) + to_go) {
                 continue;
             }
-            let Ok(edge) = Edge::between(test, from, landing) else { continue };
-            let cost = edge.cost(test, from, landing, counted) + to_go;
+            let Some(sight) = test.line_of_sight(from, landing) else { continue };
+            let too_far = reach.excludes(sight) && from.shared_segment(landing).is_none();
+            if too_far || too_dear(self.least_cost(sight, test.gravity_m_s2()) + to_go) {
+                continue;
+            }
+            let Ok(edge) = graph.edge(from, landing) else { continue };
+            let cost = graph.cost(from, landing, edge) + to_go;
             if !too_dear(cost) {
                 best = Some((Leg { takeoff: *from, landing: *landing, edge }, cost));
             }
         }
         best
+    }
+}
+
+/// The parabolas of safety of a chain's greatest speeds: those speeds squared, m^2/s^2, and gravity, m/s^2.
+#[derive(Clone, Copy)]
+struct OneHop {
+    takeoff_squared: f64,
+    landing_squared: f64,
+    gravity: f64,
+}
+
+impl OneHop {
+    fn of(test: &HopTest<'_>) -> Self {
+        // A billionth more than the tolerance allows: rounding must not lose a hop that touches.
+        let squared = |speed_m_s: f64| tolerant_speed_m_s(tolerant_speed_m_s(speed_m_s)) * tolerant_speed_m_s(speed_m_s);
+        let (takeoff_m_s, landing_m_s) = test.chain().speed_bounds_m_s();
+        Self { takeoff_squared: squared(takeoff_m_s), landing_squared: squared(landing_m_s), gravity: test.gravity_m_s2() }
+    }
+
+    /// Whether no hop reaches over a line of sight.
+    #[inline]
+    fn excludes(&self, sight: LineOfSight) -> bool {
+        let g_x = self.gravity * sight.run_m();
+        g_x * sight.lift() > self.takeoff_squared || g_x * sight.reversed_lift() > self.landing_squared
     }
 }
 
@@ -113,7 +153,9 @@ fn settled(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
             continue;
         }
         let landing = nodes.station(node);
-        for from in graph.takeoffs(node) {
+        let reach_m =
+            Direction::BOTH.map(|direction| graph.test().takeoff_reach_m(landing, direction)).into_iter().fold(0.0, f64::max);
+        for from in around(nodes.stations(), landing, reach_m) {
             if done[from] {
                 continue;
             }
@@ -127,4 +169,81 @@ fn settled(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
         }
     }
     costs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        chain::{ConstrainedChain, PolygonalChain},
+        graph::{Outcome, PointSpacing, search},
+        quantity::ChainPoint,
+        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    };
+
+    fn rough_chain() -> (ConstrainedChain, Hopper) {
+        let points = (0..60).map(|i| ChainPoint::new(f64::from(i), 0.5 * f64::from(i * i % 7) - 0.02 * f64::from(i))).collect();
+        let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(6.0, 6.0) };
+        let grip = Some(Grip::Friction(FrictionCone::new(1.1).unwrap()));
+        let surface = Surface { grip, rest: RestSlope::Unlimited };
+        (ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, &surface).unwrap(), hopper)
+    }
+
+    #[test]
+    fn every_node_has_to_go_what_a_search_from_it_costs() {
+        let (chain, hopper) = rough_chain();
+        let test = HopTest::new(&chain, &hopper, 1.6);
+        let station = |x_m| chain.geometry().station(x_m).unwrap();
+        for effort in Effort::ALL {
+            let spacing = PointSpacing::PerSegment(1);
+            let options = SearchOptions { spacing: Some(spacing), effort, ..SearchOptions::default() };
+            let nodes = NodeSet::new(&chain, station(3.0), station(50.0), spacing).unwrap();
+            let to_go = CostToGo::of(&test, nodes, &options);
+            let (mut reached, mut cut_off) = (0, 0);
+            for (i, from) in to_go.nodes().stations().iter().enumerate().step_by(5) {
+                let answer = search(&test, *from, station(50.0), &options, &mut |_| {}).unwrap();
+                match (answer.outcome, to_go.of_node(NodeId(i))) {
+                    (Outcome::Path { cost, .. }, Some(found)) => {
+                        assert_eq!(cost.hops(), found.hops());
+                        assert!((cost.effort() - found.effort()).abs() <= 1e-9 * cost.effort(), "{cost:?} {found:?}");
+                        reached += 1;
+                    }
+                    (Outcome::Path { .. }, None) => panic!("node {i} leads to the goal"),
+                    (_, found) => {
+                        assert_eq!(found, None, "node {i} does not lead to the goal");
+                        cut_off += 1;
+                    }
+                }
+            }
+            assert!(reached > 10 && reached + cut_off > 20, "{reached} reached, {cut_off} cut off");
+        }
+    }
+
+    #[test]
+    fn the_best_leg_is_the_best_of_all_legs() {
+        let (chain, hopper) = rough_chain();
+        let test = HopTest::new(&chain, &hopper, 1.6);
+        let station = |x_m| chain.geometry().station(x_m).unwrap();
+        let spacing = PointSpacing::PerSegment(1);
+        for effort in Effort::ALL {
+            let options = SearchOptions { spacing: Some(spacing), effort, ..SearchOptions::default() };
+            let nodes = NodeSet::new(&chain, station(3.0), station(50.0), spacing).unwrap();
+            let to_go = CostToGo::of(&test, nodes, &options);
+            let graph = to_go.graph(&test);
+            let mut found = 0;
+            for i in 0..200 {
+                let from = station(0.05 + 0.29 * f64::from(i));
+                let of_all = (0..to_go.nodes().stations().len())
+                    .filter_map(|node| {
+                        let landing = to_go.nodes().station(NodeId(node));
+                        let edge = graph.edge(&from, landing).ok()?;
+                        Some(graph.cost(&from, landing, edge) + to_go.of_node(NodeId(node))?)
+                    })
+                    .min();
+                assert_eq!(to_go.best_leg(&test, &from).map(|(_, cost)| cost), of_all, "from {from:?}");
+                found += u32::from(of_all.is_some());
+            }
+            assert!(found > 50, "only {found} places lead on");
+        }
+    }
 }

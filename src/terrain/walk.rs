@@ -120,7 +120,7 @@ impl<'a> Triangles<'a> {
         let (u, v) = self.lattice(place)?;
         let (col, row) = (floor(u).clamp(0, self.last_col), floor(v).clamp(0, self.last_row));
         let half = if u - coordinate(col) >= v - coordinate(row) { Half::NorthEast } else { Half::SouthWest };
-        let triangle = self.triangle(col, row, half, &heights);
+        let triangle = Triangle::of(col, row, half, &heights);
         let height_m = triangle.height_m(u, v);
         (!height_m.is_nan()).then(|| (height_m, triangle.gradient(self.spacing_m)))
     }
@@ -199,25 +199,25 @@ impl<'a> Triangles<'a> {
         }
         let side = self.nearly_whole(u - v) - coordinate(col - row);
         let half = if side > 0.0 || (side == 0.0 && step.x >= step.y) { Half::NorthEast } else { Half::SouthWest };
-        Some(self.triangle(col, row, half, heights))
+        Some(Triangle::of(col, row, half, heights))
     }
 
     #[inline]
     fn has(&self, col: isize, row: isize) -> bool {
         (0..=self.last_col).contains(&col) && (0..=self.last_row).contains(&row)
     }
+}
 
+impl Triangle {
     #[inline]
-    fn triangle(&self, col: isize, row: isize, half: Half, heights: &impl Fn(usize, usize) -> f64) -> Triangle {
+    fn of(col: isize, row: isize, half: Half, heights: &impl Fn(usize, usize) -> f64) -> Self {
         let third_m = match half {
             Half::NorthEast => post(heights, col + 1, row),
             Half::SouthWest => post(heights, col, row + 1),
         };
-        Triangle { col, row, half, north_west_m: post(heights, col, row), south_east_m: post(heights, col + 1, row + 1), third_m }
+        Self { col, row, half, north_west_m: post(heights, col, row), south_east_m: post(heights, col + 1, row + 1), third_m }
     }
-}
 
-impl Triangle {
     #[inline]
     fn height_m(&self, u: f64, v: f64) -> f64 {
         let (u, v) = (u - coordinate(self.col), v - coordinate(self.row));

@@ -24,6 +24,7 @@ pub(super) struct TrialDraws {
 
 /// Which pairs of normals are used; the others are left at zero and cost nothing.
 #[derive(Clone, Copy, Debug, Default)]
+#[expect(clippy::struct_excessive_bools, reason = "one for each pair of draws, all independent")]
 pub(super) struct Wanted {
     pub(super) speed: bool,
     pub(super) direction: bool,

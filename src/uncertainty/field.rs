@@ -32,6 +32,7 @@ struct Wave {
 
 impl HeightField {
     /// The field of a trial.
+    #[expect(clippy::cast_precision_loss, reason = "32 waves")]
     pub(super) fn of(draws: &mut TrialDraws, trial: u64, sigma_m: f64, correlation_m: f64) -> Self {
         let mut uniform = draws.height_field(trial);
         let scale_m = sigma_m / (WAVES as f64).sqrt();

@@ -19,6 +19,13 @@ pub struct Launch {
     pub vertical_m_s: f64,
 }
 
+impl Launch {
+    /// Whether there is no speed at all: the robot stays where it is.
+    pub(super) fn stays(&self) -> bool {
+        self.horizontal_m_s == 0.0 && self.vertical_m_s == 0.0
+    }
+}
+
 /// A command, and the landing that it aims at.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Command<S> {
@@ -48,7 +55,7 @@ pub(super) struct Flight<S, F> {
 pub(super) struct Variation {
     /// Added to every friction coefficient.
     pub(super) friction: f64,
-    pub(super) heights: Option<HeightField>,
+    pub(super) heights: Option<Box<HeightField>>,
 }
 
 /// Ground to fly over: nominal, or as one trial finds it.

@@ -5,7 +5,37 @@
 //! judged where it really takes off and lands.
 //!
 //! ```text
-//!   trial n ──> draws (seed, n) ──> hop: command + errors ──> first contact ──> judged ──> drift ──> next hop
+//!   trial n -> draws (seed, n) -> [ command + errors -> take-off judged -> first contact -> landing judged -> drift ] -> next hop
+//! ```
+//!
+//! Along a chain flights stay in its vertical plane; over a DEM ([`MapGround`]) they go wherever their heading takes them.
+//!
+//! # What is judged, and what is not
+//! The real direction of a take-off against the cone of the ground it leaves; direction and speed of a landing, and the rest slope,
+//! where it really happens; the rest slope and keep-out zones where the robot comes to rest. A cone is that of friction about the real
+//! facet's normal, or the angles stated for the segment. The first contact is with the ground itself: the clearance is a margin of the
+//! plan. The machine's own limits (speed, angle, height and time of flight) hold for commands, not for errors of their execution.
+//!
+//! # Examples
+//! ```
+//! use chta::{ballistics::{HopTest, Split}, chain::*, graph::*, path::generate, quantity::*, uncertainty::*, world::*};
+//! let hopper = Hopper::with_speeds(9.0, 9.0);
+//! let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(1.5)?)), rest: RestSlope::AsFrictionHolds };
+//! let chain = PolygonalChain::bare(vec![ChainPoint::new(-50.0, 0.0), ChainPoint::new(99.0, 0.0)])?;
+//! let chain = ConstrainedChain::new(chain, &hopper, &surface)?;
+//! let test = HopTest::new(&chain, &hopper, 1.6);
+//! let (start, goal) = (chain.geometry().station(0.0)?, chain.geometry().station(40.0)?);
+//! let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {})?;
+//! let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path") };
+//! let path = generate(&test, &legs, Default::default(), Split::FullReach)?;
+//!
+//! let mission = Mission { test: &test, surface: &surface, path: &path, start, goal, map: None, to_go: None };
+//! // One hop of 40 m at v = sqrt(g X) = 8 m/s: 1 % of speed is 2 % of range, 0.8 m. 1.6 m are two deviations: 95 % get there.
+//! let errors = Uncertainty { takeoff_speed_sigma_fraction: 0.01, ..Uncertainty::NONE };
+//! let options = TrialOptions { trials: 5000, goal_tolerance_m: 1.6, ..TrialOptions::default() };
+//! let summary = Simulation::new(mission, errors)?.run(&options, &mut ())?;
+//! assert!(summary.success.low < 0.954 && 0.954 < summary.success.high, "{:?}", summary.success);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod deviations;

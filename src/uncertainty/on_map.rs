@@ -1,5 +1,7 @@
 //! Flights in three dimensions, over the triangles of a DEM.
 
+use std::sync::Arc;
+
 use nalgebra::{Point3, Vector2};
 
 use super::{
@@ -8,12 +10,12 @@ use super::{
     on_chain::comes_down_m,
 };
 use crate::{
-    ballistics::{Arc, HopTest, LineOfSight, limits},
+    ballistics::{self, HopTest, LineOfSight, limits},
     chain::{Contact, ContactRule, Direction, Ground as SegmentGround, GroundForm, LineConstraints, settle},
     graph::{Cost, CostToGo},
     quantity::{ChainPoint, MapPoint, SegmentId},
     terrain::{FacetSpan, ProfileFacet, Triangles},
-    world::{FrictionCone, Grip, RestSlope, Surface, tolerant_speed_m_s},
+    world::{FrictionCone, Grip, RestSlope, SPEED_TOLERANCE, Surface, tolerant_speed_m_s},
 };
 
 /// How far before a landing, or beyond a take-off, friction and keep-out zones are asked for, m: a landing obeys the ground just flown
@@ -32,7 +34,7 @@ pub(super) struct DemGround<'a> {
     triangles: Triangles<'a>,
     to_go: Option<&'a CostToGo>,
     /// The nodes of the costs-to-go on the map.
-    nodes: &'a [MapSpot],
+    nodes: Arc<[MapSpot]>,
     height_rounding_m: f64,
     place_rounding_m: f64,
     /// What the rest slope is where friction does not say it.
@@ -56,7 +58,7 @@ impl<'a> DemGround<'a> {
         surface: &'a Surface,
         map: MapGround<'a>,
         to_go: Option<&'a CostToGo>,
-        nodes: &'a [MapSpot],
+        nodes: Arc<[MapSpot]>,
     ) -> Self {
         let (low_m, high_m) = map.dem.elevation_range_m();
         let bounds = map.dem.bounds();
@@ -78,6 +80,11 @@ impl<'a> DemGround<'a> {
         }
     }
 
+    /// A place of the nominal ground; `None` where there is none.
+    pub(super) fn nominal(&self, at: MapPoint) -> Option<MapSpot> {
+        self.triangles.at(at, self.triangles.nominal()).map(|(z_m, _)| MapSpot { at, z_m })
+    }
+
     /// Height of a post as this trial finds it.
     #[inline]
     fn heights(&self) -> impl Fn(usize, usize) -> f64 + '_ {
@@ -92,14 +99,23 @@ impl<'a> DemGround<'a> {
         }
     }
 
-    /// The friction at a place; `None` where angles are stated instead.
-    fn friction(&self, at: MapPoint) -> Option<f64> {
+    /// The facet that a take-off leaves from: the one ahead. `None` where the known ground ends.
+    fn facet_ahead(&self, at: MapPoint, heading: Vector2<f64>) -> Option<Gradient> {
+        self.triangles.walk(at, heading, self.heights()).next().map(|span| span.gradient)
+    }
+
+    /// The friction that a place is thought to have; `None` where angles are stated instead.
+    fn nominal_friction(&self, at: MapPoint) -> Option<FrictionCone> {
         let constant = match self.surface.grip {
             Some(Grip::Friction(cone)) => Some(cone),
             Some(Grip::FromSlope { .. }) | None => None,
         };
-        let cone = self.map.friction.and_then(|raster| raster.at(at)).or(constant)?;
-        Some((cone.coefficient() + self.varied.friction).max(0.0))
+        self.map.friction.and_then(|raster| raster.at(at)).or(constant)
+    }
+
+    /// The friction that a place has in this trial.
+    fn friction(&self, at: MapPoint) -> Option<f64> {
+        self.nominal_friction(at).map(|cone| (cone.coefficient() + self.varied.friction).max(0.0))
     }
 
     fn is_kept_out(&self, at: MapPoint) -> bool {
@@ -126,7 +142,7 @@ impl<'a> DemGround<'a> {
 
     /// What the nominal ground grants a contact on a facet met along a heading: as a slice along that heading has it.
     fn granted(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint, contact: Contact) -> Option<ContactRule> {
-        let friction = self.friction(beside).and_then(|coefficient| FrictionCone::new(coefficient).ok());
+        let friction = self.nominal_friction(beside);
         let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
         let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out: self.is_kept_out(beside) };
         let settled = settle(SegmentId(0), gradient.dot(&heading), &ground, self.test.hopper(), self.surface).ok()?;
@@ -144,8 +160,9 @@ impl<'a> DemGround<'a> {
             return None;
         }
         let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
-        let speed_m_s = tolerant_speed_m_s(hopper.takeoff_speed_max_m_s);
-        let too_far = g * run_m * sight.lift() > speed_m_s * speed_m_s;
+        let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
+        let too_far = g * run_m * sight.lift() > squared(hopper.takeoff_speed_max_m_s)
+            || g * run_m * sight.reversed_lift() > squared(hopper.landing_speed_max_m_s);
         if too_far || best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
             return None;
         }
@@ -160,28 +177,40 @@ impl<'a> DemGround<'a> {
         Some((Command::new(launch, target), cost))
     }
 
-    /// The arc to fly to a place, by every limit along the slice to it; `None` where there is none.
-    fn arc(&self, to_go: &CostToGo, from: &MapSpot, to: &MapSpot, sight: LineOfSight, heading: Vector2<f64>) -> Option<Arc> {
-        let run_m = sight.run_m();
-        let end_m = run_m - self.place_rounding_m - BESIDE_M;
-        let mut walk = self.triangles.walk(from.at, heading, self.triangles.nominal());
-        let first = walk.next()?;
-        let takeoff = self.granted(first.gradient, heading, from.at + heading * BESIDE_M, Contact::Takeoff)?;
-        let clearance_m = self.test.hopper().clearance_m;
-        let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(run_m, to.z_m));
-        let mut lower = f64::NEG_INFINITY;
-        let mut last = first;
-        while last.to_m < end_m {
-            let crossing = ChainPoint::new(last.to_m, last.to_z_m);
-            if last.to_m > BESIDE_M {
-                lower = lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance_m));
-            }
-            last = walk.next()?;
-        }
-        let landing = self.granted(last.gradient, heading, to.at - heading * BESIDE_M, Contact::Landing)?;
+    /// The arc to fly to a place, by every limit along the slice to it, the ground in between last; `None` where there is none.
+    fn arc(
+        &self,
+        to_go: &CostToGo,
+        from: &MapSpot,
+        to: &MapSpot,
+        sight: LineOfSight,
+        heading: Vector2<f64>,
+    ) -> Option<ballistics::Arc> {
+        let nominal = self.triangles.nominal();
+        let (ahead, before) = (from.at + heading * BESIDE_M, to.at - heading * BESIDE_M);
+        let takeoff = self.granted(self.triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
+        let landing = self.granted(self.triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
         let mut lofts = self.test.open_air(sight, &takeoff, &landing).ok()?;
-        lofts.lower = lofts.lower.max(lower);
-        (!lofts.is_empty()).then(|| Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), self.test.gravity_m_s2()))
+        let end_m = sight.run_m() - self.place_rounding_m - BESIDE_M;
+        let clearance_m = self.test.hopper().clearance_m;
+        let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(sight.run_m(), to.z_m));
+        let mut reached_m = 0.0;
+        for span in self.triangles.walk(from.at, heading, nominal) {
+            reached_m = span.to_m;
+            if reached_m >= end_m {
+                break;
+            }
+            if reached_m > BESIDE_M {
+                let crossing = ChainPoint::new(span.to_m, span.to_z_m);
+                lofts.lower = lofts.lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance_m));
+                if lofts.is_empty() {
+                    return None;
+                }
+            }
+        }
+        // A walk that ends before has met no-data.
+        (reached_m >= end_m)
+            .then(|| ballistics::Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), self.test.gravity_m_s2()))
     }
 
     /// How far off its aim, ahead and across, an arc may pass and still land on it.
@@ -196,16 +225,16 @@ impl<'a> DemGround<'a> {
         let over_m = run_m * (slope - curvature * run_m) - rise_m;
         let height_slack_m = slack_m * steepness + self.height_rounding_m;
         let hits = run_m > 0.0 && across_m <= slack_m && over_m.abs() <= height_slack_m && self.varied.heights.is_none();
-        hits.then_some(Aimed { run_m, slack_m, height_slack_m })
+        hits.then_some(Aimed { run: run_m, slack: slack_m, height_slack: height_slack_m })
     }
 }
 
-/// A landing point that a flight passes as closely as rounding allows.
+/// A landing point that a flight passes as closely as rounding allows, all in m.
 #[derive(Clone, Copy)]
 struct Aimed {
-    run_m: f64,
-    slack_m: f64,
-    height_slack_m: f64,
+    run: f64,
+    slack: f64,
+    height_slack: f64,
 }
 
 impl Ground for DemGround<'_> {
@@ -228,7 +257,7 @@ impl Ground for DemGround<'_> {
     }
 
     fn holds_takeoff(&self, from: &MapSpot, launch: &Launch) -> bool {
-        let Some(first) = self.triangles.walk(from.at, launch.heading, self.heights()).next() else {
+        let Some(gradient) = self.facet_ahead(from.at, launch.heading) else {
             // Beyond the edge of the known ground: nothing is known against it.
             return true;
         };
@@ -237,11 +266,11 @@ impl Ground for DemGround<'_> {
             return false;
         }
         let friction = self.friction(ahead);
-        if !self.rests(first.gradient, friction) {
+        if !self.rests(gradient, friction) {
             return false;
         }
-        match (friction, self.stated(first.gradient, launch.heading)) {
-            (Some(friction), _) => holds_on(first.gradient, friction, velocity(launch), ANGLE_TOLERANCE_RAD),
+        match (friction, self.stated(gradient, launch.heading)) {
+            (Some(friction), _) => holds_on(gradient, friction, velocity(launch), ANGLE_TOLERANCE_RAD),
             (None, Some(stated)) => holds(Ok(stated.takeoff), launch),
             (None, None) => false,
         }
@@ -252,19 +281,18 @@ impl Ground for DemGround<'_> {
         let across = launch.horizontal_m_s;
         let (slope, curvature) = (launch.vertical_m_s / across, g / (2.0 * across * across));
         let mut last = FacetSpan { from_m: 0.0, to_m: 0.0, from_z_m: from.z_m, to_z_m: from.z_m, gradient: Gradient::zeros() };
-        let mut walk = self.triangles.walk(from.at, launch.heading, self.heights());
         if !(curvature.is_finite() && slope.is_finite()) {
             // Straight up, and down where it began.
             let time_s = (2.0 * launch.vertical_m_s / g).max(0.0);
-            return Flight { end: *from, footing: walk.next().map(|span| span.gradient), time_s };
+            return Flight { end: *from, footing: self.facet_ahead(from.at, launch.heading), time_s };
         }
         let aimed = self.aimed_at(from, launch, aim, slope, curvature);
         let mut over_m = 0.0;
-        while let Some(span) = walk.next() {
+        for span in self.triangles.walk(from.at, launch.heading, self.heights()) {
             if let Some(aimed) = aimed
-                && span.to_m >= aimed.run_m - aimed.slack_m
+                && span.to_m >= aimed.run - aimed.slack
             {
-                return Flight { end: *aim, footing: Some(span.gradient), time_s: aimed.run_m / across };
+                return Flight { end: *aim, footing: Some(span.gradient), time_s: aimed.run / across };
             }
             if span.to_m == span.from_m {
                 continue;
@@ -276,7 +304,7 @@ impl Ground for DemGround<'_> {
             } else {
                 (from.z_m - span.to_z_m) + span.to_m * (slope - curvature * span.to_m)
             };
-            if over_next_m <= 0.0 && aimed.is_none_or(|aimed| over_next_m < -aimed.height_slack_m) {
+            if over_next_m <= 0.0 && aimed.is_none_or(|aimed| over_next_m < -aimed.height_slack) {
                 let climb = slope - 2.0 * curvature * span.from_m - ground;
                 let further_m = comes_down_m(over_m, climb, curvature).min(span.to_m - span.from_m);
                 let distance_m = span.from_m + further_m;
@@ -339,8 +367,7 @@ impl Ground for DemGround<'_> {
         if along_m == 0.0 && across_m == 0.0 && self.varied.heights.is_none() {
             return Some(*spot);
         }
-        let at = spot.at + Vector2::new(along_m, across_m);
-        self.triangles.at(at, self.triangles.nominal()).map(|(z_m, _)| MapSpot { at, z_m })
+        self.nominal(spot.at + Vector2::new(along_m, across_m))
     }
 
     fn replanned(&self, believed: &MapSpot) -> Option<Command<MapSpot>> {

@@ -126,6 +126,12 @@ pub enum SimulationError {
         /// Which hop, from 1.
         hop: usize,
     },
+    /// A map of which nobody says how it grips.
+    #[error(
+        "nothing says how the ground of the DEM grips: give the surface a friction coefficient or angles from the slope, or the map a \
+         friction raster"
+    )]
+    NoGrip,
     /// A start or goal without ground.
     #[error("the {which} lies at ({x_m} m, {y_m} m), where the DEM has no ground: give the DEM that the chain was sliced from")]
     NoGround {

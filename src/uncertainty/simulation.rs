@@ -1,6 +1,6 @@
 //! Many trials of one mission.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, sync::Arc};
 
 use nalgebra::{Point2, Point3, Vector2};
 use rayon::prelude::*;
@@ -38,8 +38,8 @@ pub struct Simulation<'a> {
 /// The mission's plan over the ground that it is flown on.
 #[derive(Debug)]
 enum Course<'a> {
-    Chain(Plan<ChainSpot>),
-    Map { map: MapGround<'a>, plan: Plan<MapSpot>, nodes: Vec<MapSpot> },
+    Chain(ChainGround<'a>, Plan<ChainSpot>),
+    Map(DemGround<'a>, Plan<MapSpot>),
 }
 
 /// Where a flight ends.
@@ -60,9 +60,16 @@ impl<'a> Simulation<'a> {
     /// [`SimulationError`] where the deviations make no sense, or path and map do not belong together.
     pub fn new(mission: Mission<'a>, uncertainty: Uncertainty) -> Result<Self, SimulationError> {
         uncertainty.check(mission.map.is_some())?;
+        let Mission { test, surface, to_go, .. } = mission;
         let course = match mission.map {
-            None => Course::Chain(chain_plan(&mission)),
-            Some(map) => Course::Map { map, plan: map_plan(&mission, map)?, nodes: map_nodes(&mission, map)? },
+            None => Course::Chain(ChainGround::new(test, surface, to_go), chain_plan(&mission)),
+            Some(map) => {
+                if surface.grip.is_none() && map.friction.is_none() {
+                    return Err(SimulationError::NoGrip);
+                }
+                let nodes = map_nodes(&mission, map)?;
+                Course::Map(DemGround::new(test, surface, map, to_go, nodes), map_plan(&mission, map)?)
+            }
         };
         Ok(Self { mission, uncertainty, course })
     }
@@ -76,12 +83,9 @@ impl<'a> Simulation<'a> {
     /// [`SimulationError`]: options that make no sense, [`Policy::Replan`] without costs-to-go, no threads, or the observer's wish.
     pub fn run(&self, options: &TrialOptions, observer: &mut dyn Observer) -> Result<Summary, SimulationError> {
         self.check(options)?;
-        let Mission { test, surface, to_go, .. } = self.mission;
         match &self.course {
-            Course::Chain(plan) => self.fly_all(&ChainGround::new(test, surface, to_go), plan, options, observer),
-            Course::Map { map, plan, nodes } => {
-                self.fly_all(&DemGround::new(test, surface, *map, to_go, nodes), plan, options, observer)
-            }
+            Course::Chain(ground, plan) => self.fly_all(ground, plan, options, observer),
+            Course::Map(ground, plan) => self.fly_all(ground, plan, options, observer),
         }
     }
 
@@ -100,18 +104,12 @@ impl<'a> Simulation<'a> {
     ///
     /// `from`: x and y as in [`HopRecord`](super::HopRecord).
     pub fn fly(&self, from: Point2<f64>, launch: Launch) -> Option<FlightEnd> {
-        let Mission { test, surface, .. } = self.mission;
         match &self.course {
-            Course::Chain(_) => {
-                let station = test.chain().geometry().station(from.x).ok()?;
-                let spot = ChainSpot { station, left_m: from.y };
-                Some(flown(&ChainGround::new(test, surface, None), &spot, &launch))
+            Course::Chain(ground, _) => {
+                let station = self.mission.test.chain().geometry().station(from.x).ok()?;
+                Some(flown(ground, &ChainSpot { station, left_m: from.y }, &launch))
             }
-            Course::Map { map, .. } => {
-                let triangles = Triangles::of(map.dem);
-                let (z_m, _) = triangles.at(from, triangles.nominal())?;
-                Some(flown(&DemGround::new(test, surface, *map, None, &[]), &MapSpot { at: from, z_m }, &launch))
-            }
+            Course::Map(ground, _) => Some(flown(ground, &ground.nominal(from)?, &launch)),
         }
     }
 
@@ -193,7 +191,7 @@ impl<'a> Simulation<'a> {
             outcomes: tally.outcomes,
             success: tally.success(),
             hops_flown: tally.hops_flown,
-            landings: tally.landings(matches!(self.course, Course::Map { .. })),
+            landings: tally.landings(matches!(self.course, Course::Map(..))),
             convergence: tally.convergence(),
             trajectories,
         })
@@ -265,7 +263,7 @@ fn map_plan(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Plan<MapSpot>, 
 }
 
 /// The nodes of the costs-to-go on the map.
-fn map_nodes(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Vec<MapSpot>, SimulationError> {
+fn map_nodes(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Arc<[MapSpot]>, SimulationError> {
     let stations = mission.to_go.map(CostToGo::nodes).map_or(&[][..], |nodes| nodes.stations());
     stations.iter().map(|station| on_map(mission, map, station, "node")).collect()
 }

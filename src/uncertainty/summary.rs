@@ -37,7 +37,8 @@ pub struct RatePoint {
     pub success: Wilson,
 }
 
-/// The landings of one number of hop over all trials that landed it.
+/// The landings of one number of hop over all trials that landed it, those that ended with it included (their place is that of the
+/// contact).
 #[derive(Clone, Debug, PartialEq)]
 pub struct LandingSummary {
     /// Which hop, from 1.

@@ -69,7 +69,8 @@ impl Rules {
     fn variation(&self, draws: &mut TrialDraws, trial: u64) -> Option<Variation> {
         let u = &self.uncertainty;
         let friction = if u.friction_sigma > 0.0 { u.friction_sigma * draws.friction(trial) } else { 0.0 };
-        let heights = (u.height_sigma_m > 0.0).then(|| HeightField::of(draws, trial, u.height_sigma_m, u.height_correlation_m));
+        let heights =
+            (u.height_sigma_m > 0.0).then(|| Box::new(HeightField::of(draws, trial, u.height_sigma_m, u.height_correlation_m)));
         (u.friction_sigma > 0.0 || heights.is_some()).then_some(Variation { friction, heights })
     }
 
@@ -123,7 +124,7 @@ pub(super) fn fly<G: Ground>(
             break TrialOutcome::HopLimit;
         }
         let launch = rules.launched(&command.launch, command.speed_m_s, &errors);
-        if !journey.ground.holds_takeoff(&journey.spot, &launch) {
+        if !launch.stays() && !journey.ground.holds_takeoff(&journey.spot, &launch) {
             break TrialOutcome::SlidAtTakeoff;
         }
         let ended = journey.hop(&launch, &command.aim, &errors, |landing, hop| {
@@ -195,6 +196,8 @@ impl<G: Ground> Journey<'_, G> {
         let arrival = Arrival::after(launch, flight.time_s, self.rules.gravity_m_s2);
         let drift_m = [uncertainty.drift_along_sigma_m * errors.drift[0], uncertainty.drift_across_sigma_m * errors.drift[1]];
         let failure = match &flight.footing {
+            // Nothing happens to a robot that does not move.
+            _ if launch.stays() => None,
             None => Some(TrialOutcome::Lost),
             Some(footing) => ground.landing_failure(&flight.end, footing, &arrival),
         };
@@ -207,7 +210,7 @@ impl<G: Ground> Journey<'_, G> {
         };
         let (aim_m, rest_m) = (ground.point(aim), ground.point(&rest));
         let error_m = (rest_m - aim_m).xy().norm();
-        let landed = flight.footing.is_some();
+        let landed = flight.footing.is_some() || launch.stays();
         let landing = landed.then(|| Landing { hop: self.hops, error_m, rest: rest_m.xy() });
         self.hops += 1;
         self.spot = rest;

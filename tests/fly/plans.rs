@@ -25,7 +25,7 @@ impl Observer for Listener {
     }
 }
 
-fn exactly_planned(planned: &Planned<'_>, policy: Policy) {
+pub(crate) fn exactly_planned(planned: &Planned<'_>, policy: Policy) {
     let mut listener = Listener::default();
     let options = TrialOptions { trials: 3, policy, goal_tolerance_m: 0.0, ..TrialOptions::default() };
     let summary = planned.simulation(Uncertainty::NONE).run(&options, &mut listener).unwrap();
@@ -68,7 +68,6 @@ fn each_error_alone_changes_the_outcomes() {
         for (name, uncertainty) in each_error(on_a_map) {
             let policy = if name == "position" { Policy::Replan } else { Policy::OpenLoop };
             let summary = planned.run(uncertainty, &options(300, policy));
-            println!("map {on_a_map}, {name}: {:?}", summary.outcomes.each().collect::<Vec<_>>());
             assert_eq!(summary.outcomes.total(), 300);
             assert!(summary.outcomes.of(TrialOutcome::Reached) < 300, "{name} changes nothing");
         }
@@ -93,10 +92,11 @@ fn several() -> Uncertainty {
 fn any_number_of_threads_gives_the_same() {
     for scene in [Scene::rolling(), Scene::craters()] {
         let planned = scene.planned();
-        for policy in Policy::ALL {
+        // Open loop over more than one batch; replanning on a map takes longer.
+        for (policy, trials) in [(Policy::OpenLoop, 1100), (Policy::Replan, 120)] {
             let run = |threads| {
                 let mut listener = Listener::default();
-                let options = TrialOptions { threads, trajectories: 7, ..options(1100, policy) };
+                let options = TrialOptions { threads, trajectories: 7, ..options(trials, policy) };
                 let summary = planned.simulation(several()).run(&options, &mut listener).unwrap();
                 (format!("{summary:?}"), format!("{:?} {:?}", listener.hops, listener.trials))
             };
@@ -117,7 +117,6 @@ fn success_falls_as_errors_grow_on_the_same_draws() {
                 planned.run(uncertainty, &options(500, policy)).outcomes.of(TrialOutcome::Reached)
             })
             .to_vec();
-        println!("{policy:?}: {reached:?}");
         assert!(reached.windows(2).all(|pair| pair[1] <= pair[0]) && reached[0] == 500 && reached[4] < reached[0], "{reached:?}");
     }
 }
@@ -146,8 +145,36 @@ fn replanning_makes_up_for_drift() {
             .simulation(drift)
             .compare(&TrialOptions { goal_tolerance_m: 3.0, ..options(300, Policy::OpenLoop) }, &mut ())
             .unwrap();
-        println!("{:?}\n{:?}", open_loop.outcomes, replan.outcomes);
         assert_eq!((open_loop.policy, replan.policy), (Policy::OpenLoop, Policy::Replan));
         assert!(replan.success.low > open_loop.success.high, "{:?} {:?}", open_loop.success, replan.success);
+    }
+}
+
+/// Friction and height errors are what the ground is; the robot plans by its map.
+#[test]
+fn the_robot_does_not_know_what_ground_it_drew() {
+    for scene in [Scene::rolling(), Scene::craters()] {
+        let planned = scene.planned();
+        let position = Uncertainty { position_sigma_m: 0.5, ..Uncertainty::NONE };
+        let first_hops = |uncertainty| {
+            let mut listener = Listener::default();
+            planned.simulation(uncertainty).run(&options(60, Policy::Replan), &mut listener).unwrap();
+            listener.hops.into_iter().filter(|hop| hop.hop == 1).collect::<Vec<_>>()
+        };
+        let nominal = first_hops(position);
+        for other in [
+            Uncertainty { friction_sigma: 0.2, ..position },
+            Uncertainty { height_sigma_m: 0.1, height_correlation_m: 20.0, ..position },
+        ] {
+            let mut compared = 0;
+            for hop in first_hops(other) {
+                // Those that slid at their take-off have no hop, in either run.
+                let Some(same) = nominal.iter().find(|known| known.trial == hop.trial) else { continue };
+                assert_eq!((hop.heading, hop.horizontal_m_s), (same.heading, same.horizontal_m_s), "{hop:?}");
+                assert_eq!(hop.takeoff_vertical_m_s, same.takeoff_vertical_m_s);
+                compared += 1;
+            }
+            assert!(compared > 5, "only {compared} first hops in both");
+        }
     }
 }

@@ -93,7 +93,9 @@ impl Scene {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/data/terrain/mars_crater_field.tif");
         let dem = chta::terrain::read_dem(file.as_ref()).unwrap();
         let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(10.0, 10.0) };
-        Self::of_dem(dem, [(12.0, 84.0), (90.0, 58.0)], hopper, friction(0.9), 3.711)
+        // The slice goes on behind the goal, so that the chain has ground for those that fly too far.
+        let scene = Self::of_dem(dem, [(12.0, 84.0), (114.0, 50.0)], hopper, friction(0.9), 3.711);
+        Self { ends_m: (0.0, 82.0), ..scene }
     }
 
     pub(crate) fn planned(&self) -> Planned<'_> {

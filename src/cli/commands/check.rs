@@ -14,7 +14,7 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::search::search;
+use super::search::{search_pairs, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{CheckArgs, Format},
@@ -31,16 +31,17 @@ struct PairsAnswer {
 /// Checks one pair or many.
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     let loaded = load(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal))?;
+    use_threads(args.threads)?;
     let mut doubts = Vec::new();
-    let answers = match &args.pairs {
-        None => vec![answer(&loaded, loaded.ends()?, args, &mut doubts)?],
+    let pairs = match &args.pairs {
+        None => vec![loaded.ends()?],
         Some(path) => {
             let file = read_pairs_csv_file(path)?;
             doubts.extend(file.warnings.iter().map(|warning| format!("{}: {warning}", path.display())));
-            let ends = stations(&loaded, path, &file.pairs)?;
-            ends.into_iter().map(|ends| answer(&loaded, ends, args, &mut doubts)).collect::<Result<_, _>>()?
+            stations(&loaded, path, &file.pairs)?
         }
     };
+    let answers = answers(&loaded, &pairs, args, &mut doubts)?;
     for doubt in &doubts {
         output::warn(args.common.quiet, doubt);
     }
@@ -64,23 +65,27 @@ fn stations(loaded: &Loaded, file: &Path, pairs: &[StartGoal]) -> Result<Vec<(St
     Ok(stations)
 }
 
-/// One pair, and what is doubtful about its path.
-fn answer(
+/// The answers for all pairs, and what is doubtful about their paths.
+fn answers(
     loaded: &Loaded,
-    (start, goal): (Station, Station),
+    pairs: &[(Station, Station)],
     args: &CheckArgs,
     doubts: &mut Vec<String>,
-) -> Result<CheckAnswer, Failure> {
+) -> Result<Vec<CheckAnswer>, Failure> {
     let test = loaded.hop_test();
     let options = &loaded.scenario.search;
-    let (found, _) = search(&test, start, goal, &loaded.scenario, args.common.quiet)?;
-    if let Outcome::Path { legs, .. } = &found.outcome
-        && let Ok(path) = generate(&test, legs, options.takeoff, options.split)
-    {
-        let of_path = constant_gravity_doubts(&loaded.scenario.body, Extremes::of(&path.hops));
-        doubts.extend(of_path.into_iter().filter(|doubt| !doubts.contains(doubt)).collect::<Vec<_>>());
+    let found = search_pairs(&test, pairs, &loaded.scenario, args.common.quiet)?;
+    let mut answers = Vec::with_capacity(pairs.len());
+    for ((start, goal), found) in pairs.iter().zip(&found) {
+        if let Outcome::Path { legs, .. } = &found.outcome
+            && let Ok(path) = generate(&test, legs, options.takeoff, options.split)
+        {
+            let of_path = constant_gravity_doubts(&loaded.scenario.body, Extremes::of(&path.hops));
+            doubts.extend(of_path.into_iter().filter(|doubt| !doubts.contains(doubt)).collect::<Vec<_>>());
+        }
+        answers.push(CheckAnswer::new(&test, start.point.x_m, goal.point.x_m, found, options.effort));
     }
-    Ok(CheckAnswer::new(&test, start.point.x_m, goal.point.x_m, &found, options.effort))
+    Ok(answers)
 }
 
 /// The answers as text or as one document.

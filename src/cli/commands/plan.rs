@@ -18,7 +18,7 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::search::search;
+use super::search::{search, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs},
@@ -186,6 +186,7 @@ fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result
 
 /// Plans a path.
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
+    use_threads(args.threads)?;
     let loaded = load(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal))?;
     let ends = loaded.ends()?;
     if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {

@@ -4,7 +4,7 @@ use std::fs;
 
 use chta::{chain::csv::write_chain_csv, report::CrsRecord};
 
-use super::plan::Planned;
+use super::{plan::Planned, search::use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, Format, RunArgs},
@@ -14,7 +14,8 @@ use crate::cli::{
 
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
-    let RunArgs { scenario, output: folder, format, set, accept_map_scale, quiet } = args;
+    let RunArgs { scenario, output: folder, threads, format, set, accept_map_scale, quiet } = args;
+    use_threads(*threads)?;
     let common = CommonArgs {
         scenario: None,
         set: set.clone(),

@@ -117,6 +117,8 @@ fn random_polygons_agree_with_whole_number_arithmetic_at_every_place() {
             let at = (from.0 * 1009 + k * (to.0 - from.0), from.1 * 1009 + k * (to.1 - from.1));
             let expected = polygons.iter().any(|rings| contains(rings, at, 1009));
             assert_eq!(profile.facets[next - 1].keep_out, expected, "{text} from {from:?} to {to:?} at {x_m} m");
+            let place = map(from) + (map(to) - map(from)) * (k as f64 / 1009.0);
+            assert!(k % 7 != 0 || kept.keeps_out(place) == expected, "{text} at {place}");
             checked[usize::from(expected)] += 1;
         }
         // Heights and facets stay those of the ground.
@@ -235,6 +237,11 @@ fn a_mask_is_the_union_of_its_pixels_cells() {
         if from == to {
             continue;
         }
+        for _ in 0..20 {
+            let at = place();
+            let at = MapPoint::new(at.0, at.1);
+            assert_eq!(masked.keeps_out(at), drawn.keeps_out(at), "{at}");
+        }
         let (a, b) = (walk(&terrain, &masked, from, to), walk(&terrain, &drawn, from, to));
         assert_eq!(a.len(), b.len(), "{from:?} {to:?}\n{a:?}\n{b:?}");
         for (a, b) in a.iter().zip(&b) {
@@ -267,6 +274,7 @@ fn friction_comes_from_the_pixel_over_the_middle_and_the_constant_fills_gaps() {
         for share in [0.001, 0.5, 0.999] {
             let at = MapPoint::from(pair[0].map.coords * (1.0 - share) + pair[1].map.coords * share);
             assert_eq!(found, coefficient_at(at), "{at}");
+            assert_eq!(friction.at(at).map_or(0.9, FrictionCone::coefficient), found, "{at}");
         }
         seen.insert(found.to_bits());
     }
@@ -282,7 +290,10 @@ fn friction_comes_from_the_pixel_over_the_middle_and_the_constant_fills_gaps() {
     let halves = Dem::new(2, 2, vec![0.4, 0.4, 0.7, 0.7], GeoReference::local(MapPoint::new(2.0, 6.0), 4.0, 4.0).unwrap()).unwrap();
     let (_folder, path) = grid_file(&halves);
     let mut along = slice(&terrain, MapPoint::new(0.0, 4.0), MapPoint::new(8.0, 4.0)).unwrap();
-    read_friction_raster(&path, None).unwrap().lay(&mut along, None).unwrap();
+    let friction = read_friction_raster(&path, None).unwrap();
+    assert_eq!(friction.at(MapPoint::new(3.0, 4.0)).unwrap().coefficient(), 0.4);
+    assert!(friction.at(MapPoint::new(8.5, 4.0)).is_none(), "beyond the outermost cells");
+    friction.lay(&mut along, None).unwrap();
     assert!(along.facets.iter().all(|facet| facet.friction.unwrap().coefficient() == 0.4));
 }
 

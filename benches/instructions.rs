@@ -1,0 +1,105 @@
+//! Instructions of one sweep, of the hop test pair by pair, and of the plain version: counted by valgrind, so the same on a busy machine.
+//!
+//! `cargo bench --bench instructions`. Needs valgrind and `cargo install gungraun-runner --version 0.20.0`; where either is absent it
+//! says so and stops. Divide by the pairs in the name: a window of 200 is 400 pairs.
+
+#![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
+#![allow(clippy::print_stdout, reason = "it says why it does not run")]
+#![allow(
+    missing_docs,
+    missing_debug_implementations,
+    unused_qualifications,
+    unreachable_pub,
+    elided_lifetimes_in_paths,
+    reason = "what gungraun's macros write"
+)]
+#![allow(clippy::pedantic, clippy::use_self, clippy::exit, reason = "what gungraun's macros write")]
+
+mod support;
+
+use std::{hint::black_box, process::Command};
+
+use chta::{
+    ballistics::{HopTest, LandingTable, Sweep},
+    chain::{ConstrainedChain, Direction, Station},
+    quantity::VertexId,
+    world::Hopper,
+};
+use gungraun::{library_benchmark, library_benchmark_group};
+
+/// Everything that one take-off against a window needs, made before counting begins: it lives as long as the process.
+struct Scene {
+    test: &'static HopTest<'static>,
+    stations: &'static [Station],
+    sweep: Sweep<'static>,
+    window: usize,
+}
+
+/// Rough Martian ground at four times the speed that its window needs, after one sweep that made the working memory.
+fn scene(window: usize, friction: f64) -> Scene {
+    let (chain, _) = support::fractal_chain(2 * window);
+    #[expect(clippy::cast_precision_loss, reason = "a few thousand metres")]
+    let speed = (support::MARS_M_S2 * 4.0 * window as f64).sqrt();
+    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(speed, speed) };
+    let chain: &'static ConstrainedChain =
+        Box::leak(Box::new(support::constrained_by(chain.geometry().clone(), &hopper, friction)));
+    let test: &'static HopTest<'static> = Box::leak(Box::new(HopTest::new(chain, &hopper, support::MARS_M_S2)));
+    let stations: Vec<Station> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
+    let stations: &'static [Station] = Vec::leak(stations);
+    let table: &'static LandingTable<'static> = Box::leak(Box::new(LandingTable::new(test, stations)));
+    let mut scene = Scene { test, stations, sweep: Sweep::new(table), window };
+    scene.swept();
+    scene
+}
+
+impl Scene {
+    fn swept(&mut self) -> usize {
+        let mut feasible = 0;
+        for direction in Direction::BOTH {
+            let takeoff = black_box(&self.stations[self.window]);
+            self.sweep.landings(takeoff, 0..self.stations.len(), direction, |_, verdict| feasible += usize::from(verdict.is_ok()));
+        }
+        feasible
+    }
+}
+
+#[library_benchmark]
+#[bench::window_30(scene(30, 0.6))]
+#[bench::window_200(scene(200, 0.6))]
+#[bench::window_2000(scene(2000, 0.6))]
+#[bench::window_200_ground_decides(scene(200, 5.0))]
+fn sweep(mut scene: Scene) -> usize {
+    scene.swept()
+}
+
+#[library_benchmark]
+#[bench::window_30(scene(30, 0.6))]
+#[bench::window_200(scene(200, 0.6))]
+fn plain(scene: Scene) -> usize {
+    let takeoff = black_box(&scene.stations[scene.window]);
+    scene.stations.iter().filter(|landing| support::plain::loft(scene.test, takeoff, landing).is_some()).count()
+}
+
+library_benchmark_group!(name = hop; benchmarks = sweep, plain);
+
+fn main() {
+    let runner = std::env::var("GUNGRAUN_RUNNER").unwrap_or_else(|_| "gungraun-runner".to_owned());
+    for (program, mend) in [("valgrind", "install valgrind"), (&runner, "cargo install gungraun-runner --version 0.20.0")] {
+        // Which status it ends with does not matter: only whether it is there.
+        if Command::new(program).arg("--version").output().is_err() {
+            println!("skipped: no {program} to count instructions with; {mend}");
+            return;
+        }
+    }
+    counted::run();
+}
+
+mod counted {
+    use super::hop;
+
+    gungraun::main!(library_benchmark_groups = hop);
+
+    pub(super) fn run() {
+        main();
+    }
+}

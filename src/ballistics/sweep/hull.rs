@@ -1,0 +1,142 @@
+//! The upper hull of the ground in slope space, as one take-off sees it.
+//!
+//! ```text
+//!   s                 divided by the distance d, the arc is a straight line s = m - c d, and the ground the points
+//!   |  o               (d_p, s_p), s_p = (z_p + eps - z_t) / d_p;
+//!   |    \  o          the arc that just clears them and lands at (X, b) is the upper tangent from there:
+//!   |  o   `--o        its loft is the greatest s_p - t_p, and a point below the hull never is the greatest.
+//!   |   o    o  `\
+//!   +--------------x--- d
+//!                (X, b)
+//! ```
+
+use crate::quantity::ChainPoint;
+
+/// The vertices on the upper hull, nearest first: a monotone chain, each vertex pushed once, in the order of distance.
+///
+/// A vertex leaves only where it is below the hull by more than rounding can tell, so that the greatest `s - t` over the hull is the
+/// greatest over all vertices, to the last bit.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Hull {
+    /// Columns of equal length, at least `PADDING` longer than the hull.
+    x_m: Vec<f64>,
+    z_m: Vec<f64>,
+    distance_m: Vec<f64>,
+    seen: Vec<f64>,
+    len: usize,
+    /// No vertex was seen, and no landing, at a steeper slope than this: rounding goes with it.
+    steepest: f64,
+}
+
+/// How many vertices the tangent's inner loop takes at once.
+const PADDING: usize = 4;
+
+/// Up to so many vertices, looking at all is quicker than choosing.
+const SCANNED: usize = 32;
+
+/// A vertex is kept unless it is this far below the hull, times the steepest slope: 512 roundings, of which a tangent commits some 32.
+const KEPT: f64 = 256.0 * f64::EPSILON;
+
+impl Hull {
+    /// Forgets all vertices; keeps its memory. Slopes up to `steepest` will be told apart rightly.
+    pub(super) fn clear(&mut self, steepest: f64) {
+        self.len = 0;
+        self.steepest = steepest;
+    }
+
+    /// The greatest slope that this hull was made for.
+    pub(super) const fn steepest(&self) -> f64 {
+        self.steepest
+    }
+
+    /// Adds a vertex beyond those before, at a distance from the take-off, seen at a slope (with the clearance).
+    pub(super) fn push(&mut self, point: ChainPoint, distance_m: f64, seen: f64) {
+        while self.len >= 2 && self.hides_last(distance_m, seen) {
+            self.len -= 1;
+        }
+        if self.len + PADDING >= self.x_m.len() {
+            let room = 2 * self.x_m.len() + 4 * PADDING;
+            for column in [&mut self.x_m, &mut self.z_m, &mut self.distance_m, &mut self.seen] {
+                column.resize(room, 0.0);
+            }
+        }
+        self.x_m[self.len] = point.x_m;
+        self.z_m[self.len] = point.z_m;
+        self.distance_m[self.len] = distance_m;
+        self.seen[self.len] = seen;
+        self.len += 1;
+    }
+
+    /// Whether the last vertex lies clearly below the straight line from the one before it to a new one.
+    fn hides_last(&self, distance_m: f64, seen: f64) -> bool {
+        let (before, last) = (self.len - 2, self.len - 1);
+        let span_m = distance_m - self.distance_m[before];
+        let part_m = self.distance_m[last] - self.distance_m[before];
+        let below = (self.seen[before] - self.seen[last]) * span_m + (seen - self.seen[before]) * part_m;
+        below > KEPT * self.steepest * span_m
+    }
+
+    /// The greatest loft that any vertex asks of an arc to a landing, run `run_m` from the take-off; minus infinity for no vertex.
+    pub(super) fn clearing_loft(&mut self, landing: ChainPoint, run_m: f64, clearance_m: f64) -> f64 {
+        for spare in self.len..(self.len + PADDING).min(self.x_m.len()) {
+            // Asks for nothing, wherever the landing is.
+            self.seen[spare] = f64::NEG_INFINITY;
+            self.x_m[spare] = self.x_m[0];
+            self.z_m[spare] = self.z_m[0];
+        }
+        if self.len <= SCANNED {
+            return self.greatest(0, self.len, landing, clearance_m);
+        }
+        self.tangent(landing, run_m, clearance_m)
+    }
+
+    /// The greatest loft over a stretch of the hull (and at most `PADDING` more vertices).
+    #[inline]
+    fn greatest(&self, first: usize, end: usize, landing: ChainPoint, clearance_m: f64) -> f64 {
+        let end = first + (end - first).next_multiple_of(PADDING);
+        let (x_m, z_m, seen) = (&self.x_m[first..end], &self.z_m[first..end], &self.seen[first..end]);
+        let mut best = [f64::NEG_INFINITY; PADDING];
+        for ((x_m, z_m), seen) in x_m.chunks_exact(PADDING).zip(z_m.chunks_exact(PADDING)).zip(seen.chunks_exact(PADDING)) {
+            for i in 0..PADDING {
+                let loft = seen[i] - ((landing.z_m - z_m[i]) - clearance_m) / (landing.x_m - x_m[i]).abs();
+                best[i] = if loft > best[i] { loft } else { best[i] };
+            }
+        }
+        best[0].max(best[1]).max(best[2].max(best[3]))
+    }
+
+    /// The loft that one vertex of the hull asks for.
+    fn loft(&self, i: usize, landing: ChainPoint, clearance_m: f64) -> f64 {
+        self.seen[i] - ((landing.z_m - self.z_m[i]) - clearance_m) / (landing.x_m - self.x_m[i]).abs()
+    }
+
+    /// The upper tangent of a long hull: by bisection, since the lofts rise and then fall along it, then by looking at all vertices
+    /// about the place found whose lofts rounding cannot tell apart.
+    fn tangent(&self, landing: ChainPoint, run_m: f64, clearance_m: f64) -> f64 {
+        let (mut low, mut high) = (0, self.len - 1);
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            if self.loft(middle, landing, clearance_m) < self.loft(middle + 1, landing, clearance_m) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        let (mut first, mut end) = (low.saturating_sub(SCANNED / 4), (low + SCANNED / 4).min(self.len));
+        let mut best = self.greatest(first, end, landing, clearance_m);
+        // What rounding may have done to a vertex's loft.
+        let blur = |i: usize| KEPT * self.steepest * run_m / (landing.x_m - self.x_m[i]).abs();
+        let peak = blur(low);
+        while first > 0 && self.loft(first, landing, clearance_m) + blur(first) + peak >= best {
+            let next = first.saturating_sub(SCANNED / 2);
+            best = best.max(self.greatest(next, first, landing, clearance_m));
+            first = next;
+        }
+        while end < self.len && self.loft(end - 1, landing, clearance_m) + blur(end - 1) + peak >= best {
+            let next = (end + SCANNED / 2).min(self.len);
+            best = best.max(self.greatest(end, next, landing, clearance_m));
+            end = next;
+        }
+        best
+    }
+}

@@ -1,0 +1,139 @@
+//! All limits but the terrain, for a block of landings at once.
+
+use super::table::{LandingRules, LandingTable};
+use crate::{
+    ballistics::{HopTest, LineOfSight},
+    quantity::SlopeInterval,
+    world::Limit,
+};
+
+/// What a take-off brings to every landing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Departure {
+    pub(super) x_m: f64,
+    pub(super) z_m: f64,
+    /// The greatest take-off speed with its tolerance, squared, m^2/s^2.
+    pub(super) speed_squared: f64,
+    /// The take-off cone of the ground.
+    pub(super) cone: SlopeInterval,
+}
+
+/// The open-air verdicts over one block of landings: the formulas of [`HopTest::loft`], operation by operation, so that every number
+/// is the same to the last bit; written so that the compiler can take several landings per instruction.
+#[derive(Clone, Debug)]
+pub(super) struct Lanes {
+    /// Slope of the line of sight.
+    slope: [f64; Self::COUNT],
+    /// By how much the take-off speed exceeds the least one; below 0: too slow (as ratios v^2 / (g X)).
+    takeoff_excess: [f64; Self::COUNT],
+    /// The same of the landing speed.
+    landing_excess: [f64; Self::COUNT],
+    /// The lofts that both speeds allow.
+    slowest: [f64; Self::COUNT],
+    fastest: [f64; Self::COUNT],
+    /// The lofts that all limits but the terrain allow.
+    lower: [f64; Self::COUNT],
+    upper: [f64; Self::COUNT],
+}
+
+impl Lanes {
+    /// How many landings one block has at most.
+    pub(super) const COUNT: usize = LandingTable::BLOCK;
+
+    pub(super) const fn new() -> Self {
+        let zeros = [0.0; Self::COUNT];
+        Self {
+            slope: zeros,
+            takeoff_excess: zeros,
+            landing_excess: zeros,
+            slowest: zeros,
+            fastest: zeros,
+            lower: zeros,
+            upper: zeros,
+        }
+    }
+
+    /// Judges the landings `range` of the table, at most [`Self::COUNT`] of them, none on a segment of the take-off.
+    pub(super) fn judge(
+        &mut self,
+        test: &HopTest<'_>,
+        from: &Departure,
+        (x_m, z_m): (&[f64], &[f64]),
+        rules: &LandingRules,
+        range: std::ops::Range<usize>,
+    ) {
+        let count = range.len().min(Self::COUNT);
+        let cone = from.cone.intersect(test.mechanical());
+        let gravity = test.gravity_m_s2();
+        let (x_m, z_m) = (&x_m[range.clone()][..count], &z_m[range.clone()][..count]);
+        let speed_squared = &rules.speed_squared[range.clone()][..count];
+        let (cone_lower, cone_upper) = (&rules.cone_lower[range.clone()][..count], &rules.cone_upper[range][..count]);
+        let (slope, takeoff_excess) = (&mut self.slope[..count], &mut self.takeoff_excess[..count]);
+        let (landing_excess, slowest) = (&mut self.landing_excess[..count], &mut self.slowest[..count]);
+        let (fastest, lower, upper) = (&mut self.fastest[..count], &mut self.lower[..count], &mut self.upper[..count]);
+        for i in 0..count {
+            let run_m = (x_m[i] - from.x_m).abs();
+            let b = (z_m[i] - from.z_m) / run_m;
+            let stretch = (1.0 + b * b).sqrt();
+            // The two lifts are each other's reciprocals; which one is the take-off's goes by the sign of b.
+            let steep = stretch + b.abs();
+            let gentle = 1.0 / steep;
+            let gravity_run = gravity * run_m;
+            let takeoff = from.speed_squared / gravity_run - if b >= 0.0 { steep } else { gentle };
+            let landing = speed_squared[i] / gravity_run - if b <= 0.0 { steep } else { gentle };
+            let excess = takeoff.min(landing);
+            let half_sum = stretch + excess;
+            let larger = half_sum + excess.sqrt() * (half_sum + stretch).sqrt();
+            let smaller = stretch * (stretch / larger);
+            slope[i] = b;
+            takeoff_excess[i] = takeoff;
+            landing_excess[i] = landing;
+            slowest[i] = smaller;
+            fastest[i] = larger;
+            let least = smaller.max(cone.lower - b).max(b - cone_upper[i]);
+            let greatest = larger.min(cone.upper - b).min(b - cone_lower[i]);
+            // No roots below excess 0: nothing is left.
+            lower[i] = least;
+            upper[i] = if excess >= 0.0 { greatest } else { f64::NEG_INFINITY };
+        }
+        if test.has_machine_limits() {
+            for (i, x_m) in x_m.iter().enumerate() {
+                let machine = test.machine(LineOfSight::along((x_m - from.x_m).abs(), self.slope[i]));
+                self.lower[i] = self.lower[i].max(machine.lower);
+                self.upper[i] = self.upper[i].min(machine.upper);
+            }
+        }
+    }
+
+    /// The lofts of one lane; `None` where nothing is left.
+    #[inline]
+    pub(super) fn loft(&self, lane: usize) -> Option<SlopeInterval> {
+        let loft = SlopeInterval { lower: self.lower[lane], upper: self.upper[lane] };
+        (loft.lower <= loft.upper && loft.upper > 0.0).then_some(loft)
+    }
+
+    /// Which limit left nothing of a lane, in the order of [`HopTest::loft`].
+    pub(super) fn refusing(
+        &self,
+        test: &HopTest<'_>,
+        from: &Departure,
+        lane: usize,
+        run_m: f64,
+        landing_cone: SlopeInterval,
+    ) -> Limit {
+        for (excess, limit) in [(self.takeoff_excess[lane], Limit::TakeoffSpeed), (self.landing_excess[lane], Limit::LandingSpeed)]
+        {
+            if excess.is_nan() || excess < 0.0 {
+                return limit;
+            }
+        }
+        let left = SlopeInterval { lower: self.slowest[lane], upper: self.fastest[lane] };
+        test.refusing_after_speeds(LineOfSight::along(run_m, self.slope[lane]), left, from.cone, landing_cone)
+    }
+
+    /// The slope of the line of sight of a lane.
+    #[inline]
+    pub(super) const fn slope(&self, lane: usize) -> f64 {
+        self.slope[lane]
+    }
+}

@@ -1,0 +1,158 @@
+//! One take-off against all landings, one direction at a time.
+//!
+//! Three things make it quicker than pair by pair: all limits but the terrain are taken for blocks of landings at once; a bound spares
+//! most landings the terrain; and the terrain itself is one tangent to a hull instead of all vertices flown past.
+
+mod hull;
+mod lanes;
+mod table;
+mod terrain;
+
+use std::ops::Range;
+
+use lanes::{Departure, Lanes};
+pub use table::LandingTable;
+use terrain::Overflight;
+
+use crate::{
+    chain::{Contact, Direction, Station},
+    quantity::SlopeInterval,
+    world::{Limit, tolerant_speed_m_s},
+};
+
+/// One take-off against many landings: all limits, with the verdicts of [`HopTest::loft`](super::HopTest::loft) at a fraction of its cost.
+///
+/// Holds the working memory, which one sweep hands to the next: make one per thread.
+///
+/// # Examples
+/// ```
+/// use chta::{ballistics::*, chain::*, quantity::*, world::*};
+/// let points = (0..=20).map(|i| ChainPoint::new(f64::from(i), 0.0)).collect();
+/// let hopper = Hopper::with_speeds(4.0, 4.0);
+/// let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(1.0).unwrap())), rest: RestSlope::AsFrictionHolds };
+/// let chain = ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, &surface).unwrap();
+/// let test = HopTest::new(&chain, &hopper, 1.6);
+/// let stations: Vec<_> = (0..=20).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
+/// let table = LandingTable::new(&test, &stations);
+/// let mut farthest = 0;
+/// Sweep::new(&table).landings(&stations[0], 0..21, Direction::Forward, |i, verdict| {
+///     assert_eq!(verdict, test.loft(&stations[0], &stations[i]));
+///     if verdict.is_ok() {
+///         farthest = i;
+///     }
+/// });
+/// // v^2 / g = 10 m, at 45 degrees.
+/// assert_eq!(farthest, 10);
+/// ```
+#[derive(Clone, Debug)]
+pub struct Sweep<'a> {
+    table: &'a LandingTable<'a>,
+    lanes: Lanes,
+    overflight: Overflight<'a>,
+}
+
+/// Two lofts closer than this share of their size are told apart by [`HopTest::loft`](super::HopTest::loft): far more than rounding, far less than matters.
+const TOUCHING: f64 = 1e-11;
+
+impl<'a> Sweep<'a> {
+    /// For sweeps over a table of landings.
+    pub fn new(table: &'a LandingTable<'a>) -> Self {
+        let test = table.test();
+        Self { table, lanes: Lanes::new(), overflight: Overflight::new(test.chain().geometry(), test.hopper().clearance_m) }
+    }
+
+    /// Judges every landing of a range of the table's stations that lies in a direction from the take-off, nearest first.
+    ///
+    /// `visit` is given each one's index and the verdict of [`HopTest::loft`](super::HopTest::loft) for the pair: always the same one, of feasible or of the
+    /// limit that refuses, since where two limits touch within rounding that function itself is asked. The lofts are the same numbers
+    /// too, to the last bit; where vertices stand more than thirty times closer together than their neighbours, to some 1e-15.
+    ///
+    /// # Complexity
+    /// With W landings and S vertices flown past: O(W + S) where the bound spares the terrain, O(W log S + S) at worst, but for ground that
+    /// follows one parabola through the take-off to the last digit.
+    pub fn landings(
+        &mut self,
+        takeoff: &Station,
+        among: Range<usize>,
+        direction: Direction,
+        mut visit: impl FnMut(usize, Result<SlopeInterval, Limit>),
+    ) {
+        let table = self.table;
+        let (test, stations, refusals) = (table.test(), table.stations(), &table.rules(direction).refusal);
+        let among = table.part_ahead(takeoff, among, direction);
+        let rule = match test.granted(takeoff, Contact::Takeoff, direction) {
+            Ok(rule) => rule,
+            Err(limit) => return outwards(among, direction).for_each(|i| visit(i, Err(limit))),
+        };
+        let speed = tolerant_speed_m_s(rule.speed_max_m_s());
+        let point = takeoff.point;
+        let from = Departure { x_m: point.x_m, z_m: point.z_m, speed_squared: speed * speed, cone: rule.slopes() };
+        let (in_plane, beyond_bend) = table.split_at_bend(takeoff, among, direction);
+        let (on_segment, mut left) = table.split_at_segment(takeoff, in_plane, direction);
+        outwards(on_segment, direction).for_each(|i| visit(i, test.loft(takeoff, &stations[i])));
+        self.overflight.begin(takeoff, direction);
+        while !left.is_empty() {
+            let block = next_block(&mut left, direction);
+            if let Some(limit) = table.out_of_reach(&from, &block, direction) {
+                outwards(block, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(limit))));
+                continue;
+            }
+            self.lanes.judge(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
+            for i in outwards(block.clone(), direction) {
+                let verdict = match refusals[i] {
+                    Some(limit) => Err(limit),
+                    None => self.verdict(&from, takeoff, direction, i, i - block.start),
+                };
+                visit(i, verdict);
+            }
+        }
+        outwards(beyond_bend, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(Limit::Bend))));
+    }
+
+    /// The verdict on a landing that its ground grants and that lies in its block's lane.
+    #[inline]
+    fn verdict(
+        &mut self,
+        from: &Departure,
+        takeoff: &Station,
+        direction: Direction,
+        i: usize,
+        lane: usize,
+    ) -> Result<SlopeInterval, Limit> {
+        let (test, landing) = (self.table.test(), &self.table.stations()[i]);
+        let Some(open_air) = self.lanes.loft(lane) else {
+            let rules = self.table.rules(direction);
+            let cone = SlopeInterval { lower: rules.cone_lower[i], upper: rules.cone_upper[i] };
+            let run_m = (landing.point.x_m - from.x_m).abs();
+            return Err(self.lanes.refusing(test, from, lane, run_m, cone));
+        };
+        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), open_air.lower);
+        if (lower - open_air.upper).abs() <= TOUCHING * (lower.abs() + open_air.upper.abs()) && lower > open_air.lower {
+            return test.loft(takeoff, landing);
+        }
+        if lower > open_air.upper { Err(Limit::Terrain) } else { Ok(SlopeInterval { lower, upper: open_air.upper }) }
+    }
+}
+
+/// The indices of a range from the take-off's side.
+#[inline]
+fn outwards(range: Range<usize>, direction: Direction) -> impl Iterator<Item = usize> {
+    let (start, end) = (range.start, range.end);
+    range.map(move |i| if direction == Direction::Forward { i } else { end - 1 - (i - start) })
+}
+
+/// Takes the nearest block off what is left: landings of one block of the table's indices.
+fn next_block(left: &mut Range<usize>, direction: Direction) -> Range<usize> {
+    match direction {
+        Direction::Forward => {
+            let start = left.start;
+            left.start = ((start / LandingTable::BLOCK + 1) * LandingTable::BLOCK).min(left.end);
+            start..left.start
+        }
+        Direction::Reverse => {
+            let end = left.end;
+            left.end = ((end - 1) / LandingTable::BLOCK * LandingTable::BLOCK).max(left.start);
+            left.end..end
+        }
+    }
+}

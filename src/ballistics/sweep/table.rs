@@ -1,0 +1,209 @@
+//! The landings of a set of stations, laid out for sweeps.
+
+use std::ops::Range;
+
+use super::lanes::Departure;
+use crate::{
+    ballistics::{HopTest, LineOfSight},
+    chain::{Contact, Direction, Station},
+    world::{Limit, tolerant_speed_m_s},
+};
+
+/// A set of stations from left to right, prepared as landings: built once, shared by every sweep over it, in any thread.
+///
+/// Column by column, since a sweep reads a few numbers of many stations and not all that is known of one.
+///
+/// # Memory
+/// 66 bytes a station.
+#[derive(Clone, Debug)]
+pub struct LandingTable<'a> {
+    test: &'a HopTest<'a>,
+    stations: &'a [Station],
+    pub(super) x_m: Vec<f64>,
+    pub(super) z_m: Vec<f64>,
+    /// By direction of travel.
+    rules: [LandingRules; 2],
+    blocks: Vec<Block>,
+}
+
+/// The ends of height and speed over one block of stations.
+#[derive(Clone, Copy, Debug)]
+struct Block {
+    lowest_m: f64,
+    highest_m: f64,
+    /// The greatest squared landing speed by direction, m^2/s^2.
+    speed_squared: [f64; 2],
+}
+
+/// What the ground grants to landings in one direction of travel, column by column.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LandingRules {
+    /// The greatest landing speed with its tolerance, squared, m^2/s^2; 0 where the ground refuses.
+    pub(super) speed_squared: Vec<f64>,
+    /// The steepest descent allowed: the lower end of the landing cone.
+    pub(super) cone_lower: Vec<f64>,
+    /// The upper end of the landing cone.
+    pub(super) cone_upper: Vec<f64>,
+    /// Why the ground refuses, where it does.
+    pub(super) refusal: Vec<Option<Limit>>,
+}
+
+impl<'a> LandingTable<'a> {
+    /// The landings on stations that rise in x, no two at the same x.
+    pub fn new(test: &'a HopTest<'a>, stations: &'a [Station]) -> Self {
+        let z_m: Vec<f64> = stations.iter().map(|station| station.point.z_m).collect();
+        let rules = Direction::BOTH.map(|direction| LandingRules::new(test, stations, direction));
+        let greatest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let blocks = (0..stations.len())
+            .step_by(Self::BLOCK)
+            .map(|start| start..(start + Self::BLOCK).min(stations.len()))
+            .map(|block| Block {
+                lowest_m: z_m[block.clone()].iter().copied().fold(f64::INFINITY, f64::min),
+                highest_m: greatest(&z_m[block.clone()]),
+                speed_squared: [0, 1].map(|direction: usize| greatest(&rules[direction].speed_squared[block.clone()])),
+            })
+            .collect();
+        Self { test, stations, x_m: stations.iter().map(|station| station.point.x_m).collect(), z_m, rules, blocks }
+    }
+
+    /// How many stations the sweep takes at once: those of one block of indices, so that what is known of the block holds.
+    pub(super) const BLOCK: usize = 64;
+
+    /// Whether no landing of a block of indices (or part of one) can be reached, and by which speed: the nearest, lowest place there lies
+    /// outside the parabola of safety of the take-off, or all places inside that one and outside the parabola of the landing.
+    ///
+    /// By more than rounding: what is close to a parabola is left to the formulas of the hop test.
+    pub(super) fn out_of_reach(&self, from: &Departure, block: &Range<usize>, direction: Direction) -> Option<Limit> {
+        /// Much more than rounding.
+        const CLEARLY: f64 = 1.0 + 1e-9;
+        let ends = &self.blocks[block.start / Self::BLOCK];
+        let landing_squared = ends.speed_squared[direction as usize];
+        let gravity = self.test.gravity_m_s2();
+        let (left_m, right_m) = ((self.x_m[block.start] - from.x_m).abs(), (self.x_m[block.end - 1] - from.x_m).abs());
+        let (near_m, far_m) = (left_m.min(right_m), left_m.max(right_m));
+        let (low_m, high_m) = (ends.lowest_m - from.z_m, ends.highest_m - from.z_m);
+        let squared = |run_m: f64, lift: f64| gravity * run_m * lift;
+        if squared(near_m, LineOfSight::new(near_m, low_m).lift()) > from.speed_squared * CLEARLY {
+            return Some(Limit::TakeoffSpeed);
+        }
+        let all_inside = squared(far_m, LineOfSight::new(far_m, high_m).lift()) * CLEARLY < from.speed_squared;
+        let landing = squared(near_m, LineOfSight::new(near_m, high_m).reversed_lift());
+        (all_inside && landing > landing_squared * CLEARLY).then_some(Limit::LandingSpeed)
+    }
+
+    /// The hop test behind the verdicts.
+    pub const fn test(&self) -> &'a HopTest<'a> {
+        self.test
+    }
+
+    /// The stations.
+    pub const fn stations(&self) -> &'a [Station] {
+        self.stations
+    }
+
+    /// What the ground grants in one direction.
+    pub(super) const fn rules(&self, direction: Direction) -> &LandingRules {
+        &self.rules[direction as usize]
+    }
+
+    /// The stations that lie in a direction from a take-off, and no farther than a horizontal distance, m.
+    ///
+    pub fn within(&self, takeoff: &Station, direction: Direction, distance_m: f64) -> Range<usize> {
+        let x_m = takeoff.point.x_m;
+        match direction {
+            Direction::Forward => {
+                let first = self.x_m.partition_point(|&x| x <= x_m);
+                first..first + self.x_m[first..].partition_point(|&x| x - x_m <= distance_m)
+            }
+            Direction::Reverse => {
+                let end = self.x_m.partition_point(|&x| x < x_m);
+                self.x_m[..end].partition_point(|&x| x_m - x > distance_m)..end
+            }
+        }
+    }
+
+    /// The stations that one hop from a take-off may reach in a direction: none beyond
+    /// [`landing_reach_m`](HopTest::landing_reach_m).
+    pub fn in_reach(&self, takeoff: &Station, direction: Direction) -> Range<usize> {
+        self.within(takeoff, direction, self.test.landing_reach_m(takeoff, direction))
+    }
+
+    /// Of a range of stations, those that lie in a direction from a take-off.
+    pub(super) fn part_ahead(&self, takeoff: &Station, among: Range<usize>, direction: Direction) -> Range<usize> {
+        let x_m = takeoff.point.x_m;
+        let among = among.start.min(self.x_m.len())..among.end.min(self.x_m.len());
+        match direction {
+            Direction::Forward => self.first_where(among.clone(), |x| x > x_m)..among.end,
+            Direction::Reverse => among.start..self.first_where(among, |x| x >= x_m),
+        }
+    }
+
+    /// A range of stations ahead of a take-off, cut into those in its plane of travel and those beyond a bend.
+    pub(super) fn split_at_bend(
+        &self,
+        takeoff: &Station,
+        ahead: Range<usize>,
+        direction: Direction,
+    ) -> (Range<usize>, Range<usize>) {
+        let Some(bend_m) = self.test.chain().geometry().next_bend_m(takeoff.point.x_m, direction) else {
+            return match direction {
+                Direction::Forward => (ahead.clone(), ahead.end..ahead.end),
+                Direction::Reverse => (ahead.clone(), ahead.start..ahead.start),
+            };
+        };
+        match direction {
+            Direction::Forward => {
+                let cut = self.first_where(ahead.clone(), |x| x > bend_m);
+                (ahead.start..cut, cut..ahead.end)
+            }
+            Direction::Reverse => {
+                let cut = self.first_where(ahead.clone(), |x| x >= bend_m);
+                (cut..ahead.end, ahead.start..cut)
+            }
+        }
+    }
+
+    /// A range of stations ahead of a take-off, cut into those that share a segment with it and those beyond.
+    pub(super) fn split_at_segment(
+        &self,
+        takeoff: &Station,
+        ahead: Range<usize>,
+        direction: Direction,
+    ) -> (Range<usize>, Range<usize>) {
+        let shares = |i: &usize| self.stations[*i].shared_segment(takeoff).is_some();
+        match direction {
+            Direction::Forward => {
+                let cut = ahead.start + ahead.clone().take_while(shares).count();
+                (ahead.start..cut, cut..ahead.end)
+            }
+            Direction::Reverse => {
+                let cut = ahead.end - ahead.clone().rev().take_while(shares).count();
+                (cut..ahead.end, ahead.start..cut)
+            }
+        }
+    }
+
+    /// The first station of a range at an x where something holds, which then holds for all to its right.
+    fn first_where(&self, range: Range<usize>, holds: impl Fn(f64) -> bool) -> usize {
+        range.start + self.x_m[range].partition_point(|&x| !holds(x))
+    }
+}
+
+impl LandingRules {
+    fn new(test: &HopTest<'_>, stations: &[Station], direction: Direction) -> Self {
+        let mut rules = Self::default();
+        rules.speed_squared.reserve_exact(stations.len());
+        rules.cone_lower.reserve_exact(stations.len());
+        rules.cone_upper.reserve_exact(stations.len());
+        rules.refusal.reserve_exact(stations.len());
+        for station in stations {
+            let granted = test.granted(station, Contact::Landing, direction);
+            let speed = granted.map_or(0.0, |rule| tolerant_speed_m_s(rule.speed_max_m_s()));
+            rules.speed_squared.push(speed * speed);
+            rules.cone_lower.push(granted.map_or(0.0, |rule| rule.slopes().lower));
+            rules.cone_upper.push(granted.map_or(0.0, |rule| rule.slopes().upper));
+            rules.refusal.push(granted.err());
+        }
+        rules
+    }
+}

@@ -1,0 +1,465 @@
+//! The search itself: nodes settled in batches of one hop count, their edges evaluated then and never stored.
+//!
+//! Every edge takes one hop at least, so a node's best cost is known once all nodes of fewer hops have had their say: all that are then
+//! due at one hop count are one batch, evaluated in any order and by any number of threads. What a batch offers to a node is compared by
+//! cost, then by the place of the node before (smaller goes first, the start before all): a total order, so that the best offer is the
+//! same whoever makes it first.
+
+use std::{collections::BTreeMap, ops::Range};
+
+use rayon::prelude::*;
+
+use super::{
+    Cost, HopGraph, RefusalCounts,
+    goals::Goals,
+    local_reach::{HopsLeft, LocalReach},
+    nodes::around,
+};
+use crate::{
+    ballistics::{LandingTable, Sweep},
+    chain::{Direction, Station},
+    quantity::{NodeId, SlopeInterval},
+    world::Limit,
+};
+
+/// Where a hop comes from: the start, or a node by its number and one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Origin(u32);
+
+impl Origin {
+    /// The start itself.
+    pub(super) const START: Self = Self(0);
+
+    /// A node.
+    #[expect(clippy::cast_possible_truncation, reason = "a node set has at most 20 million nodes")]
+    const fn node(index: usize) -> Self {
+        Self(index as u32 + 1)
+    }
+
+    /// Which node; `None` for the start.
+    pub(super) const fn index(self) -> Option<usize> {
+        (self.0 as usize).checked_sub(1)
+    }
+}
+
+/// The best way known to a node or a goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Label {
+    pub(super) cost: Cost,
+    pub(super) from: Origin,
+    /// Whether no better way can turn up.
+    settled: bool,
+}
+
+impl Label {
+    /// No way known.
+    pub(super) const UNKNOWN: Self = Self { cost: Cost::UNREACHED, from: Origin(u32::MAX), settled: false };
+
+    /// Where the journey begins.
+    pub(super) const fn at_start() -> Self {
+        Self { cost: Cost::of_hops(0), from: Origin::START, settled: true }
+    }
+
+    /// Takes an offer where it is better, by cost, then by origin.
+    pub(super) fn offer(&mut self, cost: Cost, from: Origin) {
+        if self.takes(cost, from) {
+            (self.cost, self.from) = (cost, from);
+        }
+    }
+
+    /// Whether an offer is better than what is known.
+    fn takes(&self, cost: Cost, from: Origin) -> bool {
+        (cost, from) < (self.cost, self.from)
+    }
+
+    /// Whether some way is known.
+    pub(super) const fn is_known(&self) -> bool {
+        self.cost.hops() < Cost::UNREACHED.hops()
+    }
+
+    /// Whether a way of so many hops might be better.
+    const fn waits_for(&self, hops: u64, aim: Aim) -> bool {
+        let known = self.cost.hops();
+        !self.settled
+            && match aim {
+                Aim::HopsThenEffort => known >= hops,
+                Aim::Hops => known > hops,
+            }
+    }
+}
+
+/// How much was looked at.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Tally {
+    /// Pairs given to the hop test.
+    pub(super) pairs: u64,
+    /// How the refused ones fell.
+    pub(super) refusals: RefusalCounts,
+}
+
+impl std::ops::AddAssign for Tally {
+    fn add_assign(&mut self, other: Self) {
+        self.pairs += other.pairs;
+        self.refusals += other.refusals;
+    }
+}
+
+/// A place that hops leave from, with the cost of getting there.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Takeoff {
+    pub(super) station: Station,
+    pub(super) cost: Cost,
+    pub(super) origin: Origin,
+    /// How far one hop carries from here at most, m.
+    pub(super) reach_m: f64,
+}
+
+/// What a search is after.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Aim {
+    /// Fewest hops, then least effort.
+    HopsThenEffort,
+    /// Fewest hops alone: the first way of so many will do.
+    Hops,
+}
+
+/// A search over one graph, for one start after another.
+#[derive(Debug)]
+pub(super) struct Fronts<'g> {
+    graph: &'g HopGraph<'g>,
+    table: &'g LandingTable<'g>,
+    reach: &'g LocalReach,
+    aim: Aim,
+    labels: Vec<Label>,
+    /// The nodes whose labels have to be forgotten before the next start.
+    known: Vec<u32>,
+    /// Nodes due, by the least hops of any path through them to a goal, then by their own hops.
+    due: BTreeMap<(u64, u64), Vec<u32>>,
+    sweep: Sweep<'g>,
+    tally: Tally,
+    /// The least work of a batch that is shared among threads, in pairs: below, waking them takes longer.
+    shared_from_pairs: usize,
+    /// In tests, the order in which a batch is evaluated.
+    #[cfg(test)]
+    arrange: fn(&mut [Takeoff]),
+}
+
+impl<'g> Fronts<'g> {
+    /// Some 100 to 200 microseconds of work.
+    const SHARED_FROM_PAIRS: usize = 4096;
+    /// Pieces of a shared batch for each thread, so that unequal ones even out.
+    const PIECES_PER_THREAD: usize = 4;
+
+    /// Before any start.
+    pub(super) fn new(graph: &'g HopGraph<'g>, table: &'g LandingTable<'g>, reach: &'g LocalReach, aim: Aim) -> Self {
+        Self {
+            graph,
+            table,
+            reach,
+            aim,
+            labels: vec![Label::UNKNOWN; graph.nodes().stations().len()],
+            known: Vec::new(),
+            due: BTreeMap::new(),
+            sweep: Sweep::new(table),
+            tally: Tally::default(),
+            shared_from_pairs: Self::SHARED_FROM_PAIRS,
+            #[cfg(test)]
+            arrange: |_| {},
+        }
+    }
+
+    /// What the last run looked at.
+    pub(super) const fn tally(&self) -> Tally {
+        self.tally
+    }
+
+    /// The fewest hops to a node, where the last run found no way to some goal or had none; `None` where no hops get there.
+    pub(super) fn hops(&self, node: NodeId) -> Option<u64> {
+        let label = self.labels[node.index()];
+        label.is_known().then(|| label.cost.hops())
+    }
+
+    /// The stations of the best path to a goal, after a run that found one: from the start on, the goal left out.
+    pub(super) fn stations_before(&self, start: &Station, goal: &Label) -> Vec<Station> {
+        let mut from = goal.from;
+        let mut stations = Vec::new();
+        while let Some(node) = from.index() {
+            stations.push(self.graph.nodes().stations()[node]);
+            from = self.labels[node].from;
+        }
+        stations.push(*start);
+        stations.reverse();
+        stations
+    }
+
+    /// Searches from a start until every goal has its best path, or until all that can be reached has been.
+    ///
+    /// In order of the least hops that any path through a node can have, its own and those of the bound on what is left (A*); nodes of
+    /// the same two numbers are one batch. The bound never falls by more than an edge's hops along it, so a batch is complete when its
+    /// turn comes, and every node by which a best path might lead has had its turn before.
+    pub(super) fn run(&mut self, start: &Station, goals: &mut Goals) {
+        let left = HopsLeft::to(self.reach, goals.stations());
+        self.forget();
+        if let Some(node) = self.graph.nodes().find(start) {
+            self.labels[node.index()] = Label::at_start();
+            self.known.extend(u32::try_from(node.index()));
+        }
+        goals.arrive_at(start);
+        let first = Takeoff { station: *start, cost: Cost::of_hops(0), origin: Origin::START, reach_m: self.reach.at_m(start) };
+        self.settle(&mut [first], goals, left);
+        while let Some(((least, hops), nodes)) = self.due.pop_first() {
+            if least > goals.most_hops() {
+                break;
+            }
+            let mut batch = self.takeoffs(nodes, hops);
+            self.settle(&mut batch, goals, left);
+        }
+    }
+
+    /// Forgets the start before.
+    fn forget(&mut self) {
+        for node in self.known.drain(..) {
+            self.labels[node as usize] = Label::UNKNOWN;
+        }
+        self.due.clear();
+        self.tally = Tally::default();
+    }
+
+    /// Settles the nodes of a batch, from left to right; those for which fewer hops have turned up since have been settled.
+    fn takeoffs(&mut self, mut nodes: Vec<u32>, hops: u64) -> Vec<Takeoff> {
+        nodes.sort_unstable();
+        let stations = self.graph.nodes().stations();
+        let mut takeoffs = Vec::with_capacity(nodes.len());
+        for node in nodes.into_iter().map(|node| node as usize) {
+            let label = &mut self.labels[node];
+            if label.settled || label.cost.hops() != hops {
+                continue;
+            }
+            label.settled = true;
+            let station = stations[node];
+            let reach_m = self.reach.at_m(&station);
+            takeoffs.push(Takeoff { station, cost: label.cost, origin: Origin::node(node), reach_m });
+        }
+        takeoffs
+    }
+
+    /// Evaluates the edges out of a batch, given from left to right: to the goals, and to the nodes unless every goal is too near for one
+    /// of them to lead there.
+    fn settle(&mut self, batch: &mut [Takeoff], goals: &mut Goals, left: HopsLeft<'_>) {
+        self.tally += goals.land_from(self.graph, batch);
+        // By way of a landing of this batch it takes two hops more, at least.
+        let Some(takeoff) = batch.first() else { return };
+        if takeoff.cost.hops() + 2 > goals.most_hops() {
+            return;
+        }
+        let mut begin = 0;
+        while begin < batch.len() {
+            // Take-offs whose landings overlap, so that all of these are one stretch of nodes.
+            let mut window = self.landings(&batch[begin]);
+            let mut end = begin + 1;
+            while let Some(range) = batch.get(end).map(|takeoff| self.landings(takeoff)).filter(|r| r.start < window.end) {
+                window = window.start.min(range.start)..window.end.max(range.end);
+                end += 1;
+            }
+            self.sweep_stretch(&mut batch[begin..end], window, left);
+            begin = end;
+        }
+    }
+
+    /// The nodes that a take-off might reach.
+    fn landings(&self, takeoff: &Takeoff) -> Range<usize> {
+        around(self.graph.nodes().stations(), &takeoff.station, takeoff.reach_m)
+    }
+
+    /// Evaluates the edges from some take-offs of the same hops to all nodes of a stretch that wait for them.
+    fn sweep_stretch(&mut self, batch: &mut [Takeoff], window: Range<usize>, left: HopsLeft<'_>) {
+        let Some(hops) = batch.first().map(|takeoff| takeoff.cost.hops() + 1) else { return };
+        let waits = |node: &usize| self.labels[*node].waits_for(hops, self.aim);
+        let waiting: Vec<usize> = window.filter(waits).collect();
+        let (Some(&first), Some(&last)) = (waiting.first(), waiting.last()) else { return };
+        #[cfg(test)]
+        (self.arrange)(batch);
+        let Self { graph, aim, .. } = *self;
+        let stretch = Stretch { graph, aim, hops, first, waiting: &waiting, labels: &self.labels[first..=last] };
+        let pairs = batch.len().saturating_mul(waiting.len());
+        let threads = rayon::current_num_threads();
+        let found: Vec<(Vec<Label>, Tally)> = if pairs < self.shared_from_pairs || threads == 1 {
+            vec![stretch.offers(&mut self.sweep, batch)]
+        } else {
+            let pieces = batch.par_chunks(batch.len().div_ceil(threads * Self::PIECES_PER_THREAD));
+            pieces.map_init(|| Sweep::new(self.table), |sweep, piece| stretch.offers(sweep, piece)).collect()
+        };
+        for (offers, tally) in found {
+            self.tally += tally;
+            for (node, offer) in (first..).zip(offers) {
+                self.take(node, &offer, left);
+            }
+        }
+    }
+
+    /// Takes an offer to a node where it is better than what is known, and makes the node due where it has fewer hops.
+    fn take(&mut self, node: usize, offer: &Label, left: HopsLeft<'_>) {
+        let label = &mut self.labels[node];
+        let before = *label;
+        label.offer(offer.cost, offer.from);
+        if label.cost.hops() == before.cost.hops() {
+            return;
+        }
+        let hops = label.cost.hops();
+        #[expect(clippy::cast_possible_truncation, reason = "a node set has at most 20 million nodes")]
+        let id = node as u32;
+        if !before.is_known() {
+            self.known.push(id);
+        }
+        let least = hops.saturating_add(left.from(&self.graph.nodes().stations()[node]));
+        self.due.entry((least, hops)).or_default().push(id);
+    }
+}
+
+/// Nodes side by side on their way to better labels, all from take-offs of the same hops.
+#[derive(Clone, Copy)]
+struct Stretch<'s> {
+    graph: &'s HopGraph<'s>,
+    aim: Aim,
+    /// The hops of a landing.
+    hops: u64,
+    first: usize,
+    /// Those for which a landing might be better than what is known.
+    waiting: &'s [usize],
+    labels: &'s [Label],
+}
+
+impl Stretch<'_> {
+    /// The best labels that some take-offs have to offer.
+    fn offers(&self, sweep: &mut Sweep<'_>, takeoffs: &[Takeoff]) -> (Vec<Label>, Tally) {
+        let mut labels = self.labels.to_vec();
+        let mut tally = Tally::default();
+        for takeoff in takeoffs {
+            let range = around(self.graph.nodes().stations(), &takeoff.station, takeoff.reach_m);
+            let place = |node: usize| self.waiting.partition_point(|&waiting| waiting < node);
+            let in_reach = &self.waiting[place(range.start)..place(range.end)];
+            let x_m = takeoff.station.point.x_m;
+            let (behind, ahead) =
+                in_reach.split_at(in_reach.partition_point(|&node| self.graph.nodes().stations()[node].point.x_m <= x_m));
+            for (landings, direction) in [(behind, Direction::Reverse), (ahead, Direction::Forward)] {
+                let waits = |node: &&usize| labels[**node - self.first].waits_for(self.hops, self.aim);
+                let (Some(&first), Some(&last)) = (landings.iter().find(waits), landings.iter().rfind(waits)) else { continue };
+                sweep.landings(&takeoff.station, first..last + 1, direction, |node, single| {
+                    self.judge(takeoff, node, single, &mut labels[node - self.first], &mut tally);
+                });
+            }
+        }
+        (labels, tally)
+    }
+
+    /// Offers a node what the hop test makes of one pair, where it waits for that.
+    #[inline]
+    fn judge(&self, takeoff: &Takeoff, node: usize, single: Result<SlopeInterval, Limit>, label: &mut Label, tally: &mut Tally) {
+        if !label.waits_for(self.hops, self.aim) {
+            return;
+        }
+        tally.pairs += 1;
+        let landing = &self.graph.nodes().stations()[node];
+        match self.graph.edge_of(&takeoff.station, landing, single) {
+            Ok(edge) => {
+                let least = takeoff.cost + Cost::of_hops(edge.hops());
+                match self.aim {
+                    Aim::Hops => label.offer(least, takeoff.origin),
+                    // What would be too much without any effort for this edge need not be worked out.
+                    Aim::HopsThenEffort if label.takes(least, takeoff.origin) => {
+                        label.offer(takeoff.cost + self.graph.cost(&takeoff.station, landing, edge), takeoff.origin);
+                    }
+                    Aim::HopsThenEffort => {}
+                }
+            }
+            Err(limit) => tally.refusals.count(limit),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        ballistics::{HopTest, Split, TakeoffChoice},
+        chain::{ConstrainedChain, PolygonalChain},
+        graph::{Effort, NodeSet, PointSpacing},
+        quantity::{ChainPoint, VertexId},
+        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    };
+
+    /// Level ground, where many hops cost the same to the last bit, with a needle here and there.
+    fn chain() -> ConstrainedChain {
+        let height = |i: u8| if i % 7 == 3 { 0.5 } else { 0.0 };
+        let points = (0..60).map(|i| ChainPoint::new(f64::from(i), height(i))).collect();
+        let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.8).unwrap())), rest: RestSlope::Unlimited };
+        ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &Hopper::with_speeds(5.0, 5.0), &surface).unwrap()
+    }
+
+    /// The order of a shuffle of cards, and back to front.
+    const ORDERS: [fn(&mut [Takeoff]); 3] = [
+        |_| {},
+        <[Takeoff]>::reverse,
+        |batch| {
+            let half = batch.len() / 2;
+            batch.rotate_left(half);
+            for i in (0..half).step_by(2) {
+                batch.swap(i, half + i);
+            }
+        },
+    ];
+
+    #[test]
+    fn neither_the_order_nor_the_threads_change_a_label() {
+        let chain = chain();
+        let test = HopTest::new(&chain, &Hopper::with_speeds(5.0, 5.0), 3.711);
+        let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(2)).unwrap();
+        let (table, reach) = (LandingTable::new(&test, nodes.stations()), LocalReach::of(&test));
+        let at = |i| chain.geometry().vertex_station(VertexId(i));
+        for effort in Effort::ALL {
+            let graph = HopGraph::new(&test, &nodes, effort, TakeoffChoice::LeastSpeed, Split::FullReach);
+            let mut expected = None;
+            for (arrange, threads) in ORDERS.into_iter().flat_map(|order| [1, 2, 7].map(|threads| (order, threads))) {
+                let mut goals = Goals::new(&[at(59), at(40)]);
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let found = pool.install(|| {
+                    let mut fronts = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+                    (fronts.arrange, fronts.shared_from_pairs) = (arrange, 0);
+                    fronts.run(&at(1), &mut goals);
+                    (fronts.labels.clone(), fronts.tally, goals.ways())
+                });
+                assert!(found.2.iter().all(Option::is_some));
+                assert!(expected.get_or_insert_with(|| found.clone()) == &found, "{effort:?}, {threads} threads");
+            }
+        }
+    }
+
+    #[test]
+    fn of_equal_offers_the_one_from_farthest_left_stays() {
+        let mut label = Label::UNKNOWN;
+        for (hops, from) in [(3, 8), (2, 9), (2, 4), (2, 6), (3, 0)] {
+            label.offer(Cost::of_hops(hops), Origin::node(from));
+        }
+        assert_eq!((label.cost.hops(), label.from), (2, Origin::node(4)));
+        label.offer(Cost::of_hops(2), Origin::START);
+        assert_eq!(label.from, Origin::START);
+    }
+
+    #[test]
+    fn a_start_leaves_nothing_to_the_next() {
+        let chain = chain();
+        let test = HopTest::new(&chain, &Hopper::with_speeds(5.0, 5.0), 3.711);
+        let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(1)).unwrap();
+        let graph = HopGraph::new(&test, &nodes, Effort::Time, TakeoffChoice::MidRange, Split::Equal);
+        let (table, reach) = (LandingTable::new(&test, nodes.stations()), LocalReach::of(&test));
+        let at = |i| chain.geometry().vertex_station(VertexId(i));
+        let mut one = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+        for start in [0, 30, 59, 12] {
+            let mut fresh = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+            let (mut goals, mut same) = (Goals::new(&[at(20), at(45)]), Goals::new(&[at(20), at(45)]));
+            one.run(&at(start), &mut goals);
+            fresh.run(&at(start), &mut same);
+            assert_eq!((one.labels.clone(), one.tally, goals.ways()), (fresh.labels, fresh.tally, same.ways()));
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! The goals of one search: places that hops may end at but lead no farther, so that none is in the way of another.
+
+use super::{
+    Cost, HopGraph,
+    fronts::{Label, Takeoff, Tally},
+    nodes::around,
+};
+use crate::chain::Station;
+
+/// Goals and the best way known to each.
+#[derive(Clone, Debug)]
+pub(super) struct Goals {
+    /// From left to right.
+    stations: Vec<Station>,
+    labels: Vec<Label>,
+    /// Where each goal stood among those given, by its place from left to right.
+    given: Vec<usize>,
+    most_hops: u64,
+}
+
+impl Goals {
+    /// Goals to which no way is known yet.
+    pub(super) fn new(goals: &[Station]) -> Self {
+        let mut given: Vec<usize> = (0..goals.len()).collect();
+        given.sort_by(|&a, &b| goals[a].point.x_m.total_cmp(&goals[b].point.x_m));
+        let stations = given.iter().map(|&i| goals[i]).collect();
+        Self { stations, labels: vec![Label::UNKNOWN; goals.len()], given, most_hops: Cost::UNREACHED.hops() }
+    }
+
+    /// The stations, from left to right.
+    pub(super) fn stations(&self) -> &[Station] {
+        &self.stations
+    }
+
+    /// The best way known to each goal, in the order in which they were given; `None` where there is none.
+    pub(super) fn ways(&self) -> Vec<Option<Label>> {
+        let mut ways = vec![None; self.labels.len()];
+        for (label, &given) in self.labels.iter().zip(&self.given) {
+            ways[given] = label.is_known().then_some(*label);
+        }
+        ways
+    }
+
+    /// The most hops of the ways known; without bound where to some goal none is, or where there are no goals.
+    pub(super) const fn most_hops(&self) -> u64 {
+        self.most_hops
+    }
+
+    /// Goals at the start are reached without a hop.
+    pub(super) fn arrive_at(&mut self, start: &Station) {
+        for (station, label) in self.stations.iter().zip(&mut self.labels) {
+            if station.point.x_m == start.point.x_m {
+                *label = Label::at_start();
+            }
+        }
+        self.count();
+    }
+
+    /// Tries the goals from some take-offs.
+    pub(super) fn land_from(&mut self, graph: &HopGraph<'_>, takeoffs: &[Takeoff]) -> Tally {
+        let mut tally = Tally::default();
+        for takeoff in takeoffs {
+            let in_reach = around(&self.stations, &takeoff.station, takeoff.reach_m);
+            for (goal, label) in self.stations[in_reach.clone()].iter().zip(&mut self.labels[in_reach]) {
+                if label.cost.hops() <= takeoff.cost.hops() {
+                    continue;
+                }
+                tally.pairs += 1;
+                match graph.edge(&takeoff.station, goal) {
+                    Ok(edge) => label.offer(takeoff.cost + graph.cost(&takeoff.station, goal, edge), takeoff.origin),
+                    Err(limit) => tally.refusals.count(limit),
+                }
+            }
+        }
+        if tally.pairs > 0 {
+            self.count();
+        }
+        tally
+    }
+
+    fn count(&mut self) {
+        self.most_hops = self.labels.iter().map(|label| label.cost.hops()).max().unwrap_or(Cost::UNREACHED.hops());
+    }
+}

@@ -1,0 +1,183 @@
+//! Questions on their way to answers, round by round of denser nodes.
+
+use std::collections::HashMap;
+
+use super::{
+    Answer, Cost, EndpointRefusal, Frontier, HopGraph, Leg, NodeSet, Outcome, PointSpacing, SearchOptions, TooManyNodes,
+    endpoint_refusal,
+    fronts::{Aim, Fronts, Label, Tally},
+    goals::Goals,
+    local_reach::LocalReach,
+};
+use crate::{
+    ballistics::{HopTest, LandingTable},
+    chain::{Contact, Direction, Station},
+    quantity::NodeId,
+};
+
+/// The least node set whose batches may be worth sharing among threads.
+const SHARED_FROM_NODES: usize = 4096;
+
+/// What one round of searches goes over.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Round<'a> {
+    pub(super) test: &'a HopTest<'a>,
+    pub(super) reach: &'a LocalReach,
+    /// The nodes that all questions share.
+    pub(super) nodes: &'a NodeSet,
+    pub(super) spacing: PointSpacing,
+    pub(super) options: &'a SearchOptions,
+    /// Whether no denser nodes are to be tried.
+    pub(super) is_last: bool,
+}
+
+impl<'a> Round<'a> {
+    /// The graph over some nodes.
+    const fn graph(&self, nodes: &'a NodeSet) -> HopGraph<'a> {
+        let SearchOptions { effort, takeoff, split, .. } = *self.options;
+        HopGraph::new(self.test, nodes, effort, takeoff, split)
+    }
+
+    /// An answer over the shared nodes and those that start and goal add to them.
+    fn answer(&self, (start, goal): &(Station, Station), outcome: Outcome, tally: Tally) -> Answer {
+        let adds = |station: &Station| usize::from(self.nodes.find(station).is_none());
+        let goal_adds = if goal.point.x_m == start.point.x_m { 0 } else { adds(goal) };
+        Answer {
+            outcome,
+            spacing: self.spacing,
+            points_per_segment: self.nodes.most_per_segment(),
+            nodes: self.nodes.stations().len() + adds(start) + goal_adds,
+            pairs_tested: tally.pairs,
+            refusals: tally.refusals,
+        }
+    }
+}
+
+/// One question.
+#[derive(Clone, Debug)]
+struct Question {
+    ends: (Station, Station),
+    /// What was looked at for it so far.
+    tally: Tally,
+    answer: Option<Answer>,
+}
+
+/// Questions, with the answers found so far.
+#[derive(Clone, Debug)]
+pub(super) struct Questions {
+    questions: Vec<Question>,
+    /// The questions of each start.
+    by_start: Vec<Vec<usize>>,
+}
+
+impl Questions {
+    /// Nothing answered yet.
+    pub(super) fn new(pairs: &[(Station, Station)]) -> Self {
+        let mut places = HashMap::new();
+        let mut by_start: Vec<Vec<usize>> = Vec::new();
+        for (i, (start, _)) in pairs.iter().enumerate() {
+            // The same double is the same place, and 0 is -0.
+            let place = *places.entry((start.point.x_m + 0.0).to_bits()).or_insert(by_start.len());
+            match by_start.get_mut(place) {
+                Some(questions) => questions.push(i),
+                None => by_start.push(vec![i]),
+            }
+        }
+        let questions = pairs.iter().map(|&ends| Question { ends, tally: Tally::default(), answer: None }).collect();
+        Self { questions, by_start }
+    }
+
+    /// Whether all are answered.
+    pub(super) fn are_answered(&self) -> bool {
+        self.questions.iter().all(|question| question.answer.is_some())
+    }
+
+    /// The answers, in the order of the questions.
+    pub(super) fn into_answers(self) -> Vec<Answer> {
+        self.questions.into_iter().filter_map(|question| question.answer).collect()
+    }
+
+    /// Answers those of which an end refuses whatever the hop.
+    pub(super) fn refuse_ends(&mut self, round: &Round<'_>) {
+        for question in &mut self.questions {
+            let refusing = refusing_endpoints(round.test, &question.ends);
+            if !refusing.is_empty() {
+                question.answer = Some(round.answer(&question.ends, Outcome::EndpointsRefuse(refusing), question.tally));
+            }
+        }
+    }
+
+    /// Searches once from each start that has open questions.
+    ///
+    /// # Errors
+    /// [`TooManyNodes`], where the ends of a question without a path are what is too much.
+    pub(super) fn ask(&mut self, round: &Round<'_>) -> Result<(), TooManyNodes> {
+        let graph = round.graph(round.nodes);
+        let table = LandingTable::new(round.test, round.nodes.stations());
+        let mut fronts = Fronts::new(&graph, &table, round.reach, Aim::HopsThenEffort);
+        for of_start in &self.by_start {
+            let open: Vec<usize> = of_start.iter().copied().filter(|&i| self.questions[i].answer.is_none()).collect();
+            let Some(&first) = open.first() else { continue };
+            let start = self.questions[first].ends.0;
+            let goals: Vec<Station> = open.iter().map(|&i| self.questions[i].ends.1).collect();
+            let mut goals = Goals::new(&goals);
+            if round.nodes.stations().len() >= SHARED_FROM_NODES {
+                // From inside the pool, whose threads hear of each other sooner than of one outside.
+                rayon::scope(|_| fronts.run(&start, &mut goals));
+            } else {
+                fronts.run(&start, &mut goals);
+            }
+            for (&i, way) in open.iter().zip(goals.ways()) {
+                let Question { ends, tally, answer } = &mut self.questions[i];
+                *tally += fronts.tally();
+                let outcome = match way {
+                    Some(way) => Some(path(&graph, &fronts, ends, &way)),
+                    None if round.is_last => Some(Outcome::NoPath(Box::new(frontier(round, &fronts, *ends)?))),
+                    None => None,
+                };
+                *answer = outcome.map(|outcome| round.answer(ends, outcome, *tally));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Which of start and goal refuse whatever the hop. A journey of no hop asks nothing of either.
+fn refusing_endpoints(test: &HopTest<'_>, (start, goal): &(Station, Station)) -> Vec<EndpointRefusal> {
+    let Some(towards) = Direction::between(start.point.x_m, goal.point.x_m) else { return Vec::new() };
+    [(start, Contact::Takeoff), (goal, Contact::Landing)]
+        .into_iter()
+        .filter_map(|(station, contact)| endpoint_refusal(test.chain(), station, contact, towards))
+        .collect()
+}
+
+/// The path by the best way to a goal.
+fn path(graph: &HopGraph<'_>, fronts: &Fronts<'_>, (start, goal): &(Station, Station), way: &Label) -> Outcome {
+    let mut stations = fronts.stations_before(start, way);
+    if way.cost > Cost::default() {
+        stations.push(*goal);
+    }
+    let legs = stations
+        .windows(2)
+        .filter_map(|pair| {
+            let (takeoff, landing) = (pair[0], pair[1]);
+            graph.edge(&takeoff, &landing).ok().map(|edge| Leg { takeoff, landing, edge })
+        })
+        .collect();
+    Outcome::Path { legs, cost: way.cost }
+}
+
+/// What stops a search without success, over the shared nodes and the two ends.
+fn frontier(round: &Round<'_>, fronts: &Fronts<'_>, (start, goal): (Station, Station)) -> Result<Frontier, TooManyNodes> {
+    let nodes = NodeSet::new(round.test.chain(), start, goal, round.spacing)?;
+    let mut shared = round.nodes.stations().iter().enumerate().peekable();
+    let reached: Vec<bool> = nodes
+        .stations()
+        .iter()
+        .map(|station| match shared.next_if(|(_, shared)| shared.point.x_m == station.point.x_m) {
+            Some((i, _)) => fronts.hops(NodeId(i)).is_some(),
+            None => station.point.x_m == start.point.x_m,
+        })
+        .collect();
+    Ok(Frontier::of(&round.graph(&nodes), round.reach, &reached))
+}
