@@ -265,7 +265,9 @@ fn edge_weight(graph: &HopGraph<'_>, (from, to): (usize, usize), options: &Searc
             let arc = Arc::new(sight, options.takeoff.loft(sight, lofts), test.gravity_m_s2());
             surety.model.weight(test, &PlannedHop { takeoff, landing, arc, lofts, tolerance_m })
         }),
-        Ok(Edge::Along(along)) => along_weight(test, (takeoff, landing), &along, (options.takeoff, options.split), surety, tolerance_m),
+        Ok(Edge::Along(along)) => {
+            along_weight(test, (takeoff, landing), &along, (options.takeoff, options.split), surety, tolerance_m)
+        }
         // It was an edge when the lattice was built.
         Err(_) => f64::INFINITY,
     }

@@ -37,7 +37,7 @@ pub struct DriftRecord {
     pub hop: usize,
     /// How many flights came down.
     pub count: usize,
-    /// How many left the chain.
+    /// How many never came down.
     pub lost: u32,
     /// Of the distance in three dimensions from the planned landing.
     #[serde(flatten)]
@@ -130,16 +130,26 @@ pub struct ConeWidthRecord {
     pub all_landings_fixed: ErrorRecord,
     /// Errors of the last landing alone.
     pub last_landing_fixed: ErrorRecord,
+    /// Root mean square spread of one hop's landings about their own mean, from the second hop on.
+    pub landing_spread_fixed_m: Option<f64>,
     /// Errors over all landings, drift in proportion to the horizontal speed, as the paper argues.
     pub all_landings_with_speed: ErrorRecord,
     /// Errors of the last landing alone.
     pub last_landing_with_speed: ErrorRecord,
+    /// Root mean square spread of one hop's landings about their own mean, from the second hop on.
+    pub landing_spread_with_speed_m: Option<f64>,
 }
 
 impl ConeWidthAnswer {
     /// Nothing tried yet.
     pub fn new(numbers: &DriftExperiment, reference_horizontal_speed_m_s: f64) -> Self {
-        Self { experiment: "cone-width", seed: numbers.seed, flights: numbers.flights, reference_horizontal_speed_m_s, widths: Vec::new() }
+        Self {
+            experiment: "cone-width",
+            seed: numbers.seed,
+            flights: numbers.flights,
+            reference_horizontal_speed_m_s,
+            widths: Vec::new(),
+        }
     }
 
     /// A width at which no path was found.
@@ -152,8 +162,10 @@ impl ConeWidthAnswer {
             mean_horizontal_speed_m_s: None,
             all_landings_fixed: none,
             last_landing_fixed: none,
+            landing_spread_fixed_m: None,
             all_landings_with_speed: none,
             last_landing_with_speed: none,
+            landing_spread_with_speed_m: None,
         });
     }
 
@@ -166,9 +178,16 @@ impl ConeWidthAnswer {
             ErrorRecord::of(&errors)
         };
         let last = |landings: &[DriftLanding]| {
-            // A path whose flights all left the chain on the way has no last landing.
+            // A path of which no flight came down at some hop has no last landing.
             let reached = landings.last().filter(|_| landings.len() == hops.len());
             reached.map_or(ErrorRecord::default(), |landing| ErrorRecord::of(&landing.errors_m))
+        };
+        // The first hop starts at a point, without scatter.
+        #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
+        let spread = |landings: &[DriftLanding]| {
+            let squares: Vec<f64> =
+                landings.iter().skip(1).filter_map(DriftLanding::spread_m).map(|spread_m| spread_m * spread_m).collect();
+            (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
         };
         self.widths.push(ConeWidthRecord {
             cone_share,
@@ -177,8 +196,10 @@ impl ConeWidthAnswer {
             mean_horizontal_speed_m_s: mean(Hop::horizontal_speed_m_s),
             all_landings_fixed: all(fixed),
             last_landing_fixed: last(fixed),
+            landing_spread_fixed_m: spread(fixed),
             all_landings_with_speed: all(with_speed),
             last_landing_with_speed: last(with_speed),
+            landing_spread_with_speed_m: spread(with_speed),
         });
     }
 
@@ -186,13 +207,17 @@ impl ConeWidthAnswer {
     pub fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!(
-            "cone width: {} flights from the farthest landing of each hop, seed {}; median distance from the planned landing (m)",
+            "cone width: {} flights from the farthest landing of each hop, seed {}\nspread: of one hop's landings about their own mean; last: \
+             median distance of the last hop's landings from the goal",
             self.flights, self.seed
         ));
-        sheet.line(format_args!("{:>7}{:>6}{:>11}{:>13}{:>24}{:>24}", "cones", "hops", "take-off", "across", "drift fixed", "drift with speed"));
+        sheet.line(format_args!(
+            "{:>7}{:>6}{:>11}{:>13}{:>24}{:>24}",
+            "cones", "hops", "take-off", "across", "drift fixed (m)", "drift with speed (m)"
+        ));
         sheet.line(format_args!(
             "{:>7}{:>6}{:>11}{:>13}{:>12}{:>12}{:>12}{:>12}",
-            "", "", "(deg)", "(m/s)", "all", "last", "all", "last"
+            "", "", "(deg)", "(m/s)", "spread", "last", "spread", "last"
         ));
         for width in &self.widths {
             let number = |number: Option<f64>, digits: usize| number.map_or("-".to_owned(), |n| format!("{n:.digits$}"));
@@ -202,9 +227,9 @@ impl ConeWidthAnswer {
                 width.cone_share,
                 number(width.mean_takeoff_angle_deg, 2),
                 number(width.mean_horizontal_speed_m_s, 3),
-                number(width.all_landings_fixed.q50_m, 3),
+                number(width.landing_spread_fixed_m, 3),
                 number(width.last_landing_fixed.q50_m, 3),
-                number(width.all_landings_with_speed.q50_m, 3),
+                number(width.landing_spread_with_speed_m, 3),
                 number(width.last_landing_with_speed.q50_m, 3),
             ));
         }
@@ -271,16 +296,7 @@ mod figures {
 
     fn quantiles(count: usize, error: &ErrorRecord) -> ErrorQuantiles {
         let [mean, q05, q25, q50, q75, q95, max] = error.each().map(|number| number.unwrap_or(0.0));
-        ErrorQuantiles {
-            count: count as u64,
-            mean_m: mean,
-            q05_m: q05,
-            q25_m: q25,
-            q50_m: q50,
-            q75_m: q75,
-            q95_m: q95,
-            max_m: max,
-        }
+        ErrorQuantiles { count: count as u64, mean_m: mean, q05_m: q05, q25_m: q25, q50_m: q50, q75_m: q75, q95_m: q95, max_m: max }
     }
 
     impl WorstDriftAnswer {

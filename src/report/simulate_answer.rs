@@ -143,16 +143,21 @@ impl SimulationRecord {
             "{}: {} of {} trials reach the goal, {:.4} (95 % interval {low:.4} to {high:.4}), seed {}",
             self.policy, self.outcomes.reached, self.trials, self.success_rate, self.seed
         ));
-        let ended: Vec<_> = self.outcomes.each().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name} {count}")).collect();
+        let ended: Vec<_> =
+            self.outcomes.each().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name} {count}")).collect();
         sheet.line(format_args!("outcomes: {}", ended.join(", ")));
         sheet.line(format_args!(
             "\ndistance from the planned landing (m)\n{:>5}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}",
             "hop", "landings", "mean", "5 %", "25 %", "50 %", "75 %", "95 %", "max"
         ));
         for landing in &self.landings {
-            let numbers: String = landing.error.each().map(|number| number.map_or(format!("{:>10}", "-"), |n| format!("{n:>10.3}"))).concat();
+            let numbers: String =
+                landing.error.each().map(|number| number.map_or(format!("{:>10}", "-"), |n| format!("{n:>10.3}"))).concat();
             let ellipse = landing.ellipse95.map_or(String::new(), |ellipse| {
-                format!("  95 % ellipse {:.2} x {:.2} m at {:.0} deg", ellipse.semi_major_m, ellipse.semi_minor_m, ellipse.orientation_deg)
+                format!(
+                    "  95 % ellipse {:.2} x {:.2} m at {:.0} deg",
+                    ellipse.semi_major_m, ellipse.semi_minor_m, ellipse.orientation_deg
+                )
             });
             sheet.line(format_args!("{:>5}{:>11}{numbers}{ellipse}", landing.hop, landing.count));
         }

@@ -30,7 +30,10 @@ impl SurestRecord {
 pub fn surest_text(rows: &[SurestRecord]) -> String {
     let mut sheet = Sheet::default();
     if !rows.is_empty() {
-        sheet.line(format_args!("\nsurest path by hops (the last is the one above)\n{:>6}{:>20}{:>12}", "hops", "estimated success", "effort"));
+        sheet.line(format_args!(
+            "\nsurest path by hops (the last is the one above)\n{:>6}{:>20}{:>12}",
+            "hops", "estimated success", "effort"
+        ));
     }
     for row in rows {
         sheet.line(format_args!("{:>6}{:>20.4}{:>12.4}", row.hops, row.estimated_success, row.effort));

@@ -40,7 +40,8 @@ pub(super) fn contact_success(
     scatter: &ContactScatter,
 ) -> f64 {
     let chain = test.chain();
-    let kept = |rule: Option<&ContactRule>, from_mean_m: f64| rule.map_or(0.0, |rule| scatter.kept_by(rule, from_mean_m, friction_sigma));
+    let kept =
+        |rule: Option<&ContactRule>, from_mean_m: f64| rule.map_or(0.0, |rule| scatter.kept_by(rule, from_mean_m, friction_sigma));
     let mean_m = planned.point.x_m + direction.sign() * scatter.shift_m;
     if scatter.place_m == 0.0 {
         // A flight as planned ends where it was planned, at a vertex under the rule of that vertex.

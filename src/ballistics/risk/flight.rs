@@ -141,7 +141,13 @@ impl Flight {
     /// The probability to strike the most critical vertex on the way.
     ///
     /// Vertices within four deviations of either end are part of the ground there, which is judged as such.
-    pub(super) fn strike_probability(&self, deviations: &HopDeviations, test: &HopTest<'_>, hop: &PlannedHop, ground: &Ground) -> f64 {
+    pub(super) fn strike_probability(
+        &self,
+        deviations: &HopDeviations,
+        test: &HopTest<'_>,
+        hop: &PlannedHop,
+        ground: &Ground,
+    ) -> f64 {
         let vertices = test.chain().geometry().vertices();
         let mut least = f64::INFINITY;
         for vertex in &vertices[flown_past(&hop.takeoff, &hop.landing)] {

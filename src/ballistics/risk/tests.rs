@@ -73,8 +73,14 @@ fn counted(test: &HopTest<'_>, hop: &PlannedHop, deviations: &HopDeviations, fli
 fn the_estimate_agrees_with_counted_flights() {
     let rough = [(0.0, 0.0), (6.0, 0.6), (9.0, 0.2), (14.0, 1.5), (17.0, 1.0), (22.0, 2.0), (26.0, 0.4), (40.0, 0.9)];
     let flat = [(0.0, 0.0), (40.0, 0.0)];
-    let small = HopDeviations { takeoff_speed_fraction: 0.02, takeoff_angle: Angle::from_degrees(1.5), place_m: 0.3, ..HopDeviations::default() };
-    let pushed = HopDeviations { takeoff_speed_fraction: 0.05, takeoff_angle: Angle::from_degrees(4.0), ..HopDeviations::default() };
+    let small = HopDeviations {
+        takeoff_speed_fraction: 0.02,
+        takeoff_angle: Angle::from_degrees(1.5),
+        place_m: 0.3,
+        ..HopDeviations::default()
+    };
+    let pushed =
+        HopDeviations { takeoff_speed_fraction: 0.05, takeoff_angle: Angle::from_degrees(4.0), ..HopDeviations::default() };
     let mut differences = Vec::new();
     for (points, friction, landing_max) in [(&rough[..], 0.9, 10.0), (&rough[..], 0.7, 7.5), (&flat[..], 0.8, 8.0)] {
         let (chain, hopper) = chain(points, friction, landing_max);
@@ -146,7 +152,10 @@ fn the_cells_are_those_of_the_normal_distribution() {
         let square = 1.0 + (ends[0] * density(ends[0]) - ends[1] * density(ends[1])) / probability;
         let found = [cell.probability, cell.mean, cell.sigma * cell.sigma + cell.mean * cell.mean];
         let expected = [probability, mean, square];
-        assert!(found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-8), "{ends:?}: {found:?} {expected:?}");
+        assert!(
+            found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-8),
+            "{ends:?}: {found:?} {expected:?}"
+        );
     }
     assert!((cells.iter().map(|cell| cell.probability).sum::<f64>() - 1.0).abs() < 1e-9);
 }

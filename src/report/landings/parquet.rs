@@ -42,7 +42,8 @@ impl<W: io::Write + Send> ParquetLandings<W> {
             .set_compression(Compression::SNAPPY)
             .set_created_by(format!("chta {}", env!("CARGO_PKG_VERSION")))
             .build();
-        let writer = SerializedFileWriter::new(out, Arc::new(schema(on_a_map).map_err(other)?), Arc::new(properties)).map_err(other)?;
+        let writer =
+            SerializedFileWriter::new(out, Arc::new(schema(on_a_map).map_err(other)?), Arc::new(properties)).map_err(other)?;
         Ok(Self { writer, waiting: Vec::new() })
     }
 

@@ -33,7 +33,6 @@ impl DriftLaw {
     }
 }
 
-
 /// Flies the paper's experiment along a path under a law of drift.
 ///
 /// `reference_m_s` is the horizontal speed at which the paper's drift is as far as it says.
@@ -69,7 +68,8 @@ pub fn narrowed(chain: &ConstrainedChain, share: f64) -> Result<PolygonalChain, 
         .iter()
         .map(|segment| {
             let [forward, reverse] = Direction::BOTH.map(|direction| {
-                let granted = [Contact::Takeoff, Contact::Landing].iter().all(|&contact| segment.judged(contact, direction).is_ok());
+                let granted =
+                    [Contact::Takeoff, Contact::Landing].iter().all(|&contact| segment.judged(contact, direction).is_ok());
                 segment.stated(direction).filter(|_| granted).map(|line| narrowed_line(line, share))
             });
             let keep_out = segment.refusal().is_some() || (forward.is_none() && reverse.is_none());

@@ -1,6 +1,6 @@
 //! The worst drift that a hundred tries from each landing find (P section V-B, Fig. 6b).
 
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 use super::ground::{FreeArc, comes_down};
@@ -68,10 +68,25 @@ pub struct DriftLanding {
     pub landings_m: Vec<Point3<f64>>,
     /// Where they took off, in the same order.
     pub takeoffs_m: Vec<Point3<f64>>,
-    /// How many flights left the chain.
+    /// How many flights never came down: they began too deep below the ground to rise above it.
     pub lost: u32,
     /// The landing that goes on.
     pub farthest_m: Point3<f64>,
+}
+
+impl DriftLanding {
+    /// Root mean square distance of the landings from their own mean, m: what this hop adds by itself, whatever was inherited; `None`
+    /// without a landing.
+    ///
+    /// Two landings 2 m apart spread by 1 m.
+    pub fn spread_m(&self) -> Option<f64> {
+        let count = self.landings_m.len();
+        #[expect(clippy::cast_precision_loss, reason = "a hundred flights")]
+        let share = 1.0 / count as f64;
+        let mean = self.landings_m.iter().map(|landing| landing.coords).sum::<Vector3<f64>>() * share;
+        let square_m2 = self.landings_m.iter().map(|landing| (landing.coords - mean).norm_squared()).sum::<f64>() * share;
+        (count > 0).then(|| square_m2.sqrt())
+    }
 }
 
 /// Step of the flight for [`DriftReading::NoiseInFlight`], s: the rate that the paper does not give.
@@ -81,12 +96,12 @@ const STEP_S: f64 = 0.1;
 ///
 /// The first hundred starts at the planned start itself, and differs by noise alone. Every flight has the planned speed, angle and
 /// direction of its hop; it lands where its parabola first comes down on the chain, which goes on unchanged to both sides of the plane of
-/// travel. The landing that goes on is the centre of the next hundred take-offs, so a robot that has drifted stays drifted.
+/// travel, and beyond its ends as its first and last segments do. The landing that goes on is the centre of the next hundred take-offs, so a robot that has drifted stays drifted.
 ///
 /// Source: P section V-B; model section 6.
 ///
 /// # Returns
-/// One entry per hop; fewer where all flights of a hop left the chain.
+/// One entry per hop; fewer where no flight of a hop came down.
 pub fn worst_drift(chain: &ConstrainedChain, hops: &[Hop], gravity_m_s2: f64, experiment: &DriftExperiment) -> Vec<DriftLanding> {
     let scatter = |_: &Hop| experiment.takeoff_variances_m2.map(f64::sqrt);
     drift_with(chain, hops, gravity_m_s2, experiment, &scatter)

@@ -26,7 +26,8 @@ use crate::cli::{
 /// Runs an experiment by its name.
 pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<Answer, Failure> {
     let experiment = named(&Experiment::ALL, Experiment::name, name, "--experiment")?;
-    let reading = args.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading")).transpose()?;
+    let reading =
+        args.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading")).transpose()?;
     refuse_idle(args, experiment)?;
     let plot = args.plot.as_deref().map(|path| pictures::begin(path, "--plot")).transpose()?;
     let test = loaded.hop_test();
@@ -95,8 +96,13 @@ fn written<T: Serialize>(args: &SimulateArgs, loaded: &Loaded, text: String, ans
     match args.format {
         Format::Text => Ok(text),
         Format::Json => {
-            let document =
-                Document::new("simulate-experiment", loaded.document.clone(), loaded.inputs.clone(), loaded.warnings_with([]), answer);
+            let document = Document::new(
+                "simulate-experiment",
+                loaded.document.clone(),
+                loaded.inputs.clone(),
+                loaded.warnings_with([]),
+                answer,
+            );
             Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
         }
     }
@@ -145,7 +151,8 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let options = TrialOptions { threads: args.threads, ..keys.options() };
     let mut rows = vec![RiskTradeRow::new("as planned", plain.hops.len(), None, &flyer.fly_along(plain, &options)?)];
     for candidate in &surest {
-        let path = generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
+        let path =
+            generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
         let summary = flyer.fly_along(&path, &options)?;
         rows.push(RiskTradeRow::new("surest", path.hops.len(), Some(candidate.success), &summary));
     }

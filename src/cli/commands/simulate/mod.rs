@@ -39,13 +39,8 @@ struct SimulateAnswer {
 
 /// Simulates.
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
-    let loaded = load_with(
-        &args.chain,
-        &args.common,
-        Some(&args.search),
-        EndOptions::of_path(args.start, args.goal),
-        &trial_options(args),
-    )?;
+    let loaded =
+        load_with(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal), &trial_options(args))?;
     if let Some(name) = &args.experiment {
         return experiment::run(args, &loaded, name);
     }

@@ -19,7 +19,10 @@ use crate::cli::{Failure, load::Loaded, output::Pending};
 pub(super) fn begin<'a>(path: &'a Path, option: &str) -> Result<Pending<'a>, Failure> {
     let named = path.extension().is_some_and(|ending| ["svg", "png"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
     if !named {
-        return Err(Failure::message(format!("{option}: '{}' does not end in .svg or .png: give the picture such a name", path.display())));
+        return Err(Failure::message(format!(
+            "{option}: '{}' does not end in .svg or .png: give the picture such a name",
+            path.display()
+        )));
     }
     Pending::begin(path)
 }
@@ -55,7 +58,8 @@ pub(in crate::cli::commands) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], 
 /// The words above: what was flown, under which errors, and what came of it.
 fn caption<'a>(loaded: &Loaded, summaries: impl Iterator<Item = &'a Summary>) -> Caption {
     let keys = loaded.scenario.uncertainty.unwrap_or_default();
-    let mut lines = vec![format!("{}; goal tolerance {} m; seed {}", errors_in_words(&keys.errors), keys.goal_tolerance_m, keys.seed)];
+    let mut lines =
+        vec![format!("{}; goal tolerance {} m; seed {}", errors_in_words(&keys.errors), keys.goal_tolerance_m, keys.seed)];
     lines.extend(summaries.map(|summary| {
         let Wilson { rate, low, high } = summary.success;
         format!(
@@ -182,7 +186,10 @@ fn cloud(landing: &LandingSummary, planned: MapPoint, summary: &Summary) -> Land
     LandingCloud {
         hop: landing.hop as usize,
         planned,
-        landings: kept.filter(|hop| hop.landed && hop.hop == landing.hop).map(|hop| MapPoint::from(hop.rest_m.coords.xy())).collect(),
+        landings: kept
+            .filter(|hop| hop.landed && hop.hop == landing.hop)
+            .map(|hop| MapPoint::from(hop.rest_m.coords.xy()))
+            .collect(),
         count: landing.count,
         ellipse: landing.ellipse.as_ref().map(|ellipse| LandingEllipse {
             centre: ellipse.centre,

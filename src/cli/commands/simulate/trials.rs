@@ -57,7 +57,8 @@ impl<'a> Flyer<'a> {
         };
         let to_go = policies.contains(&Policy::Replan).then(|| -> Result<_, Failure> {
             let (start, goal) = loaded.ends()?;
-            let nodes = NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::message(error.to_string()))?;
+            let nodes =
+                NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::message(error.to_string()))?;
             Ok(CostToGo::of(test, nodes, &loaded.scenario.search))
         });
         Ok(Self { loaded, test, path, terrain, to_go: to_go.transpose()? })
@@ -71,7 +72,8 @@ impl<'a> Flyer<'a> {
     /// The mission along a path over this ground.
     fn mission<'b>(&'b self, path: &'b HopPath) -> Result<Mission<'b>, Failure> {
         let (start, goal) = self.loaded.ends()?;
-        let map = self.terrain.as_ref().map(|(dem, covers)| MapGround { dem, friction: covers.raster(), keep_out: covers.keep_out() });
+        let map =
+            self.terrain.as_ref().map(|(dem, covers)| MapGround { dem, friction: covers.raster(), keep_out: covers.keep_out() });
         let surface = &self.loaded.scenario.surface;
         Ok(Mission { test: self.test, surface, path, start, goal, map, to_go: self.to_go.as_ref() })
     }
