@@ -9,7 +9,7 @@ use chta::{
         figure::{Picture, draw_cone_width, draw_landing_errors},
     },
     uncertainty::{
-        TrialOptions,
+        Policy, TrialOptions,
         experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
     },
 };
@@ -141,6 +141,11 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
             "--experiment: risk-trade flies trials, but the scenario has no [uncertainty]: add its deviations and goal_tolerance_m",
         ));
     };
+    if keys.policy == Policy::Replan {
+        return Err(Failure::message(
+            "--experiment: risk-trade compares planned paths, but the policy is replan, which keeps to none of them: add --policy open-loop",
+        ));
+    }
     let test = loaded.hop_test();
     let (start, goal) = loaded.ends()?;
     let failed = |error: &dyn std::fmt::Display| Failure::message(error.to_string());

@@ -16,7 +16,7 @@ use super::trials::on_dem;
 use crate::cli::{Failure, load::Loaded, output::Pending, progress::Progress};
 
 /// The file of landings, written as they come.
-pub(in crate::cli::commands) struct RowFile<'a> {
+pub(super) struct RowFile<'a> {
     writer: Box<dyn LandingWriter>,
     /// `None` for standard output.
     pending: Option<Pending<'a>>,

@@ -8,9 +8,10 @@ mod trials;
 use std::path::Path;
 
 use chta::{
+    ballistics::HopTest,
     report::{CheckAnswer, Document, SimulationRecord, check_text},
     scenario::UncertaintyKeys,
-    uncertainty::Policy,
+    uncertainty::{Policy, TrialOptions},
 };
 use serde::Serialize;
 
@@ -22,8 +23,8 @@ use crate::cli::{
     output,
 };
 use listen::RowFile;
-pub(super) use pictures::{landing_map, sheet};
-pub(super) use trials::{Flown, Flyer};
+use pictures::{landing_map, sheet};
+use trials::Flyer;
 
 /// What a simulation answers: the check, and where there is a path, what became of its trials.
 #[derive(Clone, Debug, Serialize)]
@@ -105,6 +106,44 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     Ok(Answer::Yes)
 }
 
+/// The trials of a whole run.
+pub(super) struct RunTrials {
+    /// For reading; empty where the scenario asks for no trials, or no path was found to fly.
+    pub(super) text: String,
+    /// Names and contents of its files.
+    pub(super) files: Vec<(&'static str, Vec<u8>)>,
+}
+
+/// All files that a run may leave of its trials.
+pub(super) const RUN_FILES: [&str; 3] = ["simulation.json", "trials.svg", "landings.svg"];
+
+/// Flies and draws what the scenario's `[uncertainty]` asks for, beside the plan of a run.
+pub(super) fn of_run(
+    loaded: &Loaded,
+    test: &HopTest<'_>,
+    planned: &Planned,
+    threads: usize,
+    quiet: bool,
+) -> Result<RunTrials, Failure> {
+    let mut trials = RunTrials { text: String::new(), files: Vec::new() };
+    let (Some(keys), Some(path)) = (loaded.scenario.uncertainty, &planned.path) else { return Ok(trials) };
+    let doubts: Vec<String> = keys.doubt().map(str::to_owned).into_iter().collect();
+    for doubt in &doubts {
+        output::warn(quiet, doubt);
+    }
+    let policies = std::slice::from_ref(&keys.policy);
+    let flyer = Flyer::new(loaded, test, path, &planned.found, policies)?;
+    let flown = flyer.fly(policies, &TrialOptions { threads, ..keys.options() }, None, quiet)?;
+    let [answer, sheet_name, map_name] = RUN_FILES;
+    let Some(record) = flown.first().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())) else { return Ok(trials) };
+    trials.text = format!("\n{}", record.text());
+    let simulation = SimulateAnswer { check: planned.check().clone(), simulation: Some(record), compare: Vec::new() };
+    trials.files.push((answer, document(loaded, doubts, simulation)?.into_bytes()));
+    trials.files.push((sheet_name, sheet(&flyer, &flown, Path::new(sheet_name))?));
+    trials.files.extend(landing_map(&flyer, &flown, Path::new(map_name))?.map(|picture| (map_name, picture)));
+    Ok(trials)
+}
+
 /// The answer where there is nothing to fly.
 fn no_path(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result<Answer, Failure> {
     let text = match args.format {
@@ -134,6 +173,6 @@ fn trial_options(args: &SimulateArgs) -> Vec<(&'static str, &'static str, &'stat
 }
 
 /// The trials that scenario and options ask for.
-fn trials_asked(args: &SimulateArgs, keys: &UncertaintyKeys) -> chta::uncertainty::TrialOptions {
-    chta::uncertainty::TrialOptions { until_half_width: args.until_half_width, threads: args.threads, ..keys.options() }
+fn trials_asked(args: &SimulateArgs, keys: &UncertaintyKeys) -> TrialOptions {
+    TrialOptions { until_half_width: args.until_half_width, threads: args.threads, ..keys.options() }
 }

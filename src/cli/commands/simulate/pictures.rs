@@ -12,7 +12,7 @@ use chta::{
 };
 use nalgebra::Vector2;
 
-use super::{Flown, Flyer};
+use super::trials::{Flown, Flyer};
 use crate::cli::{Failure, load::Loaded, output::Pending};
 
 /// Opens a picture's file, which must have the name of one.
@@ -33,7 +33,7 @@ pub(super) fn encoded(picture: &Picture, file: &Path) -> Result<Vec<u8>, Failure
 }
 
 /// Everything of the trials on one sheet.
-pub(in crate::cli::commands) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Vec<u8>, Failure> {
+pub(super) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Vec<u8>, Failure> {
     let summaries = || flown.iter().map(|flown| &flown.summary);
     let figure = SimulationFigure {
         caption: caption(flyer.loaded, summaries()),
@@ -45,7 +45,7 @@ pub(in crate::cli::commands) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: 
 }
 
 /// The landings on the map; `None` where there is no map.
-pub(in crate::cli::commands) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Option<Vec<u8>>, Failure> {
+pub(super) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Option<Vec<u8>>, Failure> {
     let (Some(dem), Some(Flown { summary })) = (flyer.dem(), flown.first()) else { return Ok(None) };
     let ends: Vec<_> = flyer.path.hops.iter().filter_map(|hop| hop.map).collect();
     let path = ends.first().map(|first| first.takeoff).into_iter().chain(ends.iter().map(|hop| hop.landing)).collect();

@@ -16,7 +16,7 @@ use crate::cli::{Failure, load::Loaded};
 const KEPT_TRIALS: u64 = 300;
 
 /// A planned path, and all that its trials need.
-pub(in crate::cli::commands) struct Flyer<'a> {
+pub(super) struct Flyer<'a> {
     pub(super) loaded: &'a Loaded,
     pub(super) test: &'a HopTest<'a>,
     pub(super) path: &'a HopPath,
@@ -26,8 +26,8 @@ pub(in crate::cli::commands) struct Flyer<'a> {
 }
 
 /// What the trials of one policy came to.
-pub(in crate::cli::commands) struct Flown {
-    pub(in crate::cli::commands) summary: Summary,
+pub(super) struct Flown {
+    pub(super) summary: Summary,
 }
 
 /// Whether the terrain is a raster, so that hops are flown in three dimensions.
@@ -37,7 +37,7 @@ pub(super) fn on_dem(loaded: &Loaded) -> bool {
 
 impl<'a> Flyer<'a> {
     /// Reads the raster, and computes once what replanning needs.
-    pub(in crate::cli::commands) fn new(
+    pub(super) fn new(
         loaded: &'a Loaded,
         test: &'a HopTest<'a>,
         path: &'a HopPath,
@@ -79,7 +79,7 @@ impl<'a> Flyer<'a> {
     }
 
     /// Flies the trials of every policy, on the same draws, and writes their landings.
-    pub(in crate::cli::commands) fn fly(
+    pub(super) fn fly(
         &self,
         policies: &[Policy],
         options: &TrialOptions,
