@@ -38,9 +38,10 @@ struct Scene {
     reach_per_window: f64,
 }
 
-const SCENES: [Scene; 3] = [
+const SCENES: [Scene; 4] = [
     Scene { name: "friction 0.6", friction: 0.6, clearance_m: 0.05, reach_per_window: 4.0 },
-    Scene { name: "ground decides", friction: 5.0, clearance_m: 0.05, reach_per_window: 4.0 },
+    Scene { name: "wide cones", friction: 5.0, clearance_m: 0.05, reach_per_window: 4.0 },
+    Scene { name: "ground decides", friction: 5.0, clearance_m: 0.19, reach_per_window: 4.0 },
     Scene { name: "steep, slow", friction: 0.6, clearance_m: 0.05, reach_per_window: 1.2 },
 ];
 

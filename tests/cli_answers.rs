@@ -166,6 +166,57 @@ fn check_has_every_key_of_the_contract() {
 }
 
 #[test]
+fn a_proof_adds_its_bounds_and_says_untraversable_only_where_it_is_proved() {
+    let desk = Desk::new();
+    let proof_keys = ["lower_bound", "upper_bound", "proved", "proof", "stretches", "gap"];
+    let checked = |args: &[&str]| {
+        let ran = desk.run(&[&["check", "scenario.toml", "--prove", "--format", "json"], args].concat());
+        (ran.status, serde_json::from_str::<Value>(&ran.stdout).unwrap())
+    };
+    let (status, result) = checked(&[]);
+    assert_eq!((status, &result["verdict"], &result["proved"]), (0, &Value::from("traversable"), &Value::from(true)));
+    assert_eq!((&result["lower_bound"], &result["upper_bound"]), (&result["hops"], &result["hops"]));
+    assert!(proof_keys.iter().all(|key| result.get(key).is_some()), "{result}");
+    assert!(result["proof"]["cells"].as_u64() <= result["proof"]["budget_cells"].as_u64());
+    let (status, result) = checked(&TOO_STEEP);
+    assert_eq!((status, &result["verdict"], &result["proved"]), (1, &Value::from("untraversable"), &Value::from(true)));
+    assert!(result["lower_bound"].is_null() && result["upper_bound"].is_null() && result["gap"]["refusals"].is_object());
+    let plain = desk.run(&[&["check", "scenario.toml", "--format", "json"][..], &TOO_STEEP].concat());
+    let plain: Value = serde_json::from_str(&plain.stdout).unwrap();
+    assert_eq!(plain["verdict"], "no-path-found");
+    assert!(proof_keys.iter().all(|key| plain.get(key).is_none()), "{plain}");
+}
+
+#[test]
+fn require_brackets_what_a_fine_scan_finds() {
+    let desk = Desk::new();
+    let key = "surface.friction_coefficient";
+    let ran = desk.run(&["require", "scenario.toml", "--vary", key, "--from", "0.05", "--to", "1", "--format", "json"]);
+    let result: Value = serde_json::from_str(&ran.stdout).unwrap();
+    let (low, high) = (result["unreachable_at"].as_f64().unwrap(), result["reachable_at"].as_f64().unwrap());
+    assert_eq!(ran.status, 0);
+    assert!(low < high && high - low < 0.01 * high, "{low} to {high}");
+    assert_eq!(result["path"].as_array().unwrap().len() as u64, result["hops"].as_u64().unwrap());
+    for i in 1..40 {
+        let value = 0.05 * f64::from(i) / 4.0;
+        let set = format!("{key}={value}");
+        let status = desk.run(&["check", "scenario.toml", "--set", &set, "--points-per-segment", "7"]).status;
+        assert!(value > low || status == 1, "a path at {value}, proved unreachable at {low}");
+        assert!(value < high || status == 0, "no path at {value}, one at {high}");
+    }
+    let too_little = desk.run(&["require", "scenario.toml", "--vary", key, "--from", "0.05", "--to", "0.1"]);
+    assert_eq!(too_little.status, 1, "{too_little:?}");
+    for (vary, told) in [("hopper.mass_kg", "expected one of"), ("friction", "expected one of")] {
+        let refused = desk.run(&["require", "scenario.toml", "--vary", vary]);
+        assert!(refused.status == 2 && refused.stderr.contains(told), "{refused:?}");
+    }
+    desk.write("forward.csv", FORWARD_ONLY);
+    let ends = ["--body", "mars", "--start", "0", "--goal", "10"];
+    let no_effect = desk.run(&[&["require", "forward.csv", "--vary", key][..], &ends].concat());
+    assert!(no_effect.status == 2 && no_effect.stderr.contains("changes anything"), "{no_effect:?}");
+}
+
+#[test]
 fn plan_has_every_key_of_the_contract_in_json_and_the_same_columns_in_csv() {
     let desk = Desk::with_dem();
     let totals = ["flight_time_s", "energy_j_kg", "peak_takeoff_speed_m_s", "ground_distance_m"];

@@ -11,14 +11,15 @@ use std::{
     path::Path,
 };
 
-use command::{Desk, FORWARD_ONLY, Ran};
+use command::{CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 7] = ["run", "slice", "hop", "check", "plan", "synth", "bodies"];
+const COMMANDS: [&str; 11] = ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "synth", "bodies"];
 
 /// Options that need a projected map, tried in `maps_command.rs`.
-const ON_A_PROJECTED_MAP: [&str; 4] = ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--accept-map-scale"];
+const ON_A_PROJECTED_MAP: [&str; 6] =
+    ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--start-lonlat", "--goal-lonlat", "--accept-map-scale"];
 
-/// Options that must change nothing but the time it takes, tried below.
+/// Options that must change nothing but the time it takes, tried below and in `trade_compare.rs`.
 const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
 
 /// An option, a command line without it, and one with it.
@@ -70,6 +71,170 @@ const SLICE: [Trial; 8] = [
     ),
 ];
 
+const MAP: [Trial; 20] = [
+    (
+        "--start",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "6,5", "--scenario", "map.toml"],
+    ),
+    (
+        "--goal",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+    ),
+    (
+        "--stride",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--stride", "2"],
+    ),
+    (
+        "--effort",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--effort", "time"],
+    ),
+    (
+        "--return",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--return"],
+    ),
+    (
+        "--output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "-o", "hops.tif"],
+    ),
+    (
+        "--effort-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--effort"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--effort", "--effort-output", "e.tif"],
+    ),
+    (
+        "--return-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--return"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--return", "--return-output", "b.tif"],
+    ),
+    (
+        "--mobility",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--mobility", "m.tif"],
+    ),
+    (
+        "--paths",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--paths", "p.csv"],
+    ),
+    (
+        "--geojson",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--geojson", "p.geojson"],
+    ),
+    (
+        "--profiles",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--profiles", "p.svg"],
+    ),
+    (
+        "--plot",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--plot", "map.svg"],
+    ),
+    (
+        "--format",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--format", "json"],
+    ),
+    (
+        "--scenario",
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--body",
+            "mars",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=3",
+            "--set",
+            "hopper.landing_speed_max_m_s=3",
+            "--set",
+            "surface.friction_coefficient=0.5",
+        ],
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--body",
+            "mars",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=3",
+            "--set",
+            "hopper.landing_speed_max_m_s=3",
+            "--set",
+            "surface.friction_coefficient=0.5",
+            "--format",
+            "json",
+            "--scenario",
+            "map.toml",
+        ],
+    ),
+    (
+        "--set",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--set", "hopper.takeoff_speed_max_m_s=3"],
+    ),
+    (
+        "--body",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--body", "moon"],
+    ),
+    (
+        "--gravity-m-s2",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--gravity-m-s2", "2.5"],
+    ),
+    (
+        "--clearance-m",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--clearance-m", "2.5"],
+    ),
+    (
+        "--quiet",
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--goal",
+            "9,9",
+            "--scenario",
+            "map.toml",
+            "--body",
+            "bennu",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=0.02",
+            "--set",
+            "hopper.landing_speed_max_m_s=0.02",
+        ],
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--goal",
+            "9,9",
+            "--scenario",
+            "map.toml",
+            "--body",
+            "bennu",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=0.02",
+            "--set",
+            "hopper.landing_speed_max_m_s=0.02",
+            "--quiet",
+        ],
+    ),
+];
+
 const HOP: [Trial; 9] = [
     ("--from", &["hop", "scenario.toml", "--to", "30"], &["hop", "scenario.toml", "--to", "30", "--from", "10"]),
     ("--to", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--to", "10"]),
@@ -82,10 +247,12 @@ const HOP: [Trial; 9] = [
     ("--quiet", &["hop", "scenario.toml", "--body", "bennu"], &["hop", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const CHECK: [Trial; 13] = [
+const CHECK: [Trial; 15] = [
     ("--start", &["check", "scenario.toml"], &["check", "scenario.toml", "--start", "10"]),
     ("--goal", &["check", "scenario.toml"], &["check", "scenario.toml", "--goal", "30"]),
     ("--pairs", &["check", "scenario.toml"], &["check", "scenario.toml", "--pairs", "pairs.csv"]),
+    ("--prove", &["check", "scenario.toml"], &["check", "scenario.toml", "--prove"]),
+    ("--budget", &["check", "scenario.toml", "--prove"], &["check", "scenario.toml", "--prove", "--budget", "1"]),
     ("--format", &["check", "scenario.toml"], &["check", "scenario.toml", "--format", "json"]),
     ("--points-per-segment", &["check", "scenario.toml"], &["check", "scenario.toml", "--points-per-segment", "2"]),
     ("--node-spacing-max-m", &["check", "scenario.toml"], &["check", "scenario.toml", "--node-spacing-max-m", "2"]),
@@ -102,12 +269,14 @@ const CHECK: [Trial; 13] = [
     ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const PLAN: [Trial; 16] = [
+const PLAN: [Trial; 18] = [
     ("--start", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--start", "10"]),
     ("--goal", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--goal", "30"]),
     ("--output", &["plan", "scenario.toml"], &["plan", "scenario.toml", "-o", "path.csv"]),
     ("--geojson", &["plan", "map.toml"], &["plan", "map.toml", "--geojson", "path.geojson"]),
     ("--plot", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--plot", "path.svg"]),
+    ("--prove", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--prove"]),
+    ("--budget", &["plan", "scenario.toml", "--prove"], &["plan", "scenario.toml", "--prove", "--budget", "1"]),
     ("--verify", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--verify"]),
     ("--format", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--format", "json"]),
     ("--points-per-segment", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--points-per-segment", "2"]),
@@ -123,6 +292,402 @@ const PLAN: [Trial; 16] = [
     ("--gravity-m-s2", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--gravity-m-s2", "1.5"]),
     ("--clearance-m", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--clearance-m", "50"]),
     ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
+];
+
+/// A question that other options change.
+const REQUIRED: [&str; 10] =
+    ["require", "scenario.toml", "--vary", "surface.friction_coefficient", "--from", "0.03", "--to", "2", "--resolution", "0.05"];
+
+const REQUIRE: [Trial; 17] = [
+    (
+        "--start",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--start",
+            "10",
+        ],
+    ),
+    (
+        "--goal",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--goal",
+            "30",
+        ],
+    ),
+    ("--vary", &REQUIRED, &["require", "scenario.toml", "--vary", "surface.rest_slope_max_deg", "--resolution", "0.05"]),
+    (
+        "--from",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.04",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+        ],
+    ),
+    (
+        "--to",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "1",
+            "--resolution",
+            "0.05",
+        ],
+    ),
+    (
+        "--resolution",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.2",
+        ],
+    ),
+    (
+        "--budget",
+        &[
+            "require",
+            "pit.csv",
+            "--scenario",
+            "scenario.toml",
+            "--vary",
+            "hopper.takeoff_speed_max_m_s",
+            "--resolution",
+            "0.05",
+            "--from",
+            "1",
+        ],
+        &[
+            "require",
+            "pit.csv",
+            "--scenario",
+            "scenario.toml",
+            "--vary",
+            "hopper.takeoff_speed_max_m_s",
+            "--resolution",
+            "0.05",
+            "--from",
+            "1",
+            "--budget",
+            "1",
+        ],
+    ),
+    (
+        "--format",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--points-per-segment",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--points-per-segment",
+            "7",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--node-spacing-max-m",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--node-spacing-max-m",
+            "3",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--effort",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--effort",
+            "time",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--scenario",
+        &["require", "chain.csv", "--body", "mars", "--vary", "hopper.clearance_m"],
+        &[
+            "require",
+            "chain.csv",
+            "--body",
+            "mars",
+            "--vary",
+            "hopper.clearance_m",
+            "--resolution",
+            "0.05",
+            "--scenario",
+            "scenario.toml",
+        ],
+    ),
+    (
+        "--set",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--set",
+            "hopper.flight_time_max_s=2",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--body",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--body",
+            "moon",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--gravity-m-s2",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--gravity-m-s2",
+            "1.5",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--clearance-m",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--clearance-m",
+            "2",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--quiet",
+        &["require", "forward.csv", "--body", "mars", "--start", "0", "--goal", "10", "--vary", "hopper.takeoff_speed_max_m_s"],
+        &[
+            "require",
+            "forward.csv",
+            "--body",
+            "mars",
+            "--start",
+            "0",
+            "--goal",
+            "10",
+            "--vary",
+            "hopper.takeoff_speed_max_m_s",
+            "--quiet",
+        ],
+    ),
+];
+
+const VARY: &str = "hopper.takeoff_speed_max_m_s=6:9:2";
+
+const TRADE: [Trial; 17] = [
+    ("--start", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--start", "30"]),
+    ("--goal", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--goal", "10"]),
+    (
+        "--vary",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s=6:9:3"],
+    ),
+    ("--output", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "-o", "trade.csv"]),
+    ("--plot", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--plot", "trade.svg"]),
+    ("--format", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--format", "json"]),
+    ("--prove", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--prove"]),
+    (
+        "--budget",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove", "--budget", "1"],
+    ),
+    (
+        "--points-per-segment",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--points-per-segment", "2"],
+    ),
+    (
+        "--node-spacing-max-m",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--node-spacing-max-m", "2"],
+    ),
+    (
+        "--effort",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--effort", "time"],
+    ),
+    (
+        "--scenario",
+        &["trade", "chain.csv", "--body", "mars", "--vary", VARY],
+        &["trade", "chain.csv", "--body", "mars", "--vary", VARY, "--scenario", "scenario.toml"],
+    ),
+    (
+        "--set",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", VARY, "--set", "hopper.flight_time_max_s=1"],
+    ),
+    ("--body", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--body", "moon"]),
+    (
+        "--gravity-m-s2",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", VARY, "--gravity-m-s2", "1.5"],
+    ),
+    (
+        "--clearance-m",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", VARY, "--clearance-m", "50"],
+    ),
+    (
+        "--quiet",
+        &["trade", "odd.csv", "--scenario", "scenario.toml", "--vary", VARY],
+        &["trade", "odd.csv", "--scenario", "scenario.toml", "--vary", VARY, "--quiet"],
+    ),
+];
+
+const COMPARE: [Trial; 7] = [
+    ("--output", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "-o", "compare.csv"]),
+    ("--plot", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--plot", "compare.svg"]),
+    ("--format", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--format", "json"]),
+    (
+        "--prove",
+        &["compare", "scenario.toml", "map.toml", "--format", "json"],
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove"],
+    ),
+    (
+        "--budget",
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove"],
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove", "--budget", "1"],
+    ),
+    ("--set", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--set", "body.name=moon"]),
+    (
+        "--quiet",
+        &["compare", "scenario.toml", "map.toml", "--set", "body.name=bennu"],
+        &["compare", "scenario.toml", "map.toml", "--set", "body.name=bennu", "--quiet"],
+    ),
 ];
 
 /// Ground with all there is on it, small enough for a test.
@@ -193,6 +758,13 @@ fn desk() -> Desk {
     let desk = Desk::with_dem();
     desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
     desk.write("forward.csv", FORWARD_ONLY);
+    // Walls too steep to rest on around a pit: what it takes to cross it is found by splitting cells.
+    desk.write("pit.csv", "x_m,z_m\n0,0\n10,0\n11,-3\n20,-3\n21,0\n40,0\n");
+
+    desk.write(
+        "odd.csv",
+        CHAIN.replace("z_m", "z_m,colour").replace(",2\n", ",2,red\n").replace(",0\n", ",0,\n").replace(",1\n", ",1,\n"),
+    );
     desk
 }
 
@@ -214,7 +786,18 @@ fn options(command: &str) -> BTreeSet<String> {
 
 #[test]
 fn every_option_changes_what_one_sees() {
-    for (command, trials) in [("run", &RUN[..]), ("slice", &SLICE), ("hop", &HOP), ("check", &CHECK), ("plan", &PLAN)] {
+    let all = [
+        ("run", &RUN[..]),
+        ("slice", &SLICE),
+        ("map", &MAP),
+        ("hop", &HOP),
+        ("check", &CHECK),
+        ("plan", &PLAN),
+        ("require", &REQUIRE),
+        ("trade", &TRADE),
+        ("compare", &COMPARE),
+    ];
+    for (command, trials) in all {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
         let elsewhere = |option: &str| ON_A_PROJECTED_MAP.contains(&option) || ON_THE_TIME_ALONE.contains(&option);
         let here: BTreeSet<_> = options(command).into_iter().filter(|option| !elsewhere(option)).collect();
@@ -308,10 +891,14 @@ fn every_help_text_shows_units_defaults_and_an_example() {
             if let Some((_, unit)) = units.into_iter().find(|(suffix, _)| name.ends_with(suffix)) {
                 assert!(format!("{one_line} ").contains(unit), "{command} {name} does not name its unit: {one_line}");
             }
-            let required = ["--from", "--to", "--output", "--from-lonlat", "--to-lonlat"].contains(&name.as_str());
+            let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat", "--start-lonlat"]
+                .contains(&name.as_str())
+                || (command == "map" && name == "--start");
             let takes_value =
                 one_line.contains('<') && !["--scenario", "--set", "--body", "--gravity-m-s2"].contains(&name.as_str());
-            let writes = ["--geojson", "--plot", "--pairs"].contains(&name.as_str());
+            let writes =
+                ["--geojson", "--plot", "--pairs", "--effort-output", "--return-output", "--mobility", "--paths", "--profiles"]
+                    .contains(&name.as_str());
             assert!(
                 !takes_value || required || writes || one_line.contains("[default: "),
                 "{command} {name} tells no default: {one_line}"

@@ -20,7 +20,7 @@ fn chta(arguments: &[&str]) -> std::process::Output {
 }
 
 /// Scenario, exit status, hops.
-const ANSWERS: [(&str, i32, Option<u64>); 7] = [
+const ANSWERS: [(&str, i32, Option<u64>); 10] = [
     ("mars_crater_field", 0, Some(9)),
     ("lunar_rille", 0, Some(27)),
     ("lunar_rille_too_steep", 1, None),
@@ -28,7 +28,63 @@ const ANSWERS: [(&str, i32, Option<u64>); 7] = [
     ("simple", 0, Some(1)),
     ("simple_mesh", 0, Some(1)),
     ("simple_reduced", 0, Some(5)),
+    ("wall", 1, None),
+    ("cliff", 1, None),
+    ("vertices", 1, None),
 ];
+
+/// Scenario, bounds on its fewest hops; all of them meet.
+const PROVED: [(&str, Option<u64>); 10] = [
+    ("mars_crater_field", Some(9)),
+    ("lunar_rille", Some(26)),
+    ("lunar_rille_too_steep", None),
+    ("paper_76m", Some(4)),
+    ("simple", Some(1)),
+    ("simple_mesh", Some(1)),
+    ("simple_reduced", Some(3)),
+    ("wall", None),
+    ("cliff", None),
+    ("vertices", None),
+];
+
+#[test]
+fn every_shipped_scenario_is_proved() {
+    for (name, hops) in PROVED {
+        let output = chta(&["check", &format!("data/scenarios/{name}.toml"), "--prove", "--format", "json"]);
+        let result: Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(output.status.code(), Some(i32::from(hops.is_none())), "{name}");
+        assert_eq!(result["proved"], true, "{name}");
+        assert_eq!((result["lower_bound"].as_u64(), result["upper_bound"].as_u64()), (hops, hops), "{name}");
+        let verdict = if hops.is_some() { "traversable" } else { "untraversable" };
+        assert_eq!(result["verdict"], verdict, "{name}");
+    }
+}
+
+/// Of three journeys proved impossible, the one limit without which there is a path, and how it is left out.
+#[test]
+fn one_limit_alone_stops_each_of_three_journeys() {
+    let without = [
+        ("wall", "hopper.clearance_m=0", "data/chains/wall.csv", "8.0", "7.0"),
+        ("cliff", "hopper.landing_speed_max_m_s=12", "", "", ""),
+        ("vertices", "hopper.clearance_m=0", "data/chains/vertices.csv", "70.0,85.0", "30.0,85.0"),
+        ("vertices", "hopper.clearance_m=0", "data/chains/vertices.csv", "-40.0,-5.0", "-85.0,-5.0"),
+    ];
+    for (name, set, chain, found, instead) in without {
+        let folder = tempfile::tempdir().unwrap();
+        let scenario = root().join(format!("data/scenarios/{name}.toml"));
+        let mut text = fs::read_to_string(&scenario).unwrap();
+        let changed = folder.path().join("chain.csv");
+        fs::write(&changed, fs::read_to_string(root().join(format!("data/chains/{name}.csv"))).unwrap()).unwrap();
+        if !chain.is_empty() {
+            fs::write(&changed, fs::read_to_string(root().join(chain)).unwrap().replace(found, instead)).unwrap();
+        }
+        text = text.replace(&format!("../chains/{name}.csv"), "chain.csv");
+        let scenario = folder.path().join("scenario.toml");
+        fs::write(&scenario, text).unwrap();
+        let scenario = scenario.to_str().unwrap();
+        assert_eq!(chta(&["check", scenario, "--prove", "--set", set]).status.code(), Some(0), "{name} without its limit");
+    }
+}
 
 #[test]
 fn every_shipped_scenario_runs_to_its_answer_and_repeats_from_its_result() {

@@ -109,7 +109,7 @@ fn some_hopper(draw: &mut Draw, size_m: f64, g: f64) -> Hopper {
 fn random_chains_bends_and_points_inside_segments() {
     let draw = &mut Draw::seeded(401);
     let mut compared = Compared::default();
-    for _ in 0..400 {
+    for _ in 0..200 {
         let (g, size_m) = (draw.gravity(), draw.log_uniform(1e-1, 1e2));
         let segments = 2 + draw.below(40);
         let points = draw.profile(segments, size_m);
@@ -125,8 +125,8 @@ fn random_chains_bends_and_points_inside_segments() {
         compare(&test, &stations(&chain, inside), 12, &mut compared);
     }
     assert_eq!(compared.unlike, 0, "{compared:?}");
-    assert!(compared.over_ground > 1000 && compared.feasible > 5000, "{compared:?}");
-    let spoken = Limit::ALL.into_iter().filter(|limit| compared.refused_by(*limit) > 20).count();
+    assert!(compared.over_ground > 500 && compared.feasible > 2500, "{compared:?}");
+    let spoken = Limit::ALL.into_iter().filter(|limit| compared.refused_by(*limit) > 10).count();
     assert!(spoken >= 9, "{compared:?}");
 }
 
@@ -177,12 +177,12 @@ fn adversarial_ground() {
                     let chain = uniform(&points, kind);
                     let hopper = Hopper { clearance_m, ..Hopper::UNLIMITED };
                     let test = HopTest::new(&chain, &hopper, g);
-                    compare(&test, &stations(&chain, 0), 12, &mut compared);
-                    compare(&test, &stations(&chain, 3), 4, &mut compared);
+                    compare(&test, &stations(&chain, 0), 6, &mut compared);
+                    compare(&test, &stations(&chain, 3), 2, &mut compared);
                 }
             }
             assert_eq!(compared.unlike, 0, "{name}, g = {g}: {compared:?}");
-            assert!(compared.feasible > 500, "{name}, g = {g}: {compared:?}");
+            assert!(compared.feasible > 250, "{name}, g = {g}: {compared:?}");
         }
     }
 }
@@ -244,12 +244,12 @@ fn real_ground() {
                 let surface =
                     Surface { grip: Some(Grip::Friction(FrictionCone::new(friction).unwrap())), rest: RestSlope::AsFrictionHolds };
                 let chain = ConstrainedChain::new(chain.clone(), &hopper, &surface).unwrap();
-                compare(&HopTest::new(&chain, &hopper, g), &stations(&chain, 1), 25, &mut compared);
+                compare(&HopTest::new(&chain, &hopper, g), &stations(&chain, 1), 12, &mut compared);
             }
         }
     }
     assert_eq!(compared.unlike, 0, "{compared:?}");
-    assert!(compared.pairs == 0 || (compared.over_ground > 1000 && compared.refused_by(Limit::Terrain) > 1000), "{compared:?}");
+    assert!(compared.pairs == 0 || (compared.over_ground > 400 && compared.refused_by(Limit::Terrain) > 400), "{compared:?}");
 }
 
 /// No feasible pair lies beyond the reach from its take-off or to its landing, whatever the relief hides; and the reach is worth having.
@@ -257,7 +257,7 @@ fn real_ground() {
 fn nothing_feasible_lies_beyond_reach() {
     let draw = &mut Draw::seeded(404);
     let (mut feasible, mut beyond, mut nearly) = (0, 0, 0);
-    for _ in 0..300 {
+    for _ in 0..100 {
         let (g, size_m) = (draw.gravity(), draw.log_uniform(1e-1, 1e2));
         let segments = 2 + draw.below(60);
         let mut points = draw.profile(segments, size_m);
@@ -299,7 +299,7 @@ fn nothing_feasible_lies_beyond_reach() {
             }
         }
     }
-    assert!(feasible > 20_000 && beyond > 50_000 && nearly > 1000, "{feasible} feasible, {beyond} beyond, {nearly} nearly as far");
+    assert!(feasible > 6_000 && beyond > 15_000 && nearly > 300, "{feasible} feasible, {beyond} beyond, {nearly} nearly as far");
 }
 
 /// Two parabolas of safety meet at `X = v_t v_l / g`: with one speed all over, no relief makes the reach longer.

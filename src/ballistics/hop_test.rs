@@ -1,9 +1,9 @@
 //! The hop test: may one hop join two stations, and with which take-off slopes?
 
-use super::{LineOfSight, SegmentHops, SegmentReach, TakeoffSet, limits, reach::Relief};
+use super::{GroundGrant, LineOfSight, OpenAir, SegmentHops, SegmentReach, TakeoffSet, limits, reach::Relief};
 use crate::{
     chain::{ConstrainedChain, Contact, ContactRule, Direction, Station},
-    quantity::{Angle, SegmentId, SlopeInterval},
+    quantity::{SegmentId, SlopeInterval},
     world::{Hopper, Limit},
 };
 
@@ -13,10 +13,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct HopTest<'a> {
     chain: &'a ConstrainedChain,
-    hopper: Hopper,
-    gravity_m_s2: f64,
-    /// The machine's own take-off slopes.
-    mechanical: SlopeInterval,
+    air: OpenAir,
     /// Heights and speeds over any stretch.
     relief: Relief,
     /// How far one hop carries on each segment, by direction.
@@ -26,17 +23,7 @@ pub struct HopTest<'a> {
 impl<'a> HopTest<'a> {
     /// For a chain, a hopper and a gravity above 0 in m/s^2.
     pub fn new(chain: &'a ConstrainedChain, hopper: &Hopper, gravity_m_s2: f64) -> Self {
-        let mut test = Self {
-            chain,
-            hopper: *hopper,
-            gravity_m_s2,
-            mechanical: SlopeInterval {
-                lower: hopper.takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
-                upper: hopper.takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
-            },
-            relief: Relief::of(chain),
-            reaches: Vec::new(),
-        };
+        let mut test = Self { chain, air: OpenAir::new(hopper, gravity_m_s2), relief: Relief::of(chain), reaches: Vec::new() };
         test.reaches = (0..chain.segments().len())
             .map(|i| Direction::BOTH.map(|direction| SegmentReach::on(&test, SegmentId(i), direction)))
             .collect();
@@ -50,12 +37,12 @@ impl<'a> HopTest<'a> {
 
     /// The hopper it answers for.
     pub const fn hopper(&self) -> &Hopper {
-        &self.hopper
+        self.air.hopper()
     }
 
     /// Gravity, m/s^2.
     pub const fn gravity_m_s2(&self) -> f64 {
-        self.gravity_m_s2
+        self.air.gravity_m_s2()
     }
 
     /// Heights and speeds over any stretch of the chain.
@@ -65,7 +52,7 @@ impl<'a> HopTest<'a> {
 
     /// The machine's own take-off slopes.
     pub const fn mechanical(&self) -> SlopeInterval {
-        self.mechanical
+        self.air.mechanical()
     }
 
     /// The line of sight between two stations in the direction of travel; `None` where they share the same x.
@@ -103,7 +90,7 @@ impl<'a> HopTest<'a> {
         let vertices = self.chain.geometry().vertices();
         let mut lower = open_air.lower;
         for point in &vertices[limits::flown_past(takeoff, landing)] {
-            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.hopper.clearance_m));
+            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.air.hopper().clearance_m));
             if lower > open_air.upper {
                 return Err(Limit::Terrain);
             }
@@ -127,38 +114,31 @@ impl<'a> HopTest<'a> {
     /// The limit that left nothing.
     #[inline]
     pub(crate) fn open_air(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Result<SlopeInterval, Limit> {
-        let speeds = limits::speeds(sight, from.speed_max_m_s(), to.speed_max_m_s(), self.gravity_m_s2);
-        let loft = speeds
-            .intersect(limits::takeoff_cone(sight, from.slopes().intersect(self.mechanical)))
-            .intersect(limits::landing_cone(sight, to.slopes()))
-            .intersect(self.machine(sight));
+        let grant = |rule: &ContactRule| GroundGrant { slopes: rule.slopes(), speed_max_m_s: rule.speed_max_m_s() };
+        let loft = self.air.lofts(sight, grant(from), grant(to));
         if loft.is_empty() || loft.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(loft) }
     }
 
     /// The lofts that the machine's greatest height and longest flight allow.
     #[inline]
     pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
-        let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
-        match self.hopper.flight_time_max_s {
-            Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),
-            None => apex,
-        }
+        self.air.machine(sight)
     }
 
     /// Whether the machine has a greatest height or a longest flight.
     #[inline]
     pub(super) const fn has_machine_limits(&self) -> bool {
-        self.hopper.apex_height_max_m.is_some() || self.hopper.flight_time_max_s.is_some()
+        self.air.hopper().apex_height_max_m.is_some() || self.air.hopper().flight_time_max_s.is_some()
     }
 
     /// Which limit left nothing, limits taken one after the other.
     #[cold]
     fn refusing(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Limit {
-        let takeoff = limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2);
+        let takeoff = limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2());
         if takeoff.is_empty() {
             return Limit::TakeoffSpeed;
         }
-        let both = takeoff.intersect(limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2));
+        let both = takeoff.intersect(limits::landing_speed(sight, to.speed_max_m_s(), self.gravity_m_s2()));
         if both.is_empty() {
             return Limit::LandingSpeed;
         }
@@ -176,8 +156,8 @@ impl<'a> HopTest<'a> {
         let in_order = [
             (Limit::TakeoffCone, limits::takeoff_cone(sight, takeoff_slopes)),
             (Limit::LandingCone, limits::landing_cone(sight, landing_slopes)),
-            (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical)),
-            (Limit::ApexHeight, self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
+            (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical())),
+            (Limit::ApexHeight, self.air.hopper().apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
         ];
         let mut left = speeds;
         for (limit, loft) in in_order {

@@ -13,6 +13,7 @@ mod constraints;
 pub mod csv;
 mod ground;
 mod polygonal;
+mod quick_cones;
 mod station;
 
 pub(crate) use constrained::settle;
@@ -20,4 +21,5 @@ pub use constrained::{ConstrainedChain, ConstraintProblem, ConstraintProblems};
 pub use constraints::{ContactRule, GroundRefusal, LineConstraints, SegmentConstraints};
 pub use ground::{Ground, GroundForm};
 pub use polygonal::{ChainProblem, InvalidChain, PolygonalChain};
+pub use quick_cones::{QuickCone, QuickGrip, Turn};
 pub use station::{Contact, Direction, OffChain, Site, Station};

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use chta::{quantity::MapPoint, terrain::LonLat};
+use chta::{graph::proof::DEFAULT_BUDGET_CELLS, quantity::MapPoint, terrain::LonLat};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 /// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?
@@ -21,10 +21,14 @@ pub(crate) enum Command {
     Run(RunArgs),
     Slice(SliceArgs),
     Fan(FanArgs),
+    Map(Box<MapArgs>),
     Hop(HopArgs),
     Check(CheckArgs),
     Plan(PlanArgs),
     Simulate(Box<SimulateArgs>),
+    Require(RequireArgs),
+    Trade(TradeArgs),
+    Compare(CompareArgs),
     Synth(Box<SynthArgs>),
     /// List the known bodies with gravity, radius and their source
     #[command(after_help = "Example:\n  chta bodies")]
@@ -41,7 +45,7 @@ pub(crate) enum Format {
 }
 
 /// What all analyses take.
-#[derive(Debug, ClapArgs)]
+#[derive(Clone, Debug, ClapArgs)]
 pub(crate) struct CommonArgs {
     /// Scenario (TOML) with body, hopper, surface and search
     #[arg(long, value_name = "FILE")]
@@ -78,6 +82,17 @@ pub(crate) struct SearchArgs {
     /// Second criterion after hops: takeoff-speed, energy, time, peak-speed [default: takeoff-speed]
     #[arg(long, value_name = "EFFORT")]
     pub(crate) effort: Option<String>,
+}
+
+/// What a proof takes.
+#[derive(Clone, Copy, Debug, ClapArgs)]
+pub(crate) struct ProveArgs {
+    /// Bound the fewest hops from both sides, for every choice of points: "untraversable" is said where it is proved
+    #[arg(long)]
+    pub(crate) prove: bool,
+    /// The most cells that the chain is cut into for the proof
+    #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS, value_parser = cell_count, requires = "prove", allow_negative_numbers = true)]
+    pub(crate) budget: usize,
 }
 
 /// Do everything a scenario asks for: chain.csv, path.csv, path.geojson (on a map), result.json and path.svg
@@ -193,6 +208,73 @@ pub(crate) struct FanArgs {
     pub(crate) common: CommonArgs,
 }
 
+/// Fewest hops from one post of a DEM to every other, in any direction
+///
+/// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it.
+#[derive(Debug, ClapArgs)]
+#[command(
+    after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
+)]
+pub(crate) struct MapArgs {
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
+    #[arg(value_name = "DEM")]
+    pub(crate) dem: PathBuf,
+    /// Where all hops start, map coordinates in m; the nearest post counts
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, required_unless_present = "start_lonlat")]
+    pub(crate) start: Option<MapPoint>,
+    /// Instead: longitude and planetocentric latitude, degrees, east positive
+    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "start")]
+    pub(crate) start_lonlat: Option<LonLat>,
+    /// A place to get to, map coordinates in m; may be repeated [default: none]
+    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, group = "goals")]
+    pub(crate) goal: Vec<MapPoint>,
+    /// Instead: longitude and planetocentric latitude, degrees, east positive; may be repeated [default: none]
+    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "goal", group = "goals")]
+    pub(crate) goal_lonlat: Vec<LonLat>,
+    /// Land only on every N-th post; the terrain in the way is always the full DEM
+    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
+    pub(crate) stride: u32,
+    /// Also the least effort among fewest hops: takeoff-speed, energy, time, peak-speed [default: not asked; alone: the scenario's]
+    #[arg(long, value_name = "EFFORT", num_args = 0..=1)]
+    #[expect(clippy::option_option, reason = "absent, given alone, or with a value")]
+    pub(crate) effort: Option<Option<String>>,
+    /// Also from which posts the start can be reached again
+    #[arg(long = "return")]
+    pub(crate) back: bool,
+    /// Hops (GeoTIFF) to write: int16, -1 unreachable, -32768 no-data
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Least effort (GeoTIFF) to write: float32, NaN where there is no way
+    #[arg(long, value_name = "FILE", requires = "effort")]
+    pub(crate) effort_output: Option<PathBuf>,
+    /// Hops back to the start (GeoTIFF) to write
+    #[arg(long, value_name = "FILE", requires = "back")]
+    pub(crate) return_output: Option<PathBuf>,
+    /// Mobility (GeoTIFF) to work out and write: share of its reach disc that one hop from each post reaches, and in how many of 16 directions
+    #[arg(long, value_name = "FILE")]
+    pub(crate) mobility: Option<PathBuf>,
+    /// Hops to every goal (CSV) to write
+    #[arg(long, value_name = "FILE", requires = "goals")]
+    pub(crate) paths: Option<PathBuf>,
+    /// The same in three dimensions (GeoJSON)
+    #[arg(long, value_name = "FILE", requires = "goals")]
+    pub(crate) geojson: Option<PathBuf>,
+    /// Profile of every hop to every goal, one picture below the other (SVG), to write
+    #[arg(long, value_name = "FILE", requires = "goals")]
+    pub(crate) profiles: Option<PathBuf>,
+    /// Map picture (SVG or PNG) to write
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
 /// Test one hop: every limit by itself, what sets either end of the feasible take-off angles, or which two conflict
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json")]
@@ -236,6 +318,8 @@ pub(crate) struct CheckArgs {
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
     #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    #[command(flatten)]
     pub(crate) search: SearchArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
@@ -272,6 +356,8 @@ pub(crate) struct PlanArgs {
     /// How the answer is written
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
     #[command(flatten)]
     pub(crate) search: SearchArgs,
     #[command(flatten)]
@@ -333,6 +419,115 @@ pub(crate) struct SimulateArgs {
     pub(crate) search: SearchArgs,
     #[command(flatten)]
     pub(crate) common: CommonArgs,
+}
+
+/// The least capability with which the goal can be reached, between a value proved too little and one with a path
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta require data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s")]
+pub(crate) struct RequireArgs {
+    /// Chain (CSV), scenario (TOML) or result (JSON)
+    #[arg(value_name = "CHAIN")]
+    pub(crate) chain: PathBuf,
+    /// Start along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) start: Option<f64>,
+    /// Goal along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) goal: Option<f64>,
+    /// Scenario key to vary, such as `hopper.takeoff_speed_max_m_s`
+    #[arg(long, value_name = "TABLE.KEY")]
+    pub(crate) vary: String,
+    /// Least value to try, in the key's unit [default: by key]
+    #[arg(long, value_name = "V", allow_negative_numbers = true)]
+    pub(crate) from: Option<f64>,
+    /// Greatest value to try, in the key's unit [default: by key]
+    #[arg(long, value_name = "V", allow_negative_numbers = true)]
+    pub(crate) to: Option<f64>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How close to bring the two values, as a share of them
+    #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
+    pub(crate) resolution: f64,
+    /// The most cells that the chain is cut into at each value
+    #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS / 5, value_parser = cell_count, allow_negative_numbers = true)]
+    pub(crate) budget: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// One or two keys of the scenario varied: the fewest hops, or that there is no path, for every value or pair of values
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta trade data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s=2:6:9")]
+pub(crate) struct TradeArgs {
+    /// Chain (CSV), scenario (TOML) or result (JSON)
+    #[arg(value_name = "CHAIN")]
+    pub(crate) chain: PathBuf,
+    /// Start along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) start: Option<f64>,
+    /// Goal along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) goal: Option<f64>,
+    /// Scenario key that takes STEPS values from FROM to TO, both included; given twice: a grid [example: `--vary
+    /// hopper.takeoff_speed_max_m_s=4:10:7`]
+    #[arg(long, value_name = "TABLE.KEY=FROM:TO:STEPS", required = true)]
+    pub(crate) vary: Vec<String>,
+    /// Rows to write, .csv or .json by its name; -: CSV to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Picture to write (.svg or .png): a heat map with every field's number
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Several scenarios side by side: verdict, hops, totals, least margins, and their paths in one picture
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta compare data/scenarios/simple.toml data/scenarios/simple_reduced.toml")]
+pub(crate) struct CompareArgs {
+    /// Scenarios (TOML) or results (JSON), two or more
+    #[arg(value_name = "SCENARIO", required = true, num_args = 2..)]
+    pub(crate) scenarios: Vec<PathBuf>,
+    /// Table to write, .csv or .json by its name; -: CSV to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Picture to write (.svg or .png): all paths overlaid
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    /// Set any scenario key in all of them; wins over the scenarios [example: `--set hopper.takeoff_speed_max_m_s=8`]
+    #[arg(long, value_name = "TABLE.KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    #[arg(long)]
+    pub(crate) accept_map_scale: bool,
+    /// No warnings and no progress on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 /// Make terrain up from a seed: fractal ground, craters, a rille, boulders
@@ -444,6 +639,14 @@ pub(crate) enum DepthLawArg {
     Moon,
     /// Robbins and Hynek 2012.
     Mars,
+}
+
+/// Reads a number of cells.
+fn cell_count(text: &str) -> Result<usize, String> {
+    const MOST: usize = 10_000_000;
+    let count = text.trim().parse().ok().filter(|count| (1..=MOST).contains(count));
+    count
+        .ok_or_else(|| format!("found `{text}`, expected a whole number of cells from 1 to {MOST}, such as {DEFAULT_BUDGET_CELLS}"))
 }
 
 /// Reads `X,Y`.

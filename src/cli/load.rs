@@ -11,8 +11,8 @@ use chta::{
     chain::Station,
     report::InputFile,
     scenario::{
-        Covers, Entries, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, prepare,
-        scenario_document, sha256_of,
+        Covers, Entries, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, Survey, TerrainSource, Trade,
+        Variation, prepare, scenario_document, sha256_of,
     },
 };
 
@@ -146,6 +146,47 @@ pub(crate) fn load_with(
     ends: EndOptions,
     own: &[(&str, &str, &str, toml::Value)],
 ) -> Result<Loaded, Failure> {
+    let mut source = typed(target, common, search, ends)?;
+    for (option, table, key, value) in own {
+        source.entries.set_by_option(option, table, key, value.clone());
+    }
+    settled(target, source, common.quiet, ends, &mut prepare)
+}
+
+/// A scenario of which keys are varied: the first field, loaded, and what all the others are made from.
+#[derive(Debug)]
+pub(crate) struct ToVary {
+    /// With the first value of every key.
+    pub(crate) first: Loaded,
+    /// The terrain.
+    pub(crate) survey: Survey,
+    /// The keys as typed, with the options.
+    pub(crate) entries: Entries,
+    /// The folder that the scenario's paths start from.
+    pub(crate) base: PathBuf,
+}
+
+/// Loads the same for keys that are varied, the terrain read once.
+pub(crate) fn load_to_vary(
+    target: &Path,
+    common: &CommonArgs,
+    search: &SearchArgs,
+    ends: EndOptions,
+    variations: &[Variation],
+) -> Result<ToVary, Failure> {
+    let mut source = typed(target, common, Some(search), ends)?;
+    let (entries, base) = (source.entries.clone(), source.base.clone());
+    source.entries = Trade::first_field(&entries, variations).map_err(|error| Failure::message(format!("--vary: {error}")))?;
+    let mut kept = None;
+    let first = settled(target, source, common.quiet, ends, &mut |scenario, terrain, base| {
+        kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
+    })?;
+    let survey = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.display())))?;
+    Ok(ToVary { first, survey, entries, base })
+}
+
+/// The keys of a chain, scenario or result with the options beside it.
+fn typed(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Source, Failure> {
     let is_scenario = is_scenario(target);
     let mut source = match (is_scenario, &common.scenario) {
         (true, None) => read_source(target)?,
@@ -159,7 +200,6 @@ pub(crate) fn load_with(
         (false, Some(scenario)) => read_source(scenario)?,
         (false, None) => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
     };
-    let chain_name = target.to_string_lossy().into_owned();
     if !is_scenario {
         for key in
             ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"]
@@ -172,21 +212,27 @@ pub(crate) fn load_with(
                 output::warn(common.quiet, &warning);
             }
         }
-        source.entries.set_by_option("CHAIN", "terrain", "chain", chain_name.clone().into());
+        source.entries.set_by_option("CHAIN", "terrain", "chain", target.to_string_lossy().into_owned().into());
         // What is given beside the scenario starts from the working folder, as every path on the command line.
         source.base = PathBuf::new();
     }
     apply_options(&mut source.entries, common, search, ends);
-    for (option, table, key, value) in own {
-        source.entries.set_by_option(option, table, key, value.clone());
-    }
+    Ok(source)
+}
+
+/// How a chain is prepared from a scenario and its terrain, whose paths start from a folder.
+type Prepare<'a> = &'a mut dyn FnMut(&Scenario, &TerrainSource, &Path) -> Result<Prepared, PipelineError>;
+
+/// Validates keys and prepares their chain.
+fn settled(target: &Path, source: Source, quiet: bool, ends: EndOptions, prepare: Prepare<'_>) -> Result<Loaded, Failure> {
     let base = source.base;
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
         let name = target.display();
         Failure::message(format!("{name}: found no terrain; add [terrain] with dem, mesh or chain, or give a chain CSV"))
     })?;
-    if !is_scenario && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
+    let chain_name = target.to_string_lossy().into_owned();
+    if !is_scenario(target) && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
         // The name as it was given, should it be no UTF-8.
         terrain = TerrainSource::Chain { path: target.to_path_buf() };
         scenario.terrain = Some(terrain.clone());
@@ -194,7 +240,7 @@ pub(crate) fn load_with(
     let file = base.join(terrain.path());
     let prepared = prepare(&scenario, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
     for warning in &prepared.warnings {
-        output::warn(common.quiet, warning);
+        output::warn(quiet, warning);
     }
     let mut inputs = vec![input_file(&file)?];
     for cover in Covers::files(&scenario) {
@@ -272,7 +318,7 @@ fn forget_terrain(entries: &mut Entries) {
 }
 
 /// Whether a file is a scenario or a result by its name; anything else is a chain CSV.
-fn is_scenario(path: &Path) -> bool {
+pub(crate) fn is_scenario(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml") || extension.eq_ignore_ascii_case("json"))
 }
 
@@ -356,7 +402,7 @@ fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failu
 }
 
 /// The name of a file from the working folder, with `/` and without detours, so that a result reads the same everywhere.
-fn relative_name(path: &Path) -> String {
+pub(crate) fn relative_name(path: &Path) -> String {
     let here = std::env::current_dir().unwrap_or_default();
     let absolute = normal(&here.join(path));
     let here = normal(&here);

@@ -6,7 +6,10 @@ use std::{
     path::Path,
 };
 
-use chta::{report::WholeFile, terrain::MapProjection};
+use chta::{
+    report::{WholeFile, figure::FigureError},
+    terrain::MapProjection,
+};
 
 use super::Failure;
 
@@ -42,6 +45,38 @@ impl<'a> Pending<'a> {
     /// Puts what was streamed in its place.
     pub(crate) fn keep(self) -> Result<(), Failure> {
         self.file.keep().map_err(|error| unwritable(self.path, &error))
+    }
+}
+
+/// Opens a picture before the work begins, where its name asks for a format that pictures have.
+pub(crate) fn begin_picture(path: &Path) -> Result<Pending<'_>, Failure> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    if !matches!(ending.as_deref(), Some("svg" | "png")) {
+        let file = path.display().to_string();
+        return Err(Failure::message(FigureError::UnknownFormat { file }.to_string()));
+    }
+    Pending::begin(path)
+}
+
+/// A table's format by its file name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TableFormat {
+    /// Comma-separated values; also what goes to standard output in place of the answer.
+    Csv,
+    /// One document.
+    Json,
+}
+
+impl TableFormat {
+    /// By the ending, `.csv` or `.json`; `-`: CSV.
+    pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("csv") => Ok(Self::Csv),
+            Some("json") => Ok(Self::Json),
+            _ if path == Path::new("-") => Ok(Self::Csv),
+            _ => Err(Failure::message(format!("-o {}: expected a file that ends in .csv or .json, or -", path.display()))),
+        }
     }
 }
 

@@ -4,7 +4,8 @@
 //! direction of travel. Edges are evaluated when the node they leave from is settled and never stored, so memory grows with the nodes
 //! alone. Nodes are settled in batches of one hop count, each by as many threads as are worth it.
 //!
-//! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing.
+//! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing. [`proof`] bounds the
+//! fewest hops from both sides, for every density.
 
 mod cost;
 mod edges;
@@ -13,6 +14,7 @@ mod fronts;
 mod goals;
 mod local_reach;
 mod nodes;
+pub mod proof;
 mod questions;
 mod reachable;
 mod refusals;

@@ -45,8 +45,15 @@ pub fn generate(test: &HopTest<'_>, legs: &[Leg], choice: TakeoffChoice, split: 
             Edge::Along(along) => hops.extend(along_segment(test, leg, &along, choice, split)),
         }
     }
-    let totals = totals(&hops, test.hopper());
-    Ok(HopPath { hops, totals })
+    Ok(HopPath::of_hops(hops, test.hopper()))
+}
+
+impl HopPath {
+    /// Hops in the order of travel, with what they add up to for a hopper.
+    pub fn of_hops(hops: Vec<Hop>, hopper: &Hopper) -> Self {
+        let totals = totals(&hops, hopper);
+        Self { hops, totals }
+    }
 }
 
 /// The hop of a leg that takes one.

@@ -1,15 +1,17 @@
-//! Numbers with a meaning: angles, slopes, points, ids, and the roots of quadratics.
+//! Numbers with a meaning: angles, slopes, points, ids, the roots of quadratics, and intervals that round outwards.
 //!
 //! Inside the program a direction is its slope `m = tan(theta)`; [`Angle`] is for the edges, where degrees come in and go out.
 
 mod angle;
 mod ids;
+mod interval;
 mod points;
 mod quadratic;
 mod slope;
 
 pub use angle::{Angle, AngleInterval};
 pub use ids::{NodeId, SegmentId, VertexId};
+pub use interval::{Interval, Outwards, Rounding};
 pub use points::{ChainPoint, MapPoint};
 pub use quadratic::{MonicQuadratic, Roots};
 pub use slope::SlopeInterval;

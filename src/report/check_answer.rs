@@ -4,10 +4,13 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
-use super::hop_answer::{BindingRecord, end_name};
+use super::{
+    hop_answer::{BindingRecord, end_name},
+    proof_record::ProofRecord,
+};
 use crate::{
     ballistics::HopTest,
-    graph::{Answer, EndpointRefusal, Frontier, Outcome, PointSpacing, RefusalCounts},
+    graph::{Answer, EndpointRefusal, Frontier, Outcome, PointSpacing, RefusalCounts, proof::Bounds},
 };
 
 /// What `chta check` answers for one pair.
@@ -17,7 +20,7 @@ pub struct CheckAnswer {
     pub start_x_m: f64,
     /// Goal, m.
     pub goal_x_m: f64,
-    /// `traversable` or `no-path-found`.
+    /// `traversable`, `no-path-found`, or `untraversable` where that is proved.
     pub verdict: &'static str,
     /// The fewest hops over these nodes.
     pub hops: Option<u64>,
@@ -36,8 +39,11 @@ pub struct CheckAnswer {
     pub refusals: BTreeMap<&'static str, u64>,
     /// Whether start or goal itself refuses, and why.
     pub endpoint_refusals: Vec<EndpointRecord>,
-    /// Without a path: how far one gets, and what stops it.
+    /// Without a path: how far one gets over these nodes, and what stops it.
     pub frontier: Option<FrontierRecord>,
+    /// What is proved of it; absent where that was not asked for.
+    #[serde(flatten)]
+    pub proof: Option<ProofRecord>,
 }
 
 /// An amount of effort.
@@ -124,7 +130,17 @@ impl CheckAnswer {
             refusals: counts(&answer.refusals),
             endpoint_refusals,
             frontier,
+            proof: None,
         }
+    }
+
+    /// The same with what bounds prove, whose answer it was made from.
+    #[must_use]
+    pub fn with_bounds(mut self, bounds: &Bounds, budget_cells: usize) -> Self {
+        let proof = ProofRecord::new(bounds, budget_cells);
+        self.verdict = proof.verdict();
+        self.proof = Some(proof);
+        self
     }
 
     /// Whether there is a path.
@@ -133,13 +149,13 @@ impl CheckAnswer {
     }
 }
 
-/// The verdict's name. A discretised search proves no absence, so "untraversable" is never said here.
+/// The verdict's name of a search alone, which proves no absence: "untraversable" is never said here.
 pub fn verdict_name(answer: &Answer) -> &'static str {
     if answer.hops().is_some() { "traversable" } else { "no-path-found" }
 }
 
 /// Refusals by name.
-fn counts(refusals: &RefusalCounts) -> BTreeMap<&'static str, u64> {
+pub(super) fn counts(refusals: &RefusalCounts) -> BTreeMap<&'static str, u64> {
     refusals.ranked().into_iter().map(|(limit, count)| (limit.name(), count)).collect()
 }
 

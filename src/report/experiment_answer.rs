@@ -246,14 +246,14 @@ pub struct RiskTradeAnswer {
     pub seed: u64,
     /// The policy flown.
     pub policy: &'static str,
-    /// The path as planned, then the surest for every number of hops that is surer than with fewer.
+    /// The path planned without regard to risk, then the surest for every number of hops that is surer than with fewer.
     pub paths: Vec<RiskTradeRow>,
 }
 
 /// One path of the trade.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RiskTradeRow {
-    /// `as planned` or `surest`.
+    /// `least effort` or `surest`.
     pub path: &'static str,
     /// Its hops.
     pub hops: usize,
@@ -278,12 +278,12 @@ impl RiskTradeAnswer {
     pub fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("hops against success: {} trials each, {}, seed {}", self.trials, self.policy, self.seed));
-        sheet.line(format_args!("{:<12}{:>6}{:>12}{:>12}{:>22}", "path", "hops", "estimate", "flown", "95 % interval"));
+        sheet.line(format_args!("{:<14}{:>6}{:>12}{:>12}{:>22}", "path", "hops", "estimate", "flown", "95 % interval"));
         for row in &self.paths {
             let estimate = row.estimated_success.map_or("-".to_owned(), |share| format!("{share:.4}"));
             let [low, high] = row.success_rate_ci95;
             let interval = format!("{low:.4} to {high:.4}");
-            sheet.line(format_args!("{:<12}{:>6}{estimate:>12}{:>12.4}{interval:>22}", row.path, row.hops, row.success_rate));
+            sheet.line(format_args!("{:<14}{:>6}{estimate:>12}{:>12.4}{interval:>22}", row.path, row.hops, row.success_rate));
         }
         sheet.into_text()
     }

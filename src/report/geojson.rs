@@ -21,6 +21,26 @@ const POINTS_PER_ARC: u32 = 32;
 /// Coordinates are easting, northing and height in metres of the input's map, not longitude and latitude; with a `projection`, the
 /// properties have those too.
 pub fn path_geojson(path: &HopPath, gravity_m_s2: f64, projection: Option<&MapProjection>) -> Option<String> {
+    Some(document(path_features(path, None, gravity_m_s2, projection)?, projection))
+}
+
+/// The paths to several goals as one feature collection, as [`path_geojson`], each feature with the number of its `goal`, from 1, that is
+/// the path's place in the list.
+pub fn paths_geojson(paths: &[&HopPath], gravity_m_s2: f64, projection: Option<&MapProjection>) -> Option<String> {
+    let mut features = Vec::new();
+    for (index, path) in paths.iter().enumerate() {
+        features.extend(path_features(path, Some(index + 1), gravity_m_s2, projection)?);
+    }
+    Some(document(features, projection))
+}
+
+/// Arcs and contacts of a path; `None` where it lies on no map.
+fn path_features(
+    path: &HopPath,
+    goal: Option<usize>,
+    gravity_m_s2: f64,
+    projection: Option<&MapProjection>,
+) -> Option<Vec<Feature>> {
     let rows = HopRecord::rows(path, projection);
     let mut features = Vec::new();
     for (hop, row) in path.hops.iter().zip(&rows) {
@@ -33,7 +53,12 @@ pub fn path_geojson(path: &HopPath, gravity_m_s2: f64, projection: Option<&MapPr
         }
         features.push(contact(row.hop, map.landing, hop.landing.point.z_m, projection));
     }
-    Some(document(features, projection))
+    if let Some(goal) = goal {
+        for properties in features.iter_mut().filter_map(|feature| feature.properties.as_mut()) {
+            properties.insert("goal".to_owned(), goal.into());
+        }
+    }
+    Some(features)
 }
 
 /// A slice, leg by leg, as one line in three dimensions, with the name of what was sliced and, with a `projection`, where its ends lie

@@ -214,13 +214,38 @@ pub enum MapKnowledge {
 /// What the writer says.
 pub fn write_path_csv(rows: &[HopRecord], known: MapKnowledge, out: impl Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
-    let lon_lat: &[&str] = if known >= MapKnowledge::Projection { &LON_LAT_COLUMNS } else { &[] };
-    writer.write_record([&COLUMNS[..], map, lon_lat].concat())?;
+    writer.write_record(columns(known))?;
     for row in rows {
         writer.write_record(row.fields(known))?;
     }
     writer.flush()
+}
+
+/// Writes paths to several goals as one CSV, a first column `goal` (from 1) before the columns of a path.
+///
+/// # Errors
+/// What the writer says.
+pub fn write_paths_csv<'a>(
+    paths: impl IntoIterator<Item = &'a [HopRecord]>,
+    known: MapKnowledge,
+    out: impl Write,
+) -> io::Result<()> {
+    let mut writer = csv::Writer::from_writer(out);
+    writer.write_record([&["goal"], &columns(known)[..]].concat())?;
+    for (index, rows) in paths.into_iter().enumerate() {
+        let goal = (index + 1).to_string();
+        for row in rows {
+            writer.write_record(std::iter::once(goal.clone()).chain(row.fields(known)))?;
+        }
+    }
+    writer.flush()
+}
+
+/// The columns of a path.
+fn columns(known: MapKnowledge) -> Vec<&'static str> {
+    let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
+    let lon_lat: &[&str] = if known >= MapKnowledge::Projection { &LON_LAT_COLUMNS } else { &[] };
+    [&COLUMNS[..], map, lon_lat].concat()
 }
 
 impl HopRecord {

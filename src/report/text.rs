@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{BindingRecord, CheckAnswer, HopAnswer, HopRecord, TotalsRecord};
+use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, ProofRecord, RequireAnswer, TotalsRecord};
 
 /// A sheet of text; writing to it does not fail.
 #[derive(Default)]
@@ -100,6 +100,69 @@ fn binding_line(binding: &BindingRecord) -> String {
     }
 }
 
+/// What `chta require` prints.
+pub fn require_text(answer: &RequireAnswer) -> String {
+    let mut sheet = Sheet::default();
+    let RequireAnswer { vary, from, to, .. } = answer;
+    sheet.line(format_args!("{vary}: from x = {} m to x = {} m", place(answer.start_x_m), place(answer.goal_x_m)));
+    match answer.reachable_at {
+        Some(value) => {
+            let hops = answer.hops.unwrap_or(0);
+            sheet.line(format_args!("reachable at {value}, in {hops} hop{}", plural(hops)));
+        }
+        None => sheet.line(format_args!("no path found at any value from {from} to {to}")),
+    }
+    match answer.unreachable_at {
+        Some(value) => sheet.line(format_args!("proved unreachable at {value}")),
+        None => sheet.line(format_args!("proved unreachable at no value from {from} to {to}")),
+    }
+    if let Some(gap) = &answer.gap {
+        gap_lines(&mut sheet, gap);
+    }
+    sheet.line(format_args!("{} values tried, from {from} to {to}", answer.tries.len()));
+    sheet.0
+}
+
+/// How far one gets, and what stops it there.
+fn gap_lines(sheet: &mut Sheet, gap: &GapRecord) {
+    sheet.line(format_args!(
+        "no path comes nearer to the goal than x = {} m; no place nearer to the start than x = {} m leads to it",
+        place(gap.reached_x_m),
+        place(gap.leads_to_goal_from_x_m)
+    ));
+    if !gap.refusals.is_empty() {
+        sheet.line(format_args!("what refuses all hops on from there, by pairs of cells: {}", ranked(&gap.refusals)));
+    }
+}
+
+/// What is proved, in a few lines.
+fn proof_lines(sheet: &mut Sheet, proof: &ProofRecord) {
+    match (proof.lower_bound, proof.upper_bound) {
+        (None, _) => sheet.line(format_args!("proved: no path exists, at any resolution")),
+        (Some(lower), Some(_)) if proof.proved => {
+            sheet.line(format_args!("proved: no path has fewer than {lower} hop{}, at any resolution", plural(lower)));
+        }
+        (Some(lower), upper) => sheet.line(format_args!(
+            "open: no path has fewer than {lower} hop{}, {}; a larger --budget may tell more",
+            plural(lower),
+            upper.map_or_else(|| "and none was found".to_owned(), |upper| format!("the best one found has {upper}"))
+        )),
+    }
+    let summary = proof.proof;
+    sheet.line(format_args!(
+        "proof: {} cells, {} split, {} rounds, {} pairs of cells tested",
+        summary.cells, summary.splits, summary.rounds, summary.pairs_tested
+    ));
+    if let Some(gap) = &proof.gap {
+        gap_lines(sheet, gap);
+    }
+}
+
+/// The ending of a counted noun.
+const fn plural(count: u64) -> &'static str {
+    if count == 1 { "" } else { "s" }
+}
+
 /// What `chta check` prints for one pair.
 pub fn check_text(answer: &CheckAnswer) -> String {
     let mut sheet = Sheet::default();
@@ -112,6 +175,9 @@ pub fn check_text(answer: &CheckAnswer) -> String {
     ));
     if let Some(effort) = answer.effort {
         sheet.line(format_args!("{}: {:.6} {}", effort.name, effort.value, effort.unit));
+    }
+    if let Some(proof) = &answer.proof {
+        proof_lines(&mut sheet, proof);
     }
     sheet.line(format_args!(
         "{} nodes (up to {} inside a segment), pairs of them tested: {}",
@@ -151,7 +217,11 @@ pub fn check_text(answer: &CheckAnswer) -> String {
                 binding_line(&miss.binding)
             ));
         }
-        sheet.line(format_args!("more points per segment may find a path: this is no proof that there is none"));
+        if answer.proof.is_none() {
+            sheet.line(format_args!(
+                "more points per segment may find a path: this is no proof that there is none; --prove looks for one"
+            ));
+        }
     }
     sheet.0
 }

@@ -249,7 +249,7 @@ impl Entries {
 
 /// The known key nearest to an unknown one: a right name in any table first, then the nearest name, in the table that was meant where
 /// that is plain.
-fn nearest_key(table: &str, name: &str, meant: Option<&str>) -> String {
+pub(super) fn nearest_key(table: &str, name: &str, meant: Option<&str>) -> String {
     let distance = |key: &&Key| {
         let own = strsim::damerau_levenshtein(name, key.name);
         let elsewhere = own > 0 && meant.is_some_and(|meant| meant != key.table && own > 2);
@@ -325,7 +325,7 @@ fn pair(value: &toml::Value) -> Option<[f64; 2]> {
 }
 
 /// Whether a value is of a kind.
-fn fits(value: &toml::Value, kind: Kind) -> bool {
+pub(super) fn fits(value: &toml::Value, kind: Kind) -> bool {
     match kind {
         Kind::Number { min, max } => number(value).is_some_and(|n| min <= n && n <= max),
         Kind::AngleOrUnlimited => {

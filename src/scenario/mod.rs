@@ -6,12 +6,14 @@ mod entries;
 mod pipeline;
 mod problem;
 mod read;
+mod trade;
 mod trials;
 
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
-pub use pipeline::{Covers, Cut, Extremes, PipelineError, Prepared, constant_gravity_doubts, friction, prepare, sha256_of};
+pub use pipeline::{Covers, Cut, Extremes, PipelineError, Prepared, Survey, constant_gravity_doubts, friction, prepare, sha256_of};
 pub use problem::{ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, Scenario, TerrainSource};
+pub use trade::{Trade, TradeError, Variation, Varied, judged};
 pub use trials::UncertaintyKeys;

@@ -70,9 +70,6 @@ pub enum PipelineError {
     },
 }
 
-/// A chain, warnings, and where start and goal are if nothing else says it.
-type Geometry = (PolygonalChain, Option<MapProjection>, Vec<String>, (Option<f64>, Option<f64>));
-
 /// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, settles the constraints, finds start and goal on it.
 ///
 /// `base` is the folder that the scenario's paths start from.
@@ -80,21 +77,84 @@ type Geometry = (PolygonalChain, Option<MapProjection>, Vec<String>, (Option<f64
 /// # Errors
 /// [`PipelineError`].
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
-    let (geometry, projection, warnings, ends) = match source {
-        TerrainSource::Dem { path, start, goal } => {
-            let cut = Cut::of_dem(&base.join(path), [start, goal], &scenario.via, scenario.accept_map_scale)?;
-            covered(scenario, base, cut)?
-        }
-        TerrainSource::Mesh { path, scale, start, goal } => {
-            let via: Vec<MapPoint> = scenario.via.iter().filter_map(MapPlace::metres).collect();
-            let cut = Cut::of_mesh(&base.join(path), *scale, [*start, *goal], &via)?;
-            covered(scenario, base, cut)?
-        }
-        TerrainSource::Chain { path } => {
-            let file = csv::read_chain_csv_file(base.join(path))?;
-            (file.chain, file.projection, file.warnings, (None, None))
-        }
+    let Survey { ground, projection, warnings } = Survey::of(scenario, source, base)?;
+    let (geometry, ends) = match ground {
+        Surveyed::Slice { legs, covers } => whole(covers.laid(legs, friction(scenario))?),
+        Surveyed::Chain(chain) => (chain, (None, None)),
     };
+    settled(scenario, geometry, ends, projection, warnings)
+}
+
+/// The terrain of a scenario, read and sliced once, from which chains are prepared for any hopper, grip and search.
+#[derive(Clone, Debug)]
+pub struct Survey {
+    ground: Surveyed,
+    projection: Option<MapProjection>,
+    warnings: Vec<String>,
+}
+
+/// What was read.
+#[derive(Clone, Debug)]
+enum Surveyed {
+    /// A slice, and what is laid over it.
+    Slice { legs: Vec<Profile>, covers: Box<Covers> },
+    /// A chain as it was given.
+    Chain(PolygonalChain),
+}
+
+impl Survey {
+    /// Reads and slices what a scenario says of its terrain, its rasters and zones.
+    ///
+    /// `base` is the folder that the scenario's paths start from.
+    ///
+    /// # Errors
+    /// [`PipelineError`].
+    pub fn of(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Self, PipelineError> {
+        let cut = match source {
+            TerrainSource::Dem { path, start, goal } => {
+                Cut::of_dem(&base.join(path), [start, goal], &scenario.via, scenario.accept_map_scale)?
+            }
+            TerrainSource::Mesh { path, scale, start, goal } => {
+                let via: Vec<MapPoint> = scenario.via.iter().filter_map(MapPlace::metres).collect();
+                Cut::of_mesh(&base.join(path), *scale, [*start, *goal], &via)?
+            }
+            TerrainSource::Chain { path } => {
+                let file = csv::read_chain_csv_file(base.join(path))?;
+                return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
+            }
+        };
+        let covers = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds)?;
+        let ground = Surveyed::Slice { legs: cut.legs, covers: Box::new(covers) };
+        Ok(Self { ground, projection: cut.projection, warnings: cut.warnings })
+    }
+
+    /// The chain under another scenario's hopper, grip, rest slope and ends. Its terrain keys and files are not looked at.
+    ///
+    /// # Errors
+    /// [`PipelineError`], where segments are left without constraints, or an end lies off the chain.
+    pub fn prepare(&self, scenario: &Scenario) -> Result<Prepared, PipelineError> {
+        let (geometry, ends) = match &self.ground {
+            Surveyed::Slice { legs, covers } => whole(covers.laid(legs.clone(), friction(scenario))?),
+            Surveyed::Chain(chain) => (chain.clone(), (None, None)),
+        };
+        settled(scenario, geometry, ends, self.projection.clone(), self.warnings.clone())
+    }
+}
+
+/// A chain, with its ends as start and goal where nothing else says them.
+fn whole(chain: PolygonalChain) -> (PolygonalChain, (Option<f64>, Option<f64>)) {
+    let (first_m, last_m) = chain.extent_m();
+    (chain, (Some(first_m), Some(last_m)))
+}
+
+/// Settles the constraints of a chain and finds start and goal on it.
+fn settled(
+    scenario: &Scenario,
+    geometry: PolygonalChain,
+    ends: (Option<f64>, Option<f64>),
+    projection: Option<MapProjection>,
+    warnings: Vec<String>,
+) -> Result<Prepared, PipelineError> {
     let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface)?;
     let station = |which, x_m: Option<f64>| {
         x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
@@ -102,13 +162,6 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
     let start = station("start", scenario.start_x_m.or(ends.0))?;
     let goal = station("goal", scenario.goal_x_m.or(ends.1))?;
     Ok(Prepared { chain, start, goal, projection, warnings })
-}
-
-/// The chain of a cut under what the scenario lays over it, with its ends as start and goal.
-fn covered(scenario: &Scenario, base: &Path, cut: Cut) -> Result<Geometry, PipelineError> {
-    let chain = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds)?.chain(cut.legs)?;
-    let (first_m, last_m) = chain.extent_m();
-    Ok((chain, cut.projection, cut.warnings, (Some(first_m), Some(last_m))))
 }
 
 /// The ground along a journey, leg by leg, and what is known of its map.
@@ -196,35 +249,40 @@ impl Covers {
         Ok(Self { constant: friction(scenario), raster: raster.transpose()?, keep_out: keep_out.transpose()? })
     }
 
-    /// The files of a scenario that are read, from its folder.
-    pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
-        [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
-    }
-
-    /// The raster of friction, where there is one.
-    pub const fn raster(&self) -> Option<&FrictionRaster> {
+    /// Friction from a raster, where the scenario names one.
+    pub const fn friction_raster(&self) -> Option<&FrictionRaster> {
         self.raster.as_ref()
     }
 
-    /// The zones to keep out of, where there are any.
+    /// Zones, where the scenario names some.
     pub const fn keep_out(&self) -> Option<&KeepOut> {
         self.keep_out.as_ref()
+    }
+
+    /// The files of a scenario that are read, from its folder.
+    pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
+        [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
     }
 
     /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones.
     ///
     /// # Errors
     /// [`TerrainError::Cover`] where a raster ends before the slice does.
-    pub fn chain(&self, mut legs: Vec<Profile>) -> Result<PolygonalChain, PipelineError> {
+    pub fn chain(&self, legs: Vec<Profile>) -> Result<PolygonalChain, PipelineError> {
+        self.laid(legs, self.constant)
+    }
+
+    /// The same with this friction where no raster says it.
+    fn laid(&self, mut legs: Vec<Profile>, constant: Option<FrictionCone>) -> Result<PolygonalChain, PipelineError> {
         for leg in &mut legs {
             if let Some(raster) = &self.raster {
-                raster.lay(leg, self.constant)?;
+                raster.lay(leg, constant)?;
             }
             if let Some(keep_out) = &self.keep_out {
                 keep_out.mark(leg)?;
             }
         }
-        Ok(PolygonalChain::from_legs(&legs, self.constant)?)
+        Ok(PolygonalChain::from_legs(&legs, constant)?)
     }
 }
 

@@ -17,6 +17,15 @@ pub struct Dem {
     georeference: GeoReference,
 }
 
+/// The elevations of a raster as they are kept, row after row from the north; NaN is a gap.
+#[derive(Clone, Copy, Debug)]
+pub enum Samples<'a> {
+    /// 32-bit floats.
+    Single(&'a [f32]),
+    /// 64-bit floats.
+    Double(&'a [f64]),
+}
+
 /// NaN is a gap.
 #[derive(Clone, Debug)]
 pub(super) enum Posts {
@@ -144,6 +153,14 @@ impl Dem {
     /// Whether the elevations are kept as 32-bit floats (which loses nothing).
     pub fn is_single_precision(&self) -> bool {
         matches!(self.posts, Posts::Single(_))
+    }
+
+    /// The elevations as they are kept, for loops over millions of them.
+    pub fn samples(&self) -> Samples<'_> {
+        match &self.posts {
+            Posts::Single(values) => Samples::Single(values),
+            Posts::Double(values) => Samples::Double(values),
+        }
     }
 
     /// Lowest and highest elevation, m.

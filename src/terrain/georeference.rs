@@ -140,6 +140,14 @@ impl GeoReference {
         MapPoint::new(self.north_west.x + col * self.dx_m, self.north_west.y - row * self.dy_m)
     }
 
+    /// The place of every `stride`-th post, counted from the north-west one; of every post for a stride of 1 (and 0).
+    #[must_use]
+    pub fn every(&self, stride: usize) -> Self {
+        #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
+        let step = stride.max(1) as f64;
+        Self { dx_m: self.dx_m * step, dy_m: self.dy_m * step, ..self.clone() }
+    }
+
     /// The rectangle of the outermost posts of a raster with so many rows and columns.
     pub fn bounds(&self, rows: usize, cols: usize) -> MapBounds {
         let south_east = self.post(rows.saturating_sub(1), cols.saturating_sub(1));

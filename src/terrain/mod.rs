@@ -37,11 +37,11 @@ mod xyz;
 mod zones;
 
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
-pub use dem::{Dem, ELEVATION_LIMIT_M};
+pub use dem::{Dem, ELEVATION_LIMIT_M, Samples};
 pub use error::{AsciiProblem, TerrainError};
 pub use format::{DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
-pub use geotiff::{geotiff_bytes, read_geotiff_bytes, write_geotiff};
+pub use geotiff::{Band, ResultBands, geotiff_bytes, read_geotiff_bytes, result_geotiff_bytes, write_geotiff};
 pub use mesh::{
     Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
     slice_mesh,

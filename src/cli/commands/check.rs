@@ -14,7 +14,7 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::search::{search_pairs, use_threads};
+use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{CheckArgs, Format},
@@ -74,16 +74,16 @@ fn answers(
 ) -> Result<Vec<CheckAnswer>, Failure> {
     let test = loaded.hop_test();
     let options = &loaded.scenario.search;
-    let found = search_pairs(&test, pairs, &loaded.scenario, args.common.quiet)?;
+    let searched = Searched::all(&test, pairs, &loaded.scenario, args.prove, args.common.quiet)?;
     let mut answers = Vec::with_capacity(pairs.len());
-    for ((start, goal), found) in pairs.iter().zip(&found) {
-        if let Outcome::Path { legs, .. } = &found.outcome
+    for (&ends, searched) in pairs.iter().zip(&searched) {
+        if let Outcome::Path { legs, .. } = &searched.found.outcome
             && let Ok(path) = generate(&test, legs, options.takeoff, options.split)
         {
             let of_path = constant_gravity_doubts(&loaded.scenario.body, Extremes::of(&path.hops));
             doubts.extend(of_path.into_iter().filter(|doubt| !doubts.contains(doubt)).collect::<Vec<_>>());
         }
-        answers.push(CheckAnswer::new(&test, start.point.x_m, goal.point.x_m, found, options.effort));
+        answers.push(searched.answer(&test, ends, options.effort));
     }
     Ok(answers)
 }

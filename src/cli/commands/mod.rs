@@ -2,11 +2,16 @@
 
 pub(super) mod bodies;
 pub(super) mod check;
+pub(super) mod compare;
 pub(super) mod fan;
 pub(super) mod hop;
+pub(super) mod map;
+mod map_profiles;
 pub(super) mod plan;
+pub(super) mod require;
 pub(super) mod run;
 mod search;
 pub(super) mod simulate;
 pub(super) mod slice;
 pub(super) mod synth;
+pub(super) mod trade;

@@ -18,10 +18,10 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::search::{search, use_threads};
+use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
-    args::{Format, PlanArgs},
+    args::{Format, PlanArgs, ProveArgs},
     load::{EndOptions, Loaded, load},
     output::{self, Pending},
 };
@@ -51,19 +51,25 @@ pub(super) struct Planned {
 }
 
 impl Planned {
-    /// Searches, generates the path, and flies it again where asked.
-    pub(super) fn new(loaded: &Loaded, test: &HopTest<'_>, verify: bool, quiet: bool) -> Result<Self, Failure> {
-        let (start, goal) = loaded.ends()?;
+    /// Searches (and proves where asked), generates the path, and flies it again where asked.
+    pub(super) fn new(
+        loaded: &Loaded,
+        test: &HopTest<'_>,
+        prove: Option<ProveArgs>,
+        verify: bool,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
+        let ends = loaded.ends()?;
         let options = &loaded.scenario.search;
-        let (found, surest) = search(test, start, goal, &loaded.scenario, quiet)?;
-        let path = match &found.outcome {
+        let searched = Searched::new(test, ends, &loaded.scenario, prove, quiet)?;
+        let path = match &searched.found.outcome {
             Outcome::Path { legs, .. } => {
                 Some(generate(test, legs, options.takeoff, options.split).map_err(|e| Failure::message(e.to_string()))?)
             }
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
         if let Some(path) = path.as_ref().filter(|_| verify) {
-            verified(loaded, path, (start, goal))?;
+            verified(loaded, path, ends)?;
         }
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
         let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
@@ -72,13 +78,13 @@ impl Planned {
         }
         let warnings = loaded.warnings_with(doubts);
         let answer = PlanAnswer {
-            check: CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &found, options.effort),
+            check: searched.answer(test, ends, options.effort),
             verified: (verify && path.is_some()).then_some(true),
             path: path.as_ref().map(|path| HopRecord::rows(path, loaded.prepared.projection.as_ref())).unwrap_or_default(),
             totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
-            surest: SurestRecord::rows(&surest),
+            surest: SurestRecord::rows(&searched.surest),
         };
-        Ok(Self { found, path, answer, warnings })
+        Ok(Self { found: searched.found, path, answer, warnings })
     }
 
     /// Whether a path exists, and what stops it.
@@ -155,7 +161,7 @@ impl Planned {
 }
 
 /// The ground's grip in a few words.
-fn ground_words(scenario: &Scenario) -> String {
+pub(super) fn ground_words(scenario: &Scenario) -> String {
     match scenario.surface.grip {
         Some(Grip::Friction(cone)) => format!("friction coefficient {}", cone.coefficient()),
         Some(Grip::FromSlope { takeoff, landing }) => {
@@ -201,7 +207,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     let prj = prj_path.as_deref().map(Pending::begin).transpose()?;
     let csv = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let test = loaded.hop_test();
-    let planned = Planned::new(&loaded, &test, args.verify, args.common.quiet)?;
+    let planned = Planned::new(&loaded, &test, Some(args.prove), args.verify, args.common.quiet)?;
     let mut files = Vec::new();
     if let Some(file) = plot {
         files.push((file, planned.picture(&loaded, &test, ends)?.into_bytes()));

@@ -29,7 +29,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let ends = loaded.ends()?;
     output::check_folder(folder)?;
     let test = loaded.hop_test();
-    let planned = Planned::new(&loaded, &test, true, *quiet)?;
+    let planned = Planned::new(&loaded, &test, None, true, *quiet)?;
     let mut chain_csv = Vec::new();
     let projection = loaded.prepared.projection.as_ref();
     let mut comments =

@@ -1,13 +1,80 @@
-//! The search with its progress, shared by check, plan and run.
+//! The search and the proof with their progress, shared by check, plan, run and require.
 
 use chta::{
     ballistics::HopTest,
     chain::Station,
-    graph::{self, PointSpacing, SurestPath, search_surest},
+    graph::{
+        self, PointSpacing, SurestPath,
+        proof::{Bounds, BoundsOptions, ProofSummary, bounds},
+        search_surest,
+    },
+    report::CheckAnswer,
     scenario::Scenario,
 };
 
-use crate::cli::{Failure, progress::Progress};
+use crate::cli::{Failure, args::ProveArgs, progress::Progress};
+
+/// What a search came to, with bounds where a proof was asked for.
+#[derive(Debug)]
+pub(super) struct Searched {
+    pub(super) found: graph::Answer,
+    /// What hops buy in surety, where the scenario asks for it.
+    pub(super) surest: Vec<SurestPath>,
+    proof: Option<(Bounds, usize)>,
+}
+
+impl Searched {
+    /// Searches, and proves where that is asked for.
+    pub(super) fn new(
+        test: &HopTest<'_>,
+        ends: (Station, Station),
+        scenario: &Scenario,
+        prove: Option<ProveArgs>,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
+        match prove.filter(|prove| prove.prove) {
+            None => {
+                let (found, surest) = search(test, ends, scenario, quiet)?;
+                Ok(Self { found, surest, proof: None })
+            }
+            Some(_) if scenario.surety().is_some() => Err(Failure::message(format!(
+                "--prove bounds the fewest hops, but search.risk is \"{}\", which asks for the surest path: leave --prove away, or add \
+                 --set search.risk=ignored",
+                scenario.risk.name()
+            ))),
+            Some(ProveArgs { budget, .. }) => {
+                let search = scenario.search.clone();
+                let options = BoundsOptions { budget_cells: budget, search, explain: true, ..BoundsOptions::default() };
+                let bounds = proved(test, ends, &options, quiet)?;
+                Ok(Self { found: bounds.answer.clone(), surest: Vec::new(), proof: Some((bounds, budget)) })
+            }
+        }
+    }
+
+    /// The same for many pairs: one search from each start, or a proof for each pair.
+    pub(super) fn all(
+        test: &HopTest<'_>,
+        pairs: &[(Station, Station)],
+        scenario: &Scenario,
+        prove: ProveArgs,
+        quiet: bool,
+    ) -> Result<Vec<Self>, Failure> {
+        if prove.prove {
+            return pairs.iter().map(|&ends| Self::new(test, ends, scenario, Some(prove), quiet)).collect();
+        }
+        let found = search_pairs(test, pairs, scenario, quiet)?;
+        Ok(found.into_iter().map(|found| Self { found, surest: Vec::new(), proof: None }).collect())
+    }
+
+    /// The answer as plain data.
+    pub(super) fn answer(&self, test: &HopTest<'_>, (start, goal): (Station, Station), effort: graph::Effort) -> CheckAnswer {
+        let answer = CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &self.found, effort);
+        match &self.proof {
+            None => answer,
+            Some((bounds, budget)) => answer.with_bounds(bounds, *budget),
+        }
+    }
+}
 
 /// Makes as many threads as asked for; 0: one for each core.
 pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
@@ -24,8 +91,7 @@ pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
 /// Searches for one pair, for the surest path where the scenario asks for it, and shows what is being tried on a terminal.
 pub(super) fn search(
     test: &HopTest<'_>,
-    start: Station,
-    goal: Station,
+    (start, goal): (Station, Station),
     scenario: &Scenario,
     quiet: bool,
 ) -> Result<(graph::Answer, Vec<SurestPath>), Failure> {
@@ -38,14 +104,14 @@ pub(super) fn search(
 }
 
 /// Searches for many pairs, once from each start; pair by pair where the surest paths are asked for.
-pub(super) fn search_pairs(
+fn search_pairs(
     test: &HopTest<'_>,
     pairs: &[(Station, Station)],
     scenario: &Scenario,
     quiet: bool,
 ) -> Result<Vec<graph::Answer>, Failure> {
     if scenario.surety().is_some() {
-        return pairs.iter().map(|&(start, goal)| Ok(search(test, start, goal, scenario, quiet)?.0)).collect();
+        return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
     }
     graph::search_pairs(test, pairs, &scenario.search, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
 }
@@ -59,4 +125,16 @@ fn told(quiet: bool) -> impl FnMut(PointSpacing) {
             PointSpacing::AtMostM(spacing_m) => format!("searching with nodes at most {spacing_m} m apart"),
         });
     }
+}
+
+/// Bounds the fewest hops, and shows how far the proof is on a terminal.
+pub(super) fn proved(
+    test: &HopTest<'_>,
+    (start, goal): (Station, Station),
+    options: &BoundsOptions,
+    quiet: bool,
+) -> Result<Bounds, Failure> {
+    let progress = Progress::new(quiet);
+    let mut tell = |summary: ProofSummary| progress.say(format!("proving with {} cells, round {}", summary.cells, summary.rounds));
+    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::message(error.to_string()))
 }

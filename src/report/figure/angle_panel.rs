@@ -91,7 +91,7 @@ impl Layout {
         let (from, to) = ((low - beyond).max(-90.0), (high + beyond).min(90.0));
         let ticks = Ticks::round(from, to, (self.y(from) - self.y(to)) / 8.0);
         let angles: Vec<_> = ticks.values.iter().map(|&deg| (self.y(deg), ticks.text(deg))).collect();
-        self.panel.y_axis(sheet, &angles, "take-off angle (deg)");
+        self.panel.y_axis(sheet, &angles, "take-off angle (deg)", true);
     }
 
     /// One hop: bar, chosen angle, limit names.

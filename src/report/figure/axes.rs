@@ -44,10 +44,12 @@ impl Panel {
     }
 
     /// Grid and numbers at places along the left edge, and what they mean.
-    pub(super) fn y_axis(&self, sheet: &mut Sheet, ticks: &[(f64, String)], name: &str) {
+    pub(super) fn y_axis(&self, sheet: &mut Sheet, ticks: &[(f64, String)], name: &str, grid: bool) {
         let mut widest: f64 = 0.0;
         for (y, text) in ticks {
-            sheet.line(vec![(self.left, *y), (self.right, *y)], GRID_PEN);
+            if grid {
+                sheet.line(vec![(self.left, *y), (self.right, *y)], GRID_PEN);
+            }
             sheet.line(vec![(self.left - 1.0, *y), (self.left, *y)], AXIS_PEN);
             sheet.label(Label::new(text.as_str(), (self.left - 1.5, *y), SMALL_MM).hung(Anchor::End, Hang::Through));
             widest = widest.max(text_width_mm(text, SMALL_MM));

@@ -19,9 +19,12 @@
 
 mod angle_panel;
 mod axes;
+mod bands;
+mod bitmap;
 mod chains;
 mod data;
 mod heading;
+mod keys;
 mod legend;
 mod map;
 mod palette;
@@ -36,6 +39,8 @@ mod terrain_panel;
 mod ticks;
 mod trials;
 
+#[cfg(test)]
+mod samples;
 #[cfg(test)]
 mod tests;
 

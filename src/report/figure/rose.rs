@@ -4,21 +4,13 @@ use plotters::style::RGBColor;
 
 use super::{
     FigureError,
+    bands::HopClasses,
+    keys::{self, Swatch},
     palette::{AXIS, BLACK, PAGE_WIDTH_MM, RIGHT_MM, SMALL_MM, TEXT_MM, TITLE_MM, VERMILION},
     sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm, wrapped},
     ticks::Ticks,
 };
 use crate::report::FanAnswer;
-
-/// Few hops light, many dark (viridis, which colour-blind readers and grey printers tell apart).
-const BANDS: [RGBColor; 6] = [
-    RGBColor(253, 231, 37),
-    RGBColor(122, 209, 81),
-    RGBColor(34, 168, 132),
-    RGBColor(42, 120, 142),
-    RGBColor(65, 68, 135),
-    RGBColor(68, 1, 84),
-];
 
 /// Ground that is not reached.
 const BLOCKED: RGBColor = RGBColor(200, 200, 200);
@@ -58,8 +50,7 @@ struct Rose<'a> {
     answer: &'a FanAnswer,
     centre: Place,
     mm_per_m: f64,
-    /// The most hops of each class, rising.
-    classes: Vec<u64>,
+    classes: HopClasses,
 }
 
 impl<'a> Rose<'a> {
@@ -67,7 +58,7 @@ impl<'a> Rose<'a> {
         let longest_m = answer.rays.iter().map(|ray| ray.length_m).fold(0.0, f64::max);
         let most = answer.rays.iter().flat_map(|ray| &ray.bands).filter_map(|band| band.hops).max().unwrap_or(0);
         let longest_m = if longest_m > 0.0 { longest_m } else { answer.length_m };
-        Self { answer, centre, mm_per_m: RADIUS_MM / longest_m, classes: classes(most) }
+        Self { answer, centre, mm_per_m: RADIUS_MM / longest_m, classes: HopClasses::up_to(most) }
     }
 
     /// A place on the page from a distance and a heading.
@@ -84,17 +75,6 @@ impl<'a> Rose<'a> {
         (0..=steps).map(|i| self.place(distance_m, at(i))).collect()
     }
 
-    /// The class of a number of hops.
-    fn class(&self, hops: u64) -> usize {
-        self.classes.iter().position(|&most| hops <= most).unwrap_or(self.classes.len().saturating_sub(1))
-    }
-
-    /// The colour of a class: the classes there are, spread over all colours.
-    fn colour(&self, class: usize) -> RGBColor {
-        let steps = self.classes.len().max(2) - 1;
-        BANDS[(class * (BANDS.len() - 1) / steps).min(BANDS.len() - 1)]
-    }
-
     /// Every direction as a wedge of bands.
     fn wedges(&self, sheet: &mut Sheet) {
         #[expect(clippy::cast_precision_loss, reason = "at most 36000 headings")]
@@ -104,7 +84,7 @@ impl<'a> Rose<'a> {
             for (from_m, to_m, class) in self.drawn_bands(&ray.bands) {
                 let mut outline = self.arc(to_m, from_deg, to_deg);
                 outline.extend(self.arc(from_m, to_deg, from_deg));
-                let colour = class.map_or(BLOCKED, |class| self.colour(class));
+                let colour = class.map_or(BLOCKED, |class| self.classes.colour(class));
                 sheet.area(outline, colour, 1.0);
             }
             if ray.cut.is_some() {
@@ -119,7 +99,7 @@ impl<'a> Rose<'a> {
     fn drawn_bands(&self, bands: &[crate::report::BandRecord]) -> Vec<(f64, f64, Option<usize>)> {
         let mut found: Vec<(f64, f64, Option<usize>)> = Vec::new();
         for band in bands {
-            let class = band.hops.map(|hops| self.class(hops));
+            let class = band.hops.map(|hops| self.classes.of(hops));
             match found.last_mut() {
                 Some(last) if last.2 == class => last.1 = band.to_m,
                 _ => found.push((band.from_m, band.to_m, class)),
@@ -155,76 +135,13 @@ impl<'a> Rose<'a> {
 
     /// What the colours and lines mean; returns where it ends.
     fn legend(&self, sheet: &mut Sheet, top_mm: f64) -> f64 {
-        let mut least = 1;
-        let mut entries: Vec<(Option<RGBColor>, Option<Pen>, String)> = Vec::new();
-        for (class, &most) in self.classes.iter().enumerate() {
-            let text = if least >= most { most.to_string() } else { format!("{least} to {most}") };
-            entries.push((Some(self.colour(class)), None, format!("{text} hop{}", if most == 1 { "" } else { "s" })));
-            least = most + 1;
-        }
-        entries.push((Some(BLOCKED), None, "not reached".to_owned()));
-        entries.push((None, Some(Pen { colour: BLACK, width_mm: 0.35 }), "farthest reached".to_owned()));
+        let bands = self.classes.texts().into_iter().enumerate();
+        let mut entries: Vec<_> = bands.map(|(class, text)| (Swatch::Fill(self.classes.colour(class)), text)).collect();
+        entries.push((Swatch::Fill(BLOCKED), "not reached".to_owned()));
+        entries.push((Swatch::Line(Pen { colour: BLACK, width_mm: 0.35 }), "farthest reached".to_owned()));
         if self.answer.rays.iter().any(|ray| ray.cut.is_some()) {
-            entries.push((None, Some(Pen { colour: VERMILION, width_mm: 0.5 }), "cut by the map's border or no-data".to_owned()));
+            entries.push((Swatch::Line(Pen { colour: VERMILION, width_mm: 0.5 }), "cut by the map's border or no-data".to_owned()));
         }
-        let mut at = (6.0, top_mm);
-        for (colour, pen, text) in entries {
-            let width_mm = 7.0 + text_width_mm(&text, SMALL_MM) + 3.0;
-            if at.0 + width_mm > RIGHT_MM {
-                at = (6.0, at.1 + 4.6);
-            }
-            if let Some(colour) = colour {
-                let (left, right, top, bottom) = (at.0, at.0 + 6.0, at.1 - 1.5, at.1 + 1.5);
-                sheet.area(vec![(left, top), (right, top), (right, bottom), (left, bottom)], colour, 1.0);
-            }
-            if let Some(pen) = pen {
-                sheet.line(vec![(at.0, at.1), (at.0 + 6.0, at.1)], pen);
-            }
-            sheet.label(Label::new(text, (at.0 + 7.0, at.1), SMALL_MM));
-            at.0 += width_mm;
-        }
-        at.1 + 2.3
-    }
-}
-
-/// The most hops of each class: one class for each count up to six, else classes whose ends rise by a common factor.
-fn classes(most: u64) -> Vec<u64> {
-    let count = BANDS.len() as u64;
-    if most <= count {
-        return (1..=most).collect();
-    }
-    #[expect(clippy::cast_precision_loss, reason = "a count of hops for a legend")]
-    let whole = most as f64;
-    let mut ends: Vec<u64> = Vec::new();
-    for i in 1..=count {
-        #[expect(
-            clippy::cast_precision_loss,
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "between 1 and most"
-        )]
-        let end = libm::pow(whole, i as f64 / count as f64).round() as u64;
-        let after_last = ends.last().map_or(1, |last| last + 1);
-        ends.push(end.max(after_last));
-    }
-    if let Some(last) = ends.last_mut() {
-        *last = most;
-    }
-    ends
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn classes_rise_and_end_with_the_most() {
-        assert!(classes(0).is_empty());
-        assert_eq!(classes(4), [1, 2, 3, 4]);
-        for most in 7..2000 {
-            let ends = classes(most);
-            assert!(ends.windows(2).all(|pair| pair[0] < pair[1]), "{ends:?}");
-            assert_eq!((ends.len(), ends.last()), (6, Some(&most)));
-        }
+        keys::draw(sheet, &entries, top_mm)
     }
 }

@@ -14,7 +14,10 @@ use plotters::{
     },
 };
 
-use super::FigureError;
+use super::{
+    FigureError,
+    bitmap::{Pixels, base64},
+};
 
 /// A place on the sheet, mm from the left and from the top.
 pub(super) type Place = (f64, f64);
@@ -141,9 +144,21 @@ pub(super) fn wrapped(text: &str, size_mm: f64, width_mm: f64) -> Vec<String> {
     lines
 }
 
+/// A raster on the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct SheetImage {
+    pub(super) left_mm: f64,
+    pub(super) top_mm: f64,
+    pub(super) width_mm: f64,
+    pub(super) height_mm: f64,
+    pub(super) pixels: Pixels,
+}
+
 /// The sheet of one figure, marks from back to front.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Sheet {
+    /// Rasters; they lie under all marks.
+    pub(super) images: Vec<SheetImage>,
     pub(super) marks: Vec<Mark>,
 }
 
@@ -219,7 +234,25 @@ impl Sheet {
         }
         let plain = format!("width=\"{width}\" height=\"{height}\" viewBox");
         let physical = format!("width=\"{width_mm}mm\" height=\"{height_mm:.2}mm\" viewBox");
-        Ok(with_short_font_sizes(&svg.replacen(&plain, &physical, 1)))
+        let svg = with_short_font_sizes(&svg.replacen(&plain, &physical, 1));
+        self.with_images(svg)
+    }
+
+    /// An SVG with the rasters behind its first element, the white page: plotters itself would draw them as rectangles.
+    fn with_images(&self, svg: String) -> Result<String, FigureError> {
+        let Some(page_end) = svg.find("<rect").and_then(|at| svg[at..].find("/>").map(|end| at + end + 2)) else { return Ok(svg) };
+        let mut out = svg[..page_end].to_owned();
+        for image in &self.images {
+            let sides = [("x", image.left_mm), ("y", image.top_mm), ("width", image.width_mm), ("height", image.height_mm)];
+            let sides: String = sides.iter().map(|&(name, mm)| format!(" {name}=\"{}\"", units(mm))).collect();
+            let data = base64(&image.pixels.to_png(None)?);
+            out.push_str(&format!(
+                "\n<image xmlns:xlink=\"http://www.w3.org/1999/xlink\"{sides} preserveAspectRatio=\"none\" \
+                 image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{data}\"/>"
+            ));
+        }
+        out.push_str(&svg[page_end..]);
+        Ok(out)
     }
 }
 
@@ -336,7 +369,8 @@ pub(super) fn steps_along(points: &[Place], step_mm: f64) -> Vec<(Place, Place)>
     found
 }
 
-fn between(a: Place, b: Place, fraction: f64) -> Place {
+/// The place at a fraction of the way from one to another.
+pub(super) fn between(a: Place, b: Place, fraction: f64) -> Place {
     (a.0 + (b.0 - a.0) * fraction, a.1 + (b.1 - a.1) * fraction)
 }
 

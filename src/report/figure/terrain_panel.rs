@@ -92,7 +92,7 @@ impl<'a> TerrainPanel<'a> {
         let up = Ticks::round(frame.z_m(panel.bottom), frame.z_m(panel.top), panel.height() / TICK_MM);
         let ticks: Vec<_> =
             up.values.iter().map(|&z_m| (frame.place(ChainPoint::new(frame.origin.x_m, z_m)).1, up.text(z_m))).collect();
-        panel.y_axis(sheet, &ticks, "height, z (m)");
+        panel.y_axis(sheet, &ticks, "height, z (m)", true);
     }
 
     /// The profile, its nodes and what it allows.

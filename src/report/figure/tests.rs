@@ -1,6 +1,7 @@
 //! The figure of many journeys: what it shows, what it says, and that it can be read.
 
 use super::{
+    samples::check_well_formed,
     sheet::{Label, Mark},
     *,
 };
@@ -352,32 +353,6 @@ fn an_impossible_journey_shows_how_far_one_gets_and_why_no_farther() {
     for words in ["start refuses", "rest slope of", "x = 10 m"] {
         assert!(texts.contains(words), "{words:?} is missing in {texts}");
     }
-}
-
-/// Tags that open and close in pairs, attributes quoted, no bare special letters.
-fn check_well_formed(svg: &str) {
-    let mut open = Vec::new();
-    let mut rest = svg;
-    while let Some(start) = rest.find('<') {
-        let text = &rest[..start];
-        assert!(!text.contains('>'), "bare > in {text:?}");
-        for (at, _) in text.match_indices('&') {
-            let entity = ["&lt;", "&gt;", "&amp;", "&quot;", "&apos;"].iter().any(|known| text[at..].starts_with(known));
-            assert!(entity, "bare & in {text:?}");
-        }
-        let end = start + rest[start..].find('>').unwrap();
-        let tag = &rest[start + 1..end];
-        if let Some(name) = tag.strip_prefix('/') {
-            assert_eq!(open.pop(), Some(name));
-        } else {
-            assert!(tag.matches('"').count().is_multiple_of(2), "{tag}");
-            if !tag.ends_with('/') {
-                open.push(tag.split_whitespace().next().unwrap());
-            }
-        }
-        rest = &rest[end + 1..];
-    }
-    assert!(open.is_empty() && rest.trim().is_empty(), "{open:?} left open");
 }
 
 /// With `CHTA_FIGURES_TO=folder` it also writes the pictures there, to be looked at.

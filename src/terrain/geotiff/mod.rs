@@ -14,7 +14,7 @@ pub(super) use read::GeoTiffReader;
 pub use read::read_geotiff_bytes;
 #[cfg(feature = "gdal")]
 pub(super) use read::{Placed, place_by_tags};
-pub use write::{geotiff_bytes, write_geotiff};
+pub use write::{Band, ResultBands, geotiff_bytes, result_geotiff_bytes, write_geotiff};
 
 /// Numbers of the tags that are read or written by us (TIFF 6.0; OGC GeoTIFF 1.1, annex; GDAL's own).
 mod tag {

@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, Write};
 
-use tiff_reader::constants::{Compression, Predictor};
+use tiff_reader::constants::{Compression, ExtraSample, Predictor};
 use tiff_reader::{Tag, TagValue};
 use tiff_writer::{ImageBuilder, TiffWriteSample, TiffWriter, WriteOptions};
 
@@ -14,14 +14,83 @@ use crate::terrain::{Dem, GeoReference, TerrainError};
 /// Side of a tile, posts: the usual one, a multiple of 16 as the format asks.
 const TILE: usize = 256;
 
-/// A raster of floats that goes with a [`GeoReference`].
+/// Numbers of one kind for every post of a raster, one or several to a post.
 struct Raster<'a, T> {
     rows: usize,
     cols: usize,
-    samples: &'a [T],
+    bands: Vec<&'a [T]>,
     /// Fills what sticks out of the raster in its last tiles.
     filler: T,
+    /// How the file says what marks missing numbers.
+    no_data: &'a str,
+    predictor: Predictor,
+    /// What each band is, for people; none for a bare raster.
+    names: Vec<&'a str>,
     georeference: &'a GeoReference,
+}
+
+/// A band of a result raster: a name for people and a number for every post, row after row from the north.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band<'a, T> {
+    /// What the numbers are, with their unit.
+    pub name: &'a str,
+    /// The numbers.
+    pub samples: &'a [T],
+}
+
+/// The numbers of a result raster, one or several bands of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ResultBands<'a> {
+    /// Whole numbers, and the one that marks missing data.
+    Int16(Vec<Band<'a, i16>>, i16),
+    /// Numbers, NaN where there is none.
+    Float32(Vec<Band<'a, f32>>),
+}
+
+/// A result for every post of a map as a GeoTIFF in memory: tiles of 256 posts, deflate, the map written back as it was read.
+///
+/// # Errors
+/// [`TerrainError::InvalidDem`] where a band has not `rows * cols` numbers, there is no band, or the raster is beyond what TIFF can
+/// hold.
+///
+/// # Examples
+/// ```
+/// use chta::quantity::MapPoint;
+/// use chta::terrain::{Band, GeoReference, ResultBands, read_geotiff_bytes, result_geotiff_bytes};
+/// let map = GeoReference::local(MapPoint::new(5.0, 9.0), 2.0, 2.0)?;
+/// let hops = ResultBands::Int16(vec![Band { name: "hops", samples: &[0, 1, -1, -32768] }], -32768);
+/// let read = read_geotiff_bytes(result_geotiff_bytes(2, 2, &map, &hops)?)?;
+/// assert_eq!(read.elevations().collect::<Vec<_>>(), [Some(0.0), Some(1.0), Some(-1.0), None]);
+/// # Ok::<(), chta::terrain::TerrainError>(())
+/// ```
+pub fn result_geotiff_bytes(
+    rows: usize,
+    cols: usize,
+    georeference: &GeoReference,
+    bands: &ResultBands<'_>,
+) -> Result<Vec<u8>, TerrainError> {
+    match bands {
+        ResultBands::Int16(bands, no_data) => raster_bytes(&Raster {
+            rows,
+            cols,
+            bands: bands.iter().map(|band| band.samples).collect(),
+            filler: *no_data,
+            no_data: &no_data.to_string(),
+            predictor: Predictor::Horizontal,
+            names: bands.iter().map(|band| band.name).collect(),
+            georeference,
+        }),
+        ResultBands::Float32(bands) => raster_bytes(&Raster {
+            rows,
+            cols,
+            bands: bands.iter().map(|band| band.samples).collect(),
+            filler: f32::NAN,
+            no_data: "nan",
+            predictor: Predictor::FloatingPoint,
+            names: bands.iter().map(|band| band.name).collect(),
+            georeference,
+        }),
+    }
 }
 
 /// Writes a DEM as a GeoTIFF: tiles of 256 posts, deflate, float predictor, 32-bit floats where they hold every elevation exactly and
@@ -51,18 +120,40 @@ pub fn write_geotiff(dem: &Dem, mut out: impl Write) -> Result<(), TerrainError>
 /// # Ok::<(), chta::terrain::TerrainError>(())
 /// ```
 pub fn geotiff_bytes(dem: &Dem) -> Result<Vec<u8>, TerrainError> {
-    let (rows, cols, georeference) = (dem.rows(), dem.cols(), dem.georeference());
     match dem.posts() {
-        Posts::Single(samples) => raster_bytes(&Raster { rows, cols, samples, filler: f32::NAN, georeference }),
-        Posts::Double(samples) => raster_bytes(&Raster { rows, cols, samples, filler: f64::NAN, georeference }),
+        Posts::Single(samples) => raster_bytes(&bare(dem, samples, f32::NAN)),
+        Posts::Double(samples) => raster_bytes(&bare(dem, samples, f64::NAN)),
+    }
+}
+
+/// Elevations as a raster.
+fn bare<'a, T>(dem: &'a Dem, samples: &'a [T], filler: T) -> Raster<'a, T> {
+    Raster {
+        rows: dem.rows(),
+        cols: dem.cols(),
+        bands: vec![samples],
+        filler,
+        no_data: "nan",
+        predictor: Predictor::FloatingPoint,
+        names: Vec::new(),
+        georeference: dem.georeference(),
     }
 }
 
 fn raster_bytes<T: TiffWriteSample>(raster: &Raster<'_, T>) -> Result<Vec<u8>, TerrainError> {
+    let posts = raster.rows.checked_mul(raster.cols);
+    if raster.bands.is_empty() || raster.bands.iter().any(|band| Some(band.len()) != posts) {
+        return Err(TerrainError::InvalidDem(format!(
+            "the bands have {:?} numbers, expected {} rows times {} columns in each",
+            raster.bands.iter().map(|band| band.len()).collect::<Vec<_>>(),
+            raster.rows,
+            raster.cols
+        )));
+    }
     let refused = |error: tiff_writer::Error| TerrainError::InvalidDem(format!("the raster does not go into a TIFF: {error}"));
     let mut writer = TiffWriter::new(Cursor::new(Vec::new()), WriteOptions::auto()).map_err(refused)?;
     let handle = writer.add_image(image(raster)?).map_err(refused)?;
-    let mut tile = vec![raster.filler; TILE * TILE];
+    let mut tile = vec![raster.filler; TILE * TILE * raster.bands.len()];
     let across = raster.cols.div_ceil(TILE);
     for block in 0..across * raster.rows.div_ceil(TILE) {
         fill_tile(&mut tile, raster, (block / across) * TILE, (block % across) * TILE);
@@ -77,21 +168,46 @@ fn image<T: TiffWriteSample>(raster: &Raster<'_, T>) -> Result<ImageBuilder, Ter
             .map_err(|_| TerrainError::InvalidDem(format!("the raster has {posts} rows or columns, expected fewer than 2^32")))
     };
     let tile = side(TILE)?;
-    let image = ImageBuilder::new(side(raster.cols)?, side(raster.rows)?)
+    let bands = u16::try_from(raster.bands.len())
+        .map_err(|_| TerrainError::InvalidDem(format!("the raster has {} bands, expected fewer than 65536", raster.bands.len())))?;
+    let mut image = ImageBuilder::new(side(raster.cols)?, side(raster.rows)?)
         .sample_type::<T>()
+        .samples_per_pixel(bands)
         .compression(Compression::Deflate)
-        .predictor(Predictor::FloatingPoint)
+        .predictor(raster.predictor)
         .tiles(tile, tile)
-        .tag(Tag::new(tag::GDAL_NO_DATA, TagValue::Ascii("nan".to_owned())));
+        .tag(Tag::new(tag::GDAL_NO_DATA, TagValue::Ascii(raster.no_data.to_owned())));
+    if bands > 1 {
+        image = image.extra_samples(vec![ExtraSample::Unspecified; usize::from(bands) - 1]);
+    }
+    if !raster.names.is_empty() {
+        image = image.tag(Tag::new(tag::GDAL_METADATA, TagValue::Ascii(band_names(&raster.names))));
+    }
     Ok(map_tags(raster.georeference, raster.rows).into_iter().fold(image, ImageBuilder::tag))
 }
 
+/// Names of bands as GDAL keeps them.
+fn band_names(names: &[&str]) -> String {
+    let item = |(band, name): (usize, &&str)| {
+        let name = name.replace('&', "&amp;").replace('<', "&lt;");
+        format!("<Item name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\">{name}</Item>")
+    };
+    format!("<GDALMetadata>{}</GDALMetadata>", names.iter().enumerate().map(item).collect::<String>())
+}
+
+/// The posts of a tile, all numbers of a post side by side.
 fn fill_tile<T: Copy>(tile: &mut [T], raster: &Raster<'_, T>, first_row: usize, first_col: usize) {
     tile.fill(raster.filler);
+    let bands = raster.bands.len();
     let width = TILE.min(raster.cols - first_col);
-    let lines = raster.samples.chunks_exact(raster.cols).skip(first_row);
-    for (to, from) in tile.chunks_exact_mut(TILE).zip(lines) {
-        to[..width].copy_from_slice(&from[first_col..first_col + width]);
+    for (number, band) in raster.bands.iter().enumerate() {
+        let lines = band.chunks_exact(raster.cols).skip(first_row);
+        for (to, from) in tile.chunks_exact_mut(TILE * bands).zip(lines) {
+            let posts = to.iter_mut().skip(number).step_by(bands);
+            for (to, from) in posts.zip(&from[first_col..first_col + width]) {
+                *to = *from;
+            }
+        }
     }
 }
 

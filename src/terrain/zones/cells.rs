@@ -1,5 +1,7 @@
 //! The cells of a raster along a straight line, and whether two rasters lie on one map.
 
+use nalgebra::Vector2;
+
 use super::line::{Line, Stretch};
 use crate::{
     quantity::MapPoint,
@@ -82,6 +84,36 @@ fn indices(place: f64, near: f64, count: usize) -> Vec<usize> {
     candidates.into_iter().filter_map(as_index).filter(|cell| *cell < count).collect()
 }
 
+/// Tells the border of every two neighbouring cells whose values differ by `of`; beyond the raster there is no value.
+pub(super) fn borders_of<T: PartialEq>(raster: &Dem, of: &dyn Fn(Option<f64>) -> T, tell: &mut dyn FnMut(MapBounds)) {
+    let map = raster.georeference();
+    let cell = Vector2::new(map.dx_m(), map.dy_m());
+    let (rows, cols) = (raster.rows(), raster.cols());
+    // The cell before the first of a row or a column, and the one after its last, have the numbers of nothing.
+    let value = |row: usize, col: usize| match (row.checked_sub(1), col.checked_sub(1)) {
+        (Some(row), Some(col)) => of(raster.elevation(row, col)),
+        _ => of(None),
+    };
+    for row in 0..=rows {
+        for col in 0..=cols {
+            let here = value(row, col);
+            // The corner that this cell shares with those to the east, south and south-east.
+            let corner = map.north_west() + Vector2::new(as_f64(col) * cell.x - 0.5 * cell.x, 0.5 * cell.y - as_f64(row) * cell.y);
+            if here != value(row, col + 1) {
+                tell(MapBounds { min: corner, max: corner + Vector2::new(0.0, cell.y) });
+            }
+            if here != value(row + 1, col) {
+                tell(MapBounds { min: corner - Vector2::new(cell.x, 0.0), max: corner });
+            }
+        }
+    }
+}
+
+#[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
+fn as_f64(index: usize) -> f64 {
+    index as f64
+}
+
 /// Whether any part of a line lies on a raster.
 pub(super) fn is_on(stretches: &[Stretch<CellValues>]) -> bool {
     stretches.iter().any(|stretch| !stretch.value.is_empty())
@@ -90,7 +122,7 @@ pub(super) fn is_on(stretches: &[Stretch<CellValues>]) -> bool {
 /// The rectangle of a raster's cells.
 pub(super) fn cell_bounds(raster: &Dem) -> MapBounds {
     let MapBounds { min, max } = raster.bounds();
-    let half = nalgebra::Vector2::new(0.5 * raster.georeference().dx_m(), 0.5 * raster.georeference().dy_m());
+    let half = Vector2::new(0.5 * raster.georeference().dx_m(), 0.5 * raster.georeference().dy_m());
     MapBounds { min: min - half, max: max + half }
 }
 

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    cells::{cells_at, cells_on, disagreement},
+    cells::{borders_of, cells_at, cells_on, disagreement},
     keep_out::of_raster,
     line::{Line, Stretch},
 };
 use crate::{
     quantity::MapPoint,
-    terrain::{CoordinateSystem, Dem, Profile, TerrainError, read_dem},
+    terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem},
     world::FrictionCone,
 };
 
@@ -47,6 +47,11 @@ pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>)
 }
 
 impl FrictionRaster {
+    /// Tells rectangles that together hold all borders between different coefficients, those of the raster itself included.
+    pub(crate) fn borders(&self, tell: &mut dyn FnMut(MapBounds)) {
+        borders_of(&self.raster, &|value: Option<f64>| value, tell);
+    }
+
     /// The friction of a place: that of the pixel it lies in, the smaller one on a border; `None` where the raster has no data or does not
     /// reach.
     pub fn at(&self, place: MapPoint) -> Option<FrictionCone> {

@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    cells::{cell_bounds, cells_at, cells_on, disagreement, is_on},
+    cells::{borders_of, cell_bounds, cells_at, cells_on, disagreement, is_on},
     geojson::polygons,
     line::{Line, Stretch, covered},
     polygons::Polygon,
@@ -118,6 +118,14 @@ impl KeepOut {
         let stretches: Vec<Stretch<bool>> = covered(&line, parts);
         line.lay(profile, &stretches, |profile, segment, inside| profile.facets[segment].keep_out |= inside);
         Ok(())
+    }
+
+    /// Tells rectangles that together hold all borders between kept out and not, in pieces of polygons no longer than `longest_m`.
+    pub(crate) fn borders(&self, longest_m: f64, tell: &mut dyn FnMut(MapBounds)) {
+        match &self.zones {
+            Zones::Polygons(polygons) => polygons.iter().for_each(|polygon| polygon.borders(longest_m, tell)),
+            Zones::Mask(mask) => borders_of(mask, &|value: Option<f64>| value.is_some_and(|value| value != 0.0), tell),
+        }
     }
 
     /// The parts of a line on pixels that are not 0.

@@ -15,6 +15,9 @@ pub(super) struct Polygon {
     bounds: MapBounds,
 }
 
+/// The most pieces that an edge is cut into: one longer than the largest raster gets longer ones.
+const MOST_PIECES: f64 = 1.0e5;
+
 impl Polygon {
     /// A polygon of rings with finite points; `None` without any point.
     pub(super) fn new(rings: Vec<Vec<MapPoint>>) -> Option<Self> {
@@ -29,6 +32,22 @@ impl Polygon {
     /// The smallest rectangle around it.
     pub(super) fn bounds(&self) -> MapBounds {
         self.bounds
+    }
+
+    /// Tells the rectangle around every piece of its edges, no longer than `longest_m` each.
+    pub(super) fn borders(&self, longest_m: f64, tell: &mut dyn FnMut(MapBounds)) {
+        for ring in &self.rings {
+            for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
+                let pieces = ((b - a).norm() / longest_m).ceil().clamp(1.0, MOST_PIECES);
+                let at = |piece: f64| a + (b - a) * (piece / pieces);
+                let mut piece = 0.0;
+                while piece < pieces {
+                    let (from, to) = (at(piece), at(piece + 1.0));
+                    tell(MapBounds { min: from.inf(&to), max: from.sup(&to) });
+                    piece += 1.0;
+                }
+            }
+        }
     }
 
     /// The parts of a line that lie in the polygon, m along it, in any order.

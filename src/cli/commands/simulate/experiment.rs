@@ -2,7 +2,7 @@
 
 use chta::{
     chain::ConstrainedChain,
-    graph::{NodeSet, Outcome, surest_paths},
+    graph::{self, NodeSet, Outcome, SearchOptions, surest_paths},
     path::{Hop, generate},
     report::{
         ConeWidthAnswer, Document, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer,
@@ -15,7 +15,10 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::{super::plan::Planned, Flyer, pictures};
+use super::{
+    super::{plan::Planned, search::search},
+    Flyer, pictures,
+};
 use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
@@ -31,7 +34,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
     refuse_idle(args, experiment)?;
     let plot = args.plot.as_deref().map(|path| pictures::begin(path, "--plot")).transpose()?;
     let test = loaded.hop_test();
-    let planned = Planned::new(loaded, &test, false, args.common.quiet)?;
+    let planned = Planned::new(loaded, &test, None, false, args.common.quiet)?;
     let Some(path) = planned.path.as_ref().filter(|path| !path.hops.is_empty()) else {
         return super::no_path(args, loaded, &planned);
     };
@@ -120,8 +123,7 @@ fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) 
         let geometry = narrowed(&loaded.prepared.chain, share).map_err(|error| failed(&error))?;
         let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface).map_err(|error| failed(&error))?;
         let test = chta::ballistics::HopTest::new(&chain, &scenario.hopper, g);
-        let (start, goal) = loaded.ends()?;
-        let (found, _) = super::super::search::search(&test, start, goal, scenario, args.common.quiet)?;
+        let (found, _) = search(&test, loaded.ends()?, scenario, args.common.quiet)?;
         let Outcome::Path { legs, .. } = &found.outcome else {
             answer.add_none(share);
             continue;
@@ -151,10 +153,16 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let failed = |error: &dyn std::fmt::Display| Failure::message(error.to_string());
     let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| failed(&error))?;
     let surest = surest_paths(&test, &nodes, &scenario.search, &scenario.surety_with(scenario.risk_extra_hops_max));
-    let plain = planned.path.as_ref().ok_or_else(|| Failure::message("there is no nominal path"))?;
-    let flyer = Flyer::new(loaded, &test, plain, &planned.found, std::slice::from_ref(&keys.policy))?;
+    // What would be planned without regard to risk, over the same nodes.
+    let without_risk = SearchOptions { spacing: Some(planned.found.spacing), ..scenario.search.clone() };
+    let found = graph::search(&test, start, goal, &without_risk, &mut |_| {}).map_err(|error| failed(&error))?;
+    let Outcome::Path { legs, .. } = &found.outcome else {
+        return Err(Failure::message("there is no nominal path to compare with"));
+    };
+    let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
+    let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy))?;
     let options = TrialOptions { threads: args.threads, ..keys.options() };
-    let mut rows = vec![RiskTradeRow::new("as planned", plain.hops.len(), None, &flyer.fly_along(plain, &options)?)];
+    let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
     for candidate in &surest {
         let path =
             generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;

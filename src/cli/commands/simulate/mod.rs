@@ -61,7 +61,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let plot_map = args.plot_map.as_deref().map(|path| pictures::begin(path, "--plot-map")).transpose()?;
     let to_stdout = args.output.as_deref() == Some(Path::new("-"));
     let test = loaded.hop_test();
-    let planned = Planned::new(&loaded, &test, false, args.common.quiet)?;
+    let planned = Planned::new(&loaded, &test, None, false, args.common.quiet)?;
     let Some(path) = &planned.path else {
         return no_path(args, &loaded, &planned);
     };

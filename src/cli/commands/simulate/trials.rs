@@ -72,8 +72,11 @@ impl<'a> Flyer<'a> {
     /// The mission along a path over this ground.
     fn mission<'b>(&'b self, path: &'b HopPath) -> Result<Mission<'b>, Failure> {
         let (start, goal) = self.loaded.ends()?;
-        let map =
-            self.terrain.as_ref().map(|(dem, covers)| MapGround { dem, friction: covers.raster(), keep_out: covers.keep_out() });
+        let map = self.terrain.as_ref().map(|(dem, covers)| MapGround {
+            dem,
+            friction: covers.friction_raster(),
+            keep_out: covers.keep_out(),
+        });
         let surface = &self.loaded.scenario.surface;
         Ok(Mission { test: self.test, surface, path, start, goal, map, to_go: self.to_go.as_ref() })
     }

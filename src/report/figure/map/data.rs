@@ -31,6 +31,25 @@ impl MapPosts<'_> {
         let stride = self.stride.max(1);
         (self.dem.rows().div_ceil(stride), self.dem.cols().div_ceil(stride))
     }
+
+    /// The place, in a raster of these posts, of the one nearest to a post of the DEM; beyond the last one the last.
+    pub(super) fn index(&self, row: usize, col: usize) -> usize {
+        let (rows, cols) = self.size();
+        let nearest = |post: usize, count: usize| ((post + self.stride / 2) / self.stride.max(1)).min(count.saturating_sub(1));
+        nearest(row, rows) * cols + nearest(col, cols)
+    }
+
+    /// Whether the post at a place of such a raster has no elevation.
+    pub(super) fn is_gap(&self, index: usize) -> bool {
+        let (stride, cols) = (self.stride.max(1), self.size().1.max(1));
+        self.dem.elevation(index / cols * stride, index % cols * stride).is_none()
+    }
+
+    /// How many of the posts have no elevation.
+    pub(super) fn gaps(&self) -> usize {
+        let (rows, cols) = self.size();
+        (0..rows * cols).filter(|&index| self.is_gap(index)).count()
+    }
 }
 
 /// A goal on a map.

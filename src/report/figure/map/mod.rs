@@ -1,36 +1,28 @@
 //! Maps: hop bands, continuous values and landing ellipses over a hillshade of the DEM.
 
 mod data;
+mod hillshade;
+mod hops;
+mod landings;
+mod panel;
+mod raster;
+mod values;
 
 pub use data::{
     GoalMark, HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure, MapPosts,
     ValueMapFigure,
 };
+pub use hops::draw_hop_map;
+pub use landings::draw_landing_map;
+pub use values::draw_value_map;
 
-use super::{FigureError, Picture};
+use super::FigureError;
 
-/// Draws a hop map: where the hopper gets, in how few hops, over a hillshade.
-///
-/// # Errors
-/// [`FigureError::RasterSize`] where a raster does not have one number for every post.
-pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
-    todo_picture(&figure.caption)
+/// Whether a raster has one number for each post.
+fn check_size(what: &'static str, posts: &MapPosts<'_>, found: usize) -> Result<(), FigureError> {
+    let (rows, cols) = posts.size();
+    if rows * cols == found { Ok(()) } else { Err(FigureError::RasterSize { what, found, rows, cols }) }
 }
 
-/// Draws a map of a continuous value, such as the least effort or the mobility, over a hillshade.
-///
-/// # Errors
-/// [`FigureError::RasterSize`] where the raster does not have one number for every post.
-pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureError> {
-    todo_picture(&figure.caption)
-}
-
-/// Draws where the hops of a path really landed, with 95 % ellipses, over a hillshade.
-///
-/// # Errors
-/// [`FigureError::Drawing`].
-pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, FigureError> {
-    todo_picture(&figure.caption)
-}
-
-use super::todo_picture;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,81 @@
+//! All limits of a hop but the terrain's, taken together.
+
+use super::{LineOfSight, limits};
+use crate::{
+    quantity::{Angle, SlopeInterval},
+    world::Hopper,
+};
+
+/// A hopper under a gravity: what it may fly where nothing stands in the way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OpenAir {
+    hopper: Hopper,
+    gravity_m_s2: f64,
+    /// The machine's own take-off slopes.
+    mechanical: SlopeInterval,
+}
+
+/// What the ground grants one end of a hop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundGrant {
+    /// Directions of travel.
+    pub slopes: SlopeInterval,
+    /// Greatest speed, m/s.
+    pub speed_max_m_s: f64,
+}
+
+impl OpenAir {
+    /// For a hopper and a gravity above 0 in m/s^2.
+    pub fn new(hopper: &Hopper, gravity_m_s2: f64) -> Self {
+        let mechanical = SlopeInterval {
+            lower: hopper.takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
+            upper: hopper.takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
+        };
+        Self { hopper: *hopper, gravity_m_s2, mechanical }
+    }
+
+    /// The hopper.
+    pub const fn hopper(&self) -> &Hopper {
+        &self.hopper
+    }
+
+    /// Gravity, m/s^2.
+    pub const fn gravity_m_s2(&self) -> f64 {
+        self.gravity_m_s2
+    }
+
+    /// The machine's own take-off slopes.
+    pub const fn mechanical(&self) -> SlopeInterval {
+        self.mechanical
+    }
+
+    /// The lofts that all limits but the terrain allow. There is an arc where the interval is not empty and has a positive loft.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{ballistics::{GroundGrant, LineOfSight, OpenAir}, quantity::SlopeInterval, world::Hopper};
+    /// let air = OpenAir::new(&Hopper::with_speeds(10.0, 10.0), 10.0);
+    /// let free = GroundGrant { slopes: SlopeInterval::ALL, speed_max_m_s: 10.0 };
+    /// // Flat, q = 1.25: n^2 - 2.5 n + 1 = (n - 0.5)(n - 2); a take-off of 45 degrees or more leaves 1 to 2.
+    /// let steep = GroundGrant { slopes: SlopeInterval { lower: 1.0, upper: f64::INFINITY }, ..free };
+    /// let lofts = air.lofts(LineOfSight::new(8.0, 0.0), steep, free);
+    /// assert!((lofts.lower - 1.0).abs() < 1e-8 && (lofts.upper - 2.0).abs() < 1e-8);
+    /// ```
+    #[inline]
+    pub fn lofts(&self, sight: LineOfSight, takeoff: GroundGrant, landing: GroundGrant) -> SlopeInterval {
+        limits::speeds(sight, takeoff.speed_max_m_s, landing.speed_max_m_s, self.gravity_m_s2)
+            .intersect(limits::takeoff_cone(sight, takeoff.slopes.intersect(self.mechanical)))
+            .intersect(limits::landing_cone(sight, landing.slopes))
+            .intersect(self.machine(sight))
+    }
+
+    /// The lofts that the machine's greatest height and longest flight allow.
+    #[inline]
+    pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
+        let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
+        match self.hopper.flight_time_max_s {
+            Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),
+            None => apex,
+        }
+    }
+}

@@ -1,0 +1,163 @@
+//! `chta compare`: several scenarios side by side.
+
+use std::path::Path;
+
+use chta::{
+    path::{HopPath, generate},
+    report::{
+        CompareAnswer, CompareRow, Document, MarginsRecord, TotalsRecord,
+        figure::{Caption, CompareFigure, ComparedScenario, Flight, draw_compare},
+    },
+    scenario::{Extremes, constant_gravity_doubts},
+};
+
+use super::search::{Searched, use_threads};
+use crate::cli::{
+    Answer, Failure,
+    args::{CommonArgs, CompareArgs, Format},
+    load::{EndOptions, Loaded, is_scenario, load, relative_name},
+    output::{self, Pending, TableFormat},
+};
+
+/// One scenario with its path.
+struct Compared {
+    loaded: Loaded,
+    row: CompareRow,
+    path: Option<HopPath>,
+    warnings: Vec<String>,
+}
+
+/// Answers every scenario by itself and shows them together.
+pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
+    let table = args.output.as_deref().map(TableFormat::of).transpose()?;
+    let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
+    // Opened before the work, which may take long.
+    let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
+    let plot = args.plot.as_deref().map(|path| Ok::<_, Failure>((output::begin_picture(path)?, path))).transpose()?;
+    use_threads(args.threads)?;
+    let compared: Vec<_> = args.scenarios.iter().map(|file| Compared::new(file, args)).collect::<Result<_, _>>()?;
+    let answer = CompareAnswer { compared: compared.iter().map(|one| one.row.clone()).collect() };
+    let mut files = Vec::new();
+    if let Some(file) = rows {
+        let json = table == Some(TableFormat::Json);
+        files.push((file, if json { document(&compared, &answer)?.into_bytes() } else { csv(&answer)? }));
+    }
+    if let Some((file, path)) = plot {
+        let encoded = draw_compare(&figure(&compared)).and_then(|picture| picture.encoded_for(path));
+        files.push((file, encoded.map_err(|error| Failure::message(error.to_string()))?));
+    }
+    output::finish(files)?;
+    let text = match args.format {
+        _ if csv_to_stdout => csv(&answer)?,
+        Format::Text => answer.text().into_bytes(),
+        Format::Json => document(&compared, &answer)?.into_bytes(),
+    };
+    output::to_stdout(&text)?;
+    Ok(Answer::Yes)
+}
+
+impl Compared {
+    fn new(file: &Path, args: &CompareArgs) -> Result<Self, Failure> {
+        if !is_scenario(file) {
+            return Err(Failure::message(format!(
+                "{}: expected a scenario (.toml) or a result (.json): write one that names the chain in [terrain]",
+                file.display()
+            )));
+        }
+        let common = CommonArgs {
+            scenario: None,
+            set: args.set.clone(),
+            body: None,
+            gravity_m_s2: None,
+            clearance_m: None,
+            accept_map_scale: args.accept_map_scale,
+            quiet: args.quiet,
+        };
+        let loaded = load(file, &common, None, EndOptions::NONE)?;
+        let ends = loaded.ends()?;
+        let test = loaded.hop_test();
+        let options = &loaded.scenario.search;
+        let searched = Searched::new(&test, ends, &loaded.scenario, Some(args.prove), args.quiet)?;
+        let check = searched.answer(&test, ends, options.effort);
+        let path = match &searched.found.outcome {
+            chta::graph::Outcome::Path { legs, .. } => {
+                Some(generate(&test, legs, options.takeoff, options.split).map_err(|e| Failure::message(e.to_string()))?)
+            }
+            _ => None,
+        };
+        let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
+        let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
+        for doubt in &doubts {
+            output::warn(args.quiet, doubt);
+        }
+        let warnings = loaded.warnings_with(doubts);
+        let name = loaded.scenario.title.clone().unwrap_or_else(|| file.display().to_string());
+        let row = CompareRow {
+            file: relative_name(file),
+            name,
+            start_x_m: check.start_x_m,
+            goal_x_m: check.goal_x_m,
+            verdict: check.verdict,
+            hops: check.hops,
+            lower_bound: check.proof.as_ref().map(|proof| proof.lower_bound),
+            totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+            margins: path.as_ref().and_then(MarginsRecord::of),
+        };
+        Ok(Self { loaded, row, path, warnings })
+    }
+
+    /// What the picture shows of it.
+    fn drawn(&self) -> ComparedScenario {
+        let Loaded { prepared, .. } = &self.loaded;
+        let geometry = prepared.chain.geometry();
+        let point = |x_m: f64| geometry.station(x_m).map(|station| station.point).ok();
+        let flight = |hop: &chta::path::Hop| Flight {
+            from: hop.takeoff.point,
+            to: hop.landing.point,
+            takeoff_slope: hop.takeoff_angle.slope(),
+        };
+        ComparedScenario {
+            name: self.row.name.clone(),
+            verdict: self.row.verdict.to_owned(),
+            hops: self.row.hops,
+            ground: geometry.vertices().to_vec(),
+            start: point(self.row.start_x_m).unwrap_or(geometry.vertices()[0]),
+            goal: point(self.row.goal_x_m).unwrap_or(geometry.vertices()[0]),
+            flights: self.path.iter().flat_map(|path| &path.hops).map(flight).collect(),
+        }
+    }
+}
+
+/// All paths over one another.
+fn figure(compared: &[Compared]) -> CompareFigure {
+    let words = |one: &Compared| {
+        let hops = one.row.hops.map(|hops| format!(", {hops} hops")).unwrap_or_default();
+        format!("{}: {}{hops}", one.row.name, one.row.verdict)
+    };
+    let line = compared.iter().map(words).collect::<Vec<_>>().join("; ");
+    let names: Vec<_> = compared.iter().map(|one| one.row.name.as_str()).collect();
+    CompareFigure { caption: Caption::new(names.join(" and "), line), scenarios: compared.iter().map(Compared::drawn).collect() }
+}
+
+/// The table as CSV.
+fn csv(answer: &CompareAnswer) -> Result<Vec<u8>, Failure> {
+    let mut csv = Vec::new();
+    answer.write_csv(&mut csv).map_err(|error| Failure::message(format!("compare.csv: {error}")))?;
+    Ok(csv)
+}
+
+/// The answer as one document, with the list of all scenarios as used.
+fn document(compared: &[Compared], answer: &CompareAnswer) -> Result<String, Failure> {
+    let scenarios = compared.iter().map(|one| one.loaded.document.clone()).collect();
+    let mut inputs = Vec::new();
+    let mut warnings = Vec::new();
+    for one in compared {
+        for input in &one.loaded.inputs {
+            if !inputs.contains(input) {
+                inputs.push(input.clone());
+            }
+        }
+        warnings.extend(one.warnings.iter().map(|warning| format!("{}: {warning}", one.row.file)));
+    }
+    Ok(Document::new("compare", serde_json::Value::Array(scenarios), inputs, warnings, answer.clone()).to_json()?)
+}

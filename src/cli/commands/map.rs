@@ -1,0 +1,331 @@
+//! `chta map`: fewest hops from one post of a DEM to every other.
+
+use std::path::Path;
+
+use chta::{
+    chain::ConstrainedChain,
+    graph::Effort,
+    path::HopPath,
+    quantity::MapPoint,
+    reach::map::{
+        FrontProgress, GroundOf, HopMap, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search,
+        Way, joined, mobility, search, way_hops,
+    },
+    report::{
+        Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, TotalsRecord,
+        figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
+        paths_geojson, write_paths_csv,
+    },
+    scenario::{Covers, Extremes, Scenario, constant_gravity_doubts},
+    terrain::{
+        Band, Dem, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_scale, read_dem, result_geotiff_bytes,
+    },
+};
+
+use super::{map_profiles, slice::place};
+use crate::cli::{
+    Answer, Failure,
+    args::{Format, MapArgs, SearchArgs},
+    load::{Bare, input_file, load_bare},
+    output::{self, Pending},
+    progress::Progress,
+};
+
+/// The terrain of a map and what is known of it.
+struct Ground {
+    dem: Dem,
+    projection: Result<MapProjection, NoProjection>,
+    scenario: Scenario,
+    covers: Covers,
+    lattice: NodeLattice,
+    document: serde_json::Value,
+    inputs: Vec<InputFile>,
+    warnings: Vec<String>,
+}
+
+/// A place asked for, and the post nearest to it.
+#[derive(Clone, Copy)]
+struct Spot {
+    asked: MapPoint,
+    post: Post,
+    at: MapPoint,
+}
+
+/// All maps that were asked for.
+struct Maps {
+    out: HopMap,
+    back: Option<HopMap>,
+    mobility: Option<Mobility>,
+    /// Of each goal, where it is reachable.
+    ways: Vec<Option<Vec<MapHop>>>,
+    paths: Vec<Option<HopPath>>,
+}
+
+/// Makes the map.
+pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
+    let (ground, start, goals) = prepared(args)?;
+    for file in outputs(args) {
+        // Known before the long work; a file opened now would be left behind by Ctrl-C.
+        drop(Pending::begin(file)?);
+    }
+    let maps = mapped(args, &ground, start, &goals)?;
+    let effort = args.effort.is_some().then_some(ground.scenario.search.effort);
+    let mut answer = MapAnswer::new(&MapSummary {
+        dem: &ground.dem,
+        lattice: ground.lattice,
+        start: (start.asked, start.post),
+        out: &maps.out,
+        back: maps.back.as_ref(),
+        mobility: maps.mobility.as_ref(),
+        effort: effort.map(|effort| (effort.name(), effort.unit())),
+    });
+    answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&ground, &maps, goal, index)).collect();
+    let mut warnings = ground.warnings.clone();
+    let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
+    warnings.extend(constant_gravity_doubts(&ground.scenario.body, Extremes::of(&hops)));
+    for warning in &warnings {
+        output::warn(args.common.quiet, warning);
+    }
+    write_files(args, &ground, &maps, &answer, (start, &goals))?;
+    let text = match args.format {
+        Format::Text => answer.text(),
+        Format::Json => {
+            let document = Document::new("map", ground.document.clone(), ground.inputs.clone(), warnings, answer.clone());
+            document.on_map(ground.projection.as_ref().ok()).to_json()?
+        }
+    };
+    output::to_stdout(text.as_bytes())?;
+    Ok(if answer.reaches_all_goals() { Answer::Yes } else { Answer::No })
+}
+
+/// Reads terrain and scenario and finds the posts of start and goals.
+fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
+    let MapArgs { dem: file, start, start_lonlat, goal, goal_lonlat, stride, effort, common, .. } = args;
+    let failed = |error: &dyn std::error::Error| Failure::about(file, &error.to_string());
+    if *stride == 0 {
+        return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
+    }
+    let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
+    let Bare { scenario, base, document } = load_bare(common, &searched)?;
+    let dem = read_dem(file).map_err(|e| Failure::message(e.to_string()))?;
+    let covers =
+        Covers::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
+    let projection = dem.georeference().projection();
+    let lattice = NodeLattice::new(&dem, *stride as usize);
+    let nodes = dem.georeference().every(*stride as usize);
+    let spot = |which: &'static str, place: MapPlace| -> Result<Spot, Failure> {
+        let asked = place.on_map(which, projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
+        if !dem.bounds().contains(asked) {
+            let message = format!("--{which} ({}, {}) m lies off the map, which covers {}", asked.x, asked.y, dem.bounds());
+            return Err(failed(&std::io::Error::other(message)));
+        }
+        let post = lattice.nearest(dem.georeference(), asked);
+        Ok(Spot { asked, post, at: nodes.post(post.row, post.col) })
+    };
+    let start = spot("start", place("start", *start, *start_lonlat)?)?;
+    let places = goal.iter().copied().map(MapPlace::Metres).chain(goal_lonlat.iter().copied().map(MapPlace::LonLat));
+    let goals = places.map(|place| spot("goal", place)).collect::<Result<Vec<_>, _>>()?;
+    let Post { row, col } = lattice.post(start.post);
+    if dem.elevation(row, col).is_none() {
+        let message = format!(
+            "--start: the nearest post, ({}, {}) m, has no elevation; start where the DEM has data",
+            start.at.x, start.at.y
+        );
+        return Err(failed(&std::io::Error::other(message)));
+    }
+    let mut warnings = Vec::new();
+    let accepted = common.accept_map_scale || scenario.accept_map_scale;
+    let bounds = dem.bounds();
+    for corner in [bounds.min, bounds.max, MapPoint::new(bounds.min.x, bounds.max.y), MapPoint::new(bounds.max.x, bounds.min.y)] {
+        let scale = check_scale(&dem, projection.as_ref(), [start.at, corner], accepted, file).map_err(|e| failed(&e))?;
+        warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
+    }
+    let mut inputs = vec![input_file(file)?];
+    for cover in Covers::files(&scenario) {
+        inputs.push(input_file(&base.join(cover))?);
+    }
+    Ok((Ground { dem, projection, scenario, covers, lattice, document, inputs, warnings }, start, goals))
+}
+
+/// Searches, with progress on a terminal.
+fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
+    let Ground { dem, scenario, covers, lattice, .. } = ground;
+    let failed = |error: &MapError| Failure::about(&args.dem, &error.to_string());
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads).build().map_err(|e| failed(&e.into()))?;
+    let chain = |profile: Profile| -> Result<ConstrainedChain, Box<dyn std::error::Error + Send + Sync>> {
+        Ok(ConstrainedChain::new(covers.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?)
+    };
+    let ground_of: &GroundOf<'_> = &chain;
+    let request = MapRequest {
+        dem,
+        stride: lattice.stride,
+        hopper: &scenario.hopper,
+        surface: &scenario.surface,
+        gravity_m_s2: scenario.body.gravity_m_s2,
+        friction: covers.friction_raster(),
+        keep_out: covers.keep_out(),
+    };
+    let progress = Progress::new(args.common.quiet);
+    let began = std::time::Instant::now();
+    let maps = pool.install(|| -> Result<Maps, MapError> {
+        let hops = PostHops::new(request, ground_of)?;
+        let front = |what: &str, found: FrontProgress| progress.say(front_words(what, found, began.elapsed().as_secs_f64()));
+        let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
+        let out = search(&hops, start.post, Search { way: Way::Out, effort }, &mut |found| front("there", found))?;
+        let back = args
+            .back
+            .then(|| search(&hops, start.post, Search { way: Way::Back, effort: None }, &mut |found| front("back", found)));
+        let begun = std::time::Instant::now();
+        let mobile = args
+            .mobility
+            .as_ref()
+            .map(|_| mobility(&hops, &|done, of| progress.say(share_words("mobility", done, of, begun.elapsed().as_secs_f64()))));
+        let way = |goal: &Spot| {
+            let nodes = out.way(&hops, goal.post);
+            nodes.map(|nodes| way_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
+        };
+        let ways = goals.iter().map(way).collect::<Result<Vec<_>, _>>()?;
+        let paths = ways.iter().map(|way| way.as_ref().map(|way| joined(&hops, way))).collect();
+        Ok(Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, ways, paths })
+    });
+    maps.map_err(|error| failed(&error))
+}
+
+/// What is being done, how far it is, and how long it may still take.
+fn front_words(what: &str, found: FrontProgress, elapsed_s: f64) -> String {
+    let all = found.reached + found.open;
+    format!("hops {what}, front {}: {}", found.front, share_words("posts", found.reached, all, elapsed_s))
+}
+
+#[expect(clippy::cast_precision_loss, reason = "a share for reading")]
+fn share_words(what: &str, done: usize, all: usize, elapsed_s: f64) -> String {
+    let share = done as f64 / all.max(1) as f64;
+    let left_s = elapsed_s * (1.0 - share) / share.max(1.0e-3);
+    format!("{what} {:.0} % done, at most {left_s:.0} s left", 100.0 * share)
+}
+
+/// All files that the options name.
+fn outputs(args: &MapArgs) -> impl Iterator<Item = &Path> {
+    let MapArgs { output, effort_output, return_output, mobility, paths, geojson, profiles, plot, .. } = args;
+    [output, effort_output, return_output, mobility, paths, geojson, profiles, plot].into_iter().filter_map(Option::as_deref)
+}
+
+/// What is said of a goal.
+fn goal_record(ground: &Ground, maps: &Maps, goal: &Spot, index: usize) -> GoalRecord {
+    let node = ground.lattice.index(goal.post);
+    let reached = |map: &HopMap| Some(map.hops[node]).filter(|&hops| hops >= 0);
+    let path = maps.paths[index].as_ref();
+    GoalRecord {
+        x_m: goal.at.x,
+        y_m: goal.at.y,
+        offset_m: (goal.at - goal.asked).norm(),
+        hops: reached(&maps.out),
+        return_hops: maps.back.as_ref().map(reached),
+        path: path.map(|path| HopRecord::rows(path, ground.projection.as_ref().ok())).unwrap_or_default(),
+        totals: path.map(|path| TotalsRecord::from(&path.totals)),
+    }
+}
+
+/// Writes what the options name, all or none.
+fn write_files(args: &MapArgs, ground: &Ground, maps: &Maps, answer: &MapAnswer, ends: (Spot, &[Spot])) -> Result<(), Failure> {
+    let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
+    let Ground { dem, lattice, scenario, projection, .. } = ground;
+    let map = dem.georeference().every(lattice.stride);
+    let raster = |bands: &ResultBands<'_>| result_geotiff_bytes(lattice.rows, lattice.cols, &map, bands).map_err(|e| failed(&e));
+    let whole = |name, hops| raster(&ResultBands::Int16(vec![Band { name, samples: hops }], NO_GROUND));
+    let mut files: Vec<(&Path, Vec<u8>)> = Vec::new();
+    if let Some(file) = &args.output {
+        files.push((file, whole("fewest hops from the start; -1 unreachable", &maps.out.hops)?));
+    }
+    if let (Some(file), Some(back)) = (&args.return_output, &maps.back) {
+        files.push((file, whole("fewest hops back to the start; -1 no way", &back.hops)?));
+    }
+    if let Some(file) = &args.effort_output {
+        #[expect(clippy::cast_possible_truncation, reason = "the file holds 32-bit floats")]
+        let samples: Vec<f32> = maps.out.effort.iter().map(|&effort| effort as f32).collect();
+        let name = effort_name(scenario.search.effort);
+        files.push((file, raster(&ResultBands::Float32(vec![Band { name: &name, samples: &samples }]))?));
+    }
+    if let (Some(file), Some(mobility)) = (&args.mobility, &maps.mobility) {
+        let share = Band { name: "share of the reach disc that one hop reaches", samples: &mobility.share };
+        let directions = Band { name: "directions of 16 with a hop", samples: &mobility.directions };
+        files.push((file, raster(&ResultBands::Float32(vec![share, directions]))?));
+    }
+    if let Some(file) = &args.paths {
+        let known = if projection.is_ok() { MapKnowledge::Projection } else { MapKnowledge::Metres };
+        let mut csv = Vec::new();
+        write_paths_csv(answer.goals.iter().map(|goal| &goal.path[..]), known, &mut csv).map_err(|e| failed(&e))?;
+        files.push((file, csv));
+    }
+    let none = HopPath { hops: Vec::new(), totals: chta::path::Totals::default() };
+    let paths: Vec<&HopPath> = maps.paths.iter().map(|path| path.as_ref().unwrap_or(&none)).collect();
+    let prj_path = args.geojson.as_ref().map(|path| path.with_extension("prj"));
+    if let Some(file) = &args.geojson {
+        let geojson = paths_geojson(&paths, scenario.body.gravity_m_s2, projection.as_ref().ok()).unwrap_or_default();
+        files.push((file, geojson.into_bytes()));
+        files.extend(prj_path.as_deref().zip(output::prj(projection.as_ref().ok())));
+    }
+    if let Some(file) = &args.profiles {
+        files.push((file, map_profiles::sheet(scenario, &maps.ways)?.into_bytes()));
+    }
+    if let Some(file) = &args.plot {
+        files.push((file, picture(args, ground, maps, answer, ends, file)?));
+    }
+    let pending = files.into_iter().map(|(file, bytes)| Pending::begin(file).map(|pending| (pending, bytes)));
+    output::finish(pending.collect::<Result<_, _>>()?)
+}
+
+/// What a raster of effort holds.
+fn effort_name(effort: Effort) -> String {
+    format!("least {} among fewest hops, {}", effort.name(), effort.unit())
+}
+
+/// The map as a picture, in the format of the file's name.
+fn picture(
+    args: &MapArgs,
+    ground: &Ground,
+    maps: &Maps,
+    answer: &MapAnswer,
+    (start, goals): (Spot, &[Spot]),
+    file: &Path,
+) -> Result<Vec<u8>, Failure> {
+    let name = args.dem.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let can_return: Option<Vec<bool>> = maps.back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
+    let places = |path: &HopPath| {
+        let landings = path.hops.iter().filter_map(|hop| hop.map.map(|map| map.landing));
+        std::iter::once(start.at).chain(landings).collect()
+    };
+    let figure = HopMapFigure {
+        caption: Caption::new(format!("Where in how few hops: {name}"), subtitle(answer, &ground.scenario)),
+        posts: MapPosts { dem: &ground.dem, stride: ground.lattice.stride },
+        hops: &maps.out.hops,
+        can_return: can_return.as_deref(),
+        start: start.at,
+        goals: goals
+            .iter()
+            .zip(&answer.goals)
+            .map(|(goal, record)| GoalMark { at: goal.at, hops: record.hops.and_then(|hops| u64::try_from(hops).ok()) })
+            .collect(),
+        paths: maps.paths.iter().flatten().map(places).collect(),
+    };
+    let drawn = draw_hop_map(&figure).and_then(|picture| picture.encoded_for(file));
+    drawn.map_err(|error| Failure::message(error.to_string()))
+}
+
+/// Numbers under the title of the picture.
+fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> String {
+    let body = scenario.body.name.clone().map(|name| format!("{name}, ")).unwrap_or_default();
+    let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
+    format!(
+        "{body}gravity {:.4} m/s²; take-off at most {} m/s, landing at most {} m/s; {} of {} posts reachable from ({}, {}) m in at most {} \
+         hops{stride}",
+        scenario.body.gravity_m_s2,
+        scenario.hopper.takeoff_speed_max_m_s,
+        scenario.hopper.landing_speed_max_m_s,
+        answer.reachable_posts,
+        answer.posts,
+        answer.start_m[0],
+        answer.start_m[1],
+        answer.farthest_hops
+    )
+}

@@ -1,0 +1,96 @@
+//! `chta trade`: one or two keys of the scenario varied.
+
+use std::{
+    path::Path,
+    sync::atomic::{AtomicUsize, Ordering},
+};
+
+use chta::{
+    report::{
+        Document, TradeAnswer,
+        figure::{Picture, draw_trade},
+    },
+    scenario::{Trade, TradeError, Variation},
+};
+
+use crate::cli::{
+    Answer, Failure,
+    args::{Format, TradeArgs},
+    load::{EndOptions, Loaded, ToVary, load_to_vary},
+    output::{self, Pending, TableFormat},
+    progress::Progress,
+};
+
+/// What is wrong with a variation.
+#[expect(clippy::needless_pass_by_value, reason = "as map_err gives it")]
+fn refused(error: TradeError) -> Failure {
+    Failure::message(format!("--vary: {error}"))
+}
+
+/// Answers every field.
+pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
+    let variations: Vec<_> = args.vary.iter().map(|text| Variation::parse(text)).collect::<Result<_, _>>().map_err(refused)?;
+    let table = args.output.as_deref().map(TableFormat::of).transpose()?;
+    let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
+    // Opened before the work, which may take long.
+    let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
+    let plot = args.plot.as_deref().map(|path| Ok::<_, Failure>((output::begin_picture(path)?, path))).transpose()?;
+    let ends = EndOptions::of_path(args.start, args.goal);
+    let ToVary { first, survey, entries, base } = load_to_vary(&args.chain, &args.common, &args.search, ends, &variations)?;
+    first.ends()?;
+    let trade = Trade::new(&entries, &base, &survey, &variations).map_err(refused)?;
+    let progress = Progress::new(args.common.quiet);
+    let (fields, done) = (trade.fields(), AtomicUsize::new(0));
+    let tell = || progress.say(format!("{} of {fields} fields", done.fetch_add(1, Ordering::Relaxed) + 1));
+    let answer = trade.run(args.prove.prove.then_some(args.prove.budget), args.threads, &tell).map_err(refused)?;
+    drop(progress);
+    let mut files = Vec::new();
+    if let Some(file) = rows {
+        let bytes = if table == Some(TableFormat::Json) { document(&first, &answer)?.into_bytes() } else { csv(&answer)? };
+        files.push((file, bytes));
+    }
+    if let Some((file, path)) = plot {
+        let encoded = picture(&answer, &first).and_then(|picture| picture.encoded_for(path));
+        files.push((file, encoded.map_err(|error| Failure::message(error.to_string()))?));
+    }
+    output::finish(files)?;
+    let text = match args.format {
+        _ if csv_to_stdout => csv(&answer)?,
+        Format::Text => answer.text().into_bytes(),
+        Format::Json => document(&first, &answer)?.into_bytes(),
+    };
+    output::to_stdout(&text)?;
+    Ok(Answer::Yes)
+}
+
+/// The rows as CSV.
+fn csv(answer: &TradeAnswer) -> Result<Vec<u8>, Failure> {
+    let mut csv = Vec::new();
+    answer.write_csv(&mut csv).map_err(|error| Failure::message(format!("trade.csv: {error}")))?;
+    Ok(csv)
+}
+
+/// The answer as one document; its scenario is that of the first row.
+fn document(first: &Loaded, answer: &TradeAnswer) -> Result<String, Failure> {
+    let warnings = first.warnings_with([]);
+    let document = Document::new("trade", first.document.clone(), first.inputs.clone(), warnings, answer.clone());
+    Ok(document.on_map(first.prepared.projection.as_ref()).to_json()?)
+}
+
+/// The heat map.
+fn picture(answer: &TradeAnswer, first: &Loaded) -> Result<Picture, chta::report::figure::FigureError> {
+    let (scenario, prepared) = (&first.scenario, &first.prepared);
+    let varied = |key: &str| answer.vary.iter().any(|v| v.key == key);
+    let mut line = Vec::new();
+    for (end, key, station) in [("from", "terrain.start_x_m", prepared.start), ("to", "terrain.goal_x_m", prepared.goal)] {
+        line.extend(station.filter(|_| !varied(key)).map(|station| format!("{end} x = {} m", station.point.x_m)));
+    }
+    line.extend(scenario.body.name.clone().filter(|_| !varied("body.gravity_m_s2")));
+    let limits = [
+        ("hopper.takeoff_speed_max_m_s", "take-off at most", scenario.hopper.takeoff_speed_max_m_s),
+        ("hopper.landing_speed_max_m_s", "landing at most", scenario.hopper.landing_speed_max_m_s),
+    ];
+    line.extend(limits.iter().filter(|(key, _, v)| !varied(key) && v.is_finite()).map(|(_, words, v)| format!("{words} {v} m/s")));
+    let title = scenario.title.as_ref().map_or("Fewest hops".to_owned(), |title| format!("Fewest hops: {title}"));
+    draw_trade(&answer.figure(title, line.join(", ")))
+}

@@ -1,0 +1,130 @@
+//! Why not: what is proved reachable and unreachable along the chain, and which limits refuse in the gap.
+
+use super::{Faults, Prover, cell::Cell, depths::CUT_OFF, points::try_points, refine::Refinement};
+use crate::graph::RefusalCounts;
+
+/// What is proved of a stretch of chain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StretchClass {
+    /// A path from the start to a point of it was found.
+    Reachable,
+    /// No path leads from the start to any point of it, at any resolution.
+    Unreachable,
+    /// Neither is known.
+    Open,
+}
+
+impl StretchClass {
+    /// The name in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Reachable => "reachable",
+            Self::Unreachable => "unreachable",
+            Self::Open => "open",
+        }
+    }
+}
+
+/// A stretch of chain of one class; of zero length it is a vertex, the start or the goal.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stretch {
+    /// Where it begins, m.
+    pub from_x_m: f64,
+    /// Where it ends, m.
+    pub to_x_m: f64,
+    /// What is proved of it.
+    pub class: StretchClass,
+    /// Whether a may-path leads from it to the goal; where none does, that is proved.
+    pub may_lead_to_goal: bool,
+}
+
+/// What keeps a journey from being possible.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    /// No path from the start comes nearer to the goal than this place, m.
+    pub reached_x_m: f64,
+    /// No place nearer to the start than this one leads to the goal, m.
+    pub leads_to_goal_x_m: f64,
+    /// The cells that may be reached from the start.
+    pub reached_cells: usize,
+    /// The cells from which the goal may be reached.
+    pub leading_cells: usize,
+    /// What refuses the hops out of the cells that may be reached to the others within reach: pairs of cells, each under the first limit
+    /// that left nothing.
+    pub refusals: RefusalCounts,
+}
+
+impl<F: Faults> Refinement<'_, F> {
+    /// Every cell with what is proved of it; settles all depths.
+    pub(super) fn stretches(&mut self) -> Vec<Stretch> {
+        self.settle_from_start(CUT_OFF);
+        self.settle_to_goal(CUT_OFF);
+        let reached = try_points(self, super::points::Scope::FromStart).reached_x_m();
+        let class = |i: usize, cell: &Cell<F::Rounding>| {
+            if self.from_start.of(i) == CUT_OFF {
+                StretchClass::Unreachable
+            } else if reached[reached.partition_point(|x_m| *x_m < cell.from_m)..].first().is_some_and(|x_m| *x_m <= cell.to_m) {
+                StretchClass::Reachable
+            } else {
+                StretchClass::Open
+            }
+        };
+        let stretch = |(i, cell): (usize, &Cell<F::Rounding>)| Stretch {
+            from_x_m: cell.from_m,
+            to_x_m: cell.to_m,
+            class: class(i, cell),
+            may_lead_to_goal: self.to_goal.of(i) != CUT_OFF,
+        };
+        self.cells.iter().enumerate().map(stretch).collect()
+    }
+
+    /// What keeps the journey from being possible, once the goal is cut off; settles all depths.
+    pub(super) fn gap(&mut self) -> Gap {
+        self.settle_from_start(CUT_OFF);
+        self.settle_to_goal(CUT_OFF);
+        let of =
+            |depths: &super::depths::Depths| -> Vec<usize> { (0..self.cells.len()).filter(|&i| depths.of(i) != CUT_OFF).collect() };
+        let (reached, leading) = (of(&self.from_start), of(&self.to_goal));
+        let unreached: Vec<usize> = (0..self.cells.len()).filter(|i| reached.binary_search(i).is_err()).collect();
+        let (start_m, goal_m) = (self.cells[self.start].from_m, self.cells[self.goal].from_m);
+        let nearest = |cells: &[usize], to_m: f64| {
+            let nearest_points = cells.iter().map(|&i| to_m.clamp(self.cells[i].from_m, self.cells[i].to_m));
+            nearest_points.min_by(|a, b| (a - to_m).abs().total_cmp(&(b - to_m).abs()))
+        };
+        Gap {
+            reached_x_m: nearest(&reached, goal_m).unwrap_or(start_m),
+            leads_to_goal_x_m: nearest(&leading, start_m).unwrap_or(goal_m),
+            reached_cells: reached.len(),
+            leading_cells: leading.len(),
+            refusals: refusals_between(&self.prover, &self.cells, &reached, &unreached),
+        }
+    }
+}
+
+/// The most pairs of cells that are asked for their limit, so that it takes no longer than a second.
+const MOST_PAIRS: usize = 1_000_000;
+
+/// What refuses the hops from one set of cells to another.
+///
+/// Where there are too many pairs, every so many of the take-off cells are taken.
+fn refusals_between<F: Faults>(
+    prover: &Prover<'_, F>,
+    cells: &[Cell<F::Rounding>],
+    reached: &[usize],
+    others: &[usize],
+) -> RefusalCounts {
+    let within = |from: usize, to: usize| {
+        let (from, to) = (&cells[from], &cells[to]);
+        (to.from_m - from.to_m).max(from.from_m - to.to_m) <= prover.reach_from_m(from)
+    };
+    let step = (reached.len().saturating_mul(others.len()) / MOST_PAIRS).max(1);
+    let mut counts = RefusalCounts::default();
+    for &from in reached.iter().step_by(step) {
+        for &to in others.iter().filter(|&&to| within(from, to)) {
+            if let Err(limit) = prover.may(&cells[from], &cells[to]) {
+                counts.count(limit);
+            }
+        }
+    }
+    counts
+}

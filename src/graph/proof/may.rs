@@ -1,0 +1,318 @@
+//! The may-hop test: can interval arithmetic rule out every hop from one cell to another?
+
+use super::{
+    Faults,
+    arcs::{Arcs, least_speed_slopes},
+    cell::{Cell, shared_segment, slopes, vertices_between},
+};
+use crate::{
+    ballistics::HopTest,
+    chain::{Contact, ContactRule, Direction, SegmentConstraints, Site},
+    quantity::{Interval, Rounding, SegmentId, SlopeInterval},
+    world::{Limit, SPEED_TOLERANCE},
+};
+
+/// What the proof gives away on every limit beside a speed's own tolerance: a billionth of a clearance, a height or a time, and an
+/// angle of a nanoradian.
+///
+/// It covers what rounding does to the hop test (some 1e-15), to the libm tangents behind a cone's slopes (below one unit in the last
+/// place, an angle of 2e-16) and to the arctangents and sums before them, a million times over; and all that the independent checker
+/// tolerates. So whatever the search calls a hop, the proof does not refuse.
+const RELAXATION: f64 = 1e-9;
+
+/// The share of the speed tolerance given away beside it, for the rounding of the hop test's formulas.
+const SPEED_MARGIN: f64 = 1e-3;
+
+/// One contact's rule, relaxed.
+#[derive(Clone, Copy, Debug)]
+struct Rule<R> {
+    slopes: Interval<R>,
+    /// The greatest speed squared, rounded up, (m/s)^2.
+    speed_squared: f64,
+}
+
+/// What a segment grants take-off and landing in one direction, or the limit by which it refuses.
+type Contacts<R> = [Result<Rule<R>, Limit>; 2];
+
+/// A chain, a hopper and a gravity as intervals, ready to rule out hops.
+#[derive(Debug)]
+pub(super) struct Prover<'a, F: Faults> {
+    test: &'a HopTest<'a>,
+    /// By segment and direction.
+    rules: Vec<[Contacts<F::Rounding>; 2]>,
+    slopes: Vec<Interval<F::Rounding>>,
+    mechanical: Interval<F::Rounding>,
+    clearance_m: f64,
+    apex_height_max_m: Option<f64>,
+    flight_time_max_s: Option<f64>,
+    /// How many bends lie before each vertex.
+    bends_before: Vec<usize>,
+    heights_m: (f64, f64),
+    /// Greatest take-off and landing speed squared anywhere, (m/s)^2.
+    speeds_squared: [f64; 2],
+}
+
+impl<'a, F: Faults> Prover<'a, F> {
+    /// Of a hop test, every limit relaxed.
+    pub(super) fn new(test: &'a HopTest<'a>) -> Self {
+        let chain = test.chain();
+        let rules: Vec<_> = chain.segments().iter().map(|segment| Direction::BOTH.map(|d| contacts::<F>(segment, d))).collect();
+        let fastest = |contact: usize| {
+            let granted = rules.iter().flatten().filter_map(|contacts: &Contacts<F::Rounding>| contacts[contact].ok());
+            granted.map(|rule| rule.speed_squared).fold(0.0, f64::max)
+        };
+        let vertices = chain.geometry().vertices();
+        let mut bends_before = vec![0; vertices.len() + 1];
+        for bend in chain.geometry().bends() {
+            bends_before[bend.index() + 1] = 1;
+        }
+        for i in 1..bends_before.len() {
+            bends_before[i] += bends_before[i - 1];
+        }
+        let heights = vertices.iter().map(|v| v.z_m);
+        let hopper = test.hopper();
+        Self {
+            test,
+            slopes: slopes::<F>(chain.geometry()),
+            speeds_squared: [fastest(0), fastest(1)],
+            rules,
+            mechanical: relaxed::<F>(test.mechanical()),
+            clearance_m: hopper.clearance_m * (1.0 - RELAXATION * F::SLACK),
+            apex_height_max_m: hopper.apex_height_max_m.map(|height_m| height_m * (1.0 + RELAXATION * F::SLACK)),
+            flight_time_max_s: hopper.flight_time_max_s.map(|time_s| time_s * (1.0 + RELAXATION * F::SLACK)),
+            bends_before,
+            heights_m: (heights.clone().fold(f64::INFINITY, f64::min), heights.fold(f64::NEG_INFINITY, f64::max)),
+        }
+    }
+
+    /// The hop test behind it.
+    pub(super) const fn test(&self) -> &'a HopTest<'a> {
+        self.test
+    }
+
+    /// The exact slopes of the segments.
+    pub(super) fn slopes(&self) -> &[Interval<F::Rounding>] {
+        &self.slopes
+    }
+
+    /// Whether a hop from some point of one cell to some point of another cannot be ruled out.
+    ///
+    /// # Errors
+    /// The limit that, with those before it, leaves no arc between any two points of the cells: then there is none.
+    pub(super) fn may(&self, takeoff: &Cell<F::Rounding>, landing: &Cell<F::Rounding>) -> Result<(), Limit> {
+        let (direction, left, right) = if takeoff.to_m <= landing.from_m {
+            (Direction::Forward, takeoff, landing)
+        } else {
+            (Direction::Reverse, landing, takeoff)
+        };
+        if F::FORGETS_REVERSE && direction == Direction::Reverse {
+            return Err(Limit::Direction);
+        }
+        let from = self.rule(takeoff.site, Contact::Takeoff, direction)?;
+        let to = self.rule(landing.site, Contact::Landing, direction)?;
+        let flown_past = vertices_between(left.site, right.site);
+        if self.bends_before[flown_past.end] > self.bends_before[flown_past.start] {
+            return Err(Limit::Bend);
+        }
+        let run_m = run_m(left, right);
+        let mut arcs = Arcs::along(self.sight_slopes(left, right, direction));
+        self.limit_speeds(&mut arcs, &from, &to, run_m)?;
+        arcs.limit(|arcs| arcs.takeoff = arcs.takeoff.intersect(from.slopes), Limit::TakeoffCone)?;
+        arcs.limit(|arcs| arcs.landing = arcs.landing.intersect(to.slopes), Limit::LandingCone)?;
+        arcs.limit(|arcs| arcs.takeoff = arcs.takeoff.intersect(self.mechanical), Limit::MechanicalAngle)?;
+        self.limit_machine(&mut arcs, run_m)?;
+        if flown_past.is_empty() {
+            return Ok(());
+        }
+        self.limit_terrain(&mut arcs, takeoff, landing, flown_past)?;
+        // What the other limits have left of the line of sight limits the speeds once more.
+        self.limit_speeds(&mut arcs, &from, &to, run_m).map_err(|_| Limit::Terrain)
+    }
+
+    /// The rule of a contact at a site.
+    fn rule(&self, site: Site, contact: Contact, direction: Direction) -> Result<Rule<F::Rounding>, Limit> {
+        let segment = match site {
+            Site::Inside(segment) => segment,
+            Site::Vertex(vertex) => {
+                let ahead = (contact == Contact::Takeoff) == (direction == Direction::Forward);
+                let index = if ahead { Some(vertex.index()) } else { vertex.index().checked_sub(1) };
+                SegmentId(index.ok_or(Limit::Direction)?)
+            }
+        };
+        let both = self.rules.get(segment.index()).ok_or(Limit::Direction)?;
+        both[direction as usize][contact as usize]
+    }
+
+    /// The slopes of all lines of sight from one cell to the other, as the traveller sees them.
+    ///
+    /// Between two points on straight lines the slope of their chord is monotone in either point's x, so its extremes are at the
+    /// corners. Across a vertex that both cells end at, a chord's slope is a mean of the two segments' slopes.
+    fn sight_slopes(&self, left: &Cell<F::Rounding>, right: &Cell<F::Rounding>, direction: Direction) -> Interval<F::Rounding> {
+        let slope_of = |site: Site| match site {
+            Site::Inside(segment) => self.slopes[segment.index()],
+            Site::Vertex(_) => Interval::EMPTY,
+        };
+        let forward = if let Some(segment) = shared_segment(left.site, right.site) {
+            self.slopes[segment.index()]
+        } else if left.to_m == right.from_m {
+            slope_of(left.site).hull(slope_of(right.site))
+        } else {
+            let chord = |(a_m, a_height): (f64, Interval<F::Rounding>), (b_m, b_height): (f64, Interval<F::Rounding>)| {
+                (b_height - a_height) / (Interval::point(b_m) - Interval::point(a_m))
+            };
+            let corners = left.ends().flat_map(|a| right.ends().map(move |b| chord(a, b)));
+            corners.fold(Interval::EMPTY, Interval::hull)
+        };
+        if direction == Direction::Forward { forward } else { -forward }
+    }
+
+    /// Both speeds: least run, and for the take-off the lowest, for the landing the highest line of sight allow the most.
+    fn limit_speeds(
+        &self,
+        arcs: &mut Arcs<F::Rounding>,
+        from: &Rule<F::Rounding>,
+        to: &Rule<F::Rounding>,
+        run_m: Interval<F::Rounding>,
+    ) -> Result<(), Limit> {
+        if run_m.lower <= 0.0 {
+            return Ok(());
+        }
+        let weight = Interval::<F::Rounding>::point(self.test.gravity_m_s2()) * Interval::point(run_m.lower);
+        let (takeoff_ratio, landing_ratio) =
+            (Interval::point(from.speed_squared) / weight, Interval::point(to.speed_squared) / weight);
+        let slopes = least_speed_slopes(takeoff_ratio.upper, arcs.sight.lower);
+        arcs.limit(|arcs| arcs.takeoff = arcs.takeoff.intersect(slopes), Limit::TakeoffSpeed)?;
+        let slopes = -least_speed_slopes(landing_ratio.upper, -arcs.sight.upper);
+        arcs.limit(|arcs| arcs.landing = arcs.landing.intersect(slopes), Limit::LandingSpeed)
+    }
+
+    /// Greatest height and longest flight: a flight is the higher and the longer, the longer its run, the steeper its line of sight and
+    /// the greater its loft, so the least run and the lowest line of sight allow the most loft.
+    fn limit_machine(&self, arcs: &mut Arcs<F::Rounding>, run_m: Interval<F::Rounding>) -> Result<(), Limit> {
+        if run_m.lower <= 0.0 {
+            return Ok(());
+        }
+        let run = Interval::<F::Rounding>::point(run_m.lower);
+        if let Some(height_m) = self.apex_height_max_m {
+            let half_sum_excess = Interval::point(height_m) / run - Interval::point(arcs.sight.lower.max(0.0));
+            let twice = half_sum_excess + half_sum_excess;
+            if twice.upper < 0.0 {
+                return Err(Limit::ApexHeight);
+            }
+            let excess = Interval::<F::Rounding>::new(twice.lower.max(0.0), twice.upper);
+            let mean = Interval::<F::Rounding>::point(arcs.sight.lower.abs());
+            let loft = mean + excess + (excess * (mean + mean + excess)).sqrt();
+            arcs.limit(|arcs| arcs.loft.upper = arcs.loft.upper.min(loft.upper), Limit::ApexHeight)?;
+        }
+        if let Some(time_s) = self.flight_time_max_s {
+            let time = Interval::point(time_s);
+            let loft = Interval::point(self.test.gravity_m_s2()) * time * time / (run + run);
+            arcs.limit(|arcs| arcs.loft.upper = arcs.loft.upper.min(loft.upper), Limit::FlightTime)?;
+        }
+        Ok(())
+    }
+
+    /// The ground in between: `n >= s_p - t_p` for every vertex between the cells.
+    ///
+    /// The slope `s_p` at which a take-off sees a vertex hangs on the take-off alone, the slope `t_p` at which the vertex sees the landing
+    /// on the landing alone, and both are monotone in x: their extremes are at the cells' ends. Where the cell ends at the vertex itself,
+    /// `s = slope + eps/d` falls with the distance: the far end has the least.
+    fn limit_terrain(
+        &self,
+        arcs: &mut Arcs<F::Rounding>,
+        takeoff: &Cell<F::Rounding>,
+        landing: &Cell<F::Rounding>,
+        flown_past: std::ops::Range<usize>,
+    ) -> Result<(), Limit> {
+        let mut loft = arcs.loft.lower;
+        for vertex in &self.test.chain().geometry().vertices()[flown_past] {
+            // How far the vertex with its clearance stands above a place, per distance: seen from the take-off, and from the landing.
+            let least_seen = |cell: &Cell<F::Rounding>| {
+                let seen = cell.ends().filter(|(x_m, _)| *x_m != vertex.x_m || self.clearance_m < 0.0).map(|(x_m, height_m)| {
+                    let above = F::Rounding::down(F::Rounding::down(vertex.z_m - height_m.upper) + self.clearance_m);
+                    quotient_down::<F::Rounding>(above, (vertex.x_m - x_m).abs())
+                });
+                seen.fold(f64::INFINITY, f64::min)
+            };
+            // t = -(how far it stands above the landing): s - t is the sum of both.
+            loft = loft.max(F::Rounding::down(least_seen(takeoff) + least_seen(landing)));
+            if loft > arcs.loft.upper {
+                return Err(Limit::Terrain);
+            }
+        }
+        arcs.limit(|arcs| arcs.loft.lower = loft, Limit::Terrain)
+    }
+
+    /// The horizontal distance from a cell beyond which no hop from it lands, m, rounded up.
+    pub(super) fn reach_from_m(&self, cell: &Cell<F::Rounding>) -> f64 {
+        let (low_m, high_m) = cell.height_range_m();
+        self.farthest_m(high_m - self.heights_m.0, self.heights_m.1 - low_m)
+    }
+
+    /// The horizontal distance from a cell beyond which no hop to it takes off, m, rounded up.
+    pub(super) fn reach_to_m(&self, cell: &Cell<F::Rounding>) -> f64 {
+        let (low_m, high_m) = cell.height_range_m();
+        self.farthest_m(self.heights_m.1 - low_m, high_m - self.heights_m.0)
+    }
+
+    /// The horizontal distance that no hop of this chain exceeds, m, rounded up.
+    pub(super) fn greatest_reach_m(&self) -> f64 {
+        let range_m = self.heights_m.1 - self.heights_m.0;
+        self.farthest_m(range_m, range_m)
+    }
+
+    /// `X <= (v / g) sqrt(v^2 + 2 g h)`, the parabola of safety, for the greatest drop at take-off and climb at landing.
+    fn farthest_m(&self, drop_m: f64, climb_m: f64) -> f64 {
+        let g = Interval::<F::Rounding>::point(self.test.gravity_m_s2());
+        let safe = |speed_squared: f64, height_m: f64| {
+            let squared = Interval::point(speed_squared);
+            let fall = Interval::new(0.0, height_m.max(0.0).next_up()) * (g + g);
+            ((squared * (squared + fall)).sqrt() / g).upper
+        };
+        safe(self.speeds_squared[0], drop_m).min(safe(self.speeds_squared[1], climb_m))
+    }
+}
+
+/// The horizontal distances between two cells, the left one first, m.
+fn run_m<R: Rounding>(left: &Cell<R>, right: &Cell<R>) -> Interval<R> {
+    let nearest = Interval::<R>::point(right.from_m) - Interval::point(left.to_m);
+    let farthest = Interval::<R>::point(right.to_m) - Interval::point(left.from_m);
+    Interval::new(if right.from_m == left.to_m { 0.0 } else { nearest.lower.max(0.0) }, farthest.upper)
+}
+
+/// A quotient by a rounded distance, not above the true one.
+fn quotient_down<R: Rounding>(dividend: f64, distance: f64) -> f64 {
+    let divisor = if dividend >= 0.0 { R::up(distance) } else { R::down(distance) };
+    if divisor > 0.0 { R::down(dividend / divisor) } else { f64::NEG_INFINITY }
+}
+
+/// The relaxed rules of a segment for one direction.
+fn contacts<F: Faults>(segment: &SegmentConstraints, direction: Direction) -> Contacts<F::Rounding> {
+    [Contact::Takeoff, Contact::Landing].map(|contact| {
+        segment.judged(contact, direction).map(|rule| relaxed_rule::<F>(&rule)).map_err(|refusal| refusal.limit(contact))
+    })
+}
+
+/// A rule with its slopes and its speed relaxed.
+fn relaxed_rule<F: Faults>(rule: &ContactRule) -> Rule<F::Rounding> {
+    let tolerance = SPEED_TOLERANCE * (1.0 + SPEED_MARGIN) * F::SLACK;
+    let speed = Interval::<F::Rounding>::point(rule.speed_max_m_s());
+    // Added up, not multiplied by one and a bit, so that no tolerance at all is the limit itself.
+    let speed = if tolerance > 0.0 { speed + speed * Interval::point(tolerance) } else { speed };
+    Rule { slopes: relaxed::<F>(rule.slopes()), speed_squared: speed.squared().upper }
+}
+
+/// Slopes widened by a nanoradian at either end: `tan(theta + d) = (m + tan d) / (1 - m tan d)`.
+fn relaxed<F: Faults>(slopes: SlopeInterval) -> Interval<F::Rounding> {
+    let raised = |slope: f64| {
+        let (m, t) = (Interval::<F::Rounding>::point(slope), Interval::point(RELAXATION * F::SLACK));
+        let divisor = Interval::point(1.0) - m * t;
+        if slope.is_infinite() || divisor.lower <= 0.0 { f64::INFINITY } else { ((m + t) / divisor).upper }
+    };
+    let lower = if slopes.lower.is_infinite() { slopes.lower } else { -raised(-slopes.lower) };
+    let upper = if slopes.upper.is_infinite() { slopes.upper } else { raised(slopes.upper) };
+    Interval::new(lower, upper)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,186 @@
+//! Proofs that are made to go wrong, each of which the comparison with the search must catch.
+
+use super::{bounds::bounds_with, *};
+use crate::{
+    ballistics::HopTest,
+    chain::{ConstrainedChain, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
+    graph::{PointSpacing, SearchOptions, search},
+    quantity::{AngleInterval, ChainPoint, VertexId},
+    world::{Hopper, RestSlope, Surface},
+};
+
+/// Ends rounded inwards, and no tolerance, which would hide it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Inwards;
+
+impl Rounding for Inwards {
+    fn down(rounded: f64) -> f64 {
+        rounded.next_up()
+    }
+
+    fn up(rounded: f64) -> f64 {
+        rounded.next_down()
+    }
+}
+
+impl Faults for Inwards {
+    type Rounding = Self;
+    const SLACK: f64 = 0.0;
+}
+
+/// Limits taken to the letter.
+#[derive(Clone, Copy, Debug)]
+struct ForgetsTolerance;
+
+impl Faults for ForgetsTolerance {
+    type Rounding = Outwards;
+    const SLACK: f64 = 0.0;
+}
+
+/// Vertices without cells of their own: a landing at a vertex obeys the ground behind it, a take-off the ground ahead, which no stretch
+/// does.
+#[derive(Clone, Copy, Debug)]
+struct DropsVertices;
+
+impl Faults for DropsVertices {
+    type Rounding = Outwards;
+    const DROPS_VERTICES: bool = true;
+}
+
+/// No hop towards -x.
+#[derive(Clone, Copy, Debug)]
+struct ForgetsReverse;
+
+impl Faults for ForgetsReverse {
+    type Rounding = Outwards;
+    const FORGETS_REVERSE: bool = true;
+}
+
+/// `SplitMix64`.
+pub(super) struct Draw(u64);
+
+impl Draw {
+    pub(super) const fn seeded(seed: u64) -> Self {
+        Self(seed)
+    }
+
+    fn next(&mut self) -> u64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        z ^ (z >> 31)
+    }
+
+    #[expect(clippy::cast_precision_loss, reason = "53 bits")]
+    pub(super) fn uniform(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "small counts")]
+    pub(super) fn below(&mut self, count: usize) -> usize {
+        (self.next() % count as u64) as usize
+    }
+}
+
+/// A chain of some segments with constraints of their own in either direction, its hopper and its gravity.
+pub(super) fn drawn_chain(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
+    let g = draw.uniform(0.5, 10.0);
+    let mut points = vec![ChainPoint::new(draw.uniform(-5.0, 5.0), draw.uniform(-5.0, 5.0))];
+    let segments = 3 + draw.below(4);
+    for i in 0..segments {
+        let run = if draw.below(8) == 0 { 1e-3 } else { draw.uniform(0.5, 6.0) };
+        points.push(ChainPoint::new(points[i].x_m + run, points[i].z_m + draw.uniform(-0.8, 0.8) * run));
+    }
+    let speed = (g * 5.0).sqrt();
+    let mut rule = |sign: f64| {
+        let angles = match draw.below(3) {
+            0 => [-90.0, 90.0],
+            1 => [draw.uniform(-10.0, 60.0), 90.0],
+            _ => [draw.uniform(20.0, 60.0), draw.uniform(60.0, 89.0)],
+        };
+        let [a, b] = angles.map(|angle| sign * angle);
+        let fast = if draw.below(8) == 0 { 0.0 } else { draw.uniform(0.5, 1.3) };
+        ContactRule::new(AngleInterval::from_degrees(a.min(b), a.max(b)), speed * fast)
+    };
+    let mut line = || LineConstraints { takeoff: rule(1.0), landing: rule(-1.0) };
+    let grounds = (0..segments)
+        .map(|_| Ground { form: GroundForm::Explicit { forward: Some(line()), reverse: Some(line()) }, keep_out: false })
+        .collect();
+    let hopper = Hopper {
+        clearance_m: if draw.below(2) == 0 { 0.0 } else { 0.1 },
+        flight_time_max_s: (draw.below(4) == 0).then(|| draw.uniform(0.5, 3.0)),
+        apex_height_max_m: (draw.below(4) == 0).then(|| draw.uniform(0.5, 3.0)),
+        ..Hopper::UNLIMITED
+    };
+    let geometry = PolygonalChain::new(points, grounds, None).unwrap();
+    let surface = Surface { grip: None, rest: RestSlope::Unlimited };
+    (ConstrainedChain::new(geometry, &hopper, &surface).unwrap(), hopper, g)
+}
+
+/// How many of some journeys have a path with fewer hops than the lower bound, or one where none is said to exist.
+fn contradictions<F: Faults>(journeys: usize) -> usize {
+    let draw = &mut Draw::seeded(81);
+    let options = BoundsOptions { budget_cells: 60, ..BoundsOptions::default() };
+    let mut contradicted = 0;
+    for _ in 0..journeys {
+        let (chain, hopper, g) = drawn_chain(draw);
+        let test = HopTest::new(&chain, &hopper, g);
+        let mut end = || chain.geometry().vertex_station(VertexId(draw.below(chain.segments().len() + 1)));
+        let (start, goal) = (end(), end());
+        let lower = bounds_with::<F>(&test, start, goal, &options, &mut |_| {}).unwrap().lower;
+        let fewest = [0, 2, 7].into_iter().filter_map(|points| {
+            let spacing = Some(PointSpacing::PerSegment(points));
+            search(&test, start, goal, &SearchOptions { spacing, ..SearchOptions::default() }, &mut |_| {}).unwrap().hops()
+        });
+        contradicted += usize::from(fewest.min().is_some_and(|hops| lower.is_none_or(|lower| lower > hops)));
+    }
+    contradicted
+}
+
+#[test]
+fn nothing_contradicts_a_sound_proof() {
+    assert_eq!(contradictions::<Sound>(300), 0);
+}
+
+#[test]
+fn a_dropped_vertex_cell_is_caught() {
+    let caught = contradictions::<DropsVertices>(200);
+    assert!(caught > 0, "the test above would not notice");
+}
+
+#[test]
+fn a_forgotten_direction_is_caught() {
+    let caught = contradictions::<ForgetsReverse>(100);
+    assert!(caught > 20, "{caught} caught: the test above would not notice");
+}
+
+/// The lower bound over flat ground from cones of 60 degrees about the vertical, at 5 m/s and 1 m/s^2: one reach is v^2 / g = 25 m.
+fn bound_over_flat_ground<F: Faults>(run_m: f64) -> Option<u64> {
+    let line = LineConstraints::from_cone(0.0, crate::quantity::Angle::from_degrees(60.0), 5.0, 5.0);
+    let form = GroundForm::Explicit { forward: Some(line), reverse: Some(line) };
+    let points = vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(run_m, 0.0)];
+    let geometry = PolygonalChain::new(points, vec![Ground { form, keep_out: false }], None).unwrap();
+    let surface = Surface { grip: None, rest: RestSlope::Unlimited };
+    let chain = ConstrainedChain::new(geometry, &Hopper::UNLIMITED, &surface).unwrap();
+    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 1.0);
+    let at = |i| chain.geometry().vertex_station(VertexId(i));
+    bounds_with::<F>(&test, at(0), at(1), &BoundsOptions::default(), &mut |_| {}).unwrap().lower
+}
+
+#[test]
+fn rounding_the_wrong_way_is_caught() {
+    // Exactly one reach has exactly one arc, which the last digit decides.
+    assert_eq!(bound_over_flat_ground::<Sound>(25.0), Some(1));
+    assert_eq!(bound_over_flat_ground::<ForgetsTolerance>(25.0), Some(1), "outwards, the limit itself holds to the letter");
+    assert_ne!(bound_over_flat_ground::<Inwards>(25.0), Some(1), "inwards would pass for outwards");
+}
+
+#[test]
+fn a_forgotten_tolerance_is_caught() {
+    // The search calls a hop what needs 1e-9 more speed than the limit, so 2e-9 more run.
+    let run_m = 25.0 * (1.0 + 1.9e-9);
+    assert_eq!(bound_over_flat_ground::<Sound>(run_m), Some(1));
+    assert_eq!(bound_over_flat_ground::<ForgetsTolerance>(run_m), Some(2), "no tolerance would pass for the program's");
+    assert_eq!(bound_over_flat_ground::<Sound>(25.0 * (1.0 + 2.1e-9)), Some(2), "the proof gives away more than it says");
+}

@@ -1,0 +1,107 @@
+//! Every operation against exact rational arithmetic, and a rounding that goes the wrong way, which must be caught.
+
+use num_rational::BigRational;
+use num_traits::{FromPrimitive, Signed};
+
+use super::*;
+
+/// The mutant: inwards.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Inwards;
+
+impl Rounding for Inwards {
+    fn down(rounded: f64) -> f64 {
+        rounded.next_up()
+    }
+
+    fn up(rounded: f64) -> f64 {
+        rounded.next_down()
+    }
+}
+
+/// The mutant that does not round at all.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+struct Unrounded;
+
+impl Rounding for Unrounded {
+    fn down(rounded: f64) -> f64 {
+        rounded
+    }
+
+    fn up(rounded: f64) -> f64 {
+        rounded
+    }
+}
+
+fn exact(number: f64) -> BigRational {
+    BigRational::from_f64(number).unwrap()
+}
+
+/// Whether the interval holds this exact number.
+fn holds<R: Rounding>(interval: Interval<R>, number: &BigRational) -> bool {
+    (interval.lower == f64::NEG_INFINITY || exact(interval.lower) <= *number)
+        && (interval.upper == f64::INFINITY || *number <= exact(interval.upper))
+}
+
+/// Numbers of either sign over forty powers of two, `SplitMix64`.
+fn numbers(count: u64) -> impl Iterator<Item = f64> {
+    (1..=count).map(|i| {
+        let mut z = i.wrapping_mul(0x9E37_79B9_7F4A_7C15);
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z ^= z >> 27;
+        let exponent = 1003 + (z >> 58) % 40;
+        f64::from_bits((z & 0x800F_FFFF_FFFF_FFFF) | (exponent << 52))
+    })
+}
+
+/// How many results of all operations lie outside their interval.
+fn misses<R: Rounding>() -> usize {
+    let drawn: Vec<_> = numbers(4000).collect();
+    let mut missed = 0;
+    for four in drawn.chunks_exact(4) {
+        let [a, b, c, d] = [four[0], four[1], four[2], four[3]];
+        let (first, second) = (Interval::<R>::new(a.min(b), a.max(b)), Interval::<R>::new(c.min(d), c.max(d)));
+        let away_from_zero = c.signum() == d.signum();
+        for x in [a, b] {
+            for y in [c, d] {
+                let (p, q) = (exact(x), exact(y));
+                missed += usize::from(!holds(first + second, &(&p + &q)));
+                missed += usize::from(!holds(first - second, &(&p - &q)));
+                missed += usize::from(!holds(first * second, &(&p * &q)));
+                missed += usize::from(!holds(first / second, &(&p / &q)));
+                missed += usize::from(!holds(first.squared(), &(&p * &p)));
+                assert!(away_from_zero || first / second == Interval::ALL, "a divisor around zero bounds nothing");
+            }
+            // A root holds its number where the squares of its ends do.
+            let root = Interval::<R>::point(x.abs()).sqrt();
+            let square = |end: f64| exact(end) * exact(end);
+            missed += usize::from(!(square(root.lower) <= exact(x).abs() && exact(x).abs() <= square(root.upper)));
+        }
+    }
+    missed
+}
+
+#[test]
+fn every_operation_encloses_the_exact_result() {
+    assert_eq!(misses::<Outwards>(), 0);
+}
+
+#[test]
+fn rounding_the_wrong_way_and_not_rounding_are_both_caught() {
+    assert!(misses::<Inwards>() > 1000, "inwards passes the test above");
+    assert!(misses::<Unrounded>() > 1000, "unrounded passes the test above");
+}
+
+#[test]
+fn what_is_no_number_bounds_nothing() {
+    let all = Interval::<Outwards>::ALL;
+    assert_eq!(all - all, all);
+    assert_eq!(Interval::point(0.0) * all, all);
+    assert_eq!(all / all, all);
+    let ray = Interval::<Outwards>::new(1.0, f64::INFINITY);
+    assert!((ray - ray).contains(0.0) && (ray + ray).lower >= 1.0);
+    assert!(Interval::<Outwards>::new(-2.0, -1.0).sqrt().is_empty());
+    assert_eq!(Interval::<Outwards>::new(-1.0, 4.0).sqrt().lower, 0.0);
+    assert_eq!(Interval::<Outwards>::new(-3.0, 2.0).squared().lower, 0.0);
+    assert!(Interval::<Outwards>::new(-3.0, 2.0).squared().contains(9.0));
+}

@@ -1,0 +1,185 @@
+//! What lies over the terrain, seen from its posts: which squares of posts a border of zones or friction runs through, and what holds
+//! elsewhere.
+//!
+//! Between two posts whose bounding box no border touches, one answer holds all the way, and the slice has no vertices but its own.
+
+use nalgebra::{Vector2, Vector3};
+use rayon::prelude::*;
+
+use super::lattice::Post;
+use crate::{
+    terrain::{Dem, FrictionRaster, KeepOut, MapBounds, Profile, ProfileFacet, ProfilePoint, TerrainError},
+    world::FrictionCone,
+};
+
+/// Borders this near to a square, as a share of the post spacing, run through it.
+const TOUCHING: f64 = 1.0e-6;
+
+/// Zones and friction at every post.
+#[derive(Clone, Debug)]
+pub(super) struct CoverTable {
+    cols: usize,
+    kept: Vec<bool>,
+    /// Friction coefficient, NaN where there is none; empty where no raster gives any.
+    friction: Vec<f64>,
+    /// How many squares with a border lie to the north and west of each post.
+    borders_before: Vec<u32>,
+}
+
+impl CoverTable {
+    /// Of zones and friction over a DEM; `None` where there are neither.
+    ///
+    /// # Errors
+    /// [`TerrainError::Cover`] where a mask ends before the terrain does, or there is neither friction nor a constant for it.
+    pub(super) fn new(
+        dem: &Dem,
+        friction: Option<&FrictionRaster>,
+        keep_out: Option<&KeepOut>,
+        constant: Option<FrictionCone>,
+    ) -> Result<Option<Self>, TerrainError> {
+        if friction.is_none() && keep_out.is_none() {
+            return Ok(None);
+        }
+        let (rows, cols) = (dem.rows(), dem.cols());
+        let lines: Vec<Result<Profile, TerrainError>> = (0..rows)
+            .into_par_iter()
+            .map(|row| {
+                let mut line = level_row(dem, row);
+                if let Some(raster) = friction {
+                    raster.lay(&mut line, constant)?;
+                }
+                if let Some(zones) = keep_out {
+                    zones.mark(&mut line)?;
+                }
+                Ok(line)
+            })
+            .collect();
+        let mut kept = Vec::with_capacity(rows * cols);
+        let mut coefficients = Vec::with_capacity(if friction.is_some() { rows * cols } else { 0 });
+        for line in lines {
+            for facet in at_posts(dem, &line?) {
+                kept.push(facet.keep_out);
+                if friction.is_some() {
+                    coefficients.push(facet.friction.map_or(f64::NAN, FrictionCone::coefficient));
+                }
+            }
+        }
+        let mut squares = Squares::of(dem);
+        if let Some(raster) = friction {
+            raster.borders(&mut |border| squares.mark(border));
+        }
+        if let Some(zones) = keep_out {
+            zones.borders(squares.step_m(), &mut |border| squares.mark(border));
+        }
+        Ok(Some(Self { cols, kept, friction: coefficients, borders_before: squares.counted() }))
+    }
+
+    /// Whether a post, and all around it that no border parts from it, is kept out of.
+    #[inline]
+    pub(super) fn kept(&self, post: usize) -> bool {
+        self.kept[post]
+    }
+
+    /// Whether a raster gives friction.
+    #[inline]
+    pub(super) fn has_friction(&self) -> bool {
+        !self.friction.is_empty()
+    }
+
+    /// The friction coefficient at a post; `None` without a raster.
+    #[inline]
+    pub(super) fn friction(&self, post: usize) -> Option<f64> {
+        self.friction.get(post).copied()
+    }
+
+    /// Whether a border touches the bounding box of two posts.
+    #[inline]
+    pub(super) fn has_border(&self, a: Post, b: Post) -> bool {
+        // Squares that touch the box: from the one before its first post to the one of its last.
+        let (north, south) = (a.row.min(b.row), a.row.max(b.row));
+        let (west, east) = (a.col.min(b.col), a.col.max(b.col));
+        let before = |row: usize, col: usize| self.borders_before[row * (self.cols + 1) + col];
+        let (top, left, bottom, right) = (north.saturating_sub(1), west.saturating_sub(1), south + 1, east + 1);
+        before(bottom, right) + before(top, left) != before(top, right) + before(bottom, left)
+    }
+}
+
+/// A row of posts as a level line.
+fn level_row(dem: &Dem, row: usize) -> Profile {
+    let map = dem.georeference();
+    let level =
+        ProfileFacet { normal: Vector3::z(), cross_slope: crate::quantity::Angle::default(), keep_out: false, friction: None };
+    let west = map.post(row, 0);
+    let points = (0..dem.cols())
+        .map(|col| {
+            let at = map.post(row, col);
+            ProfilePoint { x_m: at.x - west.x, z_m: 0.0, map: at }
+        })
+        .collect();
+    Profile { points, facets: vec![level; dem.cols() - 1], heading: Vector2::new(1.0, 0.0) }
+}
+
+/// What lies under each post of a row's line: that of the segment after it, and of the last one before it.
+fn at_posts(dem: &Dem, line: &Profile) -> Vec<ProfileFacet> {
+    let mut found = Vec::with_capacity(dem.cols());
+    let mut posts = level_row(dem, 0).points.into_iter().map(|point| point.x_m).peekable();
+    for (index, point) in line.points.iter().enumerate() {
+        if posts.next_if(|&x_m| x_m == point.x_m).is_some() {
+            found.push(line.facets[index.min(line.facets.len() - 1)]);
+        }
+    }
+    found
+}
+
+/// The squares of four posts that borders run through.
+struct Squares<'a> {
+    dem: &'a Dem,
+    touched: Vec<bool>,
+}
+
+impl<'a> Squares<'a> {
+    fn of(dem: &'a Dem) -> Self {
+        Self { dem, touched: vec![false; dem.rows() * dem.cols()] }
+    }
+
+    /// Pieces of borders no longer than this touch few squares more than they must.
+    fn step_m(&self) -> f64 {
+        self.dem.georeference().dx_m().min(self.dem.georeference().dy_m())
+    }
+
+    /// Marks the squares that a rectangle touches.
+    fn mark(&mut self, border: MapBounds) {
+        let map = self.dem.georeference();
+        let (west, north) = (map.north_west().x, map.north_west().y);
+        let cols = [(border.min.x - west) / map.dx_m() - TOUCHING, (border.max.x - west) / map.dx_m() + TOUCHING];
+        let rows = [(north - border.max.y) / map.dy_m() - TOUCHING, (north - border.min.y) / map.dy_m() + TOUCHING];
+        let (Some(rows), Some(cols)) = (within(rows, self.dem.rows()), within(cols, self.dem.cols())) else { return };
+        for row in rows {
+            for col in cols.clone() {
+                self.touched[row * self.dem.cols() + col] = true;
+            }
+        }
+    }
+
+    /// How many are marked to the north and west of each post, one row and column of zeros first.
+    fn counted(self) -> Vec<u32> {
+        let (rows, cols) = (self.dem.rows(), self.dem.cols());
+        let mut before = vec![0u32; (rows + 1) * (cols + 1)];
+        for row in 0..rows {
+            let mut in_row = 0;
+            for col in 0..cols {
+                in_row += u32::from(self.touched[row * cols + col]);
+                before[(row + 1) * (cols + 1) + col + 1] = before[row * (cols + 1) + col + 1] + in_row;
+            }
+        }
+        before
+    }
+}
+
+/// The squares between two coordinates, of as many posts; none where they lie off the map.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the raster first")]
+#[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
+fn within([low, high]: [f64; 2], posts: usize) -> Option<std::ops::RangeInclusive<usize>> {
+    let last = (posts - 1) as f64;
+    (high >= 0.0 && low <= last).then(|| low.floor().clamp(0.0, last) as usize..=high.floor().clamp(0.0, last) as usize)
+}

@@ -1,0 +1,92 @@
+//! How freely a hopper moves from each post: the map that picks landing sites.
+
+use rayon::prelude::*;
+
+use super::{MapError, PostHops, lattice::Post, offsets::Offset};
+use crate::{ballistics::safety_range_m, world::tolerant_speed_m_s};
+
+/// Directions are counted in so many equal sectors, the first about grid north.
+pub const SECTORS: u8 = 16;
+
+/// What single hops from every node come to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mobility {
+    /// The radius of the disc, m: how far one hop carries over level ground.
+    pub disc_radius_m: f64,
+    /// Of each node, the share of the nodes in its disc (those on the map and with an elevation) that one hop reaches, 0 to 1; NaN where
+    /// the node has no elevation or no other one in its disc.
+    pub share: Vec<f32>,
+    /// Of each node, in how many of [`SECTORS`] directions there is a hop in its disc; NaN where it has no elevation.
+    pub directions: Vec<f32>,
+}
+
+/// Tries every hop from every node within the disc, told block by block (done, of how many); the same for any number of threads.
+///
+/// The disc is that of level ground, `v^2 / g` for the smaller of both speed limits, so that shares of different terrains compare.
+///
+/// # Errors
+/// [`MapError`]; of several, that of the first block.
+pub fn mobility(hops: &PostHops<'_>, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Mobility, MapError> {
+    let lattice = hops.lattice();
+    let hopper = hops.request().hopper;
+    let range_m = |speed_m_s: f64| safety_range_m(0.0, tolerant_speed_m_s(speed_m_s), hops.request().gravity_m_s2);
+    let disc_radius_m = range_m(hopper.takeoff_speed_max_m_s.min(hopper.landing_speed_max_m_s));
+    let disc: Vec<(usize, &Offset)> =
+        hops.offsets().iter().enumerate().take_while(|(_, offset)| offset.run_m <= disc_radius_m).collect();
+    let sectors: Vec<u16> = disc.iter().map(|(_, offset)| 1 << sector(offset)).collect();
+    let (down, across) = lattice.blocks();
+    let done = std::sync::atomic::AtomicUsize::new(0);
+    let blocks: Vec<Result<Vec<OfNode>, MapError>> = (0..down * across)
+        .into_par_iter()
+        .map(|block| {
+            let found = lattice
+                .nodes_of(block)
+                .filter(|&node| hops.has_ground(node))
+                .map(|node| {
+                    from_node(hops, node, &disc, &sectors).map(|(share, directions)| (lattice.index(node), share, directions))
+                })
+                .collect();
+            tell(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1, down * across);
+            found
+        })
+        .collect();
+    let mut map = Mobility { disc_radius_m, share: vec![f32::NAN; lattice.count()], directions: vec![f32::NAN; lattice.count()] };
+    for block in blocks {
+        for (node, share, directions) in block? {
+            map.share[node] = share;
+            map.directions[node] = directions;
+        }
+    }
+    Ok(map)
+}
+
+/// A node's number, its share and its directions.
+type OfNode = (usize, f32, f32);
+
+/// Share and directions of one node.
+fn from_node(hops: &PostHops<'_>, node: Post, disc: &[(usize, &Offset)], sectors: &[u16]) -> Result<(f32, f32), MapError> {
+    let usable = hops.usable(node);
+    let (mut there, mut reached, mut directions) = (0u32, 0u32, 0u16);
+    for (&(number, offset), sector) in disc.iter().zip(sectors) {
+        let Some(landing) = hops.landing(node, number) else { continue };
+        if !hops.has_ground(landing) {
+            continue;
+        }
+        there += 1;
+        if usable && hops.usable(landing) && hops.lofts_where(node, offset, |_, _| true)?.is_some() {
+            reached += 1;
+            directions |= sector;
+        }
+    }
+    #[expect(clippy::cast_precision_loss, reason = "a share to 24 bits")]
+    let share = if there == 0 { f32::NAN } else { reached as f32 / there as f32 };
+    #[expect(clippy::cast_precision_loss, reason = "at most 16")]
+    Ok((share, directions.count_ones() as f32))
+}
+
+/// The sector of an offset's heading.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "between 0 and the number of sectors")]
+fn sector(offset: &Offset) -> u8 {
+    let turn = libm::atan2(offset.heading.x, offset.heading.y) / std::f64::consts::TAU;
+    ((turn + 1.0) * f64::from(SECTORS)).round() as u8 % SECTORS
+}

@@ -1,0 +1,23 @@
+//! Hop maps: from one post of a DEM to all others, in how few hops.
+//!
+//! Nodes are posts, an edge is a single hop whose limits hold on the exact slice between its two posts ([`PostHops`]). [`hop_map`] finds
+//! the fewest hops from a start to every post, front by front.
+
+mod covers;
+mod facets;
+mod ground;
+mod lattice;
+mod mobility;
+mod offsets;
+mod paths;
+mod post_hops;
+mod request;
+mod samples;
+mod search;
+
+pub use lattice::{NodeLattice, Post};
+pub use mobility::{Mobility, SECTORS, mobility};
+pub use paths::{MapHop, joined, way_hops};
+pub use post_hops::{GroundOf, Lofts, PostHops};
+pub use request::{MapError, MapRequest};
+pub use search::{FrontProgress, HopMap, NO_GROUND, Search, UNREACHED, Way, search};

@@ -1,0 +1,260 @@
+//! All ways from a node to another within reach, each with what is the same for every pair of posts that far apart.
+//!
+//! Two posts `(columns, rows)` apart see the lattice's lines at the same places between them, whichever posts they are: where the line of
+//! an offset crosses rows, columns and diagonals, between which two posts, and how far along. All of it follows from whole numbers,
+//! so a hop over the terrain is a walk down a table.
+//!
+//! ```text
+//!   o---o---o---o       offset (3, 1): crosses columns at 1/3 and 2/3 of the way,
+//!   | \ |#\ | \ |       diagonals at 1/2 (u - v = 1) and 1 (the landing itself)
+//!   A---o---o-##o
+//!    ###| \ | \ B
+//! ```
+
+use std::ops::Range;
+
+use nalgebra::Vector2;
+
+use super::facets::{Facets, facets_towards};
+
+/// A vertex of the slice between two posts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Crossing {
+    /// The two posts it lies between, as steps from the take-off among the DEM's elevations.
+    pub(super) first: i32,
+    pub(super) second: i32,
+    /// How far from the first to the second.
+    pub(super) share: f64,
+    /// How far from take-off to landing.
+    pub(super) along: f64,
+    /// Loft that a height above the line of sight costs here: `1 / d + 1 / e`, 1/m, for the distances to both ends.
+    pub(super) stiffness: f64,
+}
+
+/// A way from a node to another.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Offset {
+    /// To the east and to the south, nodes.
+    pub(super) cols: i32,
+    pub(super) rows: i32,
+    /// Steps among the nodes, and among the DEM's elevations.
+    pub(super) node_step: isize,
+    pub(super) post_step: isize,
+    pub(super) run_m: f64,
+    /// East and north, of length 1.
+    pub(super) heading: Vector2<f64>,
+    /// Its part of the table of crossings.
+    pub(super) crossings: Range<usize>,
+    /// The facets of the take-off and of the landing.
+    pub(super) departure: Facets,
+    pub(super) arrival: Facets,
+    /// Rises that the parabolas of safety of both speeds allow, m.
+    pub(super) rises_m: (f64, f64),
+}
+
+/// A lattice on which offsets are taken.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Spacing {
+    /// Posts, m.
+    pub(super) dx_m: f64,
+    pub(super) dy_m: f64,
+    /// Posts from node to node.
+    pub(super) stride: usize,
+    /// Columns of nodes and of posts.
+    pub(super) node_cols: usize,
+    pub(super) post_cols: usize,
+}
+
+/// The vertices of the slice over `(columns, rows)` posts, without its ends, in the order of travel.
+pub(super) fn crossings(cols: i32, rows: i32, run_m: f64, post_cols: usize) -> Vec<Crossing> {
+    // A crossing at n / d of the way, d > 0, to be sorted exactly.
+    let mut places: Vec<(i64, i64)> = Vec::new();
+    for lines in [cols, rows, cols - rows] {
+        let count = i64::from(lines.abs());
+        places.extend((1..count).map(|number| (number, count)));
+    }
+    places.sort_by(|a, b| (a.0 * b.1).cmp(&(b.0 * a.1)));
+    places.dedup_by(|a, b| a.0 * b.1 == b.0 * a.1);
+    places
+        .into_iter()
+        .map(|(number, count)| crossing(i64::from(cols), i64::from(rows), (number, count), run_m, post_cols))
+        .collect()
+}
+
+/// The vertex `number / count` along the way.
+#[expect(clippy::cast_precision_loss, reason = "products of two reaches stay far below 2^53")]
+#[expect(clippy::cast_possible_truncation, reason = "steps within a raster that fits memory, checked where the table is made")]
+fn crossing(cols: i64, rows: i64, (number, count): (i64, i64), run_m: f64, post_cols: usize) -> Crossing {
+    let (east, south) = (cols * number, rows * number);
+    let (col, row) = (east.div_euclid(count), south.div_euclid(count));
+    let (rest_east, rest_south) = (east.rem_euclid(count), south.rem_euclid(count));
+    // On a row, a column or a diagonal: along it to the next post; on a post both rests are 0.
+    let rest = rest_east.max(rest_south);
+    let next = (col + i64::from(rest_east > 0), row + i64::from(rest_south > 0));
+    #[expect(clippy::cast_possible_wrap, reason = "a raster's columns")]
+    let post_cols = post_cols as i64;
+    let step = |(col, row): (i64, i64)| (row * post_cols + col) as i32;
+    let along = number as f64 / count as f64;
+    Crossing {
+        first: step((col, row)),
+        second: step(next),
+        share: rest as f64 / count as f64,
+        along,
+        // X / (d e), with the distances d and e as shares of X.
+        stiffness: (count * count) as f64 / ((number * (count - number)) as f64 * run_m),
+    }
+}
+
+/// Every offset within a range, nearest first, and the table of their crossings.
+#[derive(Clone, Debug, Default)]
+pub(super) struct OffsetTable {
+    pub(super) offsets: Vec<Offset>,
+    pub(super) crossings: Vec<Crossing>,
+}
+
+/// How many offsets and crossings a range takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct TableSize {
+    pub(super) offsets: usize,
+    pub(super) crossings: usize,
+}
+
+impl OffsetTable {
+    /// Whole numbers of nodes `(columns, rows)` within a range, but none at all.
+    fn within(spacing: Spacing, range_m: f64, bounds: (usize, usize)) -> impl Iterator<Item = (i32, i32)> {
+        #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "clamped to the lattice")]
+        let reach = |step_m: f64, count: usize| {
+            let most = (count.saturating_sub(1)).min(i32::MAX as usize);
+            (range_m / (step_m * spacing.stride as f64)).floor().min(most as f64) as i32
+        };
+        let (across, down) = (reach(spacing.dx_m, bounds.1), reach(spacing.dy_m, bounds.0));
+        (-down..=down)
+            .flat_map(move |rows| (-across..=across).map(move |cols| (cols, rows)))
+            .filter(move |&(cols, rows)| (cols, rows) != (0, 0) && spacing.metres(cols, rows).norm() <= range_m)
+    }
+
+    /// What a table would hold, for lattices of so many rows and columns of nodes.
+    pub(super) fn size(spacing: Spacing, range_m: f64, bounds: (usize, usize)) -> TableSize {
+        let mut size = TableSize { offsets: 0, crossings: 0 };
+        for (cols, rows) in Self::within(spacing, range_m, bounds) {
+            size.offsets += 1;
+            let lines = cols.unsigned_abs() as usize + rows.unsigned_abs() as usize + cols.abs_diff(rows) as usize;
+            size.crossings += lines * spacing.stride;
+        }
+        size
+    }
+
+    /// The table, where `rises_m` says which rises a distance allows (none: the offset is left out).
+    pub(super) fn new(spacing: Spacing, range_m: f64, bounds: (usize, usize), rises_m: impl Fn(f64) -> (f64, f64)) -> Self {
+        let mut found: Vec<(f64, i32, i32)> =
+            Self::within(spacing, range_m, bounds).map(|(cols, rows)| (spacing.metres(cols, rows).norm(), rows, cols)).collect();
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
+        let mut table = Self::default();
+        for (run_m, rows, cols) in found {
+            let allowed = rises_m(run_m);
+            if allowed.0 > allowed.1 {
+                continue;
+            }
+            table.push(spacing, (cols, rows), run_m, allowed);
+        }
+        table
+    }
+
+    fn push(&mut self, spacing: Spacing, (cols, rows): (i32, i32), run_m: f64, rises_m: (f64, f64)) {
+        #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "strides are below the raster's sides")]
+        let stride = spacing.stride as i32;
+        let (post_cols, post_rows) = (cols * stride, rows * stride);
+        let first = self.crossings.len();
+        self.crossings.extend(crossings(post_cols, post_rows, run_m, spacing.post_cols));
+        let step = |cols: i32, rows: i32, width: usize| rows as isize * width.cast_signed() + cols as isize;
+        self.offsets.push(Offset {
+            cols,
+            rows,
+            node_step: step(cols, rows, spacing.node_cols),
+            post_step: step(post_cols, post_rows, spacing.post_cols),
+            run_m,
+            heading: spacing.metres(cols, rows) / run_m,
+            crossings: first..self.crossings.len(),
+            departure: facets_towards(cols, rows),
+            arrival: facets_towards(-cols, -rows),
+            rises_m,
+        });
+    }
+
+    /// The offset's vertices.
+    pub(super) fn crossings_of(&self, offset: &Offset) -> &[Crossing] {
+        &self.crossings[offset.crossings.clone()]
+    }
+}
+
+impl Spacing {
+    /// Metres east and north of so many nodes.
+    #[expect(clippy::cast_precision_loss, reason = "strides stay far below 2^53")]
+    pub(super) fn metres(&self, cols: i32, rows: i32) -> Vector2<f64> {
+        let stride = self.stride as f64;
+        Vector2::new(f64::from(cols) * stride * self.dx_m, -f64::from(rows) * stride * self.dy_m)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        quantity::MapPoint,
+        terrain::{Dem, GeoReference, slice},
+    };
+
+    /// The slice between two posts has the table's vertices, place by place and height by height, over every offset of a square.
+    #[test]
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap, reason = "small numbers")]
+    fn crossings_are_those_of_the_slice() {
+        const SIDE: usize = 21;
+        let heights: Vec<f64> = (0..SIDE * SIDE).map(|i| f64::from((i as u32 * 7919) % 1009) / 64.0).collect();
+        let map = GeoReference::local(MapPoint::new(500.0, 900.0), 2.0, 3.0).unwrap();
+        let dem = Dem::new(SIDE, SIDE, heights.clone(), map).unwrap();
+        let spacing = Spacing { dx_m: 2.0, dy_m: 3.0, stride: 1, node_cols: SIDE, post_cols: SIDE };
+        let table = OffsetTable::new(spacing, 30.0, (SIDE, SIDE), |_| (-1e9, 1e9));
+        let (mut compared, middle) = (0, SIDE / 2);
+        for offset in &table.offsets {
+            let (row, col) = (middle as i32 + offset.rows, middle as i32 + offset.cols);
+            if !(0..SIDE as i32).contains(&row) || !(0..SIDE as i32).contains(&col) {
+                continue;
+            }
+            let (from, to) = (dem.georeference().post(middle, middle), dem.georeference().post(row as usize, col as usize));
+            let profile = slice(&dem, from, to).unwrap();
+            let inner = &profile.points[1..profile.points.len() - 1];
+            let found = table.crossings_of(offset);
+            assert_eq!(inner.len(), found.len(), "offset ({}, {})", offset.cols, offset.rows);
+            for (point, crossing) in inner.iter().zip(found) {
+                let start = middle * SIDE + middle;
+                let height = |step: i32| heights[start.wrapping_add_signed(step as isize)];
+                let z_m = height(crossing.first) + crossing.share * (height(crossing.second) - height(crossing.first));
+                assert!((z_m - point.z_m).abs() < 1e-9, "offset ({}, {})", offset.cols, offset.rows);
+                assert!((crossing.along * offset.run_m - point.x_m).abs() < 1e-9);
+                let (d, e) = (point.x_m, offset.run_m - point.x_m);
+                assert!((crossing.stiffness - (1.0 / d + 1.0 / e)).abs() < 1e-9 * crossing.stiffness);
+                compared += 1;
+            }
+            let (first, last) = (profile.facets[0], profile.facets[profile.facets.len() - 1]);
+            let grid = |row, col| dem.elevation(row, col).unwrap_or(f64::NAN);
+            for (facet, facets, row, col) in
+                [(first, offset.departure, middle, middle), (last, offset.arrival, row as usize, col as usize)]
+            {
+                let steepest = facets
+                    .numbers()
+                    .filter_map(|number| {
+                        let at = |(east, south): (i32, i32)| {
+                            let (row, col) = (row as i32 + south, col as i32 + east);
+                            ((0..SIDE as i32).contains(&row) && (0..SIDE as i32).contains(&col))
+                                .then(|| grid(row as usize, col as usize))
+                        };
+                        let [east, west, north, south] = super::super::facets::CORNERS[number];
+                        Some(((at(east)? - at(west)?) / 2.0).hypot((at(north)? - at(south)?) / 3.0))
+                    })
+                    .fold(f64::NEG_INFINITY, f64::max);
+                assert!((steepest - facet.tilt().slope()).abs() < 1e-9 * (1.0 + steepest), "({}, {})", offset.cols, offset.rows);
+            }
+        }
+        assert!(compared > 5_000, "{compared} vertices compared");
+    }
+}

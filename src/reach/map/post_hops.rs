@@ -1,0 +1,499 @@
+//! One hop between two posts: quick where that is sure, exact where it is close.
+//!
+//! The answer is that of [`slice`](crate::terrain::slice()) and [`HopTest`] on the same two posts. Quick arithmetic, which differs from
+//! theirs by rounding only, says yes or no where the limits leave a margin far above rounding; what is nearer than that is given to
+//! the slice and the hop test themselves. So is every hop near a border of a zone or of friction, where the slice has more vertices.
+
+use std::error::Error;
+
+use super::{
+    MapError, MapRequest,
+    covers::CoverTable,
+    facets::Facets,
+    ground::{Footing, GroundTable},
+    lattice::{BLOCK, NodeLattice, Post},
+    offsets::{Offset, OffsetTable, Spacing},
+    samples::{Heights, Walk},
+};
+use crate::{
+    ballistics::{GroundGrant, HopTest, LineOfSight, OpenAir, safety_ceiling_m, safety_range_m},
+    chain::{ConstrainedChain, QuickCone, QuickGrip},
+    quantity::{SlopeInterval, VertexId},
+    terrain::{Profile, TerrainError, slice},
+    world::{FrictionCone, Grip, RestSlope, tolerant_speed_m_s},
+};
+
+/// Makes a chain of a slice: knows friction, zones and hopper.
+pub type GroundOf<'a> = dyn Fn(Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> + Sync + 'a;
+
+/// Lofts closer than this, as a share of one plus their size, are left to the exact code. The quick ones are off by some 1e-8 of
+/// themselves next to the end of a cone (see [`QuickGrip`]) and by 1e-13 elsewhere. Larger only asks the exact code more often.
+const NEAR: f64 = 1.0e-5;
+
+/// Map coordinates and heights must be this fine, as a share of the post spacing, for quick arithmetic to be within [`NEAR`]: 1 m posts
+/// up to 4 000 km from the origin. On coarser ones every pair is given to the exact code.
+const FINE: f64 = 1.0e-9;
+
+/// What the bounds on reach are widened by against rounding.
+const WIDER: f64 = 1.0 + 1.0e-6;
+
+/// The largest table of crossings, 256 MiB: a reach of some 120 posts.
+const MOST_CROSSINGS: usize = 1 << 23;
+
+/// All single hops between the nodes of a DEM.
+pub struct PostHops<'a> {
+    request: MapRequest<'a>,
+    ground_of: &'a GroundOf<'a>,
+    heights: Heights<'a>,
+    lattice: NodeLattice,
+    table: OffsetTable,
+    ground: GroundTable,
+    covers: Option<CoverTable>,
+    grip: Option<QuickGrip>,
+    air: OpenAir,
+    /// How many of the nearest offsets are within reach of each block's nodes.
+    within_reach: Vec<usize>,
+    /// Whether map coordinates are too coarse for quick arithmetic.
+    coarse: bool,
+}
+
+impl std::fmt::Debug for PostHops<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter
+            .debug_struct("PostHops")
+            .field("lattice", &self.lattice)
+            .field("offsets", &self.table.offsets.len())
+            .finish_non_exhaustive()
+    }
+}
+
+/// What quick arithmetic says of a pair.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Verdict {
+    No,
+    Hop(LineOfSight, SlopeInterval),
+    Close,
+}
+
+/// The lofts of a hop over a line of sight.
+pub type Lofts = (LineOfSight, SlopeInterval);
+
+impl<'a> PostHops<'a> {
+    /// Prepares all that pairs share.
+    ///
+    /// # Errors
+    /// [`MapError`]: a reach of too many posts, constraints that are missing, covers that end before the terrain does.
+    pub fn new(request: MapRequest<'a>, ground_of: &'a GroundOf<'a>) -> Result<Self, MapError> {
+        let (dem, hopper) = (request.dem, request.hopper);
+        let lattice = NodeLattice::new(dem, request.stride);
+        probe(&request, ground_of)?;
+        let heights = Heights::of(dem);
+        let constant = match request.surface.grip {
+            Some(Grip::Friction(cone)) => Some(cone),
+            Some(Grip::FromSlope { .. }) | None => None,
+        };
+        let covers = CoverTable::new(dem, request.friction, request.keep_out, constant)?;
+        let friction_at = |post: usize| {
+            let of_raster = covers.as_ref().and_then(|covers| covers.friction(post));
+            of_raster.or(constant.map(FrictionCone::coefficient))
+        };
+        let rest = |post: usize| match request.surface.rest {
+            RestSlope::AsFrictionHolds => friction_at(post),
+            RestSlope::AtMost(angle) => Some(angle.slope()),
+            RestSlope::Unlimited => None,
+        };
+        let ground = GroundTable::new(heights, &rest);
+        let grip = match request.surface.grip {
+            Some(Grip::Friction(cone)) => Some(QuickGrip::friction(cone)),
+            Some(Grip::FromSlope { takeoff, landing }) => Some(QuickGrip::from_slope(takeoff, landing)),
+            None => None,
+        };
+        let air = OpenAir::new(hopper, request.gravity_m_s2);
+        let bounds = dem.bounds();
+        let step_m = dem.georeference().dx_m().min(dem.georeference().dy_m());
+        let (low_m, high_m) = dem.elevation_range_m();
+        let largest_m =
+            [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y, low_m, high_m].map(f64::abs).into_iter().fold(0.0, f64::max);
+        let coarse = f64::EPSILON * largest_m > FINE * step_m;
+        let mut hops = Self {
+            request,
+            ground_of,
+            heights,
+            lattice,
+            table: OffsetTable::default(),
+            ground,
+            covers,
+            grip,
+            air,
+            within_reach: Vec::new(),
+            coarse,
+        };
+        hops.set_reach()?;
+        Ok(hops)
+    }
+
+    /// The nodes.
+    pub const fn lattice(&self) -> NodeLattice {
+        self.lattice
+    }
+
+    /// What was asked for.
+    pub const fn request(&self) -> &MapRequest<'a> {
+        &self.request
+    }
+
+    /// The hopper under its gravity.
+    pub(super) const fn air(&self) -> &OpenAir {
+        &self.air
+    }
+
+    /// All offsets, nearest first.
+    pub(super) fn offsets(&self) -> &[Offset] {
+        &self.table.offsets
+    }
+
+    /// How many of the nearest offsets matter to the nodes of a block.
+    pub(super) fn within_reach(&self, block: usize) -> usize {
+        self.within_reach[block]
+    }
+
+    /// Whether a node has an elevation.
+    pub(super) fn has_ground(&self, node: Post) -> bool {
+        !self.heights.at(self.lattice.post_index(node)).is_nan()
+    }
+
+    /// Whether a hop may begin or end at a node at all.
+    pub(super) fn usable(&self, node: Post) -> bool {
+        self.ground.usable(self.lattice.post_index(node))
+    }
+
+    /// How many offsets lead from a node to another one: `0..offset_count()` are their numbers, nearest first.
+    pub fn offset_count(&self) -> usize {
+        self.table.offsets.len()
+    }
+
+    /// The node at the end of an offset; `None` off the map.
+    #[inline]
+    pub fn landing(&self, from: Post, offset: usize) -> Option<Post> {
+        self.moved(from, self.table.offsets[offset].rows, self.table.offsets[offset].cols)
+    }
+
+    /// The node from which an offset leads to this one; `None` off the map.
+    #[inline]
+    pub(super) fn takeoff(&self, to: Post, offset: usize) -> Option<Post> {
+        self.moved(to, -self.table.offsets[offset].rows, -self.table.offsets[offset].cols)
+    }
+
+    #[inline]
+    fn moved(&self, from: Post, rows: i32, cols: i32) -> Option<Post> {
+        let row = from.row.wrapping_add_signed(rows as isize);
+        let col = from.col.wrapping_add_signed(cols as isize);
+        (row < self.lattice.rows && col < self.lattice.cols).then_some(Post { row, col })
+    }
+
+    /// The feasible lofts of a hop from a node by an offset that ends on the map; `None` where there are none.
+    ///
+    /// # Errors
+    /// [`MapError::Ground`] where the exact code finds covers that end.
+    pub fn lofts(&self, from: Post, offset: usize) -> Result<Option<Lofts>, MapError> {
+        self.lofts_where(from, &self.table.offsets[offset], |_, _| true)
+    }
+
+    /// The same, given up before the terrain where the lofts that all other limits leave are not worth while.
+    ///
+    /// The lofts told to `worth` hold the feasible ones.
+    #[inline]
+    pub(super) fn lofts_where(
+        &self,
+        from: Post,
+        offset: &Offset,
+        worth: impl FnOnce(LineOfSight, SlopeInterval) -> bool,
+    ) -> Result<Option<Lofts>, MapError> {
+        match self.judged(from, offset, worth) {
+            Verdict::No => Ok(None),
+            Verdict::Hop(sight, lofts) => Ok(Some((sight, lofts))),
+            Verdict::Close => self.exact(from, offset),
+        }
+    }
+
+    /// Quick arithmetic on a pair.
+    #[inline]
+    fn judged(&self, from: Post, offset: &Offset, worth: impl FnOnce(LineOfSight, SlopeInterval) -> bool) -> Verdict {
+        let takeoff = self.lattice.post_index(from);
+        let landing = takeoff.wrapping_add_signed(offset.post_step);
+        let takeoff_m = self.heights.at(takeoff);
+        let rise_m = self.heights.at(landing) - takeoff_m;
+        // A gap on either end makes this no number.
+        let in_reach = offset.rises_m.0 <= rise_m && rise_m <= offset.rises_m.1;
+        if !in_reach {
+            return Verdict::No;
+        }
+        let cover = self.cover(from, takeoff, offset);
+        if cover == Cover::Kept {
+            return Verdict::No;
+        }
+        let Some((slopes, mut sure)) = self.cones(takeoff, landing, offset, cover) else { return Verdict::No };
+        sure &= cover != Cover::Mixed && !self.coarse;
+        let hopper = self.air.hopper();
+        let sight = LineOfSight::new(offset.run_m, rise_m);
+        let lofts = self.air.lofts(
+            sight,
+            GroundGrant { slopes: slopes[0], speed_max_m_s: hopper.takeoff_speed_max_m_s },
+            GroundGrant { slopes: slopes[1], speed_max_m_s: hopper.landing_speed_max_m_s },
+        );
+        let most = lofts.upper + near(lofts.upper);
+        if lofts.lower - near(lofts.lower) > most || most <= 0.0 || !worth(sight, lofts) {
+            return Verdict::No;
+        }
+        let walk = Walk { from: takeoff, base_m: takeoff_m - hopper.clearance_m, rise_m, most };
+        let Some(terrain) = self.heights.clearing_loft(walk, self.table.crossings_of(offset)) else { return Verdict::No };
+        if self.ground.gaps && offset.departure.along_edge() && !self.has_facets_along(takeoff, offset) {
+            return Verdict::No;
+        }
+        let lower = lofts.lower.max(terrain);
+        let room = lofts.upper - near(lofts.upper);
+        if sure && lower + near(lower) <= room && room > 0.0 {
+            Verdict::Hop(sight, SlopeInterval { lower, upper: lofts.upper })
+        } else {
+            Verdict::Close
+        }
+    }
+
+    /// What lies over a pair.
+    #[inline]
+    fn cover(&self, from: Post, takeoff: usize, offset: &Offset) -> Cover {
+        match &self.covers {
+            None => Cover::Bare,
+            Some(covers) => {
+                let post = self.lattice.post(from);
+                let stride = self.lattice.stride.cast_signed();
+                let end = Post {
+                    row: post.row.wrapping_add_signed(offset.rows as isize * stride),
+                    col: post.col.wrapping_add_signed(offset.cols as isize * stride),
+                };
+                if covers.has_border(post, end) {
+                    Cover::Mixed
+                } else if covers.kept(takeoff) {
+                    Cover::Kept
+                } else {
+                    Cover::Bare
+                }
+            }
+        }
+    }
+
+    /// The directions that both ends allow, and whether they are sure; `None` where an end allows none.
+    #[inline]
+    fn cones(&self, takeoff: usize, landing: usize, offset: &Offset, cover: Cover) -> Option<([SlopeInterval; 2], bool)> {
+        let everything = ([SlopeInterval::ALL; 2], false);
+        let friction = match (&self.covers, cover) {
+            (Some(covers), Cover::Mixed) if covers.has_friction() => return Some(everything),
+            (Some(covers), _) => covers.friction(takeoff),
+            (None, _) => None,
+        };
+        let Some(grip) = friction.map(|mu| QuickGrip::Friction { squared: mu * mu }).or(self.grip) else {
+            return Some(everything);
+        };
+        let footings = [self.ground.footing(takeoff, offset.departure), self.ground.footing(landing, offset.arrival)];
+        if footings.contains(&Footing::Refused) {
+            return None;
+        }
+        let mut sure = !footings.contains(&Footing::Doubtful);
+        let mut open = |cone: QuickCone| match cone {
+            QuickCone::Closed => None,
+            QuickCone::Open(slopes) => Some(slopes),
+            QuickCone::Doubtful => {
+                sure = false;
+                Some(SlopeInterval::ALL)
+            }
+        };
+        let (slope, steepness) = self.facet(takeoff, offset.departure, offset);
+        let ahead = open(grip.takeoff(slope, steepness))?;
+        let (slope, steepness) = self.facet(landing, offset.arrival, offset);
+        let behind = open(grip.landing(slope, steepness))?;
+        Some(([ahead, behind], sure))
+    }
+
+    /// Slope along the heading and square of the gradient of the facet under an end; along an edge of the steeper one.
+    #[inline]
+    fn facet(&self, post: usize, facets: Facets, offset: &Offset) -> (f64, f64) {
+        let mut steepest = (0.0, f64::NEG_INFINITY);
+        for number in facets.numbers().filter(|&number| self.ground.has(post, number)) {
+            let (east, north) = self.heights.gradient(post, number);
+            let steepness = east * east + north * north;
+            if steepness > steepest.1 {
+                steepest = (east * offset.heading.x + north * offset.heading.y, steepness);
+            }
+        }
+        steepest
+    }
+
+    /// Whether a way along edges of facets has one on either side all the way.
+    fn has_facets_along(&self, takeoff: usize, offset: &Offset) -> bool {
+        let posts = self.table.crossings_of(offset).iter();
+        posts
+            .map(|crossing| takeoff.wrapping_add_signed(crossing.first as isize))
+            .all(|post| self.ground.has_any(post, offset.departure))
+    }
+
+    /// The slice and the hop test themselves.
+    #[cold]
+    fn exact(&self, from: Post, offset: &Offset) -> Result<Option<Lofts>, MapError> {
+        let Some(to) = self.moved(from, offset.rows, offset.cols) else { return Ok(None) };
+        let Some(chain) = self.chain(from, to)? else { return Ok(None) };
+        let test = HopTest::new(&chain, self.request.hopper, self.request.gravity_m_s2);
+        let geometry = chain.geometry();
+        let (start, end) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
+        Ok(test.line_of_sight(&start, &end).zip(test.loft(&start, &end).ok()))
+    }
+
+    /// The slice between two nodes with its constraints; `None` where an elevation is missing on the way.
+    ///
+    /// # Errors
+    /// [`MapError::Ground`] and [`MapError::Terrain`].
+    pub fn chain(&self, from: Post, to: Post) -> Result<Option<ConstrainedChain>, MapError> {
+        let map = self.request.dem.georeference();
+        let [begin, end] = [from, to].map(|node| {
+            let Post { row, col } = self.lattice.post(node);
+            map.post(row, col)
+        });
+        let profile = match slice(self.request.dem, begin, end) {
+            Ok(profile) => profile,
+            Err(TerrainError::NoData { .. }) => return Ok(None),
+            Err(other) => return Err(other.into()),
+        };
+        (self.ground_of)(profile).map(Some).map_err(|reason| MapError::Ground { at: begin, reason })
+    }
+}
+
+/// What lies over a pair: nothing (or the same friction everywhere), a zone all over, or borders.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Cover {
+    Bare,
+    Kept,
+    Mixed,
+}
+
+/// The distance within which a loft is close to another.
+#[inline]
+fn near(loft: f64) -> f64 {
+    NEAR * (1.0 + loft.abs())
+}
+
+/// Tries the constraints on one slice, so that what is missing is told before the work begins.
+fn probe(request: &MapRequest<'_>, ground_of: &GroundOf<'_>) -> Result<(), MapError> {
+    let dem = request.dem;
+    let gap = |row: usize, col: usize| dem.elevation(row, col).is_none();
+    let place = (0..dem.rows() - 1)
+        .flat_map(|row| (0..dem.cols() - 1).map(move |col| (row, col)))
+        .find(|&(row, col)| !(gap(row, col) || gap(row, col + 1) || gap(row + 1, col + 1)));
+    let Some((row, col)) = place else { return Ok(()) };
+    let (begin, end) = (dem.georeference().post(row, col), dem.georeference().post(row + 1, col + 1));
+    let profile = slice(dem, begin, end)?;
+    ground_of(profile).map(drop).map_err(|reason| MapError::Ground { at: begin, reason })
+}
+
+// Reach: which offsets there are.
+impl PostHops<'_> {
+    /// Makes the table of offsets, and finds how far hops reach from each block.
+    fn set_reach(&mut self) -> Result<(), MapError> {
+        let hopper = self.air.hopper();
+        let speeds = [hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s].map(|v| tolerant_speed_m_s(v) * WIDER);
+        let gravity = self.air.gravity_m_s2();
+        // The longest hop that falls or climbs no further than a height.
+        let range_m =
+            |height_m: f64| safety_range_m(height_m, speeds[0], gravity).min(safety_range_m(height_m, speeds[1], gravity)) * WIDER;
+        let blocks = self.block_heights();
+        let all = blocks.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |all, one| (all.0.min(one.0), all.1.max(one.1)));
+        let mut longest_m = if speeds.iter().all(|&v| v > 0.0) && all.0 <= all.1 { range_m(all.1 - all.0) } else { 0.0 };
+        if !longest_m.is_finite() {
+            let found = format!("{longest_m} m");
+            return Err(MapError::Request {
+                what: "the reach of one hop",
+                found,
+                expected: "a finite one: give speed limits and gravity",
+            });
+        }
+        // Within a shorter range there is less relief, which makes the range shorter still.
+        let mut ranges_m = Vec::new();
+        for _ in 0..8 {
+            ranges_m =
+                self.block_reliefs(&blocks, longest_m).into_iter().map(|relief_m| range_m(relief_m).min(longest_m)).collect();
+            let next_m = ranges_m.iter().copied().fold(0.0, f64::max);
+            let settled = next_m > 0.95 * longest_m;
+            longest_m = next_m;
+            if settled {
+                break;
+            }
+        }
+        let spacing = self.spacing();
+        let bounds = (self.lattice.rows, self.lattice.cols);
+        let size = OffsetTable::size(spacing, longest_m, bounds);
+        if size.crossings > MOST_CROSSINGS {
+            let posts = longest_m / spacing.dx_m.min(spacing.dy_m);
+            return Err(MapError::TooFar { range_m: longest_m, posts, offsets: size.offsets });
+        }
+        let rises_m = |run_m: f64| {
+            let ceiling = |v: f64| safety_ceiling_m(run_m, v, gravity);
+            let slack_m = 1.0e-9 * (run_m + ceiling(speeds[0]).abs() + ceiling(speeds[1]).abs());
+            (-ceiling(speeds[1]) - slack_m, ceiling(speeds[0]) + slack_m)
+        };
+        self.table = OffsetTable::new(spacing, longest_m, bounds, rises_m);
+        let count = |range_m: &f64| self.table.offsets.partition_point(|offset| offset.run_m <= *range_m);
+        self.within_reach = ranges_m.iter().map(count).collect();
+        Ok(())
+    }
+
+    fn spacing(&self) -> Spacing {
+        let map = self.request.dem.georeference();
+        Spacing {
+            dx_m: map.dx_m(),
+            dy_m: map.dy_m(),
+            stride: self.lattice.stride,
+            node_cols: self.lattice.cols,
+            post_cols: self.heights.cols,
+        }
+    }
+
+    /// Lowest and highest node of each block; infinities the wrong way round where it has none.
+    fn block_heights(&self) -> Vec<(f64, f64)> {
+        let (down, across) = self.lattice.blocks();
+        (0..down * across)
+            .map(|block| {
+                let heights = self.lattice.nodes_of(block).map(|node| self.heights.at(self.lattice.post_index(node)));
+                // The minimum and maximum of a number and NaN are the number.
+                heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)))
+            })
+            .collect()
+    }
+
+    /// How many blocks away a range may reach, down and across.
+    pub(super) fn blocks_within(&self, range_m: f64) -> (usize, usize) {
+        let spacing = self.spacing();
+        #[expect(clippy::cast_precision_loss, reason = "strides and blocks are small")]
+        let side = (BLOCK * spacing.stride) as f64;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
+        let count = |step_m: f64| (range_m / (side * step_m)).ceil() as usize;
+        (count(spacing.dy_m), count(spacing.dx_m))
+    }
+
+    /// Of each block, the relief of all blocks within a range of it, m.
+    fn block_reliefs(&self, blocks: &[(f64, f64)], range_m: f64) -> Vec<f64> {
+        let (down, across) = self.lattice.blocks();
+        let (rows, cols) = self.blocks_within(range_m);
+        let joined = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        let window = |at: usize, reach: usize, count: usize| at.saturating_sub(reach)..=(at.saturating_add(reach)).min(count - 1);
+        let mut along_rows = vec![none; blocks.len()];
+        for (index, found) in along_rows.iter_mut().enumerate() {
+            let (row, col) = (index / across, index % across);
+            *found = window(col, cols, across).map(|col| blocks[row * across + col]).fold(none, joined);
+        }
+        let of_block = |index: usize| {
+            let (row, col) = (index / across, index % across);
+            let (low, high) = window(row, rows, down).map(|row| along_rows[row * across + col]).fold(none, joined);
+            (high - low).max(0.0)
+        };
+        (0..blocks.len()).map(of_block).collect()
+    }
+}

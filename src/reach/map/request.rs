@@ -1,0 +1,77 @@
+//! What a map is asked, and why there is none.
+
+use std::error::Error;
+
+use crate::{
+    quantity::MapPoint,
+    terrain::{Dem, FrictionRaster, KeepOut, TerrainError},
+    world::{Hopper, Surface},
+};
+
+/// What a map is made of.
+#[derive(Clone, Copy, Debug)]
+pub struct MapRequest<'a> {
+    /// The terrain.
+    pub dem: &'a Dem,
+    /// Every so many posts is a node; at least 1. The terrain in the way is always the full DEM.
+    pub stride: usize,
+    /// The robot.
+    pub hopper: &'a Hopper,
+    /// What the ground grants.
+    pub surface: &'a Surface,
+    /// Gravity, m/s^2.
+    pub gravity_m_s2: f64,
+    /// Friction from a raster.
+    pub friction: Option<&'a FrictionRaster>,
+    /// Where nothing takes off and nothing lands.
+    pub keep_out: Option<&'a KeepOut>,
+}
+
+/// Why there is no map.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapError {
+    /// A request that makes no sense.
+    #[error("{what} is {found}, expected {expected}")]
+    Request {
+        /// Of what.
+        what: &'static str,
+        /// What was given.
+        found: String,
+        /// What is allowed.
+        expected: &'static str,
+    },
+    /// The terrain, or what lies over it.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    /// A slice that makes no chain.
+    #[error("the slice from ({:.3} m, {:.3} m): {reason}", at.x, at.y)]
+    Ground {
+        /// Where it begins.
+        at: MapPoint,
+        /// Why not.
+        reason: Box<dyn Error + Send + Sync>,
+    },
+    /// A hop that spans too many posts.
+    #[error(
+        "one hop reaches {range_m:.1} m, {posts:.0} posts, which makes {offsets} landings from every post, more than fit a table: lower the \
+         speed limits, give a greater --stride, or a coarser raster (gdalwarp -tr)"
+    )]
+    TooFar {
+        /// How far, m.
+        range_m: f64,
+        /// How many posts that is.
+        posts: f64,
+        /// How many landings there are.
+        offsets: usize,
+    },
+    /// More hops than the map's numbers hold.
+    #[error("a post is more than {most} hops away, expected fewer: give a greater --stride or higher speed limits")]
+    TooManyHops {
+        /// The most there are.
+        most: i16,
+    },
+    /// No threads to work with.
+    #[error("the threads cannot be started ({0}): ask for fewer with --threads")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}

@@ -1,0 +1,272 @@
+//! Fewest hops, front by front.
+//!
+//! Posts that have no hops yet are pulled towards the front: each asks the posts of the front within reach, nearest first, for a hop, and
+//! stops at the first. Pairs that cannot improve the answer are never tested, and which thread asks first does not matter.
+
+use rayon::prelude::*;
+
+use super::{MapError, PostHops, lattice::Post, offsets::Offset};
+use crate::{
+    ballistics::{Arc, LineOfSight, TakeoffChoice},
+    graph::Effort,
+    quantity::SlopeInterval,
+};
+
+/// Of a post that no hops reach.
+pub const UNREACHED: i16 = -1;
+
+/// Of a post without elevation.
+pub const NO_GROUND: i16 = i16::MIN;
+
+/// No offset: the start's, and that of posts without hops.
+const NONE: u32 = u32::MAX;
+
+/// Which way hops lead.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Way {
+    /// From the start to every post.
+    #[default]
+    Out,
+    /// From every post to the start.
+    Back,
+}
+
+/// What to search for.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct Search {
+    /// Which way.
+    pub way: Way,
+    /// Also the least effort among the paths of fewest hops, flown as chosen.
+    pub effort: Option<(Effort, TakeoffChoice)>,
+}
+
+/// How far a search is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FrontProgress {
+    /// Hops of the front.
+    pub front: i16,
+    /// Posts that have their hops.
+    pub reached: usize,
+    /// Posts that may still get some.
+    pub open: usize,
+}
+
+/// Fewest hops between the start and every node.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HopMap {
+    /// Of each node, row after row: hops, or [`UNREACHED`], or [`NO_GROUND`].
+    pub hops: Vec<i16>,
+    /// The least effort among the paths of fewest hops, in the unit of the [`Effort`] asked for; NaN where no hops lead. Empty where none
+    /// was asked for.
+    pub effort: Vec<f64>,
+    /// The offset of the hop between each node and the node before it.
+    previous: Vec<u32>,
+    way: Way,
+}
+
+/// A node that got its hops.
+#[derive(Clone, Copy, Debug)]
+struct Found {
+    node: usize,
+    offset: u32,
+    effort: f64,
+}
+
+/// Fewest hops between a start and every node, told front by front; the same for any number of threads.
+///
+/// # Errors
+/// [`MapError`]; of several, that of the first block.
+pub fn search(hops: &PostHops<'_>, start: Post, asked: Search, tell: &mut dyn FnMut(FrontProgress)) -> Result<HopMap, MapError> {
+    let mut state = State::new(hops, start, asked);
+    let mut front: i16 = 0;
+    loop {
+        tell(FrontProgress { front, reached: state.reached, open: state.open.iter().map(|&count| count as usize).sum() });
+        let pull = Pull { hops, map: &state.map, asked, front };
+        let near = blocks_near(hops, &state.front_blocks, &state.open);
+        let found: Vec<Result<Vec<Found>, MapError>> = near.par_iter().map(|&block| pull.block(block)).collect();
+        let found = found.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
+        if found.is_empty() {
+            return Ok(state.map);
+        }
+        front = front.checked_add(1).ok_or(MapError::TooManyHops { most: i16::MAX })?;
+        state.front_blocks.fill(false);
+        for node in found {
+            state.settle(hops, node, front);
+        }
+    }
+}
+
+/// What is known between two fronts.
+struct State {
+    map: HopMap,
+    /// Of each block, nodes that may still get hops.
+    open: Vec<u32>,
+    /// Blocks with nodes of the front.
+    front_blocks: Vec<bool>,
+    /// Nodes that have their hops.
+    reached: usize,
+}
+
+impl State {
+    /// Only the start has its hops.
+    fn new(hops: &PostHops<'_>, start: Post, asked: Search) -> Self {
+        let lattice = hops.lattice();
+        let (nodes, (down, across)) = (lattice.count(), lattice.blocks());
+        let ground = |index| if hops.has_ground(lattice.node(index)) { UNREACHED } else { NO_GROUND };
+        let usable = |block| lattice.nodes_of(block).map(|node| u32::from(hops.usable(node))).sum();
+        let map = HopMap {
+            hops: (0..nodes).into_par_iter().map(ground).collect(),
+            effort: if asked.effort.is_some() { vec![f64::NAN; nodes] } else { Vec::new() },
+            previous: vec![NONE; nodes],
+            way: asked.way,
+        };
+        let open = (0..down * across).into_par_iter().map(usable).collect();
+        let mut state = Self { map, open, front_blocks: vec![false; down * across], reached: 0 };
+        state.settle(hops, Found { node: lattice.index(start), offset: NONE, effort: 0.0 }, 0);
+        state
+    }
+
+    /// Gives a node its hops.
+    fn settle(&mut self, hops: &PostHops<'_>, Found { node, offset, effort }: Found, count: i16) {
+        let lattice = hops.lattice();
+        self.map.hops[node] = count;
+        self.map.previous[node] = offset;
+        if let Some(known) = self.map.effort.get_mut(node) {
+            *known = effort;
+        }
+        let post = lattice.node(node);
+        let block = lattice.block_of(post);
+        self.front_blocks[block] = true;
+        // The start may lie where no hop begins or ends.
+        self.open[block] -= u32::from(hops.usable(post)).min(self.open[block]);
+        self.reached += 1;
+    }
+}
+
+/// The blocks with open nodes that a front in other blocks may reach.
+fn blocks_near(hops: &PostHops<'_>, front: &[bool], open: &[u32]) -> Vec<usize> {
+    let (down, across) = hops.lattice().blocks();
+    (0..down * across)
+        .into_par_iter()
+        .filter(|&block| {
+            let within = hops.within_reach(block);
+            if open[block] == 0 || within == 0 {
+                return false;
+            }
+            let (rows, cols) = hops.blocks_within(hops.offsets()[within - 1].run_m);
+            let (row, col) = (block / across, block % across);
+            (row.saturating_sub(rows)..=(row + rows).min(down - 1)).any(|row| {
+                front[row * across + col.saturating_sub(cols)..=row * across + (col + cols).min(across - 1)].contains(&true)
+            })
+        })
+        .collect()
+}
+
+/// One round: the front, and what it is asked.
+struct Pull<'a> {
+    hops: &'a PostHops<'a>,
+    map: &'a HopMap,
+    asked: Search,
+    front: i16,
+}
+
+impl Pull<'_> {
+    /// The nodes of a block that a hop joins to the front.
+    fn block(&self, block: usize) -> Result<Vec<Found>, MapError> {
+        let lattice = self.hops.lattice();
+        let offsets = &self.hops.offsets()[..self.hops.within_reach(block)];
+        let mut found = Vec::new();
+        for node in lattice.nodes_of(block) {
+            let index = lattice.index(node);
+            if self.map.hops[index] == UNREACHED && self.hops.usable(node) {
+                found.extend(self.pulled(node, index, offsets)?);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The hop that joins a node to the front: the shortest, or the one of least effort in all.
+    fn pulled(&self, node: Post, index: usize, offsets: &[Offset]) -> Result<Option<Found>, MapError> {
+        let mut best: Option<Found> = None;
+        for (number, offset) in offsets.iter().enumerate() {
+            let (other, from) = match self.asked.way {
+                Way::Out => (self.hops.takeoff(node, number), None),
+                Way::Back => (self.hops.landing(node, number), Some(node)),
+            };
+            let Some(other) = other else { continue };
+            let other_index = self.hops.lattice().index(other);
+            if self.map.hops[other_index] != self.front {
+                continue;
+            }
+            let from = from.unwrap_or(other);
+            #[expect(clippy::cast_possible_truncation, reason = "the table of offsets is far smaller")]
+            let offset_number = number as u32;
+            let Some((effort, choice)) = self.asked.effort else {
+                if self.hops.lofts_where(from, offset, |_, _| true)?.is_some() {
+                    return Ok(Some(Found { node: index, offset: offset_number, effort: f64::NAN }));
+                }
+                continue;
+            };
+            let so_far = self.map.effort[other_index];
+            let least = best.map_or(f64::INFINITY, |best| best.effort);
+            let gravity = self.hops.air().gravity_m_s2();
+            let worth = |sight: LineOfSight, lofts: SlopeInterval| {
+                choice != TakeoffChoice::LeastSpeed || joined(effort, so_far, at_least(effort, sight, lofts, gravity)) < least
+            };
+            if let Some((sight, lofts)) = self.hops.lofts_where(from, offset, worth)? {
+                let arc = Arc::new(sight, choice.loft(sight, lofts), gravity);
+                let effort = joined(effort, so_far, effort.cost(&arc, 1).effort());
+                if effort < least {
+                    best = Some(Found { node: index, offset: offset_number, effort });
+                }
+            }
+        }
+        Ok(best)
+    }
+}
+
+/// Effort of a path and one hop more.
+fn joined(effort: Effort, path: f64, hop: f64) -> f64 {
+    if effort == Effort::PeakSpeed { path.max(hop) } else { path + hop }
+}
+
+/// What a hop at the least speed takes at least, where its lofts are among these: a vertex on the way only raises the loft, and with it
+/// speed and time. A little less, against rounding.
+fn at_least(effort: Effort, sight: LineOfSight, lofts: SlopeInterval, gravity_m_s2: f64) -> f64 {
+    let loft = TakeoffChoice::LeastSpeed.loft(sight, lofts);
+    let slope = sight.slope() + loft;
+    let doubled_energy = gravity_m_s2 * sight.run_m() * (1.0 + slope * slope) / (2.0 * loft);
+    let least = match effort {
+        Effort::TakeoffSpeed | Effort::PeakSpeed => doubled_energy.sqrt(),
+        Effort::Energy => 0.5 * doubled_energy,
+        Effort::Time => (2.0 * sight.run_m() * loft / gravity_m_s2).sqrt(),
+    };
+    least * (1.0 - 1.0e-9)
+}
+
+impl HopMap {
+    /// The node before this one on its way from the start (after it, on a way back); `None` for the start and for nodes without hops.
+    pub fn previous(&self, hops: &PostHops<'_>, node: Post) -> Option<Post> {
+        let offset = self.previous[hops.lattice().index(node)];
+        if offset == NONE {
+            return None;
+        }
+        match self.way {
+            Way::Out => hops.takeoff(node, offset as usize),
+            Way::Back => hops.landing(node, offset as usize),
+        }
+    }
+
+    /// The nodes of a way of fewest hops between the start and a node, in the order of flight; `None` where there is none.
+    pub fn way(&self, hops: &PostHops<'_>, node: Post) -> Option<Vec<Post>> {
+        if self.hops[hops.lattice().index(node)] < 0 {
+            return None;
+        }
+        let mut nodes = vec![node];
+        nodes.extend(std::iter::successors(self.previous(hops, node), |&node| self.previous(hops, node)));
+        if self.way == Way::Out {
+            nodes.reverse();
+        }
+        Some(nodes)
+    }
+}

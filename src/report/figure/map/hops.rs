@@ -1,0 +1,155 @@
+//! The hop map.
+
+use plotters::style::RGBColor;
+
+use super::{
+    super::{
+        FigureError, Picture,
+        bands::HopClasses,
+        keys::{self, Swatch},
+        palette::SMALL_MM,
+        picture::paragraph,
+        sheet::Sheet,
+    },
+    check_size,
+    data::{HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, MapPosts},
+    panel::{MapPanel, end_keys, start_symbol},
+    raster::{self, Pattern, Window, tone},
+};
+
+/// Posts that are not reached: grey, which no band is.
+pub(super) const NOT_REACHED: RGBColor = RGBColor(176, 176, 176);
+/// No-data in a legend: the white of the page in a thin frame.
+pub(super) fn no_data_symbol(sheet: &mut Sheet, (x, y): (f64, f64)) {
+    let corners = keys::rectangle((x - 3.0, y - 1.5), (x + 3.0, y + 1.5));
+    let pen = super::super::sheet::Pen { colour: NOT_REACHED, width_mm: 0.15 };
+    sheet.line(corners.iter().copied().chain([corners[0]]).collect(), pen);
+}
+
+/// Draws a hop map: where the hopper gets, in how few hops, over a hillshade with the sun in the north-west.
+///
+/// Bands of one count each, or of several where there are more than eight; grey: not reached; white: no data. With
+/// [`HopMapFigure::can_return`], stripes: reached, but the start cannot be reached from there; dots: the other way round. A DEM of
+/// more than 2 000 rows or columns is drawn with every n-th post, and the map says so.
+///
+/// # Errors
+/// [`FigureError::RasterSize`] where a raster does not have one number for every post.
+pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
+    check_size("hop map", &figure.posts, figure.hops.len())?;
+    if let Some(can_return) = figure.can_return {
+        check_size("map of posts from which the start can be reached", &figure.posts, can_return.len())?;
+    }
+    let counts = Counts::of(figure);
+    let mut tones: Vec<_> = (0..counts.bands.len()).map(|class| tone(counts.classes.colour(class))).collect();
+    tones.push(NOT_REACHED);
+    let posts = figure.posts;
+    let window = Window::whole(posts.dem);
+    let pixels = raster::draw(posts.dem, &window, &tones, |row, col| {
+        let at = posts.index(row, col);
+        let hops = figure.hops[at];
+        let class = class_of(&counts.classes, hops).unwrap_or(tones.len() - 1);
+        (hops != HOPS_NO_DATA).then(|| (class, pattern_of(hops, figure.can_return.map(|can_return| can_return[at]))))
+    });
+    let mut sheet = Sheet::default();
+    let top_mm = figure.caption.draw(&mut sheet);
+    let map = MapPanel::new(posts.dem, &window, top_mm);
+    let end_mm = map.draw(&mut sheet, pixels);
+    map.paths(&mut sheet, &figure.paths);
+    map.ends(&mut sheet, Some(figure.start), &figure.goals);
+    let mut entries = counts.keys(&tones);
+    let uncounted_start = (counts.start == 0).then_some(figure.start);
+    entries.extend(end_keys(uncounted_start, &figure.goals, &figure.paths));
+    let end_mm = keys::draw(&mut sheet, &entries, end_mm + 3.0);
+    let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
+    Ok(Picture { sheet, height_mm })
+}
+
+/// What the raster is; returns where the words end.
+pub(super) fn notes(sheet: &mut Sheet, posts: &MapPosts<'_>, window: &Window, top_mm: f64) -> f64 {
+    paragraph(sheet, &about_raster(posts, window), SMALL_MM, false, top_mm)
+}
+
+/// What the raster is: its posts, which of them have answers, and which are drawn.
+pub(super) fn about_raster(posts: &MapPosts<'_>, window: &Window) -> String {
+    let map = posts.dem.georeference();
+    let spacing = |stride: usize| {
+        let (x, y) = (map.dx_m(), map.dy_m());
+        #[expect(clippy::cast_precision_loss, reason = "a stride")]
+        let stride = stride as f64;
+        let short = super::super::ticks::short;
+        if x == y { format!("{} m", short(x * stride)) } else { format!("{} m by {} m", short(x * stride), short(y * stride)) }
+    };
+    let (rows, cols) = (window.rows.len(), window.cols.len());
+    let part = if *window == Window::whole(posts.dem) { "" } else { "part of the DEM, " };
+    let mut text = format!("Terrain: {part}{rows} x {cols} posts, {} apart, lit from the north-west.", spacing(1));
+    if posts.stride > 1 {
+        text.push_str(&format!(" Answers for one post in {} each way, {} apart.", posts.stride, spacing(posts.stride)));
+    }
+    if window.every() > 1 {
+        text.push_str(&format!(" Drawn: one post in {} each way.", window.every()));
+    }
+    text
+}
+
+/// The class of a number of hops; `None` where there is none. The start, which needs no hop, has the colour of the first.
+fn class_of(classes: &HopClasses, hops: i16) -> Option<usize> {
+    u64::try_from(hops).ok().map(|hops| classes.of(hops))
+}
+
+fn pattern_of(hops: i16, returns: Option<bool>) -> Pattern {
+    match returns {
+        Some(false) if hops >= 0 => Pattern::Striped,
+        Some(true) if hops == HOPS_UNREACHABLE => Pattern::Dotted,
+        _ => Pattern::Plain,
+    }
+}
+
+/// How many posts there are of each kind.
+struct Counts {
+    classes: HopClasses,
+    start: u64,
+    bands: Vec<u64>,
+    not_reached: u64,
+    no_data: u64,
+    one_way: u64,
+    back_only: u64,
+}
+
+impl Counts {
+    fn of(figure: &HopMapFigure<'_>) -> Self {
+        let most = figure.hops.iter().filter_map(|&hops| u64::try_from(hops).ok()).max();
+        // A start alone, without a hop, still has a band.
+        let classes = HopClasses::even(most.map_or(0, |most| most.max(1)));
+        let bands = vec![0; classes.0.len()];
+        let mut counts = Self { classes, start: 0, bands, not_reached: 0, no_data: 0, one_way: 0, back_only: 0 };
+        for (at, &hops) in figure.hops.iter().enumerate() {
+            match class_of(&counts.classes, hops) {
+                Some(_) if hops == 0 => counts.start += 1,
+                Some(class) => counts.bands[class] += 1,
+                None if hops == HOPS_NO_DATA => counts.no_data += 1,
+                None => counts.not_reached += 1,
+            }
+            match pattern_of(hops, figure.can_return.map(|can_return| can_return[at])) {
+                Pattern::Striped => counts.one_way += 1,
+                Pattern::Dotted => counts.back_only += 1,
+                Pattern::Plain => {}
+            }
+        }
+        counts
+    }
+
+    fn keys(&self, tones: &[RGBColor]) -> Vec<(Swatch, String)> {
+        let texts = self.classes.texts();
+        let bands =
+            texts.iter().zip(&self.bands).zip(tones).map(|((text, count), &tone)| (Swatch::Fill(tone), text.as_str(), *count));
+        let rest = [
+            (Swatch::Fill(NOT_REACHED), "not reached", self.not_reached),
+            (Swatch::Symbol(no_data_symbol), "no data", self.no_data),
+            (Swatch::Striped(tones[0]), "reached, no way back to the start", self.one_way),
+            (Swatch::Dotted(NOT_REACHED), "not reached, but a way to the start", self.back_only),
+        ];
+        let start = (Swatch::Symbol(start_symbol), "start", self.start);
+        let all = std::iter::once(start).chain(bands).chain(rest).filter(|&(_, _, count)| count > 0);
+        all.map(|(swatch, text, count)| (swatch, format!("{text}: {count} post{}", if count == 1 { "" } else { "s" }))).collect()
+    }
+}

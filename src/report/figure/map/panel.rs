@@ -1,0 +1,240 @@
+//! The map on the sheet: raster, coordinates, scale bar, north arrow, places and paths.
+
+use plotters::style::RGBColor;
+
+use super::{
+    super::{
+        axes::{BELOW_MM, Panel, left_room_mm},
+        bitmap::Pixels,
+        keys::{Swatch, rectangle},
+        palette::{BLACK, LEFT_MM, RIGHT_MM, SMALL_MM, TEXT_MM},
+        sheet::{Anchor, Hang, Label, Pen, Place, Sheet, SheetImage, text_width_mm},
+        ticks::Ticks,
+    },
+    data::GoalMark,
+    raster::Window,
+};
+use crate::{
+    quantity::MapPoint,
+    terrain::{Dem, MapBounds},
+};
+
+const WHITE: RGBColor = RGBColor(255, 255, 255);
+/// The highest map on the page.
+const TALL_MM: f64 = 165.0;
+/// Room above the map for scale bar and north arrow.
+const STRIP_MM: f64 = 8.0;
+/// Least distance of the numbers of the y axis.
+const TICK_MM: f64 = 9.0;
+/// More goals than this are marked without words.
+const MOST_NAMED: usize = 12;
+/// By how much bold letters are wider than the estimate says.
+const BOLD: f64 = 0.1;
+/// Paths: black in a white casing, to be seen on every band.
+const CORE_PEN: Pen = Pen { colour: BLACK, width_mm: 0.35 };
+const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.9 };
+
+/// Where the map lies on the sheet; both axes at one scale.
+pub(super) struct MapPanel {
+    panel: Panel,
+    bounds: MapBounds,
+    mm_per_m: f64,
+}
+
+impl MapPanel {
+    /// Lays a window of a DEM out below a height of the sheet, both axes at one scale.
+    pub(super) fn new(dem: &Dem, window: &Window, top_mm: f64) -> Self {
+        let map = dem.georeference();
+        let first = map.post(window.rows.start, window.cols.start);
+        let last = map.post(window.rows.end.saturating_sub(1), window.cols.end.saturating_sub(1));
+        // A post's pixel reaches half a spacing beyond it.
+        let (x, y) = (0.5 * map.dx_m(), 0.5 * map.dy_m());
+        let bounds = MapBounds { min: MapPoint::new(first.x - x, last.y - y), max: MapPoint::new(last.x + x, first.y + y) };
+        let (wide_m, high_m) = (bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y);
+        let left = LEFT_MM.max(1.0 + left_room_mm(&Ticks::round(bounds.min.y, bounds.max.y, TALL_MM / TICK_MM)));
+        let mm_per_m = ((RIGHT_MM - left) / wide_m).min(TALL_MM / high_m);
+        let left = left + 0.5 * (RIGHT_MM - left - wide_m * mm_per_m);
+        let top = top_mm + STRIP_MM;
+        let panel = Panel { left, top, right: left + wide_m * mm_per_m, bottom: top + high_m * mm_per_m };
+        Self { panel, bounds, mm_per_m }
+    }
+
+    /// Where a point of the map is drawn.
+    pub(super) fn place(&self, at: MapPoint) -> Place {
+        (self.panel.left + (at.x - self.bounds.min.x) * self.mm_per_m, self.panel.top + (self.bounds.max.y - at.y) * self.mm_per_m)
+    }
+
+    /// Whether a point lies on the drawn map.
+    pub(super) fn shows(&self, at: MapPoint) -> bool {
+        self.bounds.contains(at)
+    }
+
+    /// Raster, axes, scale bar and north arrow; returns where the panel ends.
+    pub(super) fn draw(&self, sheet: &mut Sheet, pixels: Pixels) -> f64 {
+        let panel = &self.panel;
+        let (left_mm, top_mm, width_mm, height_mm) = (panel.left, panel.top, panel.width(), panel.height());
+        sheet.images.push(SheetImage { left_mm, top_mm, width_mm, height_mm, pixels });
+        let (min, max) = (self.bounds.min, self.bounds.max);
+        let guess = Ticks::round(min.x, max.x, panel.width() / 16.0);
+        let widest_mm = text_width_mm(&guess.longest(), SMALL_MM) + 4.0;
+        let along = Ticks::round(min.x, max.x, panel.width() / widest_mm.max(16.0));
+        let ticks: Vec<_> = along.values.iter().map(|&x| (self.place(MapPoint::new(x, min.y)).0, along.text(x))).collect();
+        panel.x_axis(sheet, &ticks, "map x, east (m)", false);
+        let up = Ticks::round(min.y, max.y, panel.height() / TICK_MM);
+        let ticks: Vec<_> = up.values.iter().map(|&y| (self.place(MapPoint::new(min.x, y)).1, up.text(y))).collect();
+        panel.y_axis(sheet, &ticks, "map y, north (m)", false);
+        panel.outline(sheet);
+        let bar_end_mm = self.scale_bar(sheet);
+        self.north(sheet, bar_end_mm);
+        panel.bottom + BELOW_MM
+    }
+
+    /// A bar of a round length above the map's left end; returns where its length ends, mm.
+    fn scale_bar(&self, sheet: &mut Sheet) -> f64 {
+        let lengths = Ticks::round(0.0, 0.3 * self.panel.width() / self.mm_per_m, 2.0);
+        let Some(&length_m) = lengths.values.last().filter(|&&length_m| length_m > 0.0) else { return self.panel.left };
+        let (left, y) = (self.panel.left, self.panel.top - 2.6);
+        let (middle, right) = (left + 0.5 * length_m * self.mm_per_m, left + length_m * self.mm_per_m);
+        sheet.area(rectangle((left, y - 0.6), (middle, y + 0.6)), BLACK, 1.0);
+        sheet.line(rectangle((left, y - 0.6), (right, y + 0.6)).into_iter().chain([(left, y - 0.6)]).collect(), CORE_PEN);
+        let label = Label::new(format!("{} m", lengths.text(length_m)), (right + 1.5, y), SMALL_MM);
+        let (.., end_mm, _) = label.bounds_mm();
+        sheet.label(label);
+        end_mm
+    }
+
+    /// An arrow to grid north above the map's right end, of a narrow map right of the scale bar.
+    fn north(&self, sheet: &mut Sheet, bar_end_mm: f64) {
+        const NAME: &str = "N (grid)";
+        let after_bar = bar_end_mm + 4.0 + text_width_mm(NAME, TEXT_MM) + 2.4;
+        let (x, y) = ((self.panel.right - 1.8).max(after_bar), self.panel.top - 1.4);
+        sheet.area(vec![(x, y - 5.0), (x + 1.3, y), (x, y - 1.0), (x - 1.3, y)], BLACK, 1.0);
+        let name = Label::new(NAME, (x - 2.4, y - 2.4), TEXT_MM).hung(Anchor::End, Hang::Through);
+        sheet.label(Label { bold: true, ..name });
+    }
+
+    /// Paths with their landings.
+    pub(super) fn paths(&self, sheet: &mut Sheet, paths: &[Vec<MapPoint>]) {
+        let drawn: Vec<Vec<Place>> =
+            paths.iter().filter(|path| !path.is_empty()).map(|path| path.iter().map(|&at| self.place(at)).collect()).collect();
+        for points in &drawn {
+            sheet.line(points.clone(), CASING_PEN);
+        }
+        for points in drawn {
+            for &at in &points {
+                sheet.dot(at, 0.55, BLACK);
+            }
+            sheet.line(points, CORE_PEN);
+        }
+    }
+
+    /// Start and goals with their names.
+    pub(super) fn ends(&self, sheet: &mut Sheet, start: Option<MapPoint>, goals: &[GoalMark]) {
+        let start = start.filter(|&at| self.shows(at));
+        let seen: Vec<_> = goals.iter().enumerate().filter(|(_, goal)| self.shows(goal.at)).collect();
+        if let Some(at) = start {
+            start_symbol(sheet, self.place(at));
+        }
+        for (_, goal) in &seen {
+            let symbol = if goal.hops.is_some() { goal_symbol } else { missed_symbol };
+            symbol(sheet, self.place(goal.at));
+        }
+        if let Some(at) = start {
+            self.name(sheet, at, "start");
+        }
+        for (i, goal) in seen.into_iter().take(MOST_NAMED) {
+            let number = if goals.len() > 1 { format!(" {}", i + 1) } else { String::new() };
+            let text = match goal.hops {
+                Some(1) => format!("goal{number}: 1 hop"),
+                Some(hops) => format!("goal{number}: {hops} hops"),
+                None => format!("goal{number}: not reached"),
+            };
+            self.name(sheet, goal.at, &text);
+        }
+    }
+
+    /// A name beside a place, on a light ground, where there is room.
+    pub(super) fn name(&self, sheet: &mut Sheet, at: MapPoint, text: &str) {
+        let (x, y) = self.place(at);
+        let label = |dx: f64, dy: f64, anchor| Label::new(text, (x + dx, y + dy), SMALL_MM).hung(anchor, Hang::Through);
+        let (s, m, e) = (Anchor::Start, Anchor::Middle, Anchor::End);
+        let places = [
+            label(2.2, 0.0, s),
+            label(-2.2, 0.0, e),
+            label(0.0, -3.2, m),
+            label(0.0, 3.2, m),
+            label(2.2, 3.4, s),
+            label(2.2, -3.4, s),
+        ];
+        self.name_on_one(sheet, &places);
+    }
+
+    /// The first of some names that lies on the map and on no other, in bold on a light ground; else one beside the map, or none.
+    pub(super) fn name_on_one(&self, sheet: &mut Sheet, places: &[Label]) {
+        let inside = |label: &&Label| {
+            let (left, top, right, bottom) = label.bounds_mm();
+            left > self.panel.left && right < self.panel.right && top > self.panel.top && bottom < self.panel.bottom
+        };
+        let free = places.iter().filter(inside).find(|label| !sheet.is_taken(label));
+        let Some(label) = free.or_else(|| places.iter().find(|label| !sheet.is_taken(label))) else { return };
+        let (left, top, right, bottom) = label.bounds_mm();
+        // Bold letters are wider than the estimate, away from where the text hangs.
+        let wider_mm = BOLD * (right - left);
+        let (before_mm, after_mm) = match label.anchor {
+            Anchor::Start => (0.0, wider_mm),
+            Anchor::Middle => (0.5 * wider_mm, 0.5 * wider_mm),
+            Anchor::End => (wider_mm, 0.0),
+        };
+        sheet.area(rectangle((left - before_mm - 0.5, top - 0.3), (right + after_mm + 0.5, bottom + 0.4)), WHITE, 0.75);
+        sheet.label(Label { bold: true, ..label.clone() });
+    }
+}
+
+/// A start: a black disc in a white ring.
+pub(super) fn start_symbol(sheet: &mut Sheet, at: Place) {
+    sheet.dot(at, 1.5, WHITE);
+    sheet.dot(at, 1.1, BLACK);
+}
+
+/// A goal that is reached: a black diamond in a white one.
+pub(super) fn goal_symbol(sheet: &mut Sheet, at: Place) {
+    diamond(sheet, at, 2.0, WHITE);
+    diamond(sheet, at, 1.5, BLACK);
+    diamond(sheet, at, 0.7, WHITE);
+}
+
+/// A goal that is not: the same, with a cross through it.
+pub(super) fn missed_symbol(sheet: &mut Sheet, at: Place) {
+    goal_symbol(sheet, at);
+    super::super::symbols::cross(sheet, at);
+}
+
+fn diamond(sheet: &mut Sheet, (x, y): Place, r: f64, colour: RGBColor) {
+    sheet.area(vec![(x - r, y), (x, y - r), (x + r, y), (x, y + r)], colour, 1.0);
+}
+
+/// A path in a legend.
+pub(super) fn path_symbol(sheet: &mut Sheet, (x, y): Place) {
+    sheet.line(vec![(x - 3.0, y), (x + 3.0, y)], CORE_PEN);
+    for at in [x - 2.4, x + 2.4] {
+        sheet.dot((at, y), 0.55, BLACK);
+    }
+}
+
+/// Legend entries of start, goals and paths, as far as they are there.
+pub(super) fn end_keys(start: Option<MapPoint>, goals: &[GoalMark], paths: &[Vec<MapPoint>]) -> Vec<(Swatch, String)> {
+    let mut found = Vec::new();
+    if start.is_some() {
+        found.push((Swatch::Symbol(start_symbol), "start".to_owned()));
+    }
+    if goals.iter().any(|goal| goal.hops.is_some()) {
+        found.push((Swatch::Symbol(goal_symbol), "goal, reached".to_owned()));
+    }
+    if goals.iter().any(|goal| goal.hops.is_none()) {
+        found.push((Swatch::Symbol(missed_symbol), "goal, not reached".to_owned()));
+    }
+    if paths.iter().any(|path| !path.is_empty()) {
+        found.push((Swatch::Symbol(path_symbol), "path and its landings".to_owned()));
+    }
+    found
+}

@@ -1,0 +1,173 @@
+//! Classes of posts over a hillshade as one raster of few colours.
+
+use plotters::style::RGBColor;
+
+use super::{
+    super::{
+        bands::mixed,
+        bitmap::{Form, Pixels},
+    },
+    hillshade::{LEVEL, brightness},
+};
+use crate::{quantity::MapPoint, terrain::Dem};
+
+/// The most pixels a side; of larger rasters every n-th post is drawn, which the map says.
+pub(super) const MOST_PIXELS: usize = 2000;
+/// Small rasters get several pixels for each post, up to this many a side, so that stripes are fine and no viewer blurs the posts.
+const ENOUGH_PIXELS: usize = 1000;
+/// The most shades of each class: enough that no steps are seen.
+const SHADES: usize = 24;
+/// The darkest and the brightest ground, over level ground.
+const DARKEST: f64 = 0.35;
+/// Stripes and dots repeat after this many pixels.
+const PERIOD: usize = 9;
+
+/// Posts of a DEM from and before some rows and columns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Window {
+    pub(super) rows: std::ops::Range<usize>,
+    pub(super) cols: std::ops::Range<usize>,
+}
+
+impl Window {
+    /// All posts.
+    pub(super) fn whole(dem: &Dem) -> Self {
+        Self { rows: 0..dem.rows(), cols: 0..dem.cols() }
+    }
+
+    /// The posts around some places, with a margin of a tenth of their extent and at least four posts; all posts without a place.
+    pub(super) fn around(dem: &Dem, places: impl Iterator<Item = MapPoint>) -> Self {
+        let map = dem.georeference();
+        let first = map.north_west();
+        // Rows and columns as real numbers, growing to the south and to the east.
+        let posts = places.map(|at| ((first.y - at.y) / map.dy_m(), (at.x - first.x) / map.dx_m()));
+        let (mut low, mut high) = ((f64::INFINITY, f64::INFINITY), (f64::NEG_INFINITY, f64::NEG_INFINITY));
+        for (row, col) in posts.filter(|(row, col)| row.is_finite() && col.is_finite()) {
+            (low, high) = ((low.0.min(row), low.1.min(col)), (high.0.max(row), high.1.max(col)));
+        }
+        if low.0 > high.0 {
+            return Self::whole(dem);
+        }
+        let margin = (0.1 * (high.0 - low.0).max(high.1 - low.1)).max(4.0);
+        Self { rows: span(low.0 - margin, high.0 + margin, dem.rows()), cols: span(low.1 - margin, high.1 + margin, dem.cols()) }
+    }
+
+    /// Whether one of the posts has no elevation.
+    pub(super) fn has_gaps(&self, dem: &Dem) -> bool {
+        self.rows.clone().any(|row| self.cols.clone().any(|col| dem.elevation(row, col).is_none()))
+    }
+
+    /// One in how many posts is drawn.
+    pub(super) fn every(&self) -> usize {
+        self.rows.len().max(self.cols.len()).div_ceil(MOST_PIXELS).max(1)
+    }
+}
+
+/// The posts from a real number to another, of so many; where none lies between, the nearest one.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "the cast saturates, and the ends are clipped to the posts"
+)]
+fn span(from: f64, to: f64, count: usize) -> std::ops::Range<usize> {
+    let last = count.saturating_sub(1);
+    let (from, to) = ((from.floor() as usize).min(last), (to.ceil() as usize).min(last));
+    from..to + 1
+}
+
+/// What is drawn over a class's colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Pattern {
+    Plain,
+    Striped,
+    Dotted,
+}
+
+impl Pattern {
+    fn is_ink(self, column: usize, row: usize) -> bool {
+        match self {
+            Self::Plain => false,
+            Self::Striped => (column + row) % PERIOD < 2,
+            Self::Dotted => {
+                let (c, r) = (column % (2 * PERIOD), row % (2 * PERIOD));
+                (c < 3 && r < 3) || ((PERIOD..PERIOD + 3).contains(&c) && (PERIOD..PERIOD + 3).contains(&r))
+            }
+        }
+    }
+}
+
+/// Colour of a class in a legend: lighter than at full strength, as stripes over it and the shading need.
+pub(super) fn tone(colour: RGBColor) -> RGBColor {
+    mixed(colour, RGBColor(255, 255, 255), 0.2)
+}
+
+/// Draws a class for each post over the hillshade, white where there is no elevation or no class.
+///
+/// `class` tells, for a row and a column of the DEM, the place of its colour in `tones` and its pattern.
+pub(super) fn draw(
+    dem: &Dem,
+    window: &Window,
+    tones: &[RGBColor],
+    class: impl Fn(usize, usize) -> Option<(usize, Pattern)>,
+) -> Pixels {
+    let every = window.every();
+    let side = window.rows.len().max(window.cols.len());
+    let up = if every > 1 { 1 } else { (ENOUGH_PIXELS / side.max(1)).max(1) };
+    let (rows, cols) = (window.rows.len().div_ceil(every), window.cols.len().div_ceil(every));
+    // White for no-data and black for stripes come first.
+    let shades = ((256 - 2) / tones.len().max(1)).clamp(1, SHADES);
+    let mut colours = vec![[255; 3], [0; 3]];
+    for &tone in tones {
+        colours.extend((0..shades).map(|shade| shaded(tone, shade, shades)));
+    }
+    let mut bytes = Vec::with_capacity(rows * cols * up * up);
+    for row in 0..rows {
+        let line: Vec<_> = (0..cols)
+            .map(|col| {
+                let at = (window.rows.start + row * every, window.cols.start + col * every);
+                let light = mean_brightness(dem, at, every);
+                let Some(((tone, pattern), light)) = class(at.0, at.1).zip(light) else { return (0, Pattern::Plain) };
+                (u8::try_from(2 + tone * shades + shade_of(light, shades)).unwrap_or(0), pattern)
+            })
+            .collect();
+        for down in 0..up {
+            for (col, &(index, pattern)) in line.iter().enumerate() {
+                let ink = |along| index != 0 && pattern.is_ink(col * up + along, row * up + down);
+                bytes.extend((0..up).map(|along| if ink(along) { 1 } else { index }));
+            }
+        }
+    }
+    Pixels { width: cols * up, height: rows * up, form: Form::Palette(colours), bytes }
+}
+
+/// The mean brightness of the posts that a pixel stands for; `None` where its own post has no elevation.
+#[expect(clippy::cast_precision_loss, reason = "a few hundred posts")]
+fn mean_brightness(dem: &Dem, (row, col): (usize, usize), every: usize) -> Option<f64> {
+    let own = brightness(dem, row, col)?;
+    if every == 1 {
+        return Some(own);
+    }
+    let posts = (row..row + every).flat_map(|row| (col..col + every).map(move |col| (row, col)));
+    let (sum, count) = posts
+        .filter_map(|(row, col)| brightness(dem, row, col))
+        .fold((0.0, 0usize), |(sum, count), light| (sum + light, count + 1));
+    Some(sum / count as f64)
+}
+
+/// The shade of a brightness, 0 to 1.
+#[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_precision_loss, reason = "at most 24 shades")]
+fn shade_of(light: f64, shades: usize) -> usize {
+    ((light * shades as f64) as usize).min(shades - 1)
+}
+
+/// A colour in a shade: level ground has the colour itself, what faces the sun gets lighter, what turns away darker.
+#[expect(clippy::cast_precision_loss, reason = "at most 24 shades")]
+fn shaded(tone: RGBColor, shade: usize, shades: usize) -> [u8; 3] {
+    let light = if shades == 1 { LEVEL } else { (shade as f64 + 0.5) / shades as f64 };
+    let RGBColor(r, g, b) = if light <= LEVEL {
+        mixed(RGBColor(0, 0, 0), tone, DARKEST + (1.0 - DARKEST) * light / LEVEL)
+    } else {
+        mixed(tone, RGBColor(255, 255, 255), 0.6 * (light - LEVEL) / (1.0 - LEVEL))
+    };
+    [r, g, b]
+}

@@ -1,0 +1,282 @@
+//! The answer of a hop map, as plain data and text.
+
+use std::fmt::Write as _;
+
+use serde::Serialize;
+
+use super::{HopRecord, TotalsRecord};
+use crate::{
+    quantity::MapPoint,
+    reach::map::{HopMap, Mobility, NO_GROUND, NodeLattice, Post, SECTORS},
+    terrain::Dem,
+};
+
+/// What `chta map` answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MapAnswer {
+    /// Every so many posts of the DEM is one of the map.
+    pub stride: usize,
+    /// Posts of the map.
+    pub posts: usize,
+    /// Of these, posts without elevation.
+    pub no_data_posts: usize,
+    /// The post that all hops start from.
+    pub start_m: [f64; 2],
+    /// How far that is from the place asked for.
+    pub start_offset_m: f64,
+    /// Posts with a way from the start, itself included.
+    pub reachable_posts: usize,
+    /// Their area, each post with that of its cell.
+    pub reachable_area_m2: f64,
+    /// Reachable posts on the border of the map: more may be reachable beyond.
+    pub reachable_posts_at_border: usize,
+    /// Reachable posts beside one without elevation.
+    pub reachable_posts_at_no_data: usize,
+    /// Hops to the farthest post.
+    pub farthest_hops: i16,
+    /// Posts by hops, from 0 on.
+    pub hops_histogram: Vec<usize>,
+    /// The second criterion, where one was asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub effort: Option<MapEffortRecord>,
+    /// The way back, where it was asked for.
+    #[serde(rename = "return", skip_serializing_if = "Option::is_none")]
+    pub back: Option<ReturnRecord>,
+    /// Single hops from every post, where they were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mobility: Option<MobilityRecord>,
+    /// One for each goal, as asked.
+    pub goals: Vec<GoalRecord>,
+}
+
+/// The least effort among ways of fewest hops.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct MapEffortRecord {
+    /// Which.
+    pub kind: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// The greatest that a reachable post takes.
+    pub greatest: f64,
+}
+
+/// Ways back to the start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct ReturnRecord {
+    /// Posts from which the start can be reached, itself included.
+    pub return_posts: usize,
+    /// Of these, posts that can be reached too.
+    pub round_trip_posts: usize,
+    /// The most hops that a way back takes.
+    pub farthest_hops: i16,
+}
+
+/// Single hops from every post.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct MobilityRecord {
+    /// The radius of the disc that shares are of.
+    pub disc_radius_m: f64,
+    /// Into how many directions it is divided.
+    pub sectors: u8,
+    /// The mean share over all posts.
+    pub mean_share: f64,
+    /// The greatest share.
+    pub best_share: f64,
+    /// The first post, from the north-west, that has it.
+    pub best_m: [f64; 2],
+    /// In how many directions hops lead from there.
+    pub best_directions: f64,
+}
+
+/// A goal.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GoalRecord {
+    /// The post nearest to the place asked for, easting.
+    pub x_m: f64,
+    /// And northing.
+    pub y_m: f64,
+    /// How far that is from the place asked for.
+    pub offset_m: f64,
+    /// Fewest hops; null: not reachable.
+    pub hops: Option<i16>,
+    /// Fewest hops back; absent where that was not asked for, null: no way.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub return_hops: Option<Option<i16>>,
+    /// The hops of one way of fewest (with an effort: of least), x along it.
+    pub path: Vec<HopRecord>,
+    /// What they add up to; null: not reachable.
+    pub totals: Option<TotalsRecord>,
+}
+
+/// What a map is summed up from.
+#[derive(Clone, Copy, Debug)]
+pub struct MapSummary<'a> {
+    /// The terrain.
+    pub dem: &'a Dem,
+    /// The nodes.
+    pub lattice: NodeLattice,
+    /// The place asked for, and the node there.
+    pub start: (MapPoint, Post),
+    /// From the start.
+    pub out: &'a HopMap,
+    /// To the start.
+    pub back: Option<&'a HopMap>,
+    /// Single hops.
+    pub mobility: Option<&'a Mobility>,
+    /// Name and unit of the effort.
+    pub effort: Option<(&'static str, &'static str)>,
+}
+
+impl MapAnswer {
+    /// Of maps; the caller adds the goals.
+    pub fn new(summary: &MapSummary<'_>) -> Self {
+        let MapSummary { dem, lattice, start: (asked, start), out, .. } = *summary;
+        let map = dem.georeference().every(lattice.stride);
+        let at = map.post(start.row, start.col);
+        let reachable = |index: usize| out.hops[index] >= 0;
+        let mut hops_histogram = Vec::new();
+        for &hops in &out.hops {
+            let Ok(hops) = usize::try_from(hops) else { continue };
+            if hops_histogram.len() <= hops {
+                hops_histogram.resize(hops + 1, 0);
+            }
+            hops_histogram[hops] += 1;
+        }
+        let reachable_posts: usize = hops_histogram.iter().sum();
+        let count = |which: &dyn Fn(Post) -> bool| {
+            (0..lattice.count()).filter(|&index| reachable(index) && which(lattice.node(index))).count()
+        };
+        let no_ground = |post: Post| out.hops[lattice.index(post)] == NO_GROUND;
+        #[expect(clippy::cast_precision_loss, reason = "counts of posts stay far below 2^53")]
+        let reachable_area_m2 = reachable_posts as f64 * map.dx_m() * map.dy_m();
+        Self {
+            stride: lattice.stride,
+            posts: lattice.count(),
+            no_data_posts: out.hops.iter().filter(|&&hops| hops == NO_GROUND).count(),
+            start_m: [at.x, at.y],
+            start_offset_m: (at - asked).norm(),
+            reachable_posts,
+            reachable_area_m2,
+            reachable_posts_at_border: count(&|post| {
+                post.row == 0 || post.col == 0 || post.row + 1 == lattice.rows || post.col + 1 == lattice.cols
+            }),
+            reachable_posts_at_no_data: count(&|post| neighbours(lattice, post).any(no_ground)),
+            farthest_hops: out.hops.iter().copied().fold(0, i16::max),
+            hops_histogram,
+            effort: summary.effort.map(|(kind, unit)| MapEffortRecord {
+                kind,
+                unit,
+                greatest: out.effort.iter().copied().fold(0.0, f64::max),
+            }),
+            back: summary.back.map(|back| ReturnRecord {
+                return_posts: back.hops.iter().filter(|&&hops| hops >= 0).count(),
+                round_trip_posts: out.hops.iter().zip(&back.hops).filter(|&(&there, &back)| there >= 0 && back >= 0).count(),
+                farthest_hops: back.hops.iter().copied().fold(0, i16::max),
+            }),
+            mobility: summary.mobility.map(|mobility| MobilityRecord::new(mobility, lattice, &map)),
+            goals: Vec::new(),
+        }
+    }
+
+    /// Whether every goal is reachable.
+    pub fn reaches_all_goals(&self) -> bool {
+        self.goals.iter().all(|goal| goal.hops.is_some())
+    }
+
+    /// For reading.
+    pub fn text(&self) -> String {
+        let mut text = format!(
+            "{} of {} posts reachable from ({}, {}) m, {:.6} km2, in at most {} hops\n",
+            self.reachable_posts,
+            self.posts,
+            self.start_m[0],
+            self.start_m[1],
+            self.reachable_area_m2 * 1.0e-6,
+            self.farthest_hops
+        );
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "start: {:.3} m from the place asked for; {} reachable posts on the map's border, {} beside no-data",
+            self.start_offset_m, self.reachable_posts_at_border, self.reachable_posts_at_no_data
+        );
+        if let Some(MapEffortRecord { kind, unit, greatest }) = &self.effort {
+            let _ = writeln!(text, "effort ({kind}): at most {greatest:.4} {unit}");
+        }
+        if let Some(back) = &self.back {
+            let _ = writeln!(
+                text,
+                "return: the start can be reached again from {} posts, {} of them reachable, in at most {} hops",
+                back.return_posts, back.round_trip_posts, back.farthest_hops
+            );
+        }
+        if let Some(mobility) = &self.mobility {
+            let _ = writeln!(
+                text,
+                "mobility: one hop reaches {:.1} % of the posts within {:.3} m on average; most at ({}, {}) m: {:.1} %, in {} of {} directions",
+                100.0 * mobility.mean_share,
+                mobility.disc_radius_m,
+                mobility.best_m[0],
+                mobility.best_m[1],
+                100.0 * mobility.best_share,
+                mobility.best_directions,
+                mobility.sectors
+            );
+        }
+        for goal in &self.goals {
+            let hops = goal.hops.map_or("not reachable".to_owned(), |hops| format!("{hops} hops"));
+            let back = match goal.return_hops {
+                Some(Some(hops)) => format!(", {hops} hops back"),
+                Some(None) => ", no way back".to_owned(),
+                None => String::new(),
+            };
+            let _ = writeln!(
+                text,
+                "goal ({}, {}) m, {:.3} m from the place asked for: {hops}{back}",
+                goal.x_m, goal.y_m, goal.offset_m
+            );
+        }
+        if !self.hops_histogram.is_empty() {
+            let _ = writeln!(text, "\n{:>6}{:>12}", "hops", "posts");
+        }
+        for (hops, posts) in self.hops_histogram.iter().enumerate() {
+            let _ = writeln!(text, "{hops:>6}{posts:>12}");
+        }
+        text
+    }
+}
+
+impl MobilityRecord {
+    fn new(mobility: &Mobility, lattice: NodeLattice, map: &crate::terrain::GeoReference) -> Self {
+        let (mut sum, mut count, mut best) = (0.0, 0u32, (f64::NEG_INFINITY, 0));
+        for (index, &share) in mobility.share.iter().enumerate() {
+            let share = f64::from(share);
+            if share.is_nan() {
+                continue;
+            }
+            sum += share;
+            count += 1;
+            if share > best.0 {
+                best = (share, index);
+            }
+        }
+        let Post { row, col } = lattice.node(best.1);
+        let at = map.post(row, col);
+        Self {
+            disc_radius_m: mobility.disc_radius_m,
+            sectors: SECTORS,
+            mean_share: if count == 0 { 0.0 } else { sum / f64::from(count) },
+            best_share: best.0.max(0.0),
+            best_m: [at.x, at.y],
+            best_directions: f64::from(mobility.directions[best.1]).max(0.0),
+        }
+    }
+}
+
+/// The eight posts around a post, those on the map.
+fn neighbours(lattice: NodeLattice, post: Post) -> impl Iterator<Item = Post> {
+    let around = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
+    around(post.row, lattice.rows)
+        .flat_map(move |row| around(post.col, lattice.cols).map(move |col| Post { row, col }))
+        .filter(move |&other| other != post)
+}

@@ -1,0 +1,164 @@
+//! The answer of a trade of capabilities, as plain data, text, CSV and picture.
+
+use std::{
+    collections::BTreeMap,
+    fmt::Write as _,
+    io::{self, Write},
+};
+
+use serde::Serialize;
+
+#[cfg(feature = "plot")]
+use super::figure::{Caption, TradeAxis, TradeField, TradeFigure};
+use crate::graph::proof::ProofVerdict;
+
+/// What `chta trade` answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TradeAnswer {
+    /// What was varied: one key, or two.
+    pub vary: Vec<TradeVariation>,
+    /// Whether a proof was asked for.
+    #[serde(skip)]
+    pub proved: bool,
+    /// One for each field; the last key changes fastest.
+    pub rows: Vec<TradeRow>,
+}
+
+/// One key that was varied.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TradeVariation {
+    /// The scenario's key, `table.name`.
+    pub key: String,
+    /// Its values, rising.
+    pub values: Vec<f64>,
+}
+
+/// One field.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TradeRow {
+    /// The value of each key.
+    #[serde(flatten)]
+    pub values: BTreeMap<String, f64>,
+    /// `traversable`, `no-path-found`, or `untraversable` where that is proved.
+    pub verdict: &'static str,
+    /// The fewest hops found.
+    pub hops: Option<u64>,
+    /// With a proof: no path has fewer hops; null where there is none at all.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lower_bound: Option<Option<u64>>,
+}
+
+impl TradeRow {
+    /// What a field of a table or a picture says: the hops, `x` where it is proved that there is no path, `-` where none was found.
+    fn sign(&self) -> String {
+        match self.hops {
+            Some(hops) => hops.to_string(),
+            None if self.is_closed() => "x".to_owned(),
+            None => "-".to_owned(),
+        }
+    }
+
+    /// Whether it is proved that there is no path.
+    fn is_closed(&self) -> bool {
+        self.verdict == ProofVerdict::Untraversable.name()
+    }
+
+    #[cfg(feature = "plot")]
+    fn field(&self) -> TradeField {
+        match self.hops {
+            Some(hops) => TradeField::Hops(hops),
+            None if self.is_closed() => TradeField::Untraversable,
+            None => TradeField::Open,
+        }
+    }
+}
+
+impl TradeAnswer {
+    /// The fields as a picture shows them, with a title and a line below it: the first key along the horizontal axis, the second along the vertical one.
+    #[cfg(feature = "plot")]
+    pub fn figure(&self, title: impl Into<String>, line: impl Into<String>) -> TradeFigure {
+        let axis = |v: &TradeVariation| TradeAxis { name: with_unit(&v.key), values: v.values.clone() };
+        let mut vary = self.vary.iter().map(axis);
+        TradeFigure {
+            caption: Caption::new(title, format!("{}; {}", line.into(), self.summary())),
+            x: vary.next().unwrap_or_default(),
+            y: vary.next(),
+            fields: self.by_lines().flatten().map(TradeRow::field).collect(),
+        }
+    }
+
+    /// The fields line by line: for each value of the second key those of all values of the first.
+    fn by_lines(&self) -> impl Iterator<Item = impl Iterator<Item = &TradeRow>> {
+        let down = self.vary.get(1).map_or(1, |second| second.values.len());
+        (0..down).map(move |line| self.rows.iter().skip(line).step_by(down))
+    }
+
+    /// How many fields have a path.
+    fn summary(&self) -> String {
+        let paths = self.rows.iter().filter(|row| row.hops.is_some()).count();
+        let closed = self.rows.iter().filter(|row| row.is_closed()).count();
+        let proved = if self.proved { format!(", in {closed} it is proved that there is none") } else { String::new() };
+        format!("{paths} of {} fields have a path{proved}", self.rows.len())
+    }
+
+    /// The table for reading.
+    pub fn text(&self) -> String {
+        let mut text = format!("{}\n\n", self.summary());
+        let columns: Vec<String> = self.vary.first().map(|v| v.values.iter().map(f64::to_string).collect()).unwrap_or_default();
+        let names: Vec<&str> = self.vary.iter().map(|v| v.key.as_str()).collect();
+        // Writing to a String cannot fail.
+        let _ = match names.as_slice() {
+            [across, down] => writeln!(text, "hops by {across} (across) and {down} (down):\n"),
+            _ => writeln!(text, "hops by {}:\n", names.concat()),
+        };
+        let lines: Vec<Vec<String>> = self.by_lines().map(|line| line.map(TradeRow::sign).collect()).collect();
+        let wide = columns.iter().chain(lines.iter().flatten()).map(String::len).max().unwrap_or(0) + 2;
+        let heads: Vec<String> = match self.vary.get(1) {
+            Some(down) => down.values.iter().map(f64::to_string).collect(),
+            None => vec!["hops".to_owned()],
+        };
+        let head = heads.iter().map(String::len).max().unwrap_or(0);
+        let row = |name: &str, fields: &[String]| {
+            fields.iter().fold(format!("{name:>head$}"), |row, field| row + &format!("{field:>wide$}"))
+        };
+        let _ = writeln!(text, "{}", row("", &columns));
+        for (name, line) in heads.iter().zip(&lines) {
+            let _ = writeln!(text, "{}", row(name, line));
+        }
+        if lines.iter().flatten().any(|sign| sign == "-") {
+            text.push_str("\n-: no path found\n");
+        }
+        if lines.iter().flatten().any(|sign| sign == "x") {
+            text.push_str("\nx: proved, there is no path\n");
+        }
+        text
+    }
+
+    /// The rows as CSV; what is absent is blank.
+    ///
+    /// # Errors
+    /// What the writer says.
+    pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
+        let keys: Vec<&str> = self.vary.iter().map(|v| v.key.as_str()).collect();
+        let mut writer = csv::Writer::from_writer(out);
+        let bound: &[&str] = if self.proved { &["lower_bound"] } else { &[] };
+        writer.write_record([&keys[..], &["verdict", "hops"], bound].concat())?;
+        let count = |hops: Option<u64>| hops.map(|hops| hops.to_string()).unwrap_or_default();
+        for row in &self.rows {
+            let values = keys.iter().map(|key| row.values.get(*key).map(f64::to_string).unwrap_or_default());
+            let bound = row.lower_bound.map(count);
+            writer.write_record(values.chain([row.verdict.to_owned(), count(row.hops)]).chain(bound))?;
+        }
+        writer.flush()
+    }
+}
+
+/// A key with the unit that its name ends in, as an axis says it.
+#[cfg(feature = "plot")]
+fn with_unit(key: &str) -> String {
+    let units = [("_m_s2", "m/s²"), ("_m_s", "m/s"), ("_deg", "deg"), ("_kg", "kg"), ("_m", "m"), ("_s", "s")];
+    match units.into_iter().find(|(ending, _)| key.ends_with(ending)) {
+        Some((_, unit)) => format!("{key} ({unit})"),
+        None => key.to_owned(),
+    }
+}

@@ -1,0 +1,476 @@
+//! One or two keys of a scenario varied over a grid, and the answer in every field of it.
+
+use std::path::Path;
+
+use rayon::prelude::*;
+
+use super::{
+    Entries, Key, Kind, Prepared, Scenario, ScenarioProblem, Survey,
+    entries::{fits, nearest_key},
+};
+use crate::{
+    ballistics::HopTest,
+    chain::Station,
+    graph::{
+        SearchOptions, TooManyNodes,
+        proof::{BoundsOptions, ProofVerdict, bounds},
+        search,
+    },
+    report::{TradeAnswer, TradeRow, TradeVariation},
+    world::Hopper,
+};
+
+/// A key of the scenario and the values that it takes in turn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variation {
+    key: &'static Key,
+    values: Vec<f64>,
+}
+
+/// Why a trade cannot be made.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum TradeError {
+    /// No `TABLE.KEY=FROM:TO:STEPS`.
+    #[error("{path}: found `{found}`, expected FROM:TO:STEPS, three numbers, such as hopper.takeoff_speed_max_m_s=4:10:7")]
+    Malformed {
+        /// The key, as typed.
+        path: String,
+        /// What stands after it.
+        found: String,
+    },
+    /// A key that no scenario has.
+    #[error("{path}: unknown key; the nearest known key is {nearest}")]
+    UnknownKey {
+        /// The key, as typed.
+        path: String,
+        /// The one that may be meant.
+        nearest: String,
+    },
+    /// A key that takes no single number.
+    #[error("{path}: takes {expected}, which cannot be varied: expected a key that takes a number")]
+    NotANumber {
+        /// The key.
+        path: String,
+        /// What it takes.
+        expected: String,
+    },
+    /// A range without extent.
+    #[error("{path}: found FROM {from} and TO {to}, expected FROM below TO, both finite")]
+    Range {
+        /// The key.
+        path: String,
+        /// Where it begins.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+    },
+    /// Too few values, too many, or no whole number.
+    #[error("{path}: STEPS is {found}, expected how many values to try, a whole number from 2 to {}", Variation::MOST)]
+    Steps {
+        /// The key.
+        path: String,
+        /// What was given.
+        found: String,
+    },
+    /// A value that the key does not take.
+    #[error("{path}: a value is {value}, expected {expected}")]
+    Value {
+        /// The key.
+        path: String,
+        /// The value.
+        value: f64,
+        /// What the key takes.
+        expected: String,
+    },
+    /// The same key twice.
+    #[error("{path} is varied twice, expected two different keys")]
+    Twice {
+        /// The key.
+        path: String,
+    },
+    /// No key, or more than two.
+    #[error("found {found} keys to vary, expected one, or two for a grid")]
+    Count {
+        /// How many.
+        found: usize,
+    },
+    /// More fields than make sense.
+    #[error("the grid has {fields} fields, expected at most {}: choose fewer STEPS", Trade::MOST_FIELDS)]
+    Fields {
+        /// How many.
+        fields: usize,
+    },
+    /// A key on which nothing depends.
+    #[error(
+        "{path}: no value from {from} to {to} changes anything here: no verdict depends on this key, or the chain's own limits or friction \
+         rule"
+    )]
+    NoEffect {
+        /// The key.
+        path: String,
+        /// The least value.
+        from: f64,
+        /// The greatest value.
+        to: f64,
+    },
+    /// A field whose scenario is refused.
+    #[error("with {field}: {problem}")]
+    Field {
+        /// The keys with their values.
+        field: String,
+        /// Why it is refused.
+        problem: String,
+    },
+    /// No threads to work with.
+    #[error("the threads cannot be started ({0}): ask for fewer with --threads")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+}
+
+impl Variation {
+    /// The most values of one key.
+    pub const MOST: usize = 1000;
+
+    /// Reads `TABLE.KEY=FROM:TO:STEPS`: as many values as STEPS says, evenly spread from FROM to TO, both included.
+    ///
+    /// # Errors
+    /// [`TradeError`], in one sentence that begins with the key.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::scenario::Variation;
+    /// let speeds = Variation::parse("hopper.takeoff_speed_max_m_s=4:10:7").unwrap();
+    /// assert_eq!(speeds.values(), [4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]);
+    /// assert!(Variation::parse("hopper.takeof_speed_max_m_s=4:10:7").unwrap_err().to_string().contains("hopper.takeoff_speed_max_m_s"));
+    /// ```
+    pub fn parse(text: &str) -> Result<Self, TradeError> {
+        let (path, range) = text.split_once('=').unwrap_or((text, ""));
+        let path = path.trim().to_owned();
+        let (table, name) = path.split_once('.').unwrap_or(("", &path));
+        let Some(key) = Key::find(table, name) else {
+            return Err(TradeError::UnknownKey { nearest: nearest_key(table, name, Some(table)), path });
+        };
+        if !matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto) {
+            return Err(TradeError::NotANumber { path, expected: key.kind.expected() });
+        }
+        let malformed = || TradeError::Malformed { path: path.clone(), found: range.to_owned() };
+        let parts: Vec<&str> = range.split(':').map(str::trim).collect();
+        let [from, to, steps] = parts.as_slice() else { return Err(malformed()) };
+        let number = |text: &str| text.parse::<f64>().map_err(|_| malformed());
+        let (from, to) = (number(from)?, number(to)?);
+        if number(steps)?.is_nan() {
+            return Err(malformed());
+        }
+        let Some(steps) = steps.parse().ok().filter(|steps| (2..=Self::MOST).contains(steps)) else {
+            return Err(TradeError::Steps { path, found: (*steps).to_owned() });
+        };
+        if !(from.is_finite() && to.is_finite() && from < to) {
+            return Err(TradeError::Range { path, from, to });
+        }
+        let values = spread(from, to, steps);
+        if let Some(&value) = values.iter().find(|&&value| !fits(&typed(key, value), key.kind)) {
+            return Err(TradeError::Value { path, value, expected: key.kind.expected() });
+        }
+        Ok(Self { key, values })
+    }
+
+    /// The key.
+    pub const fn key(&self) -> &'static Key {
+        self.key
+    }
+
+    /// The values, rising.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+}
+
+/// As many values from one to another. Those between are rounded to the twelfth digit of
+/// the greater end, so that steps of a tenth read so.
+#[expect(clippy::cast_precision_loss, reason = "at most a thousand values")]
+fn spread(from: f64, to: f64, steps: usize) -> Vec<f64> {
+    let last = (steps - 1) as f64;
+    let scale = from.abs().max(to.abs());
+    let decimals = (12.0 - libm::ceil(libm::log10(scale))).clamp(0.0, 17.0);
+    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "from 0 to 17")]
+    let decimals = decimals as usize;
+    let between = |i: usize| {
+        let value = from + (to - from) * (i as f64 / last);
+        format!("{value:.decimals$}").parse().unwrap_or(value).clamp(from, to)
+    };
+    (0..steps)
+        .map(|i| {
+            if i == 0 {
+                from
+            } else if i + 1 == steps {
+                to
+            } else {
+                between(i)
+            }
+        })
+        .collect()
+}
+
+/// A value as a scenario would state it.
+fn typed(key: &Key, value: f64) -> toml::Value {
+    match key.kind {
+        #[expect(clippy::cast_possible_truncation, reason = "whole and within the range of counts, or refused as it is")]
+        Kind::CountOrAuto if value.fract() == 0.0 && value.abs() < 1e9 => toml::Value::Integer(value as i64),
+        _ => toml::Value::Float(value),
+    }
+}
+
+/// The answer for one pair of ends: the verdict, the hops, and what no path undercuts where that was asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Varied {
+    /// What is known: `Open` where no path was found and none excluded.
+    pub verdict: ProofVerdict,
+    /// The fewest hops found.
+    pub hops: Option<u64>,
+    /// With a proof: no path has fewer hops; `None` where there is none at all.
+    pub lower_bound: Option<Option<u64>>,
+}
+
+/// The verdict over one chain, with a proof within a budget of cells where one is asked for.
+///
+/// # Errors
+/// [`TooManyNodes`].
+pub fn judged(
+    test: &HopTest<'_>,
+    (start, goal): (Station, Station),
+    options: &SearchOptions,
+    proof_budget_cells: Option<usize>,
+) -> Result<Varied, TooManyNodes> {
+    let Some(budget_cells) = proof_budget_cells else {
+        let hops = search(test, start, goal, options, &mut |_| {})?.hops();
+        let verdict = if hops.is_some() { ProofVerdict::Traversable } else { ProofVerdict::Open };
+        return Ok(Varied { verdict, hops, lower_bound: None });
+    };
+    let options = BoundsOptions { budget_cells, search: options.clone(), ..BoundsOptions::default() };
+    let bounds = bounds(test, start, goal, &options, &mut |_| {})?;
+    Ok(Varied { verdict: bounds.verdict(), hops: bounds.upper(), lower_bound: Some(bounds.lower) })
+}
+
+/// A scenario, its terrain, and what is varied of it.
+#[derive(Clone, Debug)]
+pub struct Trade<'a> {
+    entries: &'a Entries,
+    base: &'a Path,
+    survey: &'a Survey,
+    variations: &'a [Variation],
+}
+
+impl<'a> Trade<'a> {
+    /// The most fields of a grid.
+    pub const MOST_FIELDS: usize = 100_000;
+
+    /// Of the keys as typed, over terrain that was read once; `base` is the folder that the scenario's paths start from.
+    ///
+    /// # Errors
+    /// [`TradeError`], where the variations do not make a row or a grid.
+    pub fn new(entries: &'a Entries, base: &'a Path, survey: &'a Survey, variations: &'a [Variation]) -> Result<Self, TradeError> {
+        checked(variations)?;
+        Ok(Self { entries, base, survey, variations })
+    }
+
+    /// How many fields there are.
+    pub fn fields(&self) -> usize {
+        fields(self.variations)
+    }
+
+    /// The answer in every field, in parallel; the same for any number of threads.
+    ///
+    /// The last key changes fastest. `progress` is told after each field.
+    ///
+    /// # Arguments
+    /// `threads`: how many; 0: one for each core.
+    ///
+    /// # Errors
+    /// [`TradeError`]: a key on which nothing depends, or the first field whose scenario is refused.
+    pub fn run(
+        &self,
+        proof_budget_cells: Option<usize>,
+        threads: usize,
+        progress: &(dyn Fn() + Sync),
+    ) -> Result<TradeAnswer, TradeError> {
+        for axis in 0..self.variations.len() {
+            self.check_effect(axis)?;
+        }
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
+        let rows: Vec<_> = pool.install(|| {
+            (0..self.fields())
+                .into_par_iter()
+                .map(|field| {
+                    let row = self.row(&self.at(field), proof_budget_cells);
+                    progress();
+                    row
+                })
+                .collect()
+        });
+        let vary = self.variations.iter().map(|v| TradeVariation { key: v.key.path(), values: v.values.clone() }).collect();
+        Ok(TradeAnswer { vary, proved: proof_budget_cells.is_some(), rows: rows.into_iter().collect::<Result<_, _>>()? })
+    }
+
+    /// The values of a field by its number.
+    fn at(&self, field: usize) -> Vec<f64> {
+        match self.variations {
+            [one] => vec![one.values[field]],
+            [first, second] => {
+                let across = second.values.len();
+                vec![first.values[field / across], second.values[field % across]]
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The scenario of a field.
+    fn scenario(&self, values: &[f64]) -> Result<Scenario, TradeError> {
+        Scenario::new(varied(self.entries, self.variations, values)).map_err(|problems| self.refused(values, &sentences(&problems)))
+    }
+
+    /// The scenario of a field and its chain.
+    fn prepared(&self, values: &[f64]) -> Result<(Scenario, Prepared), TradeError> {
+        let scenario = self.scenario(values)?;
+        // The one number that changes what is read.
+        let rereads = self.variations.iter().any(|v| (v.key.table, v.key.name) == ("terrain", "mesh_scale"));
+        let prepared = match scenario.terrain.as_ref().filter(|_| rereads) {
+            Some(source) => Survey::of(&scenario, source, self.base).and_then(|survey| survey.prepare(&scenario)),
+            None => self.survey.prepare(&scenario),
+        };
+        prepared.map(|prepared| (scenario, prepared)).map_err(|error| self.refused(values, &error.to_string()))
+    }
+
+    /// One field.
+    fn row(&self, values: &[f64], proof_budget_cells: Option<usize>) -> Result<TradeRow, TradeError> {
+        let (scenario, Prepared { chain, start, goal, .. }) = self.prepared(values)?;
+        let Some(ends) = start.zip(goal) else {
+            return Err(self.refused(values, "found no start or no goal: give --start X and --goal X along the chain"));
+        };
+        let test = HopTest::new(&chain, &scenario.hopper, scenario.body.gravity_m_s2);
+        let answer =
+            judged(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
+        let keys = self.variations.iter().map(|v| v.key.path());
+        Ok(TradeRow {
+            values: keys.zip(values.iter().copied()).collect(),
+            verdict: answer.verdict.name(),
+            hops: answer.hops,
+            lower_bound: answer.lower_bound,
+        })
+    }
+
+    /// Whether anything depends on a key: fields next to each other along it are compared until two differ.
+    fn check_effect(&self, axis: usize) -> Result<(), TradeError> {
+        let own = &self.variations[axis];
+        let across: &[f64] = self.variations.iter().enumerate().find(|(i, _)| *i != axis).map_or(&[0.0], |(_, v)| &v.values);
+        for &other in across {
+            let mut before = None;
+            for &value in &own.values {
+                let values = match (self.variations.len(), axis) {
+                    (1, _) => vec![value],
+                    (_, 0) => vec![value, other],
+                    _ => vec![other, value],
+                };
+                let now = self.prepared(&values)?;
+                if before.as_ref().is_some_and(|before| differ(before, &now)) {
+                    return Ok(());
+                }
+                before = Some(now);
+            }
+        }
+        let (from, to) = (own.values[0], own.values[own.values.len() - 1]);
+        Err(TradeError::NoEffect { path: own.key.path(), from, to })
+    }
+
+    /// A field's problem with the field.
+    fn refused(&self, values: &[f64], problem: &str) -> TradeError {
+        let field: Vec<_> = self.variations.iter().zip(values).map(|(v, value)| format!("{}={value}", v.key.path())).collect();
+        TradeError::Field { field: field.join(" and "), problem: problem.to_owned() }
+    }
+}
+
+impl Trade<'_> {
+    /// The keys as typed with those of the first field in place, for the terrain to be read by.
+    ///
+    /// # Errors
+    /// As [`Trade::new`].
+    pub fn first_field(entries: &Entries, variations: &[Variation]) -> Result<Entries, TradeError> {
+        checked(variations)?;
+        let first: Vec<f64> = variations.iter().filter_map(|v| v.values.first().copied()).collect();
+        Ok(varied(entries, variations, &first))
+    }
+}
+
+/// One key or two different ones, and not too many fields.
+fn checked(variations: &[Variation]) -> Result<(), TradeError> {
+    match variations {
+        [first, second] if first.key == second.key => return Err(TradeError::Twice { path: first.key.path() }),
+        [_] | [_, _] => {}
+        _ => return Err(TradeError::Count { found: variations.len() }),
+    }
+    match fields(variations) {
+        fields if fields > Trade::MOST_FIELDS => Err(TradeError::Fields { fields }),
+        _ => Ok(()),
+    }
+}
+
+fn fields(variations: &[Variation]) -> usize {
+    variations.iter().map(|v| v.values.len()).product()
+}
+
+/// The keys with values in place.
+fn varied(entries: &Entries, variations: &[Variation], values: &[f64]) -> Entries {
+    let mut entries = entries.clone();
+    for (Variation { key, .. }, &value) in variations.iter().zip(values) {
+        entries.set_by_option(&format!("--vary {}", key.path()), key.table, key.name, typed(key, value));
+    }
+    entries
+}
+
+/// Problems in one sentence.
+fn sentences(problems: &[ScenarioProblem]) -> String {
+    problems.iter().map(|problem| format!("{}; {}", problem.message, problem.help)).collect::<Vec<_>>().join("; ")
+}
+
+/// Whether two fields ask anything different: of the ground, the machine, the ends or the points.
+fn differ((a, on_a): &(Scenario, Prepared), (b, on_b): &(Scenario, Prepared)) -> bool {
+    // Speeds count as the segments grant them; mass and rest time weigh nothing.
+    let machine = |hopper: &Hopper| Hopper {
+        takeoff_speed_max_m_s: 0.0,
+        landing_speed_max_m_s: 0.0,
+        mass_kg: None,
+        rest_time_s: None,
+        ..*hopper
+    };
+    machine(&a.hopper) != machine(&b.hopper)
+        || a.body.gravity_m_s2 != b.body.gravity_m_s2
+        || a.search.spacing != b.search.spacing
+        || (on_a.start, on_a.goal) != (on_b.start, on_b.goal)
+        || on_a.chain.segments() != on_b.chain.segments()
+        || on_a.chain.geometry().vertices() != on_b.chain.geometry().vertices()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scenario::CATALOGUE;
+
+    #[test]
+    fn values_between_read_as_people_would_write_them() {
+        assert_eq!(spread(0.1, 0.7, 7), [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]);
+        assert_eq!(spread(-1.0, 1.0, 3), [-1.0, 0.0, 1.0]);
+        assert_eq!(spread(0.000_02, 0.000_08, 4), [0.000_02, 0.000_04, 0.000_06, 0.000_08]);
+        let thirds = spread(0.0, 1.0, 4);
+        assert!((thirds[1] - 1.0 / 3.0).abs() < 1e-11, "{thirds:?}");
+        assert!(spread(1e9, 1e9 + 1e-3, 5).windows(2).all(|pair| pair[0] <= pair[1]));
+    }
+
+    #[test]
+    fn every_key_that_takes_a_number_can_be_varied_and_no_other() {
+        for key in &CATALOGUE {
+            let text = format!("{}=1:3:3", key.path());
+            let parsed = Variation::parse(&text);
+            let number = matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto);
+            assert_eq!(parsed.is_ok(), number, "{text}: {parsed:?}");
+        }
+    }
+}
