@@ -186,7 +186,7 @@ fn what_makes_no_sense_is_refused_by_name() {
 #[test]
 fn without_a_nominal_path_the_answer_is_no() {
     let desk = desk();
-    let words = ["simulate", "scenario.toml", "--set", "hopper.takeoff_speed_max_m_s=0.5"];
+    let words = ["simulate", "scenario.toml", "--set", "surface.friction_coefficient=0.05"];
     let ran = desk.run(&[&words[..], &["-o", "landings.csv", "--plot", "trials.svg"]].concat());
     assert_eq!(ran.status, 1, "{ran:?}");
     assert!(ran.stdout.contains("no nominal path"), "{}", ran.stdout);

@@ -150,7 +150,7 @@ impl SimulationRecord {
             "\ndistance from the planned landing (m)\n{:>5}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}",
             "hop", "landings", "mean", "5 %", "25 %", "50 %", "75 %", "95 %", "max"
         ));
-        for landing in &self.landings {
+        for landing in self.landings.iter().filter(|landing| landing.count > 0) {
             let numbers: String =
                 landing.error.each().map(|number| number.map_or(format!("{:>10}", "-"), |n| format!("{n:>10.3}"))).concat();
             let ellipse = landing.ellipse95.map_or(String::new(), |ellipse| {
@@ -160,6 +160,10 @@ impl SimulationRecord {
                 )
             });
             sheet.line(format_args!("{:>5}{:>11}{numbers}{ellipse}", landing.hop, landing.count));
+        }
+        let unlanded = self.landings.iter().filter(|landing| landing.count == 0).count();
+        if unlanded > 0 {
+            sheet.line(format_args!("no trial landed any of the {unlanded} planned hops after that"));
         }
         sheet.into_text()
     }
