@@ -354,6 +354,7 @@ fn post(heights: &impl Fn(usize, usize) -> f64, col: isize, row: isize) -> f64 {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_precision_loss, reason = "small counts")]
 mod tests {
     use super::*;
     use crate::terrain::{FractalGround, GeoReference, SyntheticTerrain, slice, synthesise};

@@ -98,6 +98,7 @@ pub(super) fn normals([radius, turn]: [f64; 2]) -> [f64; 2] {
 }
 
 #[cfg(test)]
+#[expect(clippy::cast_precision_loss, reason = "small counts")]
 mod tests {
     use super::*;
 

@@ -82,7 +82,6 @@ impl Support {
         if fall <= self.nodes[0] {
             return self.heights[0];
         }
-        #[expect(clippy::cast_possible_truncation, reason = "a cell that does not fit is beyond the nodes on any machine")]
         let cell = (fall.to_bits() >> Self::WITHIN).wrapping_sub(self.base) as usize;
         if cell >= Self::NODES - 1 {
             return f64::INFINITY;

@@ -244,12 +244,12 @@ impl Sheet {
         let mut out = svg[..page_end].to_owned();
         for image in &self.images {
             let sides = [("x", image.left_mm), ("y", image.top_mm), ("width", image.width_mm), ("height", image.height_mm)];
-            let sides: String = sides.iter().map(|&(name, mm)| format!(" {name}=\"{}\"", units(mm))).collect();
-            let data = base64(&image.pixels.to_png(None)?);
-            out.push_str(&format!(
-                "\n<image xmlns:xlink=\"http://www.w3.org/1999/xlink\"{sides} preserveAspectRatio=\"none\" \
-                 image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\" xlink:href=\"data:image/png;base64,{data}\"/>"
-            ));
+            out.push_str("\n<image xmlns:xlink=\"http://www.w3.org/1999/xlink\"");
+            for (name, mm) in sides {
+                out.extend([" ", name, "=\"", &units(mm).to_string(), "\""]);
+            }
+            out.push_str(" preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\"");
+            out.extend([" xlink:href=\"data:image/png;base64,", &base64(&image.pixels.to_png(None)?), "\"/>"]);
         }
         out.push_str(&svg[page_end..]);
         Ok(out)

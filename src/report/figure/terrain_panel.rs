@@ -254,7 +254,7 @@ fn flight(frame: &Frame, hop: &HopFigure) -> Vec<Place> {
 }
 
 /// A line from left to right with only the first, lowest, highest and last of the points in each narrow column.
-fn thinned(points: &[Place]) -> Vec<Place> {
+pub(super) fn thinned(points: &[Place]) -> Vec<Place> {
     let mut kept: Vec<Place> = Vec::new();
     let column = |place: &Place| (place.0 / COLUMN_MM).floor();
     for group in points.chunk_by(|a, b| column(a) == column(b)) {

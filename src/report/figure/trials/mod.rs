@@ -1,61 +1,140 @@
 //! Pictures of many trials: trajectories, box plots of the landing error, outcomes, convergence, and drift against cone width.
 
+mod boxes;
+mod cone_width;
+mod convergence;
 mod data;
+mod diagram;
+mod flown;
+mod outcomes;
+
+#[cfg(test)]
+mod tests;
 
 pub use data::{
     ConeWidthFigure, ConeWidthPoint, ConvergencePoint, ErrorQuantiles, FlownFigure, FlownTrial, LandingBoxes, LandingErrorFigure,
     OutcomeBars, SimulationFigure, Success,
 };
 
-use super::{Caption, FigureError, Picture, todo_picture};
+use super::{
+    Caption, FigureError, Picture,
+    keys::{self, Swatch},
+    sheet::Sheet,
+};
+
+/// Room below a panel's legend.
+const BELOW_MM: f64 = 3.0;
+
+/// A panel: where it ends, and its legend.
+type Drawn = (f64, Vec<(Swatch, String)>);
 
 /// Draws everything of a simulation on one sheet, as far as it is there: trajectories, box plots, outcomes, convergence.
 ///
 /// # Errors
-/// [`FigureError::Drawing`].
+/// [`FigureError::NoGround`] where there are trajectories over a ground of fewer than two points.
 pub fn draw_simulation(figure: &SimulationFigure) -> Result<Picture, FigureError> {
-    todo_picture(&figure.caption)
+    let mut sheet = Sheet::default();
+    let mut end_mm = figure.caption.draw(&mut sheet);
+    if let Some(flown) = &figure.flown {
+        end_mm = panel(&mut sheet, "Trajectories and landings", end_mm, |sheet, top| flown::draw(sheet, flown, top))?;
+    }
+    if figure.errors.iter().any(|boxes| !boxes.landings.is_empty()) {
+        end_mm = panel(&mut sheet, "Distance error, landing by landing", end_mm, |sheet, top| {
+            Ok(boxes::draw(sheet, &figure.errors, top))
+        })?;
+    }
+    if !figure.outcomes.is_empty() {
+        end_mm = panel(&mut sheet, "How the trials ended", end_mm, |sheet, top| Ok(outcomes::draw(sheet, &figure.outcomes, top)))?;
+    }
+    if figure.outcomes.iter().any(|bars| !bars.convergence.is_empty()) {
+        let text = "Success rate after so many trials, with its 95 % band";
+        end_mm = panel(&mut sheet, text, end_mm, |sheet, top| Ok(convergence::draw(sheet, &figure.outcomes, top)))?;
+    }
+    Ok(Picture { sheet, height_mm: end_mm })
 }
 
-/// Draws the trajectories of trials over the terrain, with the planned path on top and the landings on the ground.
+/// Draws the trajectories of trials over the terrain, with the planned path on top, and below them the landings hop by hop.
+///
+/// The view is the stretch that was flown over. Many trials are thinned to every n-th, which the legend says.
 ///
 /// # Errors
 /// [`FigureError::NoGround`] where the ground has fewer than two points.
 pub fn draw_flown(caption: &Caption, flown: &FlownFigure) -> Result<Picture, FigureError> {
-    let _ = flown;
-    todo_picture(caption)
+    alone(caption, |sheet, top| flown::draw(sheet, flown, top))
 }
 
 /// Draws box plots of the distance error per landing, one group of boxes for each series (the paper's Fig. 6b).
 ///
+/// Boxes reach from the lower to the upper quartile, whiskers from 5 % to 95 %. Largest errors far beyond the whiskers are told by their
+/// numbers, so that the boxes stay readable. Of more than eighty boxes every n-th landing is drawn, which the axis says.
+///
 /// # Errors
-/// [`FigureError::Drawing`].
+/// None today; [`FigureError`] as for the other pictures.
 pub fn draw_landing_errors(figure: &LandingErrorFigure) -> Result<Picture, FigureError> {
-    todo_picture(&figure.caption)
+    alone(&figure.caption, |sheet, top| Ok(boxes::draw(sheet, &figure.series, top)))
 }
 
-/// Draws how trials ended, one group of bars for each policy, with the success rate and its 95 % interval.
+/// Draws how trials ended, one group of bars for each outcome, with the success rate and its 95 % interval.
+///
+/// Outcomes that never occurred are named below the bars.
 ///
 /// # Errors
-/// [`FigureError::Drawing`].
+/// None today; [`FigureError`] as for the other pictures.
 pub fn draw_outcomes(caption: &Caption, bars: &[OutcomeBars]) -> Result<Picture, FigureError> {
-    let _ = bars;
-    todo_picture(caption)
+    alone(caption, |sheet, top| Ok(outcomes::draw(sheet, bars, top)))
 }
 
-/// Draws the success rate with its 95 % band over the number of trials.
+/// Draws the success rate with its 95 % band over the number of trials, logarithmic where these differ by more than twenty times.
 ///
 /// # Errors
-/// [`FigureError::Drawing`].
+/// None today; [`FigureError`] as for the other pictures.
 pub fn draw_convergence(caption: &Caption, bars: &[OutcomeBars]) -> Result<Picture, FigureError> {
-    let _ = bars;
-    todo_picture(caption)
+    alone(caption, |sheet, top| Ok(convergence::draw(sheet, bars, top)))
 }
 
 /// Draws the landing error against the width of the cones, with the hops of the planned path at each width.
 ///
 /// # Errors
-/// [`FigureError::Drawing`].
+/// None today; [`FigureError`] as for the other pictures.
 pub fn draw_cone_width(figure: &ConeWidthFigure) -> Result<Picture, FigureError> {
-    todo_picture(&figure.caption)
+    alone(&figure.caption, |sheet, top| Ok(cone_width::draw(sheet, &figure.points, top)))
+}
+
+/// A picture of one panel.
+fn alone(caption: &Caption, draw: impl FnOnce(&mut Sheet, f64) -> Result<Drawn, FigureError>) -> Result<Picture, FigureError> {
+    let mut sheet = Sheet::default();
+    let top_mm = caption.draw(&mut sheet) + 1.0;
+    let height_mm = with_legend(&mut sheet, top_mm, draw)?;
+    Ok(Picture { sheet, height_mm })
+}
+
+/// One panel among several; returns where it ends.
+fn panel(
+    sheet: &mut Sheet,
+    heading: &str,
+    top_mm: f64,
+    draw: impl FnOnce(&mut Sheet, f64) -> Result<Drawn, FigureError>,
+) -> Result<f64, FigureError> {
+    let top_mm = diagram::heading(sheet, heading, top_mm + 1.0);
+    with_legend(sheet, top_mm, draw)
+}
+
+/// A panel with its legend below.
+fn with_legend(
+    sheet: &mut Sheet,
+    top_mm: f64,
+    draw: impl FnOnce(&mut Sheet, f64) -> Result<Drawn, FigureError>,
+) -> Result<f64, FigureError> {
+    let (end_mm, entries) = draw(sheet, top_mm)?;
+    Ok(if entries.is_empty() { end_mm } else { keys::draw(sheet, &entries, end_mm + 2.5) } + BELOW_MM)
+}
+
+/// A share with its interval in percent, with as many decimals as the interval is fine.
+fn percent(success: &Success) -> String {
+    let Success { rate, low, high } = *success;
+    if ![rate, low, high].into_iter().all(f64::is_finite) {
+        return "unknown".to_owned();
+    }
+    let decimals = [1e-2, 1e-3, 1e-4].into_iter().position(|width| high - low >= width).unwrap_or(3) + 1;
+    format!("{:.decimals$} % ({:.decimals$} to {:.decimals$} %)", 100.0 * rate, 100.0 * low, 100.0 * high)
 }
