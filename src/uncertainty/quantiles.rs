@@ -112,7 +112,9 @@ mod tests {
     fn quantiles_are_within_their_bound_of_the_sorted_values() {
         let mut sorted = values();
         let mut sketch = QuantileSketch::default();
-        sorted.iter().for_each(|&v| sketch.add(v));
+        for &value in &sorted {
+            sketch.add(value);
+        }
         sorted.sort_by(f64::total_cmp);
         for share in [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0] {
             let exact = sorted[(share * 4999.0) as usize];
@@ -130,7 +132,9 @@ mod tests {
         let values = values();
         let of = |part: &[f64]| {
             let mut sketch = QuantileSketch::default();
-            part.iter().for_each(|&v| sketch.add(v));
+            for &value in part {
+                sketch.add(value);
+            }
             sketch
         };
         let whole = of(&values);

@@ -80,10 +80,11 @@ pub(super) fn texts(picture: &Picture) -> String {
 }
 
 /// A DEM of `../shared/dem`; prints why where there is none.
+#[expect(clippy::print_stderr, reason = "says why a test has nothing to look at")]
 pub(super) fn real_dem(name: &str) -> Option<Dem> {
     let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(name);
     if !file.exists() {
-        println!("skipped: {} is not there", file.display());
+        eprintln!("skipped: {} is not there", file.display());
         return None;
     }
     Some(read_dem(&file).unwrap())

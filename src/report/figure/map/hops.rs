@@ -83,10 +83,10 @@ pub(super) fn about_raster(posts: &MapPosts<'_>, window: &Window) -> String {
     let part = if *window == Window::whole(posts.dem) { "" } else { "part of the DEM, " };
     let mut text = format!("Terrain: {part}{rows} x {cols} posts, {} apart, lit from the north-west.", spacing(1));
     if posts.stride > 1 {
-        text.push_str(&format!(" Answers for one post in {} each way, {} apart.", posts.stride, spacing(posts.stride)));
+        text = format!("{text} Answers for one post in {} each way, {} apart.", posts.stride, spacing(posts.stride));
     }
     if window.every() > 1 {
-        text.push_str(&format!(" Drawn: one post in {} each way.", window.every()));
+        text = format!("{text} Drawn: one post in {} each way.", window.every());
     }
     text
 }

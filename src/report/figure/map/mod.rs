@@ -25,4 +25,11 @@ fn check_size(what: &'static str, posts: &MapPosts<'_>, found: usize) -> Result<
 }
 
 #[cfg(test)]
+#[expect(
+    clippy::cast_precision_loss,
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    clippy::cast_sign_loss,
+    reason = "small rows, columns and hops of made-up maps"
+)]
 mod tests;

@@ -24,6 +24,8 @@ const WHITE: RGBColor = RGBColor(255, 255, 255);
 const TALL_MM: f64 = 165.0;
 /// Room above the map for scale bar and north arrow.
 const STRIP_MM: f64 = 8.0;
+/// A scale bar may be this long however narrow the map.
+const SHORT_MM: f64 = 15.0;
 /// Least distance of the numbers of the y axis.
 const TICK_MM: f64 = 9.0;
 /// More goals than this are marked without words.
@@ -77,7 +79,9 @@ impl MapPanel {
         let (min, max) = (self.bounds.min, self.bounds.max);
         let guess = Ticks::round(min.x, max.x, panel.width() / 16.0);
         let widest_mm = text_width_mm(&guess.longest(), SMALL_MM) + 4.0;
-        let along = Ticks::round(min.x, max.x, panel.width() / widest_mm.max(16.0));
+        // A narrow map still gets two numbers where they fit.
+        let least = if panel.width() > 2.5 * widest_mm { 2.5 } else { 1.0 };
+        let along = Ticks::round(min.x, max.x, (panel.width() / widest_mm.max(16.0)).max(least));
         let ticks: Vec<_> = along.values.iter().map(|&x| (self.place(MapPoint::new(x, min.y)).0, along.text(x))).collect();
         panel.x_axis(sheet, &ticks, "map x, east (m)", false);
         let up = Ticks::round(min.y, max.y, panel.height() / TICK_MM);
@@ -91,7 +95,8 @@ impl MapPanel {
 
     /// A bar of a round length above the map's left end; returns where its length ends, mm.
     fn scale_bar(&self, sheet: &mut Sheet) -> f64 {
-        let lengths = Ticks::round(0.0, 0.3 * self.panel.width() / self.mm_per_m, 2.0);
+        // Round numbers lie at most a factor of 2.5 apart, so that one of them fits.
+        let lengths = Ticks::round(0.0, (0.3 * self.panel.width()).max(SHORT_MM) / self.mm_per_m, 2.5);
         let Some(&length_m) = lengths.values.last().filter(|&&length_m| length_m > 0.0) else { return self.panel.left };
         let (left, y) = (self.panel.left, self.panel.top - 2.6);
         let (middle, right) = (left + 0.5 * length_m * self.mm_per_m, left + length_m * self.mm_per_m);

@@ -55,6 +55,10 @@ fn drawn(name: &str, posts: MapPosts<'_>, per_hop: f64, most: f64, with_return: 
     let hops = made_up_hops(&posts, middle, per_hop, most);
     let back: Vec<bool> = (0..hops.len()).map(|i| i % posts.size().1 > posts.size().1 / 3).collect();
     let picture = check_picture(name, || draw_hop_map(&hop_map(posts, &hops, with_return.then_some(&back))).unwrap());
+    let told = texts(&picture);
+    let is_bar =
+        |line: &str| line.strip_suffix(" m").is_some_and(|length| length.parse::<f64>().is_ok_and(|length_m| length_m > 0.0));
+    assert!(told.lines().any(is_bar), "the scale bar's length: {told}");
     // Every post is in exactly one entry of the legend.
     let counts = texts(&picture)
         .lines()
