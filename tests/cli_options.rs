@@ -13,7 +13,8 @@ use std::{
 
 use command::{CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 11] = ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "synth", "bodies"];
+const COMMANDS: [&str; 12] =
+    ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "simulate", "synth", "bodies"];
 
 /// Options that need a projected map, tried in `maps_command.rs`.
 const ON_A_PROJECTED_MAP: [&str; 6] =
@@ -691,6 +692,55 @@ const COMPARE: [Trial; 7] = [
 ];
 
 /// Ground with all there is on it, small enough for a test.
+const SIMULATE: [Trial; 22] = [
+    ("--start", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--start", "10"]),
+    ("--goal", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--goal", "30"]),
+    ("--trials", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trials", "50"]),
+    ("--seed", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--seed", "9"]),
+    ("--policy", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--policy", "replan"]),
+    ("--compare", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--compare"]),
+    (
+        "--until-half-width",
+        &["simulate", "errors.toml", "--trials", "2000"],
+        &["simulate", "errors.toml", "--trials", "2000", "--until-half-width", "0.3"],
+    ),
+    ("--experiment", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--experiment", "worst-drift"]),
+    (
+        "--reading",
+        &["simulate", "errors.toml", "--experiment", "worst-drift"],
+        &["simulate", "errors.toml", "--experiment", "worst-drift", "--reading", "noise-in-flight"],
+    ),
+    ("--output", &["simulate", "errors.toml"], &["simulate", "errors.toml", "-o", "landings.csv"]),
+    ("--plot", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--plot", "trials.svg"]),
+    (
+        "--plot-map",
+        &["simulate", "map.toml", "--trials", "20"],
+        &["simulate", "map.toml", "--trials", "20", "--plot-map", "landings.svg"],
+    ),
+    ("--format", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--format", "json"]),
+    ("--points-per-segment", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--points-per-segment", "2"]),
+    ("--node-spacing-max-m", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--node-spacing-max-m", "2"]),
+    ("--effort", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--effort", "time"]),
+    (
+        "--scenario",
+        &["simulate", "chain.csv", "--start", "0", "--goal", "40", "--body", "mars"],
+        &["simulate", "chain.csv", "--start", "0", "--goal", "40", "--body", "mars", "--scenario", "errors.toml"],
+    ),
+    ("--set", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--set", "uncertainty.goal_tolerance_m=0.2"]),
+    ("--body", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--body", "moon"]),
+    ("--gravity-m-s2", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--gravity-m-s2", "1.5"]),
+    ("--clearance-m", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--clearance-m", "0.5"]),
+    (
+        "--quiet",
+        &["simulate", "errors.toml", "--body", "bennu", "--trials", "10"],
+        &["simulate", "errors.toml", "--body", "bennu", "--trials", "10", "--quiet"],
+    ),
+];
+
+/// Errors for trials.
+const ERRORS: &str =
+    "\n[uncertainty]\ntakeoff_speed_sigma_fraction = 0.01\ndrift_along_sigma_m = 0.1\ngoal_tolerance_m = 2.0\ntrials = 200\n";
+
 const SYNTH: [&str; 30] = [
     "synth",
     "-o",
@@ -758,6 +808,7 @@ fn desk() -> Desk {
     let desk = Desk::with_dem();
     desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
     desk.write("forward.csv", FORWARD_ONLY);
+    desk.write("errors.toml", desk.read("scenario.toml") + ERRORS);
     // Walls too steep to rest on around a pit: what it takes to cross it is found by splitting cells.
     desk.write("pit.csv", "x_m,z_m\n0,0\n10,0\n11,-3\n20,-3\n21,0\n40,0\n");
 
@@ -796,6 +847,7 @@ fn every_option_changes_what_one_sees() {
         ("require", &REQUIRE),
         ("trade", &TRADE),
         ("compare", &COMPARE),
+        ("simulate", &SIMULATE),
     ];
     for (command, trials) in all {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
@@ -819,6 +871,7 @@ fn threads_change_nothing() {
         &["check", "scenario.toml", "--pairs", "pairs.csv", "--format", "json"],
         &["plan", "scenario.toml", "--verify", "--plot", "path.svg"],
         &["run", "scenario.toml", "-o", "out"],
+        &["simulate", "errors.toml", "--compare", "--plot", "trials.svg"],
     ] {
         let expected = seen(words);
         assert_eq!(expected.0.status, 0, "{words:?}: {:?}", expected.0);

@@ -42,6 +42,13 @@ fn value(key: &Key) -> BoxedStrategy<String> {
             .prop_map(|points| format!("[{}]", points.join(", ")))
             .boxed(),
         Kind::CountOrAuto => prop_oneof![Just("\"auto\"".to_owned()), (0..=100_000_u32).prop_map(|k| k.to_string())].boxed(),
+        Kind::Count { min, max } => prop_oneof![
+            Just(min.to_string()),
+            Just(max.to_string()),
+            (min..=max).prop_map(|count| count.to_string()),
+            (min..=max.min(50)).prop_map(|count| count.to_string()),
+        ]
+        .boxed(),
         Kind::Word(words) => proptest::sample::select(words).prop_map(|word| format!("\"{word}\"")).boxed(),
         Kind::Text if key.name == "name" => Just("\"Mars\"".to_owned()).boxed(),
         Kind::Text => {
@@ -67,6 +74,10 @@ fn toml() -> impl Strategy<Value = String> {
             ("terrain", _) => ground > 0,
             ("surface", "friction_coefficient") => friction,
             ("surface", "takeoff_from_slope_deg" | "landing_from_slope_deg") => !friction,
+            // Both or neither; a heading error only on a raster.
+            ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
+            ("uncertainty", "heading_sigma_deg") => ground < 2,
+            ("search", "risk_extra_hops_max") => false,
             ("search", "points_per_segment") => points,
             ("search", "node_spacing_max_m") => !points,
             _ => true,
@@ -122,7 +133,7 @@ fn every_key_reaches_the_document() {
         Kind::MapPoint | Kind::LonLat => "[12.5, -3.0]",
         Kind::Flag => "true",
         Kind::MapPoints | Kind::LonLats => "[[12.5, -3.0], [1.0, 2.0]]",
-        Kind::CountOrAuto => "7",
+        Kind::CountOrAuto | Kind::Count { .. } => "7",
         Kind::Word(words) => words[words.len() - 1],
         Kind::Text if key.name == "name" => "vesta",
         Kind::Text => "some text",
@@ -149,6 +160,9 @@ fn every_key_reaches_the_document() {
                 with("terrain", "goal_m", "[0, 0]");
             }
             ("terrain", "start_x_m" | "goal_x_m") => with("terrain", "chain", "x.csv"),
+            ("uncertainty", "height_sigma_m") => with("uncertainty", "height_correlation_m", "3"),
+            ("uncertainty", "height_correlation_m") => with("uncertainty", "height_sigma_m", "3"),
+            ("search", "risk_extra_hops_max") => with("search", "risk", "traded"),
             _ => {}
         }
         with(key.table, key.name, alone(key));

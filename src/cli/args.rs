@@ -25,6 +25,7 @@ pub(crate) enum Command {
     Hop(HopArgs),
     Check(CheckArgs),
     Plan(PlanArgs),
+    Simulate(Box<SimulateArgs>),
     Require(RequireArgs),
     Trade(TradeArgs),
     Compare(CompareArgs),
@@ -357,6 +358,63 @@ pub(crate) struct PlanArgs {
     pub(crate) format: Format,
     #[command(flatten)]
     pub(crate) prove: ProveArgs,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Fly the planned path many times under the errors of [uncertainty]: how surely, where the landings scatter, how trials end
+#[derive(Debug, ClapArgs)]
+#[command(
+    after_help = "Example:\n  chta simulate data/scenarios/mars_crater_field_surely.toml --trials 2000 --compare --plot trials.svg"
+)]
+pub(crate) struct SimulateArgs {
+    /// Chain (CSV), scenario (TOML) or result (JSON)
+    #[arg(value_name = "CHAIN")]
+    pub(crate) chain: PathBuf,
+    /// Start along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) start: Option<f64>,
+    /// Goal along the chain, m [default: the scenario's]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) goal: Option<f64>,
+    /// How many trials at most [default: the scenario's, or 10000]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) trials: Option<i64>,
+    /// Seed of all draws; a trial's depend on it and on the trial's number alone [default: the scenario's, or 0]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) seed: Option<i64>,
+    /// open-loop: planned commands from wherever it is; replan: the best next hop after every landing [default: the scenario's]
+    #[arg(long, value_name = "POLICY")]
+    pub(crate) policy: Option<String>,
+    /// Both policies on the same draws
+    #[arg(long)]
+    pub(crate) compare: bool,
+    /// Stop once half the 95 % interval of the success rate is no wider; asked after every 1000 trials [default: fly all trials]
+    #[arg(long, value_name = "W", allow_negative_numbers = true)]
+    pub(crate) until_half_width: Option<f64>,
+    /// Instead: worst-drift (the paper's), cone-width (its claim), risk-trade (what hops buy in surety) [default: none]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["compare", "until_half_width"])]
+    pub(crate) experiment: Option<String>,
+    /// How worst-drift reads the paper: noise-at-landing, noise-in-flight, farthest-from-goal [default: noise-at-landing]
+    #[arg(long, value_name = "NAME", requires = "experiment")]
+    pub(crate) reading: Option<String>,
+    /// One row per landing, .csv or .parquet; -: CSV to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Picture of the trials (SVG): trajectories, landing errors, outcomes, convergence
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Picture of the landings on the map (SVG), with 95 % ellipses, for a DEM
+    #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
+    pub(crate) plot_map: Option<PathBuf>,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
     #[command(flatten)]
     pub(crate) search: SearchArgs,
     #[command(flatten)]

@@ -33,6 +33,8 @@ pub(crate) struct Loaded {
     pub(crate) document: serde_json::Value,
     /// The files that were read.
     pub(crate) inputs: Vec<InputFile>,
+    /// The folder that the scenario's paths start from.
+    pub(crate) base: PathBuf,
     /// How start and goal are given on the command line.
     ends: EndOptions,
 }
@@ -133,7 +135,21 @@ struct Source {
 
 /// Loads a chain, scenario or result with the options beside it.
 pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Loaded, Failure> {
-    let source = typed(target, common, search, ends)?;
+    load_with(target, common, search, ends, &[])
+}
+
+/// Loads the same with keys that a command's own options set: option, table, key and value.
+pub(crate) fn load_with(
+    target: &Path,
+    common: &CommonArgs,
+    search: Option<&SearchArgs>,
+    ends: EndOptions,
+    own: &[(&str, &str, &str, toml::Value)],
+) -> Result<Loaded, Failure> {
+    let mut source = typed(target, common, search, ends)?;
+    for (option, table, key, value) in own {
+        source.entries.set_by_option(option, table, key, value.clone());
+    }
     settled(target, source, common.quiet, ends, &mut prepare)
 }
 
@@ -231,7 +247,7 @@ fn settled(target: &Path, source: Source, quiet: bool, ends: EndOptions, prepare
         inputs.push(input_file(&base.join(cover))?);
     }
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
-    Ok(Loaded { scenario, prepared, document, inputs, ends })
+    Ok(Loaded { scenario, prepared, document, inputs, base, ends })
 }
 
 /// Why a terrain gives no chain, with the file or the option that says so.

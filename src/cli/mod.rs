@@ -32,6 +32,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Hop(args) => commands::hop::run(&args),
         Command::Check(args) => commands::check::run(&args),
         Command::Plan(args) => commands::plan::run(&args),
+        Command::Simulate(args) => commands::simulate::run(&args),
         Command::Require(args) => commands::require::run(&args),
         Command::Trade(args) => commands::trade::run(&args),
         Command::Compare(args) => commands::compare::run(&args),

@@ -1,6 +1,7 @@
 //! Data to standard output or to files, talk to standard error.
 
 use std::{
+    fs::File,
     io::{self, ErrorKind, Write},
     path::Path,
 };
@@ -34,6 +35,16 @@ impl<'a> Pending<'a> {
     /// Opens it.
     pub(crate) fn begin(path: &'a Path) -> Result<Self, Failure> {
         Ok(Self { path, file: WholeFile::begin(path).map_err(|error| unwritable(path, &error))? })
+    }
+
+    /// A handle for a writer that streams.
+    pub(crate) fn handle(&self) -> Result<File, Failure> {
+        self.file.handle().map_err(|error| unwritable(self.path, &error))
+    }
+
+    /// Puts what was streamed in its place.
+    pub(crate) fn keep(self) -> Result<(), Failure> {
+        self.file.keep().map_err(|error| unwritable(self.path, &error))
     }
 }
 

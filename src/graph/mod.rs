@@ -19,6 +19,7 @@ mod questions;
 mod reachable;
 mod refusals;
 mod search;
+mod surest;
 mod to_go;
 mod usable;
 
@@ -29,5 +30,6 @@ pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search, search_pairs};
+pub use surest::{RiskUse, SurestPath, SuretyOptions, search_surest, surest_paths};
 pub use to_go::CostToGo;
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};

@@ -43,6 +43,11 @@ pub struct Hop {
 }
 
 impl Hop {
+    /// Horizontal speed, constant over the flight, m/s: `v cos(theta) = v / sqrt(1 + m^2)`.
+    pub fn horizontal_speed_m_s(&self) -> f64 {
+        self.takeoff_speed_m_s / libm::hypot(1.0, self.takeoff_angle.slope())
+    }
+
     /// Points of the flight at equal horizontal distances, take-off and landing included: `(fraction of the run, point)`.
     ///
     /// At least two points.

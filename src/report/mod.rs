@@ -3,15 +3,19 @@
 mod check_answer;
 mod compare_answer;
 mod document;
+mod experiment_answer;
 mod fan_answer;
 #[cfg(feature = "plot")]
 pub mod figure;
 mod geojson;
 mod hop_answer;
+pub mod landings;
 mod map_answer;
 mod path_record;
 mod proof_record;
 mod require_answer;
+mod simulate_answer;
+mod surest_record;
 mod text;
 mod trade_answer;
 mod whole_file;
@@ -19,6 +23,7 @@ mod whole_file;
 pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, verdict_name};
 pub use compare_answer::{CompareAnswer, CompareRow, MarginsRecord};
 pub use document::{CrsRecord, Document, InputFile};
+pub use experiment_answer::{ConeWidthAnswer, ConeWidthRecord, DriftRecord, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer};
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, paths_geojson, slice_geojson};
 pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
@@ -26,6 +31,8 @@ pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, Mobilit
 pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use require_answer::{RequireAnswer, RequireTry};
+pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulationRecord};
+pub use surest_record::{SurestRecord, surest_text};
 pub use text::{check_text, hop_text, path_text, require_text};
 pub use trade_answer::{TradeAnswer, TradeRow, TradeVariation};
 pub use whole_file::{WholeFile, write_whole};

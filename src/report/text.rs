@@ -6,13 +6,18 @@ use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, ProofRe
 
 /// A sheet of text; writing to it does not fail.
 #[derive(Default)]
-struct Sheet(String);
+pub(super) struct Sheet(String);
 
 impl Sheet {
-    fn line(&mut self, line: std::fmt::Arguments<'_>) {
+    pub(super) fn line(&mut self, line: std::fmt::Arguments<'_>) {
         // Writing to a String cannot fail.
         let _ = self.0.write_fmt(line);
         self.0.push('\n');
+    }
+
+    /// All of it.
+    pub(super) fn into_text(self) -> String {
+        self.0
     }
 }
 

@@ -51,6 +51,17 @@ impl WholeFile {
         }
     }
 
+    /// A second handle on it, for a writer that streams; [`keep`](Self::keep) follows when that writer is done.
+    ///
+    /// # Errors
+    /// What the file system says.
+    pub fn handle(&self) -> io::Result<fs::File> {
+        match &self.0 {
+            Place::Direct(file) => file.try_clone(),
+            Place::Beside { temporary, .. } => temporary.as_file().try_clone(),
+        }
+    }
+
     /// Puts it in its place.
     ///
     /// # Errors

@@ -2,7 +2,8 @@
 
 use crate::{
     ballistics::{Split, TakeoffChoice},
-    graph::Effort,
+    graph::{Effort, RiskUse},
+    uncertainty::Policy,
 };
 
 /// What a key's value may be.
@@ -31,6 +32,13 @@ pub enum Kind {
     LonLats,
     /// A whole number, or `"auto"`.
     CountOrAuto,
+    /// A whole number between two bounds, both included.
+    Count {
+        /// The least.
+        min: u64,
+        /// The greatest.
+        max: u64,
+    },
     /// One of these words.
     Word(&'static [&'static str]),
     /// Any text.
@@ -75,6 +83,8 @@ impl Kind {
             Self::LonLats => "a list of places, each [longitude, latitude] in degrees, [[lon, lat], ...]".to_owned(),
             Self::MapPoints => "a list of points, each two finite numbers in metres, [[x, y], ...]".to_owned(),
             Self::CountOrAuto => "a whole number from 0 to 100000, or \"auto\"".to_owned(),
+            Self::Count { min, max } if *max == MOST => format!("a whole number of at least {min}"),
+            Self::Count { min, max } => format!("a whole number from {min} to {max}"),
             Self::Word(words) => format!("one of {}", words.join(", ")),
             Self::Text => "a text in quotes, not empty".to_owned(),
         }
@@ -95,14 +105,22 @@ const SPEED: Kind = Kind::Number { min: 1e-9, max: 1e5 };
 const LENGTH: Kind = Kind::Number { min: 1e-9, max: 1e9 };
 const FROM_ZERO: Kind = Kind::Number { min: 0.0, max: 1e9 };
 const COORDINATE: Kind = Kind::Number { min: -1e12, max: 1e12 };
+/// A deviation beyond these is no error of a machine that works.
+const SHARE: Kind = Kind::Number { min: 0.0, max: 100.0 };
+const SIGMA_ANGLE: Kind = Kind::Number { min: 0.0, max: 180.0 };
 const ELEVATION_ANGLE: Kind = Kind::Number { min: -90.0, max: 90.0 };
+
+/// The greatest whole number that TOML has.
+const MOST: u64 = i64::MAX as u64;
 
 const EFFORTS: [&str; 4] = [Effort::ALL[0].name(), Effort::ALL[1].name(), Effort::ALL[2].name(), Effort::ALL[3].name()];
 const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].name(), TakeoffChoice::ALL[2].name()];
+const RISK_USES: [&str; 3] = [RiskUse::ALL[0].name(), RiskUse::ALL[1].name(), RiskUse::ALL[2].name()];
+const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 37] = [
+pub const CATALOGUE: [Key; 54] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
@@ -164,6 +182,53 @@ pub const CATALOGUE: [Key; 37] = [
     key("search", "effort", Kind::Word(&EFFORTS), "second criterion after hops; absent: takeoff-speed"),
     key("search", "takeoff_angle", Kind::Word(&CHOICES), "which feasible take-off angle to fly; absent: least-speed"),
     key("search", "split", Kind::Word(&SPLITS), "how to divide many hops on a segment; absent: full-reach"),
+    key(
+        "search",
+        "risk",
+        Kind::Word(&RISK_USES),
+        "how the probability to fail, or the slack, weighs: ignored; fewest-hops: the surest of the paths of fewest hops; traded: more hops for surety",
+    ),
+    key(
+        "search",
+        "risk_extra_hops_max",
+        Kind::Count { min: 1, max: 1000 },
+        "hops beyond the fewest that a surer path may take; absent: 3",
+    ),
+    key("uncertainty", "takeoff_speed_sigma_m_s", FROM_ZERO, "standard deviation of the take-off speed, m/s"),
+    key(
+        "uncertainty",
+        "takeoff_speed_sigma_fraction",
+        SHARE,
+        "standard deviation of the take-off speed, as a share of the commanded one",
+    ),
+    key("uncertainty", "takeoff_angle_sigma_deg", SIGMA_ANGLE, "standard deviation of the take-off angle, degrees"),
+    key("uncertainty", "heading_sigma_deg", SIGMA_ANGLE, "standard deviation of the heading, degrees; on a dem only"),
+    key("uncertainty", "position_sigma_m", FROM_ZERO, "standard deviation of where the robot believes to be, m; felt by replan"),
+    key(
+        "uncertainty",
+        "drift_along_sigma_m",
+        FROM_ZERO,
+        "standard deviation of bounce and roll after a landing, along the flight, m",
+    ),
+    key("uncertainty", "drift_across_sigma_m", FROM_ZERO, "the same to the side, m"),
+    key("uncertainty", "friction_sigma", SHARE, "standard deviation of the friction coefficient, one draw per trial"),
+    key("uncertainty", "height_sigma_m", FROM_ZERO, "standard deviation of the terrain's height, m, one random field per trial"),
+    key("uncertainty", "height_correlation_m", FROM_ZERO, "distance over which the height error stays alike, m"),
+    key("uncertainty", "goal_tolerance_m", FROM_ZERO, "horizontal distance from the goal that counts as reached, m; absent: 0"),
+    key(
+        "uncertainty",
+        "hop_limit",
+        Kind::Count { min: 1, max: 1_000_000 },
+        "hops of a trial at most; absent: twice the planned ones and ten more",
+    ),
+    key(
+        "uncertainty",
+        "policy",
+        Kind::Word(&POLICIES),
+        "planned commands from wherever it is, or replanned after every landing; absent: open-loop",
+    ),
+    key("uncertainty", "trials", Kind::Count { min: 1, max: MOST }, "how many trials; absent: 10000"),
+    key("uncertainty", "seed", Kind::Count { min: 0, max: MOST }, "seed of all draws; absent: 0"),
     key("report", "title", Kind::Text, "title of the picture; absent: the scenario's file name"),
 ];
 
@@ -181,7 +246,17 @@ mod tests {
     #[test]
     fn every_number_ends_in_its_unit() {
         let units = ["_m", "_m_s", "_m_s2", "_s", "_kg", "_deg"];
-        let pure = ["friction_coefficient", "points_per_segment", "mesh_scale"];
+        let pure = [
+            "friction_coefficient",
+            "points_per_segment",
+            "mesh_scale",
+            "risk_extra_hops_max",
+            "takeoff_speed_sigma_fraction",
+            "friction_sigma",
+            "hop_limit",
+            "trials",
+            "seed",
+        ];
         for key in &CATALOGUE {
             let number = !matches!(key.kind, Kind::Word(_) | Kind::Text | Kind::Flag);
             assert!(

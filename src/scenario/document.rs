@@ -2,9 +2,9 @@
 
 use serde_json::{Map, Value, json};
 
-use super::{Scenario, TerrainSource};
+use super::{Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
-    graph::PointSpacing,
+    graph::{PointSpacing, RiskUse},
     quantity::{Angle, AngleInterval},
     terrain::MapPlace,
     world::{Grip, RestSlope},
@@ -19,6 +19,7 @@ pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -
     tables.insert("surface".to_owned(), surface(scenario, named));
     tables.insert("terrain".to_owned(), terrain(scenario, named));
     tables.insert("search".to_owned(), search(scenario));
+    tables.insert("uncertainty".to_owned(), scenario.uncertainty.as_ref().map_or_else(|| json!({}), uncertainty));
     tables.insert("report".to_owned(), object([("title", scenario.title.clone().map(Value::from))]));
     tables.retain(|_, table| table.as_object().is_none_or(|keys| !keys.is_empty()));
     Value::Object(tables)
@@ -143,5 +144,28 @@ fn search(scenario: &Scenario) -> Value {
         ("effort", Some(search.effort.name().into())),
         ("takeoff_angle", Some(search.takeoff.name().into())),
         ("split", Some(search.split.name().into())),
+        ("risk", Some(scenario.risk.name().into())),
+        ("risk_extra_hops_max", (scenario.risk == RiskUse::Traded).then(|| scenario.risk_extra_hops_max.into())),
+    ])
+}
+
+fn uncertainty(trials: &UncertaintyKeys) -> Value {
+    let errors = &trials.errors;
+    object([
+        ("takeoff_speed_sigma_m_s", Some(errors.takeoff_speed_sigma_m_s.into())),
+        ("takeoff_speed_sigma_fraction", Some(errors.takeoff_speed_sigma_fraction.into())),
+        ("takeoff_angle_sigma_deg", Some(degrees(errors.takeoff_angle_sigma).into())),
+        ("heading_sigma_deg", Some(degrees(errors.heading_sigma).into())),
+        ("position_sigma_m", Some(errors.position_sigma_m.into())),
+        ("drift_along_sigma_m", Some(errors.drift_along_sigma_m.into())),
+        ("drift_across_sigma_m", Some(errors.drift_across_sigma_m.into())),
+        ("friction_sigma", Some(errors.friction_sigma.into())),
+        ("height_sigma_m", Some(errors.height_sigma_m.into())),
+        ("height_correlation_m", Some(errors.height_correlation_m.into())),
+        ("goal_tolerance_m", Some(trials.goal_tolerance_m.into())),
+        ("hop_limit", trials.hop_limit.map(Value::from)),
+        ("policy", Some(trials.policy.name().into())),
+        ("trials", Some(trials.trials.into())),
+        ("seed", Some(trials.seed.into())),
     ])
 }

@@ -177,6 +177,16 @@ impl Entries {
         self.value(table, name).and_then(number)
     }
 
+    /// A whole number; `None` where it was not given.
+    pub(super) fn count(&self, table: &str, name: &str) -> Option<u64> {
+        self.value(table, name).and_then(count)
+    }
+
+    /// Whether any key of a table was given.
+    pub(super) fn has_table(&self, table: &str) -> bool {
+        self.given.keys().any(|(known, _)| known == table)
+    }
+
     /// A text; `None` where it was not given.
     pub(super) fn text(&self, table: &str, name: &str) -> Option<&str> {
         self.value(table, name).and_then(toml::Value::as_str)
@@ -301,6 +311,11 @@ fn number(value: &toml::Value) -> Option<f64> {
     }
 }
 
+/// A whole number of at least 0.
+fn count(value: &toml::Value) -> Option<u64> {
+    value.as_integer().and_then(|integer| u64::try_from(integer).ok())
+}
+
 /// An array of two numbers.
 fn pair(value: &toml::Value) -> Option<[f64; 2]> {
     match value.as_array()?.as_slice() {
@@ -323,6 +338,7 @@ pub(super) fn fits(value: &toml::Value, kind: Kind) -> bool {
         Kind::LonLats => value.as_array().is_some_and(|places| places.iter().all(|place| fits(place, Kind::LonLat))),
         Kind::MapPoints => value.as_array().is_some_and(|points| points.iter().all(|point| fits(point, Kind::MapPoint))),
         Kind::CountOrAuto => value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k)),
+        Kind::Count { min, max } => count(value).is_some_and(|n| (min..=max).contains(&n)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),
     }

@@ -7,6 +7,7 @@ mod pipeline;
 mod problem;
 mod read;
 mod trade;
+mod trials;
 
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
@@ -15,3 +16,4 @@ pub use pipeline::{Covers, Cut, Extremes, PipelineError, Prepared, Survey, const
 pub use problem::{ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, Scenario, TerrainSource};
 pub use trade::{Trade, TradeError, Variation, Varied, judged};
+pub use trials::UncertaintyKeys;

@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Entries, Place, ScenarioProblem};
+use super::{Entries, Place, ScenarioProblem, UncertaintyKeys};
 use crate::{
     ballistics::{Split, TakeoffChoice},
-    graph::{Effort, PointSpacing, SearchOptions},
+    graph::{Effort, PointSpacing, RiskUse, SearchOptions},
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace},
     world::{Body, FrictionCone, Grip, Hopper, KNOWN_BODIES, RestSlope, Surface},
@@ -95,6 +95,12 @@ pub struct Scenario {
     pub goal_x_m: Option<f64>,
     /// How to search.
     pub search: SearchOptions,
+    /// Whether surety weighs in the choice of a path.
+    pub risk: RiskUse,
+    /// Hops beyond the fewest that a surer path may take, where hops are traded for surety.
+    pub risk_extra_hops_max: u32,
+    /// What goes otherwise than planned, where the scenario says it.
+    pub uncertainty: Option<UncertaintyKeys>,
     /// Title of the picture.
     pub title: Option<String>,
 }
@@ -115,6 +121,8 @@ impl Scenario {
         let via = via(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = covers(&mut entries, &surface, terrain.as_ref());
         let search = search(&mut entries);
+        let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries);
+        let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
         let mut problems = entries.problems().to_vec();
         let Some(body) = body.filter(|_| problems.is_empty()) else {
             let first = |problem: &ScenarioProblem| match &problem.place {
@@ -136,6 +144,9 @@ impl Scenario {
             start_x_m: entries.number("terrain", "start_x_m"),
             goal_x_m: entries.number("terrain", "goal_x_m"),
             search,
+            risk,
+            risk_extra_hops_max,
+            uncertainty,
             title: entries.text("report", "title").map(str::to_owned),
         })
     }
@@ -415,6 +426,6 @@ fn search(entries: &mut Entries) -> SearchOptions {
 }
 
 /// The variant of a name; the default where none is given.
-fn named<T: Copy + Default>(all: &[T], name: fn(T) -> &'static str, word: Option<&str>) -> T {
+pub(super) fn named<T: Copy + Default>(all: &[T], name: fn(T) -> &'static str, word: Option<&str>) -> T {
     all.iter().copied().find(|variant| Some(name(*variant)) == word).unwrap_or_default()
 }

@@ -40,6 +40,7 @@
 
 mod deviations;
 mod draws;
+pub mod experiments;
 mod field;
 mod ground;
 mod on_chain;

@@ -74,7 +74,7 @@ fn answers(
 ) -> Result<Vec<CheckAnswer>, Failure> {
     let test = loaded.hop_test();
     let options = &loaded.scenario.search;
-    let searched = Searched::all(&test, pairs, options, args.prove, args.common.quiet)?;
+    let searched = Searched::all(&test, pairs, &loaded.scenario, args.prove, args.common.quiet)?;
     let mut answers = Vec::with_capacity(pairs.len());
     for (&ends, searched) in pairs.iter().zip(&searched) {
         if let Outcome::Path { legs, .. } = &searched.found.outcome

@@ -77,7 +77,7 @@ impl Compared {
         let ends = loaded.ends()?;
         let test = loaded.hop_test();
         let options = &loaded.scenario.search;
-        let searched = Searched::new(&test, ends, options, Some(args.prove), args.quiet)?;
+        let searched = Searched::new(&test, ends, &loaded.scenario, Some(args.prove), args.quiet)?;
         let check = searched.answer(&test, ends, options.effort);
         let path = match &searched.found.outcome {
             chta::graph::Outcome::Path { legs, .. } => {

@@ -11,6 +11,7 @@ pub(super) mod plan;
 pub(super) mod require;
 pub(super) mod run;
 mod search;
+pub(super) mod simulate;
 pub(super) mod slice;
 pub(super) mod synth;
 pub(super) mod trade;

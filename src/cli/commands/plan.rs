@@ -9,9 +9,9 @@ use chta::{
     path::{HopPath, execute, generate},
     quantity::AngleInterval,
     report::{
-        CheckAnswer, Document, HopRecord, MapKnowledge, TotalsRecord, check_text,
+        CheckAnswer, Document, HopRecord, MapKnowledge, SurestRecord, TotalsRecord, check_text,
         figure::{FigureInput, FigureTitle, draw},
-        path_geojson, path_text, write_path_csv,
+        path_geojson, path_text, surest_text, write_path_csv,
     },
     scenario::{Extremes, Scenario, constant_gravity_doubts},
     world::Grip,
@@ -36,6 +36,9 @@ pub(super) struct PlanAnswer {
     verified: Option<bool>,
     path: Vec<HopRecord>,
     totals: Option<TotalsRecord>,
+    /// What hops buy in surety, where risk was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    surest: Vec<SurestRecord>,
 }
 
 /// A plan with all that is drawn and written of it.
@@ -58,7 +61,7 @@ impl Planned {
     ) -> Result<Self, Failure> {
         let ends = loaded.ends()?;
         let options = &loaded.scenario.search;
-        let searched = Searched::new(test, ends, options, prove, quiet)?;
+        let searched = Searched::new(test, ends, &loaded.scenario, prove, quiet)?;
         let path = match &searched.found.outcome {
             Outcome::Path { legs, .. } => {
                 Some(generate(test, legs, options.takeoff, options.split).map_err(|e| Failure::message(e.to_string()))?)
@@ -79,8 +82,14 @@ impl Planned {
             verified: (verify && path.is_some()).then_some(true),
             path: path.as_ref().map(|path| HopRecord::rows(path, loaded.prepared.projection.as_ref())).unwrap_or_default(),
             totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+            surest: SurestRecord::rows(&searched.surest),
         };
         Ok(Self { found: searched.found, path, answer, warnings })
+    }
+
+    /// Whether a path exists, and what stops it.
+    pub(super) const fn check(&self) -> &CheckAnswer {
+        &self.answer.check
     }
 
     /// Yes with a path, no without.
@@ -95,6 +104,7 @@ impl Planned {
             text.push('\n');
             text.push_str(&path_text(&self.answer.path, totals));
         }
+        text.push_str(&surest_text(&self.answer.surest));
         if self.answer.verified == Some(true) {
             text.push_str("verified: every hop was flown again by direct simulation and breaks no limit\n");
         }

@@ -4,7 +4,7 @@ use std::fs;
 
 use chta::{chain::csv::write_chain_csv, report::CrsRecord};
 
-use super::{plan::Planned, search::use_threads};
+use super::{plan::Planned, search::use_threads, simulate};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, Format, RunArgs},
@@ -46,6 +46,8 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         files.push(("path.geojson", geojson.into_bytes()));
         files.extend(output::prj(projection).map(|text| ("path.prj", text)));
     }
+    let simulate::RunTrials { text: trials_text, files: of_trials } = simulate::of_run(&loaded, &test, &planned, *threads, *quiet)?;
+    files.extend(of_trials);
     fs::create_dir_all(folder).map_err(|error| {
         Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
     })?;
@@ -54,15 +56,15 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let pending: Result<Vec<_>, Failure> =
         paths.iter().zip(files).map(|(path, (_, bytes))| Ok((Pending::begin(path)?, bytes))).collect();
     output::finish(pending?)?;
-    // Of an earlier run that had a path or another map: it would speak of another one.
-    for stale in ["path.geojson", "path.prj"] {
+    // Of an earlier run that had a path, trials or another map: it would speak of another one.
+    for stale in ["path.geojson", "path.prj"].into_iter().chain(simulate::RUN_FILES) {
         if !names.contains(&stale) {
             let _ = fs::remove_file(folder.join(stale));
         }
     }
     let text = match format {
         Format::Text => {
-            format!("{}\nwritten to {}: {}\n", planned.text(), folder.display(), names.join(", "))
+            format!("{}{trials_text}\nwritten to {}: {}\n", planned.text(), folder.display(), names.join(", "))
         }
         Format::Json => planned.document("run", &loaded)?,
     };

@@ -4,10 +4,12 @@ use chta::{
     ballistics::HopTest,
     chain::Station,
     graph::{
-        self, PointSpacing, SearchOptions,
+        self, PointSpacing, SurestPath,
         proof::{Bounds, BoundsOptions, ProofSummary, bounds},
+        search_surest,
     },
     report::CheckAnswer,
+    scenario::Scenario,
 };
 
 use crate::cli::{Failure, args::ProveArgs, progress::Progress};
@@ -16,6 +18,8 @@ use crate::cli::{Failure, args::ProveArgs, progress::Progress};
 #[derive(Debug)]
 pub(super) struct Searched {
     pub(super) found: graph::Answer,
+    /// What hops buy in surety, where the scenario asks for it.
+    pub(super) surest: Vec<SurestPath>,
     proof: Option<(Bounds, usize)>,
 }
 
@@ -24,17 +28,25 @@ impl Searched {
     pub(super) fn new(
         test: &HopTest<'_>,
         ends: (Station, Station),
-        options: &SearchOptions,
+        scenario: &Scenario,
         prove: Option<ProveArgs>,
         quiet: bool,
     ) -> Result<Self, Failure> {
         match prove.filter(|prove| prove.prove) {
-            None => Ok(Self { found: search(test, ends, options, quiet)?, proof: None }),
+            None => {
+                let (found, surest) = search(test, ends, scenario, quiet)?;
+                Ok(Self { found, surest, proof: None })
+            }
+            Some(_) if scenario.surety().is_some() => Err(Failure::message(format!(
+                "--prove bounds the fewest hops, but search.risk is \"{}\", which asks for the surest path: leave --prove away, or add \
+                 --set search.risk=ignored",
+                scenario.risk.name()
+            ))),
             Some(ProveArgs { budget, .. }) => {
-                let options =
-                    BoundsOptions { budget_cells: budget, search: options.clone(), explain: true, ..BoundsOptions::default() };
+                let search = scenario.search.clone();
+                let options = BoundsOptions { budget_cells: budget, search, explain: true, ..BoundsOptions::default() };
                 let bounds = proved(test, ends, &options, quiet)?;
-                Ok(Self { found: bounds.answer.clone(), proof: Some((bounds, budget)) })
+                Ok(Self { found: bounds.answer.clone(), surest: Vec::new(), proof: Some((bounds, budget)) })
             }
         }
     }
@@ -43,15 +55,15 @@ impl Searched {
     pub(super) fn all(
         test: &HopTest<'_>,
         pairs: &[(Station, Station)],
-        options: &SearchOptions,
+        scenario: &Scenario,
         prove: ProveArgs,
         quiet: bool,
     ) -> Result<Vec<Self>, Failure> {
         if prove.prove {
-            return pairs.iter().map(|&ends| Self::new(test, ends, options, Some(prove), quiet)).collect();
+            return pairs.iter().map(|&ends| Self::new(test, ends, scenario, Some(prove), quiet)).collect();
         }
-        let found = search_pairs(test, pairs, options, quiet)?;
-        Ok(found.into_iter().map(|found| Self { found, proof: None }).collect())
+        let found = search_pairs(test, pairs, scenario, quiet)?;
+        Ok(found.into_iter().map(|found| Self { found, surest: Vec::new(), proof: None }).collect())
     }
 
     /// The answer as plain data.
@@ -76,24 +88,32 @@ pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
         .map_err(|error| Failure::message(format!("the threads cannot be started ({error}): ask for fewer with --threads")))
 }
 
-/// Searches for one pair, and shows what is being tried on a terminal.
-fn search(
+/// Searches for one pair, for the surest path where the scenario asks for it, and shows what is being tried on a terminal.
+pub(super) fn search(
     test: &HopTest<'_>,
     (start, goal): (Station, Station),
-    options: &SearchOptions,
+    scenario: &Scenario,
     quiet: bool,
-) -> Result<graph::Answer, Failure> {
-    graph::search(test, start, goal, options, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
+) -> Result<(graph::Answer, Vec<SurestPath>), Failure> {
+    let options = &scenario.search;
+    let found = match scenario.surety() {
+        None => graph::search(test, start, goal, options, &mut told(quiet)).map(|answer| (answer, Vec::new())),
+        Some(surety) => search_surest(test, start, goal, options, &surety, &mut told(quiet)),
+    };
+    found.map_err(|error| Failure::message(error.to_string()))
 }
 
-/// Searches for many pairs, once from each start.
+/// Searches for many pairs, once from each start; pair by pair where the surest paths are asked for.
 fn search_pairs(
     test: &HopTest<'_>,
     pairs: &[(Station, Station)],
-    options: &SearchOptions,
+    scenario: &Scenario,
     quiet: bool,
 ) -> Result<Vec<graph::Answer>, Failure> {
-    graph::search_pairs(test, pairs, options, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
+    if scenario.surety().is_some() {
+        return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
+    }
+    graph::search_pairs(test, pairs, &scenario.search, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
 }
 
 /// Tells what is being tried.

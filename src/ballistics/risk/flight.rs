@@ -1,0 +1,199 @@
+//! How a flight with another speed and another angle goes, and what it still scatters by.
+
+use super::{ContactScatter, HopDeviations, PlannedHop};
+use crate::{
+    ballistics::{HopTest, limits::flown_past},
+    chain::{Contact, Direction, Station},
+    quantity::Angle,
+};
+
+/// The standard normal distribution function, through `libm`.
+pub(super) fn normal(x: f64) -> f64 {
+    0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
+}
+
+/// A cell of a normal deviation: its mean, its probability and the standard deviation inside it.
+#[derive(Clone, Copy)]
+pub(super) struct Cell {
+    pub(super) mean: f64,
+    pub(super) probability: f64,
+    pub(super) sigma: f64,
+}
+
+/// No deviation at all.
+const ALL_IN_ONE: [Cell; 1] = [Cell { mean: 0.0, probability: 1.0, sigma: 0.0 }];
+
+/// The standard normal cut at 0, 0.5, 1 and 2 on either side. One cut is in the middle because a command on the very edge of a cone is the
+/// commonest of all: its take-off and its landing then fail on the same side.
+const CELLS: [Cell; 8] = [
+    Cell { mean: -2.373_215_533, probability: 0.022_750_132, sigma: 0.338_051_920 },
+    Cell { mean: -1.383_169_047, probability: 0.135_905_122, sigma: 0.269_708_891 },
+    Cell { mean: -0.734_540_459, probability: 0.149_882_285, sigma: 0.143_241_039 },
+    Cell { mean: -0.244_836_264, probability: 0.191_462_461, sigma: 0.143_681_448 },
+    Cell { mean: 0.244_836_264, probability: 0.191_462_461, sigma: 0.143_681_448 },
+    Cell { mean: 0.734_540_459, probability: 0.149_882_285, sigma: 0.143_241_039 },
+    Cell { mean: 1.383_169_047, probability: 0.135_905_122, sigma: 0.269_708_891 },
+    Cell { mean: 2.373_215_533, probability: 0.022_750_132, sigma: 0.338_051_920 },
+];
+
+/// The cells of a deviation; one where there is none.
+pub(super) fn cells(sigma: f64) -> impl Iterator<Item = Cell> {
+    let all: &[Cell] = if sigma > 0.0 { &CELLS } else { &ALL_IN_ONE };
+    all.iter().map(move |cell| Cell { mean: cell.mean * sigma, sigma: cell.sigma * sigma, ..*cell })
+}
+
+/// What all flights of a hop share.
+pub(super) struct Ground {
+    /// Its slope at the take-off, as the traveller sees it.
+    takeoff: f64,
+    /// Its slope at the landing.
+    landing: f64,
+}
+
+impl Ground {
+    pub(super) fn of(test: &HopTest<'_>, hop: &PlannedHop, direction: Direction) -> Self {
+        let slopes = test.chain().geometry().slopes();
+        let slope = |station: &Station, contact| {
+            let segment = station.ruling_segment(contact, direction, slopes.len());
+            segment.map_or(0.0, |segment| direction.sign() * slopes[segment.index()])
+        };
+        Self { takeoff: slope(&hop.takeoff, Contact::Takeoff), landing: slope(&hop.landing, Contact::Landing) }
+    }
+}
+
+/// One flight with another speed and another angle, `z = m d - c d^2`, down to the straight ground about the planned landing.
+pub(super) struct Flight {
+    angle: f64,
+    slope: f64,
+    speed_m_s: f64,
+    /// `c = g / (2 v_x^2)`.
+    bend_per_m: f64,
+    /// Horizontal distance covered, m.
+    pub(super) run_m: f64,
+    landing_slope: f64,
+    landing_speed_m_s: f64,
+    /// Standard deviation of where it comes down, m.
+    landing_sigma_m: f64,
+    /// Standard deviation of the angle inside its cell, radians.
+    angle_sigma: f64,
+    /// Standard deviation of the speed inside its cell, m/s.
+    speed_sigma_m_s: f64,
+}
+
+impl Flight {
+    /// The flight with these deviations of speed and angle; `None` where it does not come down there.
+    ///
+    /// ```text
+    ///     c d^2 - (m - s) d + (Z - s X) = 0, the larger root
+    /// ```
+    ///
+    /// with the slope `s` of the ground at the planned landing `(X, Z)`. About it the landing scatters by what is left of the
+    /// deviations: of place, `dz = (s_t - z'(d)) dx_t`, of height, and of speed and angle inside their cells,
+    /// `dz/dv = 2 c d^2 / v` and `dz/dtheta = (1 + m^2) d - 2 m c d^2`, each over the closing slope `s - z'(d)`.
+    pub(super) fn new(
+        deviations: &HopDeviations,
+        test: &HopTest<'_>,
+        hop: &PlannedHop,
+        ground: &Ground,
+        [speed, angle]: [Cell; 2],
+    ) -> Option<Self> {
+        let (angle, angle_sigma) = (hop.arc.takeoff_angle().radians() + angle.mean, angle.sigma);
+        let (speed_m_s, slope) = (hop.arc.takeoff_speed_m_s() + speed.mean, Angle::from_radians(angle).slope());
+        if speed_m_s <= 0.0 || !slope.is_finite() {
+            return None;
+        }
+        let horizontal_m_s = speed_m_s / libm::hypot(1.0, slope);
+        let bend_per_m = test.gravity_m_s2() / (2.0 * horizontal_m_s * horizontal_m_s);
+        let sight = hop.arc.line_of_sight();
+        let half = 0.5 * (slope - ground.landing);
+        let root = half * half - bend_per_m * (sight.rise_m() - ground.landing * sight.run_m());
+        let run_m = (half + root.max(0.0).sqrt()) / bend_per_m;
+        if root < 0.0 || run_m <= 0.0 {
+            return None;
+        }
+        let landing_slope = slope - 2.0 * bend_per_m * run_m;
+        let mut flight = Self {
+            angle,
+            slope,
+            speed_m_s,
+            bend_per_m,
+            run_m,
+            landing_slope,
+            landing_speed_m_s: horizontal_m_s * libm::hypot(1.0, landing_slope),
+            landing_sigma_m: 0.0,
+            angle_sigma,
+            speed_sigma_m_s: speed.sigma,
+        };
+        let closing = ground.landing - landing_slope;
+        flight.landing_sigma_m = flight.height_sigma_m(deviations, ground, run_m) / closing;
+        (closing > 0.0).then_some(flight)
+    }
+
+    /// The standard deviation of the arc's height over the ground at a distance `d` from the take-off, m.
+    fn height_sigma_m(&self, deviations: &HopDeviations, ground: &Ground, d_m: f64) -> f64 {
+        let fall_m = self.bend_per_m * d_m * d_m;
+        let by_speed = 2.0 * fall_m * self.speed_sigma_m_s / self.speed_m_s;
+        let by_angle = ((1.0 + self.slope * self.slope) * d_m - 2.0 * self.slope * fall_m) * self.angle_sigma;
+        let by_place = (ground.takeoff - (self.slope - 2.0 * self.bend_per_m * d_m)) * deviations.place_m;
+        [by_speed, by_angle, by_place, deviations.height_m].into_iter().fold(0.0, libm::hypot)
+    }
+
+    /// The probability to strike the most critical vertex on the way.
+    ///
+    /// Vertices within four deviations of either end are part of the ground there, which is judged as such.
+    pub(super) fn strike_probability(
+        &self,
+        deviations: &HopDeviations,
+        test: &HopTest<'_>,
+        hop: &PlannedHop,
+        ground: &Ground,
+    ) -> f64 {
+        let vertices = test.chain().geometry().vertices();
+        let mut least = f64::INFINITY;
+        for vertex in &vertices[flown_past(&hop.takeoff, &hop.landing)] {
+            let d_m = (vertex.x_m - hop.takeoff.point.x_m).abs();
+            if d_m <= 4.0 * deviations.place_m || self.run_m - d_m <= 4.0 * self.landing_sigma_m {
+                continue;
+            }
+            let height_m = hop.takeoff.point.z_m + d_m * (self.slope - self.bend_per_m * d_m) - vertex.z_m;
+            let sigma_m = self.height_sigma_m(deviations, ground, d_m).max(f64::MIN_POSITIVE);
+            least = least.min(height_m / sigma_m);
+        }
+        normal(-least)
+    }
+
+    /// The take-off with its scatter.
+    pub(super) fn takeoff(&self, deviations: &HopDeviations) -> ContactScatter {
+        ContactScatter {
+            contact: Contact::Takeoff,
+            shift_m: 0.0,
+            place_m: deviations.place_m,
+            angle: self.angle,
+            angle_per_m: 0.0,
+            angle_sigma: self.angle_sigma,
+            // The actuator gives what it gives: its limit is a matter of planning.
+            speed_m_s: 0.0,
+            speed_sigma_m_s: 0.0,
+            tolerance_m: None,
+        }
+    }
+
+    /// The landing with its scatter.
+    ///
+    /// Its angle turns with the place, `d(slope)/dx = -2 c`; at one place it is off by `sigma_theta (1 + m^2) / (1 + l^2)`, since
+    /// `l = 2 b - m`.
+    pub(super) fn landing(&self, hop: &PlannedHop) -> ContactScatter {
+        let steepness = 1.0 + self.landing_slope * self.landing_slope;
+        ContactScatter {
+            contact: Contact::Landing,
+            shift_m: self.run_m - hop.arc.line_of_sight().run_m(),
+            place_m: self.landing_sigma_m,
+            angle: libm::atan(self.landing_slope),
+            angle_per_m: -2.0 * self.bend_per_m / steepness,
+            angle_sigma: self.angle_sigma * (1.0 + self.slope * self.slope) / steepness,
+            speed_m_s: self.landing_speed_m_s,
+            speed_sigma_m_s: self.speed_sigma_m_s * self.speed_m_s / self.landing_speed_m_s,
+            tolerance_m: hop.tolerance_m,
+        }
+    }
+}

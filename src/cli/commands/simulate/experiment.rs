@@ -1,0 +1,173 @@
+//! `chta simulate --experiment NAME`.
+
+use chta::{
+    chain::ConstrainedChain,
+    graph::{self, NodeSet, Outcome, SearchOptions, surest_paths},
+    path::{Hop, generate},
+    report::{
+        ConeWidthAnswer, Document, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer,
+        figure::{Picture, draw_cone_width, draw_landing_errors},
+    },
+    uncertainty::{
+        Policy, TrialOptions,
+        experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
+    },
+};
+use serde::Serialize;
+
+use super::{
+    super::{plan::Planned, search::search},
+    Flyer, pictures,
+};
+use crate::cli::{
+    Answer, Failure,
+    args::{Format, SimulateArgs},
+    load::Loaded,
+    output,
+};
+
+/// Runs an experiment by its name.
+pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<Answer, Failure> {
+    let experiment = named(&Experiment::ALL, Experiment::name, name, "--experiment")?;
+    let reading =
+        args.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading")).transpose()?;
+    refuse_idle(args, experiment)?;
+    let plot = args.plot.as_deref().map(|path| pictures::begin(path, "--plot")).transpose()?;
+    let test = loaded.hop_test();
+    let planned = Planned::new(loaded, &test, None, false, args.common.quiet)?;
+    let Some(path) = planned.path.as_ref().filter(|path| !path.hops.is_empty()) else {
+        return super::no_path(args, loaded, &planned);
+    };
+    let seed = loaded.scenario.uncertainty.unwrap_or_default().seed;
+    let g = loaded.scenario.body.gravity_m_s2;
+    let title = loaded.scenario.title.clone().unwrap_or_default();
+    let (text, picture) = match experiment {
+        Experiment::WorstDrift => {
+            let numbers = DriftExperiment::of_the_paper(reading.unwrap_or_default(), seed);
+            let landings = worst_drift(test.chain(), &path.hops, g, &numbers);
+            let answer = WorstDriftAnswer::new(&numbers, &landings);
+            let picture = draw_landing_errors(&answer.figure(&title));
+            (written(args, loaded, answer.text(), answer)?, Some(picture))
+        }
+        Experiment::ConeWidth => {
+            let answer = cone_widths(args, loaded, &path.hops, seed)?;
+            let picture = draw_cone_width(&answer.figure(&title));
+            (written(args, loaded, answer.text(), answer)?, Some(picture))
+        }
+        Experiment::RiskTrade => {
+            let answer = risk_trade(args, loaded, &planned)?;
+            (written(args, loaded, answer.text(), answer)?, None)
+        }
+    };
+    if let (Some(file), Some(path), Some(picture)) = (plot, args.plot.as_deref(), picture) {
+        let picture: Picture = picture.map_err(|error| Failure::message(error.to_string()))?;
+        output::finish(vec![(file, pictures::encoded(&picture, path)?)])?;
+    }
+    output::to_stdout(text.as_bytes())?;
+    Ok(Answer::Yes)
+}
+
+/// The variant of a name, or a sentence with the nearest.
+fn named<T: Copy>(all: &[T], name: fn(T) -> &'static str, given: &str, option: &str) -> Result<T, Failure> {
+    all.iter().copied().find(|variant| name(*variant) == given).ok_or_else(|| {
+        let names: Vec<_> = all.iter().map(|variant| name(*variant)).collect();
+        let near = names.iter().min_by_key(|known| strsim::damerau_levenshtein(given, known)).copied().unwrap_or_default();
+        Failure::message(format!("{option}: '{given}' is unknown, expected one of {}; the nearest is {near}", names.join(", ")))
+    })
+}
+
+/// Refuses options that the experiment has no use for.
+fn refuse_idle(args: &SimulateArgs, experiment: Experiment) -> Result<(), Failure> {
+    let trades = experiment == Experiment::RiskTrade;
+    let idle = [
+        ("--output", args.output.is_some()),
+        ("--reading", args.reading.is_some() && experiment != Experiment::WorstDrift),
+        ("--trials", args.trials.is_some() && !trades),
+        ("--policy", args.policy.is_some() && !trades),
+        ("--threads", args.threads != 0 && !trades),
+        ("--plot", args.plot.is_some() && trades),
+    ];
+    match idle.into_iter().find(|(_, given)| *given) {
+        Some((option, _)) => {
+            Err(Failure::message(format!("{option} has no effect on the experiment {}: leave it away", experiment.name())))
+        }
+        None => Ok(()),
+    }
+}
+
+fn written<T: Serialize>(args: &SimulateArgs, loaded: &Loaded, text: String, answer: T) -> Result<String, Failure> {
+    match args.format {
+        Format::Text => Ok(text),
+        Format::Json => {
+            let document = Document::new(
+                "simulate-experiment",
+                loaded.document.clone(),
+                loaded.inputs.clone(),
+                loaded.warnings_with([]),
+                answer,
+            );
+            Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
+        }
+    }
+}
+
+/// Plans and flies with ever narrower cones, on the same draws.
+fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) -> Result<ConeWidthAnswer, Failure> {
+    let scenario = &loaded.scenario;
+    let g = scenario.body.gravity_m_s2;
+    let numbers = DriftExperiment::of_the_paper(DriftReading::default(), seed);
+    let reference_m_s = widest.first().map_or(1.0, Hop::horizontal_speed_m_s);
+    let mut answer = ConeWidthAnswer::new(&numbers, reference_m_s);
+    for share in CONE_SHARES {
+        let failed = |error: &dyn std::fmt::Display| Failure::message(format!("cones at {share} of their width: {error}"));
+        let geometry = narrowed(&loaded.prepared.chain, share).map_err(|error| failed(&error))?;
+        let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface).map_err(|error| failed(&error))?;
+        let test = chta::ballistics::HopTest::new(&chain, &scenario.hopper, g);
+        let (found, _) = search(&test, loaded.ends()?, scenario, args.common.quiet)?;
+        let Outcome::Path { legs, .. } = &found.outcome else {
+            answer.add_none(share);
+            continue;
+        };
+        let path = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
+        let [fixed, with_speed] = DriftLaw::ALL.map(|law| cone_width(&chain, &path.hops, g, &numbers, (law, reference_m_s)));
+        answer.add(share, &path.hops, &fixed, &with_speed);
+    }
+    Ok(answer)
+}
+
+/// The surest path for every number of hops, estimated and flown.
+fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result<RiskTradeAnswer, Failure> {
+    let scenario = &loaded.scenario;
+    let Some(keys) = scenario.uncertainty else {
+        return Err(Failure::message(
+            "--experiment: risk-trade flies trials, but the scenario has no [uncertainty]: add its deviations and goal_tolerance_m",
+        ));
+    };
+    if keys.policy == Policy::Replan {
+        return Err(Failure::message(
+            "--experiment: risk-trade compares planned paths, but the policy is replan, which keeps to none of them: add --policy open-loop",
+        ));
+    }
+    let test = loaded.hop_test();
+    let (start, goal) = loaded.ends()?;
+    let failed = |error: &dyn std::fmt::Display| Failure::message(error.to_string());
+    let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| failed(&error))?;
+    let surest = surest_paths(&test, &nodes, &scenario.search, &scenario.surety_with(scenario.risk_extra_hops_max));
+    // What would be planned without regard to risk, over the same nodes.
+    let without_risk = SearchOptions { spacing: Some(planned.found.spacing), ..scenario.search.clone() };
+    let found = graph::search(&test, start, goal, &without_risk, &mut |_| {}).map_err(|error| failed(&error))?;
+    let Outcome::Path { legs, .. } = &found.outcome else {
+        return Err(Failure::message("there is no nominal path to compare with"));
+    };
+    let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
+    let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy))?;
+    let options = TrialOptions { threads: args.threads, ..keys.options() };
+    let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
+    for candidate in &surest {
+        let path =
+            generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
+        let summary = flyer.fly_along(&path, &options)?;
+        rows.push(RiskTradeRow::new("surest", path.hops.len(), Some(candidate.success), &summary));
+    }
+    Ok(RiskTradeAnswer { trials: keys.trials, seed: keys.seed, policy: keys.policy.name(), paths: rows })
+}

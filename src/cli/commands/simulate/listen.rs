@@ -1,0 +1,186 @@
+//! Who listens to the trials: the file of landings, and the terminal.
+
+use std::{
+    io::{self, BufWriter},
+    ops::ControlFlow,
+    path::Path,
+    time::Instant,
+};
+
+use chta::{
+    report::landings::{CsvLandings, LandingRow, LandingWriter},
+    uncertainty::{HopRecord, Observer, Policy, Progress as Done},
+};
+
+use super::trials::on_dem;
+use crate::cli::{Failure, load::Loaded, output::Pending, progress::Progress};
+
+/// The file of landings, written as they come.
+pub(super) struct RowFile<'a> {
+    writer: Box<dyn LandingWriter>,
+    /// `None` for standard output.
+    pending: Option<Pending<'a>>,
+    on_a_map: bool,
+}
+
+impl<'a> RowFile<'a> {
+    /// Opens it, by the ending of its name.
+    pub(super) fn begin(path: &'a Path, loaded: &Loaded) -> Result<Self, Failure> {
+        let on_a_map = on_dem(loaded);
+        let unwritten = |error: io::Error| Failure::message(format!("{}: cannot be written ({error})", path.display()));
+        if path == Path::new("-") {
+            let writer = CsvLandings::begin(BufWriter::new(io::stdout()), on_a_map).map_err(unwritten)?;
+            return Ok(Self { writer: Box::new(writer), pending: None, on_a_map });
+        }
+        let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        let writer: Box<dyn LandingWriter>;
+        let pending;
+        match ending.as_deref() {
+            Some("csv") => {
+                pending = Pending::begin(path)?;
+                let out = BufWriter::with_capacity(1 << 16, pending.handle()?);
+                writer = Box::new(CsvLandings::begin(out, on_a_map).map_err(unwritten)?);
+            }
+            Some("parquet") => (pending, writer) = parquet(path, loaded, on_a_map)?,
+            _ => {
+                return Err(Failure::message(format!(
+                    "--output: '{}' ends neither in .csv nor in .parquet: give the landings one of the two names",
+                    path.display()
+                )));
+            }
+        }
+        Ok(Self { writer, pending: Some(pending), on_a_map })
+    }
+
+    /// Puts it in its place.
+    fn keep(mut self) -> Result<(), Failure> {
+        match self.writer.finish() {
+            Err(error) if self.pending.is_none() && error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
+            Err(error) => return Err(Failure::message(format!("the landings cannot be written ({error}): free some space"))),
+            Ok(()) => {}
+        }
+        drop(self.writer);
+        self.pending.map_or(Ok(()), Pending::keep)
+    }
+}
+
+/// A Parquet file, with scenario and seed in its metadata.
+#[cfg(feature = "parquet")]
+fn parquet<'a>(path: &'a Path, loaded: &Loaded, on_a_map: bool) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
+    use chta::report::landings::ParquetLandings;
+
+    let seed = loaded.scenario.uncertainty.unwrap_or_default().seed;
+    let words = [
+        ("chta_version", env!("CARGO_PKG_VERSION").to_owned()),
+        ("scenario", loaded.document.to_string()),
+        ("seed", seed.to_string()),
+        ("inputs", serde_json::to_string(&loaded.inputs)?),
+    ];
+    let pending = Pending::begin(path)?;
+    let out = BufWriter::with_capacity(1 << 16, pending.handle()?);
+    let writer = ParquetLandings::begin(out, on_a_map, &words)
+        .map_err(|error| Failure::message(format!("{}: cannot be written ({error})", path.display())))?;
+    Ok((pending, Box::new(writer)))
+}
+
+/// This program cannot.
+#[cfg(not(feature = "parquet"))]
+fn parquet<'a>(path: &'a Path, _loaded: &Loaded, _on_a_map: bool) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
+    Err(Failure::message(format!(
+        "--output: '{}' is to be Parquet, which this chta was built without: build it with `cargo install --path . --features parquet`, or \
+         give a name that ends in .csv",
+        path.display()
+    )))
+}
+
+/// Writes landings and shows how far the trials are.
+pub(super) struct Listener<'a> {
+    rows: Option<RowFile<'a>>,
+    policy: Policy,
+    failed: Option<io::Error>,
+    progress: Progress,
+    begun: Instant,
+}
+
+impl<'a> Listener<'a> {
+    pub(super) fn new(rows: Option<RowFile<'a>>, policy: Policy, quiet: bool) -> Self {
+        Self { rows, policy, failed: None, progress: Progress::new(quiet), begun: Instant::now() }
+    }
+
+    /// The trials of another policy follow.
+    pub(super) fn begin(&mut self, policy: Policy) {
+        (self.policy, self.begun) = (policy, Instant::now());
+    }
+
+    /// What kept it from writing, in place of the simulation's own word that it was stopped.
+    pub(super) fn failure(&mut self) -> Option<Failure> {
+        let error = self.failed.take()?;
+        Some(Failure::message(format!("the landings cannot be written ({error}): free some space")))
+    }
+
+    /// Puts the file in its place.
+    pub(super) fn finish(mut self) -> Result<(), Failure> {
+        if let Some(failure) = self.failure() {
+            return Err(failure);
+        }
+        self.rows.map_or(Ok(()), RowFile::keep)
+    }
+}
+
+impl Observer for Listener<'_> {
+    fn wants_records(&self) -> bool {
+        self.rows.is_some()
+    }
+
+    fn hop(&mut self, hop: &HopRecord) {
+        let Some(rows) = self.rows.as_mut().filter(|_| self.failed.is_none()) else { return };
+        if let Some(row) = LandingRow::new(hop, self.policy, rows.on_a_map)
+            && let Err(error) = rows.writer.write(&row)
+        {
+            // A reader who closed the pipe has enough.
+            if rows.pending.is_none() && error.kind() == io::ErrorKind::BrokenPipe {
+                self.rows = None;
+            } else {
+                self.failed = Some(error);
+            }
+        }
+    }
+
+    fn progress(&mut self, done: &Done) -> ControlFlow<()> {
+        if self.failed.is_some() {
+            return ControlFlow::Break(());
+        }
+        self.progress.say(told(self.policy, done, self.begun.elapsed().as_secs_f64()));
+        ControlFlow::Continue(())
+    }
+}
+
+/// How far the trials are, how fast they go, and how long they take still.
+#[expect(clippy::cast_precision_loss, reason = "for reading")]
+fn told(policy: Policy, done: &Done, elapsed_s: f64) -> String {
+    let rate = done.done as f64 / elapsed_s.max(1e-9);
+    let left_s = (done.of - done.done.min(done.of)) as f64 / rate.max(1e-9);
+    format!(
+        "{}: {} of {} trials, {rate:.0} a second, {left_s:.0} s left at most, {:.4} reach the goal",
+        policy.name(),
+        done.done,
+        done.of,
+        done.success.rate
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use chta::uncertainty::{OutcomeCounts, Wilson};
+
+    use super::*;
+
+    #[test]
+    fn progress_has_rate_and_time_left() {
+        let done = Done { done: 3000, of: 9000, outcomes: OutcomeCounts::default(), success: Wilson::of(1500, 3000) };
+        assert_eq!(
+            told(Policy::Replan, &done, 2.0),
+            "replan: 3000 of 9000 trials, 1500 a second, 4 s left at most, 0.5000 reach the goal"
+        );
+    }
+}

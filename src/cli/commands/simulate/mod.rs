@@ -1,0 +1,178 @@
+//! `chta simulate`: how surely the planned path is flown.
+
+mod experiment;
+mod listen;
+mod pictures;
+mod trials;
+
+use std::path::Path;
+
+use chta::{
+    ballistics::HopTest,
+    report::{CheckAnswer, Document, SimulationRecord, check_text},
+    scenario::UncertaintyKeys,
+    uncertainty::{Policy, TrialOptions},
+};
+use serde::Serialize;
+
+use super::plan::Planned;
+use crate::cli::{
+    Answer, Failure,
+    args::{Format, SimulateArgs},
+    load::{EndOptions, Loaded, load_with},
+    output,
+};
+use listen::RowFile;
+use pictures::{landing_map, sheet};
+use trials::Flyer;
+
+/// What a simulation answers: the check, and where there is a path, what became of its trials.
+#[derive(Clone, Debug, Serialize)]
+struct SimulateAnswer {
+    #[serde(flatten)]
+    check: CheckAnswer,
+    #[serde(flatten)]
+    simulation: Option<SimulationRecord>,
+    /// Both policies on the same draws, where that was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    compare: Vec<SimulationRecord>,
+}
+
+/// Simulates.
+pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
+    let loaded =
+        load_with(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal), &trial_options(args))?;
+    if let Some(name) = &args.experiment {
+        return experiment::run(args, &loaded, name);
+    }
+    // Everything that can be refused is, before the search, which may take long.
+    let keys = loaded.scenario.uncertainty.unwrap_or_default();
+    if let Some(half_width) = args.until_half_width.filter(|half_width| !(*half_width > 0.0 && *half_width < 0.5)) {
+        return Err(Failure::message(format!(
+            "--until-half-width is {half_width}, expected a number above 0 and below 0.5: 0.01 stops at a rate known to one in a hundred"
+        )));
+    }
+    if args.plot_map.is_some() && !trials::on_dem(&loaded) {
+        return Err(Failure::message("--plot-map: the landings lie on no DEM; give the scenario [terrain] dem, or use --plot"));
+    }
+    loaded.ends()?;
+    let rows = args.output.as_deref().map(|path| RowFile::begin(path, &loaded)).transpose()?;
+    let plot = args.plot.as_deref().map(|path| pictures::begin(path, "--plot")).transpose()?;
+    let plot_map = args.plot_map.as_deref().map(|path| pictures::begin(path, "--plot-map")).transpose()?;
+    let to_stdout = args.output.as_deref() == Some(Path::new("-"));
+    let test = loaded.hop_test();
+    let planned = Planned::new(&loaded, &test, None, false, args.common.quiet)?;
+    let Some(path) = &planned.path else {
+        return no_path(args, &loaded, &planned);
+    };
+    let doubts: Vec<String> = keys.doubt().map(str::to_owned).into_iter().collect();
+    for doubt in &doubts {
+        output::warn(args.common.quiet, doubt);
+    }
+    let policies: &[Policy] = if args.compare { &Policy::ALL } else { std::slice::from_ref(&keys.policy) };
+    let flyer = Flyer::new(&loaded, &test, path, &planned.found, policies)?;
+    let flown = flyer.fly(policies, &trials_asked(args, &keys), rows, args.common.quiet)?;
+    let mut files = Vec::new();
+    if let (Some(file), Some(path)) = (plot, args.plot.as_deref()) {
+        files.push((file, sheet(&flyer, &flown, path)?));
+    }
+    if let (Some(file), Some(path)) = (plot_map, args.plot_map.as_deref())
+        && let Some(picture) = landing_map(&flyer, &flown, path)?
+    {
+        files.push((file, picture));
+    }
+    output::finish(files)?;
+    if to_stdout {
+        return Ok(Answer::Yes);
+    }
+    let records: Vec<_> = flown.iter().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())).collect();
+    let asked = records.iter().find(|record| record.policy == keys.policy.name()).cloned();
+    let text = match args.format {
+        Format::Text => {
+            let mut text = check_text(planned.check());
+            for record in &records {
+                text.push('\n');
+                text.push_str(&record.text());
+            }
+            text
+        }
+        Format::Json => {
+            let compare = if args.compare { records } else { Vec::new() };
+            let answer = SimulateAnswer { check: planned.check().clone(), simulation: asked, compare };
+            document(&loaded, doubts, answer)?
+        }
+    };
+    output::to_stdout(text.as_bytes())?;
+    Ok(Answer::Yes)
+}
+
+/// The trials of a whole run.
+pub(super) struct RunTrials {
+    /// For reading; empty where the scenario asks for no trials, or no path was found to fly.
+    pub(super) text: String,
+    /// Names and contents of its files.
+    pub(super) files: Vec<(&'static str, Vec<u8>)>,
+}
+
+/// All files that a run may leave of its trials.
+pub(super) const RUN_FILES: [&str; 3] = ["simulation.json", "trials.svg", "landings.svg"];
+
+/// Flies and draws what the scenario's `[uncertainty]` asks for, beside the plan of a run.
+pub(super) fn of_run(
+    loaded: &Loaded,
+    test: &HopTest<'_>,
+    planned: &Planned,
+    threads: usize,
+    quiet: bool,
+) -> Result<RunTrials, Failure> {
+    let mut trials = RunTrials { text: String::new(), files: Vec::new() };
+    let (Some(keys), Some(path)) = (loaded.scenario.uncertainty, &planned.path) else { return Ok(trials) };
+    let doubts: Vec<String> = keys.doubt().map(str::to_owned).into_iter().collect();
+    for doubt in &doubts {
+        output::warn(quiet, doubt);
+    }
+    let policies = std::slice::from_ref(&keys.policy);
+    let flyer = Flyer::new(loaded, test, path, &planned.found, policies)?;
+    let flown = flyer.fly(policies, &TrialOptions { threads, ..keys.options() }, None, quiet)?;
+    let [answer, sheet_name, map_name] = RUN_FILES;
+    let Some(record) = flown.first().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())) else { return Ok(trials) };
+    trials.text = format!("\n{}", record.text());
+    let simulation = SimulateAnswer { check: planned.check().clone(), simulation: Some(record), compare: Vec::new() };
+    trials.files.push((answer, document(loaded, doubts, simulation)?.into_bytes()));
+    trials.files.push((sheet_name, sheet(&flyer, &flown, Path::new(sheet_name))?));
+    trials.files.extend(landing_map(&flyer, &flown, Path::new(map_name))?.map(|picture| (map_name, picture)));
+    Ok(trials)
+}
+
+/// The answer where there is nothing to fly.
+fn no_path(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result<Answer, Failure> {
+    let text = match args.format {
+        Format::Text => check_text(planned.check()) + "nothing to simulate: there is no nominal path\n",
+        Format::Json => {
+            document(loaded, Vec::new(), SimulateAnswer { check: planned.check().clone(), simulation: None, compare: Vec::new() })?
+        }
+    };
+    if args.output.as_deref() != Some(Path::new("-")) {
+        output::to_stdout(text.as_bytes())?;
+    }
+    Ok(Answer::No)
+}
+
+fn document<T: Serialize>(loaded: &Loaded, doubts: Vec<String>, answer: T) -> Result<String, Failure> {
+    let document = loaded.document.clone();
+    let document = Document::new("simulate", document, loaded.inputs.clone(), loaded.warnings_with(doubts), answer);
+    Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
+}
+
+/// What the options of trials set in the scenario, which is checked and written as if it had said so itself.
+fn trial_options(args: &SimulateArgs) -> Vec<(&'static str, &'static str, &'static str, toml::Value)> {
+    let trials = args.trials.map(|trials| ("--trials", "uncertainty", "trials", trials.into()));
+    let seed = args.seed.map(|seed| ("--seed", "uncertainty", "seed", seed.into()));
+    let policy = args.policy.clone().map(|policy| ("--policy", "uncertainty", "policy", policy.into()));
+    [trials, seed, policy].into_iter().flatten().collect()
+}
+
+/// The trials that scenario and options ask for.
+fn trials_asked(args: &SimulateArgs, keys: &UncertaintyKeys) -> TrialOptions {
+    TrialOptions { until_half_width: args.until_half_width, threads: args.threads, ..keys.options() }
+}

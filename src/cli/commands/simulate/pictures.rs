@@ -1,0 +1,201 @@
+//! The pictures of trials.
+
+use std::path::Path;
+
+use chta::{
+    quantity::{ChainPoint, MapPoint},
+    report::figure::{
+        Caption, ConvergencePoint, ErrorQuantiles, Flight, FlownFigure, FlownTrial, LandingBoxes, LandingCloud, LandingEllipse,
+        LandingMapFigure, OutcomeBars, Picture, SimulationFigure, Success, draw_landing_map, draw_simulation,
+    },
+    uncertainty::{HopRecord, LandingSummary, Summary, TrialOutcome, Uncertainty, Wilson},
+};
+use nalgebra::Vector2;
+
+use super::trials::{Flown, Flyer};
+use crate::cli::{Failure, load::Loaded, output::Pending};
+
+/// Opens a picture's file, which must have the name of one.
+pub(super) fn begin<'a>(path: &'a Path, option: &str) -> Result<Pending<'a>, Failure> {
+    let named = path.extension().is_some_and(|ending| ["svg", "png"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
+    if !named {
+        return Err(Failure::message(format!(
+            "{option}: '{}' does not end in .svg or .png: give the picture such a name",
+            path.display()
+        )));
+    }
+    Pending::begin(path)
+}
+
+/// A picture as the bytes of the file that was opened for it.
+pub(super) fn encoded(picture: &Picture, file: &Path) -> Result<Vec<u8>, Failure> {
+    picture.encoded_for(file).map_err(|error| Failure::message(error.to_string()))
+}
+
+/// Everything of the trials on one sheet.
+pub(super) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Vec<u8>, Failure> {
+    let summaries = || flown.iter().map(|flown| &flown.summary);
+    let figure = SimulationFigure {
+        caption: caption(flyer.loaded, summaries()),
+        flown: summaries().next().and_then(|summary| bundle(flyer, summary)),
+        errors: summaries().map(|summary| boxes(summary)).collect(),
+        outcomes: summaries().map(bars).collect(),
+    };
+    encoded(&draw_simulation(&figure).map_err(|error| Failure::message(error.to_string()))?, file)
+}
+
+/// The landings on the map; `None` where there is no map.
+pub(super) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Option<Vec<u8>>, Failure> {
+    let (Some(dem), Some(Flown { summary })) = (flyer.dem(), flown.first()) else { return Ok(None) };
+    let ends: Vec<_> = flyer.path.hops.iter().filter_map(|hop| hop.map).collect();
+    let path = ends.first().map(|first| first.takeoff).into_iter().chain(ends.iter().map(|hop| hop.landing)).collect();
+    let clouds = summary.landings.iter().zip(&ends).map(|(landing, hop)| cloud(landing, hop.landing, summary)).collect();
+    let figure = LandingMapFigure { caption: caption(flyer.loaded, std::iter::once(summary)), dem, path, clouds };
+    let picture = draw_landing_map(&figure).map_err(|error| Failure::message(error.to_string()))?;
+    encoded(&picture, file).map(Some)
+}
+
+/// The words above: what was flown, under which errors, and what came of it.
+fn caption<'a>(loaded: &Loaded, summaries: impl Iterator<Item = &'a Summary>) -> Caption {
+    let keys = loaded.scenario.uncertainty.unwrap_or_default();
+    let mut lines =
+        vec![format!("{}; goal tolerance {} m; seed {}", errors_in_words(&keys.errors), keys.goal_tolerance_m, keys.seed)];
+    lines.extend(summaries.map(|summary| {
+        let Wilson { rate, low, high } = summary.success;
+        format!(
+            "{}: {} of {} trials reach the goal, {rate:.4} (95 % interval {low:.4} to {high:.4})",
+            summary.policy.name(),
+            summary.outcomes.of(TrialOutcome::Reached),
+            summary.trials
+        )
+    }));
+    Caption { title: loaded.scenario.title.clone().unwrap_or_default(), lines }
+}
+
+/// The deviations that are not zero, each with its unit.
+fn errors_in_words(errors: &Uncertainty) -> String {
+    let given = errors.by_key().into_iter().filter(|(_, deviation, _)| *deviation > 0.0);
+    let words: Vec<String> = given
+        .map(|(key, deviation, unit)| {
+            let name = key.trim_end_matches("_m_s").trim_end_matches("_m").trim_end_matches("_deg").trim_end_matches("_fraction");
+            format!("{} {} {unit}", name.replace("_sigma", "").replace('_', " "), shortest(deviation))
+        })
+        .collect();
+    if words.is_empty() { "no errors".to_owned() } else { format!("standard deviations: {}", words.join(", ")) }
+}
+
+/// A number without the digits that a conversion of angles adds.
+fn shortest(number: f64) -> String {
+    let text = format!("{number:.6}");
+    text.trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Box plots of one policy.
+fn boxes(summary: &Summary) -> LandingBoxes {
+    let landings = summary.landings.iter().map(|landing| {
+        let error = &landing.error;
+        ErrorQuantiles {
+            count: landing.count,
+            mean_m: error.mean_m,
+            q05_m: error.q05_m,
+            q25_m: error.q25_m,
+            q50_m: error.q50_m,
+            q75_m: error.q75_m,
+            q95_m: error.q95_m,
+            max_m: error.max_m,
+        }
+    });
+    LandingBoxes { name: summary.policy.name().to_owned(), landings: landings.collect() }
+}
+
+/// Outcomes and convergence of one policy.
+fn bars(summary: &Summary) -> OutcomeBars {
+    let success = |wilson: &Wilson| Success { rate: wilson.rate, low: wilson.low, high: wilson.high };
+    OutcomeBars {
+        policy: summary.policy.name().to_owned(),
+        counts: summary.outcomes.each().map(|(outcome, count)| (outcome.name().to_owned(), count)).collect(),
+        success: success(&summary.success),
+        convergence: summary
+            .convergence
+            .iter()
+            .map(|point| ConvergencePoint { trials: point.trials, success: success(&point.success) })
+            .collect(),
+    }
+}
+
+/// The kept trials over the profile; on a map as seen from the side, and only where the way has no bend.
+fn bundle(flyer: &Flyer<'_>, summary: &Summary) -> Option<FlownFigure> {
+    let geometry = flyer.test.chain().geometry();
+    if !geometry.bends().is_empty() {
+        return None;
+    }
+    let side = Side::of(flyer)?;
+    let planned = flyer.path.hops.iter().map(|hop| Flight {
+        from: hop.takeoff.point,
+        to: hop.landing.point,
+        takeoff_slope: hop.takeoff_angle.slope(),
+    });
+    let trials = summary.trajectories.iter().map(|trajectory| FlownTrial {
+        flights: trajectory.hops.iter().filter(|hop| hop.landed).filter_map(|hop| side.flight(hop)).collect(),
+        reached: trajectory.trial.outcome == TrialOutcome::Reached,
+    });
+    Some(FlownFigure {
+        ground: geometry.vertices().to_vec(),
+        planned: planned.collect(),
+        trials: trials.collect(),
+        trials_in_all: summary.trials,
+    })
+}
+
+/// The plane that flights are seen in.
+struct Side {
+    origin: Vector2<f64>,
+    along: Vector2<f64>,
+    first_x_m: f64,
+}
+
+impl Side {
+    fn of(flyer: &Flyer<'_>) -> Option<Self> {
+        let geometry = flyer.test.chain().geometry();
+        let (first_x_m, _) = geometry.extent_m();
+        if flyer.dem().is_none() {
+            return Some(Self { origin: Vector2::new(first_x_m, 0.0), along: Vector2::x(), first_x_m });
+        }
+        let (first, last) = geometry.map_points().and_then(|points| points.first().zip(points.last()))?;
+        Some(Self { origin: first.coords, along: (last - first).try_normalize(0.0)?, first_x_m })
+    }
+
+    /// A flown hop as seen from the side; `None` for one across the plane.
+    fn flight(&self, hop: &HopRecord) -> Option<Flight> {
+        let seen = |place: nalgebra::Point3<f64>| {
+            ChainPoint::new(self.first_x_m + (place.coords.xy() - self.origin).dot(&self.along), place.z)
+        };
+        let (from, to) = (seen(hop.takeoff_m), seen(hop.contact_m));
+        let speed_along_m_s = (hop.heading.dot(&self.along) * hop.horizontal_m_s).abs();
+        (speed_along_m_s > 0.0 && from.x_m != to.x_m).then(|| Flight {
+            from,
+            to,
+            takeoff_slope: hop.takeoff_vertical_m_s / speed_along_m_s,
+        })
+    }
+}
+
+/// The landings of one hop on the map.
+fn cloud(landing: &LandingSummary, planned: MapPoint, summary: &Summary) -> LandingCloud {
+    let kept = summary.trajectories.iter().flat_map(|trajectory| &trajectory.hops);
+    LandingCloud {
+        hop: landing.hop as usize,
+        planned,
+        landings: kept
+            .filter(|hop| hop.landed && hop.hop == landing.hop)
+            .map(|hop| MapPoint::from(hop.rest_m.coords.xy()))
+            .collect(),
+        count: landing.count,
+        ellipse: landing.ellipse.as_ref().map(|ellipse| LandingEllipse {
+            centre: ellipse.centre,
+            semi_major_m: ellipse.semi_major_m,
+            semi_minor_m: ellipse.semi_minor_m,
+            heading_deg: ellipse.orientation.degrees(),
+        }),
+    }
+}

@@ -1,0 +1,326 @@
+//! The surest path, and what hops buy in surety.
+
+use std::collections::BTreeMap;
+
+use super::{Cost, Edge, HopGraph, Leg, NodeSet, Outcome, SearchOptions, TooManyNodes, search};
+use crate::{
+    ballistics::{Arc, HopTest, PlannedHop, RiskModel, SegmentHops, Split, TakeoffChoice},
+    chain::{Direction, Station},
+    quantity::NodeId,
+};
+
+/// Whether surety weighs in the choice of a path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum RiskUse {
+    /// It does not.
+    #[default]
+    Ignored,
+    /// The surest path among those with the fewest hops.
+    FewestHops,
+    /// Hops are traded for surety: the surest path with some hops more than the fewest.
+    Traded,
+}
+
+impl RiskUse {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Ignored, Self::FewestHops, Self::Traded];
+
+    /// The name in scenarios.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Ignored => "ignored",
+            Self::FewestHops => "fewest-hops",
+            Self::Traded => "traded",
+        }
+    }
+}
+
+/// How surety weighs in the choice of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SuretyOptions {
+    /// What the probability of a hop to fail is estimated from.
+    pub model: RiskModel,
+    /// How many hops more than the fewest a surer path may take; 0: the surest of those with the fewest hops.
+    pub extra_hops_max: u32,
+    /// How far from the goal the last hop may come down, m.
+    pub goal_tolerance_m: Option<f64>,
+}
+
+/// A path of some number of hops that no path of as few hops or fewer is surer than.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurestPath {
+    /// Its edges from start to goal.
+    pub legs: Vec<Leg>,
+    /// Its hops, and its effort.
+    pub cost: Cost,
+    /// The estimated probability that all its hops come off: the product over them.
+    pub success: f64,
+}
+
+/// The surest path of the fewest hops, then for every further hop the surest path, where that is surer than all before: what hops
+/// buy in surety. Empty where there is no path over the nodes.
+///
+/// A hop weighs `-ln(1 - p)`, so weights add up as probabilities multiply. Shortest paths by hops and weight together, layer by layer
+/// over the number of hops (Bellman 1958, restricted to nodes from which the goal is still within the hops allowed). Ties go to the
+/// path whose nodes come first.
+///
+/// # Complexity
+/// With E edges within reach of the budget: E hop tests and E risk estimates, `E (1 + extra)` additions; 12 bytes for each edge.
+pub fn surest_paths(test: &HopTest<'_>, nodes: &NodeSet, options: &SearchOptions, surety: &SuretyOptions) -> Vec<SurestPath> {
+    let graph = HopGraph::new(test, nodes, options.effort, options.takeoff, options.split);
+    let Some(lattice) = Lattice::within(&graph, u64::from(surety.extra_hops_max)) else { return Vec::new() };
+    let labels = lattice.labelled(&graph, options, surety);
+    let mut surest = f64::INFINITY;
+    let mut paths = Vec::new();
+    for (&hops, layer) in &labels {
+        let Some(label) = layer.get(&nodes.goal().index()).filter(|label| label.weight < surest) else { continue };
+        surest = label.weight;
+        paths.extend(path_to_goal(&graph, &labels, hops, label.weight));
+    }
+    paths
+}
+
+/// Finds a path as [`search`] does, then the surest one that surety allows over the same nodes.
+///
+/// # Errors
+/// [`TooManyNodes`].
+pub fn search_surest(
+    test: &HopTest<'_>,
+    start: Station,
+    goal: Station,
+    options: &SearchOptions,
+    surety: &SuretyOptions,
+    progress: &mut dyn FnMut(super::PointSpacing),
+) -> Result<(super::Answer, Vec<SurestPath>), TooManyNodes> {
+    let mut answer = search(test, start, goal, options, progress)?;
+    let mut paths = Vec::new();
+    if let Outcome::Path { legs, cost } = &mut answer.outcome
+        && !legs.is_empty()
+    {
+        let nodes = NodeSet::new(test.chain(), start, goal, answer.spacing)?;
+        paths = surest_paths(test, &nodes, options, surety);
+        if let Some(surest) = paths.last() {
+            legs.clone_from(&surest.legs);
+            *cost = surest.cost;
+        }
+    }
+    Ok((answer, paths))
+}
+
+/// An edge to a node, with its number of hops.
+#[derive(Clone, Copy)]
+struct Step {
+    target: usize,
+    hops: u64,
+}
+
+/// All edges that a path within the budget may take.
+struct Lattice {
+    steps: Vec<Vec<Step>>,
+    /// The least number of hops from each node to the goal.
+    to_goal: Vec<u64>,
+    /// The most hops allowed.
+    budget: u64,
+}
+
+/// The best way to a node in some number of hops.
+#[derive(Clone, Copy)]
+struct Label {
+    weight: f64,
+    from: Option<(u64, usize)>,
+}
+
+/// Labels by number of hops, then by node: sparse, since few nodes are of use after so many hops.
+type Labels = BTreeMap<u64, BTreeMap<usize, Label>>;
+
+impl Lattice {
+    /// The edges out of every node within the budget, breadth first by hops; `None` where the goal is not reached.
+    fn within(graph: &HopGraph<'_>, extra: u64) -> Option<Self> {
+        let nodes = graph.nodes();
+        let count = nodes.stations().len();
+        let (start, goal) = (nodes.start().index(), nodes.goal().index());
+        let mut steps: Vec<Vec<Step>> = vec![Vec::new(); count];
+        let mut from_start = vec![u64::MAX; count];
+        let mut budget = u64::MAX;
+        let mut waiting = BTreeMap::from([(0, vec![start])]);
+        from_start[start] = 0;
+        while let Some((hops, mut layer)) = waiting.pop_first() {
+            if hops >= budget {
+                break;
+            }
+            layer.sort_unstable();
+            layer.dedup();
+            for node in layer.into_iter().filter(|&node| node != goal) {
+                if from_start[node] < hops {
+                    continue;
+                }
+                steps[node] = steps_from(graph, node);
+                for step in &steps[node] {
+                    let reached = hops + step.hops;
+                    if reached < from_start[step.target] {
+                        from_start[step.target] = reached;
+                        waiting.entry(reached).or_insert_with(Vec::new).push(step.target);
+                    }
+                }
+                if from_start[goal] != u64::MAX {
+                    budget = from_start[goal].saturating_add(extra);
+                }
+            }
+        }
+        (from_start[goal] != u64::MAX).then(|| Self { to_goal: hops_to(goal, &steps), steps, budget })
+    }
+
+    /// Every label from which the goal is still within the budget.
+    fn labelled(&self, graph: &HopGraph<'_>, options: &SearchOptions, surety: &SuretyOptions) -> Labels {
+        let nodes = graph.nodes();
+        let start = nodes.start().index();
+        let mut weights: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        let mut least = vec![f64::INFINITY; self.steps.len()];
+        let mut labels: Labels = BTreeMap::from([(0, BTreeMap::from([(start, Label { weight: 0.0, from: None })]))]);
+        let mut hops = 0;
+        loop {
+            let layer: Vec<(usize, Label)> = labels[&hops].iter().map(|(&node, &label)| (node, label)).collect();
+            for (node, label) in layer {
+                // With fewer hops one was there as surely.
+                if label.weight >= least[node] {
+                    continue;
+                }
+                least[node] = label.weight;
+                for step in &self.steps[node] {
+                    let reached = hops + step.hops;
+                    if reached.saturating_add(self.to_goal[step.target]) > self.budget {
+                        continue;
+                    }
+                    let weight = label.weight
+                        + *weights
+                            .entry((node, step.target))
+                            .or_insert_with(|| edge_weight(graph, (node, step.target), options, surety));
+                    let layer = labels.entry(reached).or_default();
+                    if layer.get(&step.target).is_none_or(|known| weight < known.weight) {
+                        layer.insert(step.target, Label { weight, from: Some((hops, node)) });
+                    }
+                }
+            }
+            match labels.range(hops + 1..).next() {
+                Some((&next, _)) => hops = next,
+                None => return labels,
+            }
+        }
+    }
+}
+
+/// The edges out of one node.
+fn steps_from(graph: &HopGraph<'_>, node: usize) -> Vec<Step> {
+    let nodes = graph.nodes();
+    let takeoff = nodes.station(NodeId(node));
+    let step = |target: usize| {
+        let edge = graph.edge(takeoff, nodes.station(NodeId(target))).ok()?;
+        Some(Step { target, hops: hops_of(edge) })
+    };
+    graph.landings(takeoff).filter(|&target| target != node).filter_map(step).collect()
+}
+
+const fn hops_of(edge: Edge) -> u64 {
+    match edge {
+        Edge::Hop(_) => 1,
+        Edge::Along(along) => along.hops(),
+    }
+}
+
+/// The least number of hops from every node to the goal, against the direction of the edges.
+fn hops_to(goal: usize, steps: &[Vec<Step>]) -> Vec<u64> {
+    let mut against: Vec<Vec<Step>> = vec![Vec::new(); steps.len()];
+    for (node, steps) in steps.iter().enumerate() {
+        for step in steps {
+            against[step.target].push(Step { target: node, hops: step.hops });
+        }
+    }
+    let mut least = vec![u64::MAX; steps.len()];
+    least[goal] = 0;
+    let mut waiting = BTreeMap::from([(0, vec![goal])]);
+    while let Some((hops, layer)) = waiting.pop_first() {
+        for node in layer {
+            if least[node] < hops {
+                continue;
+            }
+            for step in &against[node] {
+                let reached = hops + step.hops;
+                if reached < least[step.target] {
+                    least[step.target] = reached;
+                    waiting.entry(reached).or_insert_with(Vec::new).push(step.target);
+                }
+            }
+        }
+    }
+    least
+}
+
+/// The weight of an edge: the sum over its hops.
+fn edge_weight(graph: &HopGraph<'_>, (from, to): (usize, usize), options: &SearchOptions, surety: &SuretyOptions) -> f64 {
+    let (test, nodes) = (graph.test(), graph.nodes());
+    let (takeoff, landing) = (*nodes.station(NodeId(from)), *nodes.station(NodeId(to)));
+    let tolerance_m = surety.goal_tolerance_m.filter(|_| nodes.goal() == NodeId(to));
+    match graph.edge(&takeoff, &landing) {
+        Ok(Edge::Hop(lofts)) => test.line_of_sight(&takeoff, &landing).map_or(0.0, |sight| {
+            let arc = Arc::new(sight, options.takeoff.loft(sight, lofts), test.gravity_m_s2());
+            surety.model.weight(test, &PlannedHop { takeoff, landing, arc, lofts, tolerance_m })
+        }),
+        Ok(Edge::Along(along)) => {
+            along_weight(test, (takeoff, landing), &along, (options.takeoff, options.split), surety, tolerance_m)
+        }
+        // It was an edge when the lattice was built.
+        Err(_) => f64::INFINITY,
+    }
+}
+
+/// The weight of many hops along one segment: those next to its ends one by one, since other ground lies within their scatter; those
+/// between weigh as the last of them.
+#[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
+fn along_weight(
+    test: &HopTest<'_>,
+    (takeoff, landing): (Station, Station),
+    along: &SegmentHops,
+    (choice, split): (TakeoffChoice, Split),
+    surety: &SuretyOptions,
+    tolerance_m: Option<f64>,
+) -> f64 {
+    const BESIDE_AN_END: u64 = 16;
+    let Some(direction) = Direction::between(takeoff.point.x_m, landing.point.x_m) else { return 0.0 };
+    let (each_m, last_m) = along.lengths_m(split);
+    let geometry = test.chain().geometry();
+    let place = |i: u64| match i {
+        0 => Some(takeoff),
+        i if i == along.hops() => Some(landing),
+        i => geometry.station(takeoff.point.x_m + direction.sign() * each_m * i as f64).ok(),
+    };
+    let weight = |i: u64| {
+        let (Some(from), Some(to)) = (place(i), place(i + 1)) else { return 0.0 };
+        let length_m = if i + 1 == along.hops() { last_m } else { each_m };
+        let arc = along.arc(test, length_m, choice);
+        let tolerance_m = tolerance_m.filter(|_| i + 1 == along.hops());
+        let hop = PlannedHop { takeoff: from, landing: to, arc, lofts: along.lofts(test, length_m), tolerance_m };
+        surety.model.weight(test, &hop)
+    };
+    if along.hops() <= 2 * BESIDE_AN_END {
+        return (0..along.hops()).map(weight).sum();
+    }
+    let between = along.hops() - 2 * BESIDE_AN_END;
+    let (first, last) = (0..BESIDE_AN_END, along.hops() - BESIDE_AN_END..along.hops());
+    first.chain(last).map(weight).sum::<f64>() + weight(BESIDE_AN_END) * between as f64
+}
+
+/// The path to the goal that a label ends.
+fn path_to_goal(graph: &HopGraph<'_>, labels: &Labels, hops: u64, weight: f64) -> Option<SurestPath> {
+    let nodes = graph.nodes();
+    let mut at = (hops, nodes.goal().index());
+    let (mut legs, mut cost) = (Vec::new(), Cost::default());
+    while let Some(from) = labels.get(&at.0)?.get(&at.1)?.from {
+        let (takeoff, landing) = (*nodes.station(NodeId(from.1)), *nodes.station(NodeId(at.1)));
+        let edge = graph.edge(&takeoff, &landing).ok()?;
+        cost = cost + graph.cost(&takeoff, &landing, edge);
+        legs.push(Leg { takeoff, landing, edge });
+        at = from;
+    }
+    legs.reverse();
+    Some(SurestPath { legs, cost, success: libm::exp(-weight) })
+}

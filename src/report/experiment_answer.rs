@@ -1,0 +1,333 @@
+//! What the experiments came to, as plain data and for reading.
+
+use serde::Serialize;
+
+use super::{ErrorRecord, text::Sheet};
+use crate::{
+    path::Hop,
+    uncertainty::{
+        Summary,
+        experiments::{DriftExperiment, DriftLanding},
+    },
+};
+
+/// What `worst-drift` answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct WorstDriftAnswer {
+    /// The experiment's name.
+    pub experiment: &'static str,
+    /// How the paper was read.
+    pub reading: &'static str,
+    /// The seed of all draws.
+    pub seed: u64,
+    /// Flights from each landing.
+    pub flights: u32,
+    /// Variance of the noise on each axis.
+    pub noise_variance_m2: f64,
+    /// Variances of the take-off along, across and up.
+    pub takeoff_variances_m2: [f64; 3],
+    /// The landings, hop by hop.
+    pub landings: Vec<DriftRecord>,
+}
+
+/// The landings of one hop of the experiment.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DriftRecord {
+    /// Which hop, from 1.
+    pub hop: usize,
+    /// How many flights came down.
+    pub count: usize,
+    /// How many never came down.
+    pub lost: u32,
+    /// Of the distance in three dimensions from the planned landing.
+    #[serde(flatten)]
+    pub error: ErrorRecord,
+    /// The landing that goes on, along the chain.
+    pub farthest_x_m: f64,
+    /// The same, to the left of the plane of travel.
+    pub farthest_y_m: f64,
+}
+
+impl DriftRecord {
+    fn rows(landings: &[DriftLanding]) -> Vec<Self> {
+        let row = |(i, landing): (usize, &DriftLanding)| Self {
+            hop: i + 1,
+            count: landing.errors_m.len(),
+            lost: landing.lost,
+            error: ErrorRecord::of(&landing.errors_m),
+            farthest_x_m: landing.farthest_m.x,
+            farthest_y_m: landing.farthest_m.y,
+        };
+        landings.iter().enumerate().map(row).collect()
+    }
+}
+
+/// Rows of errors for reading, under their header.
+fn error_rows(sheet: &mut Sheet, rows: &[DriftRecord]) {
+    sheet.line(format_args!(
+        "{:>5}{:>10}{:>6}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}",
+        "hop", "landings", "lost", "mean", "5 %", "25 %", "50 %", "75 %", "95 %", "max"
+    ));
+    for row in rows {
+        let numbers = row.error.each().map(|number| number.map_or(format!("{:>10}", "-"), |n| format!("{n:>10.3}"))).concat();
+        sheet.line(format_args!("{:>5}{:>10}{:>6}{numbers}", row.hop, row.count, row.lost));
+    }
+}
+
+impl WorstDriftAnswer {
+    /// From the landings of an experiment.
+    pub fn new(numbers: &DriftExperiment, landings: &[DriftLanding]) -> Self {
+        Self {
+            experiment: "worst-drift",
+            reading: numbers.reading.name(),
+            seed: numbers.seed,
+            flights: numbers.flights,
+            noise_variance_m2: numbers.noise_variance_m2,
+            takeoff_variances_m2: numbers.takeoff_variances_m2,
+            landings: DriftRecord::rows(landings),
+        }
+    }
+
+    /// For reading.
+    pub fn text(&self) -> String {
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!(
+            "worst drift, {}: {} flights from the farthest landing of each hop, seed {}\ndistance from the planned landing (m)",
+            self.reading, self.flights, self.seed
+        ));
+        error_rows(&mut sheet, &self.landings);
+        sheet.into_text()
+    }
+}
+
+/// What `cone-width` answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConeWidthAnswer {
+    /// The experiment's name.
+    pub experiment: &'static str,
+    /// The seed of all draws.
+    pub seed: u64,
+    /// Flights from each landing.
+    pub flights: u32,
+    /// The horizontal speed at which drift with speed is as far as the paper says.
+    pub reference_horizontal_speed_m_s: f64,
+    /// From the widest cones to the narrowest.
+    pub widths: Vec<ConeWidthRecord>,
+}
+
+/// One width of the cones.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ConeWidthRecord {
+    /// Share of every cone's own distance from the vertical.
+    pub cone_share: f64,
+    /// Hops of the planned path; null where there is none.
+    pub hops: Option<usize>,
+    /// Mean of the hops' take-off angles.
+    pub mean_takeoff_angle_deg: Option<f64>,
+    /// Mean of the hops' horizontal speeds.
+    pub mean_horizontal_speed_m_s: Option<f64>,
+    /// Errors over all landings, drift as the paper draws it, the same after every landing.
+    pub all_landings_fixed: ErrorRecord,
+    /// Errors of the last landing alone.
+    pub last_landing_fixed: ErrorRecord,
+    /// Root mean square spread of one hop's landings about their own mean, from the second hop on.
+    pub landing_spread_fixed_m: Option<f64>,
+    /// Errors over all landings, drift in proportion to the horizontal speed, as the paper argues.
+    pub all_landings_with_speed: ErrorRecord,
+    /// Errors of the last landing alone.
+    pub last_landing_with_speed: ErrorRecord,
+    /// Root mean square spread of one hop's landings about their own mean, from the second hop on.
+    pub landing_spread_with_speed_m: Option<f64>,
+}
+
+impl ConeWidthAnswer {
+    /// Nothing tried yet.
+    pub fn new(numbers: &DriftExperiment, reference_horizontal_speed_m_s: f64) -> Self {
+        Self {
+            experiment: "cone-width",
+            seed: numbers.seed,
+            flights: numbers.flights,
+            reference_horizontal_speed_m_s,
+            widths: Vec::new(),
+        }
+    }
+
+    /// A width at which no path was found.
+    pub fn add_none(&mut self, cone_share: f64) {
+        let none = ErrorRecord::default();
+        self.widths.push(ConeWidthRecord {
+            cone_share,
+            hops: None,
+            mean_takeoff_angle_deg: None,
+            mean_horizontal_speed_m_s: None,
+            all_landings_fixed: none,
+            last_landing_fixed: none,
+            landing_spread_fixed_m: None,
+            all_landings_with_speed: none,
+            last_landing_with_speed: none,
+            landing_spread_with_speed_m: None,
+        });
+    }
+
+    /// A width with its path and the landings under both laws of drift.
+    pub fn add(&mut self, cone_share: f64, hops: &[Hop], fixed: &[DriftLanding], with_speed: &[DriftLanding]) {
+        #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
+        let mean = |of: fn(&Hop) -> f64| (!hops.is_empty()).then(|| hops.iter().map(of).sum::<f64>() / hops.len() as f64);
+        let all = |landings: &[DriftLanding]| {
+            let errors: Vec<f64> = landings.iter().flat_map(|landing| &landing.errors_m).copied().collect();
+            ErrorRecord::of(&errors)
+        };
+        let last = |landings: &[DriftLanding]| {
+            // A path of which no flight came down at some hop has no last landing.
+            let reached = landings.last().filter(|_| landings.len() == hops.len());
+            reached.map_or(ErrorRecord::default(), |landing| ErrorRecord::of(&landing.errors_m))
+        };
+        // The first hop starts at a point, without scatter.
+        #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
+        let spread = |landings: &[DriftLanding]| {
+            let squares: Vec<f64> =
+                landings.iter().skip(1).filter_map(DriftLanding::spread_m).map(|spread_m| spread_m * spread_m).collect();
+            (!squares.is_empty()).then(|| (squares.iter().sum::<f64>() / squares.len() as f64).sqrt())
+        };
+        self.widths.push(ConeWidthRecord {
+            cone_share,
+            hops: Some(hops.len()),
+            mean_takeoff_angle_deg: mean(|hop| hop.takeoff_angle.degrees()),
+            mean_horizontal_speed_m_s: mean(Hop::horizontal_speed_m_s),
+            all_landings_fixed: all(fixed),
+            last_landing_fixed: last(fixed),
+            landing_spread_fixed_m: spread(fixed),
+            all_landings_with_speed: all(with_speed),
+            last_landing_with_speed: last(with_speed),
+            landing_spread_with_speed_m: spread(with_speed),
+        });
+    }
+
+    /// For reading.
+    pub fn text(&self) -> String {
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!(
+            "cone width: {} flights from the farthest landing of each hop, seed {}\nspread: of one hop's landings about their own mean; last: \
+             median distance of the last hop's landings from the goal",
+            self.flights, self.seed
+        ));
+        sheet.line(format_args!(
+            "{:>7}{:>6}{:>11}{:>13}{:>24}{:>24}",
+            "cones", "hops", "take-off", "across", "drift fixed (m)", "drift with speed (m)"
+        ));
+        sheet.line(format_args!(
+            "{:>7}{:>6}{:>11}{:>13}{:>12}{:>12}{:>12}{:>12}",
+            "", "", "(deg)", "(m/s)", "spread", "last", "spread", "last"
+        ));
+        for width in &self.widths {
+            let number = |number: Option<f64>, digits: usize| number.map_or("-".to_owned(), |n| format!("{n:.digits$}"));
+            let hops = width.hops.map_or("none".to_owned(), |hops| hops.to_string());
+            sheet.line(format_args!(
+                "{:>7}{hops:>6}{:>11}{:>13}{:>12}{:>12}{:>12}{:>12}",
+                width.cone_share,
+                number(width.mean_takeoff_angle_deg, 2),
+                number(width.mean_horizontal_speed_m_s, 3),
+                number(width.landing_spread_fixed_m, 3),
+                number(width.last_landing_fixed.q50_m, 3),
+                number(width.landing_spread_with_speed_m, 3),
+                number(width.last_landing_with_speed.q50_m, 3),
+            ));
+        }
+        sheet.into_text()
+    }
+}
+
+/// What `risk-trade` answers.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct RiskTradeAnswer {
+    /// Trials flown along each path.
+    pub trials: u64,
+    /// The seed of all draws, the same for each path.
+    pub seed: u64,
+    /// The policy flown.
+    pub policy: &'static str,
+    /// The path planned without regard to risk, then the surest for every number of hops that is surer than with fewer.
+    pub paths: Vec<RiskTradeRow>,
+}
+
+/// One path of the trade.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RiskTradeRow {
+    /// `least effort` or `surest`.
+    pub path: &'static str,
+    /// Its hops.
+    pub hops: usize,
+    /// The estimated probability that all hops come off.
+    pub estimated_success: Option<f64>,
+    /// The share of its trials that reached the goal.
+    pub success_rate: f64,
+    /// Its 95 % interval.
+    pub success_rate_ci95: [f64; 2],
+}
+
+impl RiskTradeRow {
+    /// A path with what its trials came to.
+    pub fn new(path: &'static str, hops: usize, estimated_success: Option<f64>, summary: &Summary) -> Self {
+        let success = &summary.success;
+        Self { path, hops, estimated_success, success_rate: success.rate, success_rate_ci95: [success.low, success.high] }
+    }
+}
+
+impl RiskTradeAnswer {
+    /// For reading.
+    pub fn text(&self) -> String {
+        let mut sheet = Sheet::default();
+        sheet.line(format_args!("hops against success: {} trials each, {}, seed {}", self.trials, self.policy, self.seed));
+        sheet.line(format_args!("{:<14}{:>6}{:>12}{:>12}{:>22}", "path", "hops", "estimate", "flown", "95 % interval"));
+        for row in &self.paths {
+            let estimate = row.estimated_success.map_or("-".to_owned(), |share| format!("{share:.4}"));
+            let [low, high] = row.success_rate_ci95;
+            let interval = format!("{low:.4} to {high:.4}");
+            sheet.line(format_args!("{:<14}{:>6}{estimate:>12}{:>12.4}{interval:>22}", row.path, row.hops, row.success_rate));
+        }
+        sheet.into_text()
+    }
+}
+
+#[cfg(feature = "plot")]
+mod figures {
+    use super::{ConeWidthAnswer, ErrorRecord, WorstDriftAnswer};
+    use crate::report::figure::{Caption, ConeWidthFigure, ConeWidthPoint, ErrorQuantiles, LandingBoxes, LandingErrorFigure};
+
+    fn quantiles(count: usize, error: &ErrorRecord) -> ErrorQuantiles {
+        let [mean, q05, q25, q50, q75, q95, max] = error.each().map(|number| number.unwrap_or(0.0));
+        ErrorQuantiles { count: count as u64, mean_m: mean, q05_m: q05, q25_m: q25, q50_m: q50, q75_m: q75, q95_m: q95, max_m: max }
+    }
+
+    impl WorstDriftAnswer {
+        /// Box plots per landing, as the paper's Fig. 6b.
+        pub fn figure(&self, title: &str) -> LandingErrorFigure {
+            let words = format!(
+                "{} flights from the farthest landing of each hop, {}; noise {} m², take-off scattered by {:?} m²; seed {}",
+                self.flights, self.reading, self.noise_variance_m2, self.takeoff_variances_m2, self.seed
+            );
+            let landings = self.landings.iter().map(|landing| quantiles(landing.count, &landing.error)).collect();
+            LandingErrorFigure {
+                caption: Caption::new(format!("Worst drift: {title}"), words),
+                series: vec![LandingBoxes { name: String::new(), landings }],
+            }
+        }
+    }
+
+    impl ConeWidthAnswer {
+        /// Landing errors against the width of the cones, drift with the horizontal speed.
+        pub fn figure(&self, title: &str) -> ConeWidthFigure {
+            let words = format!(
+                "both cones narrowed about the vertical; drift after a landing in proportion to its horizontal speed; {} flights from the \
+                 farthest landing of each hop, seed {}",
+                self.flights, self.seed
+            );
+            let points = self.widths.iter().map(|width| ConeWidthPoint {
+                width_deg: width.cone_share * 100.0,
+                hops: width.hops.map(|hops| hops as u64),
+                errors: quantiles(width.hops.unwrap_or(0) * self.flights as usize, &width.all_landings_with_speed),
+            });
+            ConeWidthFigure { caption: Caption::new(format!("Cone width: {title}"), words), points: points.collect() }
+        }
+    }
+}

@@ -1,0 +1,132 @@
+//! One row per landing: one set of columns for CSV and Parquet.
+
+mod csv;
+#[cfg(feature = "parquet")]
+mod parquet;
+
+use std::io;
+
+pub use self::csv::CsvLandings;
+#[cfg(feature = "parquet")]
+pub use self::parquet::ParquetLandings;
+use crate::{
+    chain::Direction,
+    uncertainty::{HopRecord, Policy},
+};
+
+/// A writer of landings that takes them one by one, so that memory does not grow with their number.
+pub trait LandingWriter {
+    /// Writes one landing.
+    ///
+    /// # Errors
+    /// What the file system says.
+    fn write(&mut self, row: &LandingRow) -> io::Result<()>;
+
+    /// Writes what is left; nothing may follow.
+    ///
+    /// # Errors
+    /// What the file system says.
+    fn finish(&mut self) -> io::Result<()>;
+}
+
+/// One landing of one trial.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LandingRow {
+    /// Which trial, from 0.
+    pub trial: u64,
+    /// Which hop of it, from 1.
+    pub hop: u32,
+    /// The policy flown.
+    pub policy: &'static str,
+    /// How the trial ended, where it ended with this landing; else empty.
+    pub outcome: &'static str,
+    /// The numbers, in the order of [`number_columns`].
+    pub numbers: [f64; NUMBERS],
+}
+
+/// How many numbers a row has.
+const NUMBERS: usize = 16;
+
+/// The columns before the numbers.
+const FIRST_COLUMNS: [&str; 4] = ["trial", "hop", "policy", "outcome"];
+
+/// The columns of numbers along a chain; y is to the left of the plane of travel, and `direction` is 1 towards +x, -1 towards -x.
+const ON_CHAIN: [&str; NUMBERS] = [
+    "takeoff_x_m",
+    "takeoff_y_m",
+    "takeoff_z_m",
+    "direction",
+    "takeoff_speed_m_s",
+    "takeoff_angle_deg",
+    "planned_x_m",
+    "planned_y_m",
+    "landing_x_m",
+    "landing_y_m",
+    "landing_z_m",
+    "landing_speed_m_s",
+    "landing_angle_deg",
+    "rest_x_m",
+    "rest_y_m",
+    "error_m",
+];
+
+/// The same on a map: x is east and y north, the heading is clockwise from grid north.
+const ON_MAP: [&str; NUMBERS] = [
+    "takeoff_map_x_m",
+    "takeoff_map_y_m",
+    "takeoff_z_m",
+    "heading_deg",
+    "takeoff_speed_m_s",
+    "takeoff_angle_deg",
+    "planned_map_x_m",
+    "planned_map_y_m",
+    "landing_map_x_m",
+    "landing_map_y_m",
+    "landing_z_m",
+    "landing_speed_m_s",
+    "landing_angle_deg",
+    "rest_map_x_m",
+    "rest_map_y_m",
+    "error_m",
+];
+
+/// The names of the numbers in a row.
+pub const fn number_columns(on_a_map: bool) -> &'static [&'static str; NUMBERS] {
+    if on_a_map { &ON_MAP } else { &ON_CHAIN }
+}
+
+impl LandingRow {
+    /// From a flown hop; `None` where it did not land.
+    pub fn new(record: &HopRecord, policy: Policy, on_a_map: bool) -> Option<Self> {
+        let direction = if on_a_map {
+            let degrees = libm::atan2(record.heading.x, record.heading.y).to_degrees();
+            if degrees < 0.0 { degrees + 360.0 } else { degrees }
+        } else {
+            (if record.heading.x < 0.0 { Direction::Reverse } else { Direction::Forward }).sign()
+        };
+        record.landed.then(|| Self {
+            trial: record.trial,
+            hop: record.hop,
+            policy: policy.name(),
+            outcome: record.outcome.map_or("", |outcome| outcome.name()),
+            numbers: [
+                record.takeoff_m.x,
+                record.takeoff_m.y,
+                record.takeoff_m.z,
+                direction,
+                record.takeoff_speed_m_s(),
+                record.takeoff_angle().degrees(),
+                record.planned_m.x,
+                record.planned_m.y,
+                record.contact_m.x,
+                record.contact_m.y,
+                record.contact_m.z,
+                record.landing_speed_m_s(),
+                record.landing_angle().degrees(),
+                record.rest_m.x,
+                record.rest_m.y,
+                record.error_m,
+            ],
+        })
+    }
+}

@@ -1,0 +1,288 @@
+//! What trials came to, as plain data and for reading.
+
+use serde::Serialize;
+
+use super::text::Sheet;
+use crate::uncertainty::{ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, RatePoint, Summary, TrialOutcome, Wilson};
+
+/// What the trials of one policy came to.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SimulationRecord {
+    /// How many trials were flown.
+    pub trials: u64,
+    /// The seed of all draws.
+    pub seed: u64,
+    /// The policy.
+    pub policy: &'static str,
+    /// The share that reached the goal.
+    pub success_rate: f64,
+    /// Its 95 % interval (Wilson).
+    pub success_rate_ci95: [f64; 2],
+    /// How the trials ended; they add up to `trials`.
+    pub outcomes: OutcomeRecord,
+    /// All hops flown, landed or not.
+    pub hops_flown: u64,
+    /// The landings by number of hop: all planned ones, and what more were flown.
+    pub landings: Vec<LandingRecord>,
+    /// The rate after each 1 000 trials, at most some hundred points, and at the end.
+    pub convergence: Vec<RateRecord>,
+}
+
+/// Trials by the way they ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct OutcomeRecord {
+    /// Within the goal tolerance.
+    pub reached: u64,
+    /// It stopped elsewhere.
+    pub missed: u64,
+    /// A take-off left its cone.
+    pub slid_at_takeoff: u64,
+    /// A landing left its cone, or came to rest where nothing rests.
+    pub slid_at_landing: u64,
+    /// A landing was too fast.
+    pub damaged: u64,
+    /// It left the known ground, or came down in a keep-out zone.
+    pub lost: u64,
+    /// No hop led on.
+    pub stuck: u64,
+    /// It flew as many hops as allowed.
+    pub hop_limit: u64,
+}
+
+/// The landings of one number of hop.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LandingRecord {
+    /// Which hop, from 1.
+    pub hop: u32,
+    /// How many trials landed it.
+    pub count: u64,
+    /// Of the distance from the planned landing to the place of rest; null where none landed.
+    #[serde(flatten)]
+    pub error: ErrorRecord,
+    /// On a DEM: the ellipse that holds 95 % of them, as far as they are Gaussian.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ellipse95: Option<EllipseRecord>,
+}
+
+/// A distribution of distances.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct ErrorRecord {
+    /// Mean.
+    pub mean_m: Option<f64>,
+    /// 5 % lie below.
+    pub q05_m: Option<f64>,
+    /// A quarter lies below.
+    pub q25_m: Option<f64>,
+    /// Half lie below.
+    pub q50_m: Option<f64>,
+    /// Three quarters lie below.
+    pub q75_m: Option<f64>,
+    /// 95 % lie below.
+    pub q95_m: Option<f64>,
+    /// The largest.
+    pub max_m: Option<f64>,
+}
+
+/// An ellipse on the map.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct EllipseRecord {
+    /// Its centre, easting.
+    pub centre_map_x_m: f64,
+    /// Its centre, northing.
+    pub centre_map_y_m: f64,
+    /// Half its long axis.
+    pub semi_major_m: f64,
+    /// Half its short axis.
+    pub semi_minor_m: f64,
+    /// Direction of the long axis, clockwise from grid north, 0 to 180.
+    pub orientation_deg: f64,
+}
+
+/// The rate after so many trials.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RateRecord {
+    /// After how many.
+    pub trials: u64,
+    /// The share that reached the goal.
+    pub success_rate: f64,
+    /// Its 95 % interval.
+    pub success_rate_ci95: [f64; 2],
+}
+
+/// Points of the convergence that a result keeps: enough for a curve, few enough to read.
+const MOST_RATES: usize = 100;
+
+impl SimulationRecord {
+    /// From a summary, with an entry for every planned hop.
+    pub fn new(summary: &Summary, planned_hops: usize) -> Self {
+        let landings = summary.landings.iter().map(LandingRecord::new);
+        let flown = u32::try_from(summary.landings.len()).unwrap_or(u32::MAX);
+        let planned = u32::try_from(planned_hops).unwrap_or(u32::MAX);
+        let none = |hop| LandingRecord { hop, count: 0, error: ErrorRecord::default(), ellipse95: None };
+        let every = summary.convergence.len().div_ceil(MOST_RATES).max(1);
+        let last = summary.convergence.len().saturating_sub(1);
+        let kept = |i: usize| (i + 1).is_multiple_of(every) || i == last;
+        Self {
+            trials: summary.trials,
+            seed: summary.seed,
+            policy: summary.policy.name(),
+            success_rate: summary.success.rate,
+            success_rate_ci95: [summary.success.low, summary.success.high],
+            outcomes: OutcomeRecord::new(&summary.outcomes),
+            hops_flown: summary.hops_flown,
+            landings: landings.chain((flown + 1..=planned).map(none)).collect(),
+            convergence: summary.convergence.iter().enumerate().filter(|(i, _)| kept(*i)).map(|(_, point)| point.into()).collect(),
+        }
+    }
+
+    /// For reading: the rate, the outcomes, the landings.
+    pub fn text(&self) -> String {
+        let mut sheet = Sheet::default();
+        let [low, high] = self.success_rate_ci95;
+        sheet.line(format_args!(
+            "{}: {} of {} trials reach the goal, {:.4} (95 % interval {low:.4} to {high:.4}), seed {}",
+            self.policy, self.outcomes.reached, self.trials, self.success_rate, self.seed
+        ));
+        let ended: Vec<_> =
+            self.outcomes.each().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name} {count}")).collect();
+        sheet.line(format_args!("outcomes: {}", ended.join(", ")));
+        sheet.line(format_args!(
+            "\ndistance from the planned landing (m)\n{:>5}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}",
+            "hop", "landings", "mean", "5 %", "25 %", "50 %", "75 %", "95 %", "max"
+        ));
+        for landing in self.landings.iter().filter(|landing| landing.count > 0) {
+            let numbers: String =
+                landing.error.each().map(|number| number.map_or(format!("{:>10}", "-"), |n| format!("{n:>10.3}"))).concat();
+            let ellipse = landing.ellipse95.map_or(String::new(), |ellipse| {
+                format!(
+                    "  95 % ellipse {:.2} x {:.2} m at {:.0} deg",
+                    ellipse.semi_major_m, ellipse.semi_minor_m, ellipse.orientation_deg
+                )
+            });
+            sheet.line(format_args!("{:>5}{:>11}{numbers}{ellipse}", landing.hop, landing.count));
+        }
+        let unlanded = self.landings.iter().filter(|landing| landing.count == 0).count();
+        if unlanded > 0 {
+            sheet.line(format_args!("no trial landed any of the {unlanded} planned hops after that"));
+        }
+        sheet.into_text()
+    }
+}
+
+impl OutcomeRecord {
+    fn new(counts: &OutcomeCounts) -> Self {
+        Self {
+            reached: counts.of(TrialOutcome::Reached),
+            missed: counts.of(TrialOutcome::Missed),
+            slid_at_takeoff: counts.of(TrialOutcome::SlidAtTakeoff),
+            slid_at_landing: counts.of(TrialOutcome::SlidAtLanding),
+            damaged: counts.of(TrialOutcome::Damaged),
+            lost: counts.of(TrialOutcome::Lost),
+            stuck: counts.of(TrialOutcome::Stuck),
+            hop_limit: counts.of(TrialOutcome::HopLimit),
+        }
+    }
+
+    /// Every outcome by its name, in order.
+    pub fn each(&self) -> impl Iterator<Item = (&'static str, u64)> {
+        let counts = [
+            self.reached,
+            self.missed,
+            self.slid_at_takeoff,
+            self.slid_at_landing,
+            self.damaged,
+            self.lost,
+            self.stuck,
+            self.hop_limit,
+        ];
+        TrialOutcome::ALL.into_iter().map(TrialOutcome::name).zip(counts)
+    }
+}
+
+impl LandingRecord {
+    fn new(landing: &LandingSummary) -> Self {
+        Self {
+            hop: landing.hop,
+            count: landing.count,
+            error: if landing.count > 0 { (&landing.error).into() } else { ErrorRecord::default() },
+            ellipse95: landing.ellipse.as_ref().map(EllipseRecord::from),
+        }
+    }
+}
+
+impl From<&ErrorSummary> for ErrorRecord {
+    fn from(error: &ErrorSummary) -> Self {
+        Self {
+            mean_m: Some(error.mean_m),
+            q05_m: Some(error.q05_m),
+            q25_m: Some(error.q25_m),
+            q50_m: Some(error.q50_m),
+            q75_m: Some(error.q75_m),
+            q95_m: Some(error.q95_m),
+            max_m: Some(error.max_m),
+        }
+    }
+}
+
+impl ErrorRecord {
+    /// Of some distances, all kept: each quantile is the value of rank `share (count - 1)`, between two by their mixture.
+    pub fn of(distances_m: &[f64]) -> Self {
+        let mut sorted = distances_m.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        #[expect(clippy::cast_precision_loss, reason = "fewer than 2^53")]
+        let (count, last) = (sorted.len() as f64, sorted.len().saturating_sub(1) as f64);
+        let quantile = |share: f64| {
+            let rank = share * last;
+            #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index")]
+            let (below, part) = (rank.floor() as usize, rank - rank.floor());
+            let low = sorted.get(below)?;
+            Some(low + part * (sorted.get(below + 1).unwrap_or(low) - low))
+        };
+        Self {
+            mean_m: (count > 0.0).then(|| sorted.iter().sum::<f64>() / count),
+            q05_m: quantile(0.05),
+            q25_m: quantile(0.25),
+            q50_m: quantile(0.5),
+            q75_m: quantile(0.75),
+            q95_m: quantile(0.95),
+            max_m: sorted.last().copied(),
+        }
+    }
+
+    /// Mean, the quantiles from the least, the largest.
+    pub fn each(&self) -> [Option<f64>; 7] {
+        [self.mean_m, self.q05_m, self.q25_m, self.q50_m, self.q75_m, self.q95_m, self.max_m]
+    }
+}
+
+impl From<&LandingEllipse> for EllipseRecord {
+    fn from(ellipse: &LandingEllipse) -> Self {
+        Self {
+            centre_map_x_m: ellipse.centre.x,
+            centre_map_y_m: ellipse.centre.y,
+            semi_major_m: ellipse.semi_major_m,
+            semi_minor_m: ellipse.semi_minor_m,
+            orientation_deg: ellipse.orientation.degrees(),
+        }
+    }
+}
+
+impl From<&RatePoint> for RateRecord {
+    fn from(point: &RatePoint) -> Self {
+        let Wilson { rate, low, high } = point.success;
+        Self { trials: point.trials, success_rate: rate, success_rate_ci95: [low, high] }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_of_kept_distances_are_those_of_their_ranks() {
+        let record = ErrorRecord::of(&[3.0, 1.0, 2.0, 5.0, 4.0]);
+        assert_eq!((record.mean_m, record.q25_m, record.q50_m, record.max_m), (Some(3.0), Some(2.0), Some(3.0), Some(5.0)));
+        assert_eq!(record.q05_m, Some(1.2));
+        assert_eq!(ErrorRecord::of(&[]), ErrorRecord::default());
+    }
+}

@@ -1,0 +1,42 @@
+//! What hops buy in surety, as rows.
+
+use serde::Serialize;
+
+use super::text::Sheet;
+use crate::graph::SurestPath;
+
+/// The surest path of one number of hops.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SurestRecord {
+    /// How many hops.
+    pub hops: u64,
+    /// The estimated probability that all of them come off.
+    pub estimated_success: f64,
+    /// The effort of the path, in the unit of the effort asked for.
+    pub effort: f64,
+}
+
+impl SurestRecord {
+    /// A row for each path.
+    pub fn rows(paths: &[SurestPath]) -> Vec<Self> {
+        paths
+            .iter()
+            .map(|path| Self { hops: path.cost.hops(), estimated_success: path.success, effort: path.cost.effort() })
+            .collect()
+    }
+}
+
+/// The rows for reading; empty where there are none.
+pub fn surest_text(rows: &[SurestRecord]) -> String {
+    let mut sheet = Sheet::default();
+    if !rows.is_empty() {
+        sheet.line(format_args!(
+            "\nsurest path by hops (the last is the one above)\n{:>6}{:>20}{:>12}",
+            "hops", "estimated success", "effort"
+        ));
+    }
+    for row in rows {
+        sheet.line(format_args!("{:>6}{:>20.4}{:>12.4}", row.hops, row.estimated_success, row.effort));
+    }
+    sheet.into_text()
+}

@@ -1,0 +1,153 @@
+//! `[uncertainty]`: what goes otherwise than planned, and how often it is tried.
+
+use super::{Entries, Place, Scenario, TerrainSource};
+use crate::{
+    ballistics::{HopDeviations, RiskModel},
+    graph::{RiskUse, SuretyOptions},
+    quantity::Angle,
+    uncertainty::{Policy, TrialOptions, Uncertainty, UncertaintyProblem},
+    world::Grip,
+};
+
+/// The keys of `[uncertainty]`, what is absent filled in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct UncertaintyKeys {
+    /// The deviations.
+    pub errors: Uncertainty,
+    /// Horizontal distance from the goal that counts as reached, m.
+    pub goal_tolerance_m: f64,
+    /// Hops of a trial at most; `None`: by the planned ones.
+    pub hop_limit: Option<u32>,
+    /// How the robot goes about its journey.
+    pub policy: Policy,
+    /// How many trials.
+    pub trials: u64,
+    /// The seed of all draws.
+    pub seed: u64,
+}
+
+impl Default for UncertaintyKeys {
+    /// No errors, no tolerance, 10 000 open-loop trials of seed 0.
+    fn default() -> Self {
+        Self {
+            errors: Uncertainty::NONE,
+            goal_tolerance_m: 0.0,
+            hop_limit: None,
+            policy: Policy::default(),
+            trials: 10_000,
+            seed: 0,
+        }
+    }
+}
+
+impl UncertaintyKeys {
+    /// The trials they ask for.
+    pub fn options(&self) -> TrialOptions {
+        TrialOptions {
+            trials: self.trials,
+            seed: self.seed,
+            policy: self.policy,
+            hop_limit: self.hop_limit,
+            goal_tolerance_m: self.goal_tolerance_m,
+            ..TrialOptions::default()
+        }
+    }
+
+    /// What is doubtful about them: a tolerance of nothing, which no trial with an error meets.
+    pub fn doubt(&self) -> Option<&'static str> {
+        let wrong = self.goal_tolerance_m == 0.0 && self.errors != Uncertainty::NONE;
+        wrong.then_some(
+            "uncertainty.goal_tolerance_m is 0 or absent, so that only a trial without any error reaches the goal: say how near is near \
+             enough",
+        )
+    }
+}
+
+/// The keys as given; `None` where the scenario has none of them.
+pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> Option<UncertaintyKeys> {
+    if !entries.has_table("uncertainty") {
+        return None;
+    }
+    let number = |name| entries.number("uncertainty", name).unwrap_or(0.0);
+    let absent = UncertaintyKeys::default();
+    let keys = UncertaintyKeys {
+        errors: Uncertainty {
+            takeoff_speed_sigma_m_s: number("takeoff_speed_sigma_m_s"),
+            takeoff_speed_sigma_fraction: number("takeoff_speed_sigma_fraction"),
+            takeoff_angle_sigma: Angle::from_degrees(number("takeoff_angle_sigma_deg")),
+            heading_sigma: Angle::from_degrees(number("heading_sigma_deg")),
+            position_sigma_m: number("position_sigma_m"),
+            drift_along_sigma_m: number("drift_along_sigma_m"),
+            drift_across_sigma_m: number("drift_across_sigma_m"),
+            friction_sigma: number("friction_sigma"),
+            height_sigma_m: number("height_sigma_m"),
+            height_correlation_m: number("height_correlation_m"),
+        },
+        goal_tolerance_m: number("goal_tolerance_m"),
+        hop_limit: entries.count("uncertainty", "hop_limit").and_then(|limit| u32::try_from(limit).ok()),
+        policy: super::read::named(&Policy::ALL, Policy::name, entries.text("uncertainty", "policy")),
+        trials: entries.count("uncertainty", "trials").unwrap_or(absent.trials),
+        seed: entries.count("uncertainty", "seed").unwrap_or(absent.seed),
+    };
+    let on_a_map = matches!(terrain, None | Some(TerrainSource::Dem { .. }));
+    if let Err(problem) = keys.errors.check(on_a_map) {
+        let key = match problem {
+            UncertaintyProblem::CorrelationWithoutHeight { .. } => "height_correlation_m",
+            UncertaintyProblem::HeadingOnChain { .. } => "heading_sigma_deg",
+            _ => "height_sigma_m",
+        };
+        let place = entries.place("uncertainty", key).unwrap_or(Place::Nowhere);
+        // What was found and how to mend it, as the engine says it.
+        let sentence = problem.to_string();
+        let (found, help) = sentence.split_once(": ").unwrap_or((&sentence, "leave it out"));
+        entries.problem(place, format!("uncertainty.{found}"), help);
+    }
+    Some(keys)
+}
+
+/// Whether risk weighs, and how many hops it may cost.
+pub(super) fn risk(entries: &mut Entries) -> (RiskUse, u32) {
+    /// Hops beyond the fewest, where none are named: most of what hops buy is bought by the first few.
+    const EXTRA_HOPS: u32 = 3;
+    let risk = super::read::named(&RiskUse::ALL, RiskUse::name, entries.text("search", "risk"));
+    let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
+    if let (Some(_), Some(place)) = (extra.filter(|_| risk != RiskUse::Traded), entries.place("search", "risk_extra_hops_max")) {
+        let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which takes no hop more", risk.name());
+        entries.problem(place, message, "set risk = \"traded\", or remove risk_extra_hops_max");
+    }
+    (risk, extra.unwrap_or(EXTRA_HOPS))
+}
+
+impl Scenario {
+    /// How surety is to weigh in the choice of a path; `None` where it does not.
+    ///
+    /// The probability of a hop to fail is estimated from `[uncertainty]`, or, where the scenario has none, the slack of its angle counts.
+    pub fn surety(&self) -> Option<SuretyOptions> {
+        let extra_hops_max = match self.risk {
+            RiskUse::Ignored => return None,
+            RiskUse::FewestHops => 0,
+            RiskUse::Traded => self.risk_extra_hops_max,
+        };
+        Some(self.surety_with(extra_hops_max))
+    }
+
+    /// The same with so many hops more than the fewest, whatever the scenario says of it.
+    pub fn surety_with(&self, extra_hops_max: u32) -> SuretyOptions {
+        let model = self.uncertainty.as_ref().map_or(RiskModel::Slack, |keys| RiskModel::Deviations(self.deviations(&keys.errors)));
+        let goal_tolerance_m = self.uncertainty.as_ref().map(|keys| keys.goal_tolerance_m);
+        SuretyOptions { model, extra_hops_max, goal_tolerance_m }
+    }
+
+    /// The deviations that one hop feels.
+    fn deviations(&self, errors: &Uncertainty) -> HopDeviations {
+        HopDeviations {
+            takeoff_speed_m_s: errors.takeoff_speed_sigma_m_s,
+            takeoff_speed_fraction: errors.takeoff_speed_sigma_fraction,
+            takeoff_angle: errors.takeoff_angle_sigma,
+            place_m: libm::hypot(errors.drift_along_sigma_m, errors.position_sigma_m),
+            // Cones that are stated as angles do not feel friction.
+            friction: if matches!(self.surface.grip, Some(Grip::FromSlope { .. })) { 0.0 } else { errors.friction_sigma },
+            height_m: errors.height_sigma_m,
+        }
+    }
+}

@@ -1,0 +1,94 @@
+//! Does a narrower cone about the vertical lower the drift? The paper says so without testing it (P section V-B, last sentence).
+
+use super::worst_drift::{DriftExperiment, DriftLanding, drift_with};
+use crate::{
+    chain::{ConstrainedChain, Contact, Direction, Ground, GroundForm, InvalidChain, LineConstraints, PolygonalChain},
+    path::Hop,
+    quantity::{Angle, AngleInterval},
+};
+
+/// The widths tried: these shares of every cone's own distance from the vertical.
+pub const CONE_SHARES: [f64; 5] = [1.0, 0.8, 0.6, 0.4, 0.2];
+
+/// How far a robot bounces and rolls after a landing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DriftLaw {
+    /// As the paper draws it: equally far after every landing, whatever its angle.
+    Fixed,
+    /// As the paper argues: in proportion to the horizontal speed of the landing, as far as it draws it for the first landing of the widest
+    /// cone.
+    WithHorizontalSpeed,
+}
+
+impl DriftLaw {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::Fixed, Self::WithHorizontalSpeed];
+
+    /// The name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Fixed => "fixed",
+            Self::WithHorizontalSpeed => "with-horizontal-speed",
+        }
+    }
+}
+
+/// Flies the paper's experiment along a path under a law of drift.
+///
+/// `reference_m_s` is the horizontal speed at which the paper's drift is as far as it says.
+pub fn cone_width(
+    chain: &ConstrainedChain,
+    hops: &[Hop],
+    gravity_m_s2: f64,
+    experiment: &DriftExperiment,
+    (law, reference_m_s): (DriftLaw, f64),
+) -> Vec<DriftLanding> {
+    let sigmas_m = experiment.takeoff_variances_m2.map(f64::sqrt);
+    let scatter = |hop: &Hop| {
+        let share = match law {
+            DriftLaw::Fixed => 1.0,
+            DriftLaw::WithHorizontalSpeed => hop.horizontal_speed_m_s() / reference_m_s,
+        };
+        sigmas_m.map(|sigma_m| sigma_m * share)
+    };
+    drift_with(chain, hops, gravity_m_s2, experiment, &scatter)
+}
+
+/// A chain with all its cones narrowed about the vertical: every bound keeps this share of its distance from straight up (take-off) or
+/// straight down (landing).
+///
+/// What a segment refuses, it refuses still; speeds and bends stay.
+///
+/// # Errors
+/// [`InvalidChain`], which a valid chain does not give.
+pub fn narrowed(chain: &ConstrainedChain, share: f64) -> Result<PolygonalChain, InvalidChain> {
+    let geometry = chain.geometry();
+    let grounds = chain
+        .segments()
+        .iter()
+        .map(|segment| {
+            let [forward, reverse] = Direction::BOTH.map(|direction| {
+                let granted =
+                    [Contact::Takeoff, Contact::Landing].iter().all(|&contact| segment.judged(contact, direction).is_ok());
+                segment.stated(direction).filter(|_| granted).map(|line| narrowed_line(line, share))
+            });
+            let keep_out = segment.refusal().is_some() || (forward.is_none() && reverse.is_none());
+            Ground { form: GroundForm::Explicit { forward, reverse }, keep_out }
+        })
+        .collect();
+    let map = geometry.map_points().map(<[_]>::to_vec);
+    PolygonalChain::new(geometry.vertices().to_vec(), grounds, map)?.with_bends(geometry.bends().to_vec())
+}
+
+/// The constraints of one direction with both cones narrowed.
+fn narrowed_line(line: LineConstraints, share: f64) -> LineConstraints {
+    let about = |rule: crate::chain::ContactRule, vertical: f64| {
+        let towards = |angle: Angle| Angle::from_radians(vertical + share * (angle.radians() - vertical));
+        let angles = AngleInterval { min: towards(rule.angles().min), max: towards(rule.angles().max) };
+        crate::chain::ContactRule::new(angles, rule.speed_max_m_s())
+    };
+    LineConstraints {
+        takeoff: about(line.takeoff, std::f64::consts::FRAC_PI_2),
+        landing: about(line.landing, -std::f64::consts::FRAC_PI_2),
+    }
+}

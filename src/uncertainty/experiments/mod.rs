@@ -1,0 +1,33 @@
+//! The CHTA paper's experiment, and its claim that it does not test.
+
+mod cone_width;
+mod ground;
+mod worst_drift;
+
+pub use cone_width::{CONE_SHARES, DriftLaw, cone_width, narrowed};
+pub use worst_drift::{DriftExperiment, DriftLanding, DriftReading, worst_drift};
+
+/// The experiments, by the names they are asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Experiment {
+    /// The paper's own: the farthest of a hundred landings starts the next hundred (P section V-B, Fig. 6b).
+    WorstDrift,
+    /// Narrower cones about the vertical on the same draws (P section V-B, last sentence).
+    ConeWidth,
+    /// What hops buy in surety: the surest path for every number of hops, estimated and flown.
+    RiskTrade,
+}
+
+impl Experiment {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::WorstDrift, Self::ConeWidth, Self::RiskTrade];
+
+    /// The name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::WorstDrift => "worst-drift",
+            Self::ConeWidth => "cone-width",
+            Self::RiskTrade => "risk-trade",
+        }
+    }
+}
