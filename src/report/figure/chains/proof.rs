@@ -150,14 +150,14 @@ const fn colour(class: ProofClass) -> RGBColor {
     }
 }
 
-/// One stretch along a line of the sheet.
-fn stretch(sheet: &mut Sheet, points: &[Place], class: ProofClass) {
+/// One stretch along a line of the sheet, its strokes and dots so many times farther apart than on smooth ground.
+fn stretch(sheet: &mut Sheet, points: &[Place], class: ProofClass, spread: f64) {
     let colour = colour(class);
     match class {
         ProofClass::Reachable => sheet.line(points.to_vec(), Pen { colour, width_mm: 1.0 }),
         ProofClass::Unreachable => {
             sheet.line(points.to_vec(), Pen { colour, width_mm: 0.5 });
-            for ((x, y), (ax, ay)) in steps_along(points, 1.1) {
+            for ((x, y), (ax, ay)) in steps_along(points, 1.1 * spread) {
                 // Into the ground, leaning back.
                 let (dx, dy) = (-ay - ax, ax - ay);
                 let length = libm::hypot(dx, dy) / 2.2;
@@ -165,8 +165,8 @@ fn stretch(sheet: &mut Sheet, points: &[Place], class: ProofClass) {
             }
         }
         ProofClass::Open => {
-            sheet.dashed(points, 0.6, 0.6, Pen { colour, width_mm: 0.9 });
-            for ((x, y), (ax, ay)) in steps_along(points, 1.8) {
+            sheet.dashed(points, 0.6 * spread, 0.6 * spread, Pen { colour, width_mm: 0.9 });
+            for ((x, y), (ax, ay)) in steps_along(points, 1.8 * spread) {
                 sheet.dot((x - 1.5 * ay, y + 1.5 * ax), 0.28, colour);
             }
         }
@@ -174,15 +174,15 @@ fn stretch(sheet: &mut Sheet, points: &[Place], class: ProofClass) {
 }
 
 fn reachable_sample(sheet: &mut Sheet, at: Place) {
-    stretch(sheet, &sample_line(at), ProofClass::Reachable);
+    stretch(sheet, &sample_line(at), ProofClass::Reachable, 1.0);
 }
 
 fn unreachable_sample(sheet: &mut Sheet, at: Place) {
-    stretch(sheet, &sample_line(at), ProofClass::Unreachable);
+    stretch(sheet, &sample_line(at), ProofClass::Unreachable, 1.0);
 }
 
 fn open_sample(sheet: &mut Sheet, at: Place) {
-    stretch(sheet, &sample_line(at), ProofClass::Open);
+    stretch(sheet, &sample_line(at), ProofClass::Open, 1.0);
 }
 
 fn sample_line((x, y): Place) -> [Place; 2] {
@@ -212,6 +212,9 @@ impl Drawing<'_> {
             let base = [(last.0, profile.panel.bottom), (first.0, profile.panel.bottom)];
             sheet.area(surface.iter().copied().chain(base).collect(), GROUND, 1.0);
         }
+        // A surface that goes up and down far more than along would drown in strokes.
+        let length_mm: f64 = surface.windows(2).map(|p| libm::hypot(p[1].0 - p[0].0, p[1].1 - p[0].1)).sum();
+        let spread = (length_mm / (4.0 * profile.panel.width())).max(1.0);
         sheet.line(surface, symbols::SURFACE_PEN);
         for x_mm in self.boundaries_mm() {
             sheet.line(vec![(x_mm, profile.panel.bottom - 1.4), (x_mm, profile.panel.bottom)], BOUNDARY_PEN);
@@ -229,7 +232,7 @@ impl Drawing<'_> {
         for s in drawn.iter().filter(|s| !is_short(s)).chain(drawn.iter().filter(is_short)) {
             let spare_m = (0.5 * (LEAST_MM / mm_per_m - (s.to_x_m - s.from_x_m))).max(0.0);
             let points = profile.line(&profile::part(ground, s.from_x_m - spare_m, s.to_x_m + spare_m));
-            stretch(sheet, &points, s.class);
+            stretch(sheet, &points, s.class, spread);
         }
     }
 
@@ -298,7 +301,7 @@ fn gap_words(sheet: &mut Sheet, gap: &ProofGap, top_mm: f64) -> f64 {
     if told.is_empty() {
         return paragraph(sheet, "No other cell was within reach of those that may be reached.", SMALL_MM, false, top_mm);
     }
-    let width_mm = 0.4 * profile::TEXT_WIDTH_MM;
+    let width_mm = 0.35 * profile::TEXT_WIDTH_MM;
     let names: Vec<_> = told.iter().map(|(limit, _)| profile::fitted(limit, SMALL_MM, width_mm)).collect();
     let mut counts: Vec<(&str, u64)> = names.iter().zip(&told).map(|(name, (_, count))| (name.as_str(), *count)).collect();
     if counts.len() > MOST_LIMITS {
@@ -306,6 +309,6 @@ fn gap_words(sheet: &mut Sheet, gap: &ProofGap, top_mm: f64) -> f64 {
         counts.truncate(MOST_LIMITS);
         counts.push(("all others", rest));
     }
-    let axis = "pairs of cells between which every hop is refused, by the first limit that left nothing";
+    let axis = "pairs of cells refused, by the first limit that left nothing";
     stop_panel::bars(sheet, &counts, axis, top_mm)
 }

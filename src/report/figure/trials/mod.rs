@@ -9,6 +9,7 @@ mod flown;
 mod outcomes;
 
 #[cfg(test)]
+#[expect(clippy::cast_precision_loss, reason = "counts of trials in made-up figures are small")]
 mod tests;
 
 pub use data::{

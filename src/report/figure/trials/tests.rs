@@ -77,7 +77,7 @@ fn flown(vertices: u32, hops: u32, trials: usize) -> FlownFigure {
     let at = |x_m: f64| (x_m, height(x_m));
     let planned = (0..hops).map(|i| flight(at(10.0 + 14.0 * f64::from(i)), at(24.0 + 14.0 * f64::from(i)), 1.6));
     let trial = |i: usize| {
-        let reached = i % 5 != 0;
+        let reached = !i.is_multiple_of(5);
         let mut x_m = 10.0;
         let flights = (0..if reached { hops } else { hops.div_ceil(2) }).map(|k| {
             let from = at(x_m);
