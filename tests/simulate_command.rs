@@ -112,7 +112,8 @@ fn the_table_of_landings_agrees_with_the_document() {
                 .collect();
             assert_eq!(errors.len() as u64, landing["count"].as_u64().unwrap(), "{scenario}");
             if !errors.is_empty() {
-                let mean_m = errors.iter().sum::<f64>() / errors.len() as f64;
+                let count = u32::try_from(errors.len()).unwrap();
+                let mean_m = errors.iter().sum::<f64>() / f64::from(count);
                 assert!((mean_m - number(&landing["mean_m"])).abs() < 1e-9, "{scenario}: {mean_m} {landing}");
             }
         }

@@ -145,7 +145,7 @@ fn a_flat_hop_to_a_goal_misses_as_its_landing_spreads() {
 fn the_cells_are_those_of_the_normal_distribution() {
     let density = |x: f64| libm::exp(-0.5 * x * x) / std::f64::consts::TAU.sqrt();
     let ends = [-40.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 40.0_f64];
-    let cells: Vec<_> = flight::cells(1.0).collect();
+    let cells: Vec<_> = cells(1.0).collect();
     for (ends, cell) in ends.windows(2).zip(&cells) {
         let probability = flight::normal(ends[1]) - flight::normal(ends[0]);
         let mean = (density(ends[0]) - density(ends[1])) / probability;

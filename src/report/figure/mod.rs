@@ -183,9 +183,3 @@ fn laid_out(input: &FigureInput<'_>, data: &FigureData) -> (Sheet, f64) {
     let end = heading::below(&mut sheet, data, end + 1.0);
     (sheet, end + 2.5)
 }
-
-fn todo_picture(caption: &Caption) -> Result<Picture, FigureError> {
-    let mut sheet = Sheet::default();
-    let height_mm = caption.draw(&mut sheet) + 2.0;
-    Ok(Picture { sheet, height_mm })
-}

@@ -214,7 +214,7 @@ pub(super) fn gap(sheet: &mut Sheet, panel: &Panel, [a, b]: [Place; 2], gap_m: f
     sheet.line(vec![(a.0, y), (b.0, y)], pen);
     let text = format!("gap {} m", short(gap_m));
     let half = 0.5 * text_width_mm(&text, SMALL_MM);
-    let x = (0.5 * (a.0 + b.0)).clamp(panel.left + half + 1.0, panel.right - half - 1.0);
+    let x = (0.5 * (a.0 + b.0)).min(panel.right - half - 1.0).max(panel.left + half + 1.0);
     sheet.label(Label::new(text, (x, y - 1.2), SMALL_MM).hung(Anchor::Middle, Hang::Above));
 }
 
@@ -223,7 +223,7 @@ pub(super) fn gap(sheet: &mut Sheet, panel: &Panel, [a, b]: [Place; 2], gap_m: f
 pub(super) fn pin(sheet: &mut Sheet, panel: &Panel, (x, y): Place, name: &str, is_buried: impl Fn(&Label) -> bool) {
     sheet.area(vec![(x, y + 0.4), (x - 1.2, y + 3.0), (x + 1.2, y + 3.0)], BLACK, 1.0);
     let half = 0.5 * text_width_mm(name, SMALL_MM) + 0.8;
-    let middle = x.clamp(panel.left + half, panel.right - half);
+    let middle = x.min(panel.right - half).max(panel.left + half);
     let hung = |at, anchor| Label { bold: true, ..Label::new(name, at, SMALL_MM).hung(anchor, Hang::Below) };
     let below = hung((middle, y + 3.5), Anchor::Middle);
     let beside = [hung((x + 2.2, y + 2.2), Anchor::Start), hung((x - 2.2, y + 2.2), Anchor::End)];

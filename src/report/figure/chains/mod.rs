@@ -14,4 +14,5 @@ pub use proof::draw_proof;
 pub use trade::draw_trade;
 
 #[cfg(test)]
+#[expect(clippy::cast_precision_loss, clippy::cast_sign_loss, reason = "small counts")]
 mod tests;

@@ -184,7 +184,7 @@ fn proofs_of_odd_grounds_are_whole() {
         let path =
             vec![Flight { from: start, to: start, takeoff_slope: 1.0 }, Flight { from: goal, to: start, takeoff_slope: 2.0 }];
         let gap = Some(ProofGap { reached_x_m: goal.x_m, leads_to_goal_x_m: start.x_m, refusals: Vec::new() });
-        let figure = ProofFigure { ground, start, goal, stretches, path, gap, ..empty.clone() };
+        let figure = ProofFigure { ground, stretches, start, goal, path, gap, ..empty.clone() };
         let picture = check_picture(name, || draw_proof(&figure).unwrap());
         assert_says(&picture, &["No other cell was within reach", "start"]);
     }

@@ -200,7 +200,7 @@ impl Grid {
         for line in wrapped(&figure.x.name, TEXT_MM, RIGHT_MM - 8.0) {
             let line = fitted(&line, TEXT_MM, RIGHT_MM - 8.0);
             let half_mm = 0.5 * text_width_mm(&line, TEXT_MM);
-            let x_mm = (0.5 * (self.panel.left + self.panel.right)).clamp(4.0 + half_mm, RIGHT_MM - half_mm);
+            let x_mm = (0.5 * (self.panel.left + self.panel.right)).min(RIGHT_MM - half_mm).max(4.0 + half_mm);
             sheet.label(Label::new(line, (x_mm, y_mm), TEXT_MM).hung(Anchor::Middle, Hang::Below));
             y_mm += 1.4 * TEXT_MM;
         }
