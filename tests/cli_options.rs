@@ -726,7 +726,7 @@ const SIMULATE: [Trial; 22] = [
         &["simulate", "chain.csv", "--start", "0", "--goal", "40", "--body", "mars"],
         &["simulate", "chain.csv", "--start", "0", "--goal", "40", "--body", "mars", "--scenario", "errors.toml"],
     ),
-    ("--set", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--set", "uncertainty.goal_tolerance_m=0.2"]),
+    ("--set", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--set", "uncertainty.drift_along_sigma_m=0"]),
     ("--body", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--body", "moon"]),
     ("--gravity-m-s2", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--gravity-m-s2", "1.5"]),
     ("--clearance-m", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--clearance-m", "0.5"]),
@@ -949,9 +949,18 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 || (command == "map" && name == "--start");
             let takes_value =
                 one_line.contains('<') && !["--scenario", "--set", "--body", "--gravity-m-s2"].contains(&name.as_str());
-            let writes =
-                ["--geojson", "--plot", "--pairs", "--effort-output", "--return-output", "--mobility", "--paths", "--profiles"]
-                    .contains(&name.as_str());
+            let writes = [
+                "--geojson",
+                "--plot",
+                "--plot-map",
+                "--pairs",
+                "--effort-output",
+                "--return-output",
+                "--mobility",
+                "--paths",
+                "--profiles",
+            ]
+            .contains(&name.as_str());
             assert!(
                 !takes_value || required || writes || one_line.contains("[default: "),
                 "{command} {name} tells no default: {one_line}"

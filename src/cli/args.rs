@@ -366,9 +366,7 @@ pub(crate) struct PlanArgs {
 
 /// Fly the planned path many times under the errors of [uncertainty]: how surely, where the landings scatter, how trials end
 #[derive(Debug, ClapArgs)]
-#[command(
-    after_help = "Example:\n  chta simulate data/scenarios/mars_crater_field_surely.toml --trials 2000 --compare --plot trials.svg"
-)]
+#[command(after_help = "Example:\n  chta simulate data/scenarios/rolling_surely.toml --trials 500 --compare")]
 pub(crate) struct SimulateArgs {
     /// Chain (CSV), scenario (TOML) or result (JSON)
     #[arg(value_name = "CHAIN")]

@@ -120,6 +120,8 @@ pub struct ConeWidthAnswer {
 pub struct ConeWidthRecord {
     /// Share of every cone's own distance from the vertical.
     pub cone_share: f64,
+    /// Mean width of the segments' take-off cones.
+    pub takeoff_cone_deg: f64,
     /// Hops of the planned path; null where there is none.
     pub hops: Option<usize>,
     /// Mean of the hops' take-off angles.
@@ -153,10 +155,11 @@ impl ConeWidthAnswer {
     }
 
     /// A width at which no path was found.
-    pub fn add_none(&mut self, cone_share: f64) {
+    pub fn add_none(&mut self, (cone_share, takeoff_cone_deg): (f64, f64)) {
         let none = ErrorRecord::default();
         self.widths.push(ConeWidthRecord {
             cone_share,
+            takeoff_cone_deg,
             hops: None,
             mean_takeoff_angle_deg: None,
             mean_horizontal_speed_m_s: None,
@@ -170,7 +173,13 @@ impl ConeWidthAnswer {
     }
 
     /// A width with its path and the landings under both laws of drift.
-    pub fn add(&mut self, cone_share: f64, hops: &[Hop], fixed: &[DriftLanding], with_speed: &[DriftLanding]) {
+    pub fn add(
+        &mut self,
+        (cone_share, takeoff_cone_deg): (f64, f64),
+        hops: &[Hop],
+        fixed: &[DriftLanding],
+        with_speed: &[DriftLanding],
+    ) {
         #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
         let mean = |of: fn(&Hop) -> f64| (!hops.is_empty()).then(|| hops.iter().map(of).sum::<f64>() / hops.len() as f64);
         let all = |landings: &[DriftLanding]| {
@@ -191,6 +200,7 @@ impl ConeWidthAnswer {
         };
         self.widths.push(ConeWidthRecord {
             cone_share,
+            takeoff_cone_deg,
             hops: Some(hops.len()),
             mean_takeoff_angle_deg: mean(|hop| hop.takeoff_angle.degrees()),
             mean_horizontal_speed_m_s: mean(Hop::horizontal_speed_m_s),
@@ -323,7 +333,7 @@ mod figures {
                 self.flights, self.seed
             );
             let points = self.widths.iter().map(|width| ConeWidthPoint {
-                width_deg: width.cone_share * 100.0,
+                width_deg: width.takeoff_cone_deg,
                 hops: width.hops.map(|hops| hops as u64),
                 errors: quantiles(width.hops.unwrap_or(0) * self.flights as usize, &width.all_landings_with_speed),
             });

@@ -1,7 +1,7 @@
 //! `chta simulate --experiment NAME`.
 
 use chta::{
-    chain::ConstrainedChain,
+    chain::{ConstrainedChain, Direction},
     graph::{self, NodeSet, Outcome, SearchOptions, surest_paths},
     path::{Hop, generate},
     report::{
@@ -122,17 +122,27 @@ fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) 
         let failed = |error: &dyn std::fmt::Display| Failure::message(format!("cones at {share} of their width: {error}"));
         let geometry = narrowed(&loaded.prepared.chain, share).map_err(|error| failed(&error))?;
         let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface).map_err(|error| failed(&error))?;
+        let width_deg = mean_takeoff_width_deg(&chain);
         let test = chta::ballistics::HopTest::new(&chain, &scenario.hopper, g);
         let (found, _) = search(&test, loaded.ends()?, scenario, args.common.quiet)?;
         let Outcome::Path { legs, .. } = &found.outcome else {
-            answer.add_none(share);
+            answer.add_none((share, width_deg));
             continue;
         };
         let path = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
         let [fixed, with_speed] = DriftLaw::ALL.map(|law| cone_width(&chain, &path.hops, g, &numbers, (law, reference_m_s)));
-        answer.add(share, &path.hops, &fixed, &with_speed);
+        answer.add((share, width_deg), &path.hops, &fixed, &with_speed);
     }
     Ok(answer)
+}
+
+/// Mean width of the take-off cones that the segments state for travel towards +x, degrees; 0 where none does.
+#[expect(clippy::cast_precision_loss, reason = "at most a million segments")]
+fn mean_takeoff_width_deg(chain: &ConstrainedChain) -> f64 {
+    let stated = chain.segments().iter().filter_map(|segment| segment.stated(Direction::Forward));
+    let widths: Vec<f64> =
+        stated.map(|line| line.takeoff.angles()).map(|angles| angles.max.degrees() - angles.min.degrees()).collect();
+    widths.iter().sum::<f64>() / widths.len().max(1) as f64
 }
 
 /// The surest path for every number of hops, estimated and flown.
