@@ -248,12 +248,13 @@ const HOP: [Trial; 9] = [
     ("--quiet", &["hop", "scenario.toml", "--body", "bennu"], &["hop", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const CHECK: [Trial; 15] = [
+const CHECK: [Trial; 16] = [
     ("--start", &["check", "scenario.toml"], &["check", "scenario.toml", "--start", "10"]),
     ("--goal", &["check", "scenario.toml"], &["check", "scenario.toml", "--goal", "30"]),
     ("--pairs", &["check", "scenario.toml"], &["check", "scenario.toml", "--pairs", "pairs.csv"]),
     ("--prove", &["check", "scenario.toml"], &["check", "scenario.toml", "--prove"]),
     ("--budget", &["check", "scenario.toml", "--prove"], &["check", "scenario.toml", "--prove", "--budget", "1"]),
+    ("--plot", &["check", "scenario.toml", "--prove"], &["check", "scenario.toml", "--prove", "--plot", "proof.svg"]),
     ("--format", &["check", "scenario.toml"], &["check", "scenario.toml", "--format", "json"]),
     ("--points-per-segment", &["check", "scenario.toml"], &["check", "scenario.toml", "--points-per-segment", "2"]),
     ("--node-spacing-max-m", &["check", "scenario.toml"], &["check", "scenario.toml", "--node-spacing-max-m", "2"]),

@@ -317,6 +317,9 @@ pub(crate) struct CheckArgs {
     /// How the answer is written
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
+    /// Picture (SVG or PNG) to write of what is proved of each stretch of the chain
+    #[arg(long, value_name = "FILE", requires = "prove", conflicts_with = "pairs")]
+    pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) prove: ProveArgs,
     #[command(flatten)]

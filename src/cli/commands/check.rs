@@ -7,9 +7,12 @@ use chta::{
         Station,
         csv::{StartGoal, read_pairs_csv_file},
     },
-    graph::Outcome,
-    path::generate,
-    report::{CheckAnswer, Document, check_text},
+    graph::{Outcome, proof::Bounds},
+    path::{HopPath, generate},
+    report::{
+        CheckAnswer, Document, check_text,
+        figure::{Caption, ProofFigure, draw_proof},
+    },
     scenario::{Extremes, constant_gravity_doubts},
 };
 use serde::Serialize;
@@ -41,7 +44,10 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
             stations(&loaded, path, &file.pairs)?
         }
     };
-    let answers = answers(&loaded, &pairs, args, &mut doubts)?;
+    // Opened before the work, which may take long.
+    let plot = args.plot.as_deref().map(|path| Ok::<_, Failure>((output::begin_picture(path)?, path))).transpose()?;
+    let (answers, pictures) = answers(&loaded, &pairs, args, &mut doubts)?;
+    output::finish(plot.into_iter().zip(pictures).map(|((file, _), picture)| (file, picture)).collect())?;
     for doubt in &doubts {
         output::warn(args.common.quiet, doubt);
     }
@@ -65,27 +71,54 @@ fn stations(loaded: &Loaded, file: &Path, pairs: &[StartGoal]) -> Result<Vec<(St
     Ok(stations)
 }
 
-/// The answers for all pairs, and what is doubtful about their paths.
+/// The answers for all pairs, what is doubtful about their paths, and the picture of the proof where one is asked for.
 fn answers(
     loaded: &Loaded,
     pairs: &[(Station, Station)],
     args: &CheckArgs,
     doubts: &mut Vec<String>,
-) -> Result<Vec<CheckAnswer>, Failure> {
+) -> Result<(Vec<CheckAnswer>, Option<Vec<u8>>), Failure> {
     let test = loaded.hop_test();
     let options = &loaded.scenario.search;
     let searched = Searched::all(&test, pairs, &loaded.scenario, args.prove, args.common.quiet)?;
     let mut answers = Vec::with_capacity(pairs.len());
+    let mut drawn = None;
     for (&ends, searched) in pairs.iter().zip(&searched) {
-        if let Outcome::Path { legs, .. } = &searched.found.outcome
-            && let Ok(path) = generate(&test, legs, options.takeoff, options.split)
-        {
+        let path = match &searched.found.outcome {
+            Outcome::Path { legs, .. } => generate(&test, legs, options.takeoff, options.split).ok(),
+            Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
+        };
+        if let Some(path) = &path {
             let of_path = constant_gravity_doubts(&loaded.scenario.body, Extremes::of(&path.hops));
             doubts.extend(of_path.into_iter().filter(|doubt| !doubts.contains(doubt)).collect::<Vec<_>>());
         }
-        answers.push(searched.answer(&test, ends, options.effort));
+        let answer = searched.answer(&test, ends, options.effort);
+        if let (Some(file), Some(bounds)) = (args.plot.as_deref(), searched.bounds()) {
+            drawn = Some(picture(loaded, ends, (bounds, path.as_ref()), file)?);
+        }
+        answers.push(answer);
     }
-    Ok(answers)
+    Ok((answers, drawn))
+}
+
+/// What is proved along the chain, encoded as the file's name asks.
+fn picture(
+    loaded: &Loaded,
+    ends: (Station, Station),
+    (bounds, path): (&Bounds, Option<&HopPath>),
+    file: &Path,
+) -> Result<Vec<u8>, Failure> {
+    let scenario = &loaded.scenario;
+    let title = scenario.title.as_ref().map_or("What is proved".to_owned(), |title| format!("What is proved: {title}"));
+    let mut line = vec![format!("from x = {} m to x = {} m", ends.0.point.x_m, ends.1.point.x_m)];
+    line.extend(scenario.body.name.clone());
+    let limits =
+        [("take-off at most", scenario.hopper.takeoff_speed_max_m_s), ("landing at most", scenario.hopper.landing_speed_max_m_s)];
+    line.extend(limits.iter().filter(|(_, v)| v.is_finite()).map(|(words, v)| format!("{words} {v} m/s")));
+    let caption = Caption::new(title, line.join(", "));
+    let figure = ProofFigure::of(caption, loaded.prepared.chain.geometry(), ends, bounds, path);
+    let encoded = draw_proof(&figure).and_then(|picture| picture.encoded_for(file));
+    encoded.map_err(|error| Failure::message(error.to_string()))
 }
 
 /// The answers as text or as one document.

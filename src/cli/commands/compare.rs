@@ -111,11 +111,6 @@ impl Compared {
         let Loaded { prepared, .. } = &self.loaded;
         let geometry = prepared.chain.geometry();
         let point = |x_m: f64| geometry.station(x_m).map(|station| station.point).ok();
-        let flight = |hop: &chta::path::Hop| Flight {
-            from: hop.takeoff.point,
-            to: hop.landing.point,
-            takeoff_slope: hop.takeoff_angle.slope(),
-        };
         ComparedScenario {
             name: self.row.name.clone(),
             verdict: self.row.verdict.to_owned(),
@@ -123,7 +118,7 @@ impl Compared {
             ground: geometry.vertices().to_vec(),
             start: point(self.row.start_x_m).unwrap_or(geometry.vertices()[0]),
             goal: point(self.row.goal_x_m).unwrap_or(geometry.vertices()[0]),
-            flights: self.path.iter().flat_map(|path| &path.hops).map(flight).collect(),
+            flights: self.path.iter().flat_map(|path| &path.hops).map(Flight::from).collect(),
         }
     }
 }

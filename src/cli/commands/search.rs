@@ -66,6 +66,11 @@ impl Searched {
         Ok(found.into_iter().map(|found| Self { found, surest: Vec::new(), proof: None }).collect())
     }
 
+    /// The bounds, where a proof was asked for.
+    pub(super) fn bounds(&self) -> Option<&Bounds> {
+        self.proof.as_ref().map(|(bounds, _)| bounds)
+    }
+
     /// The answer as plain data.
     pub(super) fn answer(&self, test: &HopTest<'_>, (start, goal): (Station, Station), effort: graph::Effort) -> CheckAnswer {
         let answer = CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &self.found, effort);

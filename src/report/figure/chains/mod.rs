@@ -2,6 +2,7 @@
 
 mod compare;
 mod data;
+mod of_bounds;
 mod profile;
 mod proof;
 mod trade;

@@ -1,0 +1,57 @@
+//! What the picture of a proof shows, taken from the bounds and the chain.
+
+use super::{super::Caption, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch};
+use crate::{
+    chain::{PolygonalChain, Station},
+    graph::proof::{Bounds, Gap, Stretch, StretchClass},
+    path::{Hop, HopPath},
+};
+
+impl From<&Hop> for Flight {
+    fn from(hop: &Hop) -> Self {
+        Self { from: hop.takeoff.point, to: hop.landing.point, takeoff_slope: hop.takeoff_angle.slope() }
+    }
+}
+
+impl From<StretchClass> for ProofClass {
+    fn from(class: StretchClass) -> Self {
+        match class {
+            StretchClass::Reachable => Self::Reachable,
+            StretchClass::Unreachable => Self::Unreachable,
+            StretchClass::Open => Self::Open,
+        }
+    }
+}
+
+impl From<&Gap> for ProofGap {
+    fn from(gap: &Gap) -> Self {
+        let refusals = gap.refusals.ranked().into_iter().map(|(limit, count)| (limit.name().to_owned(), count)).collect();
+        Self { reached_x_m: gap.reached_x_m, leads_to_goal_x_m: gap.leads_to_goal_x_m, refusals }
+    }
+}
+
+impl ProofFigure {
+    /// Of bounds that were explained, with the best path known where its hops are wanted in the picture.
+    pub fn of(
+        caption: Caption,
+        chain: &PolygonalChain,
+        (start, goal): (Station, Station),
+        bounds: &Bounds,
+        path: Option<&HopPath>,
+    ) -> Self {
+        let stretch = |s: &Stretch| ProofStretch { from_x_m: s.from_x_m, to_x_m: s.to_x_m, class: s.class.into() };
+        Self {
+            caption,
+            ground: chain.vertices().to_vec(),
+            stretches: bounds.stretches.iter().map(stretch).collect(),
+            cell_boundaries_x_m: bounds.stretches.iter().skip(1).map(|s| s.from_x_m).collect(),
+            start: start.point,
+            goal: goal.point,
+            path: path.iter().flat_map(|path| &path.hops).map(Flight::from).collect(),
+            lower_bound: bounds.lower,
+            upper_bound: bounds.upper(),
+            cells: u64::try_from(bounds.summary.cells).unwrap_or(u64::MAX),
+            gap: bounds.gap.as_ref().map(ProofGap::from),
+        }
+    }
+}
