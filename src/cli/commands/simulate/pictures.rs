@@ -38,7 +38,7 @@ pub(super) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<V
     let figure = SimulationFigure {
         caption: caption(flyer.loaded, summaries()),
         flown: summaries().next().and_then(|summary| bundle(flyer, summary)),
-        errors: summaries().map(|summary| boxes(summary)).collect(),
+        errors: summaries().map(boxes).collect(),
         outcomes: summaries().map(bars).collect(),
     };
     encoded(&draw_simulation(&figure).map_err(|error| Failure::message(error.to_string()))?, file)
