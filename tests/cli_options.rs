@@ -730,7 +730,7 @@ const SIMULATE: [Trial; 22] = [
     ("--set", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--set", "uncertainty.drift_along_sigma_m=0"]),
     ("--body", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--body", "moon"]),
     ("--gravity-m-s2", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--gravity-m-s2", "1.5"]),
-    ("--clearance-m", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--clearance-m", "0.5"]),
+    ("--clearance-m", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--clearance-m", "50"]),
     (
         "--quiet",
         &["simulate", "errors.toml", "--body", "bennu", "--trials", "10"],
