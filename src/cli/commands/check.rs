@@ -110,7 +110,7 @@ fn picture(
 ) -> Result<Vec<u8>, Failure> {
     let scenario = &loaded.scenario;
     let title = scenario.title.as_ref().map_or("What is proved".to_owned(), |title| format!("What is proved: {title}"));
-    let mut line = vec![format!("from x = {} m to x = {} m", ends.0.point.x_m, ends.1.point.x_m)];
+    let mut line = vec![format!("from x = {:.3} m to x = {:.3} m", ends.0.point.x_m, ends.1.point.x_m)];
     line.extend(scenario.body.name.clone());
     let limits =
         [("take-off at most", scenario.hopper.takeoff_speed_max_m_s), ("landing at most", scenario.hopper.landing_speed_max_m_s)];
