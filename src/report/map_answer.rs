@@ -186,7 +186,7 @@ impl MapAnswer {
     /// For reading.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "{} of {} posts reachable from ({}, {}) m, {:.6} km2, in at most {} hops\n",
+            "{} of {} posts reachable from ({:.3}, {:.3}) m, {:.6} km2, in at most {} hops\n",
             self.reachable_posts,
             self.posts,
             self.start_m[0],
@@ -213,7 +213,7 @@ impl MapAnswer {
         if let Some(mobility) = &self.mobility {
             let _ = writeln!(
                 text,
-                "mobility: one hop reaches {:.1} % of the posts within {:.3} m on average; most at ({}, {}) m: {:.1} %, in {} of {} directions",
+                "mobility: one hop reaches {:.1} % of the posts within {:.3} m on average; most at ({:.3}, {:.3}) m: {:.1} %, in {} of {} directions",
                 100.0 * mobility.mean_share,
                 mobility.disc_radius_m,
                 mobility.best_m[0],
@@ -232,7 +232,7 @@ impl MapAnswer {
             };
             let _ = writeln!(
                 text,
-                "goal ({}, {}) m, {:.3} m from the place asked for: {hops}{back}",
+                "goal ({:.3}, {:.3}) m, {:.3} m from the place asked for: {hops}{back}",
                 goal.x_m, goal.y_m, goal.offset_m
             );
         }

@@ -116,7 +116,7 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     let spot = |which: &'static str, place: MapPlace| -> Result<Spot, Failure> {
         let asked = place.on_map(which, projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
         if !dem.bounds().contains(asked) {
-            let message = format!("--{which} ({}, {}) m lies off the map, which covers {}", asked.x, asked.y, dem.bounds());
+            let message = format!("--{which} ({:.3}, {:.3}) m lies off the map, which covers {}", asked.x, asked.y, dem.bounds());
             return Err(failed(&std::io::Error::other(message)));
         }
         let post = lattice.nearest(dem.georeference(), asked);
@@ -128,7 +128,7 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     let Post { row, col } = lattice.post(start.post);
     if dem.elevation(row, col).is_none() {
         let message = format!(
-            "--start: the nearest post, ({}, {}) m, has no elevation; start where the DEM has data",
+            "--start: the nearest post, ({:.3}, {:.3}) m, has no elevation; start where the DEM has data",
             start.at.x, start.at.y
         );
         return Err(failed(&std::io::Error::other(message)));
@@ -317,7 +317,7 @@ fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> String {
     let body = scenario.body.name.clone().map(|name| format!("{name}, ")).unwrap_or_default();
     let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
     format!(
-        "{body}gravity {:.4} m/s²; take-off at most {} m/s, landing at most {} m/s; {} of {} posts reachable from ({}, {}) m in at most {} \
+        "{body}gravity {:.4} m/s²; take-off at most {} m/s, landing at most {} m/s; {} of {} posts reachable from ({:.3}, {:.3}) m in at most {} \
          hops{stride}",
         scenario.body.gravity_m_s2,
         scenario.hopper.takeoff_speed_max_m_s,
