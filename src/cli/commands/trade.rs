@@ -83,7 +83,7 @@ fn picture(answer: &TradeAnswer, first: &Loaded) -> Result<Picture, chta::report
     let varied = |key: &str| answer.vary.iter().any(|v| v.key == key);
     let mut line = Vec::new();
     for (end, key, station) in [("from", "terrain.start_x_m", prepared.start), ("to", "terrain.goal_x_m", prepared.goal)] {
-        line.extend(station.filter(|_| !varied(key)).map(|station| format!("{end} x = {} m", station.point.x_m)));
+        line.extend(station.filter(|_| !varied(key)).map(|station| format!("{end} x = {:.3} m", station.point.x_m)));
     }
     line.extend(scenario.body.name.clone().filter(|_| !varied("body.gravity_m_s2")));
     let limits = [
