@@ -18,7 +18,7 @@ use crate::quantity::ChainPoint;
 /// greatest over all vertices, to the last bit.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hull {
-    /// Columns of equal length, at least that of the hull.
+    /// Columns of equal length, at least `PADDING` longer than the hull.
     x_m: Vec<f64>,
     z_m: Vec<f64>,
     distance_m: Vec<f64>,
@@ -28,17 +28,8 @@ pub(super) struct Hull {
     steepest: f64,
 }
 
-/// A vertex in slope space.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
-    /// From the take-off.
-    pub(super) distance_m: f64,
-    /// Slope at which the take-off sees it, with the clearance.
-    pub(super) slope: f64,
-}
-
-/// How many vertices the tangent's inner loop takes at once: as many as a register of any x86-64 holds.
-const ABREAST: usize = 2;
+/// How many vertices the tangent's inner loop takes at once.
+const PADDING: usize = 4;
 
 /// Up to so many vertices, looking at all is quicker than choosing.
 const SCANNED: usize = 32;
@@ -58,66 +49,60 @@ impl Hull {
         self.steepest
     }
 
-    /// Adds a vertex beyond those before.
-    pub(super) fn push(&mut self, point: ChainPoint, seen: Seen) {
-        while self.len >= 2 && self.hides([self.seen_at(self.len - 2), self.seen_at(self.len - 1), seen]) {
+    /// Adds a vertex beyond those before, at a distance from the take-off, seen at a slope (with the clearance).
+    pub(super) fn push(&mut self, point: ChainPoint, distance_m: f64, seen: f64) {
+        while self.len >= 2 && self.hides_last(distance_m, seen) {
             self.len -= 1;
         }
-        if self.len == self.x_m.len() {
-            let room = (2 * self.len).max(SCANNED);
+        if self.len + PADDING >= self.x_m.len() {
+            let room = 2 * self.x_m.len() + 4 * PADDING;
             for column in [&mut self.x_m, &mut self.z_m, &mut self.distance_m, &mut self.seen] {
                 column.resize(room, 0.0);
             }
         }
         self.x_m[self.len] = point.x_m;
         self.z_m[self.len] = point.z_m;
-        self.distance_m[self.len] = seen.distance_m;
-        self.seen[self.len] = seen.slope;
+        self.distance_m[self.len] = distance_m;
+        self.seen[self.len] = seen;
         self.len += 1;
     }
 
-    /// A vertex of the hull as the take-off sees it.
-    fn seen_at(&self, i: usize) -> Seen {
-        Seen { distance_m: self.distance_m[i], slope: self.seen[i] }
-    }
-
-    /// Whether a vertex lies clearly below the straight line from one before it to one beyond it: whatever the landing, one of these asks
-    /// for more.
-    #[inline]
-    pub(super) fn hides(&self, [before, vertex, beyond]: [Seen; 3]) -> bool {
-        let span_m = beyond.distance_m - before.distance_m;
-        let part_m = vertex.distance_m - before.distance_m;
-        let below = (before.slope - vertex.slope) * span_m + (beyond.slope - before.slope) * part_m;
+    /// Whether the last vertex lies clearly below the straight line from the one before it to a new one.
+    fn hides_last(&self, distance_m: f64, seen: f64) -> bool {
+        let (before, last) = (self.len - 2, self.len - 1);
+        let span_m = distance_m - self.distance_m[before];
+        let part_m = self.distance_m[last] - self.distance_m[before];
+        let below = (self.seen[before] - self.seen[last]) * span_m + (seen - self.seen[before]) * part_m;
         below > KEPT * self.steepest * span_m
     }
 
     /// The greatest loft that any vertex asks of an arc to a landing, run `run_m` from the take-off; minus infinity for no vertex.
-    pub(super) fn clearing_loft(&self, landing: ChainPoint, run_m: f64, clearance_m: f64) -> f64 {
+    pub(super) fn clearing_loft(&mut self, landing: ChainPoint, run_m: f64, clearance_m: f64) -> f64 {
+        for spare in self.len..(self.len + PADDING).min(self.x_m.len()) {
+            // Asks for nothing, wherever the landing is.
+            self.seen[spare] = f64::NEG_INFINITY;
+            self.x_m[spare] = self.x_m[0];
+            self.z_m[spare] = self.z_m[0];
+        }
         if self.len <= SCANNED {
             return self.greatest(0, self.len, landing, clearance_m);
         }
         self.tangent(landing, run_m, clearance_m)
     }
 
-    /// The greatest loft over a stretch of the hull.
+    /// The greatest loft over a stretch of the hull (and at most `PADDING` more vertices).
     #[inline]
     fn greatest(&self, first: usize, end: usize, landing: ChainPoint, clearance_m: f64) -> f64 {
+        let end = first + (end - first).next_multiple_of(PADDING);
         let (x_m, z_m, seen) = (&self.x_m[first..end], &self.z_m[first..end], &self.seen[first..end]);
-        let (x_m, x_left) = x_m.as_chunks::<ABREAST>();
-        let (z_m, z_left) = z_m.as_chunks::<ABREAST>();
-        let (seen, seen_left) = seen.as_chunks::<ABREAST>();
-        let mut best = [f64::NEG_INFINITY; ABREAST];
-        for ((x_m, z_m), seen) in x_m.iter().zip(z_m).zip(seen) {
-            for i in 0..ABREAST {
+        let mut best = [f64::NEG_INFINITY; PADDING];
+        for ((x_m, z_m), seen) in x_m.chunks_exact(PADDING).zip(z_m.chunks_exact(PADDING)).zip(seen.chunks_exact(PADDING)) {
+            for i in 0..PADDING {
                 let loft = seen[i] - ((landing.z_m - z_m[i]) - clearance_m) / (landing.x_m - x_m[i]).abs();
                 best[i] = if loft > best[i] { loft } else { best[i] };
             }
         }
-        let mut greatest = best[0].max(best[1]);
-        for ((x_m, z_m), seen) in x_left.iter().zip(z_left).zip(seen_left) {
-            greatest = greatest.max(seen - ((landing.z_m - z_m) - clearance_m) / (landing.x_m - x_m).abs());
-        }
-        greatest
+        best[0].max(best[1]).max(best[2].max(best[3]))
     }
 
     /// The loft that one vertex of the hull asks for.

@@ -1,9 +1,6 @@
 //! All limits but the terrain, for a block of landings at once.
 
-use super::{
-    table::{LandingRules, LandingTable},
-    terrain::{OpenLanding, SLACK},
-};
+use super::table::{LandingRules, LandingTable};
 use crate::{
     ballistics::{HopTest, LineOfSight},
     quantity::SlopeInterval,
@@ -37,14 +34,6 @@ pub(super) struct Lanes {
     /// The lofts that all limits but the terrain allow.
     lower: [f64; Self::COUNT],
     upper: [f64; Self::COUNT],
-    /// The distance from the take-off.
-    run_m: [f64; Self::COUNT],
-    /// The lower end over the run.
-    fall: [f64; Self::COUNT],
-    /// The take-off slope of the lower end, less what rounding may have done to it.
-    takeoff_slope: [f64; Self::COUNT],
-    /// The greatest lower end where anything is left.
-    greatest_lower: f64,
 }
 
 impl Lanes {
@@ -61,10 +50,6 @@ impl Lanes {
             fastest: zeros,
             lower: zeros,
             upper: zeros,
-            run_m: zeros,
-            fall: zeros,
-            takeoff_slope: zeros,
-            greatest_lower: 0.0,
         }
     }
 
@@ -118,25 +103,6 @@ impl Lanes {
                 self.upper[i] = self.upper[i].min(machine.upper);
             }
         }
-        self.note_falls(from, x_m);
-    }
-
-    /// What the terrain's bound asks of each lane.
-    fn note_falls(&mut self, from: &Departure, x_m: &[f64]) {
-        let count = x_m.len().min(Self::COUNT);
-        let (slope, lower, upper) = (&self.slope[..count], &self.lower[..count], &self.upper[..count]);
-        let takeoff_slopes = &mut self.takeoff_slope[..count];
-        let (runs_m, falls) = (&mut self.run_m[..count], &mut self.fall[..count]);
-        let mut greatest = 0.0;
-        for i in 0..count {
-            let run_m = (x_m[i] - from.x_m).abs();
-            runs_m[i] = run_m;
-            falls[i] = lower[i] / run_m;
-            takeoff_slopes[i] = (slope[i] + lower[i]) - SLACK * (slope[i].abs() + lower[i]);
-            let open = if lower[i] <= upper[i] { lower[i] } else { 0.0 };
-            greatest = if open > greatest { open } else { greatest };
-        }
-        self.greatest_lower = greatest;
     }
 
     /// The lofts of one lane; `None` where nothing is left.
@@ -147,7 +113,14 @@ impl Lanes {
     }
 
     /// Which limit left nothing of a lane, in the order of [`HopTest::loft`].
-    pub(super) fn refusing(&self, test: &HopTest<'_>, from: &Departure, lane: usize, landing_cone: SlopeInterval) -> Limit {
+    pub(super) fn refusing(
+        &self,
+        test: &HopTest<'_>,
+        from: &Departure,
+        lane: usize,
+        run_m: f64,
+        landing_cone: SlopeInterval,
+    ) -> Limit {
         for (excess, limit) in [(self.takeoff_excess[lane], Limit::TakeoffSpeed), (self.landing_excess[lane], Limit::LandingSpeed)]
         {
             if excess.is_nan() || excess < 0.0 {
@@ -155,18 +128,12 @@ impl Lanes {
             }
         }
         let left = SlopeInterval { lower: self.slowest[lane], upper: self.fastest[lane] };
-        test.refusing_after_speeds(LineOfSight::along(self.run_m[lane], self.slope[lane]), left, from.cone, landing_cone)
+        test.refusing_after_speeds(LineOfSight::along(run_m, self.slope[lane]), left, from.cone, landing_cone)
     }
 
-    /// What a lane's landing asks the terrain.
+    /// The slope of the line of sight of a lane.
     #[inline]
-    pub(super) const fn open(&self, lane: usize) -> OpenLanding {
-        OpenLanding {
-            run_m: self.run_m[lane],
-            sight_slope: self.slope[lane],
-            fall: self.fall[lane],
-            slope: self.takeoff_slope[lane],
-            greatest_lower: self.greatest_lower,
-        }
+    pub(super) const fn slope(&self, lane: usize) -> f64 {
+        self.slope[lane]
     }
 }

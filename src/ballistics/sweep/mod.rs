@@ -5,7 +5,6 @@
 
 mod hull;
 mod lanes;
-mod support;
 mod table;
 mod terrain;
 
@@ -99,8 +98,6 @@ impl<'a> Sweep<'a> {
                 continue;
             }
             self.lanes.judge(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
-            let farthest = if direction == Direction::Forward { block.end - 1 } else { block.start };
-            self.overflight.look_as_far_as(&stations[farthest]);
             for i in outwards(block.clone(), direction) {
                 let verdict = match refusals[i] {
                     Some(limit) => Err(limit),
@@ -126,14 +123,14 @@ impl<'a> Sweep<'a> {
         let Some(open_air) = self.lanes.loft(lane) else {
             let rules = self.table.rules(direction);
             let cone = SlopeInterval { lower: rules.cone_lower[i], upper: rules.cone_upper[i] };
-            return Err(self.lanes.refusing(test, from, lane, cone));
+            let run_m = (landing.point.x_m - from.x_m).abs();
+            return Err(self.lanes.refusing(test, from, lane, run_m, cone));
         };
-        let Some(asked) = self.overflight.asked(landing, &self.lanes.open(lane)) else { return Ok(open_air) };
-        let (lower, upper) = (asked.max(open_air.lower), open_air.upper);
-        if (lower - upper).abs() <= TOUCHING * (lower.abs() + upper.abs()) && lower > open_air.lower {
+        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), open_air.lower);
+        if (lower - open_air.upper).abs() <= TOUCHING * (lower.abs() + open_air.upper.abs()) && lower > open_air.lower {
             return test.loft(takeoff, landing);
         }
-        if lower > upper { Err(Limit::Terrain) } else { Ok(SlopeInterval { lower, upper }) }
+        if lower > open_air.upper { Err(Limit::Terrain) } else { Ok(SlopeInterval { lower, upper: open_air.upper }) }
     }
 }
 

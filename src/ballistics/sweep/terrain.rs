@@ -1,9 +1,6 @@
 //! The terrain limit of one take-off, for landings that move outwards.
 
-use super::{
-    hull::{Hull, Seen},
-    support::Support,
-};
+use super::hull::Hull;
 use crate::{
     chain::{Direction, PolygonalChain, Site, Station},
     quantity::ChainPoint,
@@ -18,40 +15,21 @@ pub(super) struct Overflight<'a> {
     direction: Direction,
     /// The first vertex flown past.
     first: usize,
-    /// The vertices flown past, nearest first: how far from the take-off.
-    distance_m: Vec<f64>,
-    /// The slopes at which the take-off sees them, with the clearance.
-    seen: Vec<f64>,
-    /// The steepest of these slopes without regard to sign or to what cancels: rounding goes with it.
+    /// How many vertices the two bounds below cover.
+    bounded: usize,
+    /// The steepest slope at which the take-off sees a vertex flown past, with the clearance.
+    highest_seen: f64,
+    /// The same without regard to sign or to what cancels: rounding goes with it.
     steepest_seen: f64,
-    /// Spares most landings the hull.
-    support: Support,
-    /// Up to this run the support's nodes stay where they are.
-    laid_until_m: f64,
-    /// What rounding may do to the support.
-    blur: f64,
+    /// The least slope of any segment between vertices flown past.
+    lowest_slope: f64,
     /// How many vertices the hull covers.
     hulled: usize,
     hull: Hull,
 }
 
-/// One landing that all limits but the terrain allow.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct OpenLanding {
-    /// Its distance from the take-off.
-    pub(super) run_m: f64,
-    /// Slope of the line of sight.
-    pub(super) sight_slope: f64,
-    /// The least loft that the other limits allow, over the run.
-    pub(super) fall: f64,
-    /// The take-off slope of that loft, less the share of the roundings that goes with it.
-    pub(super) slope: f64,
-    /// The greatest `lower` of the landings about this one.
-    pub(super) greatest_lower: f64,
-}
-
 /// More than all roundings of the bound that spares the hull, relative to its terms.
-pub(super) const SLACK: f64 = 1e-12;
+const SLACK: f64 = 1e-12;
 
 impl<'a> Overflight<'a> {
     pub(super) fn new(chain: &'a PolygonalChain, clearance_m: f64) -> Self {
@@ -61,12 +39,10 @@ impl<'a> Overflight<'a> {
             takeoff: ChainPoint::new(0.0, 0.0),
             direction: Direction::Forward,
             first: 0,
-            distance_m: Vec::new(),
-            seen: Vec::new(),
+            bounded: 0,
+            highest_seen: f64::NEG_INFINITY,
             steepest_seen: 0.0,
-            support: Support::new(),
-            laid_until_m: 0.0,
-            blur: 0.0,
+            lowest_slope: f64::INFINITY,
             hulled: 0,
             hull: Hull::default(),
         }
@@ -83,10 +59,10 @@ impl<'a> Overflight<'a> {
             (Site::Inside(segment), Direction::Forward) => segment.index() + 1,
             (Site::Inside(segment), Direction::Reverse) => segment.index(),
         };
-        self.distance_m.clear();
-        self.seen.clear();
+        self.bounded = 0;
+        self.highest_seen = f64::NEG_INFINITY;
         self.steepest_seen = 0.0;
-        self.laid_until_m = 0.0;
+        self.lowest_slope = f64::INFINITY;
         self.hulled = 0;
         self.hull.clear(0.0);
     }
@@ -111,87 +87,79 @@ impl<'a> Overflight<'a> {
         }
     }
 
-    /// Looks at all vertices before a landing, the farthest of those asked for next.
-    pub(super) fn look_as_far_as(&mut self, landing: &Station) {
-        let (looked, count) = (self.seen.len(), self.flown_past(landing));
-        if count <= looked {
-            return;
-        }
-        let vertices = self.chain.vertices();
+    /// The slope, as travelled, of the segment that ends at a vertex flown past after the first.
+    #[inline]
+    fn slope_before(&self, count: usize) -> f64 {
         match self.direction {
-            Direction::Forward => self.look_at(vertices[self.first + looked..self.first + count].iter()),
-            Direction::Reverse => self.look_at(vertices[self.first + 1 - count..=self.first - looked].iter().rev()),
+            Direction::Forward => self.chain.slopes()[self.first + count - 1],
+            Direction::Reverse => -self.chain.slopes()[self.first - count],
         }
-        // Where dz and clearance cancel, rounding goes with the clearance, which weighs most at the nearest vertex.
-        let clearance = 3.0 * self.clearance_m / self.distance_m[0];
-        let steepest =
-            self.seen[looked..].iter().fold(0.0, |steepest: f64, seen| if seen.abs() > steepest { seen.abs() } else { steepest });
-        self.steepest_seen = self.steepest_seen.max(steepest + clearance);
-        self.note_blur();
     }
 
-    /// Notes distances and slopes: the terms of [`clearing_loft`](crate::ballistics::limits::clearing_loft).
+    /// The slope at which the take-off sees a vertex (with the clearance), and its distance: the terms of
+    /// [`clearing_loft`](crate::ballistics::limits::clearing_loft).
     #[inline]
-    fn look_at<'p>(&mut self, points: impl ExactSizeIterator<Item = &'p ChainPoint> + Clone) {
-        let (takeoff, clearance_m) = (self.takeoff, self.clearance_m);
-        self.distance_m.extend(points.clone().map(|point| (point.x_m - takeoff.x_m).abs()));
-        self.seen.extend(points.map(|point| ((point.z_m - takeoff.z_m) + clearance_m) / (point.x_m - takeoff.x_m).abs()));
+    fn seen(&self, point: ChainPoint) -> (f64, f64) {
+        let distance_m = (point.x_m - self.takeoff.x_m).abs();
+        (distance_m, ((point.z_m - self.takeoff.z_m) + self.clearance_m) / distance_m)
     }
 
-    /// The support's roundings go with the slopes seen and the falls at its nodes.
-    fn note_blur(&mut self) {
-        self.blur = SLACK * (self.steepest_seen + self.support.greatest() * self.laid_until_m);
-    }
-
-    /// The greatest loft that the vertices between the take-off and a landing ask for; `None` where it surely is no more than that of the
-    /// other limits.
+    /// The least loft, not below `lower`, that clears every vertex between the take-off and a landing seen at slope `sight_slope`.
     ///
-    /// Landings have to be asked for in the order of distance, after a look as far as them.
+    /// Landings have to be asked for in the order of distance.
     #[inline]
-    pub(super) fn asked(&mut self, landing: &Station, open: &OpenLanding) -> Option<f64> {
+    pub(super) fn lower_end(&mut self, landing: &Station, sight_slope: f64, lower: f64) -> f64 {
         let count = self.flown_past(landing);
-        if count == 0 || self.spares(count, open) { None } else { Some(self.by_hull(landing.point, count, open)) }
+        if count == 0 || self.bound(landing.point, count) < lower {
+            return lower;
+        }
+        self.by_hull(landing.point, count, sight_slope).max(lower)
     }
 
-    /// Whether the first `count` vertices surely ask for no more loft than the other limits.
+    /// An upper bound on the loft that the first `count` vertices ask for.
     ///
-    /// A vertex cleared with a margin in `s + c d <= b + n` asks for a loft less than n by that margin times X / (X - d), which is more
-    /// than the roundings of that loft: these go with `|b|`, n and the slopes seen over the same (X - d) / X.
+    /// ```text
+    ///     s_p - t_p <= max s - min t,   t_p >= min(min slope - eps / gap, t_last)
+    /// ```
+    ///
+    /// since the slope from any vertex on to the last is a mean of slopes of segments, and no clearance weighs more than over the gap
+    /// from the last vertex to the landing.
     #[inline]
-    fn spares(&mut self, count: usize, open: &OpenLanding) -> bool {
-        if open.run_m >= self.laid_until_m {
-            // Runs double from one laying to the next, so that all of them together look at each vertex a few times.
-            self.laid_until_m = 2.0 * open.run_m;
-            self.support.lay(open.greatest_lower / open.run_m);
-            self.note_blur();
+    fn bound(&mut self, landing: ChainPoint, count: usize) -> f64 {
+        while self.bounded < count {
+            let point = self.vertex(self.bounded);
+            let (distance_m, seen) = self.seen(point);
+            self.highest_seen = self.highest_seen.max(seen);
+            self.steepest_seen = self.steepest_seen.max(seen.abs() + 2.0 * self.clearance_m / distance_m);
+            if self.bounded > 0 {
+                self.lowest_slope = self.lowest_slope.min(self.slope_before(self.bounded));
+            }
+            self.bounded += 1;
         }
-        if self.support.covered() < count {
-            self.support.cover(count, &self.distance_m, &self.seen);
-        }
-        self.support.bound(open.fall) + self.blur < open.slope
-    }
-
-    /// A vertex flown past, counted from the take-off, as this one sees it.
-    #[inline]
-    fn seen_at(&self, i: usize) -> Seen {
-        Seen { distance_m: self.distance_m[i], slope: self.seen[i] }
+        let last = self.vertex(count - 1);
+        let per_gap = 1.0 / (landing.x_m - last.x_m).abs();
+        let clearance = self.clearance_m * per_gap;
+        let ahead = ((landing.z_m - last.z_m) - self.clearance_m) * per_gap;
+        let lowest = if self.lowest_slope - clearance < ahead { self.lowest_slope - clearance } else { ahead };
+        // Every term's size: the highest slope seen may be one that cancelled.
+        let terms = self.steepest_seen + self.lowest_slope.abs().min(f64::MAX) + clearance + ahead.abs();
+        self.highest_seen - lowest + SLACK * terms
     }
 
     /// The greatest loft that the first `count` vertices ask for.
-    fn by_hull(&mut self, landing: ChainPoint, count: usize, open: &OpenLanding) -> f64 {
-        let steepest = self.steepest_seen.max(open.sight_slope.abs());
+    fn by_hull(&mut self, landing: ChainPoint, count: usize, sight_slope: f64) -> f64 {
+        let steepest = self.steepest_seen.max(sight_slope.abs());
         if steepest > self.hull.steepest() {
             // Rounding grew beyond what the hull was made for: once more, for twice as much, so seldom.
             self.hull.clear(2.0 * steepest);
             self.hulled = 0;
         }
         while self.hulled < count {
-            let i = self.hulled;
-            if i == 0 || i + 1 >= count || !self.hull.hides([self.seen_at(i - 1), self.seen_at(i), self.seen_at(i + 1)]) {
-                self.hull.push(self.vertex(i), self.seen_at(i));
-            }
+            let point = self.vertex(self.hulled);
+            let (distance_m, seen) = self.seen(point);
+            self.hull.push(point, distance_m, seen);
             self.hulled += 1;
         }
-        self.hull.clearing_loft(landing, open.run_m, self.clearance_m)
+        self.hull.clearing_loft(landing, (landing.x_m - self.takeoff.x_m).abs(), self.clearance_m)
     }
 }

@@ -1,6 +1,6 @@
 //! Hop maps: from one post of a DEM to all others, in how few hops.
 //!
-//! Nodes are posts, an edge is a single hop whose limits hold on the exact slice between its two posts ([`PostHops`]). [`hop_map`] finds
+//! Nodes are posts, an edge is a single hop whose limits hold on the exact slice between its two posts ([`PostHops`]). [`search`] finds
 //! the fewest hops from a start to every post, front by front.
 
 mod covers;
