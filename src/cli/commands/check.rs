@@ -33,8 +33,9 @@ struct PairsAnswer {
 
 /// Checks one pair or many.
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
-    let loaded = load(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal))?;
-    use_threads(args.threads)?;
+    let loaded =
+        load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
+    use_threads(args.answer.threads)?;
     let mut doubts = Vec::new();
     let pairs = match &args.pairs {
         None => vec![loaded.ends()?],
@@ -123,7 +124,7 @@ fn picture(
 
 /// The answers as text or as one document.
 fn written(args: &CheckArgs, loaded: Loaded, mut answers: Vec<CheckAnswer>, doubts: Vec<String>) -> Result<String, Failure> {
-    if args.format == Format::Text {
+    if args.answer.format == Format::Text {
         return Ok(answers.iter().map(check_text).collect::<Vec<_>>().join("\n"));
     }
     let warnings = loaded.warnings_with(doubts);

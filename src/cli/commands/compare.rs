@@ -34,7 +34,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
     // Opened before the work, which may take long.
     let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let plot = args.plot.as_deref().map(|path| Ok::<_, Failure>((output::begin_picture(path)?, path))).transpose()?;
-    use_threads(args.threads)?;
+    use_threads(args.answer.threads)?;
     let compared: Vec<_> = args.scenarios.iter().map(|file| Compared::new(file, args)).collect::<Result<_, _>>()?;
     let answer = CompareAnswer { compared: compared.iter().map(|one| one.row.clone()).collect() };
     let mut files = Vec::new();
@@ -47,7 +47,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
         files.push((file, encoded.map_err(|error| Failure::message(error.to_string()))?));
     }
     output::finish(files)?;
-    let text = match args.format {
+    let text = match args.answer.format {
         _ if csv_to_stdout => csv(&answer)?,
         Format::Text => answer.text().into_bytes(),
         Format::Json => document(&compared, &answer)?.into_bytes(),

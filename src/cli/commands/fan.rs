@@ -14,7 +14,7 @@ use nalgebra::Vector2;
 use super::slice::place;
 use crate::cli::{
     Answer, Failure,
-    args::{FanArgs, Format},
+    args::{AnswerArgs, FanArgs, Format},
     load::{Bare, input_file, load_bare},
     output,
 };
@@ -24,7 +24,18 @@ const POINTS_PER_SEGMENT: PointSpacing = PointSpacing::PerSegment(1);
 
 /// Analyses all directions.
 pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
-    let FanArgs { dem: file, from, from_lonlat, headings, length, output: table, plot, threads, format, search, common } = args;
+    let FanArgs {
+        dem: file,
+        from,
+        from_lonlat,
+        headings,
+        length,
+        output: table,
+        plot,
+        answer: AnswerArgs { threads, format },
+        search,
+        common,
+    } = args;
     let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
     let Bare { scenario, base, document } = load_bare(common, search)?;
     let dem = read_dem(file).map_err(|e| failed(&e))?;

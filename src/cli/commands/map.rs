@@ -87,7 +87,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
         output::warn(args.common.quiet, warning);
     }
     write_files(args, &ground, &maps, &answer, (start, &goals))?;
-    let text = match args.format {
+    let text = match args.answer.format {
         Format::Text => answer.text(),
         Format::Json => {
             let document = Document::new("map", ground.document.clone(), ground.inputs.clone(), warnings, answer.clone());
@@ -151,7 +151,7 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
 fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
     let Ground { dem, scenario, covers, lattice, .. } = ground;
     let failed = |error: &MapError| Failure::about(&args.dem, &error.to_string());
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.threads).build().map_err(|e| failed(&e.into()))?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.answer.threads).build().map_err(|e| failed(&e.into()))?;
     let chain = |profile: Profile| -> Result<ConstrainedChain, Box<dyn std::error::Error + Send + Sync>> {
         Ok(ConstrainedChain::new(covers.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?)
     };

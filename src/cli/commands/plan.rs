@@ -192,8 +192,9 @@ fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result
 
 /// Plans a path.
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
-    use_threads(args.threads)?;
-    let loaded = load(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal))?;
+    use_threads(args.answer.threads)?;
+    let loaded =
+        load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
     let ends = loaded.ends()?;
     if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {
         return Err(Failure::message("--geojson: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"));
@@ -220,7 +221,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
         files.push((file, planned.csv(&loaded)?));
     }
     output::finish(files)?;
-    let text = match args.format {
+    let text = match args.answer.format {
         _ if csv_to_stdout => planned.csv(&loaded)?,
         Format::Text => planned.text().into_bytes(),
         Format::Json => planned.document("plan", &loaded)?.into_bytes(),

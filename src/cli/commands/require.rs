@@ -56,7 +56,7 @@ struct Tried {
 /// Finds the least capability.
 pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     let (capability, [from, to]) = asked(args)?;
-    use_threads(args.threads)?;
+    use_threads(args.answer.threads)?;
     let (mut weakest, strongest) = if capability.more_is_more { (from, to) } else { (to, from) };
     let first = with_value(args, strongest, args.common.quiet)?;
     if let Some(other) = other_angle_deg(capability, &first).filter(|_| args.from.is_none() || args.to.is_none()) {
@@ -203,7 +203,7 @@ fn with_value(args: &RequireArgs, value: f64, quiet: bool) -> Result<Loaded, Fai
     }
     common.set.push(format!("{}={value:?}", args.vary));
     common.quiet = quiet;
-    load(&args.chain, &common, Some(&args.search), EndOptions::of_path(args.start, args.goal))
+    load(&args.journey.chain, &common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))
 }
 
 /// Whether two values of the key ask the same of every hop.
@@ -219,7 +219,7 @@ fn has_no_effect(first: &Loaded, second: &Loaded) -> bool {
 
 /// The answer as text or as one document.
 fn written(args: &RequireArgs, loaded: &Loaded, answer: &RequireAnswer) -> Result<String, Failure> {
-    if args.format == Format::Text {
+    if args.answer.format == Format::Text {
         return Ok(require_text(answer));
     }
     let warnings = loaded.warnings_with([]);

@@ -35,14 +35,14 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     // Opened before the work, which may take long.
     let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let plot = args.plot.as_deref().map(|path| Ok::<_, Failure>((output::begin_picture(path)?, path))).transpose()?;
-    let ends = EndOptions::of_path(args.start, args.goal);
-    let ToVary { first, survey, entries, base } = load_to_vary(&args.chain, &args.common, &args.search, ends, &variations)?;
+    let ends = EndOptions::of_path(args.journey.start, args.journey.goal);
+    let ToVary { first, survey, entries, base } = load_to_vary(&args.journey.chain, &args.common, &args.search, ends, &variations)?;
     first.ends()?;
     let trade = Trade::new(&entries, &base, &survey, &variations).map_err(refused)?;
     let progress = Progress::new(args.common.quiet);
     let (fields, done) = (trade.fields(), AtomicUsize::new(0));
     let tell = || progress.say(format!("{} of {fields} fields", done.fetch_add(1, Ordering::Relaxed) + 1));
-    let answer = trade.run(args.prove.prove.then_some(args.prove.budget), args.threads, &tell).map_err(refused)?;
+    let answer = trade.run(args.prove.prove.then_some(args.prove.budget), args.answer.threads, &tell).map_err(refused)?;
     drop(progress);
     let mut files = Vec::new();
     if let Some(file) = rows {
@@ -54,7 +54,7 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
         files.push((file, encoded.map_err(|error| Failure::message(error.to_string()))?));
     }
     output::finish(files)?;
-    let text = match args.format {
+    let text = match args.answer.format {
         _ if csv_to_stdout => csv(&answer)?,
         Format::Text => answer.text().into_bytes(),
         Format::Json => document(&first, &answer)?.into_bytes(),

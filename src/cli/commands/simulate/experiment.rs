@@ -84,7 +84,7 @@ fn refuse_idle(args: &SimulateArgs, experiment: Experiment) -> Result<(), Failur
         ("--reading", args.reading.is_some() && experiment != Experiment::WorstDrift),
         ("--trials", args.trials.is_some() && !trades),
         ("--policy", args.policy.is_some() && !trades),
-        ("--threads", args.threads != 0 && !trades),
+        ("--threads", args.answer.threads != 0 && !trades),
         ("--plot", args.plot.is_some() && trades),
     ];
     match idle.into_iter().find(|(_, given)| *given) {
@@ -96,7 +96,7 @@ fn refuse_idle(args: &SimulateArgs, experiment: Experiment) -> Result<(), Failur
 }
 
 fn written<T: Serialize>(args: &SimulateArgs, loaded: &Loaded, text: String, answer: T) -> Result<String, Failure> {
-    match args.format {
+    match args.answer.format {
         Format::Text => Ok(text),
         Format::Json => {
             let document = Document::new(
@@ -171,7 +171,7 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     };
     let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
     let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy))?;
-    let options = TrialOptions { threads: args.threads, ..keys.options() };
+    let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
     let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
     for candidate in &surest {
         let path =

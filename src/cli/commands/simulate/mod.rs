@@ -40,8 +40,13 @@ struct SimulateAnswer {
 
 /// Simulates.
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
-    let loaded =
-        load_with(&args.chain, &args.common, Some(&args.search), EndOptions::of_path(args.start, args.goal), &trial_options(args))?;
+    let loaded = load_with(
+        &args.journey.chain,
+        &args.common,
+        Some(&args.search),
+        EndOptions::of_path(args.journey.start, args.journey.goal),
+        &trial_options(args),
+    )?;
     if let Some(name) = &args.experiment {
         return experiment::run(args, &loaded, name);
     }
@@ -87,7 +92,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     }
     let records: Vec<_> = flown.iter().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())).collect();
     let asked = records.iter().find(|record| record.policy == keys.policy.name()).cloned();
-    let text = match args.format {
+    let text = match args.answer.format {
         Format::Text => {
             let mut text = check_text(planned.check());
             for record in &records {
@@ -146,7 +151,7 @@ pub(super) fn of_run(
 
 /// The answer where there is nothing to fly.
 fn no_path(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result<Answer, Failure> {
-    let text = match args.format {
+    let text = match args.answer.format {
         Format::Text => check_text(planned.check()) + "nothing to simulate: there is no nominal path\n",
         Format::Json => {
             document(loaded, Vec::new(), SimulateAnswer { check: planned.check().clone(), simulation: None, compare: Vec::new() })?
@@ -174,5 +179,5 @@ fn trial_options(args: &SimulateArgs) -> Vec<(&'static str, &'static str, &'stat
 
 /// The trials that scenario and options ask for.
 fn trials_asked(args: &SimulateArgs, keys: &UncertaintyKeys) -> TrialOptions {
-    TrialOptions { until_half_width: args.until_half_width, threads: args.threads, ..keys.options() }
+    TrialOptions { until_half_width: args.until_half_width, threads: args.answer.threads, ..keys.options() }
 }

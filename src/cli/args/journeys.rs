@@ -1,0 +1,232 @@
+//! The options of the commands that answer for a chain.
+
+use std::path::PathBuf;
+
+use chta::graph::proof::DEFAULT_BUDGET_CELLS;
+use clap::Args as ClapArgs;
+
+use super::{AnswerArgs, CommonArgs, Format, JourneyArgs, ProveArgs, SearchArgs, cell_count};
+
+/// Do everything a scenario asks for: chain.csv, path.csv, path.geojson (on a map), result.json and path.svg
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta run data/scenarios/mars_crater_field.toml -o out")]
+pub(crate) struct RunArgs {
+    /// Scenario (TOML), or a result.json to repeat
+    #[arg(value_name = "SCENARIO")]
+    pub(crate) scenario: PathBuf,
+    /// Folder for the results, made where it does not exist
+    #[arg(short, long, value_name = "DIR")]
+    pub(crate) output: PathBuf,
+    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    pub(crate) threads: usize,
+    /// How the answer is written to standard output
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    /// Set any scenario key; wins over the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
+    #[arg(long, value_name = "TABLE.KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    #[arg(long)]
+    pub(crate) accept_map_scale: bool,
+    /// No warnings and no progress on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// Test one hop: every limit by itself, what sets either end of the feasible take-off angles, or which two conflict
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json")]
+pub(crate) struct HopArgs {
+    /// Chain (CSV), scenario (TOML) or result (JSON)
+    #[arg(value_name = "CHAIN")]
+    pub(crate) chain: PathBuf,
+    /// Where the hop takes off, along the chain, m [default: the scenario's start]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) from: Option<f64>,
+    /// Where it lands, along the chain, m [default: the scenario's goal]
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    pub(crate) to: Option<f64>,
+    /// How the answer is written
+    #[arg(long, value_enum, default_value = "text")]
+    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Does a path exist, and in how few hops
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta check data/scenarios/simple_reduced.toml --points-per-segment 2")]
+pub(crate) struct CheckArgs {
+    #[command(flatten)]
+    pub(crate) journey: JourneyArgs,
+    /// Many questions at once: CSV with `start_x_m,goal_x_m`
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["start", "goal"])]
+    pub(crate) pairs: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) answer: AnswerArgs,
+    /// Picture (SVG or PNG) to write of what is proved of each stretch of the chain
+    #[arg(long, value_name = "FILE", requires = "prove", conflicts_with = "pairs")]
+    pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Plan the path of fewest hops, then least effort
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta plan data/scenarios/paper_76m.toml --verify -o path.csv --plot path.svg")]
+pub(crate) struct PlanArgs {
+    #[command(flatten)]
+    pub(crate) journey: JourneyArgs,
+    /// Path CSV to write; -: to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Path in three dimensions (GeoJSON) to write, for a chain on a map
+    #[arg(long, value_name = "FILE")]
+    pub(crate) geojson: Option<PathBuf>,
+    /// Picture (SVG) to write, also where there is no path
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Fly the path again by direct simulation and judge every limit
+    #[arg(long)]
+    pub(crate) verify: bool,
+    #[command(flatten)]
+    pub(crate) answer: AnswerArgs,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Fly the planned path many times under the errors of [uncertainty]: how surely, where the landings scatter, how trials end
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta simulate data/scenarios/rolling_surely.toml --trials 500 --compare")]
+pub(crate) struct SimulateArgs {
+    #[command(flatten)]
+    pub(crate) journey: JourneyArgs,
+    /// How many trials at most [default: the scenario's, or 10000]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub(crate) trials: Option<i64>,
+    /// Seed of all draws; a trial's depend on it and on the trial's number alone [default: the scenario's, or 0]
+    #[arg(long, value_name = "S", allow_negative_numbers = true)]
+    pub(crate) seed: Option<i64>,
+    /// open-loop: planned commands from wherever it is; replan: the best next hop after every landing [default: the scenario's]
+    #[arg(long, value_name = "POLICY")]
+    pub(crate) policy: Option<String>,
+    /// Both policies on the same draws
+    #[arg(long)]
+    pub(crate) compare: bool,
+    /// Stop once half the 95 % interval of the success rate is no wider; asked after every 1000 trials [default: fly all trials]
+    #[arg(long, value_name = "W", allow_negative_numbers = true)]
+    pub(crate) until_half_width: Option<f64>,
+    /// Instead: worst-drift (the paper's), cone-width (its claim), risk-trade (what hops buy in surety) [default: none]
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["compare", "until_half_width"])]
+    pub(crate) experiment: Option<String>,
+    /// How worst-drift reads the paper: noise-at-landing, noise-in-flight, farthest-from-goal [default: noise-at-landing]
+    #[arg(long, value_name = "NAME", requires = "experiment")]
+    pub(crate) reading: Option<String>,
+    /// One row per landing, .csv or .parquet; -: CSV to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Picture of the trials (SVG): trajectories, landing errors, outcomes, convergence
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    /// Picture of the landings on the map (SVG), with 95 % ellipses, for a DEM
+    #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
+    pub(crate) plot_map: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) answer: AnswerArgs,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// The least capability with which the goal can be reached, between a value proved too little and one with a path
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta require data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s")]
+pub(crate) struct RequireArgs {
+    #[command(flatten)]
+    pub(crate) journey: JourneyArgs,
+    /// Scenario key to vary, such as `hopper.takeoff_speed_max_m_s`
+    #[arg(long, value_name = "TABLE.KEY")]
+    pub(crate) vary: String,
+    /// Least value to try, in the key's unit [default: by key]
+    #[arg(long, value_name = "V", allow_negative_numbers = true)]
+    pub(crate) from: Option<f64>,
+    /// Greatest value to try, in the key's unit [default: by key]
+    #[arg(long, value_name = "V", allow_negative_numbers = true)]
+    pub(crate) to: Option<f64>,
+    /// How close to bring the two values, as a share of them
+    #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
+    pub(crate) resolution: f64,
+    /// The most cells that the chain is cut into at each value
+    #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS / 5, value_parser = cell_count, allow_negative_numbers = true)]
+    pub(crate) budget: usize,
+    #[command(flatten)]
+    pub(crate) answer: AnswerArgs,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// One or two keys of the scenario varied: the fewest hops, or that there is no path, for every value or pair of values
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta trade data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s=2:6:9")]
+pub(crate) struct TradeArgs {
+    #[command(flatten)]
+    pub(crate) journey: JourneyArgs,
+    /// Scenario key that takes STEPS values from FROM to TO, both included; given twice: a grid [example: `--vary
+    /// hopper.takeoff_speed_max_m_s=4:10:7`]
+    #[arg(long, value_name = "TABLE.KEY=FROM:TO:STEPS", required = true)]
+    pub(crate) vary: Vec<String>,
+    /// Rows to write, .csv or .json by its name; -: CSV to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Picture to write (.svg or .png): a heat map with every field's number
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) answer: AnswerArgs,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    #[command(flatten)]
+    pub(crate) search: SearchArgs,
+    #[command(flatten)]
+    pub(crate) common: CommonArgs,
+}
+
+/// Several scenarios side by side: verdict, hops, totals, least margins, and their paths in one picture
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta compare data/scenarios/simple.toml data/scenarios/simple_reduced.toml")]
+pub(crate) struct CompareArgs {
+    /// Scenarios (TOML) or results (JSON), two or more
+    #[arg(value_name = "SCENARIO", required = true, num_args = 2..)]
+    pub(crate) scenarios: Vec<PathBuf>,
+    /// Table to write, .csv or .json by its name; -: CSV to standard output, in place of the answer
+    #[arg(short, long, value_name = "FILE")]
+    pub(crate) output: Option<PathBuf>,
+    /// Picture to write (.svg or .png): all paths overlaid
+    #[arg(long, value_name = "FILE")]
+    pub(crate) plot: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) answer: AnswerArgs,
+    #[command(flatten)]
+    pub(crate) prove: ProveArgs,
+    /// Set any scenario key in all of them; wins over the scenarios [example: `--set hopper.takeoff_speed_max_m_s=8`]
+    #[arg(long, value_name = "TABLE.KEY=VALUE")]
+    pub(crate) set: Vec<String>,
+    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    #[arg(long)]
+    pub(crate) accept_map_scale: bool,
+    /// No warnings and no progress on standard error
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
