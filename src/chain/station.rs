@@ -61,6 +61,22 @@ pub enum Site {
     Inside(SegmentId),
 }
 
+impl Site {
+    /// The indices of the vertices strictly between two sites, the left one first.
+    #[inline]
+    pub(crate) fn vertices_between(left: Self, right: Self) -> std::ops::Range<usize> {
+        let first = match left {
+            Self::Vertex(v) => v.index() + 1,
+            Self::Inside(s) => s.index() + 1,
+        };
+        let end = match right {
+            Self::Vertex(v) => v.index(),
+            Self::Inside(s) => s.index() + 1,
+        };
+        first..end.max(first)
+    }
+}
+
 /// A place on the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Station {

@@ -64,13 +64,5 @@ pub fn terrain(
 #[inline]
 pub(crate) fn flown_past(a: &Station, b: &Station) -> std::ops::Range<usize> {
     let (left, right) = if a.point.x_m <= b.point.x_m { (a.site, b.site) } else { (b.site, a.site) };
-    let first = match left {
-        Site::Vertex(v) => v.index() + 1,
-        Site::Inside(s) => s.index() + 1,
-    };
-    let end = match right {
-        Site::Vertex(v) => v.index(),
-        Site::Inside(s) => s.index() + 1,
-    };
-    first..end.max(first)
+    Site::vertices_between(left, right)
 }

@@ -61,19 +61,6 @@ pub(super) fn shared_segment(left: Site, right: Site) -> Option<SegmentId> {
     (ahead == behind).then_some(SegmentId(ahead))
 }
 
-/// The indices of the vertices strictly between two sites, the left one first.
-pub(super) fn vertices_between(left: Site, right: Site) -> std::ops::Range<usize> {
-    let first = match left {
-        Site::Vertex(v) => v.index() + 1,
-        Site::Inside(s) => s.index() + 1,
-    };
-    let end = match right {
-        Site::Vertex(v) => v.index(),
-        Site::Inside(s) => s.index() + 1,
-    };
-    first..end.max(first)
-}
-
 /// The slope dz/dx of every segment, as it is without rounding.
 pub(super) fn slopes<F: Faults>(geometry: &PolygonalChain) -> Vec<Interval<F::Rounding>> {
     let point = Interval::point;

@@ -3,7 +3,7 @@
 use super::{
     Faults,
     arcs::{Arcs, least_speed_slopes},
-    cell::{Cell, shared_segment, slopes, vertices_between},
+    cell::{Cell, shared_segment, slopes},
 };
 use crate::{
     ballistics::HopTest,
@@ -110,7 +110,7 @@ impl<'a, F: Faults> Prover<'a, F> {
         }
         let from = self.rule(takeoff.site, Contact::Takeoff, direction)?;
         let to = self.rule(landing.site, Contact::Landing, direction)?;
-        let flown_past = vertices_between(left.site, right.site);
+        let flown_past = Site::vertices_between(left.site, right.site);
         if self.bends_before[flown_past.end] > self.bends_before[flown_past.start] {
             return Err(Limit::Bend);
         }
