@@ -6,8 +6,9 @@ mod support;
 
 use chta::{
     ballistics::{HopTest, LandingTable, Sweep},
-    chain::Direction,
+    chain::{Direction, PolygonalChain},
     quantity::VertexId,
+    world::Hopper,
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
 
@@ -67,7 +68,9 @@ fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
 /// The bound on reach that a search asks for at every take-off, on a chain of 100 000 segments.
 #[divan::bench]
 fn reach_of_one_takeoff(bencher: Bencher<'_, '_>) {
-    let (chain, hopper) = support::fractal_chain(100_000);
+    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(10.0, 10.0) };
+    let geometry = PolygonalChain::bare(support::long_chain(100_000, 1)).expect("a chain");
+    let chain = support::constrained(geometry, &hopper);
     let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
     let takeoff = chain.geometry().vertex_station(VertexId(50_000));
     bencher.bench_local(|| test.reach_bound_m(black_box(&takeoff)));

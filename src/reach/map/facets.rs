@@ -55,6 +55,12 @@ impl Facets {
         self.first != self.second
     }
 
+    /// The number of the one facet, or of the first of the two.
+    #[inline]
+    pub(super) const fn first(self) -> usize {
+        self.first as usize
+    }
+
     /// Their numbers.
     #[inline]
     pub(super) fn numbers(self) -> impl Iterator<Item = usize> {

@@ -5,6 +5,7 @@
 
 mod covers;
 mod facets;
+mod front;
 mod ground;
 mod lattice;
 mod mobility;

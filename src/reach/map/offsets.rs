@@ -37,8 +37,7 @@ pub(super) struct Offset {
     /// To the east and to the south, nodes.
     pub(super) cols: i32,
     pub(super) rows: i32,
-    /// Steps among the nodes, and among the DEM's elevations.
-    pub(super) node_step: isize,
+    /// Steps among the DEM's elevations.
     pub(super) post_step: isize,
     pub(super) run_m: f64,
     /// East and north, of length 1.
@@ -109,6 +108,8 @@ fn crossing(cols: i64, rows: i64, (number, count): (i64, i64), run_m: f64, post_
 #[derive(Clone, Debug, Default)]
 pub(super) struct OffsetTable {
     pub(super) offsets: Vec<Offset>,
+    /// The steps among the nodes of all offsets, by themselves: a search runs down them far more often than it tests a pair.
+    pub(super) node_steps: Vec<isize>,
     pub(super) crossings: Vec<Crossing>,
 }
 
@@ -167,10 +168,10 @@ impl OffsetTable {
         let first = self.crossings.len();
         self.crossings.extend(crossings(post_cols, post_rows, run_m, spacing.post_cols));
         let step = |cols: i32, rows: i32, width: usize| rows as isize * width.cast_signed() + cols as isize;
+        self.node_steps.push(step(cols, rows, spacing.node_cols));
         self.offsets.push(Offset {
             cols,
             rows,
-            node_step: step(cols, rows, spacing.node_cols),
             post_step: step(post_cols, post_rows, spacing.post_cols),
             run_m,
             heading: spacing.metres(cols, rows) / run_m,

@@ -152,6 +152,11 @@ impl<'a> PostHops<'a> {
         &self.table.offsets
     }
 
+    /// The steps among the nodes of all offsets.
+    pub(super) fn node_steps(&self) -> &[isize] {
+        &self.table.node_steps
+    }
+
     /// How many of the nearest offsets matter to the nodes of a block.
     pub(super) fn within_reach(&self, block: usize) -> usize {
         self.within_reach[block]
@@ -317,15 +322,15 @@ impl<'a> PostHops<'a> {
     /// Slope along the heading and square of the gradient of the facet under an end; along an edge of the steeper one.
     #[inline]
     fn facet(&self, post: usize, facets: Facets, offset: &Offset) -> (f64, f64) {
-        let mut steepest = (0.0, f64::NEG_INFINITY);
-        for number in facets.numbers().filter(|&number| self.ground.has(post, number)) {
+        let of = |number| {
             let (east, north) = self.heights.gradient(post, number);
-            let steepness = east * east + north * north;
-            if steepness > steepest.1 {
-                steepest = (east * offset.heading.x + north * offset.heading.y, steepness);
-            }
+            (east * offset.heading.x + north * offset.heading.y, east * east + north * north)
+        };
+        if !facets.along_edge() {
+            return of(facets.first());
         }
-        steepest
+        let there = facets.numbers().filter(|&number| self.ground.has(post, number)).map(of);
+        there.fold((0.0, f64::NEG_INFINITY), |steepest, facet| if facet.1 > steepest.1 { facet } else { steepest })
     }
 
     /// Whether a way along edges of facets has one on either side all the way.

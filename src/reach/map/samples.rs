@@ -8,8 +8,11 @@ use crate::terrain::{Dem, Samples};
 pub(super) struct Heights<'a> {
     samples: Samples<'a>,
     pub(super) cols: usize,
-    dx_m: f64,
-    dy_m: f64,
+    /// One over the posts' spacing, 1/m: a quotient's last bit is worth less than a division.
+    per_dx: f64,
+    per_dy: f64,
+    /// [`CORNERS`] as steps among the elevations.
+    corners: [[isize; 4]; 6],
 }
 
 /// The take-off of a walk and the height of its line of sight.
@@ -28,7 +31,9 @@ pub(super) struct Walk {
 impl<'a> Heights<'a> {
     pub(super) fn of(dem: &'a Dem) -> Self {
         let map = dem.georeference();
-        Self { samples: dem.samples(), cols: dem.cols(), dx_m: map.dx_m(), dy_m: map.dy_m() }
+        let width = dem.cols().cast_signed();
+        let corners = CORNERS.map(|facet| facet.map(|(east, south)| south as isize * width + east as isize));
+        Self { samples: dem.samples(), cols: dem.cols(), per_dx: 1.0 / map.dx_m(), per_dy: 1.0 / map.dy_m(), corners }
     }
 
     pub(super) fn rows(&self) -> usize {
@@ -51,10 +56,16 @@ impl<'a> Heights<'a> {
     /// The gradient (east, north) of one of a post's facets, which must exist; NaN where a post of it has no elevation.
     #[inline]
     pub(super) fn gradient(&self, post: usize, facet: usize) -> (f64, f64) {
-        let width = self.cols.cast_signed();
-        let corner = |(east, south): (i32, i32)| self.at(post.wrapping_add_signed(south as isize * width + east as isize));
-        let [east, west, north, south] = CORNERS[facet].map(corner);
-        ((east - west) / self.dx_m, (north - south) / self.dy_m)
+        match self.samples {
+            Samples::Single(values) => self.gradient_of(values, post, facet),
+            Samples::Double(values) => self.gradient_of(values, post, facet),
+        }
+    }
+
+    #[inline]
+    fn gradient_of<T: Copy + Into<f64>>(&self, heights: &[T], post: usize, facet: usize) -> (f64, f64) {
+        let [east, west, north, south] = self.corners[facet].map(|step| -> f64 { heights[post.wrapping_add_signed(step)].into() });
+        ((east - west) * self.per_dx, (north - south) * self.per_dy)
     }
 
     /// The least loft that clears all vertices on the way; `None` where that is more than the most allowed, or an elevation is missing.

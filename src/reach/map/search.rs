@@ -1,11 +1,16 @@
 //! Fewest hops, front by front.
 //!
 //! Posts that have no hops yet are pulled towards the front: each asks the posts of the front within reach, nearest first, for a hop, and
-//! stops at the first. Pairs that cannot improve the answer are never tested, and which thread asks first does not matter.
+//! stops at the first. Pairs that cannot improve the answer are never tested, nodes without any of the front within reach are told by a
+//! few words of bits, and which thread asks first does not matter.
 
 use rayon::prelude::*;
 
-use super::{MapError, PostHops, lattice::Post, offsets::Offset};
+use super::{
+    MapError, PostHops,
+    front::{Disc, Front},
+    lattice::Post,
+};
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     graph::Effort,
@@ -81,7 +86,7 @@ pub fn search(hops: &PostHops<'_>, start: Post, asked: Search, tell: &mut dyn Fn
     let mut front: i16 = 0;
     loop {
         tell(FrontProgress { front, reached: state.reached, open: state.open.iter().map(|&count| count as usize).sum() });
-        let pull = Pull { hops, map: &state.map, asked, front };
+        let pull = Pull { hops, map: &state.map, asked, front, nodes: &state.front };
         let near = blocks_near(hops, &state.front_blocks, &state.open);
         let found: Vec<Result<Vec<Found>, MapError>> = near.par_iter().map(|&block| pull.block(block)).collect();
         let found = found.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
@@ -90,6 +95,7 @@ pub fn search(hops: &PostHops<'_>, start: Post, asked: Search, tell: &mut dyn Fn
         }
         front = front.checked_add(1).ok_or(MapError::TooManyHops { most: i16::MAX })?;
         state.front_blocks.fill(false);
+        state.front.clear();
         for node in found {
             state.settle(hops, node, front);
         }
@@ -101,6 +107,8 @@ struct State {
     map: HopMap,
     /// Of each block, nodes that may still get hops.
     open: Vec<u32>,
+    /// The nodes of the front.
+    front: Front,
     /// Blocks with nodes of the front.
     front_blocks: Vec<bool>,
     /// Nodes that have their hops.
@@ -121,7 +129,7 @@ impl State {
             way: asked.way,
         };
         let open = (0..down * across).into_par_iter().map(usable).collect();
-        let mut state = Self { map, open, front_blocks: vec![false; down * across], reached: 0 };
+        let mut state = Self { map, open, front: Front::none(lattice), front_blocks: vec![false; down * across], reached: 0 };
         state.settle(hops, Found { node: lattice.index(start), offset: NONE, effort: 0.0 }, 0);
         state
     }
@@ -137,6 +145,7 @@ impl State {
         let post = lattice.node(node);
         let block = lattice.block_of(post);
         self.front_blocks[block] = true;
+        self.front.insert(post);
         // The start may lie where no hop begins or ends.
         self.open[block] -= u32::from(hops.usable(post)).min(self.open[block]);
         self.reached += 1;
@@ -168,37 +177,48 @@ struct Pull<'a> {
     map: &'a HopMap,
     asked: Search,
     front: i16,
+    nodes: &'a Front,
 }
 
 impl Pull<'_> {
     /// The nodes of a block that a hop joins to the front.
     fn block(&self, block: usize) -> Result<Vec<Found>, MapError> {
         let lattice = self.hops.lattice();
-        let offsets = &self.hops.offsets()[..self.hops.within_reach(block)];
+        let steps = &self.hops.node_steps()[..self.hops.within_reach(block)];
+        let disc = Disc::of(&self.hops.offsets()[..steps.len()]);
         let mut found = Vec::new();
         for node in lattice.nodes_of(block) {
-            let index = lattice.index(node);
-            if self.map.hops[index] == UNREACHED && self.hops.usable(node) {
-                found.extend(self.pulled(node, index, offsets)?);
+            let open = self.map.hops[lattice.index(node)] == UNREACHED && self.hops.usable(node);
+            if open && self.nodes.any_in(&disc, node) {
+                found.extend(self.pulled(node, steps, disc.is_inside(lattice, node))?);
             }
         }
         Ok(found)
     }
 
+    /// The node at the other end of an offset, where that is on the front. Where all offsets are `inside` the map, a step tells.
+    #[inline]
+    fn on_front(&self, node: Post, index: usize, (number, step): (usize, isize), inside: bool) -> Option<Post> {
+        let step = if self.asked.way == Way::Out { -step } else { step };
+        if inside && self.map.hops[index.wrapping_add_signed(step)] != self.front {
+            return None;
+        }
+        let other = match self.asked.way {
+            Way::Out => self.hops.takeoff(node, number),
+            Way::Back => self.hops.landing(node, number),
+        }?;
+        (self.map.hops[self.hops.lattice().index(other)] == self.front).then_some(other)
+    }
+
     /// The hop that joins a node to the front: the shortest, or the one of least effort in all.
-    fn pulled(&self, node: Post, index: usize, offsets: &[Offset]) -> Result<Option<Found>, MapError> {
+    fn pulled(&self, node: Post, steps: &[isize], inside: bool) -> Result<Option<Found>, MapError> {
+        let lattice = self.hops.lattice();
+        let index = lattice.index(node);
         let mut best: Option<Found> = None;
-        for (number, offset) in offsets.iter().enumerate() {
-            let (other, from) = match self.asked.way {
-                Way::Out => (self.hops.takeoff(node, number), None),
-                Way::Back => (self.hops.landing(node, number), Some(node)),
-            };
-            let Some(other) = other else { continue };
-            let other_index = self.hops.lattice().index(other);
-            if self.map.hops[other_index] != self.front {
-                continue;
-            }
-            let from = from.unwrap_or(other);
+        for (number, &step) in steps.iter().enumerate() {
+            let Some(other) = self.on_front(node, index, (number, step), inside) else { continue };
+            let offset = &self.hops.offsets()[number];
+            let from = if self.asked.way == Way::Out { other } else { node };
             #[expect(clippy::cast_possible_truncation, reason = "the table of offsets is far smaller")]
             let offset_number = number as u32;
             let Some((effort, choice)) = self.asked.effort else {
@@ -207,7 +227,7 @@ impl Pull<'_> {
                 }
                 continue;
             };
-            let so_far = self.map.effort[other_index];
+            let so_far = self.map.effort[lattice.index(other)];
             let least = best.map_or(f64::INFINITY, |best| best.effort);
             let gravity = self.hops.air().gravity_m_s2();
             let worth = |sight: LineOfSight, lofts: SlopeInterval| {
