@@ -2,6 +2,8 @@
 //!
 //! `cargo bench --bench hop`. Compare lines of one run with each other: absolute times depend on the machine and its load.
 
+#![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
+
 mod support;
 
 use chta::{

@@ -11,6 +11,7 @@ mod progress;
 use std::process::ExitCode;
 
 use args::Command;
+use chta::report::abandon_unfinished;
 pub(crate) use failure::Failure;
 
 /// What an analysis came to, as an exit status.
@@ -22,8 +23,12 @@ pub(crate) enum Answer {
     No,
 }
 
+/// What a program ended by Ctrl-C gives its shell: 128 and the signal's number.
+const INTERRUPTED: i32 = 130;
+
 /// Runs the command line.
 pub(crate) fn run() -> ExitCode {
+    leave_nothing_on_interrupt();
     let answer = match help::parsed().command {
         Command::Run(args) => commands::run::run(&args),
         Command::Slice(args) => commands::slice::run(&args),
@@ -47,4 +52,14 @@ pub(crate) fn run() -> ExitCode {
             ExitCode::from(2)
         }
     }
+}
+
+/// On Ctrl-C (and where another program asks to end, or the terminal goes) no half file stays behind.
+fn leave_nothing_on_interrupt() {
+    // Where the system refuses a handler, an interrupt ends the program as ever; a temporary file may then stay.
+    let _ = ctrlc::set_handler(|| {
+        abandon_unfinished();
+        #[expect(clippy::exit, reason = "the work goes on in other threads and is not waited for")]
+        std::process::exit(INTERRUPTED);
+    });
 }

@@ -37,6 +37,11 @@ impl<'a> Pending<'a> {
         Ok(Self { path, file: WholeFile::begin(path).map_err(|error| unwritable(path, &error))? })
     }
 
+    /// Where it will be.
+    pub(crate) const fn path(&self) -> &'a Path {
+        self.path
+    }
+
     /// A handle for a writer that streams.
     pub(crate) fn handle(&self) -> Result<File, Failure> {
         self.file.handle().map_err(|error| unwritable(self.path, &error))

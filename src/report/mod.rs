@@ -35,4 +35,4 @@ pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeReco
 pub use surest_record::{SurestRecord, surest_text};
 pub use text::{check_text, hop_text, path_text, require_text};
 pub use trade_answer::{TradeAnswer, TradeRow, TradeVariation};
-pub use whole_file::{WholeFile, write_whole};
+pub use whole_file::{WholeFile, abandon_unfinished, write_whole};

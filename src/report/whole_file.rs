@@ -1,10 +1,15 @@
 //! Files are written whole or not at all.
 
 use std::{
+    collections::BTreeSet,
     fs,
     io::{self, Write},
     path::{Path, PathBuf},
+    sync::{Mutex, MutexGuard, PoisonError},
 };
+
+/// The temporary files that have not taken their places.
+static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
 /// A file being written, which takes its place whole or not at all: it is written beside its place first, then renamed into it.
 ///
@@ -16,7 +21,34 @@ pub struct WholeFile(Place);
 #[derive(Debug)]
 enum Place {
     Direct(fs::File),
-    Beside { temporary: tempfile::NamedTempFile, target: PathBuf },
+    Beside { temporary: tempfile::NamedTempFile, target: PathBuf, listed: Listed },
+}
+
+/// A temporary file's entry among the unfinished, for as long as it lives.
+#[derive(Debug)]
+struct Listed(PathBuf);
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        unfinished().remove(&self.0);
+    }
+}
+
+fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    // A set of names is whole whoever panicked beside it.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes what is left of every file under way, for a program that ends without returning (on an interrupt, say).
+///
+/// No file can be begun or put in its place after that: whoever tries waits for the end of the program.
+pub fn abandon_unfinished() {
+    let names = unfinished();
+    for name in names.iter() {
+        // Already in its place, or gone: nothing is left of it either way.
+        let _ = fs::remove_file(name);
+    }
+    std::mem::forget(names);
 }
 
 impl WholeFile {
@@ -33,8 +65,12 @@ impl WholeFile {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
+        // Listed before anything else can happen to it: an interrupt waits here.
+        let mut names = unfinished();
         let temporary = builder().tempfile_in(folder).map_err(|error| without_temporary_name(&error))?;
-        Ok(Self(Place::Beside { temporary, target }))
+        names.insert(temporary.path().to_path_buf());
+        let listed = Listed(temporary.path().to_path_buf());
+        Ok(Self(Place::Beside { temporary, target, listed }))
     }
 
     /// Writes its bytes.
@@ -69,7 +105,13 @@ impl WholeFile {
     pub fn keep(self) -> io::Result<()> {
         match self.0 {
             Place::Direct(_) => Ok(()),
-            Place::Beside { temporary, target } => temporary.persist(target).map(|_| ()).map_err(|error| error.error),
+            Place::Beside { temporary, target, listed } => {
+                let names = unfinished();
+                let kept = temporary.persist(target).map(|_| ()).map_err(|error| error.error);
+                drop(names);
+                drop(listed);
+                kept
+            }
         }
     }
 }

@@ -64,10 +64,7 @@ struct Maps {
 /// Makes the map.
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let (ground, start, goals) = prepared(args)?;
-    for file in outputs(args) {
-        // Known before the long work; a file opened now would be left behind by Ctrl-C.
-        drop(Pending::begin(file)?);
-    }
+    let begun = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;
     let maps = mapped(args, &ground, start, &goals)?;
     let effort = args.effort.is_some().then_some(ground.scenario.search.effort);
     let mut answer = MapAnswer::new(&MapSummary {
@@ -86,7 +83,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     for warning in &warnings {
         output::warn(args.common.quiet, warning);
     }
-    write_files(args, &ground, &maps, &answer, (start, &goals))?;
+    write_files(begun, args, &ground, &maps, &answer, (start, &goals))?;
     let text = match args.answer.format {
         Format::Text => answer.text(),
         Format::Json => {
@@ -226,8 +223,15 @@ fn goal_record(ground: &Ground, maps: &Maps, goal: &Spot, index: usize) -> GoalR
     }
 }
 
-/// Writes what the options name, all or none.
-fn write_files(args: &MapArgs, ground: &Ground, maps: &Maps, answer: &MapAnswer, ends: (Spot, &[Spot])) -> Result<(), Failure> {
+/// Writes what the options name, all or none, into the files begun for it.
+fn write_files<'a>(
+    mut begun: Vec<Pending<'a>>,
+    args: &'a MapArgs,
+    ground: &Ground,
+    maps: &Maps,
+    answer: &MapAnswer,
+    ends: (Spot, &[Spot]),
+) -> Result<(), Failure> {
     let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
     let Ground { dem, lattice, scenario, projection, .. } = ground;
     let map = dem.georeference().every(lattice.stride);
@@ -271,8 +275,12 @@ fn write_files(args: &MapArgs, ground: &Ground, maps: &Maps, answer: &MapAnswer,
     if let Some(file) = &args.plot {
         files.push((file, picture(args, ground, maps, answer, ends, file)?));
     }
-    let pending = files.into_iter().map(|(file, bytes)| Pending::begin(file).map(|pending| (pending, bytes)));
-    output::finish(pending.collect::<Result<_, _>>()?)
+    let mut pending = Vec::new();
+    for (file, bytes) in files {
+        let place = begun.iter().position(|one| one.path() == file);
+        pending.push((place.map_or_else(|| Pending::begin(file), |place| Ok(begun.swap_remove(place)))?, bytes));
+    }
+    output::finish(pending)
 }
 
 /// What a raster of effort holds.
