@@ -59,7 +59,11 @@ impl<'a> Flyer<'a> {
             let (start, goal) = loaded.ends()?;
             let nodes =
                 NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::message(error.to_string()))?;
-            Ok(CostToGo::of(test, nodes, &loaded.scenario.search))
+            let options = &loaded.scenario.search;
+            Ok(match loaded.scenario.surety() {
+                Some(surety) => CostToGo::surely(test, nodes, options, &surety),
+                None => CostToGo::of(test, nodes, options),
+            })
         });
         Ok(Self { loaded, test, path, terrain, to_go: to_go.transpose()? })
     }
