@@ -450,3 +450,31 @@ fn a_slice_is_a_chain_that_runs_like_its_dem() {
     let chain = ["plan", "slice.csv", "--scenario", "map.toml", "--start", "0", "--goal", &goal, "-o", "-"];
     assert_eq!(desk.run(&chain), desk.run(&["plan", "map.toml", "-o", "-"]));
 }
+
+/// Over several hops no effort reads as the speed of one, and the document keeps the names of the efforts.
+#[test]
+fn efforts_are_said_to_be_sums_or_the_largest() {
+    let desk = Desk::new();
+    let said = [
+        ("takeoff-speed", "sum of take-off speeds", "m/s"),
+        ("energy", "sum of energies per unit mass", "J/kg"),
+        ("time", "flight time in all", "s"),
+        ("peak-speed", "largest take-off speed", "m/s"),
+    ];
+    for (effort, words, unit) in said {
+        let document = desk.json(&["plan", "scenario.toml", "--effort", effort]);
+        assert_eq!((&document["effort"]["name"], &document["effort"]["unit"]), (&effort.into(), &unit.into()));
+        assert_eq!(document["effort"].as_object().unwrap().len(), 3, "{}", document["effort"]);
+        let line = format!("\n{words}: {:.4} {unit}\n", document["effort"]["value"].as_f64().unwrap());
+        for args in [
+            &["plan", "scenario.toml"][..],
+            &["check", "scenario.toml"],
+            &["simulate", "scenario.toml"],
+            &["run", "scenario.toml", "-o", "out"],
+        ] {
+            let ran = desk.run(&[args, &["--set", &format!("search.effort={effort}")]].concat());
+            assert!(ran.stdout.contains(&line), "{args:?} does not say {line:?} in:\n{}", ran.stdout);
+            assert!(!ran.stdout.contains(&format!("{effort}:")), "{}", ran.stdout);
+        }
+    }
+}

@@ -121,6 +121,19 @@ fn every_hop_of_a_path_is_confirmed_by_slice_and_hop() {
 }
 
 #[test]
+fn the_effort_of_a_map_is_said_to_be_a_sum() {
+    let desk = walled();
+    for (effort, words) in [("takeoff-speed", "sum of take-off speeds"), ("peak-speed", "largest take-off speed")] {
+        let words = format!("\n{words}: at most ");
+        let ran = desk.run(&[&MAP[..], &["--effort", effort]].concat());
+        assert!(ran.stdout.contains(&words) && !ran.stdout.contains(effort), "{}", ran.stdout);
+    }
+    let document = desk.json(&[&MAP[..], &["--effort", "time"]].concat());
+    assert_eq!((&document["effort"]["kind"], &document["effort"]["unit"]), (&"time".into(), &"s".into()));
+    assert_eq!(document["effort"].as_object().unwrap().len(), 3);
+}
+
+#[test]
 fn the_same_bytes_for_any_number_of_threads() {
     let desk = walled();
     let with = |threads: &str| {

@@ -76,6 +76,31 @@ fn without_errors_every_trial_arrives() {
     }
 }
 
+/// A rate of 1 tells nothing where nothing goes wrong: it is said on standard error and in the document, once.
+#[test]
+fn trials_without_errors_are_told_to_tell_nothing() {
+    let desk = Desk::with_dem();
+    desk.write("zeros.toml", desk.read("scenario.toml") + "\n[uncertainty]\ntakeoff_angle_sigma_deg = 0\ntrials = 20\n");
+    let told = "no errors are given, so that every trial flies the plan exactly";
+    for scenario in ["scenario.toml", "zeros.toml"] {
+        let words = ["simulate", scenario, "--trials", "20"];
+        let ran = desk.run(&words);
+        assert_eq!((ran.status, ran.stderr.matches(told).count()), (0, 1), "{}", ran.stderr);
+        assert!(ran.stderr.contains("give [uncertainty]"), "{}", ran.stderr);
+        let warnings = desk.json(&words)["warnings"].clone();
+        assert_eq!(warnings.as_array().unwrap().len(), 1, "{warnings}");
+        assert!(warnings[0].as_str().unwrap().starts_with(told), "{warnings}");
+    }
+    let ran = desk.run(&["run", "zeros.toml", "-o", "out"]);
+    assert_eq!((ran.status, ran.stderr.matches(told).count()), (0, 1), "{}", ran.stderr);
+    let risk = desk.run(&["simulate", "zeros.toml", "--experiment", "risk-trade"]);
+    assert_eq!((risk.status, risk.stderr.matches(told).count()), (0, 1), "{}", risk.stderr);
+    for set in ["uncertainty.takeoff_angle_sigma_deg=0.1", "uncertainty.friction_sigma=0.01"] {
+        let ran = desk.run(&["simulate", "scenario.toml", "--trials", "20", "--set", set]);
+        assert!(!ran.stderr.contains(told) && ran.stderr.contains("goal_tolerance_m is 0 or absent"), "{set}: {}", ran.stderr);
+    }
+}
+
 #[test]
 fn the_same_seed_gives_the_same_bytes_for_any_number_of_threads() {
     let all = |threads: &str| {

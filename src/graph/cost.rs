@@ -41,6 +41,16 @@ impl Effort {
         }
     }
 
+    /// What the effort of a path is, in words: no speed of any one hop is meant where it is a sum over the hops.
+    pub const fn total(self) -> &'static str {
+        match self {
+            Self::TakeoffSpeed => "sum of take-off speeds",
+            Self::Energy => "sum of energies per unit mass",
+            Self::Time => "flight time in all",
+            Self::PeakSpeed => "largest take-off speed",
+        }
+    }
+
     /// The cost of `hops` flights of the same arc.
     ///
     /// # Panics

@@ -10,7 +10,7 @@ use super::{
 };
 use crate::{
     ballistics::HopTest,
-    graph::{Answer, EndpointRefusal, Frontier, Outcome, PointSpacing, RefusalCounts, proof::Bounds},
+    graph::{Answer, Effort, EndpointRefusal, Frontier, Outcome, PointSpacing, RefusalCounts, proof::Bounds},
 };
 
 /// What `chta check` answers for one pair.
@@ -55,6 +55,16 @@ pub struct EffortRecord {
     pub value: f64,
     /// In which unit.
     pub unit: &'static str,
+    /// What it is, for reading.
+    #[serde(skip)]
+    pub total: &'static str,
+}
+
+impl EffortRecord {
+    /// So much of an effort.
+    pub const fn new(effort: Effort, value: f64) -> Self {
+        Self { name: effort.name(), value, unit: effort.unit(), total: effort.total() }
+    }
 }
 
 /// A start or goal that refuses whatever the hop.
@@ -104,14 +114,14 @@ pub struct MissRecord {
 
 impl CheckAnswer {
     /// From the search's answer between two places.
-    pub fn new(test: &HopTest<'_>, start_x_m: f64, goal_x_m: f64, answer: &Answer, effort: crate::graph::Effort) -> Self {
+    pub fn new(test: &HopTest<'_>, start_x_m: f64, goal_x_m: f64, answer: &Answer, effort: Effort) -> Self {
         let (endpoint_refusals, frontier) = match &answer.outcome {
             Outcome::Path { .. } => (Vec::new(), None),
             Outcome::EndpointsRefuse(refusals) => (refusals.iter().map(EndpointRecord::new).collect(), None),
             Outcome::NoPath(frontier) => (Vec::new(), Some(FrontierRecord::new(test, frontier))),
         };
         let effort = match &answer.outcome {
-            Outcome::Path { cost, .. } => Some(EffortRecord { name: effort.name(), value: cost.effort(), unit: effort.unit() }),
+            Outcome::Path { cost, .. } => Some(EffortRecord::new(effort, cost.effort())),
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
         Self {

@@ -6,6 +6,7 @@ use serde::Serialize;
 
 use super::{HopRecord, TotalsRecord};
 use crate::{
+    graph::Effort,
     quantity::MapPoint,
     reach::map::{HopMap, Mobility, NO_GROUND, NodeLattice, Post, SECTORS},
     terrain::Dem,
@@ -56,6 +57,9 @@ pub struct MapEffortRecord {
     pub kind: &'static str,
     /// Its unit.
     pub unit: &'static str,
+    /// What it is, for reading.
+    #[serde(skip)]
+    pub total: &'static str,
     /// The greatest that a reachable post takes.
     pub greatest: f64,
 }
@@ -123,8 +127,8 @@ pub struct MapSummary<'a> {
     pub back: Option<&'a HopMap>,
     /// Single hops.
     pub mobility: Option<&'a Mobility>,
-    /// Name and unit of the effort.
-    pub effort: Option<(&'static str, &'static str)>,
+    /// The effort that the map was made for.
+    pub effort: Option<Effort>,
 }
 
 impl MapAnswer {
@@ -163,9 +167,10 @@ impl MapAnswer {
             reachable_posts_at_no_data: count(&|post| neighbours(lattice, post).any(no_ground)),
             farthest_hops: out.hops.iter().copied().fold(0, i16::max),
             hops_histogram,
-            effort: summary.effort.map(|(kind, unit)| MapEffortRecord {
-                kind,
-                unit,
+            effort: summary.effort.map(|effort| MapEffortRecord {
+                kind: effort.name(),
+                unit: effort.unit(),
+                total: effort.total(),
                 greatest: out.effort.iter().copied().fold(0.0, f64::max),
             }),
             back: summary.back.map(|back| ReturnRecord {
@@ -200,8 +205,8 @@ impl MapAnswer {
             "start: {:.3} m from the place asked for; {} reachable posts on the map's border, {} beside no-data",
             self.start_offset_m, self.reachable_posts_at_border, self.reachable_posts_at_no_data
         );
-        if let Some(MapEffortRecord { kind, unit, greatest }) = &self.effort {
-            let _ = writeln!(text, "effort ({kind}): at most {greatest:.4} {unit}");
+        if let Some(MapEffortRecord { total, unit, greatest, .. }) = &self.effort {
+            let _ = writeln!(text, "{total}: at most {greatest:.4} {unit}");
         }
         if let Some(back) = &self.back {
             let _ = writeln!(

@@ -174,7 +174,7 @@ pub fn check_text(answer: &CheckAnswer) -> String {
         place(answer.goal_x_m)
     ));
     if let Some(effort) = answer.effort {
-        sheet.line(format_args!("{}: {:.6} {}", effort.name, effort.value, effort.unit));
+        sheet.line(format_args!("{}: {:.4} {}", effort.total, effort.value, effort.unit));
     }
     if let Some(proof) = &answer.proof {
         proof_lines(&mut sheet, proof);

@@ -53,13 +53,22 @@ impl UncertaintyKeys {
         }
     }
 
-    /// What is doubtful about them: a tolerance of nothing, which no trial with an error meets.
+    /// What is doubtful about them: no errors, so that the trials tell nothing, or a tolerance of nothing, which no trial with an error
+    /// meets.
     pub fn doubt(&self) -> Option<&'static str> {
-        let wrong = self.goal_tolerance_m == 0.0 && self.errors != Uncertainty::NONE;
-        wrong.then_some(
-            "uncertainty.goal_tolerance_m is 0 or absent, so that only a trial without any error reaches the goal: say how near is near \
-             enough",
-        )
+        if self.errors == Uncertainty::NONE {
+            Some(
+                "no errors are given, so that every trial flies the plan exactly and the rate tells nothing: give [uncertainty] a standard \
+                 deviation above 0, such as takeoff_speed_sigma_fraction = 0.01 and takeoff_angle_sigma_deg = 0.3, with goal_tolerance_m",
+            )
+        } else if self.goal_tolerance_m == 0.0 {
+            Some(
+                "uncertainty.goal_tolerance_m is 0 or absent, so that only a trial without any error reaches the goal: say how near is \
+                 near enough",
+            )
+        } else {
+            None
+        }
     }
 }
 

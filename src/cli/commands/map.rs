@@ -74,7 +74,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
         out: &maps.out,
         back: maps.back.as_ref(),
         mobility: maps.mobility.as_ref(),
-        effort: effort.map(|effort| (effort.name(), effort.unit())),
+        effort,
     });
     answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&ground, &maps, goal, index)).collect();
     let mut warnings = ground.warnings.clone();
@@ -285,7 +285,7 @@ fn write_files<'a>(
 
 /// What a raster of effort holds.
 fn effort_name(effort: Effort) -> String {
-    format!("least {} among fewest hops, {}", effort.name(), effort.unit())
+    format!("least {} among fewest hops, {}", effort.total(), effort.unit())
 }
 
 /// The map as a picture, in the format of the file's name.

@@ -47,16 +47,20 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
             let landings = worst_drift(test.chain(), &path.hops, g, &numbers);
             let answer = WorstDriftAnswer::new(&numbers, &landings);
             let picture = draw_landing_errors(&answer.figure(&title));
-            (written(args, loaded, answer.text(), answer)?, Some(picture))
+            (written(args, loaded, None, answer.text(), answer)?, Some(picture))
         }
         Experiment::ConeWidth => {
             let answer = cone_widths(args, loaded, &path.hops, seed)?;
             let picture = draw_cone_width(&answer.figure(&title));
-            (written(args, loaded, answer.text(), answer)?, Some(picture))
+            (written(args, loaded, None, answer.text(), answer)?, Some(picture))
         }
         Experiment::RiskTrade => {
             let answer = risk_trade(args, loaded, &planned)?;
-            (written(args, loaded, answer.text(), answer)?, None)
+            let doubt = loaded.scenario.uncertainty.and_then(|keys| keys.doubt()).map(str::to_owned);
+            if let Some(doubt) = &doubt {
+                output::warn(args.common.quiet, doubt);
+            }
+            (written(args, loaded, doubt, answer.text(), answer)?, None)
         }
     };
     if let (Some(file), Some(path), Some(picture)) = (plot, args.plot.as_deref(), picture) {
@@ -95,7 +99,13 @@ fn refuse_idle(args: &SimulateArgs, experiment: Experiment) -> Result<(), Failur
     }
 }
 
-fn written<T: Serialize>(args: &SimulateArgs, loaded: &Loaded, text: String, answer: T) -> Result<String, Failure> {
+fn written<T: Serialize>(
+    args: &SimulateArgs,
+    loaded: &Loaded,
+    doubt: Option<String>,
+    text: String,
+    answer: T,
+) -> Result<String, Failure> {
     match args.answer.format {
         Format::Text => Ok(text),
         Format::Json => {
@@ -103,7 +113,7 @@ fn written<T: Serialize>(args: &SimulateArgs, loaded: &Loaded, text: String, ans
                 "simulate-experiment",
                 loaded.document.clone(),
                 loaded.inputs.clone(),
-                loaded.warnings_with([]),
+                loaded.warnings_with(doubt),
                 answer,
             );
             Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
