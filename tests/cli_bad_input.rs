@@ -373,3 +373,56 @@ fn one_fault_of_a_scenario_tells_one_problem() {
         assert_eq!(told.matches("error: ").count(), 1, "{wrong}:\n{told}");
     }
 }
+
+#[test]
+fn a_misspelt_key_is_told_the_nearest_or_those_of_its_table() {
+    let desk = Desk::new();
+    let nearest = [
+        ("surface.friktion", "surface.friction_coefficient"),
+        ("surface.friction", "surface.friction_coefficient"),
+        ("frogs.friction", "surface.friction_coefficient"),
+        ("surface.friction_rastr", "surface.friction_raster"),
+        ("hopper.friction_coefficient", "surface.friction_coefficient"),
+        ("hopper.takeof_speed", "hopper.takeoff_speed_max_m_s"),
+        ("search.points", "search.points_per_segment"),
+    ];
+    for (key, near) in nearest {
+        let said = format!("unknown key {key}; the nearest known key is {near}\n");
+        desk.refused(&["check", "scenario.toml", "--set", &format!("{key}=1")], &[&said]);
+    }
+    for (key, said) in [
+        ("hopper.speed", "the keys of [hopper] are takeoff_speed_max_m_s, landing_speed_max_m_s, clearance_m,"),
+        ("terrain.x", "the keys of [terrain] are dem, mesh,"),
+        ("frogs.legs", "the tables are body, hopper, surface,"),
+    ] {
+        desk.refused(&["check", "scenario.toml", "--set", &format!("{key}=1")], &["unknown key", said]);
+        assert!(!desk.run(&["check", "scenario.toml", "--set", &format!("{key}=1")]).stderr.contains("nearest"), "{key}");
+    }
+    desk.refused(
+        &["trade", "scenario.toml", "--vary", "surface.friktion=0.1:1:3"],
+        &["the nearest known key is surface.friction_coefficient"],
+    );
+}
+
+/// No rows of zeros and no rounding residue in sentences; documents keep all digits.
+#[test]
+fn numbers_in_sentences_have_the_digits_that_help() {
+    let desk = Desk::with_dem();
+    desk.refused(&["check", "scenario.toml", "--set", "hopper.clearance_m=1e300"], &["hopper.clearance_m is 1e300, expected"]);
+    desk.refused(&["check", "scenario.toml", "--set", "hopper.mass_kg=1e-300"], &["hopper.mass_kg is 1e-300, expected"]);
+    let made =
+        desk.run(&["synth", "--rows", "9", "--cols", "9", "--spacing-m", "1.1", "--south-west-m", "0.1,0.2", "-o", "uneven.asc"]);
+    assert_eq!(made.status, 0, "{}", made.stderr);
+    let off = ["slice", "uneven.asc", "--from", "50.30000000000001,1", "--to", "2,2"];
+    desk.refused(&off, &["(50.3 m, 1 m)", "x from 0.1 to 8.9 m and y from 0.2 to 9 m"]);
+    let words = ["require", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s", "--from", "1", "--to", "12"];
+    let text = desk.run(&words).stdout;
+    let line = text.lines().find(|line| line.starts_with("reachable at ")).unwrap();
+    let value = line.split_whitespace().nth(2).unwrap();
+    assert!(line.contains(&format!("{value} m/s, in ")) && value.len() <= 12, "{line}");
+    let exact = desk.json(&words)["reachable_at"].as_f64().unwrap();
+    assert!((exact - value.parse::<f64>().unwrap()).abs() <= 1e-9 * exact, "{exact} {line}");
+    assert!(text.contains("values tried, from 1 to 12 m/s"), "{text}");
+    let bodies = desk.run(&["bodies"]).stdout;
+    assert!(bodies.contains(" 1.624 ") && bodies.contains(" 3.711 ") && !bodies.contains("e0"), "{bodies}");
+}

@@ -177,6 +177,41 @@ fn exit_status_is_1_where_a_goal_is_out_of_reach_and_2_with_a_sentence_for_bad_i
     desk.refused(&[&MAP[..], &["--effort", "cheer"]].concat(), &["--effort", "takeoff-speed"]);
 }
 
+/// A DEM has no columns: what is missing is named by its keys, all at once, with the options that give it.
+#[test]
+fn what_a_scenario_lacks_for_a_map_is_named_by_its_keys() {
+    let desk = walled();
+    let bare = ["walled.asc", "--body", "moon"];
+    let speeds = "no hopper.takeoff_speed_max_m_s, no hopper.landing_speed_max_m_s";
+    let options =
+        "--set hopper.takeoff_speed_max_m_s=8 --set hopper.landing_speed_max_m_s=8 --set surface.friction_coefficient=0.6";
+    for command in [&["map", "--start", "102,205"][..], &["fan", "--from", "102,205", "--length", "5"]] {
+        let words = [command, &bare[..]].concat();
+        desk.refused(&words, &[speeds, "surface.friction_coefficient (or surface.takeoff_from_slope_deg", options]);
+        assert!(!desk.run(&words).stderr.contains("segment"), "{words:?}");
+        // What the sentence names mends it.
+        let sets: Vec<&str> = options.split(' ').collect();
+        assert_eq!(desk.run(&[&words[..], &sets].concat()).status, 0);
+    }
+    desk.write("grip.toml", "[body]\nname = \"moon\"\n[surface]\nfriction_coefficient = 0.6\n");
+    desk.refused(
+        &["map", "walled.asc", "--start", "102,205", "--scenario", "grip.toml"],
+        &["grip.toml: found ", speeds, "--set hopper"],
+    );
+    let given = desk.run(&["map", "walled.asc", "--start", "102,205", "--scenario", "grip.toml"]).stderr;
+    assert!(!given.contains("surface"), "{given}");
+    // A scenario in place of the DEM, whatever it says.
+    desk.refused(&["map", "grip.toml", "--start", "1,1"], &["grip.toml: found a scenario", "--scenario grip.toml"]);
+    desk.refused(&["fan", "grip.toml", "--from", "1,1", "--length", "3"], &["grip.toml: found a scenario"]);
+}
+
+#[test]
+fn one_hop_is_no_hops() {
+    let desk = walled();
+    let near = desk.run(&[&MAP[..], &["--goal", "103,205", "--return"]].concat());
+    assert!(near.stdout.contains("asked for: 1 hop, 1 hop back\n"), "{}", near.stdout);
+}
+
 #[test]
 fn a_stride_lands_on_fewer_posts_over_the_same_terrain() {
     let desk = walled();

@@ -146,6 +146,41 @@ fn a_map_that_is_not_true_to_scale_is_refused_with_a_line_that_mends_it() {
     assert!((rows(&chain)[0][1] - rows(&stretched_chain)[0][1]).abs() < 1.0);
 }
 
+/// A map is mended about its start, as a map: the command that the sentence names gives hops over true distances.
+#[test]
+fn a_hop_map_that_is_not_true_to_scale_is_mended_about_its_start() {
+    let folder = tempfile::tempdir().unwrap();
+    let projection = stretched(folder.path());
+    std::fs::write(folder.path().join("hopper.toml"), HOPPER).unwrap();
+    let at = projection.map_point(LonLat { lon_deg: 30.0, lat_deg: 40.0 }).unwrap();
+    let start = format!("{},{}", at.x, at.y);
+    let map = ["map", "in.tif", "--start", &start, "--scenario", "hopper.toml"];
+    let (status, _, told) = chta(folder.path(), &map);
+    assert_eq!(status, 2);
+    assert!(
+        told.contains("scale along the line from the start to a corner of the map is 1.") && !told.contains("transect"),
+        "{told}"
+    );
+    let (_, mend) = told.split_once("mend it with: ").unwrap();
+    let (warp, again) = mend.split_once(", then map ").unwrap();
+    let (again, _) = again.split_once(" (a map about the start").unwrap();
+    let (status, accepted, warned) = chta(folder.path(), &[&map[..], &["--accept-map-scale"]].concat());
+    assert!(status == 0 && warned.matches("which was accepted").count() == 1, "{warned}");
+    assert!(accepted.contains("of 6561 posts"), "{accepted}");
+    if !has_gdal() {
+        return;
+    }
+    shell(folder.path(), warp);
+    let arguments: Vec<&str> = ["map"].into_iter().chain(again.split_whitespace()).chain(["--scenario", "hopper.toml"]).collect();
+    let (status, answer, told) = chta(folder.path(), &arguments);
+    assert!(status == 0 && told.is_empty(), "{told}");
+    assert!(answer.starts_with(|first: char| first.is_ascii_digit()), "{answer}");
+    // Square posts as fine as the finer of the old ones on the ground: 20 m x cos 40 eastward.
+    let dem = read_dem(&folder.path().join("out.tif")).unwrap();
+    assert!((dem.georeference().dx_m() - 20.0 * 40.0_f64.to_radians().cos()).abs() < 0.01);
+    assert!((dem.georeference().dx_m() * (dem.cols() as f64 - 1.0) - 1600.0 * 40.0_f64.to_radians().cos()).abs() < 40.0);
+}
+
 #[test]
 fn an_accepted_scale_is_recorded_in_the_result_which_repeats_it() {
     let folder = tempfile::tempdir().unwrap();

@@ -273,8 +273,15 @@ pub(crate) struct Bare {
     pub(crate) document: serde_json::Value,
 }
 
-/// Loads the scenario of the options, without its terrain.
-pub(crate) fn load_bare(common: &CommonArgs, search: &SearchArgs) -> Result<Bare, Failure> {
+/// Loads the scenario of the options for hops over this DEM, without its own terrain.
+pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs) -> Result<Bare, Failure> {
+    if is_scenario(dem) {
+        let name = dem.display();
+        return Err(Failure::message(format!(
+            "{name}: found a scenario in place of the DEM, expected a GeoTIFF or ESRI ASCII grid: give the DEM first, and the scenario \
+             with --scenario {name}"
+        )));
+    }
     let mut source = match &common.scenario {
         Some(path) => read_source(path)?,
         None => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
@@ -282,6 +289,10 @@ pub(crate) fn load_bare(common: &CommonArgs, search: &SearchArgs) -> Result<Bare
     apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
     forget_terrain(&mut source.entries);
     let scenario = validated(source.entries, &source.name, &source.text)?;
+    if let Some(lacking) = scenario.lacks_on_a_dem() {
+        let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
+        return Err(Failure::message(name + &lacking));
+    }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
     Ok(Bare { scenario, base: source.base, document })
 }

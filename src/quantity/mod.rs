@@ -8,6 +8,7 @@ mod interval;
 mod points;
 mod quadratic;
 mod slope;
+mod written;
 
 pub use angle::{Angle, AngleInterval};
 pub use ids::{NodeId, SegmentId, VertexId};
@@ -15,3 +16,4 @@ pub use interval::{Interval, Outwards, Rounding};
 pub use points::{ChainPoint, MapPoint};
 pub use quadratic::{MonicQuadratic, Roots};
 pub use slope::SlopeInterval;
+pub use written::{unit_of, written};

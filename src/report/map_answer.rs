@@ -191,19 +191,22 @@ impl MapAnswer {
     /// For reading.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "{} of {} posts reachable from ({:.3}, {:.3}) m, {:.6} km2, in at most {} hops\n",
+            "{} of {} posts reachable from ({:.3}, {:.3}) m, {:.6} km2, in at most {}\n",
             self.reachable_posts,
             self.posts,
             self.start_m[0],
             self.start_m[1],
             self.reachable_area_m2 * 1.0e-6,
-            self.farthest_hops
+            hops_words(self.farthest_hops)
         );
         // Writing to a String cannot fail.
         let _ = writeln!(
             text,
-            "start: {:.3} m from the place asked for; {} reachable posts on the map's border, {} beside no-data",
-            self.start_offset_m, self.reachable_posts_at_border, self.reachable_posts_at_no_data
+            "start: {:.3} m from the place asked for; {} reachable post{} on the map's border, {} beside no-data",
+            self.start_offset_m,
+            self.reachable_posts_at_border,
+            if self.reachable_posts_at_border == 1 { "" } else { "s" },
+            self.reachable_posts_at_no_data
         );
         if let Some(MapEffortRecord { total, unit, greatest, .. }) = &self.effort {
             let _ = writeln!(text, "{total}: at most {greatest:.4} {unit}");
@@ -211,8 +214,10 @@ impl MapAnswer {
         if let Some(back) = &self.back {
             let _ = writeln!(
                 text,
-                "return: the start can be reached again from {} posts, {} of them reachable, in at most {} hops",
-                back.return_posts, back.round_trip_posts, back.farthest_hops
+                "return: the start can be reached again from {} posts, {} of them reachable, in at most {}",
+                back.return_posts,
+                back.round_trip_posts,
+                hops_words(back.farthest_hops)
             );
         }
         if let Some(mobility) = &self.mobility {
@@ -229,9 +234,9 @@ impl MapAnswer {
             );
         }
         for goal in &self.goals {
-            let hops = goal.hops.map_or("not reachable".to_owned(), |hops| format!("{hops} hops"));
+            let hops = goal.hops.map_or("not reachable".to_owned(), hops_words);
             let back = match goal.return_hops {
-                Some(Some(hops)) => format!(", {hops} hops back"),
+                Some(Some(hops)) => format!(", {} back", hops_words(hops)),
                 Some(None) => ", no way back".to_owned(),
                 None => String::new(),
             };
@@ -249,6 +254,11 @@ impl MapAnswer {
         }
         text
     }
+}
+
+/// A count of hops.
+fn hops_words(hops: i16) -> String {
+    format!("{hops} hop{}", if hops == 1 { "" } else { "s" })
 }
 
 impl MobilityRecord {

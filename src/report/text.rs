@@ -3,6 +3,7 @@
 use std::fmt::Write;
 
 use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, ProofRecord, RequireAnswer, TotalsRecord};
+use crate::quantity::{unit_of, written};
 
 /// A sheet of text; writing to it does not fail.
 #[derive(Default)]
@@ -103,17 +104,20 @@ fn binding_line(binding: &BindingRecord) -> String {
 /// What `chta require` prints.
 pub fn require_text(answer: &RequireAnswer) -> String {
     let mut sheet = Sheet::default();
-    let RequireAnswer { vary, from, to, .. } = answer;
+    let RequireAnswer { vary, .. } = answer;
+    let unit = unit_of(vary);
+    let with_unit = |value: f64| format!("{} {unit}", written(value)).trim_end().to_owned();
+    let (from, to) = (written(answer.from), with_unit(answer.to));
     sheet.line(format_args!("{vary}: from x = {} m to x = {} m", place(answer.start_x_m), place(answer.goal_x_m)));
     match answer.reachable_at {
         Some(value) => {
             let hops = answer.hops.unwrap_or(0);
-            sheet.line(format_args!("reachable at {value}, in {hops} hop{}", plural(hops)));
+            sheet.line(format_args!("reachable at {}, in {hops} hop{}", with_unit(value), plural(hops)));
         }
         None => sheet.line(format_args!("no path found at any value from {from} to {to}")),
     }
     match answer.unreachable_at {
-        Some(value) => sheet.line(format_args!("proved unreachable at {value}")),
+        Some(value) => sheet.line(format_args!("proved unreachable at {}", with_unit(value))),
         None => sheet.line(format_args!("proved unreachable at no value from {from} to {to}")),
     }
     if let Some(gap) = &answer.gap {

@@ -74,7 +74,7 @@ impl Kind {
     /// What is expected, for messages.
     pub fn expected(&self) -> String {
         match self {
-            Self::Number { min, max } => format!("a number from {} to {}", written(*min), written(*max)),
+            Self::Number { min, max } => format!("a number from {} to {}", bound(*min), bound(*max)),
             Self::AngleOrUnlimited => "an angle from 0 to 90 degrees, or inf".to_owned(),
             Self::AngleRange => "two angles in degrees, [min, max], from -360 to 360, min not above max".to_owned(),
             Self::MapPoint => "two finite numbers in metres, [x, y]".to_owned(),
@@ -91,8 +91,8 @@ impl Kind {
     }
 }
 
-/// A number as people write it: with an exponent only where it has many zeros.
-fn written(number: f64) -> String {
+/// A bound as people write it: with an exponent only where it has many zeros.
+fn bound(number: f64) -> String {
     if number == 0.0 || (1e-3..1e4).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
 }
 

@@ -213,7 +213,7 @@ impl Entries {
         if fits(&value, key.kind) {
             self.given.insert((table.to_owned(), name.to_owned()), Entry { value, place });
         } else {
-            self.misfit(key, &value.to_string(), place);
+            self.misfit(key, &value_text(&value), place);
         }
     }
 
@@ -235,27 +235,57 @@ impl Entries {
             (table, "", None) => {
                 (format!("table [{table}]"), format!("the tables are {}", tables().collect::<Vec<_>>().join(", ")))
             }
-            ("", name, _) => {
-                (format!("key {}", shortened(name)), format!("the nearest known key is {}", nearest_key("", name, None)))
-            }
-            (table, name, near) => {
-                let given = format!("key {}", shortened(&format!("{table}.{name}")));
-                (given, format!("the nearest known key is {}", nearest_key(table, name, near)))
-            }
+            ("", name, _) => (format!("key {}", shortened(name)), nearest_key("", name)),
+            (table, name, _) => (format!("key {}", shortened(&format!("{table}.{name}"))), nearest_key(table, name)),
         };
         self.problem(place, format!("unknown {given}"), help);
     }
 }
 
-/// The known key nearest to an unknown one: a right name in any table first, then the nearest name, in the table that was meant where
-/// that is plain.
-pub(super) fn nearest_key(table: &str, name: &str, meant: Option<&str>) -> String {
-    let distance = |key: &&Key| {
-        let own = strsim::damerau_levenshtein(name, key.name);
-        let elsewhere = own > 0 && meant.is_some_and(|meant| meant != key.table && own > 2);
-        (elsewhere, own * 10 + usize::from(key.table != table) * strsim::damerau_levenshtein(table, key.table).min(5))
+/// What to say of the known key nearest to an unknown one: its name, or, where none is near, those of the table that was meant.
+///
+/// Near is a name that differs from a known one, or from its beginning before an underscore, by a third of its letters at most (by one in
+/// short names). A right name counts in any table; otherwise the table that was given, or nearly given, goes first.
+pub(super) fn nearest_key(table: &str, name: &str) -> String {
+    let meant = tables().find(|known| strsim::damerau_levenshtein(table, known) <= 2);
+    let near = |key: &&Key| -> Option<(usize, bool)> {
+        let letters = name.chars().count();
+        let apart = |known: &str| {
+            let distance = strsim::damerau_levenshtein(name, known);
+            (distance <= (letters.min(known.chars().count()) / 3).max(1)).then_some(distance)
+        };
+        // The whole name, or what stands before one of its underscores: `friction` is short for `friction_coefficient`, with a mark
+        // against it, so that a whole name as near goes first.
+        let beginnings =
+            key.name.match_indices('_').filter_map(|(end, _)| apart(&key.name[..end]).map(|distance| 2 * distance + 1));
+        let distance = apart(key.name).map(|distance| 2 * distance).into_iter().chain(beginnings).min()?;
+        let own = meant == Some(key.table);
+        // Elsewhere only what is as good as right.
+        (own || meant.is_none() || distance <= 1).then_some((distance, !own))
     };
-    CATALOGUE.iter().min_by_key(distance).map(Key::path).unwrap_or_default()
+    let best = CATALOGUE.iter().filter_map(|key| Some((near(&key)?, key))).min_by_key(|((distance, elsewhere), _)| {
+        // A wrong table is as bad as two wrong letters.
+        (distance + 4 * usize::from(*elsewhere), *elsewhere)
+    });
+    match (best, meant) {
+        (Some((_, key)), _) => format!("the nearest known key is {}", key.path()),
+        (None, Some(table)) => {
+            let names: Vec<_> = CATALOGUE.iter().filter(|key| key.table == table).map(|key| key.name).collect();
+            format!("the keys of [{table}] are {}", names.join(", "))
+        }
+        (None, None) => format!("the tables are {}", tables().collect::<Vec<_>>().join(", ")),
+    }
+}
+
+/// A value as the user may have typed it: numbers without rows of zeros.
+fn value_text(value: &toml::Value) -> String {
+    match value {
+        toml::Value::Float(number) if number.is_finite() && *number != 0.0 && !(1e-4..1e12).contains(&number.abs()) => {
+            format!("{number:e}")
+        }
+        toml::Value::Array(items) => format!("[{}]", items.iter().map(value_text).collect::<Vec<_>>().join(", ")),
+        other => other.to_string(),
+    }
 }
 
 /// A piece of the user's text that is short enough for one sentence.

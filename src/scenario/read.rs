@@ -152,6 +152,30 @@ impl Scenario {
     }
 }
 
+impl Scenario {
+    /// What is missing for hops over a DEM, which has no chain whose columns could say it, and how to give it; `None` where nothing is.
+    pub fn lacks_on_a_dem(&self) -> Option<String> {
+        let no_grip = self.surface.grip.is_none() && self.friction_raster.is_none();
+        let from_slope = " (or surface.takeoff_from_slope_deg and surface.landing_from_slope_deg)";
+        let keys = [
+            (self.hopper.takeoff_speed_max_m_s.is_infinite(), "hopper.takeoff_speed_max_m_s", "8", ""),
+            (self.hopper.landing_speed_max_m_s.is_infinite(), "hopper.landing_speed_max_m_s", "8", ""),
+            (no_grip, "surface.friction_coefficient", "0.6", from_slope),
+        ];
+        let missing = || keys.iter().filter(|(missing, ..)| *missing);
+        let names: Vec<_> = missing().map(|(_, key, _, instead)| format!("{key}{instead}")).collect();
+        let sets: Vec<_> = missing().map(|(_, key, value, _)| format!("--set {key}={value}")).collect();
+        (!names.is_empty()).then(|| {
+            format!(
+                "found no {}, expected in the scenario, since a DEM has no columns that say it: add it to the file of --scenario, or give, \
+                 for example, {}",
+                names.join(", no "),
+                sets.join(" ")
+            )
+        })
+    }
+}
+
 /// Gravity and radius: from a known body, from numbers, or from both.
 fn body(entries: &mut Entries) -> Option<BodyChoice> {
     let gravity = entries.number("body", "gravity_m_s2");

@@ -40,11 +40,11 @@ pub enum TradeError {
         found: String,
     },
     /// A key that no scenario has.
-    #[error("{path}: unknown key; the nearest known key is {nearest}")]
+    #[error("{path}: unknown key; {nearest}")]
     UnknownKey {
         /// The key, as typed.
         path: String,
-        /// The one that may be meant.
+        /// Which one may be meant, in words.
         nearest: String,
     },
     /// A key that takes no single number.
@@ -148,7 +148,7 @@ impl Variation {
         let path = path.trim().to_owned();
         let (table, name) = path.split_once('.').unwrap_or(("", &path));
         let Some(key) = Key::find(table, name) else {
-            return Err(TradeError::UnknownKey { nearest: nearest_key(table, name, Some(table)), path });
+            return Err(TradeError::UnknownKey { nearest: nearest_key(table, name), path });
         };
         if !matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto) {
             return Err(TradeError::NotANumber { path, expected: key.kind.expected() });

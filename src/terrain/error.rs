@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use super::{LonLat, MapBounds, NoProjection};
-use crate::quantity::MapPoint;
+use crate::quantity::{MapPoint, written};
 
 /// Why a DEM could not be read, written, sliced or made up.
 #[derive(Debug, thiserror::Error)]
@@ -74,13 +74,13 @@ pub enum TerrainError {
     #[error("{0}")]
     InvalidDem(String),
     /// A transect without a direction.
-    #[error("the transect starts and ends at the same point ({} m, {} m), expected two different points", at.x, at.y)]
+    #[error("the transect starts and ends at the same point ({} m, {} m), expected two different points", written(at.x), written(at.y))]
     SamePoint {
         /// The point.
         at: MapPoint,
     },
     /// A point that the DEM does not cover.
-    #[error("the {which} point ({} m, {} m) is off the map, expected {bounds} (the outermost posts)", at.x, at.y)]
+    #[error("the {which} point ({} m, {} m) is off the map, expected {bounds} (the outermost posts)", written(at.x), written(at.y))]
     OffTheMap {
         /// "from" or "to".
         which: &'static str,
@@ -122,10 +122,11 @@ pub enum TerrainError {
         /// A command that makes a map that is true along the transect.
         mend: String,
     },
-    /// A transect that leaves what its projection shows of the body.
+    /// A line that leaves what its projection shows of the body.
     #[error(
-        "the transect from ({} m, {} m) to ({} m, {} m) leaves the part of the map that shows the body, expected longitude and latitude all \
-         the way; choose another transect", from.x, from.y, to.x, to.y
+        "the line from ({} m, {} m) to ({} m, {} m) leaves the part of the map that shows the body, expected longitude and latitude all \
+         the way; choose another line, or cut the map to the part that is needed (gdalwarp -te)",
+        written(from.x), written(from.y), written(to.x), written(to.y)
     )]
     OffTheBody {
         /// Where it begins.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::TerrainError;
 use super::projection::{MapProjection, NoProjection, stated_ellipsoid};
-use crate::quantity::MapPoint;
+use crate::quantity::{MapPoint, written};
 
 /// The place of a raster on the map: north up, posts on a lattice of rectangles.
 ///
@@ -69,8 +69,8 @@ impl MapBounds {
 
 impl fmt::Display for MapBounds {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { min, max } = self;
-        write!(formatter, "x from {} to {} m and y from {} to {} m", min.x, max.x, min.y, max.y)
+        let [west, south, east, north] = [self.min.x, self.min.y, self.max.x, self.max.y].map(written);
+        write!(formatter, "x from {west} to {east} m and y from {south} to {north} m")
     }
 }
 
@@ -200,6 +200,7 @@ pub(super) fn mend_degrees(system: &CoordinateSystem) -> String {
     let figure = stated_ellipsoid(system).map_or_else(|| "+R=RADIUS_M".to_owned(), |ellipsoid| ellipsoid.proj());
     format!(
         "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {figure} +units=m +no_defs' in.tif out.tif, where \
-         LATITUDE and LONGITUDE are the middle of the transect; then give its ends with --from-lonlat and --to-lonlat"
+         LATITUDE and LONGITUDE are the middle of the journey; then give its places as longitude and latitude (slice: --from-lonlat and \
+         --to-lonlat; fan: --from-lonlat; map: --start-lonlat and --goal-lonlat; scenario: start_lonlat_deg and goal_lonlat_deg)"
     )
 }

@@ -2,17 +2,23 @@
 
 use std::fmt::Write;
 
-use chta::world::KNOWN_BODIES;
+use chta::{quantity::written, world::KNOWN_BODIES};
 
 use crate::cli::{Answer, Failure, output};
 
 /// Lists the known bodies.
 pub(crate) fn run() -> Result<Answer, Failure> {
-    let mut table = format!("{:<10} {:>14} {:>12}  source\n", "name", "gravity m/s^2", "radius m");
+    let mut table = format!("{:<10} {:>13} {:>10}  source\n", "name", "gravity m/s^2", "radius m");
     for body in &KNOWN_BODIES {
         // Writing to a String cannot fail.
-        let _ = writeln!(table, "{:<10} {:>14.6e} {:>12}  {}", body.name, body.gravity_m_s2, body.radius_m, body.source);
+        let _ = writeln!(table, "{:<10} {:>13} {:>10}  {}", body.name, figures(body.gravity_m_s2), body.radius_m, body.source);
     }
     output::to_stdout(table.as_bytes())?;
     Ok(Answer::Yes)
+}
+
+/// Gravity to four significant digits, more than it changes by over any of these bodies, whatever its size.
+fn figures(gravity_m_s2: f64) -> String {
+    let rounded = format!("{gravity_m_s2:.3e}").parse().unwrap_or(gravity_m_s2);
+    written(rounded)
 }

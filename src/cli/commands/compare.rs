@@ -126,7 +126,7 @@ impl Compared {
 /// All paths over one another.
 fn figure(compared: &[Compared]) -> CompareFigure {
     let words = |one: &Compared| {
-        let hops = one.row.hops.map(|hops| format!(", {hops} hops")).unwrap_or_default();
+        let hops = one.row.hops.map(|hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" })).unwrap_or_default();
         format!("{}: {}{hops}", one.row.name, one.row.verdict)
     };
     let line = compared.iter().map(words).collect::<Vec<_>>().join("; ");

@@ -37,7 +37,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         common,
     } = args;
     let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
-    let Bare { scenario, base, document } = load_bare(common, search)?;
+    let Bare { scenario, base, document } = load_bare(file, common, search)?;
     let dem = read_dem(file).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;

@@ -18,7 +18,7 @@ use chta::{
     },
     scenario::{Covers, Extremes, Scenario, constant_gravity_doubts},
     terrain::{
-        Band, Dem, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_scale, read_dem, result_geotiff_bytes,
+        Band, Dem, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
 };
 
@@ -103,7 +103,7 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
         return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
     }
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
-    let Bare { scenario, base, document } = load_bare(common, &searched)?;
+    let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
     let dem = read_dem(file).map_err(|e| Failure::message(e.to_string()))?;
     let covers =
         Covers::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
@@ -132,11 +132,8 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     }
     let mut warnings = Vec::new();
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
-    let bounds = dem.bounds();
-    for corner in [bounds.min, bounds.max, MapPoint::new(bounds.min.x, bounds.max.y), MapPoint::new(bounds.max.x, bounds.min.y)] {
-        let scale = check_scale(&dem, projection.as_ref(), [start.at, corner], accepted, file).map_err(|e| failed(&e))?;
-        warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
-    }
+    let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
+    warnings.extend(scale.warning());
     let mut inputs = vec![input_file(file)?];
     for cover in Covers::files(&scenario) {
         inputs.push(input_file(&base.join(cover))?);

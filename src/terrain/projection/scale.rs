@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 
 use super::{Definition, LonLat, MapProjection, Method, NoProjection};
 use crate::quantity::MapPoint;
-use crate::terrain::{DemFile, TerrainError};
+use crate::terrain::{DemFile, MapBounds, TerrainError};
 
 /// How far a map's scale may be off along a transect before a slice of it is refused.
 const SCALE_TOLERANCE: f64 = 0.01;
@@ -34,11 +34,11 @@ impl ScaleExtreme {
         (self.factor - 1.0).abs() > SCALE_TOLERANCE
     }
 
-    /// The factor and its place, in words.
-    fn told(&self) -> String {
+    /// The factor along such a line and its place, in words.
+    fn told(&self, line: &str) -> String {
         let Self { factor, at, place, distance_m } = self;
         format!(
-            "the map's scale along the transect is {factor:.5} at {:.6}, {:.6} (longitude, latitude; map point ({:.3} m, {:.3} m), {distance_m:.3} m \
+            "the map's scale along {line} is {factor:.5} at {:.6}, {:.6} (longitude, latitude; map point ({:.3} m, {:.3} m), {distance_m:.3} m \
              from the start): a metre of ground is {factor:.5} m on the map",
             place.lon_deg, place.lat_deg, at.x, at.y
         )
@@ -52,23 +52,32 @@ pub enum TransectScale {
     Local,
     /// True to scale within 1 %.
     True(ScaleExtreme),
-    /// Off by more, and accepted.
-    Accepted(ScaleExtreme),
+    /// Off by more, and accepted; along which line, in words.
+    Accepted(ScaleExtreme, &'static str),
     /// The projection is not known, so nobody can tell.
     Unknown(String),
 }
 
 impl TransectScale {
+    /// How far the factor is from 1; below zero where there is none.
+    fn error(&self) -> f64 {
+        match self {
+            Self::Local => -1.0,
+            Self::Unknown(_) => -0.5,
+            Self::True(extreme) | Self::Accepted(extreme, _) => (extreme.factor - 1.0).abs(),
+        }
+    }
+
     /// What the analyst should know of it.
     pub fn warning(&self) -> Option<String> {
         match self {
             Self::Local | Self::True(_) => None,
-            Self::Accepted(extreme) => {
-                Some(format!("{}, which was accepted; distances along the chain and slopes are off by as much", extreme.told()))
+            Self::Accepted(extreme, line) => {
+                Some(format!("{}, which was accepted; distances along it and slopes are off by as much", extreme.told(line)))
             }
-            Self::Unknown(reason) => Some(format!(
-                "{reason}, so its scale along the transect was not checked; distances count as true, make sure that they are"
-            )),
+            Self::Unknown(reason) => {
+                Some(format!("{reason}, so its scale was not checked; distances count as true, make sure that they are"))
+            }
         }
     }
 }
@@ -144,6 +153,51 @@ pub fn check_scale(
         Err(NoProjection::Local) => return Ok(TransectScale::Local),
         Err(unknown @ NoProjection::Unknown(_)) => return Ok(TransectScale::Unknown(unknown.to_string())),
     };
+    judged(dem, projection, [from, to], accepted, "the transect", &|| mend(dem, projection, [from, to], file))
+}
+
+/// Whether a DEM is true to scale from a point to the corners of its map, so that hops in any direction are; the worst of these lines.
+///
+/// # Errors
+/// As [`check_scale`], with a `gdalwarp` line that makes a map about the point, which is true to scale all over.
+pub fn check_map_scale(
+    dem: &dyn DemFile,
+    projection: Result<&MapProjection, &NoProjection>,
+    from: MapPoint,
+    accepted: bool,
+    file: &std::path::Path,
+) -> Result<TransectScale, TerrainError> {
+    let projection = match projection {
+        Ok(projection) => projection,
+        Err(NoProjection::Local) => return Ok(TransectScale::Local),
+        Err(unknown @ NoProjection::Unknown(_)) => return Ok(TransectScale::Unknown(unknown.to_string())),
+    };
+    let mut worst = TransectScale::Local;
+    for corner in corners(dem) {
+        let line = "the line from the start to a corner of the map";
+        let scale = judged(dem, projection, [from, corner], accepted, line, &|| mend_map(dem, projection, from, file))?;
+        if scale.error() > worst.error() {
+            worst = scale;
+        }
+    }
+    Ok(worst)
+}
+
+/// The corners of a DEM's outermost posts.
+fn corners(dem: &dyn DemFile) -> [MapPoint; 4] {
+    let MapBounds { min, max } = dem.georeference().bounds(dem.rows(), dem.cols());
+    [min, MapPoint::new(max.x, min.y), max, MapPoint::new(min.x, max.y)]
+}
+
+/// What is to be said of the scale along a line, called so; `mend`: what else to do where it is off.
+fn judged(
+    dem: &dyn DemFile,
+    projection: &MapProjection,
+    [from, to]: [MapPoint; 2],
+    accepted: bool,
+    line: &'static str,
+    mend: &dyn Fn() -> Option<String>,
+) -> Result<TransectScale, TerrainError> {
     // A line without a direction, or off the map, is the slice's to refuse.
     if from == to || ![from, to].iter().all(|end| dem.georeference().bounds(dem.rows(), dem.cols()).contains(*end)) {
         return Ok(TransectScale::Local);
@@ -151,12 +205,42 @@ pub fn check_scale(
     let extreme = projection.extreme_scale(from, to).ok_or(TerrainError::OffTheBody { from, to })?;
     match (extreme.is_off(), accepted) {
         (false, _) => Ok(TransectScale::True(extreme)),
-        (true, true) => Ok(TransectScale::Accepted(extreme)),
+        (true, true) => Ok(TransectScale::Accepted(extreme, line)),
         (true, false) => {
-            let mend = mend(dem, projection, [from, to], file).ok_or(TerrainError::OffTheBody { from, to })?;
-            Err(TerrainError::MapScale { found: extreme.told(), mend })
+            let mend = mend().ok_or(TerrainError::OffTheBody { from, to })?;
+            Err(TerrainError::MapScale { found: extreme.told(line), mend })
         }
     }
+}
+
+/// The command that makes a map about a point which is true to scale all over: as much of this one as that leaves.
+fn mend_map(dem: &dyn DemFile, projection: &MapProjection, from: MapPoint, file: &std::path::Path) -> Option<String> {
+    let local = projection.about(from)?;
+    let start = projection.lon_lat(from)?;
+    // To its corners such a map is half as far as the longest transect over its middle.
+    let most_m = libm::floor(0.5 * LONGEST_LOCAL * std::f64::consts::FRAC_1_SQRT_2 * projection.definition.ellipsoid.semi_major_m);
+    let ends = corners(dem).map(|corner| projection.lon_lat(corner).and_then(|place| local.map_point(place)));
+    let reach = |of: &dyn Fn(MapPoint) -> f64| {
+        // Where a corner shows nothing of the body, as far as the new map may go.
+        let along = ends.iter().flatten().map(|end| of(*end));
+        let known = ends.iter().all(Option::is_some);
+        rounded_m(if known { along.fold(0.0, f64::max).min(most_m) } else { most_m })
+    };
+    let (west, south, east, north) = (-reach(&|at| -at.x), -reach(&|at| -at.y), reach(&|at| at.x), reach(&|at| at.y));
+    let map = dem.georeference();
+    let spacing = |heading: Vector2<f64>, step_m: f64| projection.scale(from, heading).map(|scale| step_m / scale);
+    let spacing_m =
+        rounded_m(spacing(Vector2::new(1.0, 0.0), map.dx_m())?.min(spacing(Vector2::new(0.0, 1.0), map.dy_m())?)).max(1.0e-4);
+    let Definition { latitude_deg, longitude_deg, ellipsoid, .. } = local.definition;
+    Some(format!(
+        "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0={latitude_deg} +lon_0={longitude_deg} {} +units=m +no_defs' \
+         -te {west} {south} {east} {north} -tr {spacing_m} {spacing_m} -ot Float64 -dstnodata nan {} out.tif, then map out.tif \
+         --start-lonlat {:.9},{:.9} (a map about the start, which holds true {most_m} m to every side at most)",
+        ellipsoid.proj(),
+        shell_word(&file.display().to_string()),
+        start.lon_deg,
+        start.lat_deg
+    ))
 }
 
 /// The command that makes a map which is true to scale along a transect, or what else to do.

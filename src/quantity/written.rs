@@ -1,0 +1,78 @@
+//! Numbers as sentences have them.
+
+/// A number with as many digits as a reader has use for: ten significant ones at most, no idle zeros, with an exponent where it would
+/// have many zeros. Results that programs read keep all digits.
+///
+/// ```
+/// use chta::quantity::written;
+/// assert_eq!(written(0.1 + 0.2), "0.3");
+/// assert_eq!(written(120.69500000000001), "120.695");
+/// assert_eq!(written(-6301862.204093784), "-6301862.204");
+/// assert_eq!(written(1e-300), "1e-300");
+/// assert_eq!(written(2.0), "2");
+/// ```
+pub fn written(number: f64) -> String {
+    // Ten significant digits, read back: the shortest text of that number has no more.
+    let rounded = format!("{number:.9e}").parse().unwrap_or(number);
+    let size = f64::abs(rounded);
+    if size == 0.0 {
+        "0".to_owned()
+    } else if (1e-4..1e12).contains(&size) || !size.is_finite() {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// The unit of the numbers of a key or a column, as its name ends; empty where they have none.
+///
+/// ```
+/// use chta::quantity::unit_of;
+/// assert_eq!(unit_of("hopper.takeoff_speed_max_m_s"), "m/s");
+/// assert_eq!(unit_of("surface.friction_coefficient"), "");
+/// ```
+pub fn unit_of(name: &str) -> &'static str {
+    // `_m_s` ends in `_s` too: longer endings first.
+    let units = [("_m_s2", "m/s^2"), ("_m_s", "m/s"), ("_deg", "deg"), ("_kg", "kg"), ("_m", "m"), ("_s", "s")];
+    units.into_iter().find(|(ending, _)| name.ends_with(ending)).map_or("", |(_, unit)| unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{unit_of, written};
+
+    #[test]
+    fn numbers_are_written_for_readers() {
+        for (number, text) in [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (0.505_000_000_000_009_7, "0.505"),
+            (1.0 / 3.0, "0.3333333333"),
+            (1e-5, "1e-5"),
+            (-2.5e-9, "-2.5e-9"),
+            (f64::MIN_POSITIVE, "2.225073859e-308"),
+            (123_456_789_012.0, "123456789000"),
+            (1e12, "1e12"),
+            (f64::MAX, "1.797693135e308"),
+            (f64::INFINITY, "inf"),
+            (f64::NAN, "NaN"),
+            (9.999_999_999_9, "10"),
+        ] {
+            assert_eq!(written(number), text);
+        }
+    }
+
+    #[test]
+    fn units_are_those_of_the_endings() {
+        for (name, unit) in [
+            ("body.gravity_m_s2", "m/s^2"),
+            ("hopper.rest_time_s", "s"),
+            ("hopper.clearance_m", "m"),
+            ("hopper.mass_kg", "kg"),
+            ("surface.rest_slope_max_deg", "deg"),
+            ("uncertainty.trials", ""),
+        ] {
+            assert_eq!(unit_of(name), unit, "{name}");
+        }
+    }
+}
