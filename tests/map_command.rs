@@ -212,6 +212,60 @@ fn one_hop_is_no_hops() {
     assert!(near.stdout.contains("asked for: 1 hop, 1 hop back\n"), "{}", near.stdout);
 }
 
+/// Friction and zones that touch nothing of the DEM or the transect are no silent success.
+#[test]
+fn covers_without_effect_are_told() {
+    let desk = walled();
+    let raster = |west: f64, values: &str| format!("ncols 2\nnrows 2\nxllcorner {west}\nyllcorner 189\ncellsize 20\n{values}\n");
+    desk.write("far.asc", raster(900.0, "0.3 0.3\n0.3 0.3"));
+    desk.write("here.asc", raster(90.0, "0.5 0.5\n0.5 0.5"));
+    desk.write("free.asc", raster(90.0, "0 0\n0 0"));
+    desk.write("kept.asc", raster(90.0, "0 1\n0 0"));
+    let zone = |x: f64| format!(r#"{{"type":"Polygon","coordinates":[[[{x},217],[{x},218],[{0},218],[{x},217]]]}}"#, x + 1.0);
+    desk.write("north.geojson", zone(104.0));
+    let on = "[terrain]\ndem = \"walled.asc\"\nstart_m = [101, 205]\ngoal_m = [112, 205]\n[search]\nnode_spacing_max_m = 1\n";
+    desk.write("journey.toml", desk.read("hopper.toml") + on);
+    let no_data = "friction raster 'far.asc' has no data on";
+    let cases = [
+        ("friction_raster", "far.asc", Some((no_data, "the DEM")), Some((no_data, "the transect"))),
+        ("friction_raster", "here.asc", None, None),
+        (
+            "keep_out",
+            "free.asc",
+            Some(("'free.asc': no zone meets", "the DEM")),
+            Some(("'free.asc': no zone meets", "the transect")),
+        ),
+        ("keep_out", "kept.asc", None, Some(("'kept.asc': no zone meets", "the transect"))),
+        ("keep_out", "north.geojson", None, Some(("'north.geojson': no zone meets", "the transect"))),
+    ];
+    for (key, file, over_dem, along) in cases {
+        let set = format!("surface.{key}=\"{file}\"");
+        let fan = ["fan", "walled.asc", "--from", "102,205", "--length", "3", "--headings", "4", "--scenario", "hopper.toml"];
+        let commands =
+            [(&MAP[..], over_dem), (&fan, over_dem), (&["plan", "journey.toml"], along), (&["simulate", "journey.toml"], along)];
+        for (command, expected) in commands {
+            let words = [command, &["--set", &set]].concat();
+            let told = desk.run(&words).stderr;
+            let warnings = desk.json(&words)["warnings"].to_string();
+            match expected {
+                Some((what, place)) => {
+                    let said = format!("{what} {place}");
+                    assert!(
+                        told.matches(&said).count() == 1 && warnings.matches(&said).count() == 1,
+                        "{words:?}: {told}{warnings}"
+                    );
+                }
+                None => assert!(!told.contains(file) && !warnings.contains(file), "{words:?}: {told}{warnings}"),
+            }
+        }
+    }
+    let slice = ["slice", "walled.asc", "--from", "101,205", "--to", "112,205", "--scenario", "journey.toml", "-o", "c.csv"];
+    let ran = desk.run(&slice);
+    assert_eq!((ran.status, ran.stderr.as_str()), (0, ""));
+    desk.write("journey.toml", desk.read("journey.toml").replace("[surface]", "[surface]\nfriction_raster = \"far.asc\""));
+    assert!(desk.run(&slice).stderr.contains(no_data) && desk.read("c.csv").contains("# warning: friction raster 'far.asc'"));
+}
+
 #[test]
 fn a_stride_lands_on_fewer_posts_over_the_same_terrain() {
     let desk = walled();

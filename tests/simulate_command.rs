@@ -101,6 +101,20 @@ fn trials_without_errors_are_told_to_tell_nothing() {
     }
 }
 
+/// Replanned landings are compared with the plan of their own trial, and their places belong to different plans.
+#[test]
+fn the_text_says_what_distances_and_ellipses_are_of() {
+    let desk = desk();
+    let planned = desk.run(&["simulate", "map.toml", "--trials", "50"]).stdout;
+    assert!(planned.contains("\ndistance from the planned landing (m)\n") && planned.contains("95 % ellipse"), "{planned}");
+    let replanned = desk.run(&["simulate", "map.toml", "--trials", "50", "--policy", "replan"]).stdout;
+    assert!(replanned.contains("\ndistance from the landing planned for the hop at its take-off"), "{replanned}");
+    assert!(!replanned.contains("ellipse"), "{replanned}");
+    // The document keeps what interface.md lists.
+    let document = desk.json(&["simulate", "map.toml", "--trials", "50", "--policy", "replan"]);
+    assert!(document["landings"][0]["ellipse95"]["semi_major_m"].as_f64() > Some(0.0), "{document}");
+}
+
 #[test]
 fn the_same_seed_gives_the_same_bytes_for_any_number_of_threads() {
     let all = |threads: &str| {

@@ -3,7 +3,9 @@
 use serde::Serialize;
 
 use super::text::Sheet;
-use crate::uncertainty::{ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, RatePoint, Summary, TrialOutcome, Wilson};
+use crate::uncertainty::{
+    ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
+};
 
 /// What the trials of one policy came to.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -59,7 +61,8 @@ pub struct LandingRecord {
     /// Of the distance from the planned landing to the place of rest; null where none landed.
     #[serde(flatten)]
     pub error: ErrorRecord,
-    /// On a DEM: the ellipse that holds 95 % of them, as far as they are Gaussian.
+    /// On a DEM: the ellipse that holds 95 % of the places of rest, as far as they are Gaussian. Replanned trials differ in what they plan
+    /// for a hop, so that there it is the spread of different plans about their common mean.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ellipse95: Option<EllipseRecord>,
 }
@@ -135,6 +138,20 @@ impl SimulationRecord {
         }
     }
 
+    /// Whether every hop was planned anew from where the one before it ended.
+    fn is_replanned(&self) -> bool {
+        self.policy == Policy::Replan.name()
+    }
+
+    /// What the distances of the landings are.
+    fn distances(&self) -> &'static str {
+        if self.is_replanned() {
+            "distance from the landing planned for the hop at its take-off, planned anew before every hop"
+        } else {
+            "distance from the planned landing"
+        }
+    }
+
     /// For reading: the rate, the outcomes, the landings.
     pub fn text(&self) -> String {
         let mut sheet = Sheet::default();
@@ -147,13 +164,23 @@ impl SimulationRecord {
             self.outcomes.each().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name} {count}")).collect();
         sheet.line(format_args!("outcomes: {}", ended.join(", ")));
         sheet.line(format_args!(
-            "\ndistance from the planned landing (m)\n{:>5}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}",
-            "hop", "landings", "mean", "5 %", "25 %", "50 %", "75 %", "95 %", "max"
+            "\n{} (m)\n{:>5}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}",
+            self.distances(),
+            "hop",
+            "landings",
+            "mean",
+            "5 %",
+            "25 %",
+            "50 %",
+            "75 %",
+            "95 %",
+            "max"
         ));
         for landing in self.landings.iter().filter(|landing| landing.count > 0) {
             let numbers: String =
                 landing.error.each().map(|number| number.map_or(format!("{:>10}", "-"), |n| format!("{n:>10.3}"))).concat();
-            let ellipse = landing.ellipse95.map_or(String::new(), |ellipse| {
+            // The places of one plan: under replanning landings of the same number belong to different plans, and their spread is no error.
+            let ellipse = landing.ellipse95.filter(|_| !self.is_replanned()).map_or(String::new(), |ellipse| {
                 format!(
                     "  95 % ellipse {:.2} x {:.2} m at {:.0} deg",
                     ellipse.semi_major_m, ellipse.semi_minor_m, ellipse.orientation_deg

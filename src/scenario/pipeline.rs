@@ -77,9 +77,13 @@ pub enum PipelineError {
 /// # Errors
 /// [`PipelineError`].
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
-    let Survey { ground, projection, warnings } = Survey::of(scenario, source, base)?;
+    let Survey { ground, projection, mut warnings } = Survey::of(scenario, source, base)?;
     let (geometry, ends) = match ground {
-        Surveyed::Slice { legs, covers } => whole(covers.laid(legs, friction(scenario))?),
+        Surveyed::Slice { legs, covers } => {
+            let (chain, idle) = covers.laid(legs, friction(scenario))?;
+            warnings.extend(idle);
+            whole(chain)
+        }
         Surveyed::Chain(chain) => (chain, (None, None)),
     };
     settled(scenario, geometry, ends, projection, warnings)
@@ -133,11 +137,16 @@ impl Survey {
     /// # Errors
     /// [`PipelineError`], where segments are left without constraints, or an end lies off the chain.
     pub fn prepare(&self, scenario: &Scenario) -> Result<Prepared, PipelineError> {
+        let mut warnings = self.warnings.clone();
         let (geometry, ends) = match &self.ground {
-            Surveyed::Slice { legs, covers } => whole(covers.laid(legs.clone(), friction(scenario))?),
+            Surveyed::Slice { legs, covers } => {
+                let (chain, idle) = covers.laid(legs.clone(), friction(scenario))?;
+                warnings.extend(idle);
+                whole(chain)
+            }
             Surveyed::Chain(chain) => (chain.clone(), (None, None)),
         };
-        settled(scenario, geometry, ends, self.projection.clone(), self.warnings.clone())
+        settled(scenario, geometry, ends, self.projection.clone(), warnings)
     }
 }
 
@@ -264,25 +273,43 @@ impl Covers {
         [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
     }
 
+    /// What of them has no effect anywhere on a DEM of these bounds, in words.
+    pub fn idle_on_dem(&self, bounds: MapBounds) -> Vec<String> {
+        let raster = self.raster.as_ref().filter(|raster| !raster.covers(bounds)).map(|raster| raster.idle("the DEM"));
+        let keep_out = self.keep_out.as_ref().filter(|keep_out| !keep_out.meets(bounds)).map(|keep_out| keep_out.idle("the DEM"));
+        raster.into_iter().chain(keep_out).collect()
+    }
+
     /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones.
     ///
     /// # Errors
     /// [`TerrainError::Cover`] where a raster ends before the slice does.
     pub fn chain(&self, legs: Vec<Profile>) -> Result<PolygonalChain, PipelineError> {
+        self.chain_with_doubts(legs).map(|(chain, _)| chain)
+    }
+
+    /// The same, with what of raster and zones has no effect anywhere on it, in words.
+    ///
+    /// # Errors
+    /// As [`Covers::chain`].
+    pub fn chain_with_doubts(&self, legs: Vec<Profile>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
         self.laid(legs, self.constant)
     }
 
     /// The same with this friction where no raster says it.
-    fn laid(&self, mut legs: Vec<Profile>, constant: Option<FrictionCone>) -> Result<PolygonalChain, PipelineError> {
+    fn laid(&self, mut legs: Vec<Profile>, constant: Option<FrictionCone>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
+        let (mut says_friction, mut keeps_out) = (false, false);
         for leg in &mut legs {
             if let Some(raster) = &self.raster {
-                raster.lay(leg, constant)?;
+                says_friction |= raster.lay(leg, constant)?;
             }
             if let Some(keep_out) = &self.keep_out {
-                keep_out.mark(leg)?;
+                keeps_out |= keep_out.mark(leg)?;
             }
         }
-        Ok(PolygonalChain::from_legs(&legs, constant)?)
+        let raster = self.raster.as_ref().filter(|_| !says_friction).map(|raster| raster.idle("the transect"));
+        let keep_out = self.keep_out.as_ref().filter(|_| !keeps_out).map(|keep_out| keep_out.idle("the transect"));
+        Ok((PolygonalChain::from_legs(&legs, constant)?, raster.into_iter().chain(keep_out).collect()))
     }
 }
 

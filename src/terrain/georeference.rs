@@ -65,6 +65,11 @@ impl MapBounds {
     pub fn contains(&self, at: MapPoint) -> bool {
         (self.min.x..=self.max.x).contains(&at.x) && (self.min.y..=self.max.y).contains(&at.y)
     }
+
+    /// Whether two rectangles have a point in common.
+    pub(crate) fn meets(&self, other: Self) -> bool {
+        self.min.x <= other.max.x && other.min.x <= self.max.x && self.min.y <= other.max.y && other.min.y <= self.max.y
+    }
 }
 
 impl fmt::Display for MapBounds {

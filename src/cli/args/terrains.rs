@@ -91,7 +91,8 @@ pub(crate) struct FanArgs {
 
 /// Fewest hops from one post of a DEM to every other, in any direction
 ///
-/// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it.
+/// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it. Of the terrain of --scenario (dem,
+/// mesh or chain, start, goal, points between) nothing is used: DEM, --start and --goal stand in its place.
 #[derive(Debug, ClapArgs)]
 #[command(
     after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
@@ -131,7 +132,8 @@ pub(crate) struct MapArgs {
     /// Hops back to the start (GeoTIFF) to write
     #[arg(long, value_name = "FILE", requires = "back")]
     pub(crate) return_output: Option<PathBuf>,
-    /// Mobility (GeoTIFF) to work out and write: share of its reach disc that one hop from each post reaches, and in how many of 16 directions
+    /// Mobility (GeoTIFF) to work out and write: of the posts on the map within v^2/g of a post, v the smaller speed limit, the share that
+    /// one hop reaches, and in how many of 16 directions
     #[arg(long, value_name = "FILE")]
     pub(crate) mobility: Option<PathBuf>,
     /// Hops to every goal (CSV) to write

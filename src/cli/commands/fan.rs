@@ -56,7 +56,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let ground = |profile| Ok(ConstrainedChain::new(covers.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?);
     let rays = fan(&request, *threads, &ground).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
-    let mut warnings: Vec<String> = Vec::new();
+    let mut warnings = covers.idle_on_dem(dem.bounds());
     for ray in &rays {
         let heading = Angle::from_degrees(ray.heading_deg).radians();
         let end = from + Vector2::new(libm::sin(heading), libm::cos(heading)) * ray.length_m;

@@ -42,7 +42,12 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
                 comments.push(format!("under {}, sha256 {}", name_of(&file), sha256_of(&file)?));
             }
             let covers = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds).map_err(|e| failed(&e))?;
-            covers.chain(cut.legs).map_err(|e| failed(&e))?
+            let (chain, idle) = covers.chain_with_doubts(cut.legs).map_err(|e| failed(&e))?;
+            for warning in &idle {
+                output::warn(*quiet, warning);
+            }
+            comments.extend(idle.iter().map(|warning| format!("warning: {warning}")));
+            chain
         }
         None => PolygonalChain::from_legs(&cut.legs, None).map_err(|e| failed(&e))?,
     };

@@ -119,6 +119,17 @@ pub(super) fn is_on(stretches: &[Stretch<CellValues>]) -> bool {
     stretches.iter().any(|stretch| !stretch.value.is_empty())
 }
 
+/// Whether a cell with data of a kind lies on a rectangle of the map.
+pub(super) fn has_cell(raster: &Dem, bounds: MapBounds, kind: &dyn Fn(f64) -> bool) -> bool {
+    let map = raster.georeference();
+    let half = Vector2::new(0.5 * map.dx_m(), 0.5 * map.dy_m());
+    cell_bounds(raster).meets(bounds)
+        && raster.elevations().enumerate().any(|(index, value)| {
+            let post = || map.post(index / raster.cols(), index % raster.cols());
+            value.is_some_and(kind) && MapBounds { min: post() - half, max: post() + half }.meets(bounds)
+        })
+}
+
 /// The rectangle of a raster's cells.
 pub(super) fn cell_bounds(raster: &Dem) -> MapBounds {
     let MapBounds { min, max } = raster.bounds();

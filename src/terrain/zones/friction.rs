@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    cells::{borders_of, cells_at, cells_on, disagreement},
-    keep_out::of_raster,
+    cells::{borders_of, cells_at, cells_on, disagreement, has_cell},
+    keep_out::{name_of, of_raster},
     line::{Line, Stretch},
 };
 use crate::{
@@ -52,6 +52,17 @@ impl FrictionRaster {
         borders_of(&self.raster, &|value: Option<f64>| value, tell);
     }
 
+    /// What to say where it has no data, on "the transect" or wherever else.
+    pub(crate) fn idle(&self, on: &str) -> String {
+        let name = name_of(&self.path);
+        format!("{WHAT} '{name}' has no data on {on}, so that it has no effect there: friction_coefficient counts all over")
+    }
+
+    /// Whether it has data on a rectangle of the map.
+    pub(crate) fn covers(&self, bounds: MapBounds) -> bool {
+        has_cell(&self.raster, bounds, &|_| true)
+    }
+
     /// The friction of a place: that of the pixel it lies in, the smaller one on a border; `None` where the raster has no data or does not
     /// reach.
     pub fn at(&self, place: MapPoint) -> Option<FrictionCone> {
@@ -63,15 +74,17 @@ impl FrictionRaster {
     ///
     /// A segment has the coefficient of the pixel that covers its middle: a pixel's value holds for its cell, half a spacing to every
     /// side of its centre, without interpolation. Along a border of two cells the smaller one counts. Where the raster has no data,
-    /// or does not reach, `constant` holds.
+    /// or does not reach, `constant` holds. Whether the raster has data for any of it.
     ///
     /// # Errors
     /// [`TerrainError::Cover`] where there is neither data nor a constant, naming where.
-    pub fn lay(&self, profile: &mut Profile, constant: Option<FrictionCone>) -> Result<(), TerrainError> {
-        let Some(line) = Line::of(profile) else { return Ok(()) };
+    pub fn lay(&self, profile: &mut Profile, constant: Option<FrictionCone>) -> Result<bool, TerrainError> {
+        let Some(line) = Line::of(profile) else { return Ok(false) };
         let mut stretches = Vec::new();
+        let mut says_any = false;
         for cell in cells_on(&line, &self.raster) {
             let least = cell.value.iter().flatten().copied().reduce(f64::min);
+            says_any |= least.is_some();
             let cone = match least {
                 Some(coefficient) => FrictionCone::new(coefficient).ok(),
                 None => constant,
@@ -88,6 +101,6 @@ impl FrictionRaster {
             stretches.push(Stretch { from_m: cell.from_m, to_m: cell.to_m, value: cone });
         }
         line.lay(profile, &stretches, |profile, segment, cone| profile.facets[segment].friction = Some(cone));
-        Ok(())
+        Ok(says_any)
     }
 }

@@ -6,7 +6,7 @@ use std::{
 };
 
 use super::{
-    cells::{borders_of, cell_bounds, cells_at, cells_on, disagreement, is_on},
+    cells::{borders_of, cell_bounds, cells_at, cells_on, disagreement, has_cell, is_on},
     geojson::polygons,
     line::{Line, Stretch, covered},
     polygons::Polygon,
@@ -92,6 +92,8 @@ impl KeepOut {
     /// outside; a vertex on a border obeys the segments that meet there, as everywhere. Zones met on less than a millionth of a millionth
     /// of the map coordinates' size (0.1 micrometres at 100 km) are met at a point, which keeps nothing out.
     ///
+    /// Whether any of the profile lies in a zone.
+    ///
     /// # Errors
     /// [`TerrainError::Cover`] where a mask ends before the profile does.
     ///
@@ -109,15 +111,28 @@ impl KeepOut {
     /// assert_eq!(kept, [(0.0, false), (2.0, true), (3.0, false)]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn mark(&self, profile: &mut Profile) -> Result<(), TerrainError> {
-        let Some(line) = Line::of(profile) else { return Ok(()) };
+    pub fn mark(&self, profile: &mut Profile) -> Result<bool, TerrainError> {
+        let Some(line) = Line::of(profile) else { return Ok(false) };
         let parts = match &self.zones {
             Zones::Polygons(polygons) => polygons.iter().flat_map(|polygon| polygon.parts_on(&line)).collect(),
             Zones::Mask(mask) => self.masked(mask, &line)?,
         };
         let stretches: Vec<Stretch<bool>> = covered(&line, parts);
         line.lay(profile, &stretches, |profile, segment, inside| profile.facets[segment].keep_out |= inside);
-        Ok(())
+        Ok(stretches.iter().any(|stretch| stretch.value))
+    }
+
+    /// What to say where no zone meets "the transect", or whatever else.
+    pub(crate) fn idle(&self, on: &str) -> String {
+        format!("{WHAT} '{}': no zone meets {on}, so that none has an effect there", name_of(&self.path))
+    }
+
+    /// Whether a zone, or the rectangle around its polygon, meets a rectangle of the map.
+    pub(crate) fn meets(&self, bounds: MapBounds) -> bool {
+        match &self.zones {
+            Zones::Polygons(polygons) => polygons.iter().any(|polygon| polygon.bounds().meets(bounds)),
+            Zones::Mask(mask) => has_cell(mask, bounds, &|value| value != 0.0),
+        }
     }
 
     /// Tells rectangles that together hold all borders between kept out and not, in pieces of polygons no longer than `longest_m`.
@@ -156,6 +171,11 @@ fn looks_like_json(path: &Path) -> std::io::Result<bool> {
     let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&beginning);
     let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
     Ok(matches!(first, Some(b'{' | b'[')))
+}
+
+/// A file's own name, for warnings: they stand in results, which are the same wherever the file lies.
+pub(super) fn name_of(path: &Path) -> String {
+    path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 /// What the system says of a file, with what to do.
