@@ -11,7 +11,7 @@ use chta::{
     terrain::MapProjection,
 };
 
-use super::Failure;
+use super::{Failure, claims};
 
 /// Writes data to standard output. A reader who closed the pipe is no error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
@@ -34,7 +34,9 @@ pub(crate) struct Pending<'a> {
 impl<'a> Pending<'a> {
     /// Opens it.
     pub(crate) fn begin(path: &'a Path) -> Result<Self, Failure> {
-        Ok(Self { path, file: WholeFile::begin(path).map_err(|error| unwritable(path, &error))? })
+        let file = WholeFile::begin(path).map_err(|error| unwritable(path, &error))?;
+        claims::writes(path)?;
+        Ok(Self { path, file })
     }
 
     /// Where it will be.
