@@ -6,24 +6,11 @@ use crate::{
     chain::{ConstrainedChain, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
     draw::Draw,
     graph::{PointSpacing, SearchOptions, search},
-    quantity::{AngleInterval, ChainPoint, VertexId},
+    quantity::{AngleInterval, ChainPoint, Inwards, VertexId},
     world::{Hopper, RestSlope, Surface},
 };
 
 /// Ends rounded inwards, and no tolerance, which would hide it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Inwards;
-
-impl Rounding for Inwards {
-    fn down(rounded: f64) -> f64 {
-        rounded.next_up()
-    }
-
-    fn up(rounded: f64) -> f64 {
-        rounded.next_down()
-    }
-}
-
 impl Faults for Inwards {
     type Rounding = Self;
     const SLACK: f64 = 0.0;

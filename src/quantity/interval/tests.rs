@@ -8,7 +8,7 @@ use crate::draw::Draw;
 
 /// The mutant: inwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Inwards;
+pub(crate) struct Inwards;
 
 impl Rounding for Inwards {
     fn down(rounded: f64) -> f64 {
