@@ -1,8 +1,11 @@
 //! One hop between two posts: quick where that is sure, exact where it is close.
 //!
-//! The answer is that of [`slice`](crate::terrain::slice()) and [`HopTest`] on the same two posts. Quick arithmetic, which differs from
+//! The answer is that of [`slice`](crate::terrain::slice()) and [`HopTest`](crate::ballistics::HopTest) on the same two posts. Quick arithmetic, which differs from
 //! theirs by rounding only, says yes or no where the limits leave a margin far above rounding; what is nearer than that is given to
 //! the slice and the hop test themselves. So is every hop near a border of a zone or of friction, where the slice has more vertices.
+
+mod exact;
+mod reach;
 
 use std::error::Error;
 
@@ -11,16 +14,16 @@ use super::{
     covers::CoverTable,
     facets::Facets,
     ground::{Footing, GroundTable},
-    lattice::{BLOCK, NodeLattice, Post},
-    offsets::{Offset, OffsetTable, Spacing},
+    lattice::{NodeLattice, Post},
+    offsets::{Offset, OffsetTable},
     samples::{Heights, Walk},
 };
 use crate::{
-    ballistics::{GroundGrant, HopTest, LineOfSight, OpenAir, safety_ceiling_m, safety_range_m},
+    ballistics::{GroundGrant, LineOfSight, OpenAir},
     chain::{ConstrainedChain, QuickCone, QuickGrip},
-    quantity::{SlopeInterval, VertexId},
-    terrain::{Profile, TerrainError, slice},
-    world::{FrictionCone, Grip, RestSlope, tolerant_speed_m_s},
+    quantity::SlopeInterval,
+    terrain::Profile,
+    world::{FrictionCone, Grip, RestSlope},
 };
 
 /// Makes a chain of a slice: knows friction, zones and hopper.
@@ -33,12 +36,6 @@ const NEAR: f64 = 1.0e-5;
 /// Map coordinates and heights must be this fine, as a share of the post spacing, for quick arithmetic to be within [`NEAR`]: 1 m posts
 /// up to 4 000 km from the origin. On coarser ones every pair is given to the exact code.
 const FINE: f64 = 1.0e-9;
-
-/// What the bounds on reach are widened by against rounding.
-const WIDER: f64 = 1.0 + 1.0e-6;
-
-/// The largest table of crossings, 256 MiB: a reach of some 120 posts.
-const MOST_CROSSINGS: usize = 1 << 23;
 
 /// All single hops between the nodes of a DEM.
 pub struct PostHops<'a> {
@@ -86,7 +83,7 @@ impl<'a> PostHops<'a> {
     pub fn new(request: MapRequest<'a>, ground_of: &'a GroundOf<'a>) -> Result<Self, MapError> {
         let (dem, hopper) = (request.dem, request.hopper);
         let lattice = NodeLattice::new(dem, request.stride);
-        probe(&request, ground_of)?;
+        exact::probe(&request, ground_of)?;
         let heights = Heights::of(dem);
         let constant = match request.surface.grip {
             Some(Grip::Friction(cone)) => Some(cone),
@@ -340,35 +337,6 @@ impl<'a> PostHops<'a> {
             .map(|crossing| takeoff.wrapping_add_signed(crossing.first as isize))
             .all(|post| self.ground.has_any(post, offset.departure))
     }
-
-    /// The slice and the hop test themselves.
-    #[cold]
-    fn exact(&self, from: Post, offset: &Offset) -> Result<Option<Lofts>, MapError> {
-        let Some(to) = self.moved(from, offset.rows, offset.cols) else { return Ok(None) };
-        let Some(chain) = self.chain(from, to)? else { return Ok(None) };
-        let test = HopTest::new(&chain, self.request.hopper, self.request.gravity_m_s2);
-        let geometry = chain.geometry();
-        let (start, end) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
-        Ok(test.line_of_sight(&start, &end).zip(test.loft(&start, &end).ok()))
-    }
-
-    /// The slice between two nodes with its constraints; `None` where an elevation is missing on the way.
-    ///
-    /// # Errors
-    /// [`MapError::Ground`] and [`MapError::Terrain`].
-    pub fn chain(&self, from: Post, to: Post) -> Result<Option<ConstrainedChain>, MapError> {
-        let map = self.request.dem.georeference();
-        let [begin, end] = [from, to].map(|node| {
-            let Post { row, col } = self.lattice.post(node);
-            map.post(row, col)
-        });
-        let profile = match slice(self.request.dem, begin, end) {
-            Ok(profile) => profile,
-            Err(TerrainError::NoData { .. }) => return Ok(None),
-            Err(other) => return Err(other.into()),
-        };
-        (self.ground_of)(profile).map(Some).map_err(|reason| MapError::Ground { at: begin, reason })
-    }
 }
 
 /// What lies over a pair: nothing (or the same friction everywhere), a zone all over, or borders.
@@ -383,122 +351,4 @@ enum Cover {
 #[inline]
 fn near(loft: f64) -> f64 {
     NEAR * (1.0 + loft.abs())
-}
-
-/// Tries the constraints on one slice, so that what is missing is told before the work begins.
-fn probe(request: &MapRequest<'_>, ground_of: &GroundOf<'_>) -> Result<(), MapError> {
-    let dem = request.dem;
-    let gap = |row: usize, col: usize| dem.elevation(row, col).is_none();
-    let place = (0..dem.rows() - 1)
-        .flat_map(|row| (0..dem.cols() - 1).map(move |col| (row, col)))
-        .find(|&(row, col)| !(gap(row, col) || gap(row, col + 1) || gap(row + 1, col + 1)));
-    let Some((row, col)) = place else { return Ok(()) };
-    let (begin, end) = (dem.georeference().post(row, col), dem.georeference().post(row + 1, col + 1));
-    let profile = slice(dem, begin, end)?;
-    ground_of(profile).map(drop).map_err(|reason| MapError::Ground { at: begin, reason })
-}
-
-// Reach: which offsets there are.
-impl PostHops<'_> {
-    /// Makes the table of offsets, and finds how far hops reach from each block.
-    fn set_reach(&mut self) -> Result<(), MapError> {
-        let hopper = self.air.hopper();
-        let speeds = [hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s].map(|v| tolerant_speed_m_s(v) * WIDER);
-        let gravity = self.air.gravity_m_s2();
-        // The longest hop that falls or climbs no further than a height.
-        let range_m =
-            |height_m: f64| safety_range_m(height_m, speeds[0], gravity).min(safety_range_m(height_m, speeds[1], gravity)) * WIDER;
-        let blocks = self.block_heights();
-        let all = blocks.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |all, one| (all.0.min(one.0), all.1.max(one.1)));
-        let mut longest_m = if speeds.iter().all(|&v| v > 0.0) && all.0 <= all.1 { range_m(all.1 - all.0) } else { 0.0 };
-        if !longest_m.is_finite() {
-            let found = format!("{longest_m} m");
-            return Err(MapError::Request {
-                what: "the reach of one hop",
-                found,
-                expected: "a finite one: give speed limits and gravity",
-            });
-        }
-        // Within a shorter range there is less relief, which makes the range shorter still.
-        let mut ranges_m = Vec::new();
-        for _ in 0..8 {
-            ranges_m =
-                self.block_reliefs(&blocks, longest_m).into_iter().map(|relief_m| range_m(relief_m).min(longest_m)).collect();
-            let next_m = ranges_m.iter().copied().fold(0.0, f64::max);
-            let settled = next_m > 0.95 * longest_m;
-            longest_m = next_m;
-            if settled {
-                break;
-            }
-        }
-        let spacing = self.spacing();
-        let bounds = (self.lattice.rows, self.lattice.cols);
-        let size = OffsetTable::size(spacing, longest_m, bounds);
-        if size.crossings > MOST_CROSSINGS {
-            let posts = longest_m / spacing.dx_m.min(spacing.dy_m);
-            return Err(MapError::TooFar { range_m: longest_m, posts, offsets: size.offsets });
-        }
-        let rises_m = |run_m: f64| {
-            let ceiling = |v: f64| safety_ceiling_m(run_m, v, gravity);
-            let slack_m = 1.0e-9 * (run_m + ceiling(speeds[0]).abs() + ceiling(speeds[1]).abs());
-            (-ceiling(speeds[1]) - slack_m, ceiling(speeds[0]) + slack_m)
-        };
-        self.table = OffsetTable::new(spacing, longest_m, bounds, rises_m);
-        let count = |range_m: &f64| self.table.offsets.partition_point(|offset| offset.run_m <= *range_m);
-        self.within_reach = ranges_m.iter().map(count).collect();
-        Ok(())
-    }
-
-    fn spacing(&self) -> Spacing {
-        let map = self.request.dem.georeference();
-        Spacing {
-            dx_m: map.dx_m(),
-            dy_m: map.dy_m(),
-            stride: self.lattice.stride,
-            node_cols: self.lattice.cols,
-            post_cols: self.heights.cols,
-        }
-    }
-
-    /// Lowest and highest node of each block; infinities the wrong way round where it has none.
-    fn block_heights(&self) -> Vec<(f64, f64)> {
-        let (down, across) = self.lattice.blocks();
-        (0..down * across)
-            .map(|block| {
-                let heights = self.lattice.nodes_of(block).map(|node| self.heights.at(self.lattice.post_index(node)));
-                // The minimum and maximum of a number and NaN are the number.
-                heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)))
-            })
-            .collect()
-    }
-
-    /// How many blocks away a range may reach, down and across.
-    pub(super) fn blocks_within(&self, range_m: f64) -> (usize, usize) {
-        let spacing = self.spacing();
-        #[expect(clippy::cast_precision_loss, reason = "strides and blocks are small")]
-        let side = (BLOCK * spacing.stride) as f64;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
-        let count = |step_m: f64| (range_m / (side * step_m)).ceil() as usize;
-        (count(spacing.dy_m), count(spacing.dx_m))
-    }
-
-    /// Of each block, the relief of all blocks within a range of it, m.
-    fn block_reliefs(&self, blocks: &[(f64, f64)], range_m: f64) -> Vec<f64> {
-        let (down, across) = self.lattice.blocks();
-        let (rows, cols) = self.blocks_within(range_m);
-        let joined = |a: (f64, f64), b: (f64, f64)| (a.0.min(b.0), a.1.max(b.1));
-        let none = (f64::INFINITY, f64::NEG_INFINITY);
-        let window = |at: usize, reach: usize, count: usize| at.saturating_sub(reach)..=(at.saturating_add(reach)).min(count - 1);
-        let mut along_rows = vec![none; blocks.len()];
-        for (index, found) in along_rows.iter_mut().enumerate() {
-            let (row, col) = (index / across, index % across);
-            *found = window(col, cols, across).map(|col| blocks[row * across + col]).fold(none, joined);
-        }
-        let of_block = |index: usize| {
-            let (row, col) = (index / across, index % across);
-            let (low, high) = window(row, rows, down).map(|row| along_rows[row * across + col]).fold(none, joined);
-            (high - low).max(0.0)
-        };
-        (0..blocks.len()).map(of_block).collect()
-    }
 }
