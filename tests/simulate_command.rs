@@ -248,6 +248,27 @@ fn narrow_cones_lower_the_spread_of_a_landing_and_raise_the_error_at_the_goal() 
     }
 }
 
+/// On a chain and over a DEM: replanned trials of a scenario that weighs risk reach the goal no less often than the plan flown blindly,
+/// and more often than trials that are replanned without regard to it.
+#[test]
+fn replanning_weighs_risk_as_the_plan_does() {
+    for name in ["rolling_surely.toml", "mars_crater_field_surely.toml"] {
+        let scenario = shipped(name);
+        let flown = |more: &[&str]| {
+            let document = Desk::new().json(&[&["simulate", &scenario, "--trials", "400"], more].concat());
+            let rates: Vec<_> = [0, 1].map(|i| number(&document["success_rate_ci95"][i])).into();
+            (rates[0], rates[1])
+        };
+        let replanned = flown(&["--policy", "replan"]);
+        let blind = flown(&["--policy", "open-loop"]);
+        assert!(replanned.1 >= blind.0 && replanned.0 > 0.9, "{name}: {replanned:?} beside {blind:?}");
+        if name.starts_with("rolling") {
+            let heedless = flown(&["--policy", "replan", "--set", "search.risk=\"ignored\""]);
+            assert!(replanned.0 > heedless.1, "{name}: {replanned:?} beside {heedless:?}");
+        }
+    }
+}
+
 #[test]
 fn a_surer_path_is_flown_more_surely() {
     let scenario = shipped("rolling_surely.toml");

@@ -20,6 +20,7 @@ mod reachable;
 mod refusals;
 mod search;
 mod surest;
+mod surest_to_go;
 mod to_go;
 mod usable;
 

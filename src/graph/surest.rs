@@ -109,9 +109,9 @@ pub fn search_surest(
 
 /// An edge to a node, with its number of hops.
 #[derive(Clone, Copy)]
-struct Step {
-    target: usize,
-    hops: u64,
+pub(super) struct Step {
+    pub(super) target: usize,
+    pub(super) hops: u64,
 }
 
 /// All edges that a path within the budget may take.
@@ -210,7 +210,7 @@ impl Lattice {
 }
 
 /// The edges out of one node.
-fn steps_from(graph: &HopGraph<'_>, node: usize) -> Vec<Step> {
+pub(super) fn steps_from(graph: &HopGraph<'_>, node: usize) -> Vec<Step> {
     let nodes = graph.nodes();
     let takeoff = nodes.station(NodeId(node));
     let step = |target: usize| {
@@ -256,7 +256,12 @@ fn hops_to(goal: usize, steps: &[Vec<Step>]) -> Vec<u64> {
 }
 
 /// The weight of an edge: the sum over its hops.
-fn edge_weight(graph: &HopGraph<'_>, (from, to): (usize, usize), options: &SearchOptions, surety: &SuretyOptions) -> f64 {
+pub(super) fn edge_weight(
+    graph: &HopGraph<'_>,
+    (from, to): (usize, usize),
+    options: &SearchOptions,
+    surety: &SuretyOptions,
+) -> f64 {
     let (test, nodes) = (graph.test(), graph.nodes());
     let (takeoff, landing) = (*nodes.station(NodeId(from)), *nodes.station(NodeId(to)));
     let tolerance_m = surety.goal_tolerance_m.filter(|_| nodes.goal() == NodeId(to));

@@ -2,7 +2,7 @@
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use super::{Cost, Effort, HopGraph, Leg, NodeSet, SearchOptions, nodes::around};
+use super::{Cost, Effort, HopGraph, Leg, NodeSet, SearchOptions, SuretyOptions, nodes::around, surest_to_go::SurestToGo};
 use crate::{
     ballistics::{Arc, HopTest, LineOfSight},
     chain::{Direction, Station},
@@ -21,6 +21,8 @@ pub struct CostToGo {
     costs: Vec<Option<Cost>>,
     /// The nodes from which the goal is reached, the cheapest first.
     in_order: Vec<NodeId>,
+    /// Where surety weighs: how to go on from every node.
+    surest: Option<SurestToGo>,
 }
 
 impl CostToGo {
@@ -34,7 +36,39 @@ impl CostToGo {
         let costs = settled(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split));
         let mut in_order: Vec<NodeId> = (0..costs.len()).map(NodeId).filter(|node| costs[node.index()].is_some()).collect();
         in_order.sort_by_key(|node| (costs[node.index()], *node));
-        Self { nodes, options: options.clone(), costs, in_order }
+        Self { nodes, options: options.clone(), costs, in_order, surest: None }
+    }
+
+    /// The same, and from every node the ways on that make the rest of the journey surest, for a robot that weighs risk as
+    /// [`surest_paths`](super::surest_paths) does: within as many hops more than the fewest from there.
+    ///
+    /// # Complexity
+    /// As [`of`](Self::of), and a risk estimate for every edge that the hops allowed leave of use.
+    pub fn surely(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions, surety: &SuretyOptions) -> Self {
+        let costs = Self::of(test, nodes, options);
+        let surest = SurestToGo::of(&costs.graph(test), &costs.costs, options, surety);
+        Self { surest: Some(surest), ..costs }
+    }
+
+    /// Whether surety weighs.
+    #[inline]
+    pub const fn weighs_surety(&self) -> bool {
+        self.surest.is_some()
+    }
+
+    /// Where to go on from a node, the surest way first: nothing where surety does not weigh, at the goal, and where no way leads on.
+    #[inline]
+    pub fn surest_ways_on(&self, node: NodeId) -> &[NodeId] {
+        self.surest.as_ref().map_or(&[], |surest| surest.ways_on(node))
+    }
+
+    /// The node nearest to a place along the chain.
+    pub fn nearest_node(&self, x_m: f64) -> NodeId {
+        let stations = self.nodes.stations();
+        let after = stations.partition_point(|station| station.point.x_m < x_m).min(stations.len() - 1);
+        let before = after.saturating_sub(1);
+        let away_m = |node: usize| (stations[node].point.x_m - x_m).abs();
+        NodeId(if away_m(before) <= away_m(after) { before } else { after })
     }
 
     /// The graph that the costs are counted in.
@@ -77,7 +111,22 @@ impl CostToGo {
         }
     }
 
-    /// The best way on from any station of the chain, which need not be a node: the first leg, and what the whole journey then costs.
+    /// The best way on from any station of the chain, which need not be a node. `None` where no node that leads to the goal is in reach.
+    ///
+    /// Where surety weighs: of the ways on from the node nearest to it, surest first, the first that is feasible from the station itself
+    /// (risk changes little between a node and the places beside it, feasibility may). Else, and where none of them is: the
+    /// [cheapest](Self::cheapest_leg).
+    pub fn best_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<Leg> {
+        let graph = self.graph(test);
+        let leg_to = |node: &NodeId| {
+            let landing = *self.nodes.station(*node);
+            graph.edge(from, &landing).ok().map(|edge| Leg { takeoff: *from, landing, edge })
+        };
+        let surest = self.surest_ways_on(self.nearest_node(from.point.x_m)).iter().find_map(leg_to);
+        surest.or_else(|| self.cheapest_leg(test, from).map(|(leg, _)| leg))
+    }
+
+    /// The cheapest way on from any station of the chain: the first leg, and what the whole journey then costs.
     /// `None` where no node that leads to the goal is in reach.
     ///
     /// Nodes are tried from the goal's side on: those with the least to go come early, and the others need no hop test. Of two legs that
@@ -85,7 +134,7 @@ impl CostToGo {
     ///
     /// # Complexity
     /// A hop test for each node in reach that could still be better than the best known.
-    pub fn best_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<(Leg, Cost)> {
+    pub fn cheapest_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<(Leg, Cost)> {
         let graph = self.graph(test);
         let stations = self.nodes.stations();
         let reach = OneHop::of(test);
@@ -220,7 +269,7 @@ mod tests {
     }
 
     #[test]
-    fn the_best_leg_is_the_best_of_all_legs() {
+    fn the_cheapest_leg_is_the_cheapest_of_all_legs() {
         let (chain, hopper) = rough_chain();
         let test = HopTest::new(&chain, &hopper, 1.6);
         let station = |x_m| chain.geometry().station(x_m).unwrap();
@@ -240,7 +289,7 @@ mod tests {
                         Some(graph.cost(&from, landing, edge) + to_go.of_node(NodeId(node))?)
                     })
                     .min();
-                assert_eq!(to_go.best_leg(&test, &from).map(|(_, cost)| cost), of_all, "from {from:?}");
+                assert_eq!(to_go.cheapest_leg(&test, &from).map(|(_, cost)| cost), of_all, "from {from:?}");
                 found += u32::from(of_all.is_some());
             }
             assert!(found > 50, "only {found} places lead on");

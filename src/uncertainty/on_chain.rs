@@ -363,7 +363,7 @@ impl Ground for ChainGround<'_> {
 
     fn replanned(&self, believed: &ChainSpot) -> Option<Command<ChainSpot>> {
         let to_go = self.to_go?;
-        let (leg, _) = to_go.best_leg(self.test, &believed.station)?;
+        let leg = to_go.best_leg(self.test, &believed.station)?;
         let direction = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m)?;
         let (arc, landing) = match leg.edge {
             Edge::Hop(loft) => {

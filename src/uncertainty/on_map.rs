@@ -13,7 +13,7 @@ use crate::{
     ballistics::{self, HopTest, LineOfSight, limits},
     chain::{Contact, ContactRule, Direction, Ground as SegmentGround, GroundForm, LineConstraints, settle},
     graph::{Cost, CostToGo},
-    quantity::{ChainPoint, MapPoint, SegmentId},
+    quantity::{ChainPoint, MapPoint, NodeId, SegmentId},
     terrain::{FacetSpan, ProfileFacet, Triangles},
     world::{FrictionCone, Grip, RestSlope, SPEED_TOLERANCE, Surface, tolerant_speed_m_s},
 };
@@ -152,7 +152,7 @@ impl<'a> DemGround<'a> {
     /// The best hop to a node, and what the journey then costs, where it could be better than the best known.
     fn tried(&self, to_go: &CostToGo, from: &MapSpot, node: usize, best: Option<Cost>) -> Option<(Command<MapSpot>, Cost)> {
         let target = self.nodes[node];
-        let rest = to_go.of_node(crate::quantity::NodeId(node))?;
+        let rest = to_go.of_node(NodeId(node))?;
         let away = target.at - from.at;
         let run_m = away.norm();
         let (hopper, g) = (self.test.hopper(), self.test.gravity_m_s2());
@@ -175,6 +175,17 @@ impl<'a> DemGround<'a> {
         let across = arc.horizontal_speed_m_s();
         let launch = Launch { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() };
         Some((Command::new(launch, target), cost))
+    }
+
+    /// Where surety weighs: the surest way on from the node nearest to a place that is feasible from the place itself.
+    fn surest_way_on(&self, to_go: &CostToGo, from: &MapSpot) -> Option<Command<MapSpot>> {
+        if !to_go.weighs_surety() {
+            return None;
+        }
+        let away2 = |node: &MapSpot| (node.at - from.at).norm_squared();
+        let nearest = (0..self.nodes.len()).min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
+        let mut ways_on = to_go.surest_ways_on(NodeId(nearest)).iter();
+        ways_on.find_map(|node| self.tried(to_go, from, node.index(), None)).map(|(command, _)| command)
     }
 
     /// The arc to fly to a place, by every limit along the slice to it, the ground in between last; `None` where there is none.
@@ -372,6 +383,9 @@ impl Ground for DemGround<'_> {
 
     fn replanned(&self, believed: &MapSpot) -> Option<Command<MapSpot>> {
         let to_go = self.to_go?;
+        if let Some(surest) = self.surest_way_on(to_go, believed) {
+            return Some(surest);
+        }
         let mut best: Option<(Command<MapSpot>, Cost)> = None;
         for node in to_go.in_order() {
             let known = best.as_ref().map(|(_, cost)| *cost);

@@ -116,7 +116,8 @@ pub(crate) struct SimulateArgs {
     /// Seed of all draws; a trial's depend on it and on the trial's number alone [default: the scenario's, or 0]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) seed: Option<i64>,
-    /// open-loop: planned commands from wherever it is; replan: the best next hop after every landing [default: the scenario's]
+    /// open-loop: planned commands from wherever it is; replan: the best next hop after every landing, by
+    /// search.risk and search.effort [default: the scenario's]
     #[arg(long, value_name = "POLICY")]
     pub(crate) policy: Option<String>,
     /// Both policies on the same draws

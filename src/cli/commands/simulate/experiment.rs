@@ -170,7 +170,7 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
         return Err(Failure::message("there is no nominal path to compare with"));
     };
     let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
-    let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy))?;
+    let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy), args.common.quiet)?;
     let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
     let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
     for candidate in &surest {

@@ -15,7 +15,7 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::plan::Planned;
+use super::{plan::Planned, search::use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
@@ -65,6 +65,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let plot_map = args.plot_map.as_deref().map(|path| output::begin_picture("--plot-map", path)).transpose()?;
     let to_stdout = args.output.as_deref() == Some(Path::new("-"));
+    use_threads(args.answer.threads)?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, None, false, args.common.quiet)?;
     let Some(path) = &planned.path else {
@@ -75,7 +76,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
         output::warn(args.common.quiet, doubt);
     }
     let policies: &[Policy] = if args.compare { &Policy::ALL } else { std::slice::from_ref(&keys.policy) };
-    let flyer = Flyer::new(&loaded, &test, path, &planned.found, policies)?;
+    let flyer = Flyer::new(&loaded, &test, path, &planned.found, policies, args.common.quiet)?;
     let flown = flyer.fly(policies, &trials_asked(args, &keys), rows, args.common.quiet)?;
     let mut files = Vec::new();
     if let Some(file) = plot {
@@ -138,7 +139,7 @@ pub(super) fn of_run(
         output::warn(quiet, doubt);
     }
     let policies = std::slice::from_ref(&keys.policy);
-    let flyer = Flyer::new(loaded, test, path, &planned.found, policies)?;
+    let flyer = Flyer::new(loaded, test, path, &planned.found, policies, quiet)?;
     let flown = flyer.fly(policies, &TrialOptions { threads, ..keys.options() }, None, quiet)?;
     let [answer, sheet_name, map_name] = RUN_FILES;
     let Some(record) = flown.first().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())) else { return Ok(trials) };

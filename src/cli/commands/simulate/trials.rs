@@ -10,7 +10,7 @@ use chta::{
 };
 
 use super::listen::{Listener, RowFile};
-use crate::cli::{Failure, load::Loaded};
+use crate::cli::{Failure, load::Loaded, progress::Progress};
 
 /// How many trials are kept with all their hops, for the pictures.
 const KEPT_TRIALS: u64 = 300;
@@ -43,6 +43,7 @@ impl<'a> Flyer<'a> {
         path: &'a HopPath,
         found: &graph::Answer,
         policies: &[Policy],
+        quiet: bool,
     ) -> Result<Self, Failure> {
         let terrain = match &loaded.scenario.terrain {
             Some(TerrainSource::Dem { path, .. }) => {
@@ -59,7 +60,13 @@ impl<'a> Flyer<'a> {
             let (start, goal) = loaded.ends()?;
             let nodes =
                 NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::message(error.to_string()))?;
-            Ok(CostToGo::of(test, nodes, &loaded.scenario.search))
+            let options = &loaded.scenario.search;
+            let progress = Progress::new(quiet);
+            progress.say("ranking the ways on from every node".to_owned());
+            Ok(match loaded.scenario.surety() {
+                Some(surety) => CostToGo::surely(test, nodes, options, &surety),
+                None => CostToGo::of(test, nodes, options),
+            })
         });
         Ok(Self { loaded, test, path, terrain, to_go: to_go.transpose()? })
     }
