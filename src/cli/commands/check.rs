@@ -36,9 +36,10 @@ struct PairsAnswer {
 
 /// Checks one pair or many.
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
+    // Before the terrain is read, which starts the threads.
+    use_threads(args.answer.threads)?;
     let loaded =
         load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
-    use_threads(args.answer.threads)?;
     let mut doubts = Vec::new();
     let pairs = match &args.pairs {
         None => vec![loaded.ends()?],

@@ -40,6 +40,8 @@ struct SimulateAnswer {
 
 /// Simulates.
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
+    // Before the terrain is read, which starts the threads.
+    use_threads(args.answer.threads)?;
     let loaded = load_with(
         &args.journey.chain,
         &args.common,
@@ -65,7 +67,6 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let plot_map = args.plot_map.as_deref().map(|path| output::begin_picture("--plot-map", path)).transpose()?;
     let to_stdout = args.output.as_deref() == Some(Path::new("-"));
-    use_threads(args.answer.threads)?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, None, false, args.common.quiet)?;
     let Some(path) = &planned.path else {
