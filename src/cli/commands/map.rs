@@ -22,7 +22,7 @@ use chta::{
     },
 };
 
-use super::{map_profiles, slice::place};
+use super::{captions::conditions, map_profiles, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
@@ -379,20 +379,15 @@ fn picture(
             .collect(),
         paths: maps.paths.iter().flatten().map(places).collect(),
     };
-    let drawn = draw_hop_map(&figure).and_then(|picture| picture.encoded_for(file));
-    drawn.map_err(|error| Failure::message(error.to_string()))
+    output::encoded(draw_hop_map(&figure), file)
 }
 
 /// Numbers under the title of the picture.
 fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> String {
-    let body = scenario.body.name.clone().map(|name| format!("{name}, ")).unwrap_or_default();
     let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
     format!(
-        "{body}gravity {:.4} m/s²; take-off at most {} m/s, landing at most {} m/s; {} of {} posts reachable from ({:.3}, {:.3}) m in at most {} \
-         hops{stride}",
-        scenario.body.gravity_m_s2,
-        scenario.hopper.takeoff_speed_max_m_s,
-        scenario.hopper.landing_speed_max_m_s,
+        "{}; {} of {} posts reachable from ({:.3}, {:.3}) m in at most {} hops{stride}",
+        conditions(scenario),
         answer.reachable_posts,
         answer.posts,
         answer.start_m[0],
