@@ -173,6 +173,16 @@ fn exit_status_is_1_where_a_goal_is_out_of_reach_and_2_with_a_sentence_for_bad_i
 }
 
 #[test]
+fn a_result_repeats_with_its_terrain_and_says_so_without() {
+    let desk = walled();
+    let first = desk.json(&MAP);
+    desk.write("map.json", first.to_string());
+    let again = desk.json(&["map", "walled.asc", "--start", "102,205", "--scenario", "map.json"]);
+    assert_eq!(again, first);
+    desk.refused(&["run", "map.json", "-o", "again"], &["map.json", "no terrain", "chta map", "--scenario map.json"]);
+}
+
+#[test]
 fn what_refuses_start_or_goal_is_said() {
     let desk = walled();
     // On the wall's flank, 30 m up over 1 m.

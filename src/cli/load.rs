@@ -229,7 +229,13 @@ fn settled(target: &Path, source: Source, quiet: bool, ends: EndOptions, prepare
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
         let name = target.display();
-        Failure::message(format!("{name}: found no terrain; add [terrain] with dem, mesh or chain, or give a chain CSV"))
+        // A result of its own terrain names it; those of maps and fans are about all headings from a place.
+        let is_result = target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+        Failure::message(if is_result {
+            format!("{name}: found no terrain, as in results of `chta map` and `chta fan`: repeat those with their DEM and --scenario {name}")
+        } else {
+            format!("{name}: found no terrain; add [terrain] with dem, mesh or chain, or give a chain CSV")
+        })
     })?;
     let chain_name = target.to_string_lossy().into_owned();
     if !is_scenario(target) && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
