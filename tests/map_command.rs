@@ -161,8 +161,8 @@ fn exit_status_is_1_where_a_goal_is_out_of_reach_and_2_with_a_sentence_for_bad_i
     let made = desk.run(&["synth", "--rows", "300", "--cols", "300", "--no-ground", "-o", "wide.asc"]);
     assert_eq!(made.status, 0, "{}", made.stderr);
     let far = ["--set", "hopper.takeoff_speed_max_m_s=40", "--set", "hopper.landing_speed_max_m_s=40", "--scenario", "hopper.toml"];
-    desk.refused(&[&["map", "wide.asc", "--start", "9,9"], &far[..]].concat(), &["wide.asc", "one hop reaches", "give --stride 5"]);
-    let fits = desk.run(&[&["map", "wide.asc", "--start", "9,9", "--stride", "5"], &far[..]].concat());
+    desk.refused(&[&["map", "wide.asc", "--start", "9,9"], &far[..]].concat(), &["wide.asc", "one hop reaches", "give --stride 4"]);
+    let fits = desk.run(&[&["map", "wide.asc", "--start", "9,9", "--stride", "4"], &far[..]].concat());
     assert_eq!(fits.status, 0, "the stride that the sentence names: {}", fits.stderr);
     desk.refused(&[&MAP[..], &["-o", "hops.png"]].concat(), &["-o hops.png", ".tif"]);
     desk.refused(&[&MAP[..], &["--goal", "127,205", "--paths", "-"]].concat(), &["--paths -", ".csv"]);

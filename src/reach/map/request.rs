@@ -55,7 +55,7 @@ pub enum MapError {
     /// A hop that spans too many posts.
     #[error(
         "one hop reaches {range_m:.1} m, {posts:.0} posts, which makes {offsets} landings from every post, more than fit a table of 256 MiB \
-         (some 120 posts): give --stride {stride}, a coarser raster (gdalwarp -tr), or lower speed limits"
+         (some 150 posts): give --stride {stride}, a coarser raster (gdalwarp -tr), or lower speed limits"
     )]
     TooFar {
         /// How far, m.

@@ -238,7 +238,7 @@ impl<'a> PostHops<'a> {
         if lofts.lower - near(lofts.lower) > most || most <= 0.0 || !worth(sight, lofts) {
             return Verdict::No;
         }
-        let walk = Walk { from: takeoff, base_m: takeoff_m - hopper.clearance_m, rise_m, most };
+        let walk = Walk { from: takeoff, turn: offset.turn, base_m: takeoff_m - hopper.clearance_m, rise_m, most };
         let Some(terrain) = self.heights.clearing_loft(walk, self.table.crossings_of(offset)) else { return Verdict::No };
         if self.ground.gaps && offset.departure.along_edge() && !self.has_facets_along(takeoff, offset) {
             return Verdict::No;
@@ -325,7 +325,7 @@ impl<'a> PostHops<'a> {
     fn has_facets_along(&self, takeoff: usize, offset: &Offset) -> bool {
         let posts = self.table.crossings_of(offset).iter();
         posts
-            .map(|crossing| takeoff.wrapping_add_signed(crossing.first as isize))
+            .map(|crossing| takeoff.wrapping_add_signed(offset.turn * crossing.first as isize))
             .all(|post| self.ground.has_any(post, offset.departure))
     }
 }

@@ -14,7 +14,7 @@ use crate::{
 /// What the bounds on reach are widened by against rounding.
 const WIDER: f64 = 1.0 + 1.0e-6;
 
-/// The largest table of crossings, 256 MiB: a reach of some 120 posts.
+/// The largest table of crossings, 256 MiB: a reach of some 150 posts.
 const MOST_CROSSINGS: usize = 1 << 23;
 
 impl PostHops<'_> {
