@@ -178,7 +178,11 @@ fn a_hop_map_that_is_not_true_to_scale_is_mended_about_its_start() {
     // Square posts as fine as the finer of the old ones on the ground: 20 m x cos 40 eastward.
     let dem = read_dem(&folder.path().join("out.tif")).unwrap();
     assert!((dem.georeference().dx_m() - 20.0 * 40.0_f64.to_radians().cos()).abs() < 0.01);
-    assert!((dem.georeference().dx_m() * (dem.cols() as f64 - 1.0) - 1600.0 * 40.0_f64.to_radians().cos()).abs() < 40.0);
+    assert!(
+        (dem.georeference().dx_m() * (f64::from(u32::try_from(dem.cols()).unwrap()) - 1.0) - 1600.0 * 40.0_f64.to_radians().cos())
+            .abs()
+            < 40.0
+    );
 }
 
 #[test]

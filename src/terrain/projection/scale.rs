@@ -185,7 +185,7 @@ pub fn check_map_scale(
 
 /// The corners of a DEM's outermost posts.
 fn corners(dem: &dyn DemFile) -> [MapPoint; 4] {
-    let MapBounds { min, max } = dem.georeference().bounds(dem.rows(), dem.cols());
+    let MapBounds { min, max } = dem.lattice().bounds();
     [min, MapPoint::new(max.x, min.y), max, MapPoint::new(min.x, max.y)]
 }
 
@@ -199,7 +199,7 @@ fn judged(
     mend: &dyn Fn() -> Option<String>,
 ) -> Result<TransectScale, TerrainError> {
     // A line without a direction, or off the map, is the slice's to refuse.
-    if from == to || ![from, to].iter().all(|end| dem.georeference().bounds(dem.rows(), dem.cols()).contains(*end)) {
+    if from == to || ![from, to].iter().all(|end| dem.lattice().bounds().contains(*end)) {
         return Ok(TransectScale::Local);
     }
     let extreme = projection.extreme_scale(from, to).ok_or(TerrainError::OffTheBody { from, to })?;
@@ -227,7 +227,7 @@ fn mend_map(dem: &dyn DemFile, projection: &MapProjection, from: MapPoint, file:
         rounded_m(if known { along.fold(0.0, f64::max).min(most_m) } else { most_m })
     };
     let (west, south, east, north) = (-reach(&|at| -at.x), -reach(&|at| -at.y), reach(&|at| at.x), reach(&|at| at.y));
-    let map = dem.georeference();
+    let map = dem.lattice().georeference();
     let spacing = |heading: Vector2<f64>, step_m: f64| projection.scale(from, heading).map(|scale| step_m / scale);
     let spacing_m =
         rounded_m(spacing(Vector2::new(1.0, 0.0), map.dx_m())?.min(spacing(Vector2::new(0.0, 1.0), map.dy_m())?)).max(1.0e-4);
@@ -254,7 +254,7 @@ fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2]
         return Some(format!("shorter transects, each of {longest_m:.0} m at most: no map is true to scale over a longer one"));
     }
     let (ground_m, map_m) = ((ends[1] - ends[0]).norm(), (to - from).norm());
-    let map = dem.georeference();
+    let map = dem.lattice().georeference();
     // The finer spacing, as long on the new map as it is on the ground.
     let spacing_m = rounded_m(map.dx_m().min(map.dy_m()) * ground_m / map_m);
     let margin_m = 10.0 * spacing_m;

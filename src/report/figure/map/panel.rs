@@ -7,7 +7,7 @@ use super::{
         axes::{BELOW_MM, Panel, left_room_mm},
         bitmap::Pixels,
         keys::{Swatch, rectangle},
-        palette::{BLACK, LEFT_MM, RIGHT_MM, SMALL_MM, TEXT_MM},
+        palette::{BLACK, LEFT_MM, RIGHT_MM, SMALL_MM, TEXT_MM, WHITE},
         sheet::{Anchor, Hang, Label, Pen, Place, Sheet, SheetImage, text_width_mm},
         ticks::Ticks,
     },
@@ -19,7 +19,6 @@ use crate::{
     terrain::{Dem, MapBounds},
 };
 
-const WHITE: RGBColor = RGBColor(255, 255, 255);
 /// The highest map on the page.
 const TALL_MM: f64 = 165.0;
 /// Room above the map for scale bar and north arrow.

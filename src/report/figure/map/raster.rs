@@ -6,6 +6,7 @@ use super::{
     super::{
         bands::mixed,
         bitmap::{Form, Pixels},
+        palette::WHITE,
     },
     hillshade::{LEVEL, brightness},
 };
@@ -98,7 +99,7 @@ impl Pattern {
 
 /// Colour of a class in a legend: lighter than at full strength, as stripes over it and the shading need.
 pub(super) fn tone(colour: RGBColor) -> RGBColor {
-    mixed(colour, RGBColor(255, 255, 255), 0.2)
+    mixed(colour, WHITE, 0.2)
 }
 
 /// Draws a class for each post over the hillshade, white where there is no elevation or no class.
@@ -167,7 +168,7 @@ fn shaded(tone: RGBColor, shade: usize, shades: usize) -> [u8; 3] {
     let RGBColor(r, g, b) = if light <= LEVEL {
         mixed(RGBColor(0, 0, 0), tone, DARKEST + (1.0 - DARKEST) * light / LEVEL)
     } else {
-        mixed(tone, RGBColor(255, 255, 255), 0.6 * (light - LEVEL) / (1.0 - LEVEL))
+        mixed(tone, WHITE, 0.6 * (light - LEVEL) / (1.0 - LEVEL))
     };
     [r, g, b]
 }
