@@ -13,7 +13,8 @@
 /// ```
 pub fn written(number: f64) -> String {
     // Ten significant digits, read back: the shortest text of that number has no more.
-    let rounded = format!("{number:.9e}").parse().unwrap_or(number);
+    // The very largest numbers would round to infinity.
+    let rounded = format!("{number:.9e}").parse().ok().filter(|rounded: &f64| rounded.is_finite()).unwrap_or(number);
     let size = f64::abs(rounded);
     if size == 0.0 {
         "0".to_owned()
@@ -53,7 +54,7 @@ mod tests {
             (f64::MIN_POSITIVE, "2.225073859e-308"),
             (123_456_789_012.0, "123456789000"),
             (1e12, "1e12"),
-            (f64::MAX, "1.797693135e308"),
+            (f64::MAX, "1.7976931348623157e308"),
             (f64::INFINITY, "inf"),
             (f64::NAN, "NaN"),
             (9.999_999_999_9, "10"),
