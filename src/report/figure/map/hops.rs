@@ -55,7 +55,7 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     let map = MapPanel::new(posts.dem, &window, top_mm);
     let end_mm = map.draw(&mut sheet, pixels);
     map.paths(&mut sheet, &figure.paths);
-    map.ends(&mut sheet, Some(figure.start), &figure.goals);
+    map.ends(&mut sheet, Some(figure.start), &figure.goals, &figure.paths);
     let mut entries = counts.keys(&tones);
     let uncounted_start = (counts.start == 0).then_some(figure.start);
     entries.extend(end_keys(uncounted_start, &figure.goals, &figure.paths));
