@@ -13,16 +13,17 @@ use chta::{
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, TotalsRecord,
-        figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
+        figure::{Caption, GoalMark, HopMapFigure, MapPosts, conditions, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
     scenario::{Covers, Extremes, Scenario, constant_gravity_doubts},
     terrain::{
-        Band, Dem, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_scale, read_dem, result_geotiff_bytes,
+        Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_scale, read_dem,
+        result_geotiff_bytes,
     },
 };
 
-use super::{map_profiles, slice::place};
+use super::{map_profiles, plan::ground_words, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
@@ -299,15 +300,17 @@ fn picture(
 ) -> Result<Vec<u8>, Failure> {
     let name = args.dem.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
     let can_return: Option<Vec<bool>> = maps.back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
+    let kept_out = ground.covers.keep_out().map(|zones| kept_out(ground, zones));
     let places = |path: &HopPath| {
         let landings = path.hops.iter().filter_map(|hop| hop.map.map(|map| map.landing));
         std::iter::once(start.at).chain(landings).collect()
     };
     let figure = HopMapFigure {
-        caption: Caption::new(format!("Where in how few hops: {name}"), subtitle(answer, &ground.scenario)),
+        caption: Caption { title: format!("Where in how few hops: {name}"), lines: subtitle(answer, &ground.scenario) },
         posts: MapPosts { dem: &ground.dem, stride: ground.lattice.stride },
         hops: &maps.out.hops,
         can_return: can_return.as_deref(),
+        kept_out: kept_out.as_deref(),
         start: start.at,
         goals: goals
             .iter()
@@ -320,20 +323,22 @@ fn picture(
     drawn.map_err(|error| Failure::message(error.to_string()))
 }
 
-/// Numbers under the title of the picture.
-fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> String {
-    let body = scenario.body.name.clone().map(|name| format!("{name}, ")).unwrap_or_default();
+/// Which posts of the lattice lie in a keep-out zone.
+fn kept_out(ground: &Ground, zones: &KeepOut) -> Vec<bool> {
+    let NodeLattice { rows, cols, stride, .. } = ground.lattice;
+    let nodes = ground.dem.georeference().every(stride);
+    (0..rows * cols).map(|index| zones.keeps_out(nodes.post(index / cols, index % cols))).collect()
+}
+
+/// What the map assumes and what came of it, under the title of the picture.
+fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> Vec<String> {
+    let (hopper, body) = (&scenario.hopper, scenario.body.name.as_deref().unwrap_or_default());
+    let bounds_m_s = (hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s);
+    let assumed = conditions(body, scenario.body.gravity_m_s2, hopper, bounds_m_s, &ground_words(scenario));
     let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
-    format!(
-        "{body}gravity {:.4} m/s²; take-off at most {} m/s, landing at most {} m/s; {} of {} posts reachable from ({:.3}, {:.3}) m in at most {} \
-         hops{stride}",
-        scenario.body.gravity_m_s2,
-        scenario.hopper.takeoff_speed_max_m_s,
-        scenario.hopper.landing_speed_max_m_s,
-        answer.reachable_posts,
-        answer.posts,
-        answer.start_m[0],
-        answer.start_m[1],
-        answer.farthest_hops
-    )
+    let found = format!(
+        "{} of {} posts reachable from ({:.3}, {:.3}) m in at most {} hops{stride}",
+        answer.reachable_posts, answer.posts, answer.start_m[0], answer.start_m[1], answer.farthest_hops
+    );
+    vec![assumed, found]
 }

@@ -49,6 +49,7 @@ pub use chains::{
     draw_compare, draw_proof, draw_trade,
 };
 pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
+pub use heading::conditions;
 pub use map::{
     GoalMark, HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure, MapPosts,
     ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,

@@ -188,7 +188,9 @@ impl MapPanel {
         let texts: Vec<&str> = places.iter().map(|place| place.label.text.as_str()).collect();
         let mut all = taken.clone();
         // Axes and whatever else is written.
-        all.kept.extend(sheet.marks.iter().filter_map(|mark| if let Mark::Label(label) = mark { Some(Bounds::of(label)) } else { None }));
+        all.kept.extend(
+            sheet.marks.iter().filter_map(|mark| if let Mark::Label(label) = mark { Some(Bounds::of(label)) } else { None }),
+        );
         let Some(Candidate { label, ring }) = choose(places, &self.room(&texts), &all) else { return };
         let bounds = Bounds::of(label);
         if let Some(at) = marker.filter(|_| *ring > 0) {
