@@ -271,7 +271,7 @@ fn write_files<'a>(
         files.extend(prj_path.as_deref().zip(output::prj(projection.as_ref().ok())));
     }
     if let Some(file) = &args.profiles {
-        files.push((file, map_profiles::sheet(scenario, &maps.ways)?.into_bytes()));
+        files.push((file, map_profiles::sheet(&name_of(args), scenario, &maps.ways, file)?));
     }
     if let Some(file) = &args.plot {
         files.push((file, picture(args, ground, maps, answer, ends, file)?));
@@ -289,6 +289,11 @@ fn effort_name(effort: Effort) -> String {
     format!("least {} among fewest hops, {}", effort.name(), effort.unit())
 }
 
+/// The name of the terrain in titles.
+fn name_of(args: &MapArgs) -> String {
+    args.dem.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
 /// The map as a picture, in the format of the file's name.
 fn picture(
     args: &MapArgs,
@@ -298,7 +303,7 @@ fn picture(
     (start, goals): (Spot, &[Spot]),
     file: &Path,
 ) -> Result<Vec<u8>, Failure> {
-    let name = args.dem.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = name_of(args);
     let can_return: Option<Vec<bool>> = maps.back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
     let kept_out = ground.covers.keep_out().map(|zones| kept_out(ground, zones));
     let places = |path: &HopPath| {

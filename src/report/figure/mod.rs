@@ -45,8 +45,8 @@ mod samples;
 mod tests;
 
 pub use chains::{
-    CompareFigure, ComparedScenario, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch, TradeAxis, TradeField, TradeFigure,
-    draw_compare, draw_proof, draw_trade,
+    CompareFigure, ComparedScenario, Flight, HopProfile, HopProfilesFigure, ProofClass, ProofFigure, ProofGap, ProofStretch,
+    TradeAxis, TradeField, TradeFigure, draw_compare, draw_hop_profiles, draw_proof, draw_trade,
 };
 pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
 pub use heading::conditions;

@@ -66,7 +66,7 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     entries.extend(end_keys(uncounted_start, &figure.goals, &figure.paths));
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 3.0);
     let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
-    Ok(Picture { sheet, height_mm })
+    Ok(Picture::page(sheet, height_mm))
 }
 
 /// What the raster is; returns where the words end.

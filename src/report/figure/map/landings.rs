@@ -62,7 +62,7 @@ pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, Figure
     for text in words(figure, &map, &window) {
         y = paragraph(&mut sheet, &text, SMALL_MM, false, y);
     }
-    Ok(Picture { sheet, height_mm: y + 2.0 })
+    Ok(Picture::page(sheet, y + 2.0))
 }
 
 /// All that has to be on the map.

@@ -59,7 +59,7 @@ pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureErro
     entries.extend(end_keys(figure.start, &figure.goals, &figure.paths));
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 2.5);
     let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
-    Ok(Picture { sheet, height_mm })
+    Ok(Picture::page(sheet, height_mm))
 }
 
 /// Classes of a value: between round numbers, the first and the last up to the ends.
