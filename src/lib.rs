@@ -88,3 +88,8 @@ pub mod scenario;
 pub mod terrain;
 pub mod uncertainty;
 pub mod world;
+
+// One generator for unit and integration tests.
+#[cfg(test)]
+#[path = "../tests/support/draw.rs"]
+mod draw;

@@ -152,7 +152,8 @@ fn exit_status_is_1_where_a_goal_is_out_of_reach_and_2_with_a_sentence_for_bad_i
     assert!(ran.stdout.contains("not reachable"), "{}", ran.stdout);
     let start = |place: &'static str| ["map", "walled.asc", "--start", place, "--scenario", "hopper.toml"];
     desk.refused(&start("300,205"), &["walled.asc", "--start", "off the map", "x from 100"]);
-    desk.refused(&start("127,200"), &["no elevation", "start where"]);
+    desk.refused(&start("127,200"), &["--start", "no elevation", "choose a start where"]);
+    desk.refused(&[&MAP[..], &["--goal", "127,200"]].concat(), &["--goal", "no elevation", "choose a goal where"]);
     desk.refused(&[&MAP[..], &["--stride", "0"]].concat(), &["--stride", "at least 1"]);
     desk.refused(&[&MAP[..], &["--plot", "map.jpg"]].concat(), &["map.jpg"]);
     desk.refused(&[&MAP[..], &["-o", "missing/hops.tif"]].concat(), &["missing/hops.tif", "cannot be written"]);
@@ -160,8 +161,61 @@ fn exit_status_is_1_where_a_goal_is_out_of_reach_and_2_with_a_sentence_for_bad_i
     let made = desk.run(&["synth", "--rows", "300", "--cols", "300", "--no-ground", "-o", "wide.asc"]);
     assert_eq!(made.status, 0, "{}", made.stderr);
     let far = ["--set", "hopper.takeoff_speed_max_m_s=40", "--set", "hopper.landing_speed_max_m_s=40", "--scenario", "hopper.toml"];
-    desk.refused(&[&["map", "wide.asc", "--start", "9,9"], &far[..]].concat(), &["wide.asc", "one hop reaches", "--stride"]);
+    desk.refused(&[&["map", "wide.asc", "--start", "9,9"], &far[..]].concat(), &["wide.asc", "one hop reaches", "give --stride 4"]);
+    let fits = desk.run(&[&["map", "wide.asc", "--start", "9,9", "--stride", "4"], &far[..]].concat());
+    assert_eq!(fits.status, 0, "the stride that the sentence names: {}", fits.stderr);
+    desk.refused(&[&MAP[..], &["-o", "hops.png"]].concat(), &["-o hops.png", ".tif"]);
+    desk.refused(&[&MAP[..], &["--goal", "127,205", "--paths", "-"]].concat(), &["--paths -", ".csv"]);
+    desk.refused(&[&MAP[..], &["--threads", "100000"]].concat(), &["--threads", "512"]);
+    let merged = [&MAP[..], &["--goal", "114,205", "--stride", "40"]].concat();
+    desk.refused(&merged, &["--stride 40", "(102.000, 205.000) m and (114.000, 205.000) m for the same post"]);
     desk.refused(&[&MAP[..], &["--effort", "cheer"]].concat(), &["--effort", "takeoff-speed"]);
+}
+
+#[test]
+fn a_result_repeats_with_its_terrain_and_says_so_without() {
+    let desk = walled();
+    let first = desk.json(&MAP);
+    desk.write("map.json", first.to_string());
+    let again = desk.json(&["map", "walled.asc", "--start", "102,205", "--scenario", "map.json"]);
+    assert_eq!(again, first);
+    desk.refused(&["run", "map.json", "-o", "again"], &["map.json", "no terrain", "chta map", "--scenario map.json"]);
+}
+
+#[test]
+fn what_refuses_start_or_goal_is_said() {
+    let desk = walled();
+    // On the wall's flank, 30 m up over 1 m.
+    let document = desk.json(&["map", "walled.asc", "--start", "114,205", "--goal", "102,205", "--scenario", "hopper.toml"]);
+    let warnings = document["warnings"].as_array().unwrap();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    let said = warnings[0].as_str().unwrap();
+    for part in ["the start's post (114.000, 205.000) m slopes 88.1 deg", "ends at 31.0 deg", "usable one is (113.000, 205.000) m"]
+    {
+        assert!(said.contains(part), "{said}");
+    }
+    let zone = r#"{"type":"Polygon","coordinates":[[[101,204],[103,204],[103,206],[101,206],[101,204]]]}"#;
+    desk.write("zone.geojson", zone);
+    let ran = desk.run(&[&MAP[..], &["--goal", "120,205", "--set", "surface.keep_out=\"zone.geojson\""]].concat());
+    assert_eq!(ran.status, 1, "{ran:?}");
+    assert!(ran.stderr.contains("the start's post (102.000, 205.000) m lies in a keep-out zone"), "{}", ran.stderr);
+}
+
+/// Whatever the command: never over what it reads, under whatever name, and no two answers into one file.
+#[test]
+fn no_file_is_written_over_another() {
+    let desk = walled();
+    let before = desk.read("walled.asc");
+    fs::hard_link(desk.path().join("walled.asc"), desk.path().join("other.tif")).unwrap();
+    for file in ["other.tif", "./other.tif"] {
+        desk.refused(&[&MAP[..], &["-o", file]].concat(), &[file, "read by this command", "another file"]);
+    }
+    desk.refused(&[&MAP[..], &["-o", "x.tif", "--return", "--return-output", "./x.tif"]].concat(), &["./x.tif", "two answers"]);
+    desk.refused(&["slice", "walled.asc", "--from", "101,205", "--to", "110,205", "-o", "walled.asc"], &["walled.asc", "read by"]);
+    desk.refused(&["plan", "scenario.toml", "--plot", "a.svg", "-o", "a.svg"], &["a.svg", "two answers"]);
+    desk.refused(&["plan", "scenario.toml", "-o", "chain.csv"], &["chain.csv", "read by"]);
+    assert_eq!(desk.read("walled.asc"), before);
+    assert!(!desk.path().join("x.tif").exists() && !desk.path().join("a.svg").exists());
 }
 
 #[test]

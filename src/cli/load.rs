@@ -19,7 +19,7 @@ use chta::{
 use super::{
     Failure,
     args::{CommonArgs, SearchArgs},
-    output,
+    claims, output,
 };
 
 /// A scenario with its chain, and what a result has to say of both.
@@ -229,7 +229,13 @@ fn settled(target: &Path, source: Source, quiet: bool, ends: EndOptions, prepare
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
         let name = target.display();
-        Failure::message(format!("{name}: found no terrain; add [terrain] with dem, mesh or chain, or give a chain CSV"))
+        // A result of its own terrain names it; those of maps and fans are about all headings from a place.
+        let is_result = target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
+        Failure::message(if is_result {
+            format!("{name}: found no terrain, as in results of `chta map` and `chta fan`: repeat those with their DEM and --scenario {name}")
+        } else {
+            format!("{name}: found no terrain; add [terrain] with dem, mesh or chain, or give a chain CSV")
+        })
     })?;
     let chain_name = target.to_string_lossy().into_owned();
     if !is_scenario(target) && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
@@ -288,6 +294,7 @@ pub(crate) fn load_bare(common: &CommonArgs, search: &SearchArgs) -> Result<Bare
 
 /// A file that was read, for a result.
 pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
+    claims::reads(path);
     Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
 }
 
@@ -325,6 +332,7 @@ pub(crate) fn is_scenario(path: &Path) -> bool {
 /// Reads the keys of a scenario (TOML) or of a result (JSON).
 fn read_source(path: &Path) -> Result<Source, Failure> {
     const LARGEST: u64 = 1 << 24;
+    claims::reads(path);
     let name = path.display().to_string();
     let unread =
         |reason: String, help: &str| Failure::message(format!("{name}: cannot be read ({reason}), expected a scenario: {help}"));
@@ -355,12 +363,21 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
 /// Options win over the scenario: `--set` first, named options after it.
 fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) {
     let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, accept_map_scale, quiet: _ } = common;
+    // What an option stands in for is forgotten in the file, not in what the same command line sets.
+    if body.is_some() {
+        entries.forget("body", "gravity_m_s2");
+        entries.forget("body", "radius_m");
+    }
+    if search.is_some_and(|search| search.points_per_segment.is_some()) {
+        entries.forget("search", "node_spacing_max_m");
+    }
+    if search.is_some_and(|search| search.node_spacing_max_m.is_some()) {
+        entries.forget("search", "points_per_segment");
+    }
     for assignment in set {
         entries.set(assignment);
     }
     if let Some(name) = body {
-        entries.forget("body", "gravity_m_s2");
-        entries.forget("body", "radius_m");
         entries.set_by_option("--body", "body", "name", name.clone().into());
     }
     if let Some(gravity) = gravity_m_s2 {
@@ -379,12 +396,10 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
     }
     let Some(SearchArgs { points_per_segment, node_spacing_max_m, effort }) = search else { return };
     if let Some(points) = points_per_segment {
-        entries.forget("search", "node_spacing_max_m");
         let value = points.parse::<i64>().map_or_else(|_| toml::Value::from(points.clone()), toml::Value::from);
         entries.set_by_option("--points-per-segment", "search", "points_per_segment", value);
     }
     if let Some(spacing) = node_spacing_max_m {
-        entries.forget("search", "points_per_segment");
         entries.set_by_option("--node-spacing-max-m", "search", "node_spacing_max_m", (*spacing).into());
     }
     if let Some(effort) = effort {

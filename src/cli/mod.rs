@@ -1,6 +1,7 @@
 //! The command's own side: arguments, one file per command, what is said on the terminal.
 
 mod args;
+mod claims;
 mod commands;
 mod failure;
 mod help;

@@ -7,11 +7,14 @@ use std::{
 };
 
 use chta::{
-    report::{WholeFile, figure::FigureError},
+    report::{
+        WholeFile,
+        figure::{FigureError, Picture, PictureFormat},
+    },
     terrain::MapProjection,
 };
 
-use super::Failure;
+use super::{Failure, claims};
 
 /// Writes data to standard output. A reader who closed the pipe is no error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
@@ -34,7 +37,9 @@ pub(crate) struct Pending<'a> {
 impl<'a> Pending<'a> {
     /// Opens it.
     pub(crate) fn begin(path: &'a Path) -> Result<Self, Failure> {
-        Ok(Self { path, file: WholeFile::begin(path).map_err(|error| unwritable(path, &error))? })
+        let file = WholeFile::begin(path).map_err(|error| unwritable(path, &error))?;
+        claims::writes(path)?;
+        Ok(Self { path, file })
     }
 
     /// Where it will be.
@@ -53,14 +58,15 @@ impl<'a> Pending<'a> {
     }
 }
 
-/// Opens a picture before the work begins, where its name asks for a format that pictures have.
-pub(crate) fn begin_picture(path: &Path) -> Result<Pending<'_>, Failure> {
-    let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-    if !matches!(ending.as_deref(), Some("svg" | "png")) {
-        let file = path.display().to_string();
-        return Err(Failure::message(FigureError::UnknownFormat { file }.to_string()));
-    }
+/// Opens the picture of an option before the work begins, where its name asks for a format that pictures have.
+pub(crate) fn begin_picture<'a>(option: &str, path: &'a Path) -> Result<Pending<'a>, Failure> {
+    PictureFormat::of(path).map_err(|error| Failure::message(format!("{option}: {error}")))?;
     Pending::begin(path)
+}
+
+/// A drawn picture as the bytes of its file, in the format of the file's name.
+pub(crate) fn encoded(drawn: Result<Picture, FigureError>, file: &Path) -> Result<Vec<u8>, Failure> {
+    drawn.and_then(|picture| picture.encoded_for(file)).map_err(|error| Failure::message(error.to_string()))
 }
 
 /// A table's format by its file name.

@@ -208,3 +208,5 @@ impl<R: Rounding> Neg for Interval<R> {
 
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+pub(crate) use tests::Inwards;

@@ -11,6 +11,8 @@ mod slope;
 
 pub use angle::{Angle, AngleInterval};
 pub use ids::{NodeId, SegmentId, VertexId};
+#[cfg(test)]
+pub(crate) use interval::Inwards;
 pub use interval::{Interval, Outwards, Rounding};
 pub use points::{ChainPoint, MapPoint};
 pub use quadratic::{MonicQuadratic, Roots};

@@ -1,5 +1,6 @@
 //! The scenario: TOML as typed, then validated, and the pipeline it wires from terrain to answer.
 
+mod alike;
 mod catalogue;
 mod document;
 mod entries;
@@ -9,6 +10,7 @@ mod read;
 mod trade;
 mod trials;
 
+pub use alike::ask_the_same;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};

@@ -187,8 +187,7 @@ impl Cut {
     /// As [`open_dem`], [`MapPlace::on_map`], [`check_scale`] and [`slice_legs`].
     pub fn of_dem(file: &Path, [from, to]: [&MapPlace; 2], via: &[MapPlace], accept_map_scale: bool) -> Result<Self, TerrainError> {
         let dem = open_dem(file)?;
-        let map = dem.georeference();
-        let bounds = map.bounds(dem.rows(), dem.cols());
+        let (map, bounds) = (dem.lattice().georeference(), dem.lattice().bounds());
         let projection = map.projection();
         let known = projection.as_ref();
         let (from, to) = (from.on_map("from", known, bounds)?, to.on_map("to", known, bounds)?);

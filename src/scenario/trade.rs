@@ -5,7 +5,7 @@ use std::path::Path;
 use rayon::prelude::*;
 
 use super::{
-    Entries, Key, Kind, Prepared, Scenario, ScenarioProblem, Survey,
+    Entries, Key, Kind, Prepared, Scenario, ScenarioProblem, Survey, ask_the_same,
     entries::{fits, nearest_key},
 };
 use crate::{
@@ -17,7 +17,6 @@ use crate::{
         search,
     },
     report::{TradeAnswer, TradeRow, TradeVariation},
-    world::Hopper,
 };
 
 /// A key of the scenario and the values that it takes in turn.
@@ -370,11 +369,11 @@ impl<'a> Trade<'a> {
                     (_, 0) => vec![value, other],
                     _ => vec![other, value],
                 };
-                let now = self.prepared(&values)?;
-                if before.as_ref().is_some_and(|before| differ(before, &now)) {
+                let (scenario, prepared) = self.prepared(&values)?;
+                if before.as_ref().is_some_and(|(s, p)| !ask_the_same((s, p), (&scenario, &prepared))) {
                     return Ok(());
                 }
-                before = Some(now);
+                before = Some((scenario, prepared));
             }
         }
         let (from, to) = (own.values[0], own.values[own.values.len() - 1]);
@@ -429,24 +428,6 @@ fn varied(entries: &Entries, variations: &[Variation], values: &[f64]) -> Entrie
 /// Problems in one sentence.
 fn sentences(problems: &[ScenarioProblem]) -> String {
     problems.iter().map(|problem| format!("{}; {}", problem.message, problem.help)).collect::<Vec<_>>().join("; ")
-}
-
-/// Whether two fields ask anything different: of the ground, the machine, the ends or the points.
-fn differ((a, on_a): &(Scenario, Prepared), (b, on_b): &(Scenario, Prepared)) -> bool {
-    // Speeds count as the segments grant them; mass and rest time weigh nothing.
-    let machine = |hopper: &Hopper| Hopper {
-        takeoff_speed_max_m_s: 0.0,
-        landing_speed_max_m_s: 0.0,
-        mass_kg: None,
-        rest_time_s: None,
-        ..*hopper
-    };
-    machine(&a.hopper) != machine(&b.hopper)
-        || a.body.gravity_m_s2 != b.body.gravity_m_s2
-        || a.search.spacing != b.search.spacing
-        || (on_a.start, on_a.goal) != (on_b.start, on_b.goal)
-        || on_a.chain.segments() != on_b.chain.segments()
-        || on_a.chain.geometry().vertices() != on_b.chain.geometry().vertices()
 }
 
 #[cfg(test)]

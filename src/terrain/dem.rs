@@ -1,6 +1,6 @@
 //! The elevation raster in memory.
 
-use super::{GeoReference, MapBounds, TerrainError};
+use super::{GeoReference, MapBounds, PostLattice, TerrainError, lattice::check_sides};
 
 /// No elevation lies further than this from the datum, m: larger numbers are unlabelled no-data (a billion metres is beyond any
 /// body; -2147483648 and 3.4e38, the usual marks, are beyond a billion).
@@ -11,10 +11,8 @@ pub const ELEVATION_LIMIT_M: f64 = 1.0e9;
 /// Kept as 32-bit floats where each elevation is one exactly, as 64-bit floats otherwise, so nothing is ever rounded.
 #[derive(Clone, Debug)]
 pub struct Dem {
-    rows: usize,
-    cols: usize,
+    lattice: PostLattice,
     posts: Posts,
-    georeference: GeoReference,
 }
 
 /// The elevations of a raster as they are kept, row after row from the north; NaN is a gap.
@@ -99,16 +97,15 @@ impl Dem {
                 posts.len()
             )));
         }
-        check_map(rows, cols, &georeference)?;
-        let dem = Self { rows, cols, posts, georeference };
+        let dem = Self { lattice: PostLattice::new(rows, cols, georeference)?, posts };
         dem.check_elevations()?;
         Ok(dem)
     }
 
     fn check_elevations(&self) -> Result<(), TerrainError> {
         let any = match &self.posts {
-            Posts::Single(values) => any_elevation(values, self.cols)?,
-            Posts::Double(values) => any_elevation(values, self.cols)?,
+            Posts::Single(values) => any_elevation(values, self.cols())?,
+            Posts::Double(values) => any_elevation(values, self.cols())?,
         };
         if any {
             return Ok(());
@@ -120,29 +117,34 @@ impl Dem {
         )))
     }
 
+    /// Where all posts lie.
+    pub fn lattice(&self) -> &PostLattice {
+        &self.lattice
+    }
+
     /// Number of rows, north to south.
     pub fn rows(&self) -> usize {
-        self.rows
+        self.lattice.rows()
     }
 
     /// Number of columns, west to east.
     pub fn cols(&self) -> usize {
-        self.cols
+        self.lattice.cols()
     }
 
     /// Where the posts lie.
     pub fn georeference(&self) -> &GeoReference {
-        &self.georeference
+        self.lattice.georeference()
     }
 
     /// The rectangle of the outermost posts.
     pub fn bounds(&self) -> MapBounds {
-        self.georeference.bounds(self.rows, self.cols)
+        self.lattice.bounds()
     }
 
     /// Elevation of a post, m; `None` where there is none, and outside the raster.
     pub fn elevation(&self, row: usize, col: usize) -> Option<f64> {
-        if row < self.rows && col < self.cols { self.posts.at(row * self.cols + col) } else { None }
+        self.posts.at(self.lattice.index(row, col)?)
     }
 
     /// All elevations, row after row from the north, `None` for gaps.
@@ -183,30 +185,6 @@ impl Dem {
     }
 }
 
-/// A square of posts is the least ground there is.
-fn check_sides(rows: usize, cols: usize) -> Result<(), TerrainError> {
-    if rows >= 2 && cols >= 2 {
-        return Ok(());
-    }
-    Err(TerrainError::InvalidDem(format!("the raster has {rows} rows and {cols} columns, expected at least 2 of each")))
-}
-
-/// Neighbouring posts must differ in their map coordinates: 1 mm posts 10^14 m from the origin do not.
-pub(super) fn check_map(rows: usize, cols: usize, map: &GeoReference) -> Result<(), TerrainError> {
-    check_sides(rows, cols)?;
-    let bounds = map.bounds(rows, cols);
-    let MapBounds { min, max } = bounds;
-    let near = |edge: f64, step: f64| (edge + step) - edge > 0.5 * step && (edge - step) - edge < -0.5 * step;
-    let (dx_m, dy_m) = (map.dx_m(), map.dy_m());
-    let told_apart = near(min.x, dx_m) && near(max.x, dx_m) && near(min.y, dy_m) && near(max.y, dy_m);
-    if told_apart && [min.x, min.y, max.x, max.y].iter().all(|value| value.is_finite()) {
-        return Ok(());
-    }
-    Err(TerrainError::InvalidDem(format!(
-        "the map has {bounds} with posts every {dx_m} m and {dy_m} m, expected coordinates that tell neighbouring posts apart"
-    )))
-}
-
 /// Whether there is any elevation; refuses what is none.
 fn any_elevation<T: Copy + Into<f64>>(posts: &[T], cols: usize) -> Result<bool, TerrainError> {
     let mut any = false;
@@ -235,10 +213,7 @@ pub(super) fn check_elevation(z_m: f64, row: usize, col: usize) -> Result<(), Te
 /// Same posts at the same places: gaps equal gaps, and how the numbers are kept does not matter.
 impl PartialEq for Dem {
     fn eq(&self, other: &Self) -> bool {
-        self.rows == other.rows
-            && self.cols == other.cols
-            && self.georeference == other.georeference
-            && self.elevations().eq(other.elevations())
+        self.lattice == other.lattice && self.elevations().eq(other.elevations())
     }
 }
 

@@ -8,10 +8,10 @@ use std::path::Path;
 use gdal::raster::{GdalDataType, ResampleAlg};
 use gdal::{Dataset, DriverManager};
 
-use super::dem::check_map;
 use super::georeference::refuse_degrees;
 use super::geotiff::{Placed, place_by_tags};
-use super::{Dem, DemFile, DemReader, GeoReference, TerrainError, Window};
+use super::window::turn_round;
+use super::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
 
 /// GDAL as a format.
 pub(super) struct GdalReader;
@@ -34,9 +34,9 @@ impl DemReader for GdalReader {
 
     fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
         let open = OpenRaster::open(path)?;
-        let OpenRaster { rows, cols, .. } = open;
+        let (rows, cols) = (open.lattice.rows(), open.lattice.cols());
         let posts = open.window(Window { first_row: 0, first_col: 0, rows, cols })?;
-        let dem = Dem::new(rows, cols, posts, open.georeference)?;
+        let dem = Dem::new(rows, cols, posts, open.lattice.georeference().clone())?;
         if !open.states_metres {
             refuse_degrees(&dem)?;
         }
@@ -45,7 +45,7 @@ impl DemReader for GdalReader {
 
     fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
         let open = OpenRaster::open(path)?;
-        if !open.states_metres && open.georeference.may_be_degrees(open.rows, open.cols) {
+        if !open.states_metres && open.lattice.bounds().may_be_degrees() {
             return Ok(Box::new(self.read_path(path)?));
         }
         Ok(Box::new(open))
@@ -54,11 +54,9 @@ impl DemReader for GdalReader {
 
 struct OpenRaster {
     dataset: Dataset,
-    georeference: GeoReference,
+    lattice: PostLattice,
     south_up: bool,
     states_metres: bool,
-    rows: usize,
-    cols: usize,
     scale: f64,
     offset: f64,
     /// 1, or 1000 where the band says that it is in km.
@@ -97,8 +95,8 @@ impl OpenRaster {
         };
         let (scale, offset) = (band.scale().unwrap_or(1.0), band.offset().unwrap_or(0.0));
         let Placed { georeference, south_up, states_metres } = place_by_tags(skeleton(&dataset)?, rows)?;
-        check_map(rows, cols, &georeference)?;
-        Ok(Self { dataset, georeference, south_up, states_metres, rows, cols, scale, offset, metres_per_unit })
+        let lattice = PostLattice::new(rows, cols, georeference)?;
+        Ok(Self { dataset, lattice, south_up, states_metres, scale, offset, metres_per_unit })
     }
 }
 
@@ -130,21 +128,12 @@ fn unsuitable(found: String, expected: &'static str, mend: &str) -> TerrainError
 }
 
 impl DemFile for OpenRaster {
-    fn rows(&self) -> usize {
-        self.rows
-    }
-
-    fn cols(&self) -> usize {
-        self.cols
-    }
-
-    fn georeference(&self) -> &GeoReference {
-        &self.georeference
+    fn lattice(&self) -> &PostLattice {
+        &self.lattice
     }
 
     fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError> {
-        let Window { first_col, rows, cols, .. } = window;
-        let first_row = if self.south_up { self.rows - window.first_row - rows } else { window.first_row };
+        let Window { first_row, first_col, rows, cols } = window.stored(self.lattice.rows(), self.south_up);
         let place = |value: usize| isize::try_from(value).unwrap_or(isize::MAX);
         let read = || -> gdal::errors::Result<(Vec<f64>, Vec<u8>)> {
             let band = self.dataset.rasterband(1)?;
@@ -158,10 +147,7 @@ impl DemFile for OpenRaster {
         for (post, shown) in posts.iter_mut().zip(shown) {
             *post = if shown == 0 { f64::NAN } else { (*post * self.scale + self.offset) * self.metres_per_unit };
         }
-        if self.south_up {
-            posts.reverse();
-            posts.chunks_mut(cols).for_each(<[f64]>::reverse);
-        }
+        turn_round(&mut posts, cols, self.south_up);
         Ok(posts)
     }
 }

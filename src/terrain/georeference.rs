@@ -65,6 +65,12 @@ impl MapBounds {
     pub fn contains(&self, at: MapPoint) -> bool {
         (self.min.x..=self.max.x).contains(&at.x) && (self.min.y..=self.max.y).contains(&at.y)
     }
+
+    /// Whether coordinates of degrees could be these.
+    pub(super) fn may_be_degrees(&self) -> bool {
+        let Self { min, max } = self;
+        min.x >= -180.0 && max.x <= 360.0 && min.y >= -90.0 && max.y <= 90.0
+    }
 }
 
 impl fmt::Display for MapBounds {
@@ -155,14 +161,6 @@ impl GeoReference {
     }
 }
 
-impl GeoReference {
-    /// Whether coordinates of degrees could be these.
-    pub(super) fn may_be_degrees(&self, rows: usize, cols: usize) -> bool {
-        let MapBounds { min, max } = self.bounds(rows, cols);
-        min.x >= -180.0 && max.x <= 360.0 && min.y >= -90.0 && max.y <= 90.0
-    }
-}
-
 /// How many times its own map's width a terrain would have to rise before the map is taken to be in degrees.
 ///
 /// The steepest landscapes rise about once their width; a map in degrees is some 100 000 times too narrow (Earth, Mars; 30 000 on the
@@ -171,7 +169,7 @@ const RELIEF_TO_WIDTH_OF_DEGREES: f64 = 5.0;
 
 /// Refuses a raster without stated units whose numbers only make sense in degrees.
 pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
-    if !dem.georeference().may_be_degrees(dem.rows(), dem.cols()) {
+    if !dem.bounds().may_be_degrees() {
         return Ok(());
     }
     let MapBounds { min, max } = dem.bounds();

@@ -25,6 +25,7 @@ mod format;
 mod gdal;
 mod georeference;
 mod geotiff;
+mod lattice;
 mod mesh;
 mod pds3;
 mod profile;
@@ -42,6 +43,7 @@ pub use error::{AsciiProblem, TerrainError};
 pub use format::{DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{Band, ResultBands, geotiff_bytes, read_geotiff_bytes, result_geotiff_bytes, write_geotiff};
+pub use lattice::PostLattice;
 pub use mesh::{
     Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
     slice_mesh,

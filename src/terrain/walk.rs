@@ -354,10 +354,12 @@ fn post(heights: &impl Fn(usize, usize) -> f64, col: isize, row: isize) -> f64 {
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_precision_loss, reason = "small counts")]
 mod tests {
     use super::*;
-    use crate::terrain::{FractalGround, GeoReference, SyntheticTerrain, slice, synthesise};
+    use crate::{
+        draw::Draw,
+        terrain::{FractalGround, GeoReference, SyntheticTerrain, slice, synthesise},
+    };
 
     fn rough() -> Dem {
         let ground = Some(FractalGround { hurst_exponent: 0.6, rms_deviation_m: 0.4, baseline_m: 1.0 });
@@ -393,14 +395,10 @@ mod tests {
     #[test]
     fn walks_meet_the_ground_that_slices_cut() {
         let dem = rough();
-        let mut seed = 1u64;
-        let mut unit = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (seed >> 11) as f64 / (1u64 << 53) as f64
-        };
+        let mut draw = Draw::seeded(1);
         for _ in 0..400 {
             let mut place = |coarse: bool| {
-                let (x, y) = (39.0 * unit(), 29.0 * unit());
+                let (x, y) = (39.0 * draw.unit(), 29.0 * draw.unit());
                 if coarse { MapPoint::new(x.round(), y.round()) } else { MapPoint::new(x, y) }
             };
             for coarse in [false, true] {

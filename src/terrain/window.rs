@@ -1,6 +1,6 @@
 //! Rasters read where they are needed.
 
-use super::{Dem, GeoReference, MapBounds, TerrainError};
+use super::{Dem, PostLattice, TerrainError};
 
 /// A rectangle of posts, counted from the north-west.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,18 +21,26 @@ impl Window {
         let (row, col) = (row.checked_sub(self.first_row)?, col.checked_sub(self.first_col)?);
         (row < self.rows && col < self.cols).then_some(row * self.cols + col)
     }
+
+    /// Where these posts stand in a file of so many rows, which may begin with the southernmost.
+    pub(super) const fn stored(self, of_rows: usize, south_up: bool) -> Self {
+        let first_row = if south_up { of_rows - self.first_row - self.rows } else { self.first_row };
+        Self { first_row, ..self }
+    }
+}
+
+/// Puts the northernmost row first where the southernmost is stored first.
+pub(super) fn turn_round<T>(posts: &mut [T], cols: usize, south_up: bool) {
+    if south_up {
+        posts.reverse();
+        posts.chunks_mut(cols).for_each(<[T]>::reverse);
+    }
 }
 
 /// A DEM that is open: its place is known, its posts are read when asked for.
 pub trait DemFile {
-    /// Number of rows, north to south.
-    fn rows(&self) -> usize;
-
-    /// Number of columns, west to east.
-    fn cols(&self) -> usize;
-
-    /// Where the posts lie.
-    fn georeference(&self) -> &GeoReference;
+    /// Where all posts lie.
+    fn lattice(&self) -> &PostLattice;
 
     /// The elevations of a window inside the raster, row after row from the north, NaN for gaps.
     ///
@@ -42,16 +50,8 @@ pub trait DemFile {
 }
 
 impl DemFile for Dem {
-    fn rows(&self) -> usize {
-        self.rows()
-    }
-
-    fn cols(&self) -> usize {
-        self.cols()
-    }
-
-    fn georeference(&self) -> &GeoReference {
-        self.georeference()
+    fn lattice(&self) -> &PostLattice {
+        self.lattice()
     }
 
     fn window(&self, Window { first_row, first_col, rows, cols }: Window) -> Result<Vec<f64>, TerrainError> {
@@ -62,27 +62,13 @@ impl DemFile for Dem {
 
 /// What a slice asks of a terrain.
 pub(super) trait Posts {
-    fn rows(&self) -> usize;
-    fn cols(&self) -> usize;
-    fn georeference(&self) -> &GeoReference;
+    fn lattice(&self) -> &PostLattice;
     fn elevation(&self, row: usize, col: usize) -> Option<f64>;
-
-    fn bounds(&self) -> MapBounds {
-        self.georeference().bounds(self.rows(), self.cols())
-    }
 }
 
 impl Posts for Dem {
-    fn rows(&self) -> usize {
-        self.rows()
-    }
-
-    fn cols(&self) -> usize {
-        self.cols()
-    }
-
-    fn georeference(&self) -> &GeoReference {
-        self.georeference()
+    fn lattice(&self) -> &PostLattice {
+        self.lattice()
     }
 
     fn elevation(&self, row: usize, col: usize) -> Option<f64> {
@@ -113,16 +99,8 @@ impl<'a> Part<'a> {
 }
 
 impl Posts for Part<'_> {
-    fn rows(&self) -> usize {
-        self.file.rows()
-    }
-
-    fn cols(&self) -> usize {
-        self.file.cols()
-    }
-
-    fn georeference(&self) -> &GeoReference {
-        self.file.georeference()
+    fn lattice(&self) -> &PostLattice {
+        self.file.lattice()
     }
 
     fn elevation(&self, row: usize, col: usize) -> Option<f64> {

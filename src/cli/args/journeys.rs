@@ -18,7 +18,7 @@ pub(crate) struct RunArgs {
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
     /// Threads to work with; the answer does not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = super::thread_count)]
     pub(crate) threads: usize,
     /// How the answer is written to standard output
     #[arg(long, value_enum, default_value = "text")]

@@ -17,7 +17,10 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::search::{Searched, use_threads};
+use super::{
+    captions::{SpeedLimit, title},
+    search::{Searched, use_threads},
+};
 use crate::cli::{
     Answer, Failure,
     args::{CheckArgs, Format},
@@ -33,9 +36,10 @@ struct PairsAnswer {
 
 /// Checks one pair or many.
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
+    // Before the terrain is read, which starts the threads.
+    use_threads(args.answer.threads)?;
     let loaded =
         load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
-    use_threads(args.answer.threads)?;
     let mut doubts = Vec::new();
     let pairs = match &args.pairs {
         None => vec![loaded.ends()?],
@@ -46,9 +50,9 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
         }
     };
     // Opened before the work, which may take long.
-    let plot = args.plot.as_deref().map(|path| Ok::<_, Failure>((output::begin_picture(path)?, path))).transpose()?;
+    let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let (answers, pictures) = answers(&loaded, &pairs, args, &mut doubts)?;
-    output::finish(plot.into_iter().zip(pictures).map(|((file, _), picture)| (file, picture)).collect())?;
+    output::finish(plot.into_iter().zip(pictures).collect())?;
     for doubt in &doubts {
         output::warn(args.common.quiet, doubt);
     }
@@ -110,16 +114,12 @@ fn picture(
     file: &Path,
 ) -> Result<Vec<u8>, Failure> {
     let scenario = &loaded.scenario;
-    let title = scenario.title.as_ref().map_or("What is proved".to_owned(), |title| format!("What is proved: {title}"));
     let mut line = vec![format!("from x = {:.3} m to x = {:.3} m", ends.0.point.x_m, ends.1.point.x_m)];
     line.extend(scenario.body.name.clone());
-    let limits =
-        [("take-off at most", scenario.hopper.takeoff_speed_max_m_s), ("landing at most", scenario.hopper.landing_speed_max_m_s)];
-    line.extend(limits.iter().filter(|(_, v)| v.is_finite()).map(|(words, v)| format!("{words} {v} m/s")));
-    let caption = Caption::new(title, line.join(", "));
+    line.extend(SpeedLimit::stated(&scenario.hopper).map(|limit| limit.to_string()));
+    let caption = Caption::new(title("What is proved", scenario), line.join(", "));
     let figure = ProofFigure::of(caption, loaded.prepared.chain.geometry(), ends, bounds, path);
-    let encoded = draw_proof(&figure).and_then(|picture| picture.encoded_for(file));
-    encoded.map_err(|error| Failure::message(error.to_string()))
+    output::encoded(draw_proof(&figure), file)
 }
 
 /// The answers as text or as one document.

@@ -33,7 +33,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
     // Opened before the work, which may take long.
     let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
-    let plot = args.plot.as_deref().map(|path| Ok::<_, Failure>((output::begin_picture(path)?, path))).transpose()?;
+    let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     use_threads(args.answer.threads)?;
     let compared: Vec<_> = args.scenarios.iter().map(|file| Compared::new(file, args)).collect::<Result<_, _>>()?;
     let answer = CompareAnswer { compared: compared.iter().map(|one| one.row.clone()).collect() };
@@ -42,9 +42,9 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
         let json = table == Some(TableFormat::Json);
         files.push((file, if json { document(&compared, &answer)?.into_bytes() } else { csv(&answer)? }));
     }
-    if let Some((file, path)) = plot {
-        let encoded = draw_compare(&figure(&compared)).and_then(|picture| picture.encoded_for(path));
-        files.push((file, encoded.map_err(|error| Failure::message(error.to_string()))?));
+    if let Some(file) = plot {
+        let encoded = output::encoded(draw_compare(&figure(&compared)), file.path())?;
+        files.push((file, encoded));
     }
     output::finish(files)?;
     let text = match args.answer.format {

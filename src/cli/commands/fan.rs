@@ -11,7 +11,7 @@ use chta::{
 };
 use nalgebra::Vector2;
 
-use super::slice::place;
+use super::{captions::conditions, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, FanArgs, Format},
@@ -104,15 +104,11 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
 /// Numbers under the title of the picture.
 fn subtitle(answer: &FanAnswer, scenario: &chta::scenario::Scenario) -> String {
     let [x, y] = answer.from_m;
-    let body = scenario.body.name.clone().map(|name| format!("{name}, ")).unwrap_or_default();
     format!(
-        "{} headings from ({x}, {y}) m, at most {} m; {body}gravity {:.4} m/s²; take-off at most {} m/s, landing at most {} m/s; {} headings \
-         lead to their far end",
+        "{} headings from ({x}, {y}) m, at most {} m; {}; {} headings lead to their far end",
         answer.headings,
         answer.length_m,
-        scenario.body.gravity_m_s2,
-        scenario.hopper.takeoff_speed_max_m_s,
-        scenario.hopper.landing_speed_max_m_s,
+        conditions(scenario),
         answer.reached_ends()
     )
 }

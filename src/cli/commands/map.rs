@@ -13,7 +13,7 @@ use chta::{
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, TotalsRecord,
-        figure::{Caption, GoalMark, HopMapFigure, MapPosts, conditions, draw_hop_map},
+        figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
     scenario::{Covers, Extremes, Scenario, constant_gravity_doubts},
@@ -23,7 +23,7 @@ use chta::{
     },
 };
 
-use super::{map_profiles, plan::ground_words, slice::place};
+use super::{captions::conditions, map_profiles, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
@@ -60,11 +60,14 @@ struct Maps {
     /// Of each goal, where it is reachable.
     ways: Vec<Option<Vec<MapHop>>>,
     paths: Vec<Option<HopPath>>,
+    /// Of start and goals.
+    warnings: Vec<String>,
 }
 
 /// Makes the map.
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let (ground, start, goals) = prepared(args)?;
+    named_well(args)?;
     let begun = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;
     let maps = mapped(args, &ground, start, &goals)?;
     let effort = args.effort.is_some().then_some(ground.scenario.search.effort);
@@ -79,6 +82,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     });
     answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&ground, &maps, goal, index)).collect();
     let mut warnings = ground.warnings.clone();
+    warnings.extend(maps.warnings.iter().cloned());
     let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
     warnings.extend(constant_gravity_doubts(&ground.scenario.body, Extremes::of(&hops)));
     for warning in &warnings {
@@ -123,14 +127,19 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     let start = spot("start", place("start", *start, *start_lonlat)?)?;
     let places = goal.iter().copied().map(MapPlace::Metres).chain(goal_lonlat.iter().copied().map(MapPlace::LonLat));
     let goals = places.map(|place| spot("goal", place)).collect::<Result<Vec<_>, _>>()?;
-    let Post { row, col } = lattice.post(start.post);
-    if dem.elevation(row, col).is_none() {
-        let message = format!(
-            "--start: the nearest post, ({:.3}, {:.3}) m, has no elevation; start where the DEM has data",
-            start.at.x, start.at.y
-        );
-        return Err(failed(&std::io::Error::other(message)));
+    let ends = std::iter::once(("start", &start)).chain(goals.iter().map(|goal| ("goal", goal)));
+    for (which, spot) in ends.clone() {
+        let Post { row, col } = lattice.post(spot.post);
+        if dem.elevation(row, col).is_none() {
+            let message = format!(
+                "--{which}: the nearest post, ({:.3}, {:.3}) m, has no elevation; choose a {which} where the DEM has data",
+                spot.at.x, spot.at.y
+            );
+            return Err(failed(&std::io::Error::other(message)));
+        }
     }
+    told_apart(&dem, *stride, &ends.map(|(_, spot)| *spot).collect::<Vec<_>>())
+        .map_err(|message| failed(&std::io::Error::other(message)))?;
     let mut warnings = Vec::new();
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     let bounds = dem.bounds();
@@ -143,6 +152,39 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
         inputs.push(input_file(&base.join(cover))?);
     }
     Ok((Ground { dem, projection, scenario, covers, lattice, document, inputs, warnings }, start, goals))
+}
+
+/// Whether places that lie at different posts are different nodes: a stride that lays them together would answer for one place.
+fn told_apart(dem: &Dem, stride: u32, spots: &[Spot]) -> Result<(), String> {
+    let every_post = NodeLattice::new(dem, 1);
+    for (i, spot) in spots.iter().enumerate() {
+        let post = |spot: &Spot| every_post.nearest(dem.georeference(), spot.asked);
+        if let Some(other) = spots[..i].iter().find(|other| other.post == spot.post && post(other) != post(spot)) {
+            return Err(format!(
+                "--stride {stride} takes ({:.3}, {:.3}) m and ({:.3}, {:.3}) m for the same post, ({:.3}, {:.3}) m: give a smaller --stride",
+                other.asked.x, other.asked.y, spot.asked.x, spot.asked.y, spot.at.x, spot.at.y
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// What to say of start and goals whose ground takes no hop and gives none.
+fn refusals(hops: &PostHops<'_>, start: Spot, goals: &[Spot]) -> Vec<String> {
+    let ends = std::iter::once(("start", start)).chain(goals.iter().map(|goal| ("goal", *goal)));
+    ends.filter_map(|(which, spot)| {
+        let refusal = hops.refusal(spot.post)?;
+        let nearest = hops.nearest_usable(spot.post).map_or_else(
+            || "no post of the DEM is usable".to_owned(),
+            |node| {
+                let post = hops.lattice().post(node);
+                let at = hops.request().dem.georeference().post(post.row, post.col);
+                format!("the nearest usable one is ({:.3}, {:.3}) m", at.x, at.y)
+            },
+        );
+        Some(format!("the {which}'s post ({:.3}, {:.3}) m {refusal}: no hop begins or ends there; {nearest}", spot.at.x, spot.at.y))
+    })
+    .collect()
 }
 
 /// Searches, with progress on a terminal.
@@ -184,7 +226,8 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
         };
         let ways = goals.iter().map(way).collect::<Result<Vec<_>, _>>()?;
         let paths = ways.iter().map(|way| way.as_ref().map(|way| joined(&hops, way))).collect();
-        Ok(Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, ways, paths })
+        let warnings = refusals(&hops, start, goals);
+        Ok(Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, ways, paths, warnings })
     });
     maps.map_err(|error| failed(&error))
 }
@@ -200,6 +243,26 @@ fn share_words(what: &str, done: usize, all: usize, elapsed_s: f64) -> String {
     let share = done as f64 / all.max(1) as f64;
     let left_s = elapsed_s * (1.0 - share) / share.max(1.0e-3);
     format!("{what} {:.0} % done, at most {left_s:.0} s left", 100.0 * share)
+}
+
+/// Whether files are named for what they will hold: a raster that no program opens by its name, or an answer in a file called `-`, is
+/// no one's wish.
+fn named_well(args: &MapArgs) -> Result<(), Failure> {
+    let MapArgs { output, effort_output, return_output, mobility, paths, geojson, .. } = args;
+    let rasters =
+        [("-o", output), ("--effort-output", effort_output), ("--return-output", return_output), ("--mobility", mobility)];
+    let rasters = rasters.map(|(option, file)| (option, file, &["tif", "tiff"][..]));
+    let others = [("--paths", paths, &["csv"][..]), ("--geojson", geojson, &["geojson", "json"][..])];
+    for (option, file, endings) in rasters.into_iter().chain(others) {
+        let Some(file) = file else { continue };
+        let ending = file.extension().unwrap_or_default();
+        let special = file.exists() && !file.is_file();
+        if !special && !endings.iter().any(|one| ending.eq_ignore_ascii_case(one)) {
+            let message = format!("{option} {}: expected a file that ends in .{}", file.display(), endings.join(" or ."));
+            return Err(Failure::message(message));
+        }
+    }
+    Ok(())
 }
 
 /// All files that the options name.
@@ -324,8 +387,7 @@ fn picture(
             .collect(),
         paths: maps.paths.iter().flatten().map(places).collect(),
     };
-    let drawn = draw_hop_map(&figure).and_then(|picture| picture.encoded_for(file));
-    drawn.map_err(|error| Failure::message(error.to_string()))
+    output::encoded(draw_hop_map(&figure), file)
 }
 
 /// Which posts of the lattice lie in a keep-out zone.
@@ -337,13 +399,10 @@ fn kept_out(ground: &Ground, zones: &KeepOut) -> Vec<bool> {
 
 /// What the map assumes and what came of it, under the title of the picture.
 fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> Vec<String> {
-    let (hopper, body) = (&scenario.hopper, scenario.body.name.as_deref().unwrap_or_default());
-    let bounds_m_s = (hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s);
-    let assumed = conditions(body, scenario.body.gravity_m_s2, hopper, bounds_m_s, &ground_words(scenario));
     let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
     let found = format!(
         "{} of {} posts reachable from ({:.3}, {:.3}) m in at most {} hops{stride}",
         answer.reachable_posts, answer.posts, answer.start_m[0], answer.start_m[1], answer.farthest_hops
     );
-    vec![assumed, found]
+    vec![conditions(scenario), found]
 }

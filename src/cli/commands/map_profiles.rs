@@ -5,12 +5,12 @@ use std::path::Path;
 use chta::{
     path::execute,
     reach::map::MapHop,
-    report::figure::{Caption, HopProfile, HopProfilesFigure, conditions, draw_hop_profiles},
+    report::figure::{Caption, HopProfile, HopProfilesFigure, draw_hop_profiles},
     scenario::Scenario,
 };
 
-use super::plan::ground_words;
-use crate::cli::Failure;
+use super::captions::conditions;
+use crate::cli::{Failure, output};
 
 /// The sheet of all hops to all goals, encoded as the file's name asks.
 pub(super) fn sheet(name: &str, scenario: &Scenario, ways: &[Option<Vec<MapHop>>], file: &Path) -> Result<Vec<u8>, Failure> {
@@ -22,18 +22,14 @@ pub(super) fn sheet(name: &str, scenario: &Scenario, ways: &[Option<Vec<MapHop>>
             hops.extend(profile(scenario, hop, name));
         }
     }
-    let (hopper, body) = (&scenario.hopper, &scenario.body);
-    let bounds_m_s = (hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s);
-    let words =
-        conditions(body.name.as_deref().unwrap_or_default(), body.gravity_m_s2, hopper, bounds_m_s, &ground_words(scenario));
     let told = match hops.len() {
         0 => "no goal is reached by a hop".to_owned(),
         1 => "1 hop".to_owned(),
         many => format!("{many} hops, row by row"),
     };
-    let caption = Caption { title: format!("Hop by hop: {name}"), lines: vec![words, told] };
-    let drawn = draw_hop_profiles(&HopProfilesFigure { caption, clearance_m: hopper.clearance_m, hops });
-    drawn.and_then(|picture| picture.encoded_for(file)).map_err(|error| Failure::message(error.to_string()))
+    let caption = Caption { title: format!("Hop by hop: {name}"), lines: vec![conditions(scenario), told] };
+    let figure = HopProfilesFigure { caption, clearance_m: scenario.hopper.clearance_m, hops };
+    output::encoded(draw_hop_profiles(&figure), file)
 }
 
 /// One hop over its slice, flown again for the place where it passes lowest.

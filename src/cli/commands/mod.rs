@@ -1,6 +1,7 @@
 //! One file per command.
 
 pub(super) mod bodies;
+mod captions;
 pub(super) mod check;
 pub(super) mod compare;
 pub(super) mod fan;

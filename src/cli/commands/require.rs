@@ -7,7 +7,7 @@ use chta::{
     },
     path::generate,
     report::{Document, GapRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord, require_text},
-    scenario::{Key, Kind},
+    scenario::{Key, Kind, ask_the_same},
 };
 
 use super::search::{proved, use_threads};
@@ -71,7 +71,8 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
              leave that limit away",
         ));
     }
-    if has_no_effect(&first, &with_value(args, weakest, true)?) {
+    let last = with_value(args, weakest, true)?;
+    if ask_the_same((&first.scenario, &first.prepared), (&last.scenario, &last.prepared)) {
         return Err(Failure::message(format!(
             "--vary {}: no value from {from} to {to} changes anything here: the chain's own limits or friction rule, or the range lies \
              beyond them",
@@ -204,17 +205,6 @@ fn with_value(args: &RequireArgs, value: f64, quiet: bool) -> Result<Loaded, Fai
     common.set.push(format!("{}={value:?}", args.vary));
     common.quiet = quiet;
     load(&args.journey.chain, &common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))
-}
-
-/// Whether two values of the key ask the same of every hop.
-fn has_no_effect(first: &Loaded, second: &Loaded) -> bool {
-    let asked_of_machine = |loaded: &Loaded| {
-        let hopper = &loaded.scenario.hopper;
-        let angles = (hopper.takeoff_angle_min, hopper.takeoff_angle_max);
-        let flight = (hopper.apex_height_max_m, hopper.flight_time_max_s);
-        (hopper.clearance_m, angles, flight, loaded.scenario.body.gravity_m_s2)
-    };
-    asked_of_machine(first) == asked_of_machine(second) && first.prepared.chain.segments() == second.prepared.chain.segments()
 }
 
 /// The answer as text or as one document.

@@ -10,7 +10,7 @@ use chta::{
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
-use crate::cli::{Answer, Failure, args::SliceArgs, load::scenario_alone, output};
+use crate::cli::{Answer, Failure, args::SliceArgs, claims, load::scenario_alone, output};
 
 /// Slices a DEM or a mesh.
 pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
@@ -26,6 +26,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     let failed = |error: &dyn std::error::Error| Failure::about(terrain, &error.to_string());
     let accepted = args.accept_map_scale || given.as_ref().is_some_and(|(scenario, _)| scenario.accept_map_scale);
     let cut = cut(args, accepted)?;
+    claims::reads(terrain);
     for warning in &cut.warnings {
         output::warn(*quiet, warning);
     }

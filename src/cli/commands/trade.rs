@@ -13,6 +13,7 @@ use chta::{
     scenario::{Trade, TradeError, Variation},
 };
 
+use super::captions::{SpeedLimit, title};
 use crate::cli::{
     Answer, Failure,
     args::{Format, TradeArgs},
@@ -34,7 +35,7 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
     // Opened before the work, which may take long.
     let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
-    let plot = args.plot.as_deref().map(|path| Ok::<_, Failure>((output::begin_picture(path)?, path))).transpose()?;
+    let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let ends = EndOptions::of_path(args.journey.start, args.journey.goal);
     let ToVary { first, survey, entries, base } = load_to_vary(&args.journey.chain, &args.common, &args.search, ends, &variations)?;
     first.ends()?;
@@ -49,9 +50,9 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
         let bytes = if table == Some(TableFormat::Json) { document(&first, &answer)?.into_bytes() } else { csv(&answer)? };
         files.push((file, bytes));
     }
-    if let Some((file, path)) = plot {
-        let encoded = picture(&answer, &first).and_then(|picture| picture.encoded_for(path));
-        files.push((file, encoded.map_err(|error| Failure::message(error.to_string()))?));
+    if let Some(file) = plot {
+        let encoded = output::encoded(picture(&answer, &first), file.path())?;
+        files.push((file, encoded));
     }
     output::finish(files)?;
     let text = match args.answer.format {
@@ -86,11 +87,6 @@ fn picture(answer: &TradeAnswer, first: &Loaded) -> Result<Picture, chta::report
         line.extend(station.filter(|_| !varied(key)).map(|station| format!("{end} x = {:.3} m", station.point.x_m)));
     }
     line.extend(scenario.body.name.clone().filter(|_| !varied("body.gravity_m_s2")));
-    let limits = [
-        ("hopper.takeoff_speed_max_m_s", "take-off at most", scenario.hopper.takeoff_speed_max_m_s),
-        ("hopper.landing_speed_max_m_s", "landing at most", scenario.hopper.landing_speed_max_m_s),
-    ];
-    line.extend(limits.iter().filter(|(key, _, v)| !varied(key) && v.is_finite()).map(|(_, words, v)| format!("{words} {v} m/s")));
-    let title = scenario.title.as_ref().map_or("Fewest hops".to_owned(), |title| format!("Fewest hops: {title}"));
-    draw_trade(&answer.figure(title, line.join(", ")))
+    line.extend(SpeedLimit::stated(&scenario.hopper).filter(|limit| !varied(limit.key)).map(|limit| limit.to_string()));
+    draw_trade(&answer.figure(title("Fewest hops", scenario), line.join(", ")))
 }

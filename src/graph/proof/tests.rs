@@ -4,25 +4,13 @@ use super::{bounds::bounds_with, *};
 use crate::{
     ballistics::HopTest,
     chain::{ConstrainedChain, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
+    draw::Draw,
     graph::{PointSpacing, SearchOptions, search},
-    quantity::{AngleInterval, ChainPoint, VertexId},
+    quantity::{AngleInterval, ChainPoint, Inwards, VertexId},
     world::{Hopper, RestSlope, Surface},
 };
 
 /// Ends rounded inwards, and no tolerance, which would hide it.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Inwards;
-
-impl Rounding for Inwards {
-    fn down(rounded: f64) -> f64 {
-        rounded.next_up()
-    }
-
-    fn up(rounded: f64) -> f64 {
-        rounded.next_down()
-    }
-}
-
 impl Faults for Inwards {
     type Rounding = Self;
     const SLACK: f64 = 0.0;
@@ -54,33 +42,6 @@ struct ForgetsReverse;
 impl Faults for ForgetsReverse {
     type Rounding = Outwards;
     const FORGETS_REVERSE: bool = true;
-}
-
-/// `SplitMix64`.
-pub(super) struct Draw(u64);
-
-impl Draw {
-    pub(super) const fn seeded(seed: u64) -> Self {
-        Self(seed)
-    }
-
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    #[expect(clippy::cast_precision_loss, reason = "53 bits")]
-    pub(super) fn uniform(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * ((self.next() >> 11) as f64 / (1u64 << 53) as f64)
-    }
-
-    #[expect(clippy::cast_possible_truncation, reason = "small counts")]
-    pub(super) fn below(&mut self, count: usize) -> usize {
-        (self.next() % count as u64) as usize
-    }
 }
 
 /// A chain of some segments with constraints of their own in either direction, its hopper and its gravity.

@@ -4,10 +4,11 @@ use num_rational::BigRational;
 use num_traits::{FromPrimitive, Signed};
 
 use super::*;
+use crate::draw::Draw;
 
 /// The mutant: inwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Inwards;
+pub(crate) struct Inwards;
 
 impl Rounding for Inwards {
     fn down(rounded: f64) -> f64 {
@@ -43,15 +44,15 @@ fn holds<R: Rounding>(interval: Interval<R>, number: &BigRational) -> bool {
         && (interval.upper == f64::INFINITY || *number <= exact(interval.upper))
 }
 
-/// Numbers of either sign over forty powers of two, `SplitMix64`.
-fn numbers(count: u64) -> impl Iterator<Item = f64> {
-    (1..=count).map(|i| {
-        let mut z = i.wrapping_mul(0x9E37_79B9_7F4A_7C15);
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z ^= z >> 27;
-        let exponent = 1003 + (z >> 58) % 40;
-        f64::from_bits((z & 0x800F_FFFF_FFFF_FFFF) | (exponent << 52))
+/// Numbers of either sign over forty powers of two.
+fn numbers(count: usize) -> impl Iterator<Item = f64> {
+    let mut draw = Draw::seeded(0);
+    std::iter::repeat_with(move || {
+        let bits = draw.bits();
+        let exponent = 1003 + (bits >> 58) % 40;
+        f64::from_bits((bits & 0x800F_FFFF_FFFF_FFFF) | (exponent << 52))
     })
+    .take(count)
 }
 
 /// How many results of all operations lie outside their interval.

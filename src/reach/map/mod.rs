@@ -19,6 +19,6 @@ mod search;
 pub use lattice::{NodeLattice, Post};
 pub use mobility::{Mobility, SECTORS, mobility};
 pub use paths::{MapHop, joined, way_hops};
-pub use post_hops::{GroundOf, Lofts, PostHops};
+pub use post_hops::{GroundOf, Lofts, PostHops, PostRefusal};
 pub use request::{MapError, MapRequest};
 pub use search::{FrontProgress, HopMap, NO_GROUND, Search, UNREACHED, Way, search};

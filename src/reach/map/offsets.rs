@@ -11,7 +11,7 @@
 //!    ###| \ | \ B
 //! ```
 
-use std::ops::Range;
+use std::{collections::HashMap, ops::Range};
 
 use nalgebra::Vector2;
 
@@ -42,8 +42,10 @@ pub(super) struct Offset {
     pub(super) run_m: f64,
     /// East and north, of length 1.
     pub(super) heading: Vector2<f64>,
-    /// Its part of the table of crossings.
-    pub(super) crossings: Range<usize>,
+    /// Its part of the table of crossings, which it shares with the way back: that meets the same places turned about the take-off.
+    crossings: Range<usize>,
+    /// 1 where steps lead as the table has them, -1 where they are turned.
+    pub(super) turn: isize,
     /// The facets of the take-off and of the landing.
     pub(super) departure: Facets,
     pub(super) arrival: Facets,
@@ -142,6 +144,8 @@ impl OffsetTable {
             let lines = cols.unsigned_abs() as usize + rows.unsigned_abs() as usize + cols.abs_diff(rows) as usize;
             size.crossings += lines * spacing.stride;
         }
+        // Every offset shares its crossings with the one that leads back.
+        size.crossings /= 2;
         size
     }
 
@@ -151,22 +155,35 @@ impl OffsetTable {
             Self::within(spacing, range_m, bounds).map(|(cols, rows)| (spacing.metres(cols, rows).norm(), rows, cols)).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
         let mut table = Self::default();
+        let mut shared = HashMap::new();
         for (run_m, rows, cols) in found {
             let allowed = rises_m(run_m);
             if allowed.0 > allowed.1 {
                 continue;
             }
-            table.push(spacing, (cols, rows), run_m, allowed);
+            table.push(spacing, (cols, rows), run_m, allowed, &mut shared);
         }
         table
     }
 
-    fn push(&mut self, spacing: Spacing, (cols, rows): (i32, i32), run_m: f64, rises_m: (f64, f64)) {
+    fn push(
+        &mut self,
+        spacing: Spacing,
+        (cols, rows): (i32, i32),
+        run_m: f64,
+        rises_m: (f64, f64),
+        shared: &mut HashMap<(i32, i32), Range<usize>>,
+    ) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "strides are below the raster's sides")]
         let stride = spacing.stride as i32;
         let (post_cols, post_rows) = (cols * stride, rows * stride);
-        let first = self.crossings.len();
-        self.crossings.extend(crossings(post_cols, post_rows, run_m, spacing.post_cols));
+        let turn = if (rows, cols) < (0, 0) { -1 } else { 1 };
+        let table = &mut self.crossings;
+        let own = shared.entry((cols * turn, rows * turn)).or_insert_with(|| {
+            let first = table.len();
+            table.extend(crossings(post_cols * turn, post_rows * turn, run_m, spacing.post_cols));
+            first..table.len()
+        });
         let step = |cols: i32, rows: i32, width: usize| rows as isize * width.cast_signed() + cols as isize;
         self.node_steps.push(step(cols, rows, spacing.node_cols));
         self.offsets.push(Offset {
@@ -175,14 +192,15 @@ impl OffsetTable {
             post_step: step(post_cols, post_rows, spacing.post_cols),
             run_m,
             heading: spacing.metres(cols, rows) / run_m,
-            crossings: first..self.crossings.len(),
+            crossings: own.clone(),
+            turn: turn as isize,
             departure: facets_towards(cols, rows),
             arrival: facets_towards(-cols, -rows),
             rises_m,
         });
     }
 
-    /// The offset's vertices.
+    /// The offset's vertices, in the order of travel; their steps are to be turned as the offset says.
     pub(super) fn crossings_of(&self, offset: &Offset) -> &[Crossing] {
         &self.crossings[offset.crossings.clone()]
     }
@@ -228,7 +246,7 @@ mod tests {
             assert_eq!(inner.len(), found.len(), "offset ({}, {})", offset.cols, offset.rows);
             for (point, crossing) in inner.iter().zip(found) {
                 let start = middle * SIDE + middle;
-                let height = |step: i32| heights[start.wrapping_add_signed(step as isize)];
+                let height = |step: i32| heights[start.wrapping_add_signed(offset.turn * step as isize)];
                 let z_m = height(crossing.first) + crossing.share * (height(crossing.second) - height(crossing.first));
                 assert!((z_m - point.z_m).abs() < 1e-9, "offset ({}, {})", offset.cols, offset.rows);
                 assert!((crossing.along * offset.run_m - point.x_m).abs() < 1e-9);

@@ -54,8 +54,8 @@ pub enum MapError {
     },
     /// A hop that spans too many posts.
     #[error(
-        "one hop reaches {range_m:.1} m, {posts:.0} posts, which makes {offsets} landings from every post, more than fit a table: lower the \
-         speed limits, give a greater --stride, or a coarser raster (gdalwarp -tr)"
+        "one hop reaches {range_m:.1} m, {posts:.0} posts, which makes {offsets} landings from every post, more than fit a table of 256 MiB \
+         (some 150 posts): give --stride {stride}, a coarser raster (gdalwarp -tr), or lower speed limits"
     )]
     TooFar {
         /// How far, m.
@@ -64,6 +64,8 @@ pub enum MapError {
         posts: f64,
         /// How many landings there are.
         offsets: usize,
+        /// The least stride at which they fit.
+        stride: usize,
     },
     /// More hops than the map's numbers hold.
     #[error("a post is more than {most} hops away, expected fewer: give a greater --stride or higher speed limits")]

@@ -22,6 +22,8 @@ pub(super) struct Walk {
     pub(super) from: usize,
     /// The take-off's height less the clearance, m.
     pub(super) base_m: f64,
+    /// 1 or -1: how the crossings' steps are turned.
+    pub(super) turn: isize,
     /// To the landing, m.
     pub(super) rise_m: f64,
     /// A loft that no vertex may ask more than.
@@ -84,7 +86,7 @@ impl<'a> Heights<'a> {
 fn clearing_loft<T: Copy + Into<f64>>(heights: &[T], walk: Walk, crossings: &[Crossing]) -> Option<f64> {
     let mut least = f64::NEG_INFINITY;
     for crossing in crossings {
-        let at = |step: i32| -> f64 { heights[walk.from.wrapping_add_signed(step as isize)].into() };
+        let at = |step: i32| -> f64 { heights[walk.from.wrapping_add_signed(walk.turn * step as isize)].into() };
         let first = at(crossing.first);
         let z_m = first + crossing.share * (at(crossing.second) - first);
         let loft = (z_m - (walk.base_m + walk.rise_m * crossing.along)) * crossing.stiffness;

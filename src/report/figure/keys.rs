@@ -75,7 +75,9 @@ fn sample(sheet: &mut Sheet, swatch: Swatch, (x, y): Place) {
         stripes(sheet, (x, top), (end, bottom), 1.2, pen);
         for mark in &mut sheet.marks[from..] {
             if let Mark::Line { points, .. } = mark {
-                points.iter_mut().for_each(|point| point.1 = top + bottom - point.1);
+                for point in points {
+                    point.1 = top + bottom - point.1;
+                }
             }
         }
     }

@@ -54,7 +54,7 @@ pub use map::{
     GoalMark, HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure, MapPosts,
     ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
 };
-pub use picture::{Caption, Picture};
+pub use picture::{Caption, Picture, PictureFormat};
 pub use rose::draw_rose;
 pub use scale::Scale;
 pub use spans::{Closure, GroundSpan, GroundUse};

@@ -55,6 +55,30 @@ pub(super) fn paragraph(sheet: &mut Sheet, text: &str, size_mm: f64, bold: bool,
     y
 }
 
+/// A format of pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PictureFormat {
+    /// Lines and letters.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl PictureFormat {
+    /// The format that a file name asks for: `.svg` or `.png`, in small or capital letters.
+    ///
+    /// # Errors
+    /// [`FigureError::UnknownFormat`] for any other ending.
+    pub fn of(file: &Path) -> Result<Self, FigureError> {
+        let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+        match ending.as_deref() {
+            Some("svg") => Ok(Self::Svg),
+            Some("png") => Ok(Self::Png),
+            _ => Err(FigureError::UnknownFormat { file: file.display().to_string() }),
+        }
+    }
+}
+
 /// A picture that is drawn but not yet written.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
@@ -89,13 +113,11 @@ impl Picture {
     /// The picture in the format that a file name asks for: `.svg` or `.png`, in small or capital letters.
     ///
     /// # Errors
-    /// [`FigureError::UnknownFormat`] for any other ending; as [`Picture::to_svg`] and [`Picture::to_png`].
+    /// As [`PictureFormat::of`], [`Picture::to_svg`] and [`Picture::to_png`].
     pub fn encoded_for(&self, file: &Path) -> Result<Vec<u8>, FigureError> {
-        let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
-        match ending.as_deref() {
-            Some("svg") => Ok(self.to_svg()?.into_bytes()),
-            Some("png") => self.to_png(),
-            _ => Err(FigureError::UnknownFormat { file: file.display().to_string() }),
+        match PictureFormat::of(file)? {
+            PictureFormat::Svg => Ok(self.to_svg()?.into_bytes()),
+            PictureFormat::Png => self.to_png(),
         }
     }
 }

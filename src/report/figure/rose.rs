@@ -6,7 +6,7 @@ use super::{
     FigureError,
     bands::HopClasses,
     keys::{self, Swatch},
-    palette::{AXIS, BLACK, PAGE_WIDTH_MM, RIGHT_MM, SMALL_MM, TEXT_MM, TITLE_MM, VERMILION},
+    palette::{AXIS, BLACK, PAGE_WIDTH_MM, RIGHT_MM, SMALL_MM, TEXT_MM, TITLE_MM, VERMILION, WHITE},
     sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm, wrapped},
     ticks::Ticks,
 };
@@ -119,7 +119,7 @@ impl<'a> Rose<'a> {
             let text = format!("{} m", ticks.text(distance_m));
             let (half_mm, tall_mm) = (0.5 * text_width_mm(&text, SMALL_MM) + 0.4, 0.6 * SMALL_MM);
             let (left, right, top, bottom) = (at.0 - half_mm, at.0 + half_mm, at.1 - tall_mm, at.1 + tall_mm);
-            sheet.area(vec![(left, top), (right, top), (right, bottom), (left, bottom)], RGBColor(255, 255, 255), 0.8);
+            sheet.area(vec![(left, top), (right, top), (right, bottom), (left, bottom)], WHITE, 0.8);
             sheet.label(Label::new(text, at, SMALL_MM).hung(Anchor::Middle, Hang::Through));
         }
         for (name, heading_deg) in [("E", 90.0), ("S", 180.0), ("W", 270.0)] {

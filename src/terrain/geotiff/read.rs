@@ -10,9 +10,9 @@ use super::keys::{GeoTags, Placement};
 use super::metadata::{NoData, Scaling, read_scaling};
 use super::samples::{Decoder, Elevations, largest_unpacked};
 use super::tag;
-use crate::terrain::dem::check_map;
 use crate::terrain::georeference::refuse_degrees;
-use crate::terrain::{Dem, DemFile, DemReader, GeoReference, TerrainError, Window};
+use crate::terrain::window::turn_round;
+use crate::terrain::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
 
 /// GeoTIFF as a format.
 pub(in crate::terrain) struct GeoTiffReader;
@@ -105,22 +105,12 @@ fn judge(file: &TiffFile, images: &Images<'_>) -> Result<(Decoder, Placement), T
     Ok((Decoder::new(file, images, no_data, scaling)?, placement))
 }
 
-/// The last row first.
-fn turn_round<T>(posts: &mut [T], cols: usize, south_up: bool) {
-    if south_up {
-        posts.reverse();
-        posts.chunks_mut(cols).for_each(<[T]>::reverse);
-    }
-}
-
 /// A GeoTIFF whose tiles or strips are decoded when they are asked for.
 struct OpenGeoTiff {
     file: TiffFile,
     decoder: Decoder,
-    georeference: GeoReference,
+    lattice: PostLattice,
     south_up: bool,
-    rows: usize,
-    cols: usize,
 }
 
 /// Decoded blocks that are kept, in bytes and in blocks: a transect goes back to none but those beside it.
@@ -136,18 +126,17 @@ fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
         let (_, Placement { georeference, states_metres, .. }) = judge(&file, &images)?;
         let (rows, cols) = (images.layout.height, images.layout.width);
         // Degrees show only in the relief of the whole.
-        if !states_metres && georeference.may_be_degrees(rows, cols) {
+        if !states_metres && georeference.bounds(rows, cols).may_be_degrees() {
             return Ok(Box::new(read_tiff(&file)?));
         }
-        check_map(rows, cols, &georeference)?;
         block_bytes(&images)
     };
     options.block_cache_bytes = block.saturating_mul(KEPT_BLOCKS).max(KEPT_BYTES);
     let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
     let images = Images::of(&file)?;
     let (decoder, Placement { georeference, south_up, .. }) = judge(&file, &images)?;
-    let (rows, cols) = (images.layout.height, images.layout.width);
-    Ok(Box::new(OpenGeoTiff { file, decoder, georeference, south_up, rows, cols }))
+    let lattice = PostLattice::new(images.layout.height, images.layout.width, georeference)?;
+    Ok(Box::new(OpenGeoTiff { file, decoder, lattice, south_up }))
 }
 
 /// Bytes of a decoded tile or strip.
@@ -162,22 +151,14 @@ fn block_bytes(images: &Images<'_>) -> usize {
 }
 
 impl DemFile for OpenGeoTiff {
-    fn rows(&self) -> usize {
-        self.rows
-    }
-
-    fn cols(&self) -> usize {
-        self.cols
-    }
-
-    fn georeference(&self) -> &GeoReference {
-        &self.georeference
+    fn lattice(&self) -> &PostLattice {
+        &self.lattice
     }
 
     fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError> {
-        let first_row = if self.south_up { self.rows - window.first_row - window.rows } else { window.first_row };
         let images = Images::of(&self.file)?;
-        let mut posts = self.decoder.window(&self.file, &images, Window { first_row, ..window })?.into_double();
+        let stored = window.stored(self.lattice.rows(), self.south_up);
+        let mut posts = self.decoder.window(&self.file, &images, stored)?.into_double();
         turn_round(&mut posts, window.cols, self.south_up);
         Ok(posts)
     }
@@ -186,7 +167,7 @@ impl DemFile for OpenGeoTiff {
 /// Where the tags of a GeoTIFF place a raster of so many rows.
 #[cfg(feature = "gdal")]
 pub(in crate::terrain) struct Placed {
-    pub(in crate::terrain) georeference: GeoReference,
+    pub(in crate::terrain) georeference: crate::terrain::GeoReference,
     pub(in crate::terrain) south_up: bool,
     pub(in crate::terrain) states_metres: bool,
 }

@@ -7,8 +7,7 @@ use std::path::{Path, PathBuf};
 use super::image::ImageObject;
 use super::label::{LONGEST_LABEL, Label, shown, unsuitable};
 use super::projection::place;
-use crate::terrain::dem::check_map;
-use crate::terrain::{Dem, DemFile, DemReader, GeoReference, TerrainError, Window};
+use crate::terrain::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
 
 /// PDS3 as a format.
 pub(in crate::terrain) struct Pds3Reader;
@@ -121,7 +120,7 @@ struct OpenPds3 {
     image: ImageObject,
     line_bytes: usize,
     source: Source,
-    georeference: GeoReference,
+    lattice: PostLattice,
 }
 
 impl OpenPds3 {
@@ -137,8 +136,8 @@ impl OpenPds3 {
                 image.start
             )));
         };
-        check_map(image.rows, image.cols, &georeference)?;
-        Ok(Self { image, line_bytes, source, georeference })
+        let lattice = PostLattice::new(image.rows, image.cols, georeference)?;
+        Ok(Self { image, line_bytes, source, lattice })
     }
 
     fn read_all(&self) -> Result<Dem, TerrainError> {
@@ -148,7 +147,7 @@ impl OpenPds3 {
         for row in 0..rows {
             self.append(row, 0, cols, &mut posts)?;
         }
-        Dem::new(rows, cols, posts, self.georeference.clone())
+        Dem::new(rows, cols, posts, self.lattice.georeference().clone())
     }
 
     /// The elevations of a part of a line.
@@ -176,16 +175,8 @@ impl OpenPds3 {
 }
 
 impl DemFile for OpenPds3 {
-    fn rows(&self) -> usize {
-        self.image.rows
-    }
-
-    fn cols(&self) -> usize {
-        self.image.cols
-    }
-
-    fn georeference(&self) -> &GeoReference {
-        &self.georeference
+    fn lattice(&self) -> &PostLattice {
+        &self.lattice
     }
 
     fn window(&self, Window { first_row, first_col, rows, cols }: Window) -> Result<Vec<f64>, TerrainError> {

@@ -145,7 +145,7 @@ pub fn check_scale(
         Err(unknown @ NoProjection::Unknown(_)) => return Ok(TransectScale::Unknown(unknown.to_string())),
     };
     // A line without a direction, or off the map, is the slice's to refuse.
-    if from == to || ![from, to].iter().all(|end| dem.georeference().bounds(dem.rows(), dem.cols()).contains(*end)) {
+    if from == to || ![from, to].iter().all(|end| dem.lattice().bounds().contains(*end)) {
         return Ok(TransectScale::Local);
     }
     let extreme = projection.extreme_scale(from, to).ok_or(TerrainError::OffTheBody { from, to })?;
@@ -170,7 +170,7 @@ fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2]
         return Some(format!("shorter transects, each of {longest_m:.0} m at most: no map is true to scale over a longer one"));
     }
     let (ground_m, map_m) = ((ends[1] - ends[0]).norm(), (to - from).norm());
-    let map = dem.georeference();
+    let map = dem.lattice().georeference();
     // The finer spacing, as long on the new map as it is on the ground.
     let spacing_m = rounded_m(map.dx_m().min(map.dy_m()) * ground_m / map_m);
     let margin_m = 10.0 * spacing_m;

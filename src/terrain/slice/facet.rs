@@ -28,8 +28,8 @@ struct Square {
 impl<'a> Ground<'a> {
     #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
     pub(super) fn of(posts: &'a dyn Posts) -> Self {
-        let map = posts.georeference();
-        let bounds = posts.bounds();
+        let lattice = posts.lattice();
+        let (map, bounds) = (lattice.georeference(), lattice.bounds());
         // Map coordinates themselves are only this fine: a post's own can miss it by one unit in the last place.
         let resolution_x = f64::EPSILON * bounds.min.x.abs().max(bounds.max.x.abs()) / map.dx_m();
         let resolution_y = f64::EPSILON * bounds.min.y.abs().max(bounds.max.y.abs()) / map.dy_m();
@@ -37,12 +37,12 @@ impl<'a> Ground<'a> {
             posts,
             map,
             tolerance: ON_THE_LINE.max(resolution_x).max(resolution_y),
-            last: Vector2::new((posts.cols() - 1) as f64, (posts.rows() - 1) as f64),
+            last: Vector2::new((lattice.cols() - 1) as f64, (lattice.rows() - 1) as f64),
         }
     }
 
     pub(super) fn bounds(&self) -> MapBounds {
-        self.posts.bounds()
+        self.posts.lattice().bounds()
     }
 
     pub(super) fn tolerance(&self) -> f64 {

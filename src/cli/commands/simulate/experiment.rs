@@ -6,7 +6,7 @@ use chta::{
     path::{Hop, generate},
     report::{
         ConeWidthAnswer, Document, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer,
-        figure::{Picture, draw_cone_width, draw_landing_errors},
+        figure::{draw_cone_width, draw_landing_errors},
     },
     uncertainty::{
         Policy, TrialOptions,
@@ -17,7 +17,7 @@ use serde::Serialize;
 
 use super::{
     super::{plan::Planned, search::search},
-    Flyer, pictures,
+    Flyer,
 };
 use crate::cli::{
     Answer, Failure,
@@ -32,7 +32,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
     let reading =
         args.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading")).transpose()?;
     refuse_idle(args, experiment)?;
-    let plot = args.plot.as_deref().map(|path| pictures::begin(path, "--plot")).transpose()?;
+    let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let test = loaded.hop_test();
     let planned = Planned::new(loaded, &test, None, false, args.common.quiet)?;
     let Some(path) = planned.path.as_ref().filter(|path| !path.hops.is_empty()) else {
@@ -59,9 +59,9 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
             (written(args, loaded, answer.text(), answer)?, None)
         }
     };
-    if let (Some(file), Some(path), Some(picture)) = (plot, args.plot.as_deref(), picture) {
-        let picture: Picture = picture.map_err(|error| Failure::message(error.to_string()))?;
-        output::finish(vec![(file, pictures::encoded(&picture, path)?)])?;
+    if let (Some(file), Some(picture)) = (plot, picture) {
+        let encoded = output::encoded(picture, file.path())?;
+        output::finish(vec![(file, encoded)])?;
     }
     output::to_stdout(text.as_bytes())?;
     Ok(Answer::Yes)

@@ -40,6 +40,8 @@ struct SimulateAnswer {
 
 /// Simulates.
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
+    // Before the terrain is read, which starts the threads.
+    use_threads(args.answer.threads)?;
     let loaded = load_with(
         &args.journey.chain,
         &args.common,
@@ -62,10 +64,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     }
     loaded.ends()?;
     let rows = args.output.as_deref().map(|path| RowFile::begin(path, &loaded)).transpose()?;
-    let plot = args.plot.as_deref().map(|path| pictures::begin(path, "--plot")).transpose()?;
-    let plot_map = args.plot_map.as_deref().map(|path| pictures::begin(path, "--plot-map")).transpose()?;
+    let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
+    let plot_map = args.plot_map.as_deref().map(|path| output::begin_picture("--plot-map", path)).transpose()?;
     let to_stdout = args.output.as_deref() == Some(Path::new("-"));
-    use_threads(args.answer.threads)?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, None, false, args.common.quiet)?;
     let Some(path) = &planned.path else {
@@ -79,11 +80,12 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let flyer = Flyer::new(&loaded, &test, path, &planned.found, policies, args.common.quiet)?;
     let flown = flyer.fly(policies, &trials_asked(args, &keys), rows, args.common.quiet)?;
     let mut files = Vec::new();
-    if let (Some(file), Some(path)) = (plot, args.plot.as_deref()) {
-        files.push((file, sheet(&flyer, &flown, path)?));
+    if let Some(file) = plot {
+        let picture = sheet(&flyer, &flown, file.path())?;
+        files.push((file, picture));
     }
-    if let (Some(file), Some(path)) = (plot_map, args.plot_map.as_deref())
-        && let Some(picture) = landing_map(&flyer, &flown, path)?
+    if let Some(file) = plot_map
+        && let Some(picture) = landing_map(&flyer, &flown, file.path())?
     {
         files.push((file, picture));
     }

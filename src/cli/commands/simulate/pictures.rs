@@ -6,31 +6,14 @@ use chta::{
     quantity::{ChainPoint, MapPoint},
     report::figure::{
         Caption, ConvergencePoint, ErrorQuantiles, Flight, FlownFigure, FlownTrial, LandingBoxes, LandingCloud, LandingEllipse,
-        LandingMapFigure, OutcomeBars, Picture, SimulationFigure, Success, draw_landing_map, draw_simulation,
+        LandingMapFigure, OutcomeBars, SimulationFigure, Success, draw_landing_map, draw_simulation,
     },
     uncertainty::{HopRecord, LandingSummary, Summary, TrialOutcome, Uncertainty, Wilson},
 };
 use nalgebra::Vector2;
 
 use super::trials::{Flown, Flyer};
-use crate::cli::{Failure, load::Loaded, output::Pending};
-
-/// Opens a picture's file, which must have the name of one.
-pub(super) fn begin<'a>(path: &'a Path, option: &str) -> Result<Pending<'a>, Failure> {
-    let named = path.extension().is_some_and(|ending| ["svg", "png"].iter().any(|known| ending.eq_ignore_ascii_case(known)));
-    if !named {
-        return Err(Failure::message(format!(
-            "{option}: '{}' does not end in .svg or .png: give the picture such a name",
-            path.display()
-        )));
-    }
-    Pending::begin(path)
-}
-
-/// A picture as the bytes of the file that was opened for it.
-pub(super) fn encoded(picture: &Picture, file: &Path) -> Result<Vec<u8>, Failure> {
-    picture.encoded_for(file).map_err(|error| Failure::message(error.to_string()))
-}
+use crate::cli::{Failure, load::Loaded, output};
 
 /// Everything of the trials on one sheet.
 pub(super) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Vec<u8>, Failure> {
@@ -41,7 +24,7 @@ pub(super) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<V
         errors: summaries().map(boxes).collect(),
         outcomes: summaries().map(bars).collect(),
     };
-    encoded(&draw_simulation(&figure).map_err(|error| Failure::message(error.to_string()))?, file)
+    output::encoded(draw_simulation(&figure), file)
 }
 
 /// The landings on the map; `None` where there is no map.
@@ -51,8 +34,7 @@ pub(super) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Re
     let path = ends.first().map(|first| first.takeoff).into_iter().chain(ends.iter().map(|hop| hop.landing)).collect();
     let clouds = summary.landings.iter().zip(&ends).map(|(landing, hop)| cloud(landing, hop.landing, summary)).collect();
     let figure = LandingMapFigure { caption: caption(flyer.loaded, std::iter::once(summary)), dem, path, clouds };
-    let picture = draw_landing_map(&figure).map_err(|error| Failure::message(error.to_string()))?;
-    encoded(&picture, file).map(Some)
+    output::encoded(draw_landing_map(&figure), file).map(Some)
 }
 
 /// The words above: what was flown, under which errors, and what came of it.
@@ -130,18 +112,13 @@ fn bundle(flyer: &Flyer<'_>, summary: &Summary) -> Option<FlownFigure> {
         return None;
     }
     let side = Side::of(flyer)?;
-    let planned = flyer.path.hops.iter().map(|hop| Flight {
-        from: hop.takeoff.point,
-        to: hop.landing.point,
-        takeoff_slope: hop.takeoff_angle.slope(),
-    });
     let trials = summary.trajectories.iter().map(|trajectory| FlownTrial {
         flights: trajectory.hops.iter().filter(|hop| hop.landed).filter_map(|hop| side.flight(hop)).collect(),
         reached: trajectory.trial.outcome == TrialOutcome::Reached,
     });
     Some(FlownFigure {
         ground: geometry.vertices().to_vec(),
-        planned: planned.collect(),
+        planned: flyer.path.hops.iter().map(Flight::from).collect(),
         trials: trials.collect(),
         trials_in_all: summary.trials,
     })

@@ -6,10 +6,11 @@ use num_traits::{FromPrimitive, One, Signed, Zero};
 use super::*;
 use crate::{
     chain::{ConstrainedChain, PolygonalChain},
+    draw::Draw,
     graph::proof::{
         Sound,
         cell::{partition, stretch},
-        tests::{Draw, drawn_chain},
+        tests::drawn_chain,
     },
     quantity::Outwards,
     world::Hopper,

@@ -6,6 +6,7 @@
 
 mod exact;
 mod reach;
+mod refusal;
 
 use std::error::Error;
 
@@ -23,8 +24,11 @@ use crate::{
     chain::{ConstrainedChain, QuickCone, QuickGrip},
     quantity::SlopeInterval,
     terrain::Profile,
-    world::{FrictionCone, Grip, RestSlope},
+    world::Grip,
 };
+
+pub use refusal::PostRefusal;
+use refusal::{constant_friction, rest_tangent};
 
 /// Makes a chain of a slice: knows friction, zones and hopper.
 pub type GroundOf<'a> = dyn Fn(Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> + Sync + 'a;
@@ -85,21 +89,8 @@ impl<'a> PostHops<'a> {
         let lattice = NodeLattice::new(dem, request.stride);
         exact::probe(&request, ground_of)?;
         let heights = Heights::of(dem);
-        let constant = match request.surface.grip {
-            Some(Grip::Friction(cone)) => Some(cone),
-            Some(Grip::FromSlope { .. }) | None => None,
-        };
-        let covers = CoverTable::new(dem, request.friction, request.keep_out, constant)?;
-        let friction_at = |post: usize| {
-            let of_raster = covers.as_ref().and_then(|covers| covers.friction(post));
-            of_raster.or(constant.map(FrictionCone::coefficient))
-        };
-        let rest = |post: usize| match request.surface.rest {
-            RestSlope::AsFrictionHolds => friction_at(post),
-            RestSlope::AtMost(angle) => Some(angle.slope()),
-            RestSlope::Unlimited => None,
-        };
-        let ground = GroundTable::new(heights, &rest);
+        let covers = CoverTable::new(dem, request.friction, request.keep_out, constant_friction(&request))?;
+        let ground = GroundTable::new(heights, &|post| rest_tangent(&request, covers.as_ref(), post));
         let grip = match request.surface.grip {
             Some(Grip::Friction(cone)) => Some(QuickGrip::friction(cone)),
             Some(Grip::FromSlope { takeoff, landing }) => Some(QuickGrip::from_slope(takeoff, landing)),
@@ -247,7 +238,7 @@ impl<'a> PostHops<'a> {
         if lofts.lower - near(lofts.lower) > most || most <= 0.0 || !worth(sight, lofts) {
             return Verdict::No;
         }
-        let walk = Walk { from: takeoff, base_m: takeoff_m - hopper.clearance_m, rise_m, most };
+        let walk = Walk { from: takeoff, turn: offset.turn, base_m: takeoff_m - hopper.clearance_m, rise_m, most };
         let Some(terrain) = self.heights.clearing_loft(walk, self.table.crossings_of(offset)) else { return Verdict::No };
         if self.ground.gaps && offset.departure.along_edge() && !self.has_facets_along(takeoff, offset) {
             return Verdict::No;
@@ -334,7 +325,7 @@ impl<'a> PostHops<'a> {
     fn has_facets_along(&self, takeoff: usize, offset: &Offset) -> bool {
         let posts = self.table.crossings_of(offset).iter();
         posts
-            .map(|crossing| takeoff.wrapping_add_signed(crossing.first as isize))
+            .map(|crossing| takeoff.wrapping_add_signed(offset.turn * crossing.first as isize))
             .all(|post| self.ground.has_any(post, offset.departure))
     }
 }

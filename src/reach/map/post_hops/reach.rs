@@ -14,7 +14,7 @@ use crate::{
 /// What the bounds on reach are widened by against rounding.
 const WIDER: f64 = 1.0 + 1.0e-6;
 
-/// The largest table of crossings, 256 MiB: a reach of some 120 posts.
+/// The largest table of crossings, 256 MiB: a reach of some 150 posts.
 const MOST_CROSSINGS: usize = 1 << 23;
 
 impl PostHops<'_> {
@@ -54,7 +54,14 @@ impl PostHops<'_> {
         let size = OffsetTable::size(spacing, longest_m, bounds);
         if size.crossings > MOST_CROSSINGS {
             let posts = longest_m / spacing.dx_m.min(spacing.dy_m);
-            return Err(MapError::TooFar { range_m: longest_m, posts, offsets: size.offsets });
+            let dem = self.request.dem;
+            let fits = |stride: &usize| {
+                let bounds = ((dem.rows() - 1) / stride + 1, (dem.cols() - 1) / stride + 1);
+                OffsetTable::size(Spacing { stride: *stride, ..spacing }, longest_m, bounds).crossings <= MOST_CROSSINGS
+            };
+            let widest = dem.rows().max(dem.cols());
+            let stride = (spacing.stride + 1..widest).find(fits).unwrap_or(widest);
+            return Err(MapError::TooFar { range_m: longest_m, posts, offsets: size.offsets, stride });
         }
         let rises_m = |run_m: f64| {
             let ceiling = |v: f64| safety_ceiling_m(run_m, v, gravity);

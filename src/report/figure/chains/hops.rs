@@ -96,7 +96,7 @@ const fn float(count: usize) -> f64 {
 fn columns(hops: usize, head_mm: f64) -> (usize, f64) {
     let width_mm = |columns: usize| PAGE_WIDTH_MM.max((2.0 * MARGIN_MM + float(columns) * CELL_MM.0).ceil());
     let is_slender = |columns: usize| head_mm + float(hops.div_ceil(columns)) * CELL_MM.1 > SLENDER * width_mm(columns);
-    let columns = (2..).find(|&columns| columns >= hops || !is_slender(columns)).unwrap_or(2);
+    let columns = (2..=hops.max(2)).find(|&columns| !is_slender(columns)).unwrap_or(hops.max(2));
     (columns, width_mm(columns))
 }
 

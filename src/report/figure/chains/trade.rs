@@ -1,6 +1,6 @@
 //! Fewest hops over one or two capabilities.
 
-use plotters::style::{RGBColor, WHITE};
+use plotters::style::RGBColor;
 
 use super::{
     super::{
@@ -8,7 +8,7 @@ use super::{
         axes::Panel,
         bands::ramp,
         keys::{self, Swatch, rectangle},
-        palette::{BLACK, LEFT_MM, RIGHT_MM, SMALL_MM, TEXT_MM},
+        palette::{BLACK, LEFT_MM, RIGHT_MM, SMALL_MM, TEXT_MM, WHITE},
         picture::paragraph,
         sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm, wrapped},
         ticks::{one_in, short},

@@ -6,7 +6,7 @@ use super::{
     super::{
         FigureError, Picture,
         keys::{self, Swatch},
-        palette::{BLACK, BLUE, SMALL_MM, VERMILION},
+        palette::{BLACK, BLUE, SMALL_MM, VERMILION, WHITE},
         picture::paragraph,
         sheet::{Anchor, Hang, Label, Pen, Place, Sheet},
         ticks::short,
@@ -28,7 +28,7 @@ const CORNERS: u8 = 72;
 /// More hops than this are told in the legend by the range of their ellipses.
 const MOST_LISTED: usize = 12;
 const ELLIPSE_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.45 };
-const CASING_PEN: Pen = Pen { colour: RGBColor(255, 255, 255), width_mm: 0.95 };
+const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.95 };
 
 /// Draws where the hops of a path really landed: scattered landings and 95 % ellipses around the planned path, over a hillshade.
 ///

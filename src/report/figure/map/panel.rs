@@ -7,7 +7,7 @@ use super::{
         axes::{BELOW_MM, Panel, left_room_mm},
         bitmap::Pixels,
         keys::{Swatch, rectangle},
-        palette::{BLACK, LEFT_MM, RIGHT_MM, SMALL_MM, TEXT_MM},
+        palette::{BLACK, LEFT_MM, RIGHT_MM, SMALL_MM, TEXT_MM, WHITE},
         picture::MARGIN_MM,
         sheet::{Anchor, Hang, Label, Mark, Pen, Place, Sheet, SheetImage, between, text_width_mm},
         ticks::Ticks,
@@ -21,7 +21,6 @@ use crate::{
     terrain::{Dem, MapBounds},
 };
 
-const WHITE: RGBColor = RGBColor(255, 255, 255);
 /// The highest map on the page.
 const TALL_MM: f64 = 165.0;
 /// Room above the map for scale bar and north arrow.

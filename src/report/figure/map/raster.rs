@@ -6,6 +6,7 @@ use super::{
     super::{
         bands::mixed,
         bitmap::{Form, Pixels},
+        palette::WHITE,
     },
     hillshade::{LEVEL, brightness},
 };
@@ -105,7 +106,7 @@ impl Pattern {
 
 /// Colour of a class in a legend: a little lighter than at full strength, as stripes over it need.
 pub(super) fn tone(colour: RGBColor) -> RGBColor {
-    mixed(colour, RGBColor(255, 255, 255), LIGHTER)
+    mixed(colour, WHITE, LIGHTER)
 }
 
 /// Draws a class for each post over the hillshade, white where there is no elevation or no class.
@@ -174,7 +175,7 @@ fn shaded(tone: RGBColor, shade: usize, shades: usize) -> [u8; 3] {
     let RGBColor(r, g, b) = if light <= LEVEL {
         mixed(RGBColor(0, 0, 0), tone, DARKEST + (1.0 - DARKEST) * light / LEVEL)
     } else {
-        mixed(tone, RGBColor(255, 255, 255), BRIGHTEST * (light - LEVEL) / (1.0 - LEVEL))
+        mixed(tone, WHITE, BRIGHTEST * (light - LEVEL) / (1.0 - LEVEL))
     };
     [r, g, b]
 }
@@ -191,7 +192,7 @@ mod tests {
             if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
         };
         let (r, g, b) = (linear(r), linear(g), linear(b));
-        let root = |t: f64| if t > 0.008856 { libm::cbrt(t) } else { 7.787 * t + 16.0 / 116.0 };
+        let root = |t: f64| if t > 0.008_856 { libm::cbrt(t) } else { 7.787 * t + 16.0 / 116.0 };
         let x = root((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.95047);
         let y = root(0.2126 * r + 0.7152 * g + 0.0722 * b);
         let z = root((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.08883);

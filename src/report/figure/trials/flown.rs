@@ -15,7 +15,7 @@ use super::{
         FigureError, Flight,
         axes::{BELOW_MM, Panel, left_room_mm},
         keys::Swatch,
-        palette::{BLACK, BLUE, GROUND, LEFT_MM, ORANGE, RIGHT_MM, SKY, SMALL_MM, VERMILION},
+        palette::{BLACK, BLUE, GROUND, LEFT_MM, ORANGE, RIGHT_MM, SKY, SMALL_MM, VERMILION, WHITE},
         scale::{Frame, Scale},
         sheet::{Pen, Place, Sheet, text_width_mm},
         symbols,
@@ -56,7 +56,7 @@ const GOLDEN: f64 = 0.618_033_988_749_895;
 
 const REACHED_PEN: Pen = Pen { colour: SKY, width_mm: 0.13 };
 const FAILED_PEN: Pen = Pen { colour: ORANGE, width_mm: 0.13 };
-const CASING_PEN: Pen = Pen { colour: plotters::style::WHITE, width_mm: 0.9 };
+const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.9 };
 const PLANNED_PEN: Pen = Pen { colour: BLACK, width_mm: 0.4 };
 const CROSS_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.25 };
 

@@ -1,0 +1,99 @@
+//! Why a post takes no hop and gives none, whatever the direction.
+
+use std::fmt;
+
+use super::{CoverTable, PostHops};
+use crate::{
+    quantity::Angle,
+    reach::map::{MapRequest, lattice::Post},
+    world::{FrictionCone, Grip, RestSlope},
+};
+
+/// Why no hop begins or ends at a post.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum PostRefusal {
+    /// No elevation there, or none around it.
+    NoGround,
+    /// Inside a keep-out zone.
+    KeptOut,
+    /// All its facets are too steep to rest on.
+    TooSteep {
+        /// The mildest of them.
+        slope: Angle,
+        /// The steepest that holds.
+        rest_slope: Angle,
+    },
+}
+
+impl fmt::Display for PostRefusal {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NoGround => write!(formatter, "has no elevation around it"),
+            Self::KeptOut => write!(formatter, "lies in a keep-out zone"),
+            Self::TooSteep { slope, rest_slope } => {
+                let (slope_deg, rest_deg) = (slope.degrees(), rest_slope.degrees());
+                write!(
+                    formatter,
+                    "slopes {slope_deg:.1} deg or more to all sides, too steep to rest on, which ends at {rest_deg:.1} deg"
+                )
+            }
+        }
+    }
+}
+
+/// The tangent of the steepest slope to rest on at a post; `None` where every slope holds.
+pub(super) fn rest_tangent(request: &MapRequest<'_>, covers: Option<&CoverTable>, post: usize) -> Option<f64> {
+    match request.surface.rest {
+        RestSlope::AsFrictionHolds => {
+            covers.and_then(|covers| covers.friction(post)).or(constant_friction(request).map(FrictionCone::coefficient))
+        }
+        RestSlope::AtMost(angle) => Some(angle.slope()),
+        RestSlope::Unlimited => None,
+    }
+}
+
+/// Friction where no raster gives it.
+pub(super) fn constant_friction(request: &MapRequest<'_>) -> Option<FrictionCone> {
+    match request.surface.grip {
+        Some(Grip::Friction(cone)) => Some(cone),
+        Some(Grip::FromSlope { .. }) | None => None,
+    }
+}
+
+impl PostHops<'_> {
+    /// Why no hop begins or ends at a node in any direction; `None` where ground and zones allow some.
+    pub fn refusal(&self, node: Post) -> Option<PostRefusal> {
+        let post = self.lattice.post(node);
+        let place = self.request.dem.georeference().post(post.row, post.col);
+        if self.request.keep_out.is_some_and(|zones| zones.keeps_out(place)) {
+            return Some(PostRefusal::KeptOut);
+        }
+        if self.usable(node) {
+            return None;
+        }
+        let index = self.lattice.post_index(node);
+        let mildest = (0..6)
+            .filter(|&facet| self.ground.has(index, facet))
+            .map(|facet| self.heights.gradient(index, facet))
+            .map(|(east, north)| libm::hypot(east, north))
+            .fold(f64::INFINITY, f64::min);
+        let rest = rest_tangent(&self.request, self.covers.as_ref(), index);
+        Some(match rest.filter(|_| mildest.is_finite()) {
+            Some(rest) => PostRefusal::TooSteep { slope: Angle::from_slope(mildest), rest_slope: Angle::from_slope(rest) },
+            None => PostRefusal::NoGround,
+        })
+    }
+
+    /// The node nearest to another that refuses neither; of equally near ones the north-western. `None` where all refuse.
+    pub fn nearest_usable(&self, node: Post) -> Option<Post> {
+        let place = |node: Post| {
+            let Post { row, col } = self.lattice.post(node);
+            self.request.dem.georeference().post(row, col)
+        };
+        let away2 = |other: &Post| (place(*other) - place(node)).norm_squared();
+        let usable = (0..self.lattice.count()).map(|index| self.lattice.node(index)).filter(|&other| self.usable(other));
+        let mut candidates: Vec<(f64, Post)> = usable.map(|other| (away2(&other), other)).collect();
+        candidates.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        candidates.into_iter().map(|(_, other)| other).find(|&other| self.refusal(other).is_none())
+    }
+}

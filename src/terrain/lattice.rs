@@ -1,0 +1,66 @@
+//! Where the posts of a raster lie.
+
+use super::{GeoReference, MapBounds, TerrainError};
+
+/// Posts in rows and columns, and where on the map they lie: at least 2 x 2, with coordinates that tell neighbours apart.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PostLattice {
+    rows: usize,
+    cols: usize,
+    georeference: GeoReference,
+}
+
+impl PostLattice {
+    /// So many rows and columns at their place.
+    ///
+    /// # Errors
+    /// [`TerrainError::InvalidDem`] where there are fewer than 2 rows or columns, or the posts' map coordinates run out of the numbers:
+    /// 1 mm posts 10^14 m from the origin do not differ.
+    pub fn new(rows: usize, cols: usize, georeference: GeoReference) -> Result<Self, TerrainError> {
+        check_sides(rows, cols)?;
+        let bounds = georeference.bounds(rows, cols);
+        let MapBounds { min, max } = bounds;
+        let near = |edge: f64, step: f64| (edge + step) - edge > 0.5 * step && (edge - step) - edge < -0.5 * step;
+        let (dx_m, dy_m) = (georeference.dx_m(), georeference.dy_m());
+        let told_apart = near(min.x, dx_m) && near(max.x, dx_m) && near(min.y, dy_m) && near(max.y, dy_m);
+        if told_apart && [min.x, min.y, max.x, max.y].iter().all(|value| value.is_finite()) {
+            return Ok(Self { rows, cols, georeference });
+        }
+        Err(TerrainError::InvalidDem(format!(
+            "the map has {bounds} with posts every {dx_m} m and {dy_m} m, expected coordinates that tell neighbouring posts apart"
+        )))
+    }
+
+    /// Number of rows, north to south.
+    pub fn rows(&self) -> usize {
+        self.rows
+    }
+
+    /// Number of columns, west to east.
+    pub fn cols(&self) -> usize {
+        self.cols
+    }
+
+    /// Where the posts lie.
+    pub fn georeference(&self) -> &GeoReference {
+        &self.georeference
+    }
+
+    /// The rectangle of the outermost posts.
+    pub fn bounds(&self) -> MapBounds {
+        self.georeference.bounds(self.rows, self.cols)
+    }
+
+    /// The place of a post where they stand row after row from the north; `None` outside.
+    pub(super) fn index(&self, row: usize, col: usize) -> Option<usize> {
+        (row < self.rows && col < self.cols).then(|| row * self.cols + col)
+    }
+}
+
+/// A square of posts is the least ground there is.
+pub(super) fn check_sides(rows: usize, cols: usize) -> Result<(), TerrainError> {
+    if rows >= 2 && cols >= 2 {
+        return Ok(());
+    }
+    Err(TerrainError::InvalidDem(format!("the raster has {rows} rows and {cols} columns, expected at least 2 of each")))
+}
