@@ -355,7 +355,7 @@ fn pictures_are_whole_and_of_the_kind_their_name_says() {
     assert!(desk.read("map.svg").contains("</svg>"));
     let profiles = desk.read("hops.svg");
     assert!(profiles.trim_end().ends_with("</svg>") && profiles.contains("goal 1, hop 1 of"));
-    assert_eq!(profiles.matches("<svg ").count(), profiles.matches("</svg>").count());
+    assert_eq!((profiles.matches("<svg ").count(), profiles.matches("</svg>").count()), (1, 1), "one sheet");
     desk.run(&[&MAP[..], &["--plot", "map.png"]].concat());
     assert!(fs::read(desk.path().join("map.png")).unwrap().starts_with(b"\x89PNG\r\n"));
 }

@@ -13,12 +13,18 @@ const CHI_SQUARED_95: f64 = 5.991_464_547_107_979;
 /// The most points that the record of the rate keeps; more are thinned by dropping every second one.
 const MOST_RATE_POINTS: usize = 1000;
 
+/// After how many trials the rate is noted before the first batch ends: few trials have a curve too.
+const EARLY: [u64; 6] = [10, 20, 50, 100, 200, 500];
+
 /// What all trials so far came to. Trials must be added in their order: sums of floating-point numbers depend on it.
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     pub(super) outcomes: OutcomeCounts,
     pub(super) hops_flown: u64,
     landings: Vec<LandingTally>,
+    /// The rate before the first batch ended.
+    early: Vec<RatePoint>,
+    /// The rate at the ends of batches.
     convergence: Vec<RatePoint>,
     /// Of how many batches each point of the record is the last.
     stride: u64,
@@ -45,6 +51,14 @@ impl Tally {
     pub(super) fn trial(&mut self, outcome: TrialOutcome, hops: u32) {
         self.outcomes.count(outcome);
         self.hops_flown += u64::from(hops);
+        if self.batches == 0 && EARLY.contains(&self.outcomes.total()) {
+            self.early.push(self.rate());
+        }
+    }
+
+    /// The rate now.
+    fn rate(&self) -> RatePoint {
+        RatePoint { trials: self.outcomes.total(), success: self.success() }
     }
 
     pub(super) fn landing(&mut self, landing: &Landing) {
@@ -62,7 +76,7 @@ impl Tally {
         self.batches += 1;
         self.stride = self.stride.max(1);
         if self.batches.is_multiple_of(self.stride) {
-            self.convergence.push(RatePoint { trials: self.outcomes.total(), success: self.success() });
+            self.convergence.push(self.rate());
         }
         if self.convergence.len() > MOST_RATE_POINTS {
             let mut number = 0;
@@ -76,8 +90,10 @@ impl Tally {
 
     /// The record of the rate, the last one at the end.
     pub(super) fn convergence(&self) -> Vec<RatePoint> {
-        let mut points = self.convergence.clone();
-        let now = RatePoint { trials: self.outcomes.total(), success: self.success() };
+        let now = self.rate();
+        let first_batch = self.convergence.first().map_or(now.trials, |point| point.trials);
+        let early = self.early.iter().filter(|point| point.trials < first_batch);
+        let mut points: Vec<RatePoint> = early.chain(&self.convergence).copied().collect();
         if points.last().is_none_or(|last| last.trials < now.trials) {
             points.push(now);
         }
@@ -175,6 +191,19 @@ mod tests {
         let ellipse = found.ellipse.unwrap();
         assert_eq!((ellipse.semi_major_m, ellipse.semi_minor_m), (0.0, 0.0));
         assert_eq!(found.error.q95_m, 5.0, "no quantile is over the largest value");
+    }
+
+    #[test]
+    fn few_trials_have_a_record_of_their_rate_too() {
+        let mut tally = Tally::default();
+        for trial in 1..=200u64 {
+            tally.trial(if trial <= 15 { TrialOutcome::Lost } else { TrialOutcome::Reached }, 1);
+        }
+        tally.end_batch();
+        let points = tally.convergence();
+        assert_eq!(points.iter().map(|point| point.trials).collect::<Vec<_>>(), [10, 20, 50, 100, 200]);
+        let rates: Vec<f64> = points.iter().map(|point| point.success.rate).collect();
+        assert_eq!(rates, [0.0, 5.0 / 20.0, 35.0 / 50.0, 85.0 / 100.0, 185.0 / 200.0]);
     }
 
     #[test]

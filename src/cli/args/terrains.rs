@@ -142,7 +142,7 @@ pub(crate) struct MapArgs {
     /// The same in three dimensions (GeoJSON)
     #[arg(long, value_name = "FILE", requires = "goals")]
     pub(crate) geojson: Option<PathBuf>,
-    /// Profile of every hop to every goal, one picture below the other (SVG), to write
+    /// Profile of every hop to every goal, all on one sheet (SVG or PNG), to write
     #[arg(long, value_name = "FILE", requires = "goals")]
     pub(crate) profiles: Option<PathBuf>,
     /// Map picture (SVG or PNG) to write

@@ -2,7 +2,9 @@
 
 use std::fmt;
 
-use chta::{scenario::Scenario, world::Hopper};
+use chta::{report::figure, scenario::Scenario, world::Hopper};
+
+use super::plan::ground_words;
 
 /// A greatest speed of the hopper's, in words.
 pub(super) struct SpeedLimit {
@@ -33,11 +35,11 @@ impl fmt::Display for SpeedLimit {
     }
 }
 
-/// Body, gravity and greatest speeds, for a map.
+/// All that an answer over a map assumes: body, gravity, the hopper's limits and the ground, as the pictures of plans say it.
 pub(super) fn conditions(scenario: &Scenario) -> String {
-    let body = scenario.body.name.as_ref().map(|name| format!("{name}, ")).unwrap_or_default();
-    let [takeoff, landing] = SpeedLimit::of(&scenario.hopper);
-    format!("{body}gravity {:.4} m/s²; {takeoff}, {landing}", scenario.body.gravity_m_s2)
+    let (hopper, body) = (&scenario.hopper, &scenario.body);
+    let bounds_m_s = (hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s);
+    figure::conditions(body.name.as_deref().unwrap_or_default(), body.gravity_m_s2, hopper, bounds_m_s, &ground_words(scenario))
 }
 
 /// What a picture shows, and of which scenario where that has a name.

@@ -18,7 +18,8 @@ use chta::{
     },
     scenario::{Covers, Extremes, Scenario, constant_gravity_doubts},
     terrain::{
-        Band, Dem, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
+        Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_map_scale, read_dem,
+        result_geotiff_bytes,
     },
 };
 
@@ -331,7 +332,7 @@ fn write_files<'a>(
         files.extend(prj_path.as_deref().zip(output::prj(projection.as_ref().ok())));
     }
     if let Some(file) = &args.profiles {
-        files.push((file, map_profiles::sheet(scenario, &maps.ways)?.into_bytes()));
+        files.push((file, map_profiles::sheet(&name_of(args), scenario, &maps.ways, file)?));
     }
     if let Some(file) = &args.plot {
         files.push((file, picture(args, ground, maps, answer, ends, file)?));
@@ -349,6 +350,11 @@ fn effort_name(effort: Effort) -> String {
     format!("least {} among fewest hops, {}", effort.total(), effort.unit())
 }
 
+/// The name of the terrain in titles.
+fn name_of(args: &MapArgs) -> String {
+    args.dem.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
 /// The map as a picture, in the format of the file's name.
 fn picture(
     args: &MapArgs,
@@ -358,17 +364,19 @@ fn picture(
     (start, goals): (Spot, &[Spot]),
     file: &Path,
 ) -> Result<Vec<u8>, Failure> {
-    let name = args.dem.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    let name = name_of(args);
     let can_return: Option<Vec<bool>> = maps.back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
+    let kept_out = ground.covers.keep_out().map(|zones| kept_out(ground, zones));
     let places = |path: &HopPath| {
         let landings = path.hops.iter().filter_map(|hop| hop.map.map(|map| map.landing));
         std::iter::once(start.at).chain(landings).collect()
     };
     let figure = HopMapFigure {
-        caption: Caption::new(format!("Where in how few hops: {name}"), subtitle(answer, &ground.scenario)),
+        caption: Caption { title: format!("Where in how few hops: {name}"), lines: subtitle(answer, &ground.scenario) },
         posts: MapPosts { dem: &ground.dem, stride: ground.lattice.stride },
         hops: &maps.out.hops,
         can_return: can_return.as_deref(),
+        kept_out: kept_out.as_deref(),
         start: start.at,
         goals: goals
             .iter()
@@ -380,16 +388,19 @@ fn picture(
     output::encoded(draw_hop_map(&figure), file)
 }
 
-/// Numbers under the title of the picture.
-fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> String {
+/// Which posts of the lattice lie in a keep-out zone.
+fn kept_out(ground: &Ground, zones: &KeepOut) -> Vec<bool> {
+    let NodeLattice { rows, cols, stride, .. } = ground.lattice;
+    let nodes = ground.dem.georeference().every(stride);
+    (0..rows * cols).map(|index| zones.keeps_out(nodes.post(index / cols, index % cols))).collect()
+}
+
+/// What the map assumes and what came of it, under the title of the picture.
+fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> Vec<String> {
     let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
-    format!(
-        "{}; {} of {} posts reachable from ({:.3}, {:.3}) m in at most {} hops{stride}",
-        conditions(scenario),
-        answer.reachable_posts,
-        answer.posts,
-        answer.start_m[0],
-        answer.start_m[1],
-        answer.farthest_hops
-    )
+    let found = format!(
+        "{} of {} posts reachable from ({:.3}, {:.3}) m in at most {} hops{stride}",
+        answer.reachable_posts, answer.posts, answer.start_m[0], answer.start_m[1], answer.farthest_hops
+    );
+    vec![conditions(scenario), found]
 }

@@ -14,7 +14,7 @@ use chta::{
         path_geojson, path_text, surest_text, write_path_csv,
     },
     scenario::{Extremes, Scenario, constant_gravity_doubts},
-    world::Grip,
+    world::{Grip, RestSlope},
 };
 use serde::Serialize;
 
@@ -160,19 +160,33 @@ impl Planned {
     }
 }
 
-/// The ground's grip in a few words.
+/// The ground's grip, what it may be rested on and what covers it, in a few words.
 pub(super) fn ground_words(scenario: &Scenario) -> String {
-    match scenario.surface.grip {
-        Some(Grip::Friction(cone)) => format!("friction coefficient {}", cone.coefficient()),
+    let surface = &scenario.surface;
+    let mut parts = Vec::new();
+    match surface.grip {
+        Some(Grip::Friction(cone)) => parts.push(format!("friction coefficient {}", cone.coefficient())),
         Some(Grip::FromSlope { takeoff, landing }) => {
             let range = |angles: AngleInterval| {
                 let [min, max] = [angles.min, angles.max].map(|angle| angle.shortest_degrees().unwrap_or_else(|| angle.degrees()));
                 format!("{min} to {max}")
             };
-            format!("take-off {} and landing {} deg from the slope", range(takeoff), range(landing))
+            parts.push(format!("take-off {} and landing {} deg from the slope", range(takeoff), range(landing)));
         }
-        None => String::new(),
+        None => {}
     }
+    let file = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    parts.extend(scenario.friction_raster.as_deref().map(|path| format!("friction from {}", file(path))));
+    match (surface.rest, surface.grip) {
+        (RestSlope::AsFrictionHolds, Some(Grip::Friction(_))) => parts.push("rest slope as friction holds".to_owned()),
+        (RestSlope::AsFrictionHolds, _) => {}
+        (RestSlope::AtMost(slope), _) => {
+            parts.push(format!("rest slope ≤ {} deg", slope.shortest_degrees().unwrap_or_else(|| slope.degrees())));
+        }
+        (RestSlope::Unlimited, _) => parts.push("rest slope without limit".to_owned()),
+    }
+    parts.extend(scenario.keep_out.as_deref().map(|path| format!("keep-out {}", file(path))));
+    parts.join("; ")
 }
 
 /// Flies a path again; a broken limit is a failure of the program, told as such.

@@ -12,15 +12,18 @@ use crate::{
     chain::Contact,
     graph::{Answer, EndpointRefusal},
     path::Totals,
+    world::Hopper,
 };
 
 /// Title, what was asked under which limits, and the verdict; returns where they end.
 pub(super) fn above(sheet: &mut Sheet, input: &FigureInput<'_>, data: &FigureData) -> f64 {
+    let (test, title) = (input.test, &input.title);
+    let words = conditions(&title.body, test.gravity_m_s2(), test.hopper(), test.chain().speed_bounds_m_s(), &title.ground);
     let mut y = 3.0;
     if !input.title.name.is_empty() {
         y = paragraph(sheet, &input.title.name, TITLE_MM, true, y);
     }
-    y = paragraph(sheet, &conditions(input), TEXT_MM, false, y);
+    y = paragraph(sheet, &words, TEXT_MM, false, y);
     let journey = format!("From x = {} m to x = {} m: ", place(data.start.x_m), place(data.goal.x_m));
     paragraph(sheet, &(journey + &verdict(input.answer, data)), TEXT_MM, true, y) + 1.5
 }
@@ -34,30 +37,36 @@ pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
     y
 }
 
-/// Body, gravity, speeds, the machine's other limits and the ground's grip.
-fn conditions(input: &FigureInput<'_>) -> String {
-    let (test, hopper) = (input.test, input.test.hopper());
-    let bounds = test.chain().speed_bounds_m_s();
+/// What an analysis assumes, as its pictures say it: body, gravity, the hopper's limits and the ground's grip.
+///
+/// `speed_bounds_m_s` are the greatest speeds of take-off and landing that the ground itself allows: told where the hopper has no limit.
+///
+/// # Examples
+/// ```
+/// use chta::{report::figure::conditions, world::Hopper};
+/// let words = conditions("Mars", 3.711, &Hopper::with_speeds(6.0, 6.0), (6.0, 6.0), "friction coefficient 0.6");
+/// assert_eq!(words, "Mars, g = 3.711 m/s²; take-off speed ≤ 6 m/s; landing speed ≤ 6 m/s; clearance 0 m; friction coefficient 0.6");
+/// ```
+pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m_s: (f64, f64), ground: &str) -> String {
     let mut parts = Vec::new();
-    let gravity = format!("g = {} m/s²", short(test.gravity_m_s2()));
-    parts.push(if input.title.body.is_empty() { gravity } else { format!("{}, {gravity}", input.title.body) });
-    for (name, limit, bound) in
-        [("take-off speed", hopper.takeoff_speed_max_m_s, bounds.0), ("landing speed", hopper.landing_speed_max_m_s, bounds.1)]
-    {
+    let gravity = format!("g = {} m/s²", short(gravity_m_s2));
+    parts.push(if body.is_empty() { gravity } else { format!("{body}, {gravity}") });
+    for (name, limit, bound) in [
+        ("take-off speed", hopper.takeoff_speed_max_m_s, speed_bounds_m_s.0),
+        ("landing speed", hopper.landing_speed_max_m_s, speed_bounds_m_s.1),
+    ] {
         // Without a limit of the hopper's own the chain's explicit ones hold.
         let most = if limit.is_finite() { limit } else { bound };
         parts.push(format!("{name} ≤ {} m/s", short(most)));
     }
-    if hopper.clearance_m > 0.0 {
-        parts.push(format!("clearance {} m", short(hopper.clearance_m)));
-    }
+    parts.push(format!("clearance {} m", short(hopper.clearance_m)));
     for (name, angle) in [("take-off angle ≥", hopper.takeoff_angle_min), ("take-off angle ≤", hopper.takeoff_angle_max)] {
         parts.extend(angle.map(|angle| format!("{name} {} deg", short(angle.degrees()))));
     }
     parts.extend(hopper.apex_height_max_m.map(|height| format!("apex ≤ {} m", short(height))));
     parts.extend(hopper.flight_time_max_s.map(|time| format!("flight ≤ {} s", short(time))));
-    if !input.title.ground.is_empty() {
-        parts.push(input.title.ground.clone());
+    if !ground.is_empty() {
+        parts.push(ground.to_owned());
     }
     parts.join("; ")
 }

@@ -4,7 +4,7 @@ use plotters::style::RGBColor;
 
 use super::{
     palette::{BLACK, RIGHT_MM, SMALL_MM},
-    sheet::{Label, Pen, Place, Sheet, text_width_mm},
+    sheet::{Label, Mark, Pen, Place, Sheet, text_width_mm},
 };
 
 /// Where rows begin.
@@ -23,6 +23,8 @@ pub(super) enum Swatch {
     Fill(RGBColor),
     /// A colour under stripes.
     Striped(RGBColor),
+    /// A colour under stripes both ways.
+    Crossed(RGBColor),
     /// A colour under dots.
     Dotted(RGBColor),
     /// A line.
@@ -56,15 +58,28 @@ pub(super) fn rectangle((left, top): Place, (right, bottom): Place) -> Vec<Place
 fn sample(sheet: &mut Sheet, swatch: Swatch, (x, y): Place) {
     let (end, top, bottom) = (x + SAMPLE_MM, y - HALF_MM, y + HALF_MM);
     match swatch {
-        Swatch::Fill(colour) | Swatch::Striped(colour) | Swatch::Dotted(colour) => {
+        Swatch::Fill(colour) | Swatch::Striped(colour) | Swatch::Crossed(colour) | Swatch::Dotted(colour) => {
             sheet.area(rectangle((x, top), (end, bottom)), colour, 1.0);
         }
         Swatch::Line(pen) => sheet.line(vec![(x, y), (end, y)], pen),
         Swatch::Dashed(pen, dash_mm, gap_mm) => sheet.dashed(&[(x, y), (end, y)], dash_mm, gap_mm, pen),
         Swatch::Symbol(symbol) => symbol(sheet, (x + 0.5 * SAMPLE_MM, y)),
     }
-    if matches!(swatch, Swatch::Striped(_)) {
-        stripes(sheet, (x, top), (end, bottom), 1.2, Pen { colour: BLACK, width_mm: 0.25 });
+    let pen = Pen { colour: BLACK, width_mm: 0.25 };
+    if matches!(swatch, Swatch::Striped(_) | Swatch::Crossed(_)) {
+        stripes(sheet, (x, top), (end, bottom), 1.2, pen);
+    }
+    if matches!(swatch, Swatch::Crossed(_)) {
+        // Upside down the same stripes fall to the right.
+        let from = sheet.marks.len();
+        stripes(sheet, (x, top), (end, bottom), 1.2, pen);
+        for mark in &mut sheet.marks[from..] {
+            if let Mark::Line { points, .. } = mark {
+                for point in points {
+                    point.1 = top + bottom - point.1;
+                }
+            }
+        }
     }
     if matches!(swatch, Swatch::Dotted(_)) {
         for i in 0..4 {

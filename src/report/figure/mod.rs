@@ -45,10 +45,11 @@ mod samples;
 mod tests;
 
 pub use chains::{
-    CompareFigure, ComparedScenario, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch, TradeAxis, TradeField, TradeFigure,
-    draw_compare, draw_proof, draw_trade,
+    CompareFigure, ComparedScenario, Flight, HopProfile, HopProfilesFigure, ProofClass, ProofFigure, ProofGap, ProofStretch,
+    TradeAxis, TradeField, TradeFigure, draw_compare, draw_hop_profiles, draw_proof, draw_trade,
 };
 pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
+pub use heading::conditions;
 pub use map::{
     GoalMark, HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure, MapPosts,
     ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,

@@ -83,25 +83,31 @@ impl PictureFormat {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Picture {
     pub(super) sheet: Sheet,
+    pub(super) width_mm: f64,
     pub(super) height_mm: f64,
 }
 
 impl Picture {
-    /// The picture as SVG, 170 mm wide. The same picture gives the same bytes.
+    /// A picture as wide as a page.
+    pub(super) const fn page(sheet: Sheet, height_mm: f64) -> Self {
+        Self { sheet, width_mm: PAGE_WIDTH_MM, height_mm }
+    }
+
+    /// The picture as SVG, 170 mm wide, sheets of many panels wider. The same picture gives the same bytes.
     ///
     /// # Errors
     /// [`FigureError::Drawing`] with what plotters says.
     pub fn to_svg(&self) -> Result<String, FigureError> {
-        self.sheet.to_svg(PAGE_WIDTH_MM, self.height_mm)
+        self.sheet.to_svg(self.width_mm, self.height_mm)
     }
 
-    /// The picture as PNG at 300 dots an inch, 2008 pixels wide. The same picture gives the same bytes on every machine: the letters are
+    /// The picture as PNG at 300 dots an inch, a page of 170 mm 2008 pixels wide. The same picture gives the same bytes on every machine: the letters are
     /// built in.
     ///
     /// # Errors
     /// [`FigureError::Drawing`] where the picture is too large for the format.
     pub fn to_png(&self) -> Result<Vec<u8>, FigureError> {
-        bitmap::render(&self.sheet, PAGE_WIDTH_MM, self.height_mm)
+        bitmap::render(&self.sheet, self.width_mm, self.height_mm)
     }
 
     /// The picture in the format that a file name asks for: `.svg` or `.png`, in small or capital letters.

@@ -57,7 +57,7 @@ pub(super) fn check_picture(name: &str, draw: impl Fn() -> Picture) -> Picture {
     let labels = labels(&picture);
     for (i, label) in labels.iter().enumerate() {
         let (left, top, right, bottom) = label.bounds_mm();
-        let inside = left >= 0.3 && right <= 169.7 && top >= 0.3 && bottom <= picture.height_mm;
+        let inside = left >= 0.3 && right <= picture.width_mm - 0.3 && top >= 0.3 && bottom <= picture.height_mm;
         assert!(inside, "{name}: {:?} leaves the page: {left} to {right}, {top} to {bottom}", label.text);
         for other in &labels[i + 1..] {
             let (l, t, r, b) = other.bounds_mm();

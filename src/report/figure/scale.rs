@@ -29,15 +29,20 @@ impl Scale {
     /// True where that leaves the height between readable and a third of a page; else the least round exaggeration that does. Heights
     /// far larger than the length narrow the drawing, and below a third of the width they are drawn smaller.
     pub fn new(length_m: f64, rise_m: f64, width_mm: f64) -> Self {
+        Self::within(length_m, rise_m, width_mm, (FLAT_MM, TALL_MM))
+    }
+
+    /// The same where other heights than on a page's panel are readable: the least and the most, mm.
+    pub(super) fn within(length_m: f64, rise_m: f64, width_mm: f64, (flat_mm, tall_mm): (f64, f64)) -> Self {
         let wide = width_mm / length_m;
         let true_mm = rise_m * wide;
-        if true_mm > TALL_MM {
-            let share = TALL_MM / true_mm;
+        if true_mm > tall_mm {
+            let share = tall_mm / true_mm;
             let shrunk = ROUND.into_iter().map(|r| 1.0 / r).find(|e| share / e >= NARROW).unwrap_or(0.001);
             let mm_per_m = wide * (share / shrunk).min(1.0);
             return Self { mm_per_m, exaggeration: shrunk, height_mm: rise_m * mm_per_m * shrunk };
         }
-        let exaggeration = if true_mm > 0.0 { ROUND.into_iter().find(|e| true_mm * e >= FLAT_MM).unwrap_or(1000.0) } else { 1.0 };
+        let exaggeration = if true_mm > 0.0 { ROUND.into_iter().find(|e| true_mm * e >= flat_mm).unwrap_or(1000.0) } else { 1.0 };
         Self { mm_per_m: wide, exaggeration, height_mm: true_mm * exaggeration }
     }
 

@@ -207,11 +207,13 @@ impl Sheet {
         })
     }
 
-    /// The sheet as SVG.
+    /// The sheet as SVG, its height rounded up to whole millimetres.
     ///
     /// # Errors
     /// [`FigureError::Drawing`] with what plotters says.
     pub(super) fn to_svg(&self, width_mm: f64, height_mm: f64) -> Result<String, FigureError> {
+        // Whole millimetres, which need no digits behind the point.
+        let height_mm = height_mm.ceil();
         let (width, height) = (units(width_mm).unsigned_abs(), units(height_mm).unsigned_abs());
         let mut svg = String::new();
         {
@@ -233,7 +235,7 @@ impl Sheet {
             area.present().map_err(|error| failed(&error))?;
         }
         let plain = format!("width=\"{width}\" height=\"{height}\" viewBox");
-        let physical = format!("width=\"{width_mm}mm\" height=\"{height_mm:.2}mm\" viewBox");
+        let physical = format!("width=\"{width_mm}mm\" height=\"{height_mm:.0}mm\" viewBox");
         let svg = with_short_font_sizes(&svg.replacen(&plain, &physical, 1));
         self.with_images(svg)
     }

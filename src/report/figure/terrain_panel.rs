@@ -192,12 +192,17 @@ pub(super) fn laid_out(view_x_m: (f64, f64), heights_m: (f64, f64), sides_mm: (f
 
 /// Both axes with round numbers; the lower one states the scale.
 pub(super) fn axes(sheet: &mut Sheet, panel: &Panel, frame: &Frame, x_name: &str, y_name: &str) {
+    named_axes(sheet, panel, frame, &format!("{x_name}; {}", frame.scale.text()), y_name);
+}
+
+/// Both axes with round numbers and names.
+pub(super) fn named_axes(sheet: &mut Sheet, panel: &Panel, frame: &Frame, x_name: &str, y_name: &str) {
     let along = Ticks::round(frame.x_m(panel.left), frame.x_m(panel.right), panel.width() / 16.0);
     let along_widest = text_width_mm(&along.longest(), SMALL_MM) + 3.0;
     let along = Ticks::round(frame.x_m(panel.left), frame.x_m(panel.right), panel.width() / along_widest.max(16.0));
     let at = |x_m: f64| frame.place(ChainPoint::new(x_m, frame.origin.z_m)).0;
     let ticks: Vec<_> = along.values.iter().map(|&x_m| (at(x_m), along.text(x_m))).collect();
-    panel.x_axis(sheet, &ticks, &format!("{x_name}; {}", frame.scale.text()), true);
+    panel.x_axis(sheet, &ticks, x_name, true);
     let up = Ticks::round(frame.z_m(panel.bottom), frame.z_m(panel.top), panel.height() / TICK_MM);
     let ticks: Vec<_> =
         up.values.iter().map(|&z_m| (frame.place(ChainPoint::new(frame.origin.x_m, z_m)).1, up.text(z_m))).collect();

@@ -68,7 +68,7 @@ pub fn draw_compare(figure: &CompareFigure) -> Result<Picture, FigureError> {
     ends(&mut sheet, &profile, &drawn);
     profile.panel.outline(&mut sheet);
     let end_mm = legend(&mut sheet, &drawn, profile.end_mm() + 2.5);
-    Ok(Picture { sheet, height_mm: end_mm + 2.0 })
+    Ok(Picture::page(sheet, end_mm + 2.0))
 }
 
 /// One scenario as it is drawn.

@@ -2,6 +2,7 @@
 
 mod compare;
 mod data;
+mod hops;
 mod of_bounds;
 mod profile;
 mod proof;
@@ -11,6 +12,7 @@ pub use compare::draw_compare;
 pub use data::{
     CompareFigure, ComparedScenario, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch, TradeAxis, TradeField, TradeFigure,
 };
+pub use hops::{HopProfile, HopProfilesFigure, draw_hop_profiles};
 pub use proof::draw_proof;
 pub use trade::draw_trade;
 

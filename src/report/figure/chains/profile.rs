@@ -22,14 +22,14 @@ impl Flight {
     }
 
     /// The point at a share of the distance.
-    fn point_at(&self, share: f64) -> ChainPoint {
+    pub(super) fn point_at(&self, share: f64) -> ChainPoint {
         let (run_m, rise_m) = (self.to.x_m - self.from.x_m, self.to.z_m - self.from.z_m);
         let lifted_m = self.lift_m() * share * (1.0 - share);
         ChainPoint::new(self.from.x_m + run_m * share, self.from.z_m + rise_m * share + lifted_m)
     }
 
     /// The highest point, m.
-    fn apex_z_m(&self) -> f64 {
+    pub(super) fn apex_z_m(&self) -> f64 {
         let (lift_m, rise_m) = (self.lift_m(), self.to.z_m - self.from.z_m);
         let share = if lift_m > 0.0 { (0.5 * (1.0 + rise_m / lift_m)).clamp(0.0, 1.0) } else { 0.0 };
         self.point_at(share).z_m.max(self.from.z_m).max(self.to.z_m)

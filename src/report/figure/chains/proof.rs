@@ -54,7 +54,7 @@ pub fn draw_proof(figure: &ProofFigure) -> Result<Picture, FigureError> {
     drawing.ends(&mut sheet);
     let end_mm = keys::draw(&mut sheet, &drawing.keys(every), drawing.profile.end_mm() + 2.5);
     let end_mm = figure.gap.as_ref().map_or(end_mm, |gap| gap_words(&mut sheet, gap, end_mm + 1.5));
-    Ok(Picture { sheet, height_mm: end_mm + 2.5 })
+    Ok(Picture::page(sheet, end_mm + 2.5))
 }
 
 /// Flights of the best path.

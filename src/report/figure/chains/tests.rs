@@ -6,12 +6,18 @@ use super::{
     super::{
         Caption, Picture,
         palette::{BLUE, ORANGE, VERMILION},
-        samples::{check_picture, texts},
+        samples::{check_picture, check_well_formed, labels, texts},
         sheet::Mark,
     },
     *,
 };
-use crate::{quantity::ChainPoint, report::figure::FigureError};
+use crate::{
+    chain::{Direction, PolygonalChain},
+    path::{Hop, MapEnds},
+    quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
+    report::figure::FigureError,
+    world::Limit,
+};
 
 /// Waves between two x, a point every metre.
 fn waves(from_x_m: f64, points: usize, height_m: f64) -> Vec<ChainPoint> {
@@ -310,4 +316,73 @@ fn odd_comparisons_are_whole() {
     let figure = CompareFigure { caption: Caption::default(), scenarios };
     let picture = check_picture("compare-many", || draw_compare(&figure).unwrap());
     assert_says(&picture, &["1 hop in 30 of 9000 shown", &u64::MAX.to_string()]);
+}
+
+/// Hops of 45 degrees over rolling ground, up and down.
+fn hop_profile(i: usize, hops: usize) -> HopProfile {
+    let (run_m, rise_m) = (4.0 + (i % 7) as f64, (i % 5) as f64 - 2.0);
+    let end = ChainPoint::new(run_m, 1700.0 + rise_m);
+    let ground = vec![ChainPoint::new(0.0, 1700.0), ChainPoint::new(0.4 * run_m, 1699.0), end];
+    let geometry = PolygonalChain::bare(ground.clone()).unwrap();
+    let angles = AngleInterval { min: Angle::from_degrees(60.0), max: Angle::from_degrees(71.25) };
+    let map = MapEnds { takeoff: MapPoint::new(75897.5, 38702.5), landing: MapPoint::new(75900.0, 38710.0), heading_deg: 18.4 };
+    let hop = Hop {
+        direction: Direction::Forward,
+        takeoff: geometry.station(0.0).unwrap(),
+        landing: geometry.station(run_m).unwrap(),
+        map: (i != 1).then_some(map),
+        takeoff_angle: Angle::from_degrees(60.0),
+        takeoff_speed_m_s: 5.0,
+        landing_angle: Angle::from_degrees(-55.5),
+        landing_speed_m_s: 4.5,
+        flight_time_s: 2.5,
+        apex_z_m: 1703.0,
+        takeoff_angles: angles,
+        speed_margin_m_s: 0.5,
+        lower_limit: Limit::TakeoffCone,
+        lower_vertex: None,
+        upper_limit: Limit::TakeoffSpeed,
+    };
+    HopProfile { name: format!("goal 1, hop {} of {hops}", i + 1), ground, hop, least_clearance_m: Some((0.4 * run_m, 2.25)) }
+}
+
+#[test]
+fn sheets_of_hops_are_grids_that_stay_in_shape() {
+    for (hops, clearance_m) in [(0, 0.0), (1, 0.5), (3, 0.0), (36, 0.5), (300, 0.0)] {
+        let caption = Caption::new("Hop by hop", "Moon, g = 1.624 m/s²");
+        let figure = HopProfilesFigure { caption, clearance_m, hops: (0..hops).map(|i| hop_profile(i, hops)).collect() };
+        let picture = draw_hop_profiles(&figure).unwrap();
+        check_well_formed(&picture.to_svg().unwrap());
+        assert_eq!(picture.height_mm, picture.height_mm.round());
+        let slender = picture.height_mm / picture.width_mm;
+        assert!(slender <= 1.96 && (hops < 36 || slender > 1.0), "{hops} hops: {slender}");
+        // rsvg-convert refuses more than 32 767 pixels a side.
+        assert!(1400.0 * slender < 32_000.0);
+        let told = texts(&picture);
+        assert_eq!(told.lines().filter(|line| line.contains(&format!(" of {hops}"))).count(), hops);
+        assert_eq!(told.contains("clearance asked for: 0.5 m"), clearance_m > 0.0);
+        let labels = labels(&picture);
+        for label in &labels {
+            let (left, top, right, bottom) = label.bounds_mm();
+            let is_inside = left > 0.3 && right < picture.width_mm - 0.3 && top > 0.3 && bottom < picture.height_mm;
+            assert!(is_inside, "{hops} hops: {:?} leaves the page", label.text);
+        }
+    }
+    let figure =
+        HopProfilesFigure { caption: Caption::default(), clearance_m: 0.5, hops: (0..4).map(|i| hop_profile(i, 4)).collect() };
+    let told = texts(&check_picture("hop-profiles", || draw_hop_profiles(&figure).unwrap()));
+    for words in [
+        "(75897.5, 38702.5) m to (75900.0, 38710.0) m",
+        "run 4 m, heading 18.4 deg; flight 2.5 s",
+        "run 5 m; flight 2.5 s",
+        "take-off 5 m/s at 60.0 deg (60.0 to 71.2 feasible)",
+        "landing 4.5 m/s at -55.5 deg; least clearance 2.25 m",
+        "distance (m); heights at true scale",
+        "height (m)",
+    ] {
+        assert!(told.lines().any(|line| line == words), "{words:?} is missing in {told}");
+    }
+    let mut bare = figure.clone();
+    bare.hops[2].ground.truncate(1);
+    assert!(matches!(draw_hop_profiles(&bare), Err(FigureError::NoGround { points: 1, .. })));
 }

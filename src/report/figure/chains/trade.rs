@@ -47,7 +47,7 @@ pub fn draw_trade(figure: &TradeFigure) -> Result<Picture, FigureError> {
     let top_mm = figure.caption.draw(&mut sheet);
     if found == 0 {
         let end_mm = paragraph(&mut sheet, "There are no fields.", TEXT_MM, false, top_mm);
-        return Ok(Picture { sheet, height_mm: end_mm + 2.0 });
+        return Ok(Picture::page(sheet, end_mm + 2.0));
     }
     let shades = Shades::of(&figure.fields);
     let grid = Grid::new(figure, (rows, cols), top_mm);
@@ -60,7 +60,7 @@ pub fn draw_trade(figure: &TradeFigure) -> Result<Picture, FigureError> {
         let text = format!("{rows} x {cols} fields: too small for a number each; the table of the answer has them.");
         paragraph(&mut sheet, &text, SMALL_MM, false, end_mm + 0.5)
     };
-    Ok(Picture { sheet, height_mm: end_mm + 2.0 })
+    Ok(Picture::page(sheet, end_mm + 2.0))
 }
 
 /// The colours of numbers of hops.

@@ -72,6 +72,8 @@ pub struct HopMapFigure<'a> {
     pub hops: &'a [i16],
     /// From which posts the start can be reached again, in the same order; `None`: not asked.
     pub can_return: Option<&'a [bool]>,
+    /// Which posts lie in keep-out zones, in the same order; `None`: there are no zones.
+    pub kept_out: Option<&'a [bool]>,
     /// Where the journeys begin.
     pub start: MapPoint,
     /// Where they should end.

@@ -18,7 +18,9 @@ use super::{
 };
 
 /// Posts that are not reached: grey, which no band is.
-pub(super) const NOT_REACHED: RGBColor = RGBColor(176, 176, 176);
+pub(super) const NOT_REACHED: RGBColor = RGBColor(205, 205, 205);
+const KEEP_OUT: &str = "keep-out, not reached";
+const NO_WAY_BACK: &str = "reached, no way back to the start";
 /// No-data in a legend: the white of the page in a thin frame.
 pub(super) fn no_data_symbol(sheet: &mut Sheet, (x, y): (f64, f64)) {
     let corners = keys::rectangle((x - 3.0, y - 1.5), (x + 3.0, y + 1.5));
@@ -29,7 +31,7 @@ pub(super) fn no_data_symbol(sheet: &mut Sheet, (x, y): (f64, f64)) {
 /// Draws a hop map: where the hopper gets, in how few hops, over a hillshade with the sun in the north-west.
 ///
 /// Bands of one count each, or of several where there are more than eight; grey: not reached; white: no data. With
-/// [`HopMapFigure::can_return`], stripes: reached, but the start cannot be reached from there; dots: the other way round. A DEM of
+/// [`HopMapFigure::can_return`], stripes: reached, but the start cannot be reached from there; dots: the other way round. With [`HopMapFigure::kept_out`], crossed stripes: keep-out zones. A DEM of
 /// more than 2 000 rows or columns is drawn with every n-th post, and the map says so.
 ///
 /// # Errors
@@ -38,6 +40,9 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     check_size("hop map", &figure.posts, figure.hops.len())?;
     if let Some(can_return) = figure.can_return {
         check_size("map of posts from which the start can be reached", &figure.posts, can_return.len())?;
+    }
+    if let Some(kept_out) = figure.kept_out {
+        check_size("map of keep-out posts", &figure.posts, kept_out.len())?;
     }
     let counts = Counts::of(figure);
     let mut tones: Vec<_> = (0..counts.bands.len()).map(|class| tone(counts.classes.colour(class))).collect();
@@ -48,20 +53,20 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
         let at = posts.index(row, col);
         let hops = figure.hops[at];
         let class = class_of(&counts.classes, hops).unwrap_or(tones.len() - 1);
-        (hops != HOPS_NO_DATA).then(|| (class, pattern_of(hops, figure.can_return.map(|can_return| can_return[at]))))
+        (hops != HOPS_NO_DATA).then(|| (class, pattern_of(figure, at)))
     });
     let mut sheet = Sheet::default();
     let top_mm = figure.caption.draw(&mut sheet);
     let map = MapPanel::new(posts.dem, &window, top_mm);
     let end_mm = map.draw(&mut sheet, pixels);
     map.paths(&mut sheet, &figure.paths);
-    map.ends(&mut sheet, Some(figure.start), &figure.goals);
+    map.ends(&mut sheet, Some(figure.start), &figure.goals, &figure.paths);
     let mut entries = counts.keys(&tones);
     let uncounted_start = (counts.start == 0).then_some(figure.start);
     entries.extend(end_keys(uncounted_start, &figure.goals, &figure.paths));
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 3.0);
     let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
-    Ok(Picture { sheet, height_mm })
+    Ok(Picture::page(sheet, height_mm))
 }
 
 /// What the raster is; returns where the words end.
@@ -96,8 +101,12 @@ fn class_of(classes: &HopClasses, hops: i16) -> Option<usize> {
     u64::try_from(hops).ok().map(|hops| classes.of(hops))
 }
 
-fn pattern_of(hops: i16, returns: Option<bool>) -> Pattern {
-    match returns {
+/// What is drawn over a post's colour.
+fn pattern_of(figure: &HopMapFigure<'_>, at: usize) -> Pattern {
+    let hops = figure.hops[at];
+    let is_kept_out = figure.kept_out.is_some_and(|kept_out| kept_out[at]);
+    match figure.can_return.map(|can_return| can_return[at]) {
+        _ if is_kept_out && hops == HOPS_UNREACHABLE => Pattern::Crossed,
         Some(false) if hops >= 0 => Pattern::Striped,
         Some(true) if hops == HOPS_UNREACHABLE => Pattern::Dotted,
         _ => Pattern::Plain,
@@ -113,6 +122,8 @@ struct Counts {
     no_data: u64,
     one_way: u64,
     back_only: u64,
+    kept_out: u64,
+    asks_return: bool,
 }
 
 impl Counts {
@@ -121,18 +132,23 @@ impl Counts {
         // A start alone, without a hop, still has a band.
         let classes = HopClasses::even(most.map_or(0, |most| most.max(1)));
         let bands = vec![0; classes.0.len()];
-        let mut counts = Self { classes, start: 0, bands, not_reached: 0, no_data: 0, one_way: 0, back_only: 0 };
+        let asks_return = figure.can_return.is_some();
+        let none =
+            Self { classes, start: 0, bands, not_reached: 0, no_data: 0, one_way: 0, back_only: 0, kept_out: 0, asks_return };
+        let mut counts = none;
         for (at, &hops) in figure.hops.iter().enumerate() {
+            let pattern = pattern_of(figure, at);
             match class_of(&counts.classes, hops) {
                 Some(_) if hops == 0 => counts.start += 1,
                 Some(class) => counts.bands[class] += 1,
                 None if hops == HOPS_NO_DATA => counts.no_data += 1,
+                None if pattern == Pattern::Crossed => counts.kept_out += 1,
                 None => counts.not_reached += 1,
             }
-            match pattern_of(hops, figure.can_return.map(|can_return| can_return[at])) {
+            match pattern {
                 Pattern::Striped => counts.one_way += 1,
                 Pattern::Dotted => counts.back_only += 1,
-                Pattern::Plain => {}
+                Pattern::Plain | Pattern::Crossed => {}
             }
         }
         counts
@@ -144,12 +160,15 @@ impl Counts {
             texts.iter().zip(&self.bands).zip(tones).map(|((text, count), &tone)| (Swatch::Fill(tone), text.as_str(), *count));
         let rest = [
             (Swatch::Fill(NOT_REACHED), "not reached", self.not_reached),
+            (Swatch::Crossed(NOT_REACHED), KEEP_OUT, self.kept_out),
             (Swatch::Symbol(no_data_symbol), "no data", self.no_data),
-            (Swatch::Striped(tones[0]), "reached, no way back to the start", self.one_way),
+            (Swatch::Striped(tones[0]), NO_WAY_BACK, self.one_way),
             (Swatch::Dotted(NOT_REACHED), "not reached, but a way to the start", self.back_only),
         ];
         let start = (Swatch::Symbol(start_symbol), "start", self.start);
-        let all = std::iter::once(start).chain(bands).chain(rest).filter(|&(_, _, count)| count > 0);
+        // That every reached post has a way back is an answer too, where it was asked.
+        let is_told = |&(_, text, count): &(Swatch, &str, u64)| count > 0 || (self.asks_return && text == NO_WAY_BACK);
+        let all = std::iter::once(start).chain(bands).chain(rest).filter(is_told);
         all.map(|(swatch, text, count)| (swatch, format!("{text}: {count} post{}", if count == 1 { "" } else { "s" }))).collect()
     }
 }

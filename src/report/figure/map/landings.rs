@@ -13,7 +13,8 @@ use super::{
     },
     data::{LandingCloud, LandingEllipse, LandingMapFigure, MapPosts},
     hops::{about_raster, no_data_symbol},
-    panel::{MapPanel, path_symbol, start_symbol},
+    names::{Bounds, Candidate, Taken},
+    panel::{MARKER_MM, MapPanel, path_symbol, start_symbol},
     raster::{self, Pattern, Window},
 };
 use crate::quantity::MapPoint;
@@ -55,20 +56,13 @@ pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, Figure
         map.ellipse(&mut sheet, &ellipse);
     }
     map.paths(&mut sheet, &[path]);
-    if let Some(&start) = figure.path.first().filter(|&&at| map.shows(at)) {
-        start_symbol(&mut sheet, map.place(start));
-        map.name(&mut sheet, start, "start");
-    }
-    for cloud in figure.clouds.iter().filter(|cloud| map.shows(cloud.planned)) {
-        planned_symbol(&mut sheet, map.place(cloud.planned));
-        map.number(&mut sheet, cloud);
-    }
+    map.names_of_landings(&mut sheet, figure);
     let drawn = shown.iter().map(|landings| landings.len().div_ceil(every)).sum();
     let mut y = keys::draw(&mut sheet, &entries(figure, drawn, has_gaps), end_mm + 3.0) + 0.8;
     for text in words(figure, &map, &window) {
         y = paragraph(&mut sheet, &text, SMALL_MM, false, y);
     }
-    Ok(Picture { sheet, height_mm: y + 2.0 })
+    Ok(Picture::page(sheet, y + 2.0))
 }
 
 /// All that has to be on the map.
@@ -118,22 +112,43 @@ impl MapPanel {
 }
 
 impl MapPanel {
+    /// Start and planned landings, and over them their names.
+    fn names_of_landings(&self, sheet: &mut Sheet, figure: &LandingMapFigure<'_>) {
+        let planned = || figure.clouds.iter().filter(|cloud| self.shows(cloud.planned));
+        let mut taken = Taken { kept: Vec::new(), spared: planned().map(|cloud| self.place(cloud.planned)).collect() };
+        let start = figure.path.first().filter(|&&at| self.shows(at));
+        if let Some(&at) = start {
+            start_symbol(sheet, self.place(at));
+            taken.kept.push(Bounds::around(self.place(at), MARKER_MM));
+        }
+        for cloud in planned() {
+            planned_symbol(sheet, self.place(cloud.planned));
+        }
+        if let Some(&at) = start {
+            self.name(sheet, at, "start", &mut taken);
+        }
+        for cloud in planned() {
+            self.number(sheet, cloud, &mut taken);
+        }
+    }
+
     /// A hop's number outside its ellipse, so that it hides no landings; beside its planned landing where there is none.
-    fn number(&self, sheet: &mut Sheet, cloud: &LandingCloud) {
+    fn number(&self, sheet: &mut Sheet, cloud: &LandingCloud, taken: &mut Taken) {
         let text = cloud.hop.to_string();
-        let Some(ellipse) = cloud.ellipse else { return self.name(sheet, cloud.planned, &text) };
+        let Some(ellipse) = cloud.ellipse else { return self.name(sheet, cloud.planned, &text, taken) };
         let rim: Vec<Place> = rim(&ellipse).into_iter().map(|at| self.place(at)).collect();
         let end = |before: fn(&Place, &Place) -> bool| rim.iter().copied().reduce(|a, b| if before(&b, &a) { b } else { a });
-        let label = |at: Option<Place>, (dx, dy): Place, anchor| {
-            at.map(|(x, y)| Label::new(text.as_str(), (x + dx, y + dy), SMALL_MM).hung(anchor, Hang::Through))
+        let place = |at: Option<Place>, (dx, dy): Place, anchor| {
+            let label = |(x, y)| Label::new(text.as_str(), (x + dx, y + dy), SMALL_MM).hung(anchor, Hang::Through);
+            at.map(|at| Candidate { label: label(at), ring: 0 })
         };
         let places = [
-            label(end(|a, b| a.1 < b.1), (0.0, -2.2), Anchor::Middle),
-            label(end(|a, b| a.1 > b.1), (0.0, 2.2), Anchor::Middle),
-            label(end(|a, b| a.0 > b.0), (1.2, 0.0), Anchor::Start),
-            label(end(|a, b| a.0 < b.0), (-1.2, 0.0), Anchor::End),
+            place(end(|a, b| a.1 < b.1), (0.0, -2.2), Anchor::Middle),
+            place(end(|a, b| a.1 > b.1), (0.0, 2.2), Anchor::Middle),
+            place(end(|a, b| a.0 > b.0), (1.2, 0.0), Anchor::Start),
+            place(end(|a, b| a.0 < b.0), (-1.2, 0.0), Anchor::End),
         ];
-        self.name_on_one(sheet, &places.into_iter().flatten().collect::<Vec<_>>());
+        self.name_on_one(sheet, &places.into_iter().flatten().collect::<Vec<_>>(), None, taken);
     }
 }
 

@@ -4,6 +4,7 @@ mod data;
 mod hillshade;
 mod hops;
 mod landings;
+mod names;
 mod panel;
 mod raster;
 mod values;

@@ -8,10 +8,12 @@ use super::{
         bitmap::Pixels,
         keys::{Swatch, rectangle},
         palette::{BLACK, LEFT_MM, RIGHT_MM, SMALL_MM, TEXT_MM, WHITE},
-        sheet::{Anchor, Hang, Label, Pen, Place, Sheet, SheetImage, text_width_mm},
+        picture::MARGIN_MM,
+        sheet::{Anchor, Hang, Label, Mark, Pen, Place, Sheet, SheetImage, between, text_width_mm},
         ticks::Ticks,
     },
     data::GoalMark,
+    names::{Bounds, Candidate, Taken, candidates, choose, width_mm},
     raster::Window,
 };
 use crate::{
@@ -29,11 +31,13 @@ const SHORT_MM: f64 = 15.0;
 const TICK_MM: f64 = 9.0;
 /// More goals than this are marked without words.
 const MOST_NAMED: usize = 12;
-/// By how much bold letters are wider than the estimate says.
-const BOLD: f64 = 0.1;
+/// Half the size of the markers of start and goals.
+pub(super) const MARKER_MM: f64 = 2.0;
 /// Paths: black in a white casing, to be seen on every band.
 const CORE_PEN: Pen = Pen { colour: BLACK, width_mm: 0.35 };
 const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.9 };
+/// From a name to the marker that it stands away from.
+const LEADER_PEN: Pen = Pen { colour: BLACK, width_mm: 0.2 };
 
 /// Where the map lies on the sheet; both axes at one scale.
 pub(super) struct MapPanel {
@@ -132,19 +136,23 @@ impl MapPanel {
         }
     }
 
-    /// Start and goals with their names.
-    pub(super) fn ends(&self, sheet: &mut Sheet, start: Option<MapPoint>, goals: &[GoalMark]) {
+    /// Start and goals, over the paths, and their names, over everything but markers.
+    pub(super) fn ends(&self, sheet: &mut Sheet, start: Option<MapPoint>, goals: &[GoalMark], paths: &[Vec<MapPoint>]) {
         let start = start.filter(|&at| self.shows(at));
         let seen: Vec<_> = goals.iter().enumerate().filter(|(_, goal)| self.shows(goal.at)).collect();
+        let mut taken = Taken::default();
+        taken.spared.extend(paths.iter().flatten().map(|&at| self.place(at)));
         if let Some(at) = start {
             start_symbol(sheet, self.place(at));
+            taken.kept.push(Bounds::around(self.place(at), MARKER_MM));
         }
         for (_, goal) in &seen {
             let symbol = if goal.hops.is_some() { goal_symbol } else { missed_symbol };
             symbol(sheet, self.place(goal.at));
+            taken.kept.push(Bounds::around(self.place(goal.at), MARKER_MM));
         }
         if let Some(at) = start {
-            self.name(sheet, at, "start");
+            self.name(sheet, at, "start", &mut taken);
         }
         for (i, goal) in seen.into_iter().take(MOST_NAMED) {
             let number = if goals.len() > 1 { format!(" {}", i + 1) } else { String::new() };
@@ -153,44 +161,47 @@ impl MapPanel {
                 Some(hops) => format!("goal{number}: {hops} hops"),
                 None => format!("goal{number}: not reached"),
             };
-            self.name(sheet, goal.at, &text);
+            self.name(sheet, goal.at, &text, &mut taken);
         }
     }
 
-    /// A name beside a place, on a light ground, where there is room.
-    pub(super) fn name(&self, sheet: &mut Sheet, at: MapPoint, text: &str) {
-        let (x, y) = self.place(at);
-        let label = |dx: f64, dy: f64, anchor| Label::new(text, (x + dx, y + dy), SMALL_MM).hung(anchor, Hang::Through);
-        let (s, m, e) = (Anchor::Start, Anchor::Middle, Anchor::End);
-        let places = [
-            label(2.2, 0.0, s),
-            label(-2.2, 0.0, e),
-            label(0.0, -3.2, m),
-            label(0.0, 3.2, m),
-            label(2.2, 3.4, s),
-            label(2.2, -3.4, s),
-        ];
-        self.name_on_one(sheet, &places);
+    /// A name for the marker at a place, where there is room.
+    pub(super) fn name(&self, sheet: &mut Sheet, at: MapPoint, text: &str, taken: &mut Taken) {
+        let at = self.place(at);
+        let places = candidates(text, at, MARKER_MM, &self.room(&[text]));
+        self.name_on_one(sheet, &places, Some(at), taken);
     }
 
-    /// The first of some names that lies on the map and on no other, in bold on a light ground; else one beside the map, or none.
-    pub(super) fn name_on_one(&self, sheet: &mut Sheet, places: &[Label]) {
-        let inside = |label: &&Label| {
-            let (left, top, right, bottom) = label.bounds_mm();
-            left > self.panel.left && right < self.panel.right && top > self.panel.top && bottom < self.panel.bottom
-        };
-        let free = places.iter().filter(inside).find(|label| !sheet.is_taken(label));
-        let Some(label) = free.or_else(|| places.iter().find(|label| !sheet.is_taken(label))) else { return };
-        let (left, top, right, bottom) = label.bounds_mm();
-        // Bold letters are wider than the estimate, away from where the text hangs.
-        let wider_mm = BOLD * (right - left);
-        let (before_mm, after_mm) = match label.anchor {
-            Anchor::Start => (0.0, wider_mm),
-            Anchor::Middle => (0.5 * wider_mm, 0.5 * wider_mm),
-            Anchor::End => (wider_mm, 0.0),
-        };
-        sheet.area(rectangle((left - before_mm - 0.5, top - 0.3), (right + after_mm + 0.5, bottom + 0.4)), WHITE, 0.75);
+    /// Where names may stand: on the map, or anywhere between the margins of the page where one of them is wider than the map.
+    fn room(&self, texts: &[&str]) -> Bounds {
+        let Panel { left, top, right, bottom } = self.panel;
+        let is_narrow = texts.iter().any(|text| 2.0 * width_mm(text) > self.panel.width());
+        let (left, right) = if is_narrow { (MARGIN_MM, RIGHT_MM) } else { (left, right) };
+        Bounds { left, top, right, bottom }
+    }
+
+    /// The best of some places for a name, in bold on a light ground; none where all are taken.
+    ///
+    /// A name that stands away from its marker has a line to it.
+    pub(super) fn name_on_one(&self, sheet: &mut Sheet, places: &[Candidate], marker: Option<Place>, taken: &mut Taken) {
+        let texts: Vec<&str> = places.iter().map(|place| place.label.text.as_str()).collect();
+        let mut all = taken.clone();
+        // Axes and whatever else is written.
+        all.kept.extend(
+            sheet.marks.iter().filter_map(|mark| if let Mark::Label(label) = mark { Some(Bounds::of(label)) } else { None }),
+        );
+        let Some(Candidate { label, ring }) = choose(places, &self.room(&texts), &all) else { return };
+        let bounds = Bounds::of(label);
+        if let Some(at) = marker.filter(|_| *ring > 0) {
+            let end = bounds.nearest(at);
+            let away_mm = libm::hypot(end.0 - at.0, end.1 - at.1);
+            if away_mm > MARKER_MM {
+                sheet.line(vec![between(at, end, MARKER_MM / away_mm), end], LEADER_PEN);
+            }
+        }
+        sheet.area(rectangle((bounds.left, bounds.top), (bounds.right, bounds.bottom)), WHITE, 0.75);
         sheet.label(Label { bold: true, ..label.clone() });
+        taken.kept.push(bounds);
     }
 }
 

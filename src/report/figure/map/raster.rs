@@ -18,8 +18,12 @@ pub(super) const MOST_PIXELS: usize = 2000;
 const ENOUGH_PIXELS: usize = 1000;
 /// The most shades of each class: enough that no steps are seen.
 const SHADES: usize = 24;
-/// The darkest and the brightest ground, over level ground.
-const DARKEST: f64 = 0.35;
+/// The darkest ground, over level ground.
+const DARKEST: f64 = 0.45;
+/// How far towards white the brightest ground gets: farther, and bright classes lose their hue.
+const BRIGHTEST: f64 = 0.3;
+/// How far towards white a class's colour is in the legend and on level ground.
+const LIGHTER: f64 = 0.1;
 /// Stripes and dots repeat after this many pixels.
 const PERIOD: usize = 9;
 
@@ -81,6 +85,7 @@ fn span(from: f64, to: f64, count: usize) -> std::ops::Range<usize> {
 pub(super) enum Pattern {
     Plain,
     Striped,
+    Crossed,
     Dotted,
 }
 
@@ -89,6 +94,8 @@ impl Pattern {
         match self {
             Self::Plain => false,
             Self::Striped => (column + row) % PERIOD < 2,
+            // Columns counted backwards without going below zero: (PERIOD - 1) columns are one back.
+            Self::Crossed => (column + row) % PERIOD < 2 || ((PERIOD - 1) * column + row) % PERIOD < 2,
             Self::Dotted => {
                 let (c, r) = (column % (2 * PERIOD), row % (2 * PERIOD));
                 (c < 3 && r < 3) || ((PERIOD..PERIOD + 3).contains(&c) && (PERIOD..PERIOD + 3).contains(&r))
@@ -97,9 +104,9 @@ impl Pattern {
     }
 }
 
-/// Colour of a class in a legend: lighter than at full strength, as stripes over it and the shading need.
+/// Colour of a class in a legend: a little lighter than at full strength, as stripes over it need.
 pub(super) fn tone(colour: RGBColor) -> RGBColor {
-    mixed(colour, WHITE, 0.2)
+    mixed(colour, WHITE, LIGHTER)
 }
 
 /// Draws a class for each post over the hillshade, white where there is no elevation or no class.
@@ -168,7 +175,51 @@ fn shaded(tone: RGBColor, shade: usize, shades: usize) -> [u8; 3] {
     let RGBColor(r, g, b) = if light <= LEVEL {
         mixed(RGBColor(0, 0, 0), tone, DARKEST + (1.0 - DARKEST) * light / LEVEL)
     } else {
-        mixed(tone, WHITE, 0.6 * (light - LEVEL) / (1.0 - LEVEL))
+        mixed(tone, WHITE, BRIGHTEST * (light - LEVEL) / (1.0 - LEVEL))
     };
     [r, g, b]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{super::super::bands::ramp, *};
+    use crate::report::figure::map::hops::NOT_REACHED;
+
+    /// CIE L*a*b* of an sRGB colour under D65: lightness 0 to 100, and two axes of hue whose length is the colourfulness.
+    fn lab([r, g, b]: [u8; 3]) -> [f64; 3] {
+        let linear = |c: u8| {
+            let c = f64::from(c) / 255.0;
+            if c <= 0.04045 { c / 12.92 } else { libm::pow((c + 0.055) / 1.055, 2.4) }
+        };
+        let (r, g, b) = (linear(r), linear(g), linear(b));
+        let root = |t: f64| if t > 0.008_856 { libm::cbrt(t) } else { 7.787 * t + 16.0 / 116.0 };
+        let x = root((0.4124 * r + 0.3576 * g + 0.1805 * b) / 0.95047);
+        let y = root(0.2126 * r + 0.7152 * g + 0.0722 * b);
+        let z = root((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.08883);
+        [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
+    }
+
+    fn difference(a: [f64; 3], b: [f64; 3]) -> f64 {
+        a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt()
+    }
+
+    #[test]
+    fn no_band_in_any_light_is_mistaken_for_not_reached_in_any_light() {
+        let white = lab([255, 255, 255]);
+        let grey: Vec<_> = (0..SHADES).map(|shade| lab(shaded(NOT_REACHED, shade, SHADES))).collect();
+        assert!(grey.iter().all(|&grey| difference(grey, white) > 8.0), "not reached is not no-data");
+        for step in 0..=35 {
+            let band = tone(ramp(f64::from(step) / 35.0));
+            for shade in 0..SHADES {
+                let seen = lab(shaded(band, shade, SHADES));
+                let colourful = libm::hypot(seen[1], seen[2]);
+                assert!(colourful > 12.0, "band {step} in light {shade} is grey: {seen:?}");
+                // A difference of 2 is just seen side by side, one of 10 at a glance.
+                let nearest = grey.iter().map(|&grey| difference(seen, grey)).fold(f64::INFINITY, f64::min);
+                assert!(nearest > 16.0, "band {step} in light {shade}: {nearest} from not reached");
+                assert!(difference(seen, grey[shade]) > 19.0, "band {step} in light {shade}, side by side");
+                assert!(difference(seen, white) > 25.0, "band {step} in light {shade} is not no-data");
+            }
+        }
+    }
 }

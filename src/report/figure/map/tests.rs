@@ -47,7 +47,7 @@ fn hop_map<'a>(posts: MapPosts<'a>, hops: &'a [i16], can_return: Option<&'a [boo
     let goals = vec![GoalMark { at: at(20, 80), hops: Some(7) }, GoalMark { at: at(88, 30), hops: None }];
     let path = vec![at(50, 50), at(44, 55), at(40, 62), at(31, 66), at(25, 72), at(20, 80)];
     let caption = Caption::new("A map", "Moon, g = 1.624 m/s²; take-off speed ≤ 10 m/s; friction coefficient 0.6");
-    HopMapFigure { caption, posts, hops, can_return, start: at(50, 50), goals, paths: vec![path] }
+    HopMapFigure { caption, posts, hops, can_return, kept_out: None, start: at(50, 50), goals, paths: vec![path] }
 }
 
 fn drawn(name: &str, posts: MapPosts<'_>, per_hop: f64, most: f64, with_return: bool) -> Picture {
@@ -142,6 +142,35 @@ fn nothing_reached_only_the_start_and_very_many_hops_are_drawn() {
     let error = draw_hop_map(&hop_map(posts, &[0; 269], None)).unwrap_err();
     assert_eq!(error, FigureError::RasterSize { what: "hop map", found: 269, rows: 9, cols: 30 });
     assert!(draw_hop_map(&hop_map(posts, &[0; 270], Some(&[true; 3]))).is_err());
+}
+
+#[test]
+fn keep_out_posts_are_a_class_of_their_own_and_no_way_back_is_told_even_of_none() {
+    let dem = made_up(12, 20, 1.0);
+    let posts = MapPosts { dem: &dem, stride: 1 };
+    let at = |i: usize| dem.elevation(i / 20, i % 20);
+    let hops: Vec<i16> = (0..240)
+        .map(|i| match at(i) {
+            None => HOPS_NO_DATA,
+            Some(_) if i < 60 => HOPS_UNREACHABLE,
+            Some(_) => 1,
+        })
+        .collect();
+    // A zone over the first two rows, and one over a reached post on a border, which stays what it is.
+    let kept_out: Vec<bool> = (0..240).map(|i| i < 40 || i == 100).collect();
+    let figure = HopMapFigure { kept_out: Some(&kept_out), ..hop_map(posts, &hops, Some(&[true; 240])) };
+    let picture = check_picture("hops-keep-out", || draw_hop_map(&figure).unwrap());
+    let told = texts(&picture);
+    for words in ["keep-out, not reached: 40 posts", "not reached: 20 posts", "no way back to the start: 0 posts"] {
+        assert!(told.lines().any(|line| line.ends_with(words)), "{words:?} is missing in {told}");
+    }
+    let image = &picture.sheet.images[0].pixels;
+    // Of nine pixels two are under each set of stripes, and of 81 four under both: 32 of 81.
+    let of_a_row = image.width * image.width / 20;
+    let inked = |row: usize| (0..of_a_row).filter(|at| image.bytes[row * of_a_row + at] == 1).count();
+    assert!(inked(0).abs_diff(of_a_row * 32 / 81) < of_a_row / 40, "{} of {of_a_row} under stripes", inked(0));
+    assert_eq!(inked(5), 0, "nothing over what is reached");
+    assert!(draw_hop_map(&HopMapFigure { kept_out: Some(&[true; 3]), ..figure }).is_err());
 }
 
 fn value_map<'a>(posts: MapPosts<'a>, values: &'a [f64], name: &str) -> ValueMapFigure<'a> {

@@ -79,6 +79,8 @@ fn rates<'a>(points: impl Iterator<Item = &'a ConvergencePoint>) -> (f64, f64) {
 
 /// The axis of the number of trials.
 struct Trials {
+    least: u64,
+    most: u64,
     axis: Axis,
     is_logarithmic: bool,
     span_mm: f64,
@@ -87,10 +89,11 @@ struct Trials {
 impl Trials {
     fn new<'a>(points: impl Iterator<Item = &'a ConvergencePoint>, from_mm: f64, to_mm: f64) -> Self {
         let (least, most) = points.fold((u64::MAX, 1), |(least, most), p| (least.min(p.trials), most.max(p.trials)));
-        let (least, most) = (number(least.min(most)), number(most));
+        let ends = (least.min(most), most);
+        let (least, most) = (number(ends.0), number(ends.1));
         let is_logarithmic = most > FAR * least;
         let range = if is_logarithmic { (libm::log10(least), libm::log10(most)) } else { (least, most) };
-        Self { axis: Axis::new(range, from_mm, to_mm), is_logarithmic, span_mm: to_mm - from_mm }
+        Self { least: ends.0, most: ends.1, axis: Axis::new(range, from_mm, to_mm), is_logarithmic, span_mm: to_mm - from_mm }
     }
 
     fn place(&self, trials: u64) -> f64 {
@@ -104,6 +107,9 @@ impl Trials {
 
     /// Whole numbers of trials: 1, 2, 5, 10, ... on a logarithmic axis.
     fn ticks(&self) -> Vec<(f64, String)> {
+        if self.least == self.most {
+            return vec![(self.place(self.most), short(number(self.most)))];
+        }
         if !self.is_logarithmic {
             let widest_mm = text_width_mm(&short(self.axis.to), SMALL_MM) + 5.0;
             let is_whole = |(_, text): &(f64, String)| !text.contains('.') || text.contains('e');

@@ -20,6 +20,8 @@ pub use data::{
 use super::{
     Caption, FigureError, Picture,
     keys::{self, Swatch},
+    palette::SMALL_MM,
+    picture::paragraph,
     sheet::Sheet,
 };
 
@@ -47,11 +49,14 @@ pub fn draw_simulation(figure: &SimulationFigure) -> Result<Picture, FigureError
     if !figure.outcomes.is_empty() {
         end_mm = panel(&mut sheet, "How the trials ended", end_mm, |sheet, top| Ok(outcomes::draw(sheet, &figure.outcomes, top)))?;
     }
-    if figure.outcomes.iter().any(|bars| !bars.convergence.is_empty()) {
+    if figure.outcomes.iter().any(|bars| bars.convergence.len() > 1) {
         let text = "Success rate after so many trials, with its 95 % band";
         end_mm = panel(&mut sheet, text, end_mm, |sheet, top| Ok(convergence::draw(sheet, &figure.outcomes, top)))?;
+    } else if figure.outcomes.iter().any(|bars| !bars.convergence.is_empty()) {
+        let text = "The success rate over the number of trials is not drawn: it is noted after 10 trials for the first time.";
+        end_mm = paragraph(&mut sheet, text, SMALL_MM, false, end_mm + 1.0) + BELOW_MM;
     }
-    Ok(Picture { sheet, height_mm: end_mm })
+    Ok(Picture::page(sheet, end_mm))
 }
 
 /// Draws the trajectories of trials over the terrain, with the planned path on top, and below them the landings hop by hop.
@@ -106,7 +111,7 @@ fn alone(caption: &Caption, draw: impl FnOnce(&mut Sheet, f64) -> Result<Drawn, 
     let mut sheet = Sheet::default();
     let top_mm = caption.draw(&mut sheet) + 1.0;
     let height_mm = with_legend(&mut sheet, top_mm, draw)?;
-    Ok(Picture { sheet, height_mm })
+    Ok(Picture::page(sheet, height_mm))
 }
 
 /// One panel among several; returns where it ends.

@@ -139,6 +139,13 @@ fn what_is_absent_is_left_out_of_the_sheet() {
     let picture = check_picture("simulation_without_flights", || draw_simulation(&no_flights).unwrap());
     assert!(!texts(&picture).contains("Trajectories"), "{}", texts(&picture));
     let empty = SimulationFigure { caption: caption(), ..SimulationFigure::default() };
+    let mut few = bars("open-loop", 3, 4);
+    few.convergence.drain(..39);
+    let one_point = SimulationFigure { outcomes: vec![few.clone()], ..no_flights.clone() };
+    let told = texts(&check_picture("simulation_one_point", || draw_simulation(&one_point).unwrap()));
+    assert!(told.contains("is not drawn: it is noted after 10 trials") && !told.contains("95 % band"), "{told}");
+    let alone = check_picture("convergence_one_point", || draw_convergence(&caption(), std::slice::from_ref(&few)).unwrap());
+    assert!(texts(&alone).lines().any(|line| line == "4"), "the number of trials on the axis");
     let picture = check_picture("simulation_empty", || draw_simulation(&empty).unwrap());
     assert_eq!(labels(&picture).len(), 2, "only the words on top: {}", texts(&picture));
 }

@@ -1,0 +1,212 @@
+//! A sheet of the single hops of paths over a map: a grid of small profiles, each with its numbers.
+
+use super::{
+    super::{
+        Caption, FigureError, Picture,
+        axes::{Panel, left_room_mm},
+        keys::{self, Swatch},
+        palette::{BLUE, GREEN, GROUND, PAGE_WIDTH_MM, SMALL_MM, TEXT_MM, VERMILION},
+        scale::{Frame, Scale},
+        sheet::{Label, Pen, Place, Sheet},
+        symbols,
+        terrain_panel::named_axes,
+        ticks::{Ticks, short},
+    },
+    Flight,
+    profile::{Profile, at_x, check_ground, fitted, part},
+};
+use crate::{path::Hop, quantity::ChainPoint};
+
+/// One hop of the sheet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HopProfile {
+    /// Which hop, such as `goal 1, hop 3 of 26`.
+    pub name: String,
+    /// The ground from take-off to landing and as far beyond as is known.
+    pub ground: Vec<ChainPoint>,
+    /// The hop; its ends on the map are told where it has them.
+    pub hop: Hop,
+    /// Where the flight passes lowest over a vertex, x and how high over it, m; `None` where there is none between the ends.
+    pub least_clearance_m: Option<(f64, f64)>,
+}
+
+/// The sheet of all hops.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HopProfilesFigure {
+    /// The words above.
+    pub caption: Caption,
+    /// How high over the ground a flight has to stay, m; 0: it must not touch it.
+    pub clearance_m: f64,
+    /// The hops, row by row.
+    pub hops: Vec<HopProfile>,
+}
+
+/// A hop's cell with its words, its panel and free room around.
+const CELL_MM: (f64, f64) = (82.0, 62.0);
+/// Free room right of a cell.
+const GAP_MM: f64 = 5.0;
+/// Height of the panel.
+const PANEL_MM: f64 = 32.0;
+/// Free room over what is drawn, below it and at its sides.
+const ABOVE_MM: f64 = 4.0;
+const BELOW_MM: f64 = 5.0;
+const BESIDE_MM: f64 = 3.0;
+/// Heights less than this are exaggerated.
+const FLAT_MM: f64 = 6.0;
+/// Distance of the lines of words.
+const LINE_MM: f64 = 3.6;
+/// Around the whole grid.
+const MARGIN_MM: f64 = 4.0;
+/// The sheet is no higher than this many times its width.
+const SLENDER: f64 = 1.95;
+
+const FLIGHT_PEN: Pen = Pen { colour: BLUE, width_mm: 0.35 };
+const REQUIRED_PEN: Pen = Pen { colour: GREEN, width_mm: 0.25 };
+const LEAST_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.35 };
+/// Dashes and gaps of the line of the required clearance.
+const DASHES_MM: (f64, f64) = (1.2, 0.7);
+
+/// Draws the profiles of hops as a grid: for each its number, where it begins and ends on the map, its distance and heading, speeds and
+/// angles at both ends, and the flight over the ground with the place where it passes lowest.
+///
+/// As many columns as keep the sheet no higher than about twice its width. A sheet of one or two columns is a page of 170 mm wide.
+///
+/// # Errors
+/// [`FigureError::NoGround`] for a hop over a ground of fewer than two points.
+pub fn draw_hop_profiles(figure: &HopProfilesFigure) -> Result<Picture, FigureError> {
+    let mut sheet = Sheet::default();
+    let head_mm = figure.caption.draw(&mut sheet);
+    let head_mm = keys::draw(&mut sheet, &entries(figure), head_mm + 2.0) + 3.0;
+    let (columns, width_mm) = columns(figure.hops.len(), head_mm);
+    for (i, hop) in figure.hops.iter().enumerate() {
+        check_ground(&hop.name, &hop.ground)?;
+        let (row, column) = (i / columns, i % columns);
+        cell(&mut sheet, hop, figure.clearance_m, (MARGIN_MM + float(column) * CELL_MM.0, head_mm + float(row) * CELL_MM.1));
+    }
+    let height_mm = (head_mm + float(figure.hops.len().div_ceil(columns)) * CELL_MM.1 + 1.0).ceil();
+    Ok(Picture { sheet, width_mm, height_mm })
+}
+
+#[expect(clippy::cast_precision_loss, reason = "rows and columns of a sheet")]
+const fn float(count: usize) -> f64 {
+    count as f64
+}
+
+/// The least number of columns that keeps the sheet from becoming slender, and the sheet's width.
+fn columns(hops: usize, head_mm: f64) -> (usize, f64) {
+    let width_mm = |columns: usize| PAGE_WIDTH_MM.max((2.0 * MARGIN_MM + float(columns) * CELL_MM.0).ceil());
+    let is_slender = |columns: usize| head_mm + float(hops.div_ceil(columns)) * CELL_MM.1 > SLENDER * width_mm(columns);
+    let columns = (2..=hops.max(2)).find(|&columns| !is_slender(columns)).unwrap_or(hops.max(2));
+    (columns, width_mm(columns))
+}
+
+/// The legend: what occurs on the sheet.
+fn entries(figure: &HopProfilesFigure) -> Vec<(Swatch, String)> {
+    let mut found = vec![
+        (Swatch::Line(FLIGHT_PEN), "flight".to_owned()),
+        (Swatch::Symbol(symbols::takeoff), "take-off".to_owned()),
+        (Swatch::Symbol(symbols::landing), "landing".to_owned()),
+    ];
+    if figure.hops.iter().any(|hop| hop.least_clearance_m.is_some()) {
+        found.push((Swatch::Line(LEAST_PEN), "least clearance over a vertex".to_owned()));
+    }
+    if figure.clearance_m > 0.0 {
+        let text = format!("clearance asked for: {} m", short(figure.clearance_m));
+        found.push((Swatch::Dashed(REQUIRED_PEN, DASHES_MM.0, DASHES_MM.1), text));
+    }
+    found
+}
+
+/// The numbers of a hop, a line each.
+fn words(profile: &HopProfile) -> Vec<String> {
+    let hop = &profile.hop;
+    let run_m = short((hop.landing.point.x_m - hop.takeoff.point.x_m).abs());
+    let mut found = Vec::new();
+    if let Some(ends) = hop.map {
+        let (from, to) = (ends.takeoff, ends.landing);
+        found.push(format!("({:.1}, {:.1}) m to ({:.1}, {:.1}) m", from.x, from.y, to.x, to.y));
+        found.push(format!("run {run_m} m, heading {:.1} deg; flight {} s", ends.heading_deg, short(hop.flight_time_s)));
+    } else {
+        found.push(format!("run {run_m} m; flight {} s", short(hop.flight_time_s)));
+    }
+    let angles = hop.takeoff_angles;
+    found.push(format!(
+        "take-off {} m/s at {:.1} deg ({:.1} to {:.1} feasible)",
+        short(hop.takeoff_speed_m_s),
+        hop.takeoff_angle.degrees(),
+        angles.min.degrees(),
+        angles.max.degrees()
+    ));
+    let clearance = profile.least_clearance_m.map(|(_, height_m)| format!("; least clearance {} m", short(height_m)));
+    let landing = format!("landing {} m/s at {:.1} deg", short(hop.landing_speed_m_s), hop.landing_angle.degrees());
+    found.push(landing + &clearance.unwrap_or_default());
+    found
+}
+
+/// One hop below and right of a place.
+fn cell(sheet: &mut Sheet, profile: &HopProfile, clearance_m: f64, (left_mm, top_mm): Place) {
+    let width_mm = CELL_MM.0 - GAP_MM;
+    let title = fitted(&profile.name, TEXT_MM, 0.9 * width_mm);
+    sheet.label(Label { bold: true, ..Label::new(title, (left_mm, top_mm + 0.5 * LINE_MM), TEXT_MM) });
+    let mut y = top_mm + 1.5 * LINE_MM + 0.3;
+    for line in words(profile) {
+        sheet.label(Label::new(fitted(&line, SMALL_MM, width_mm), (left_mm, y), SMALL_MM));
+        y += LINE_MM;
+    }
+    let end_mm = left_mm + width_mm;
+    panel(sheet, profile, clearance_m, (left_mm, end_mm), y - 0.2 * LINE_MM);
+}
+
+/// The flight over its ground, between two ends and below a height of the sheet.
+fn panel(sheet: &mut Sheet, profile: &HopProfile, clearance_m: f64, ends_mm: (f64, f64), top_mm: f64) {
+    let flight = Flight::from(&profile.hop);
+    let (from, to) = (flight.from.x_m.min(flight.to.x_m), flight.from.x_m.max(flight.to.x_m));
+    let ground = part(&profile.ground, from, to);
+    let drawn = laid_out(&ground, &flight, ends_mm, top_mm);
+    let x_name = format!("distance (m); {}", brief(&drawn.frame.scale));
+    named_axes(sheet, &drawn.panel, &drawn.frame, &x_name, "height (m)");
+    let surface = drawn.line(&ground);
+    if let (Some(&first), Some(&last)) = (surface.first(), surface.last()) {
+        let base = [(last.0, drawn.panel.bottom), (first.0, drawn.panel.bottom)];
+        sheet.area(surface.iter().copied().chain(base).collect(), GROUND, 1.0);
+    }
+    sheet.line(surface, symbols::SURFACE_PEN);
+    if clearance_m > 0.0 {
+        let raised: Vec<ChainPoint> = ground.iter().map(|point| ChainPoint::new(point.x_m, point.z_m + clearance_m)).collect();
+        sheet.dashed(&drawn.line(&raised), DASHES_MM.0, DASHES_MM.1, REQUIRED_PEN);
+    }
+    if let Some((x_m, height_m)) = profile.least_clearance_m {
+        let foot = at_x(&ground, x_m);
+        sheet.line(vec![drawn.frame.place(foot), drawn.frame.place(ChainPoint::new(x_m, foot.z_m + height_m))], LEAST_PEN);
+    }
+    sheet.line(drawn.flight(&flight), FLIGHT_PEN);
+    symbols::takeoff(sheet, drawn.frame.place(flight.from));
+    symbols::landing(sheet, drawn.frame.place(flight.to));
+    drawn.panel.outline(sheet);
+}
+
+/// The scale in as few words as a small panel has room for.
+fn brief(scale: &Scale) -> String {
+    if scale.exaggeration < 1.0 { format!("heights at 1/{:.0}", 1.0 / scale.exaggeration) } else { scale.text() }
+}
+
+/// A panel of fixed height with everything in it at one scale, or at one that its axis states.
+fn laid_out(ground: &[ChainPoint], flight: &Flight, (left_mm, right_mm): (f64, f64), top_mm: f64) -> Profile {
+    let heights = ground.iter().map(|point| point.z_m).chain([flight.apex_z_m()]);
+    let (low_m, high_m) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)));
+    let (from_m, to_m) = (flight.from.x_m.min(flight.to.x_m), flight.from.x_m.max(flight.to.x_m));
+    // A hop straight up still has a scale.
+    let length_m = if to_m > from_m { to_m - from_m } else { 1.0 };
+    let tall_mm = PANEL_MM - ABOVE_MM - BELOW_MM;
+    let scale = |left_mm: f64| Scale::within(length_m, high_m - low_m, right_mm - left_mm - 2.0 * BESIDE_MM, (FLAT_MM, tall_mm));
+    // The numbers of the axis decide where the panel begins, and depend themselves on its scale: a first guess is enough.
+    let guess = scale(left_mm + 12.0);
+    let per_mm = 1.0 / (guess.mm_per_m * guess.exaggeration);
+    let ticks = Ticks::round(low_m - BELOW_MM * per_mm, high_m + ABOVE_MM * per_mm, PANEL_MM / 6.5);
+    let left = left_mm + left_room_mm(&ticks);
+    let panel = Panel { left, top: top_mm, right: right_mm, bottom: top_mm + PANEL_MM };
+    let origin = ChainPoint::new(0.5 * (from_m + to_m), low_m);
+    let frame = Frame { scale: scale(left), origin, place: (0.5 * (left + right_mm), panel.bottom - BELOW_MM) };
+
+    Profile { panel, frame }
+}
