@@ -316,6 +316,12 @@ fn no_file_is_written_over_another() {
     desk.refused(&["slice", "walled.asc", "--from", "101,205", "--to", "110,205", "-o", "walled.asc"], &["walled.asc", "read by"]);
     desk.refused(&["plan", "scenario.toml", "--plot", "a.svg", "-o", "a.svg"], &["a.svg", "two answers"]);
     desk.refused(&["plan", "scenario.toml", "-o", "chain.csv"], &["chain.csv", "read by"]);
+    // A run writes a chain.csv of its own; its result may be repeated into its own place.
+    desk.refused(&["run", "scenario.toml", "-o", "."], &["chain.csv", "read by"]);
+    assert_eq!(desk.run(&["run", "scenario.toml", "-o", "out"]).status, 0);
+    let result = desk.read("out/result.json");
+    assert_eq!(desk.run(&["run", "out/result.json", "-o", "out"]).status, 0);
+    assert_eq!(desk.read("out/result.json"), result);
     assert_eq!(desk.read("walled.asc"), before);
     assert!(!desk.path().join("x.tif").exists() && !desk.path().join("a.svg").exists());
 }

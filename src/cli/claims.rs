@@ -23,6 +23,13 @@ pub(crate) fn reads(path: &Path) {
     }
 }
 
+/// Lets a file that was read be written after all: a result that is repeated into its own place.
+pub(crate) fn repeats(path: &Path) {
+    if let Ok(handle) = Handle::from_path(path) {
+        READ.lock().unwrap_or_else(PoisonError::into_inner).retain(|read| *read != handle);
+    }
+}
+
 /// Notes a file that will be written.
 ///
 /// # Errors

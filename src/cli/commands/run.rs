@@ -8,9 +8,13 @@ use super::{plan::Planned, search::use_threads, simulate};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, Format, RunArgs},
+    claims,
     load::{EndOptions, load},
     output::{self, Pending},
 };
+
+/// The answer, which repeats itself when it is run.
+const RESULT: &str = "result.json";
 
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
@@ -39,7 +43,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let mut files = vec![
         ("chain.csv", chain_csv),
         ("path.csv", planned.csv(&loaded)?),
-        ("result.json", planned.document("run", &loaded)?.into_bytes()),
+        (RESULT, planned.document("run", &loaded)?.into_bytes()),
         ("path.svg", planned.picture(&loaded, &test, ends)?.into_bytes()),
     ];
     if let Some(geojson) = planned.geojson(&loaded) {
@@ -51,6 +55,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     fs::create_dir_all(folder).map_err(|error| {
         Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
     })?;
+    claims::repeats(&folder.join(RESULT));
     let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
     let paths: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
     let pending: Result<Vec<_>, Failure> =
