@@ -17,12 +17,8 @@ pub(crate) struct RunArgs {
     /// Folder for the results, made where it does not exist
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
-    /// Threads to work with; the answer does not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = super::thread_count)]
-    pub(crate) threads: usize,
-    /// How the answer is written to standard output
-    #[arg(long, value_enum, default_value = "text")]
-    pub(crate) format: Format,
+    #[command(flatten)]
+    pub(crate) answer: AnswerArgs,
     /// Set any scenario key; wins over the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
     #[arg(long, value_name = "TABLE.KEY=VALUE")]
     pub(crate) set: Vec<String>,

@@ -121,13 +121,13 @@ pub(crate) struct AnswerArgs {
     /// Threads to work with; the answer does not depend on it [default: one for each core]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = thread_count)]
     pub(crate) threads: usize,
-    /// How the answer is written
+    /// How the answer is written to standard output
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
 }
 
 /// Reads a number of threads; 0: one for each core.
-pub(super) fn thread_count(text: &str) -> Result<usize, String> {
+fn thread_count(text: &str) -> Result<usize, String> {
     /// More than any machine this runs on has cores; thousands of threads take longer to start than most answers.
     const MOST_THREADS: usize = 512;
     match text.parse() {

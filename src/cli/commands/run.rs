@@ -7,7 +7,7 @@ use chta::{chain::csv::write_chain_csv, report::CrsRecord};
 use super::{plan::Planned, search::use_threads, simulate};
 use crate::cli::{
     Answer, Failure,
-    args::{CommonArgs, Format, RunArgs},
+    args::{AnswerArgs, CommonArgs, Format, RunArgs},
     claims,
     load::{EndOptions, load},
     output::{self, Pending},
@@ -18,7 +18,7 @@ const RESULT: &str = "result.json";
 
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
-    let RunArgs { scenario, output: folder, threads, format, set, accept_map_scale, quiet } = args;
+    let RunArgs { scenario, output: folder, answer: AnswerArgs { threads, format }, set, accept_map_scale, quiet } = args;
     use_threads(*threads)?;
     let common = CommonArgs {
         scenario: None,
