@@ -127,8 +127,7 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     let start = spot("start", place("start", *start, *start_lonlat)?)?;
     let places = goal.iter().copied().map(MapPlace::Metres).chain(goal_lonlat.iter().copied().map(MapPlace::LonLat));
     let goals = places.map(|place| spot("goal", place)).collect::<Result<Vec<_>, _>>()?;
-    let ends = std::iter::once(("start", &start)).chain(goals.iter().map(|goal| ("goal", goal)));
-    for (which, spot) in ends.clone() {
+    for (which, spot) in named(start, &goals) {
         let Post { row, col } = lattice.post(spot.post);
         if dem.elevation(row, col).is_none() {
             let message = format!(
@@ -138,7 +137,7 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
             return Err(failed(&std::io::Error::other(message)));
         }
     }
-    told_apart(&dem, *stride, &ends.map(|(_, spot)| *spot).collect::<Vec<_>>())
+    told_apart(&dem, *stride, &named(start, &goals).map(|(_, spot)| spot).collect::<Vec<_>>())
         .map_err(|message| failed(&std::io::Error::other(message)))?;
     let mut warnings = Vec::new();
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
@@ -167,22 +166,30 @@ fn told_apart(dem: &Dem, stride: u32, spots: &[Spot]) -> Result<(), String> {
     Ok(())
 }
 
+/// Start and goals, each with the name of its option.
+fn named(start: Spot, goals: &[Spot]) -> impl Iterator<Item = (&'static str, Spot)> {
+    std::iter::once(("start", start)).chain(goals.iter().map(|goal| ("goal", *goal)))
+}
+
 /// What to say of start and goals whose ground takes no hop and gives none.
 fn refusals(hops: &PostHops<'_>, start: Spot, goals: &[Spot]) -> Vec<String> {
-    let ends = std::iter::once(("start", start)).chain(goals.iter().map(|goal| ("goal", *goal)));
-    ends.filter_map(|(which, spot)| {
-        let refusal = hops.refusal(spot.post)?;
-        let nearest = hops.nearest_usable(spot.post).map_or_else(
-            || "no post of the DEM is usable".to_owned(),
-            |node| {
-                let post = hops.lattice().post(node);
-                let at = hops.request().dem.georeference().post(post.row, post.col);
-                format!("the nearest usable one is ({:.3}, {:.3}) m", at.x, at.y)
-            },
-        );
-        Some(format!("the {which}'s post ({:.3}, {:.3}) m {refusal}: no hop begins or ends there; {nearest}", spot.at.x, spot.at.y))
-    })
-    .collect()
+    named(start, goals)
+        .filter_map(|(which, spot)| {
+            let refusal = hops.refusal(spot.post)?;
+            let nearest = hops.nearest_usable(spot.post).map_or_else(
+                || "no post of the DEM is usable".to_owned(),
+                |node| {
+                    let post = hops.lattice().post(node);
+                    let at = hops.request().dem.georeference().post(post.row, post.col);
+                    format!("the nearest usable one is ({:.3}, {:.3}) m", at.x, at.y)
+                },
+            );
+            Some(format!(
+                "the {which}'s post ({:.3}, {:.3}) m {refusal}: no hop begins or ends there; {nearest}",
+                spot.at.x, spot.at.y
+            ))
+        })
+        .collect()
 }
 
 /// Searches, with progress on a terminal.

@@ -200,14 +200,15 @@ impl Pull<'_> {
     #[inline]
     fn on_front(&self, node: Post, index: usize, (number, step): (usize, isize), inside: bool) -> Option<Post> {
         let step = if self.asked.way == Way::Out { -step } else { step };
-        if inside && self.map.hops[index.wrapping_add_signed(step)] != self.front {
+        let is_front = |at: usize| self.map.hops[at] == self.front;
+        if inside && !is_front(index.wrapping_add_signed(step)) {
             return None;
         }
         let other = match self.asked.way {
             Way::Out => self.hops.takeoff(node, number),
             Way::Back => self.hops.landing(node, number),
         }?;
-        (self.map.hops[self.hops.lattice().index(other)] == self.front).then_some(other)
+        (inside || is_front(self.hops.lattice().index(other))).then_some(other)
     }
 
     /// The hop that joins a node to the front: the shortest, or the one of least effort in all.
