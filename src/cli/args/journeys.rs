@@ -43,7 +43,7 @@ pub(crate) struct HopArgs {
     /// Where it lands, along the chain, m [default: the scenario's goal]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
-    /// How the answer is written
+    /// How the answer is written to standard output
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
     #[command(flatten)]
