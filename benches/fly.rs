@@ -11,9 +11,10 @@ mod support;
 use std::path::Path;
 
 use chta::{
-    ballistics::{HopTest, Split, TakeoffChoice},
+    ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain, csv::read_chain_csv_file},
     graph::{CostToGo, NodeSet, Outcome, PointSpacing, SearchOptions, search},
+    hop::{HopTest, Split},
     path::generate,
     quantity::{Angle, MapPoint},
     terrain::{Dem, read_dem, slice},

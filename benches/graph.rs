@@ -7,8 +7,8 @@
 mod support;
 
 use chta::{
-    ballistics::HopTest,
     graph::{PointSpacing, SearchOptions, search},
+    hop::HopTest,
     world::Hopper,
 };
 use divan::{Bencher, black_box};

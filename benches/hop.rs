@@ -7,10 +7,10 @@
 mod support;
 
 use chta::{
-    ballistics::{HopTest, LandingTable, Sweep},
-    chain::{Direction, PolygonalChain},
+    chain::PolygonalChain,
+    hop::{HopTest, LandingTable, Sweep},
     quantity::VertexId,
-    world::Hopper,
+    world::{Direction, Hopper},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
 

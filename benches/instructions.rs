@@ -20,10 +20,10 @@ mod support;
 use std::{hint::black_box, process::Command};
 
 use chta::{
-    ballistics::{HopTest, LandingTable, Sweep},
-    chain::{ConstrainedChain, Direction, Station},
+    chain::{ConstrainedChain, Station},
+    hop::{HopTest, LandingTable, Sweep},
     quantity::VertexId,
-    world::Hopper,
+    world::{Direction, Hopper},
 };
 use gungraun::{library_benchmark, library_benchmark_group};
 

@@ -2,9 +2,9 @@
 #![expect(clippy::unwrap_used, reason = "a bench that cannot build its ground should stop")]
 
 use chta::{
-    ballistics::HopTest,
     chain::{ConstrainedChain, PolygonalChain},
     graph::proof::{Bounds, BoundsOptions, bounds},
+    hop::HopTest,
     quantity::ChainPoint,
     world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
 };

@@ -15,10 +15,10 @@ use std::{
 };
 
 use chta::{
-    ballistics::{HopTest, LandingTable, Sweep},
-    chain::{Direction, Station},
+    chain::Station,
+    hop::{HopTest, LandingTable, Sweep},
     quantity::VertexId,
-    world::{Hopper, Limit},
+    world::{Direction, Hopper, Limit},
 };
 
 /// Of so many rounds each, taken in turn, the fastest counts: the one least disturbed.

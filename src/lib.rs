@@ -7,15 +7,7 @@
 //! # From a DEM to a path
 //!
 //! ```
-//! use chta::{
-//!     ballistics::{HopTest, Split, TakeoffChoice},
-//!     chain::{ConstrainedChain, PolygonalChain},
-//!     graph::{Outcome, PointSpacing, SearchOptions, search},
-//!     path::{execute, generate},
-//!     quantity::MapPoint,
-//!     terrain::{SyntheticTerrain, slice, synthesise},
-//!     world::{Body, FrictionCone, Grip, Hopper, RestSlope, Surface},
-//! };
+//! use chta::{ballistics::TakeoffChoice, chain::{ConstrainedChain, PolygonalChain}, graph::{search, Outcome, PointSpacing, SearchOptions}, hop::{HopTest, Split}, path::{execute, generate}, quantity::MapPoint, terrain::{slice, synthesise, SyntheticTerrain}, world::{Body, FrictionCone, Grip, Hopper, RestSlope, Surface}};
 //!
 //! // Terrain: a DEM (here made up from a seed; `terrain::read_dem` reads one), cut along a vertical plane.
 //! let dem = synthesise(&SyntheticTerrain { rows: 60, cols: 120, ..SyntheticTerrain::default() })?;
@@ -54,10 +46,11 @@
 //!
 //! ```text
 //! quantity     angles, slopes, points, ids, sign-safe roots
-//! world        bodies, the hopper, friction cones
+//! world        bodies, the hopper, friction cones, directions of travel
+//! ballistics   the equations of one arc: every limit as an interval of its take-off slope
 //! terrain      elevation rasters, slices of them, terrain made up from a seed
 //! chain        the polygonal chain and what each segment allows
-//! ballistics   the equations: every limit as an interval, the hop test, many hops on a segment
+//! hop          the hop test: feasible take-off slopes between two stations of a chain, many hops on a segment
 //! graph        nodes, hops as edges, the search
 //! path         the hops to fly, and `execute`, which flies them again without those equations
 //! uncertainty  how surely a path is flown: trials under errors, first contact in two and three dimensions
@@ -80,6 +73,7 @@
 pub mod ballistics;
 pub mod chain;
 pub mod graph;
+pub mod hop;
 pub mod path;
 pub mod quantity;
 pub mod reach;

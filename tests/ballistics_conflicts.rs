@@ -4,8 +4,8 @@
 mod support;
 
 use chta::{
-    ballistics::{Conflict, HopTest, TakeoffSet},
     chain::{ContactRule, LineConstraints, Station},
+    hop::{Conflict, HopTest, TakeoffSet},
     quantity::{Angle, AngleInterval, ChainPoint, SlopeInterval},
     world::{Hopper, Limit},
 };

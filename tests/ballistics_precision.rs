@@ -6,8 +6,9 @@ mod support;
 use std::collections::HashMap;
 
 use chta::{
-    ballistics::{HopTest, TakeoffChoice, TakeoffSet},
+    ballistics::TakeoffChoice,
     chain::ConstrainedChain,
+    hop::{HopTest, TakeoffSet},
     quantity::{Angle, AngleInterval, ChainPoint},
     world::{Hopper, Limit},
 };

@@ -4,10 +4,10 @@
 mod support;
 
 use chta::{
-    ballistics::{HopTest, TakeoffSet},
-    chain::{ConstrainedChain, Contact, Direction, GroundRefusal, Site, Station},
+    chain::{ConstrainedChain, GroundRefusal, Site, Station},
+    hop::{HopTest, TakeoffSet},
     quantity::{Angle, ChainPoint, VertexId},
-    world::{FrictionCone, Grip, Hopper, Limit, RestSlope, SPEED_TOLERANCE, Surface},
+    world::{Contact, Direction, FrictionCone, Grip, Hopper, Limit, RestSlope, SPEED_TOLERANCE, Surface},
 };
 use support::{Draw, explicit, line, uniform};
 
@@ -367,8 +367,8 @@ fn the_kernel_gives_what_the_explained_set_gives() {
             Err(limit) => {
                 assert_eq!(set.loft(), None, "the kernel refuses by {limit}");
                 let conflict = set.conflict().unwrap();
-                if let chta::ballistics::Conflict::Alone(alone) = conflict
-                    && matches!(alone.shortfall, Some(chta::ballistics::Shortfall::Ground { .. }))
+                if let chta::hop::Conflict::Alone(alone) = conflict
+                    && matches!(alone.shortfall, Some(chta::hop::Shortfall::Ground { .. }))
                 {
                     assert_eq!(alone.limit.index() <= Limit::LandingSpeed.index(), limit.index() <= Limit::LandingSpeed.index());
                 }

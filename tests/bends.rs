@@ -8,9 +8,10 @@ use std::{fs, path::Path, process::Output};
 
 use assert_cmd::Command;
 use chta::{
-    ballistics::{HopTest, Split, TakeoffChoice},
+    ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain, csv::read_chain_csv},
     graph::{Outcome, PointSpacing, SearchOptions, search},
+    hop::{HopTest, Split},
     path::{ViolatedLimit, execute, generate},
     quantity::{ChainPoint, MapPoint, VertexId},
     terrain::{Dem, GeoReference, slice_legs, write_ascii_grid},

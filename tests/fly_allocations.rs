@@ -6,9 +6,9 @@
 use std::alloc::System;
 
 use chta::{
-    ballistics::{HopTest, Split},
     chain::{ConstrainedChain, PolygonalChain},
     graph::{Outcome, PointSpacing, SearchOptions, search},
+    hop::{HopTest, Split},
     path::generate,
     quantity::{Angle, MapPoint},
     terrain::{SyntheticTerrain, slice, synthesise},

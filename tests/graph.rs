@@ -6,14 +6,15 @@ mod own_search;
 mod support;
 
 use chta::{
-    ballistics::{Conflict, HopTest, Split, TakeoffChoice},
-    chain::{ConstrainedChain, Contact, Direction, Ground, GroundForm, LineConstraints, PolygonalChain, Station},
+    ballistics::TakeoffChoice,
+    chain::{ConstrainedChain, Ground, GroundForm, LineConstraints, PolygonalChain, Station},
     graph::{
         AUTO_POINTS_PER_SEGMENT, Answer, Effort, Frontier, NodeSet, Outcome, PointSpacing, SearchOptions, TooManyNodes, is_usable,
         search,
     },
+    hop::{Conflict, HopTest, Split},
     quantity::{ChainPoint, VertexId},
-    world::{Hopper, RestSlope, Surface},
+    world::{Contact, Direction, Hopper, RestSlope, Surface},
 };
 use support::{Draw, explicit, line};
 

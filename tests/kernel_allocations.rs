@@ -5,10 +5,10 @@
 use std::alloc::System;
 
 use chta::{
-    ballistics::{HopTest, LandingTable, Sweep},
-    chain::{ConstrainedChain, Direction, PolygonalChain},
+    chain::{ConstrainedChain, PolygonalChain},
+    hop::{HopTest, LandingTable, Sweep},
     quantity::{ChainPoint, VertexId},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Direction, FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 

@@ -6,8 +6,21 @@
 use std::{fs, path::Path};
 
 /// The rungs, from the top. The last two share no rung with the library: the binary's own side comes after everything.
-const LADDER: [&str; 12] =
-    ["quantity", "world", "terrain", "chain", "ballistics", "graph", "path", "uncertainty", "reach", "report", "scenario", "cli"];
+const LADDER: [&str; 13] = [
+    "quantity",
+    "world",
+    "ballistics",
+    "terrain",
+    "chain",
+    "hop",
+    "graph",
+    "path",
+    "uncertainty",
+    "reach",
+    "report",
+    "scenario",
+    "cli",
+];
 
 /// One import that goes the wrong way.
 #[derive(Debug, PartialEq, Eq)]
@@ -121,7 +134,8 @@ fn the_checker_uses_neither_ballistics_nor_graph() {
     assert!(!files.is_empty(), "the checker has moved");
     for file in files {
         let named = named_modules(&fs::read_to_string(&file).unwrap());
-        let forbidden: Vec<_> = named.iter().filter(|(_, module)| module == "ballistics" || module == "graph").collect();
+        let forbidden: Vec<_> =
+            named.iter().filter(|(_, module)| ["ballistics", "hop", "graph"].contains(&module.as_str())).collect();
         assert!(forbidden.is_empty(), "{}: {forbidden:?}", file.display());
     }
 }

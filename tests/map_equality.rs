@@ -8,8 +8,8 @@ mod support;
 use std::{error::Error, path::Path};
 
 use chta::{
-    ballistics::HopTest,
     chain::{ConstrainedChain, PolygonalChain},
+    hop::HopTest,
     quantity::{Angle, AngleInterval, MapPoint, SlopeInterval, VertexId},
     reach::map::{MapRequest, NO_GROUND, Post, PostHops, SECTORS, Search, UNREACHED, Way, mobility, search},
     terrain::{Dem, FrictionRaster, GeoReference, KeepOut, Profile, read_dem, read_friction_raster, read_keep_out, slice},

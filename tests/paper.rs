@@ -2,14 +2,13 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests: shipped data that cannot be read fails them")]
 
 use chta::{
-    ballistics::{Arc, HopTest, LineOfSight, Split, TakeoffChoice, least_takeoff_speed_m_s},
-    chain::{
-        ConstrainedChain, Contact, ContactRule, Direction, Ground, GroundForm, GroundRefusal, LineConstraints, PolygonalChain,
-    },
+    ballistics::{Arc, LineOfSight, TakeoffChoice, least_takeoff_speed_m_s},
+    chain::{ConstrainedChain, ContactRule, Ground, GroundForm, GroundRefusal, LineConstraints, PolygonalChain},
     graph::{Answer, Effort, HopGraph, NodeSet, Outcome, PointSpacing, SearchOptions, search},
+    hop::{HopTest, Split},
     path::generate,
     quantity::{Angle, AngleInterval, ChainPoint, SegmentId, VertexId},
-    world::{Grip, Hopper, Limit, RestSlope, Surface},
+    world::{Contact, Direction, Grip, Hopper, Limit, RestSlope, Surface},
 };
 
 const NO_REST: RestSlope = RestSlope::Unlimited;

@@ -4,16 +4,17 @@
 mod support;
 
 use chta::{
-    ballistics::{HopTest, Split, TakeoffChoice},
-    chain::{ConstrainedChain, Contact, ContactRule, Direction, Ground, GroundForm, PolygonalChain, Station},
+    ballistics::TakeoffChoice,
+    chain::{ConstrainedChain, ContactRule, Ground, GroundForm, PolygonalChain, Station},
     graph::{
         Outcome, PointSpacing, SearchOptions,
         proof::{Bounds, BoundsOptions, ProofVerdict, bounds},
         search,
     },
+    hop::{HopTest, Split},
     path::{execute, generate},
     quantity::{Angle, ChainPoint, VertexId},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Contact, Direction, FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
 use support::{Draw, explicit, line};
 

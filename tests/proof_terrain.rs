@@ -9,16 +9,17 @@ mod support;
 use std::{path::PathBuf, time::Instant};
 
 use chta::{
-    ballistics::{HopTest, Split, TakeoffChoice},
-    chain::{ConstrainedChain, Contact, PolygonalChain, Station},
+    ballistics::TakeoffChoice,
+    chain::{ConstrainedChain, PolygonalChain, Station},
     graph::{
         Outcome, is_usable,
         proof::{BoundsOptions, DEFAULT_BUDGET_CELLS, ProofVerdict, bounds},
     },
+    hop::{HopTest, Split},
     path::{execute, generate},
     quantity::MapPoint,
     terrain::{Dem, read_dem, slice},
-    world::{Body, FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Body, Contact, FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
 use support::Draw;
 

@@ -4,12 +4,13 @@
 mod support;
 
 use chta::{
-    ballistics::{HopTest, SegmentHops, Split, TakeoffChoice},
-    chain::{ConstrainedChain, Direction, LineConstraints, Station},
+    ballistics::TakeoffChoice,
+    chain::{ConstrainedChain, LineConstraints, Station},
     graph::{Edge, Leg},
+    hop::{HopTest, SegmentHops, Split},
     path::generate,
     quantity::{Angle, ChainPoint, SegmentId, VertexId},
-    world::{Hopper, Limit, SPEED_TOLERANCE},
+    world::{Direction, Hopper, Limit, SPEED_TOLERANCE},
 };
 use support::{Draw, line, uniform};
 

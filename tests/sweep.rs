@@ -4,11 +4,11 @@
 mod support;
 
 use chta::{
-    ballistics::{HopTest, LandingTable, Sweep},
-    chain::{ConstrainedChain, Direction, LineConstraints, PolygonalChain, Station},
+    chain::{ConstrainedChain, LineConstraints, PolygonalChain, Station},
+    hop::{HopTest, LandingTable, Sweep},
     quantity::{Angle, ChainPoint, MapPoint, VertexId},
     terrain::slice,
-    world::{FrictionCone, Grip, Hopper, Limit, RestSlope, Surface},
+    world::{Direction, FrictionCone, Grip, Hopper, Limit, RestSlope, Surface},
 };
 use support::{Draw, explicit, line, uniform};
 

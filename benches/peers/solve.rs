@@ -10,9 +10,9 @@
 use std::{error::Error, fs, hint::black_box, time::Instant};
 
 use chta::{
-    ballistics::HopTest,
     chain::{ConstrainedChain, csv::read_chain_csv_file},
     graph::{PointSpacing, SearchOptions, search},
+    hop::HopTest,
     scenario::{Entries, Scenario},
 };
 

@@ -2,9 +2,11 @@
 //! them, stopped at the first vertex whose bound passes the greatest take-off slope. Counts the same feasible pairs.
 
 use chta::{
-    ballistics::{HopTest, LineOfSight, limits},
-    chain::{Contact, Direction, Site, Station},
+    ballistics::{LineOfSight, limits},
+    chain::{Site, Station},
+    hop::HopTest,
     quantity::{ChainPoint, SlopeInterval},
+    world::{Contact, Direction},
 };
 
 /// The feasible lofts of a hop between two vertices, `None` where there are none.

@@ -2,8 +2,9 @@
 //! safety first, then the slice between the two and the hop test.
 
 use chta::{
-    ballistics::{HopTest, safety_ceiling_m, safety_range_m},
+    ballistics::{safety_ceiling_m, safety_range_m},
     chain::{ConstrainedChain, PolygonalChain},
+    hop::HopTest,
     quantity::VertexId,
     terrain::{Dem, slice},
     world::{Grip, Hopper, Surface},

@@ -1,4 +1,4 @@
-//! The equations of a ballistic hop: here and, but for the independent checker in [`crate::path`], nowhere else.
+//! The equations of one arc and its limits, for any ground: here and, but for the independent checker in [`crate::path`], nowhere else.
 //!
 //! ```text
 //!                 . - ~ - .            m = tan(theta_t)   take-off slope
@@ -27,26 +27,13 @@
 
 mod arc;
 mod choice;
-mod conflict;
-mod hop_test;
 pub mod limits;
 mod line_of_sight;
 mod open_air;
-mod reach;
-mod risk;
 mod safety;
-mod segment_hops;
-mod sweep;
-mod takeoff_set;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
 pub use choice::TakeoffChoice;
-pub use conflict::{Conflict, Shortfall};
-pub use hop_test::HopTest;
 pub use line_of_sight::LineOfSight;
 pub use open_air::{GroundGrant, OpenAir};
-pub use risk::{HopDeviations, PlannedHop, RiskModel};
 pub use safety::{safety_ceiling_m, safety_range_m};
-pub use segment_hops::{SegmentHops, SegmentReach, Split};
-pub use sweep::{LandingTable, Sweep};
-pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};

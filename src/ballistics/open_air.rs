@@ -71,7 +71,7 @@ impl OpenAir {
 
     /// The lofts that the machine's greatest height and longest flight allow.
     #[inline]
-    pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
+    pub fn machine(&self, sight: LineOfSight) -> SlopeInterval {
         let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
         match self.hopper.flight_time_max_s {
             Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),

@@ -1,9 +1,9 @@
 //! The chain with every segment's constraints settled: the input of all analysis.
 
-use super::{Contact, Direction, Ground, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, Station};
+use super::{Ground, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, Station};
 use crate::{
     quantity::{Angle, SegmentId},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Contact, Direction, FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
 
 /// A chain whose segments all know what they allow.

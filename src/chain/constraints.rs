@@ -2,10 +2,9 @@
 
 use std::fmt;
 
-use super::{Contact, Direction};
 use crate::{
     quantity::{Angle, AngleInterval, SlopeInterval},
-    world::{FrictionCone, Limit},
+    world::{Contact, Direction, FrictionCone, Limit},
 };
 
 /// The limits of one contact: directions of travel and a greatest speed.

@@ -22,4 +22,4 @@ pub use constraints::{ContactRule, GroundRefusal, LineConstraints, SegmentConstr
 pub use ground::{Ground, GroundForm};
 pub use polygonal::{ChainProblem, InvalidChain, PolygonalChain};
 pub use quick_cones::{QuickCone, QuickGrip, Turn};
-pub use station::{Contact, Direction, OffChain, Site, Station};
+pub use station::{OffChain, Site, Station};

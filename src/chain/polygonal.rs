@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use super::{Direction, Ground, GroundForm, OffChain, Site, Station};
+use super::{Ground, GroundForm, OffChain, Site, Station};
 use crate::{
     quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
     terrain::{Profile, ProfilePoint},
-    world::FrictionCone,
+    world::{Direction, FrictionCone},
 };
 
 /// A validated polygonal chain: at least two finite vertices, x strictly increasing, a ground for every segment.

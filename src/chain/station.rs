@@ -1,56 +1,9 @@
 //! A place on the chain, and which segment rules there.
 
-use crate::quantity::{ChainPoint, SegmentId, VertexId};
-
-/// A direction of travel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Direction {
-    /// Towards +x.
-    Forward,
-    /// Towards -x.
-    Reverse,
-}
-
-impl Direction {
-    /// Both directions.
-    pub const BOTH: [Self; 2] = [Self::Forward, Self::Reverse];
-
-    /// The direction of travel between two stations; `None` where they share the same x.
-    pub fn between(takeoff_x_m: f64, landing_x_m: f64) -> Option<Self> {
-        if landing_x_m > takeoff_x_m {
-            Some(Self::Forward)
-        } else if landing_x_m < takeoff_x_m {
-            Some(Self::Reverse)
-        } else {
-            None
-        }
-    }
-
-    /// +1 forward, -1 in reverse: multiplies x and slopes to see them as the traveller does.
-    pub const fn sign(self) -> f64 {
-        match self {
-            Self::Forward => 1.0,
-            Self::Reverse => -1.0,
-        }
-    }
-
-    /// The name in results.
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Forward => "forward",
-            Self::Reverse => "reverse",
-        }
-    }
-}
-
-/// One of the two ends of a hop.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Contact {
-    /// The hop begins here.
-    Takeoff,
-    /// The hop ends here.
-    Landing,
-}
+use crate::{
+    quantity::{ChainPoint, SegmentId, VertexId},
+    world::{Contact, Direction},
+};
 
 /// Where on the chain a station is. A station is at a vertex where its x is the same double; nothing snaps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

@@ -7,8 +7,8 @@ use std::{
 };
 
 use chta::{
-    ballistics::HopTest,
     chain::Station,
+    hop::HopTest,
     report::InputFile,
     scenario::{
         Covers, Entries, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, Survey, TerrainSource, Trade,

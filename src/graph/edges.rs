@@ -6,8 +6,9 @@ use petgraph::visit::{Data, EdgeRef, GraphBase, IntoEdgeReferences, IntoEdges, I
 
 use super::{Cost, Effort, NodeSet, nodes::around};
 use crate::{
-    ballistics::{Arc, HopTest, SegmentHops, Split, TakeoffChoice},
+    ballistics::{Arc, TakeoffChoice},
     chain::Station,
+    hop::{HopTest, SegmentHops, Split},
     quantity::{NodeId, SlopeInterval},
     world::Limit,
 };

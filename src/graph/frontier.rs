@@ -3,7 +3,7 @@
 use std::collections::VecDeque;
 
 use super::{HopGraph, RefusalCounts, local_reach::LocalReach, nodes::around};
-use crate::{ballistics::Conflict, chain::Station, quantity::NodeId};
+use crate::{chain::Station, hop::Conflict, quantity::NodeId};
 
 /// How far one gets from start and towards goal over the nodes of one graph, and what refuses in between.
 #[derive(Clone, Debug, PartialEq)]

@@ -16,10 +16,10 @@ use super::{
     nodes::around,
 };
 use crate::{
-    ballistics::{LandingTable, Sweep},
-    chain::{Direction, Station},
+    chain::Station,
+    hop::{LandingTable, Sweep},
     quantity::{NodeId, SlopeInterval},
-    world::Limit,
+    world::{Direction, Limit},
 };
 
 /// Where a hop comes from: the start, or a node by its number and one.
@@ -381,9 +381,10 @@ impl Stretch<'_> {
 mod tests {
     use super::*;
     use crate::{
-        ballistics::{HopTest, Split, TakeoffChoice},
+        ballistics::TakeoffChoice,
         chain::{ConstrainedChain, PolygonalChain},
         graph::{Effort, NodeSet, PointSpacing},
+        hop::{HopTest, Split},
         quantity::{ChainPoint, VertexId},
         world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
     };

@@ -3,8 +3,8 @@
 use std::collections::VecDeque;
 
 use crate::{
-    ballistics::HopTest,
     chain::{Site, Station},
+    hop::HopTest,
     quantity::ChainPoint,
 };
 
@@ -161,9 +161,10 @@ impl<F: Fn(f64, f64) -> bool> Extreme<F> {
 mod tests {
     use super::*;
     use crate::{
-        ballistics::{Split, TakeoffChoice},
+        ballistics::TakeoffChoice,
         chain::{ConstrainedChain, PolygonalChain},
         graph::{Effort, HopGraph, NodeSet, PointSpacing},
+        hop::Split,
         world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
     };
 

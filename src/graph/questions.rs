@@ -10,9 +10,10 @@ use super::{
     local_reach::LocalReach,
 };
 use crate::{
-    ballistics::{HopTest, LandingTable},
-    chain::{Contact, Direction, Station},
+    chain::Station,
+    hop::{HopTest, LandingTable},
     quantity::NodeId,
+    world::{Contact, Direction},
 };
 
 /// The least node set whose batches may be worth sharing among threads.

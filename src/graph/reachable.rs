@@ -7,8 +7,9 @@ use super::{
     local_reach::LocalReach,
 };
 use crate::{
-    ballistics::{HopTest, LandingTable, Split, TakeoffChoice},
+    ballistics::TakeoffChoice,
     chain::Station,
+    hop::{HopTest, LandingTable, Split},
     quantity::NodeId,
     world::Limit,
 };

@@ -6,8 +6,9 @@ use super::{
     questions::{Questions, Round},
 };
 use crate::{
-    ballistics::{HopTest, Split, TakeoffChoice},
+    ballistics::TakeoffChoice,
     chain::Station,
+    hop::{HopTest, Split},
 };
 
 /// The points per segment that "auto" tries, the first that finds a path answering.
@@ -95,7 +96,7 @@ impl Answer {
 ///
 /// # Complexity
 /// With V nodes, W of them in reach of each ahead of the nodes of as many hops, and S vertices flown past: about O(V W), as
-/// [`Sweep`](crate::ballistics::Sweep) judges one take-off, in time; some 150 bytes a node in memory, no stored edges.
+/// [`Sweep`](crate::hop::Sweep) judges one take-off, in time; some 150 bytes a node in memory, no stored edges.
 pub fn search(
     test: &HopTest<'_>,
     start: Station,

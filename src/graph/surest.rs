@@ -4,9 +4,11 @@ use std::collections::BTreeMap;
 
 use super::{Cost, Edge, HopGraph, Leg, NodeSet, Outcome, SearchOptions, TooManyNodes, search};
 use crate::{
-    ballistics::{Arc, HopTest, PlannedHop, RiskModel, SegmentHops, Split, TakeoffChoice},
-    chain::{Direction, Station},
+    ballistics::{Arc, TakeoffChoice},
+    chain::Station,
+    hop::{HopTest, PlannedHop, RiskModel, SegmentHops, Split},
     quantity::NodeId,
+    world::Direction,
 };
 
 /// Whether surety weighs in the choice of a path.

@@ -147,9 +147,9 @@ const fn weights_each(extra: u64) -> usize {
 mod tests {
     use super::*;
     use crate::{
-        ballistics::{HopDeviations, HopTest, RiskModel},
         chain::{ConstrainedChain, PolygonalChain},
         graph::{CostToGo, NodeSet, PointSpacing, surest_paths},
+        hop::{HopDeviations, HopTest, RiskModel},
         quantity::{Angle, ChainPoint},
         world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
     };

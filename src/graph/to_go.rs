@@ -4,10 +4,11 @@ use std::{cmp::Reverse, collections::BinaryHeap};
 
 use super::{Cost, Effort, HopGraph, Leg, NodeSet, SearchOptions, SuretyOptions, nodes::around, surest_to_go::SurestToGo};
 use crate::{
-    ballistics::{Arc, HopTest, LineOfSight},
-    chain::{Direction, Station},
+    ballistics::{Arc, LineOfSight},
+    chain::Station,
+    hop::HopTest,
     quantity::NodeId,
-    world::tolerant_speed_m_s,
+    world::{Direction, tolerant_speed_m_s},
 };
 
 /// The cost of the cheapest way from every node to the goal, computed once: what a robot needs that finds itself elsewhere than planned.

@@ -1,8 +1,9 @@
 //! Whether start or goal itself refuses, before any hop is tried.
 
 use crate::{
-    chain::{ConstrainedChain, Contact, Direction, GroundRefusal, Station},
+    chain::{ConstrainedChain, GroundRefusal, Station},
     quantity::VertexId,
+    world::{Contact, Direction},
 };
 
 /// A start from which nothing takes off, or a goal on which nothing lands.

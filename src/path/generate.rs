@@ -2,11 +2,12 @@
 
 use super::{Hop, HopPath, MapEnds, Totals};
 use crate::{
-    ballistics::{Arc, HopTest, SegmentHops, Split, TakeoffChoice, TakeoffSet},
-    chain::{Contact, Direction, Station},
+    ballistics::{Arc, TakeoffChoice},
+    chain::Station,
     graph::{Edge, Leg},
+    hop::{HopTest, SegmentHops, Split, TakeoffSet},
     quantity::SlopeInterval,
-    world::{Hopper, Limit},
+    world::{Contact, Direction, Hopper, Limit},
 };
 
 /// A path longer than this program lists hop by hop.

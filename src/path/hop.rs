@@ -2,9 +2,9 @@
 
 use crate::{
     ballistics::{Arc, LineOfSight},
-    chain::{Direction, Station},
+    chain::Station,
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
-    world::Limit,
+    world::{Direction, Limit},
 };
 
 /// One hop, with everything an operator needs to command and judge it.

@@ -6,9 +6,9 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use crate::{
-    ballistics::HopTest,
     chain::ConstrainedChain,
     graph::{PointSpacing, TooManyNodes, reachable},
+    hop::HopTest,
     quantity::MapPoint,
     terrain::{Dem, Profile, TerrainError, slice},
     world::{Hopper, Limit},

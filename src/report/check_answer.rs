@@ -9,8 +9,8 @@ use super::{
     proof_record::ProofRecord,
 };
 use crate::{
-    ballistics::HopTest,
     graph::{Answer, Effort, EndpointRefusal, Frontier, Outcome, PointSpacing, RefusalCounts, proof::Bounds},
+    hop::HopTest,
 };
 
 /// What `chta check` answers for one pair.

@@ -4,9 +4,11 @@ use serde::Serialize;
 
 use super::path_record::unsigned_zero;
 use crate::{
-    ballistics::{Arc, Conflict, HopTest, LimitInterval, Shortfall, TakeoffChoice, TakeoffSet},
-    chain::{Contact, Station},
+    ballistics::{Arc, TakeoffChoice},
+    chain::Station,
+    hop::{Conflict, HopTest, LimitInterval, Shortfall, TakeoffSet},
     quantity::{Angle, VertexId},
+    world::Contact,
 };
 
 /// What `chta hop` answers.

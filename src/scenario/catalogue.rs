@@ -1,8 +1,9 @@
 //! Every key that a scenario may have, with its kind, unit and meaning: one list for reading, help and hints.
 
 use crate::{
-    ballistics::{Split, TakeoffChoice},
+    ballistics::TakeoffChoice,
     graph::{Effort, RiskUse},
+    hop::Split,
     uncertainty::Policy,
 };
 

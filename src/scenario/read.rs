@@ -4,8 +4,9 @@ use std::path::{Path, PathBuf};
 
 use super::{Entries, Place, ScenarioProblem, UncertaintyKeys};
 use crate::{
-    ballistics::{Split, TakeoffChoice},
+    ballistics::TakeoffChoice,
     graph::{Effort, PointSpacing, RiskUse, SearchOptions},
+    hop::Split,
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace},
     world::{Body, FrictionCone, Grip, Hopper, KNOWN_BODIES, RestSlope, Surface},

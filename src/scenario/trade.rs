@@ -9,13 +9,13 @@ use super::{
     entries::{fits, nearest_key},
 };
 use crate::{
-    ballistics::HopTest,
     chain::Station,
     graph::{
         SearchOptions, TooManyNodes,
         proof::{BoundsOptions, ProofVerdict, bounds},
         search,
     },
+    hop::HopTest,
     report::{TradeAnswer, TradeRow, TradeVariation},
 };
 

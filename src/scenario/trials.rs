@@ -2,8 +2,8 @@
 
 use super::{Entries, Place, Scenario, TerrainSource};
 use crate::{
-    ballistics::{HopDeviations, RiskModel},
     graph::{RiskUse, SuretyOptions},
+    hop::{HopDeviations, RiskModel},
     quantity::Angle,
     uncertainty::{Policy, TrialOptions, Uncertainty, UncertaintyProblem},
     world::Grip,

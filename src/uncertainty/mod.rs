@@ -18,7 +18,7 @@
 //!
 //! # Examples
 //! ```
-//! use chta::{ballistics::{HopTest, Split}, chain::*, graph::*, path::generate, quantity::*, uncertainty::*, world::*};
+//! use chta::{chain::*, graph::*, hop::{HopTest, Split}, path::generate, quantity::*, uncertainty::*, world::*};
 //! let hopper = Hopper::with_speeds(9.0, 9.0);
 //! let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(1.5)?)), rest: RestSlope::AsFrictionHolds };
 //! let chain = PolygonalChain::bare(vec![ChainPoint::new(-50.0, 0.0), ChainPoint::new(99.0, 0.0)])?;

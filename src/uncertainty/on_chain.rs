@@ -7,11 +7,12 @@ use super::{
     ground::{Arrival, Command, Flight, Ground, PLACE_TOLERANCE, Variation, failure, holds},
 };
 use crate::{
-    ballistics::{Arc, HopTest},
-    chain::{Contact, Direction, Ground as SegmentGround, GroundForm, GroundRefusal, SegmentConstraints, Site, Station, settle},
+    ballistics::Arc,
+    chain::{Ground as SegmentGround, GroundForm, GroundRefusal, SegmentConstraints, Site, Station, settle},
     graph::{CostToGo, Edge},
+    hop::HopTest,
     quantity::{ChainPoint, SegmentId, VertexId},
-    world::{FrictionCone, Grip, Surface},
+    world::{Contact, Direction, FrictionCone, Grip, Surface},
 };
 
 /// The chain as the ground of a trial.

@@ -10,12 +10,13 @@ use super::{
     on_chain::comes_down_m,
 };
 use crate::{
-    ballistics::{self, HopTest, LineOfSight, limits},
-    chain::{Contact, ContactRule, Direction, Ground as SegmentGround, GroundForm, LineConstraints, settle},
+    ballistics::{self, LineOfSight, limits},
+    chain::{ContactRule, Ground as SegmentGround, GroundForm, LineConstraints, settle},
     graph::{Cost, CostToGo},
+    hop::HopTest,
     quantity::{ChainPoint, MapPoint, NodeId, SegmentId},
     terrain::{FacetSpan, ProfileFacet, Triangles},
-    world::{FrictionCone, Grip, RestSlope, SPEED_TOLERANCE, Surface, tolerant_speed_m_s},
+    world::{Contact, Direction, FrictionCone, Grip, RestSlope, SPEED_TOLERANCE, Surface, tolerant_speed_m_s},
 };
 
 /// How far before a landing, or beyond a take-off, friction and keep-out zones are asked for, m: a landing obeys the ground just flown

@@ -4,9 +4,9 @@ use std::ops::ControlFlow;
 
 use super::{HopRecord, OutcomeCounts, Policy, TrialRecord, UncertaintyProblem, Wilson};
 use crate::{
-    ballistics::HopTest,
     chain::Station,
     graph::CostToGo,
+    hop::HopTest,
     path::HopPath,
     terrain::{Dem, FrictionRaster, KeepOut},
     world::Surface,

@@ -5,9 +5,11 @@ mod friction_cone;
 mod hopper;
 mod limit;
 mod surface;
+mod travel;
 
 pub use body::{Body, KNOWN_BODIES};
 pub use friction_cone::{FrictionCone, InvalidFriction};
 pub use hopper::Hopper;
 pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
 pub use surface::{Grip, RestSlope, Surface};
+pub use travel::{Contact, Direction};

@@ -8,11 +8,12 @@ mod support;
 mod world;
 
 use chta::{
-    ballistics::{Arc, HopTest, LineOfSight},
-    chain::{ConstrainedChain, Direction, PolygonalChain},
+    ballistics::{Arc, LineOfSight},
+    chain::{ConstrainedChain, PolygonalChain},
+    hop::HopTest,
     path::{Flight, Hop, HopPath, StatedValue, Totals, ViolatedLimit, Violation, execute},
     quantity::{Angle, AngleInterval, ChainPoint, VertexId},
-    world::{Grip, Hopper, Limit, RestSlope, Surface},
+    world::{Direction, Grip, Hopper, Limit, RestSlope, Surface},
 };
 use world::{Dice, World};
 

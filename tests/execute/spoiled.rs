@@ -1,11 +1,12 @@
 //! Every planned hop, spoiled by 1 % outwards through what limits it: the checker must refuse it and name that limit.
 
 use chta::{
-    ballistics::{Arc, HopTest, LineOfSight},
-    chain::{ConstrainedChain, Contact, Direction, Ground, GroundForm},
+    ballistics::{Arc, LineOfSight},
+    chain::{ConstrainedChain, Ground, GroundForm},
+    hop::HopTest,
     path::{Execution, Hop, HopPath, ViolatedLimit, execute},
     quantity::{Angle, VertexId},
-    world::{Limit, RestSlope},
+    world::{Contact, Direction, Limit, RestSlope},
 };
 
 use crate::world::{Dice, World};

@@ -1,9 +1,10 @@
 //! Random worlds, biased to the ugly: walls, needles, sawtooth, micrometres next to metres, far-off coordinates, gravity from 1e-5 to 25.
 
 use chta::{
-    ballistics::{HopTest, Split, TakeoffChoice},
+    ballistics::TakeoffChoice,
     chain::{ConstrainedChain, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain, Station},
     graph::{Effort, Outcome, PointSpacing, SearchOptions, search},
+    hop::{HopTest, Split},
     path::{HopPath, generate},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
     world::{FrictionCone, Grip, Hopper, RestSlope, Surface},

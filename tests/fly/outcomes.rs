@@ -127,7 +127,7 @@ fn zones_gaps_and_borders_lose_the_robot() {
     )
     .unwrap();
     let chain = ConstrainedChain::new(chain, &strong, &scene.surface).unwrap();
-    let test = chta::ballistics::HopTest::new(&chain, &strong, scene.gravity_m_s2);
+    let test = chta::hop::HopTest::new(&chain, &strong, scene.gravity_m_s2);
     let (off, listener) = lost(Mission { test: &test, ..planned.mission() }, fast);
     assert!(off > 20, "{off} off the map");
     let beyond = listener.hops.iter().find(|hop| hop.outcome == Some(TrialOutcome::Lost)).unwrap();

@@ -1,9 +1,10 @@
 //! Journeys to simulate: on a flat chain, on a rough one, on the shipped DEM.
 
 use chta::{
-    ballistics::{HopTest, Split, TakeoffChoice},
+    ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain, Station},
     graph::{CostToGo, NodeSet, Outcome, PointSpacing, SearchOptions, search},
+    hop::{HopTest, Split},
     path::{HopPath, generate},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
     terrain::{Dem, slice},

@@ -9,10 +9,10 @@ use super::{
     table::{Cell, Table},
 };
 use crate::{
-    chain::{ChainProblem, ContactRule, Direction, Ground, GroundForm, LineConstraints, PolygonalChain},
+    chain::{ChainProblem, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
     terrain::MapProjection,
-    world::FrictionCone,
+    world::{Direction, FrictionCone},
 };
 
 /// A chain as read from a file.

@@ -3,9 +3,9 @@
 use std::path::Path;
 
 use chta::{
-    ballistics::HopTest,
     chain::Station,
     graph::{self, Outcome},
+    hop::HopTest,
     path::{HopPath, execute, generate},
     quantity::AngleInterval,
     report::{

@@ -1,13 +1,13 @@
 //! The search and the proof with their progress, shared by check, plan, run and require.
 
 use chta::{
-    ballistics::HopTest,
     chain::Station,
     graph::{
         self, PointSpacing, SurestPath,
         proof::{Bounds, BoundsOptions, ProofSummary, bounds},
         search_surest,
     },
+    hop::HopTest,
     report::CheckAnswer,
     scenario::Scenario,
 };

@@ -7,9 +7,9 @@ use super::{
     refine::Refinement,
 };
 use crate::{
-    ballistics::HopTest,
     chain::Station,
     graph::{AUTO_POINTS_PER_SEGMENT, Answer, Outcome, PointSpacing, SearchOptions, TooManyNodes, search},
+    hop::HopTest,
 };
 
 /// The cells that a proof may use where nothing else is asked for: some 200 bytes each.
@@ -132,7 +132,7 @@ impl Bounds {
 ///
 /// # Examples
 /// ```
-/// use chta::{ballistics::HopTest, chain::*, graph::proof::*, quantity::*, world::*};
+/// use chta::{chain::*, graph::proof::*, hop::HopTest, quantity::*, world::*};
 /// let hopper = Hopper::with_speeds(5.0, 5.0);
 /// let grip = Some(Grip::Friction(FrictionCone::new(1.0).unwrap()));
 /// let points = [(0.0, 0.0), (60.0, 0.0), (60.5, 50.0), (80.0, 50.0)].map(|(x, z)| ChainPoint::new(x, z));

@@ -6,10 +6,10 @@ use super::{
     cell::{Cell, shared_segment, slopes},
 };
 use crate::{
-    ballistics::HopTest,
-    chain::{Contact, ContactRule, Direction, SegmentConstraints, Site},
+    chain::{ContactRule, SegmentConstraints, Site},
+    hop::HopTest,
     quantity::{Interval, Rounding, SegmentId, SlopeInterval},
-    world::{Limit, SPEED_TOLERANCE},
+    world::{Contact, Direction, Limit, SPEED_TOLERANCE},
 };
 
 /// What the proof gives away on every limit beside a speed's own tolerance: a billionth of a clearance, a height or a time, and an

@@ -10,9 +10,10 @@ use super::{
     refine::Refinement,
 };
 use crate::{
-    ballistics::{Arc, HopTest},
+    ballistics::Arc,
     chain::Station,
     graph::{Cost, Edge, Leg, SearchOptions},
+    hop::HopTest,
     quantity::SlopeInterval,
 };
 

@@ -2,10 +2,10 @@
 
 use super::{bounds::bounds_with, *};
 use crate::{
-    ballistics::HopTest,
     chain::{ConstrainedChain, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
     draw::Draw,
     graph::{PointSpacing, SearchOptions, search},
+    hop::HopTest,
     quantity::{AngleInterval, ChainPoint, Inwards, VertexId},
     world::{Hopper, RestSlope, Surface},
 };

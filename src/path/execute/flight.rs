@@ -1,9 +1,10 @@
 //! One hop flown by Newton's equations in small exact steps.
 
 use crate::{
-    chain::{ConstrainedChain, Direction},
+    chain::ConstrainedChain,
     path::Hop,
     quantity::{Angle, ChainPoint, VertexId},
+    world::Direction,
 };
 
 /// Steps that a flight takes at least, and those of each stretch between two vertices.

@@ -4,10 +4,10 @@ use std::f64::consts::FRAC_PI_2;
 
 use super::{Flight, Measure, StatedValue, ViolatedLimit, Violation};
 use crate::{
-    chain::{ConstrainedChain, Contact, Direction, GroundRefusal, Station},
+    chain::{ConstrainedChain, GroundRefusal, Station},
     path::Hop,
     quantity::{Angle, AngleInterval, MapPoint},
-    world::{Hopper, Limit, tolerant_speed_m_s},
+    world::{Contact, Direction, Hopper, Limit, tolerant_speed_m_s},
 };
 
 /// How far an angle may lie over its limit, rad: what the speeds' tolerance is in directions. A tangent and its arc tangent on the

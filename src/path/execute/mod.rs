@@ -15,8 +15,8 @@ pub use violation::{Measure, StatedValue, ViolatedLimit, Violation};
 
 use super::{Hop, HopPath};
 use crate::{
-    chain::{ConstrainedChain, Direction, Station},
-    world::Hopper,
+    chain::{ConstrainedChain, Station},
+    world::{Direction, Hopper},
 };
 
 /// What came of flying a path.
@@ -54,7 +54,7 @@ impl Execution {
 ///
 /// # Examples
 /// ```
-/// use chta::{ballistics::{HopTest, Split, TakeoffChoice}, chain::*, graph::*, path::{execute, generate}, quantity::*, world::*};
+/// use chta::{ballistics::TakeoffChoice, chain::*, graph::*, hop::{HopTest, Split}, path::{execute, generate}, quantity::*, world::*};
 /// let hopper = Hopper::with_speeds(5.0, 5.0);
 /// let grip = Some(Grip::Friction(FrictionCone::new(1.0).unwrap()));
 /// let chain = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(20.0, 0.0)]).unwrap();

@@ -2,9 +2,10 @@
 
 use super::{MapError, PostHops, lattice::Post};
 use crate::{
-    ballistics::{HopTest, Split, TakeoffChoice},
+    ballistics::TakeoffChoice,
     chain::ConstrainedChain,
     graph::{Edge, Leg},
+    hop::{HopTest, Split},
     path::{Hop, HopPath, generate},
     quantity::VertexId,
 };

@@ -6,11 +6,11 @@ use super::{
 };
 use crate::{
     ballistics::Arc,
-    chain::{Contact, Direction, Station},
+    chain::Station,
     graph::{EndpointRefusal, Frontier, NodeSet, Outcome},
     path::{Hop, HopPath, Totals},
     quantity::{ChainPoint, SlopeInterval},
-    world::Limit,
+    world::{Contact, Direction, Limit},
 };
 
 /// The most hops drawn; of longer paths every n-th is, and the picture says so.

@@ -9,10 +9,9 @@ use super::{
     ticks::short,
 };
 use crate::{
-    chain::Contact,
     graph::{Answer, EndpointRefusal},
     path::Totals,
-    world::Hopper,
+    world::{Contact, Hopper},
 };
 
 /// Title, what was asked under which limits, and the verdict; returns where they end.

@@ -7,7 +7,7 @@ use super::{
     spans::{Closure, GroundUse},
     symbols,
 };
-use crate::chain::{Contact, Direction};
+use crate::world::{Contact, Direction};
 
 /// Width of a sample.
 const SAMPLE_MM: f64 = 6.5;

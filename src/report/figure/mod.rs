@@ -65,9 +65,9 @@ pub use trials::{
 };
 
 use crate::{
-    ballistics::HopTest,
     chain::Station,
     graph::{Answer, TooManyNodes},
+    hop::HopTest,
     path::HopPath,
 };
 use sheet::Sheet;

@@ -1,8 +1,9 @@
 //! Stretches of ground by what they allow.
 
 use crate::{
-    chain::{ConstrainedChain, Contact, Direction, GroundRefusal, SegmentConstraints},
+    chain::{ConstrainedChain, GroundRefusal, SegmentConstraints},
     quantity::{ChainPoint, SegmentId},
+    world::{Contact, Direction},
 };
 
 /// Why nothing takes off from a stretch of ground nor lands on it.

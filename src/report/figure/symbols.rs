@@ -10,8 +10,8 @@ use super::{
     spans::{Closure, GroundUse},
 };
 use crate::{
-    chain::{Contact, Direction},
     quantity::Angle,
+    world::{Contact, Direction},
 };
 
 /// The surface of the ground.

@@ -6,12 +6,13 @@ use super::{
     *,
 };
 use crate::{
-    ballistics::{Split, TakeoffChoice},
-    chain::{ConstrainedChain, Contact, Direction, Ground, GroundForm, PolygonalChain},
+    ballistics::TakeoffChoice,
+    chain::{ConstrainedChain, Ground, GroundForm, PolygonalChain},
     graph::{Outcome, PointSpacing, SearchOptions, is_usable, search},
+    hop::Split,
     path::generate,
     quantity::{Angle, AngleInterval, ChainPoint},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Contact, Direction, FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
 
 /// One journey, analysed.

@@ -10,8 +10,8 @@ pub use self::csv::CsvLandings;
 #[cfg(feature = "parquet")]
 pub use self::parquet::ParquetLandings;
 use crate::{
-    chain::Direction,
     uncertainty::{HopRecord, Policy},
+    world::Direction,
 };
 
 /// A writer of landings that takes them one by one, so that memory does not grow with their number.

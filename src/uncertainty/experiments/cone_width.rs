@@ -2,9 +2,10 @@
 
 use super::worst_drift::{DriftExperiment, DriftLanding, drift_with};
 use crate::{
-    chain::{ConstrainedChain, Contact, Direction, Ground, GroundForm, InvalidChain, LineConstraints, PolygonalChain},
+    chain::{ConstrainedChain, Ground, GroundForm, InvalidChain, LineConstraints, PolygonalChain},
     path::Hop,
     quantity::{Angle, AngleInterval},
+    world::{Contact, Direction},
 };
 
 /// The widths tried: these shares of every cone's own distance from the vertical.

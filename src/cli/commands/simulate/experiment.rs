@@ -1,7 +1,7 @@
 //! `chta simulate --experiment NAME`.
 
 use chta::{
-    chain::{ConstrainedChain, Direction},
+    chain::ConstrainedChain,
     graph::{self, NodeSet, Outcome, SearchOptions, surest_paths},
     path::{Hop, generate},
     report::{
@@ -12,6 +12,7 @@ use chta::{
         Policy, TrialOptions,
         experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
     },
+    world::Direction,
 };
 use serde::Serialize;
 
@@ -133,7 +134,7 @@ fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) 
         let geometry = narrowed(&loaded.prepared.chain, share).map_err(|error| failed(&error))?;
         let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface).map_err(|error| failed(&error))?;
         let width_deg = mean_takeoff_width_deg(&chain);
-        let test = chta::ballistics::HopTest::new(&chain, &scenario.hopper, g);
+        let test = chta::hop::HopTest::new(&chain, &scenario.hopper, g);
         let (found, _) = search(&test, loaded.ends()?, scenario, args.common.quiet)?;
         let Outcome::Path { legs, .. } = &found.outcome else {
             answer.add_none((share, width_deg));

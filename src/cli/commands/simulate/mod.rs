@@ -8,7 +8,7 @@ mod trials;
 use std::path::Path;
 
 use chta::{
-    ballistics::HopTest,
+    hop::HopTest,
     report::{CheckAnswer, Document, SimulationRecord, check_text},
     scenario::UncertaintyKeys,
     uncertainty::{Policy, TrialOptions},

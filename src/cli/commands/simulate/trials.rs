@@ -1,8 +1,8 @@
 //! From a planned path to its trials.
 
 use chta::{
-    ballistics::HopTest,
     graph::{self, CostToGo, NodeSet},
+    hop::HopTest,
     path::HopPath,
     scenario::{Covers, TerrainSource},
     terrain::{Dem, read_dem},

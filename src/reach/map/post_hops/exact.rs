@@ -2,8 +2,8 @@
 
 use super::{GroundOf, Lofts, PostHops};
 use crate::{
-    ballistics::HopTest,
     chain::ConstrainedChain,
+    hop::HopTest,
     quantity::VertexId,
     reach::map::{MapError, MapRequest, lattice::Post, offsets::Offset},
     terrain::{TerrainError, slice},

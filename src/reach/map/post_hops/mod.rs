@@ -1,6 +1,6 @@
 //! One hop between two posts: quick where that is sure, exact where it is close.
 //!
-//! The answer is that of [`slice`](crate::terrain::slice()) and [`HopTest`](crate::ballistics::HopTest) on the same two posts. Quick arithmetic, which differs from
+//! The answer is that of [`slice`](crate::terrain::slice()) and [`HopTest`](crate::hop::HopTest) on the same two posts. Quick arithmetic, which differs from
 //! theirs by rounding only, says yes or no where the limits leave a margin far above rounding; what is nearer than that is given to
 //! the slice and the hop test themselves. So is every hop near a border of a zone or of friction, where the slice has more vertices.
 

@@ -12,11 +12,11 @@ use super::{
     *,
 };
 use crate::{
-    chain::{Direction, PolygonalChain},
+    chain::PolygonalChain,
     path::{Hop, MapEnds},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
     report::figure::FigureError,
-    world::Limit,
+    world::{Direction, Limit},
 };
 
 /// Waves between two x, a point every metre.

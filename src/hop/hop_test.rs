@@ -1,10 +1,11 @@
 //! The hop test: may one hop join two stations, and with which take-off slopes?
 
-use super::{GroundGrant, LineOfSight, OpenAir, SegmentHops, SegmentReach, TakeoffSet, limits, reach::Relief};
+use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief};
 use crate::{
-    chain::{ConstrainedChain, Contact, ContactRule, Direction, Station},
+    ballistics::{GroundGrant, LineOfSight, OpenAir, limits},
+    chain::{ConstrainedChain, ContactRule, Station},
     quantity::{SegmentId, SlopeInterval},
-    world::{Hopper, Limit},
+    world::{Contact, Direction, Hopper, Limit},
 };
 
 /// A chain, a hopper and a gravity, ready to answer for any pair of stations.
@@ -89,7 +90,7 @@ impl<'a> HopTest<'a> {
         let open_air = self.open_air(sight, from, to)?;
         let vertices = self.chain.geometry().vertices();
         let mut lower = open_air.lower;
-        for point in &vertices[limits::flown_past(takeoff, landing)] {
+        for point in &vertices[flown_past(takeoff, landing)] {
             lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.air.hopper().clearance_m));
             if lower > open_air.upper {
                 return Err(Limit::Terrain);

@@ -2,9 +2,10 @@
 
 use super::{ContactScatter, HopDeviations, PlannedHop};
 use crate::{
-    ballistics::{HopTest, limits::flown_past},
-    chain::{Contact, Direction, Station},
+    chain::Station,
+    hop::{HopTest, flown_past},
     quantity::Angle,
+    world::{Contact, Direction},
 };
 
 /// The standard normal distribution function, through `libm`.

@@ -2,9 +2,9 @@
 
 use super::flight::normal;
 use crate::{
-    ballistics::HopTest,
-    chain::{Contact, ContactRule, Direction, Station},
-    world::tolerant_speed_m_s,
+    chain::{ContactRule, Station},
+    hop::HopTest,
+    world::{Contact, Direction, tolerant_speed_m_s},
 };
 
 /// A contact with its scatter.

@@ -4,8 +4,8 @@ use std::fmt;
 
 use super::LimitInterval;
 use crate::{
-    chain::{Contact, GroundRefusal},
-    world::Limit,
+    chain::GroundRefusal,
+    world::{Contact, Limit},
 };
 
 /// By how much a limit refuses every arc by itself.

@@ -4,8 +4,8 @@ use std::ops::Range;
 
 use super::HopTest;
 use crate::{
-    chain::{ConstrainedChain, Contact, ContactRule, Direction, Site, Station},
-    world::tolerant_speed_m_s,
+    chain::{ConstrainedChain, ContactRule, Site, Station},
+    world::{Contact, Direction, tolerant_speed_m_s},
 };
 
 /// The ends of height and speed over a stretch of a chain.

@@ -1,11 +1,7 @@
 //! All limits but the terrain, for a block of landings at once.
 
 use super::table::{LandingRules, LandingTable};
-use crate::{
-    ballistics::{HopTest, LineOfSight},
-    quantity::SlopeInterval,
-    world::Limit,
-};
+use crate::{ballistics::LineOfSight, hop::HopTest, quantity::SlopeInterval, world::Limit};
 
 /// What a take-off brings to every landing.
 #[derive(Clone, Copy, Debug)]

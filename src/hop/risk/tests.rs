@@ -7,9 +7,9 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 use super::*;
 use crate::{
     ballistics::TakeoffChoice,
-    chain::{ConstrainedChain, Contact, PolygonalChain},
+    chain::{ConstrainedChain, PolygonalChain},
     quantity::ChainPoint,
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Contact, FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
 
 const G: f64 = 3.711;

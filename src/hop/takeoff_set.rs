@@ -1,10 +1,11 @@
 //! The feasible take-off set of one pair, with every limit by itself: the hop test, explained.
 
-use super::{Arc, Conflict, HopTest, LineOfSight, Shortfall, TakeoffChoice, limits};
+use super::{Conflict, HopTest, Shortfall, terrain_limit};
 use crate::{
-    chain::{Contact, ContactRule, Direction, Station},
+    ballistics::{Arc, LineOfSight, TakeoffChoice, least_landing_speed_m_s, least_takeoff_speed_m_s, limits},
+    chain::{ContactRule, Station},
     quantity::{Angle, AngleInterval, SlopeInterval, VertexId},
-    world::Limit,
+    world::{Contact, Direction, Limit},
 };
 
 /// One limit of a hop, by itself.
@@ -147,23 +148,21 @@ fn all_limits(
     if let Some(rule) = from {
         add(Limit::TakeoffCone, limits::takeoff_cone(sight, rule.slopes()), None, None);
         let loft = limits::takeoff_speed(sight, rule.speed_max_m_s(), gravity);
-        let shortfall = loft.is_empty().then(|| Shortfall::Speed {
-            needed_m_s: super::least_takeoff_speed_m_s(sight, gravity),
-            limit_m_s: rule.speed_max_m_s(),
-        });
+        let shortfall = loft
+            .is_empty()
+            .then(|| Shortfall::Speed { needed_m_s: least_takeoff_speed_m_s(sight, gravity), limit_m_s: rule.speed_max_m_s() });
         add(Limit::TakeoffSpeed, loft, None, shortfall);
     }
     if let Some(rule) = to {
         add(Limit::LandingCone, limits::landing_cone(sight, rule.slopes()), None, None);
         let loft = limits::landing_speed(sight, rule.speed_max_m_s(), gravity);
-        let shortfall = loft.is_empty().then(|| Shortfall::Speed {
-            needed_m_s: super::least_landing_speed_m_s(sight, gravity),
-            limit_m_s: rule.speed_max_m_s(),
-        });
+        let shortfall = loft
+            .is_empty()
+            .then(|| Shortfall::Speed { needed_m_s: least_landing_speed_m_s(sight, gravity), limit_m_s: rule.speed_max_m_s() });
         add(Limit::LandingSpeed, loft, None, shortfall);
     }
     add(Limit::LineOfSight, ABOVE_SIGHT.loft, None, None);
-    let (loft, vertex) = limits::terrain(test.chain().geometry(), takeoff, landing, test.hopper().clearance_m);
+    let (loft, vertex) = terrain_limit(test.chain().geometry(), takeoff, landing, test.hopper().clearance_m);
     add(Limit::Terrain, loft, vertex, None);
     machine_limits(test, sight, &mut add);
     found.sort_by_key(|limit| limit.limit);

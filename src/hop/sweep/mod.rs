@@ -15,9 +15,9 @@ pub use table::LandingTable;
 use terrain::Overflight;
 
 use crate::{
-    chain::{Contact, Direction, Station},
+    chain::Station,
     quantity::SlopeInterval,
-    world::{Limit, tolerant_speed_m_s},
+    world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
 
 /// One take-off against many landings: all limits, with the verdicts of [`HopTest::loft`](super::HopTest::loft) at a fraction of its cost.

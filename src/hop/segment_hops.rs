@@ -1,10 +1,11 @@
 //! Many hops along one segment.
 
-use super::{Arc, HopTest, LineOfSight, TakeoffChoice, limits};
+use super::HopTest;
 use crate::{
-    chain::{Contact, ContactRule, Direction},
+    ballistics::{Arc, LineOfSight, TakeoffChoice, limits},
+    chain::ContactRule,
     quantity::{SegmentId, SlopeInterval},
-    world::{Limit, SPEED_TOLERANCE},
+    world::{Contact, Direction, Limit, SPEED_TOLERANCE},
 };
 
 /// How to divide a stretch of one segment among its hops.

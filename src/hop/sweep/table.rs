@@ -4,9 +4,10 @@ use std::ops::Range;
 
 use super::lanes::Departure;
 use crate::{
-    ballistics::{HopTest, LineOfSight},
-    chain::{Contact, Direction, Station},
-    world::{Limit, tolerant_speed_m_s},
+    ballistics::LineOfSight,
+    chain::Station,
+    hop::HopTest,
+    world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
 
 /// A set of stations from left to right, prepared as landings: built once, shared by every sweep over it, in any thread.

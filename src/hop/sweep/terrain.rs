@@ -2,8 +2,9 @@
 
 use super::hull::Hull;
 use crate::{
-    chain::{Direction, PolygonalChain, Site, Station},
+    chain::{PolygonalChain, Site, Station},
     quantity::ChainPoint,
+    world::Direction,
 };
 
 /// The ground that one take-off flies over, followed outwards.

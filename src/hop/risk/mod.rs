@@ -12,10 +12,12 @@
 mod contact;
 mod flight;
 
-use super::{Arc, HopTest};
+use super::HopTest;
 use crate::{
-    chain::{Direction, Station},
+    ballistics::Arc,
+    chain::Station,
     quantity::{Angle, SlopeInterval},
+    world::Direction,
 };
 use contact::{ContactScatter, contact_success};
 use flight::{Flight, Ground, cells};

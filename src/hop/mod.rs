@@ -1,0 +1,23 @@
+//! The hop test: what is bound to a chain. May one hop join two stations, with which take-off slopes, and how many hops does a stretch
+//! of one segment need?
+//!
+//! The equations themselves stand in [`crate::ballistics`]; here they are asked for the stations of a
+//! [`ConstrainedChain`](crate::chain::ConstrainedChain).
+
+mod conflict;
+mod hop_test;
+mod reach;
+mod risk;
+mod segment_hops;
+mod sweep;
+mod takeoff_set;
+mod terrain;
+
+pub use conflict::{Conflict, Shortfall};
+pub use hop_test::HopTest;
+pub use risk::{HopDeviations, PlannedHop, RiskModel};
+pub use segment_hops::{SegmentHops, SegmentReach, Split};
+pub use sweep::{LandingTable, Sweep};
+pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};
+pub(crate) use terrain::flown_past;
+pub use terrain::terrain_limit;
