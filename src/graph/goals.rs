@@ -2,7 +2,7 @@
 
 use super::{
     Cost, HopGraph,
-    fronts::{Label, Takeoff, Tally},
+    batched_search::{Label, Takeoff, Tally},
     nodes::around,
 };
 use crate::chain::Station;

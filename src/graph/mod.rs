@@ -7,10 +7,10 @@
 //! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing. [`proof`] bounds the
 //! fewest hops from both sides, for every density.
 
+mod batched_search;
 mod cost;
 mod edges;
 mod frontier;
-mod fronts;
 mod goals;
 mod local_reach;
 mod nodes;

@@ -1,4 +1,5 @@
-//! The search itself: nodes settled in batches of one hop count, their edges evaluated then and never stored.
+//! The search itself: label-setting A* in batches of equal hop count. A batch's edges are evaluated when its nodes are settled, and never
+//! stored.
 //!
 //! Every edge takes one hop at least, so a node's best cost is known once all nodes of fewer hops have had their say: all that are then
 //! due at one hop count are one batch, evaluated in any order and by any number of threads. What a batch offers to a node is compared by
@@ -123,9 +124,9 @@ pub(super) enum Aim {
     Hops,
 }
 
-/// A search over one graph, for one start after another.
+/// A label-setting A* search over one graph, for one start after another; nodes of equal hop count are settled as one batch.
 #[derive(Debug)]
-pub(super) struct Fronts<'g> {
+pub(super) struct BatchedSearch<'g> {
     graph: &'g HopGraph<'g>,
     table: &'g LandingTable<'g>,
     reach: &'g LocalReach,
@@ -144,7 +145,7 @@ pub(super) struct Fronts<'g> {
     arrange: fn(&mut [Takeoff]),
 }
 
-impl<'g> Fronts<'g> {
+impl<'g> BatchedSearch<'g> {
     /// Some 100 to 200 microseconds of work.
     const SHARED_FROM_PAIRS: usize = 4096;
     /// Pieces of a shared batch for each thread, so that unequal ones even out.
@@ -423,10 +424,10 @@ mod tests {
                 let mut goals = Goals::new(&[at(59), at(40)]);
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let found = pool.install(|| {
-                    let mut fronts = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
-                    (fronts.arrange, fronts.shared_from_pairs) = (arrange, 0);
-                    fronts.run(&at(1), &mut goals);
-                    (fronts.labels.clone(), fronts.tally, goals.ways())
+                    let mut search = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
+                    (search.arrange, search.shared_from_pairs) = (arrange, 0);
+                    search.run(&at(1), &mut goals);
+                    (search.labels.clone(), search.tally, goals.ways())
                 });
                 assert!(found.2.iter().all(Option::is_some));
                 assert!(expected.get_or_insert_with(|| found.clone()) == &found, "{effort:?}, {threads} threads");
@@ -453,9 +454,9 @@ mod tests {
         let graph = HopGraph::new(&test, &nodes, Effort::Time, TakeoffChoice::MidRange, Split::Equal);
         let (table, reach) = (LandingTable::new(&test, nodes.stations()), LocalReach::of(&test));
         let at = |i| chain.geometry().vertex_station(VertexId(i));
-        let mut one = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+        let mut one = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
         for start in [0, 30, 59, 12] {
-            let mut fresh = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+            let mut fresh = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
             let (mut goals, mut same) = (Goals::new(&[at(20), at(45)]), Goals::new(&[at(20), at(45)]));
             one.run(&at(start), &mut goals);
             fresh.run(&at(start), &mut same);
