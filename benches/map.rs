@@ -67,16 +67,16 @@ fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     (began.elapsed().as_secs_f64(), made)
 }
 
-/// Fewest hops by pushing: each post of the front asks all posts within reach that have no hops yet.
+/// Fewest hops by pushing: each post of the layer asks all posts within reach that have no hops yet.
 fn pushed(hops: &PostHops<'_>, start: Post) -> (Vec<i16>, u64) {
     let lattice = hops.lattice();
     let mut found = vec![UNREACHED; lattice.count()];
     let mut tested = 0;
-    let mut front = vec![start];
+    let mut layer = vec![start];
     found[lattice.index(start)] = 0;
     for next in 1.. {
         let mut reached = Vec::new();
-        for &from in &front {
+        for &from in &layer {
             for offset in 0..hops.offset_count() {
                 let Some(to) = hops.landing(from, offset) else { continue };
                 let index = lattice.index(to);
@@ -93,7 +93,7 @@ fn pushed(hops: &PostHops<'_>, start: Post) -> (Vec<i16>, u64) {
         if reached.is_empty() {
             return (found, tested);
         }
-        front = reached;
+        layer = reached;
     }
     (found, tested)
 }

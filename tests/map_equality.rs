@@ -90,9 +90,9 @@ impl World {
         let no_ground = |post: &Post| self.dem.elevation(post.row, post.col).is_none();
         let mut hops: Vec<i16> = posts.iter().map(|post| if no_ground(post) { NO_GROUND } else { UNREACHED }).collect();
         hops[posts.iter().position(|&post| post == start).unwrap()] = 0;
-        for front in 0.. {
-            let fronts: Vec<usize> = (0..posts.len()).filter(|&i| hops[i] == front).collect();
-            if fronts.is_empty() {
+        for layer in 0.. {
+            let layer_posts: Vec<usize> = (0..posts.len()).filter(|&i| hops[i] == layer).collect();
+            if layer_posts.is_empty() {
                 break;
             }
             for to in 0..posts.len() {
@@ -100,8 +100,8 @@ impl World {
                     let (from, to) = if way == Way::Out { (posts[from], posts[to]) } else { (posts[to], posts[from]) };
                     self.within_safety(from, to) && self.lofts(from, to).is_some()
                 };
-                if hops[to] == UNREACHED && fronts.iter().any(joins) {
-                    hops[to] = front + 1;
+                if hops[to] == UNREACHED && layer_posts.iter().any(joins) {
+                    hops[to] = layer + 1;
                 }
             }
         }
@@ -361,7 +361,7 @@ fn ways_back_and_strides_have_the_hops_of_every_pair() {
     assert!(unlike > 50, "ways out and back differ at {unlike} posts only");
 }
 
-/// The least effort among ways of fewest hops, against a plain search over all pairs of neighbouring fronts; and the paths themselves.
+/// The least effort among ways of fewest hops, against a plain search over all pairs of neighbouring layer_posts; and the paths themselves.
 #[test]
 #[expect(clippy::cast_precision_loss, reason = "small numbers")]
 fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
@@ -387,10 +387,10 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
         let hops = world.plain_map(start, 1, Way::Out);
         let mut expected = vec![f64::NAN; posts.len()];
         expected[start.row * 9 + start.col] = 0.0;
-        for front in 1..=hops.iter().copied().max().unwrap() {
-            for to in (0..posts.len()).filter(|&to| hops[to] == front) {
+        for layer in 1..=hops.iter().copied().max().unwrap() {
+            for to in (0..posts.len()).filter(|&to| hops[to] == layer) {
                 let mut least = f64::INFINITY;
-                for from in (0..posts.len()).filter(|&from| hops[from] == front - 1) {
+                for from in (0..posts.len()).filter(|&from| hops[from] == layer - 1) {
                     let Some(lofts) = world.lofts(posts[from], posts[to]) else { continue };
                     let run_m =
                         (posts[to].row as f64 - posts[from].row as f64).hypot(posts[to].col as f64 - posts[from].col as f64);

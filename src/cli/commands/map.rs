@@ -8,7 +8,7 @@ use chta::{
     path::HopPath,
     quantity::MapPoint,
     reach::map::{
-        FrontProgress, GroundOf, HopMap, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search,
+        GroundOf, HopMap, LayerProgress, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search,
         Way, joined, mobility, search, way_hops,
     },
     report::{
@@ -214,12 +214,11 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
     let began = std::time::Instant::now();
     let maps = pool.install(|| -> Result<Maps, MapError> {
         let hops = PostHops::new(request, ground_of)?;
-        let front = |what: &str, found: FrontProgress| progress.say(front_words(what, found, began.elapsed().as_secs_f64()));
+        let tell = |what: &str, found: LayerProgress| progress.say(format_layer(what, found, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
-        let out = search(&hops, start.post, Search { way: Way::Out, effort }, &mut |found| front("there", found))?;
-        let back = args
-            .back
-            .then(|| search(&hops, start.post, Search { way: Way::Back, effort: None }, &mut |found| front("back", found)));
+        let out = search(&hops, start.post, Search { way: Way::Out, effort }, &mut |found| tell("there", found))?;
+        let back =
+            args.back.then(|| search(&hops, start.post, Search { way: Way::Back, effort: None }, &mut |found| tell("back", found)));
         let begun = std::time::Instant::now();
         let mobile = args
             .mobility
@@ -238,9 +237,9 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
 }
 
 /// What is being done, how far it is, and how long it may still take.
-fn front_words(what: &str, found: FrontProgress, elapsed_s: f64) -> String {
+fn format_layer(what: &str, found: LayerProgress, elapsed_s: f64) -> String {
     let all = found.reached + found.open;
-    format!("hops {what}, front {}: {}", found.front, share_words("posts", found.reached, all, elapsed_s))
+    format!("hops {what}, front {}: {}", found.layer, share_words("posts", found.reached, all, elapsed_s))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a share for reading")]
