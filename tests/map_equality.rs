@@ -361,7 +361,7 @@ fn ways_back_and_strides_have_the_hops_of_every_pair() {
     assert!(unlike > 50, "ways out and back differ at {unlike} posts only");
 }
 
-/// The least effort among ways of fewest hops, against a plain search over all pairs of neighbouring layer_posts; and the paths themselves.
+/// The least effort among ways of fewest hops, against a plain search over all pairs of neighbouring layers; and the paths themselves.
 #[test]
 #[expect(clippy::cast_precision_loss, reason = "small numbers")]
 fn efforts_are_the_least_of_all_ways_of_fewest_hops() {

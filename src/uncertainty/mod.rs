@@ -1,4 +1,4 @@
-//! How surely a planned path is flown: worst cases and frequencies under errors of command, ground and position.
+//! How reliably a planned path is flown: worst cases and frequencies under errors of command, ground and position.
 //!
 //! A path is a promise made without slip and scatter. Here it is flown many times over ground that is not quite as mapped, with commands
 //! that are not quite as given: each [`HopRecord`] is one arc of a parabola to its first contact with the ground, found exactly, and

@@ -177,15 +177,15 @@ impl<'a> DemGround<'a> {
         Some((Command::new(launch, target), cost))
     }
 
-    /// Where surety weighs: the surest way on from the node nearest to a place that is feasible from the place itself.
-    fn surest_way_on(&self, to_go: &CostToGo, from: &MapSpot) -> Option<Command<MapSpot>> {
-        if !to_go.weighs_surety() {
+    /// Where reliability counts: the most reliable successor of the node nearest to a place that is feasible from the place itself.
+    fn reliable_successor(&self, to_go: &CostToGo, from: &MapSpot) -> Option<Command<MapSpot>> {
+        if !to_go.weighs_reliability() {
             return None;
         }
         let away2 = |node: &MapSpot| (node.at - from.at).norm_squared();
         let nearest = (0..self.nodes.len()).min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
-        let mut ways_on = to_go.surest_ways_on(NodeId(nearest)).iter();
-        ways_on.find_map(|node| self.tried(to_go, from, node.index(), None)).map(|(command, _)| command)
+        let mut successors = to_go.reliable_successors(NodeId(nearest)).iter();
+        successors.find_map(|node| self.tried(to_go, from, node.index(), None)).map(|(command, _)| command)
     }
 
     /// The arc to fly to a place, by every limit along the slice to it, the ground in between last; `None` where there is none.
@@ -383,8 +383,8 @@ impl Ground for DemGround<'_> {
 
     fn replanned(&self, believed: &MapSpot) -> Option<Command<MapSpot>> {
         let to_go = self.to_go?;
-        if let Some(surest) = self.surest_way_on(to_go, believed) {
-            return Some(surest);
+        if let Some(reliable) = self.reliable_successor(to_go, believed) {
+            return Some(reliable);
         }
         let mut best: Option<(Command<MapSpot>, Cost)> = None;
         for node in to_go.in_order() {
