@@ -15,7 +15,7 @@ use chta::{
     ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain},
     graph::Effort,
-    reach::map::{MapRequest, Post, PostHops, Search, UNREACHED, Way, mobility, search},
+    reach::map::{Journey, MapRequest, Post, PostHops, Search, UNREACHED, mobility, search},
     terrain::{Dem, Profile, SyntheticTerrain, synthesise},
     world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
@@ -136,7 +136,7 @@ fn sizes() {
         let ground = |profile: Profile| scene.chain(&profile);
         let start = Post { row: side / 2, col: side / 2 };
         let (prepare_s, hops) = timed(|| PostHops::new(scene.request(), &ground).expect("a sound request"));
-        let asked = |effort| Search { way: Way::Out, effort };
+        let asked = |effort| Search { journey: Journey::Outbound, effort };
         let (hops_s, _) = timed(|| search(&hops, start, asked(None), &mut |_| {}).expect("a sound request"));
         let least = Some((Effort::TakeoffSpeed, TakeoffChoice::LeastSpeed));
         let (effort_s, _) = timed(|| search(&hops, start, asked(least), &mut |_| {}).expect("a sound request"));

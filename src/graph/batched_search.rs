@@ -43,17 +43,17 @@ impl Origin {
     }
 }
 
-/// The best way known to a node or a goal.
+/// The best path known to a node or a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Label {
     pub(super) cost: Cost,
     pub(super) from: Origin,
-    /// Whether no better way can turn up.
+    /// Whether no better path can turn up.
     settled: bool,
 }
 
 impl Label {
-    /// No way known.
+    /// No path known.
     pub(super) const UNKNOWN: Self = Self { cost: Cost::UNREACHED, from: Origin(u32::MAX), settled: false };
 
     /// Where the journey begins.
@@ -73,12 +73,12 @@ impl Label {
         (cost, from) < (self.cost, self.from)
     }
 
-    /// Whether some way is known.
+    /// Whether some path is known.
     pub(super) const fn is_known(&self) -> bool {
         self.cost.hops() < Cost::UNREACHED.hops()
     }
 
-    /// Whether a way of so many hops might be better.
+    /// Whether a path of so many hops might be better.
     const fn waits_for(&self, hops: u64, aim: Aim) -> bool {
         let known = self.cost.hops();
         !self.settled
@@ -120,7 +120,7 @@ pub(super) struct Takeoff {
 pub(super) enum Aim {
     /// Fewest hops, then least effort.
     HopsThenEffort,
-    /// Fewest hops alone: the first way of so many will do.
+    /// Fewest hops alone: the first path with that hop count is enough.
     Hops,
 }
 
@@ -174,7 +174,7 @@ impl<'g> BatchedSearch<'g> {
         self.tally
     }
 
-    /// The fewest hops to a node, where the last run found no way to some goal or had none; `None` where no hops get there.
+    /// The fewest hops to a node, where the last run found no path to some goal or had none; `None` where no hops get there.
     pub(super) fn hops(&self, node: NodeId) -> Option<u64> {
         let label = self.labels[node.index()];
         label.is_known().then(|| label.cost.hops())
@@ -248,7 +248,7 @@ impl<'g> BatchedSearch<'g> {
     /// of them to lead there.
     fn settle(&mut self, batch: &mut [Takeoff], goals: &mut Goals, left: HopsLeft<'_>) {
         self.tally += goals.land_from(self.graph, batch);
-        // By way of a landing of this batch it takes two hops more, at least.
+        // A path through a landing of this batch takes at least two hops more.
         let Some(takeoff) = batch.first() else { return };
         if takeoff.cost.hops() + 2 > goals.most_hops() {
             return;
@@ -317,7 +317,7 @@ impl<'g> BatchedSearch<'g> {
     }
 }
 
-/// Nodes side by side on their way to better labels, all from take-offs of the same hops.
+/// Neighbouring nodes that may still get better labels, all from take-offs of the same hops.
 #[derive(Clone, Copy)]
 struct Stretch<'s> {
     graph: &'s HopGraph<'s>,
@@ -427,7 +427,7 @@ mod tests {
                     let mut search = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
                     (search.arrange, search.shared_from_pairs) = (arrange, 0);
                     search.run(&at(1), &mut goals);
-                    (search.labels.clone(), search.tally, goals.ways())
+                    (search.labels.clone(), search.tally, goals.labels())
                 });
                 assert!(found.2.iter().all(Option::is_some));
                 assert!(expected.get_or_insert_with(|| found.clone()) == &found, "{effort:?}, {threads} threads");
@@ -460,7 +460,7 @@ mod tests {
             let (mut goals, mut same) = (Goals::new(&[at(20), at(45)]), Goals::new(&[at(20), at(45)]));
             one.run(&at(start), &mut goals);
             fresh.run(&at(start), &mut same);
-            assert_eq!((one.labels.clone(), one.tally, goals.ways()), (fresh.labels, fresh.tally, same.ways()));
+            assert_eq!((one.labels.clone(), one.tally, goals.labels()), (fresh.labels, fresh.tally, same.labels()));
         }
     }
 }

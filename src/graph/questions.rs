@@ -1,4 +1,4 @@
-//! Questions on their way to answers, round by round of denser nodes.
+//! Questions and their answers, in rounds of denser nodes.
 
 use std::collections::HashMap;
 
@@ -127,11 +127,11 @@ impl Questions {
             } else {
                 batched.run(&start, &mut goals);
             }
-            for (&i, way) in open.iter().zip(goals.ways()) {
+            for (&i, label) in open.iter().zip(goals.labels()) {
                 let Question { ends, tally, answer } = &mut self.questions[i];
                 *tally += batched.tally();
-                let outcome = match way {
-                    Some(way) => Some(path(&graph, &batched, ends, &way)),
+                let outcome = match label {
+                    Some(label) => Some(path(&graph, &batched, ends, &label)),
                     None if round.is_last => Some(Outcome::NoPath(Box::new(frontier(round, &batched, *ends)?))),
                     None => None,
                 };
@@ -151,10 +151,10 @@ fn refusing_endpoints(test: &HopTest<'_>, (start, goal): &(Station, Station)) ->
         .collect()
 }
 
-/// The path by the best way to a goal.
-fn path(graph: &HopGraph<'_>, batched: &BatchedSearch<'_>, (start, goal): &(Station, Station), way: &Label) -> Outcome {
-    let mut stations = batched.stations_before(start, way);
-    if way.cost > Cost::default() {
+/// The path that a goal's label ends.
+fn path(graph: &HopGraph<'_>, batched: &BatchedSearch<'_>, (start, goal): &(Station, Station), goal_label: &Label) -> Outcome {
+    let mut stations = batched.stations_before(start, goal_label);
+    if goal_label.cost > Cost::default() {
         stations.push(*goal);
     }
     let legs = stations
@@ -164,7 +164,7 @@ fn path(graph: &HopGraph<'_>, batched: &BatchedSearch<'_>, (start, goal): &(Stat
             graph.edge(&takeoff, &landing).ok().map(|edge| Leg { takeoff, landing, edge })
         })
         .collect();
-    Outcome::Path { legs, cost: way.cost }
+    Outcome::Path { legs, cost: goal_label.cost }
 }
 
 /// What stops a search without success, over the shared nodes and the two ends.

@@ -111,7 +111,7 @@ pub fn search(
 /// Answers many questions, each a start and a goal, with one search for each start.
 ///
 /// Every answer is that of [`search`] for its pair, but for the counts of pairs tested and refused, which are those of the shared
-/// search: goals lead no farther, so that none is in the way of another.
+/// search: goals are sinks, so they do not block each other.
 ///
 /// # Errors
 /// [`TooManyNodes`].

@@ -25,7 +25,7 @@ pub struct MapAnswer {
     pub start_m: [f64; 2],
     /// How far that is from the place asked for.
     pub start_offset_m: f64,
-    /// Posts with a way from the start, itself included.
+    /// Posts with a path from the start, itself included.
     pub reachable_posts: usize,
     /// Their area, each post with that of its cell.
     pub reachable_area_m2: f64,
@@ -40,7 +40,7 @@ pub struct MapAnswer {
     /// The second criterion, where one was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effort: Option<MapEffortRecord>,
-    /// The way back, where it was asked for.
+    /// The return journeys, where they were asked for.
     #[serde(rename = "return", skip_serializing_if = "Option::is_none")]
     pub back: Option<ReturnRecord>,
     /// Single hops from every post, where they were asked for.
@@ -50,7 +50,7 @@ pub struct MapAnswer {
     pub goals: Vec<GoalRecord>,
 }
 
-/// The least effort among ways of fewest hops.
+/// The least effort among paths of fewest hops.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MapEffortRecord {
     /// Which.
@@ -64,14 +64,14 @@ pub struct MapEffortRecord {
     pub greatest: f64,
 }
 
-/// Ways back to the start.
+/// Paths back to the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ReturnRecord {
     /// Posts from which the start can be reached, itself included.
     pub return_posts: usize,
     /// Of these, posts that can be reached too.
     pub round_trip_posts: usize,
-    /// The most hops that a way back takes.
+    /// The most hops that a path back takes.
     pub farthest_hops: i16,
 }
 
@@ -103,10 +103,10 @@ pub struct GoalRecord {
     pub offset_m: f64,
     /// Fewest hops; null: not reachable.
     pub hops: Option<i16>,
-    /// Fewest hops back; absent where that was not asked for, null: no way.
+    /// Fewest hops back; absent where that was not asked for, null: no path.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub return_hops: Option<Option<i16>>,
-    /// The hops of one way of fewest (with an effort: of least), x along it.
+    /// The hops of one path of fewest (with an effort: of least), x along it.
     pub path: Vec<HopRecord>,
     /// What they add up to; null: not reachable.
     pub totals: Option<TotalsRecord>,

@@ -8,8 +8,8 @@ use chta::{
     path::HopPath,
     quantity::MapPoint,
     reach::map::{
-        GroundOf, HopMap, LayerProgress, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search,
-        Way, joined, mobility, search, way_hops,
+        GroundOf, HopMap, Journey, LayerProgress, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops,
+        Search, joined, mobility, path_hops, search,
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, TotalsRecord,
@@ -58,7 +58,7 @@ struct Maps {
     back: Option<HopMap>,
     mobility: Option<Mobility>,
     /// Of each goal, where it is reachable.
-    ways: Vec<Option<Vec<MapHop>>>,
+    goal_hops: Vec<Option<Vec<MapHop>>>,
     paths: Vec<Option<HopPath>>,
     /// Of start and goals.
     warnings: Vec<String>,
@@ -216,22 +216,23 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
         let hops = PostHops::new(request, ground_of)?;
         let tell = |what: &str, found: LayerProgress| progress.say(format_layer(what, found, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
-        let out = search(&hops, start.post, Search { way: Way::Out, effort }, &mut |found| tell("there", found))?;
-        let back =
-            args.back.then(|| search(&hops, start.post, Search { way: Way::Back, effort: None }, &mut |found| tell("back", found)));
+        let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &mut |found| tell("there", found))?;
+        let back = args.back.then(|| {
+            search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &mut |found| tell("back", found))
+        });
         let begun = std::time::Instant::now();
         let mobile = args
             .mobility
             .as_ref()
             .map(|_| mobility(&hops, &|done, of| progress.say(share_words("mobility", done, of, begun.elapsed().as_secs_f64()))));
-        let way = |goal: &Spot| {
-            let nodes = out.way(&hops, goal.post);
-            nodes.map(|nodes| way_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
+        let hops_to = |goal: &Spot| {
+            let nodes = out.path(&hops, goal.post);
+            nodes.map(|nodes| path_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
         };
-        let ways = goals.iter().map(way).collect::<Result<Vec<_>, _>>()?;
-        let paths = ways.iter().map(|way| way.as_ref().map(|way| joined(&hops, way))).collect();
+        let goal_hops = goals.iter().map(hops_to).collect::<Result<Vec<_>, _>>()?;
+        let paths = goal_hops.iter().map(|found| found.as_ref().map(|found| joined(&hops, found))).collect();
         let warnings = refusals(&hops, start, goals);
-        Ok(Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, ways, paths, warnings })
+        Ok(Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, goal_hops, paths, warnings })
     });
     maps.map_err(|error| failed(&error))
 }
@@ -338,7 +339,7 @@ fn write_files<'a>(
         files.extend(prj_path.as_deref().zip(output::prj(projection.as_ref().ok())));
     }
     if let Some(file) = &args.profiles {
-        files.push((file, map_profiles::sheet(&name_of(args), scenario, &maps.ways, file)?));
+        files.push((file, map_profiles::sheet(&name_of(args), scenario, &maps.goal_hops, file)?));
     }
     if let Some(file) = &args.plot {
         files.push((file, picture(args, ground, maps, answer, ends, file)?));

@@ -18,7 +18,7 @@ mod search;
 
 pub use lattice::{NodeLattice, Post};
 pub use mobility::{Mobility, SECTORS, mobility};
-pub use paths::{MapHop, joined, way_hops};
+pub use paths::{MapHop, joined, path_hops};
 pub use post_hops::{GroundOf, Lofts, PostHops, PostRefusal};
 pub use request::{MapError, MapRequest};
-pub use search::{HopMap, LayerProgress, NO_GROUND, Search, UNREACHED, Way, search};
+pub use search::{HopMap, Journey, LayerProgress, NO_GROUND, Search, UNREACHED, search};

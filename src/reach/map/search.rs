@@ -26,21 +26,21 @@ pub const NO_GROUND: i16 = i16::MIN;
 /// No offset: the start's, and that of posts without hops.
 const NONE: u32 = u32::MAX;
 
-/// Which way hops lead.
+/// The direction of the hops between the start and the other posts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Way {
+pub enum Journey {
     /// From the start to every post.
     #[default]
-    Out,
+    Outbound,
     /// From every post to the start.
-    Back,
+    Return,
 }
 
 /// What to search for.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Search {
-    /// Which way.
-    pub way: Way,
+    /// From or to the start.
+    pub journey: Journey,
     /// Also the least effort among the paths of fewest hops, flown as chosen.
     pub effort: Option<(Effort, TakeoffChoice)>,
 }
@@ -66,7 +66,7 @@ pub struct HopMap {
     pub effort: Vec<f64>,
     /// The offset of the hop between each node and the node before it.
     previous: Vec<u32>,
-    way: Way,
+    journey: Journey,
 }
 
 /// A node that got its hops.
@@ -126,7 +126,7 @@ impl State {
             hops: (0..nodes).into_par_iter().map(ground).collect(),
             effort: if asked.effort.is_some() { vec![f64::NAN; nodes] } else { Vec::new() },
             previous: vec![NONE; nodes],
-            way: asked.way,
+            journey: asked.journey,
         };
         let open = (0..down * across).into_par_iter().map(usable).collect();
         let mut state = Self { map, open, layer: LayerBits::none(lattice), layer_blocks: vec![false; down * across], reached: 0 };
@@ -199,14 +199,14 @@ impl Pull<'_> {
     /// The node at the other end of an offset, where that is on the layer. Where all offsets are `inside` the map, a step tells.
     #[inline]
     fn on_layer(&self, node: Post, index: usize, (number, step): (usize, isize), inside: bool) -> Option<Post> {
-        let step = if self.asked.way == Way::Out { -step } else { step };
+        let step = if self.asked.journey == Journey::Outbound { -step } else { step };
         let is_on_layer = |at: usize| self.map.hops[at] == self.layer;
         if inside && !is_on_layer(index.wrapping_add_signed(step)) {
             return None;
         }
-        let other = match self.asked.way {
-            Way::Out => self.hops.takeoff(node, number),
-            Way::Back => self.hops.landing(node, number),
+        let other = match self.asked.journey {
+            Journey::Outbound => self.hops.takeoff(node, number),
+            Journey::Return => self.hops.landing(node, number),
         }?;
         (inside || is_on_layer(self.hops.lattice().index(other))).then_some(other)
     }
@@ -219,7 +219,7 @@ impl Pull<'_> {
         for (number, &step) in steps.iter().enumerate() {
             let Some(other) = self.on_layer(node, index, (number, step), inside) else { continue };
             let offset = &self.hops.offsets()[number];
-            let from = if self.asked.way == Way::Out { other } else { node };
+            let from = if self.asked.journey == Journey::Outbound { other } else { node };
             #[expect(clippy::cast_possible_truncation, reason = "the table of offsets is far smaller")]
             let offset_number = number as u32;
             let Some((effort, choice)) = self.asked.effort else {
@@ -266,26 +266,26 @@ fn at_least(effort: Effort, sight: LineOfSight, lofts: SlopeInterval, gravity_m_
 }
 
 impl HopMap {
-    /// The node before this one on its way from the start (after it, on a way back); `None` for the start and for nodes without hops.
+    /// The node before this one on its path from the start (after it, on a return path); `None` for the start and for nodes without hops.
     pub fn previous(&self, hops: &PostHops<'_>, node: Post) -> Option<Post> {
         let offset = self.previous[hops.lattice().index(node)];
         if offset == NONE {
             return None;
         }
-        match self.way {
-            Way::Out => hops.takeoff(node, offset as usize),
-            Way::Back => hops.landing(node, offset as usize),
+        match self.journey {
+            Journey::Outbound => hops.takeoff(node, offset as usize),
+            Journey::Return => hops.landing(node, offset as usize),
         }
     }
 
-    /// The nodes of a way of fewest hops between the start and a node, in the order of flight; `None` where there is none.
-    pub fn way(&self, hops: &PostHops<'_>, node: Post) -> Option<Vec<Post>> {
+    /// The nodes of a path of fewest hops between the start and a node, in the order of flight; `None` where there is none.
+    pub fn path(&self, hops: &PostHops<'_>, node: Post) -> Option<Vec<Post>> {
         if self.hops[hops.lattice().index(node)] < 0 {
             return None;
         }
         let mut nodes = vec![node];
         nodes.extend(std::iter::successors(self.previous(hops, node), |&node| self.previous(hops, node)));
-        if self.way == Way::Out {
+        if self.journey == Journey::Outbound {
             nodes.reverse();
         }
         Some(nodes)
