@@ -346,7 +346,7 @@ impl Stretch<'_> {
                 let waits = |node: &&usize| labels[**node - self.first].waits_for(self.hops, self.aim);
                 let (Some(&first), Some(&last)) = (landings.iter().find(waits), landings.iter().rfind(waits)) else { continue };
                 sweep.landings(&takeoff.station, first..last + 1, direction, |node, single| {
-                    self.judge(takeoff, node, single, &mut labels[node - self.first], &mut tally);
+                    self.evaluate(takeoff, node, single, &mut labels[node - self.first], &mut tally);
                 });
             }
         }
@@ -355,7 +355,7 @@ impl Stretch<'_> {
 
     /// Offers a node what the hop test makes of one pair, where it waits for that.
     #[inline]
-    fn judge(&self, takeoff: &Takeoff, node: usize, single: Result<SlopeInterval, Limit>, label: &mut Label, tally: &mut Tally) {
+    fn evaluate(&self, takeoff: &Takeoff, node: usize, single: Result<SlopeInterval, Limit>, label: &mut Label, tally: &mut Tally) {
         if !label.waits_for(self.hops, self.aim) {
             return;
         }

@@ -95,7 +95,7 @@ impl Answer {
 ///
 /// # Complexity
 /// With V nodes, W of them in reach of each ahead of the nodes of as many hops, and S vertices flown past: about O(V W), as
-/// [`Sweep`](crate::ballistics::Sweep) judges one take-off, in time; some 150 bytes a node in memory, no stored edges.
+/// [`Sweep`](crate::ballistics::Sweep) evaluates one take-off, in time; some 150 bytes a node in memory, no stored edges.
 pub fn search(
     test: &HopTest<'_>,
     start: Station,

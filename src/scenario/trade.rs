@@ -234,7 +234,7 @@ pub struct Varied {
 ///
 /// # Errors
 /// [`TooManyNodes`].
-pub fn judged(
+pub fn verdict(
     test: &HopTest<'_>,
     (start, goal): (Station, Station),
     options: &SearchOptions,
@@ -347,7 +347,7 @@ impl<'a> Trade<'a> {
         };
         let test = HopTest::new(&chain, &scenario.hopper, scenario.body.gravity_m_s2);
         let answer =
-            judged(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
+            verdict(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
         let keys = self.variations.iter().map(|v| v.key.path());
         Ok(TradeRow {
             values: keys.zip(values.iter().copied()).collect(),

@@ -168,7 +168,7 @@ impl<'a> ChainGround<'a> {
     }
 
     /// What the ground says of a contact on a segment.
-    fn judged(
+    fn check_contact(
         &self,
         segment: Option<SegmentId>,
         contact: Contact,
@@ -180,7 +180,7 @@ impl<'a> ChainGround<'a> {
         {
             return Ok(*rule);
         }
-        self.settled(segment).ok_or(GroundRefusal::NoGround)?.judged(contact, direction)
+        self.settled(segment).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction)
     }
 
     /// The point of a segment's ground at an x, counted from the nearer vertex, and its site.
@@ -274,7 +274,7 @@ impl Ground for ChainGround<'_> {
     fn holds_takeoff(&self, from: &ChainSpot, launch: &Launch) -> bool {
         let direction = towards(launch.heading);
         let segment = from.station.ruling_segment(Contact::Takeoff, direction, self.test.chain().segments().len());
-        holds(self.judged(segment, Contact::Takeoff, direction), launch)
+        holds(self.check_contact(segment, Contact::Takeoff, direction), launch)
     }
 
     fn fly(&self, from: &ChainSpot, launch: &Launch, aim: &ChainSpot) -> Flight<ChainSpot, SegmentId> {
@@ -334,7 +334,7 @@ impl Ground for ChainGround<'_> {
     }
 
     fn landing_failure(&self, _end: &ChainSpot, footing: &SegmentId, arrival: &Arrival) -> Option<TrialOutcome> {
-        let rule = self.judged(Some(*footing), Contact::Landing, towards(arrival.heading));
+        let rule = self.check_contact(Some(*footing), Contact::Landing, towards(arrival.heading));
         failure(rule, self.test.hopper().landing_speed_max_m_s, arrival)
     }
 

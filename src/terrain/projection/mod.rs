@@ -67,7 +67,7 @@ impl MapPlace {
     ///
     /// # Errors
     /// For longitude and latitude: [`TerrainError::NoProjection`] without a projection, [`TerrainError::LonLatOffTheMap`] where the
-    /// DEM does not cover it. Map coordinates are given back as they are: the slice judges them.
+    /// DEM does not cover it. Map coordinates are given back as they are: the slice checks them.
     pub fn on_map(
         &self,
         which: &'static str,
