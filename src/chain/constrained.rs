@@ -1,4 +1,4 @@
-//! The chain with every segment's constraints settled: the input of all analysis.
+//! The chain with every segment's constraints resolved: the input of all analysis.
 
 use super::{Contact, Direction, Ground, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, Station};
 use crate::{
@@ -40,7 +40,7 @@ pub enum ConstraintProblem {
 pub struct ConstraintProblems(pub Vec<(ConstraintProblem, usize)>);
 
 impl ConstrainedChain {
-    /// Settles the constraints of every segment from what the chain, the hopper and the scenario's surface say.
+    /// Resolves the constraints of every segment from what the chain, the hopper and the scenario's surface say.
     ///
     /// The chain's own friction, offsets or explicit limits go first, the surface fills what it leaves open; of two speed limits the
     /// smaller counts. The rest slope is checked against the full inclination, `n_z = cos chi cos alpha`; left to friction, it is
@@ -63,7 +63,7 @@ impl ConstrainedChain {
         let mut problems: Vec<(ConstraintProblem, usize)> = Vec::new();
         let mut segments = Vec::with_capacity(geometry.segment_count());
         for (i, (&slope, ground)) in geometry.slopes().iter().zip(geometry.grounds()).enumerate() {
-            match settle(SegmentId(i), slope, ground, hopper, surface) {
+            match resolve_constraints(SegmentId(i), slope, ground, hopper, surface) {
                 Ok(segment) => segments.push(segment),
                 Err(problem) => {
                     let same =
@@ -122,8 +122,8 @@ impl ConstrainedChain {
     }
 }
 
-/// Settles one segment: what its ground, as met along a slope, allows this hopper.
-pub(crate) fn settle(
+/// Resolves the constraints of one segment: what its ground, as met along a slope, allows this hopper.
+pub(crate) fn resolve_constraints(
     id: SegmentId,
     slope: f64,
     ground: &Ground,

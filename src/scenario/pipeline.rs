@@ -70,7 +70,7 @@ pub enum PipelineError {
     },
 }
 
-/// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, settles the constraints, finds start and goal on it.
+/// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, resolves the constraints, finds start and goal on it.
 ///
 /// `base` is the folder that the scenario's paths start from.
 ///
@@ -86,7 +86,7 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
         }
         Surveyed::Chain(chain) => (chain, (None, None)),
     };
-    settled(scenario, geometry, ends, projection, warnings)
+    resolved(scenario, geometry, ends, projection, warnings)
 }
 
 /// The terrain of a scenario, read and sliced once, from which chains are prepared for any hopper, grip and search.
@@ -146,7 +146,7 @@ impl Survey {
             }
             Surveyed::Chain(chain) => (chain.clone(), (None, None)),
         };
-        settled(scenario, geometry, ends, self.projection.clone(), warnings)
+        resolved(scenario, geometry, ends, self.projection.clone(), warnings)
     }
 }
 
@@ -156,8 +156,8 @@ fn whole(chain: PolygonalChain) -> (PolygonalChain, (Option<f64>, Option<f64>)) 
     (chain, (Some(first_m), Some(last_m)))
 }
 
-/// Settles the constraints of a chain and finds start and goal on it.
-fn settled(
+/// Resolves the constraints of a chain and finds start and goal on it.
+fn resolved(
     scenario: &Scenario,
     geometry: PolygonalChain,
     ends: (Option<f64>, Option<f64>),

@@ -8,7 +8,10 @@ use super::{
 };
 use crate::{
     ballistics::{Arc, HopTest},
-    chain::{Contact, Direction, Ground as SegmentGround, GroundForm, GroundRefusal, SegmentConstraints, Site, Station, settle},
+    chain::{
+        Contact, Direction, Ground as SegmentGround, GroundForm, GroundRefusal, SegmentConstraints, Site, Station,
+        resolve_constraints,
+    },
     graph::{CostToGo, Edge},
     quantity::{ChainPoint, SegmentId, VertexId},
     world::{FrictionCone, Grip, Surface},
@@ -140,7 +143,7 @@ impl<'a> ChainGround<'a> {
     }
 
     /// A segment as this trial finds it.
-    fn settled(&self, segment: usize) -> Option<SegmentConstraints> {
+    fn resolved(&self, segment: usize) -> Option<SegmentConstraints> {
         let chain = self.test.chain();
         if self.is_nominal() {
             return chain.segments().get(segment).copied();
@@ -156,7 +159,7 @@ impl<'a> ChainGround<'a> {
         }
         let (a, b) = (self.vertices()[segment], self.vertices()[segment + 1]);
         let slope = (b.z_m - a.z_m) / (b.x_m - a.x_m);
-        settle(SegmentId(segment), slope, &ground, self.test.hopper(), self.surface).ok()
+        resolve_constraints(SegmentId(segment), slope, &ground, self.test.hopper(), self.surface).ok()
     }
 
     /// What refuses any contact on a segment.
@@ -164,7 +167,7 @@ impl<'a> ChainGround<'a> {
         if self.is_nominal() {
             return self.test.chain().segments().get(segment)?.refusal();
         }
-        self.settled(segment)?.refusal()
+        self.resolved(segment)?.refusal()
     }
 
     /// What the ground says of a contact on a segment.
@@ -180,7 +183,7 @@ impl<'a> ChainGround<'a> {
         {
             return Ok(*rule);
         }
-        self.settled(segment).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction)
+        self.resolved(segment).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction)
     }
 
     /// The point of a segment's ground at an x, counted from the nearer vertex, and its site.

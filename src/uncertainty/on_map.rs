@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     ballistics::{self, HopTest, LineOfSight, limits},
-    chain::{Contact, ContactRule, Direction, Ground as SegmentGround, GroundForm, LineConstraints, settle},
+    chain::{Contact, ContactRule, Direction, Ground as SegmentGround, GroundForm, LineConstraints, resolve_constraints},
     graph::{Cost, CostToGo},
     quantity::{ChainPoint, MapPoint, NodeId, SegmentId},
     terrain::{FacetSpan, ProfileFacet, Triangles},
@@ -145,8 +145,8 @@ impl<'a> DemGround<'a> {
         let friction = self.nominal_friction(beside);
         let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
         let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out: self.is_kept_out(beside) };
-        let settled = settle(SegmentId(0), gradient.dot(&heading), &ground, self.test.hopper(), self.surface).ok()?;
-        settled.granted(contact, Direction::Forward).copied()
+        let resolved = resolve_constraints(SegmentId(0), gradient.dot(&heading), &ground, self.test.hopper(), self.surface).ok()?;
+        resolved.granted(contact, Direction::Forward).copied()
     }
 
     /// The best hop to a node, and what the journey then costs, where it could be better than the best known.
