@@ -176,7 +176,7 @@ pub(crate) fn load_to_vary(
 ) -> Result<ToVary, Failure> {
     let mut source = typed(target, common, Some(search), ends)?;
     let (entries, base) = (source.entries.clone(), source.base.clone());
-    source.entries = Trade::first_field(&entries, variations).map_err(|error| Failure::message(format!("--vary: {error}")))?;
+    source.entries = Trade::first_cell(&entries, variations).map_err(|error| Failure::message(format!("--vary: {error}")))?;
     let mut kept = None;
     let first = validate_and_prepare(target, source, common.quiet, ends, &mut |scenario, terrain, base| {
         kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
