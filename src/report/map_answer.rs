@@ -197,7 +197,7 @@ impl MapAnswer {
             self.start_m[0],
             self.start_m[1],
             self.reachable_area_m2 * 1.0e-6,
-            hops_words(self.farthest_hops)
+            format_hops(self.farthest_hops)
         );
         // Writing to a String cannot fail.
         let _ = writeln!(
@@ -217,7 +217,7 @@ impl MapAnswer {
                 "return: the start can be reached again from {} posts, {} of them reachable, in at most {}",
                 back.return_posts,
                 back.round_trip_posts,
-                hops_words(back.farthest_hops)
+                format_hops(back.farthest_hops)
             );
         }
         if let Some(mobility) = &self.mobility {
@@ -234,9 +234,9 @@ impl MapAnswer {
             );
         }
         for goal in &self.goals {
-            let hops = goal.hops.map_or("not reachable".to_owned(), hops_words);
+            let hops = goal.hops.map_or("not reachable".to_owned(), format_hops);
             let back = match goal.return_hops {
-                Some(Some(hops)) => format!(", {} back", hops_words(hops)),
+                Some(Some(hops)) => format!(", {} back", format_hops(hops)),
                 Some(None) => ", no way back".to_owned(),
                 None => String::new(),
             };
@@ -257,7 +257,7 @@ impl MapAnswer {
 }
 
 /// A count of hops.
-fn hops_words(hops: i16) -> String {
+fn format_hops(hops: i16) -> String {
     format!("{hops} hop{}", if hops == 1 { "" } else { "s" })
 }
 

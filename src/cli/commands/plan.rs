@@ -153,7 +153,7 @@ impl Planned {
             title: FigureTitle {
                 name: scenario.title.clone().unwrap_or_default(),
                 body: scenario.body.name.clone().unwrap_or_default(),
-                ground: ground_words(scenario),
+                ground: format_ground(scenario),
             },
         })
         .map_err(|e| Failure::message(e.to_string()))
@@ -161,7 +161,7 @@ impl Planned {
 }
 
 /// The ground's grip, what it may be rested on and what covers it, in a few words.
-pub(super) fn ground_words(scenario: &Scenario) -> String {
+pub(super) fn format_ground(scenario: &Scenario) -> String {
     let surface = &scenario.surface;
     let mut parts = Vec::new();
     match surface.grip {
