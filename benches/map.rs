@@ -15,7 +15,7 @@ use chta::{
     ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain},
     graph::Effort,
-    reach::map::{MapRequest, Post, PostHops, Search, UNREACHED, Way, mobility, search},
+    reach::map::{Journey, MapRequest, Post, PostHops, Search, UNREACHED, mobility, search},
     terrain::{Dem, Profile, SyntheticTerrain, synthesise},
     world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
@@ -67,16 +67,16 @@ fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     (began.elapsed().as_secs_f64(), made)
 }
 
-/// Fewest hops by pushing: each post of the front asks all posts within reach that have no hops yet.
+/// Fewest hops by pushing: each post of the layer asks all posts within reach that have no hops yet.
 fn pushed(hops: &PostHops<'_>, start: Post) -> (Vec<i16>, u64) {
     let lattice = hops.lattice();
     let mut found = vec![UNREACHED; lattice.count()];
     let mut tested = 0;
-    let mut front = vec![start];
+    let mut layer = vec![start];
     found[lattice.index(start)] = 0;
     for next in 1.. {
         let mut reached = Vec::new();
-        for &from in &front {
+        for &from in &layer {
             for offset in 0..hops.offset_count() {
                 let Some(to) = hops.landing(from, offset) else { continue };
                 let index = lattice.index(to);
@@ -93,7 +93,7 @@ fn pushed(hops: &PostHops<'_>, start: Post) -> (Vec<i16>, u64) {
         if reached.is_empty() {
             return (found, tested);
         }
-        front = reached;
+        layer = reached;
     }
     (found, tested)
 }
@@ -136,7 +136,7 @@ fn sizes() {
         let ground = |profile: Profile| scene.chain(&profile);
         let start = Post { row: side / 2, col: side / 2 };
         let (prepare_s, hops) = timed(|| PostHops::new(scene.request(), &ground).expect("a sound request"));
-        let asked = |effort| Search { way: Way::Out, effort };
+        let asked = |effort| Search { journey: Journey::Outbound, effort };
         let (hops_s, _) = timed(|| search(&hops, start, asked(None), &mut |_| {}).expect("a sound request"));
         let least = Some((Effort::TakeoffSpeed, TakeoffChoice::LeastSpeed));
         let (effort_s, _) = timed(|| search(&hops, start, asked(least), &mut |_| {}).expect("a sound request"));

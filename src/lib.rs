@@ -53,7 +53,7 @@
 //! hop          the hop test: feasible take-off slopes between two stations of a chain, many hops on a segment
 //! graph        nodes, hops as edges, the search
 //! path         the hops to fly, and `execute`, which flies them again without those equations
-//! uncertainty  how surely a path is flown: trials under errors, first contact in two and three dimensions
+//! uncertainty  how reliably a path is flown: trials under errors, first contact in two and three dimensions
 //! reach        how far one gets from one place of a map: along slices in all directions, and over all posts of a DEM
 //! report       results as plain data; text, JSON, CSV, GeoJSON and the picture are views of it
 //! scenario     TOML, validated; wires the pipeline

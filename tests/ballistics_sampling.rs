@@ -16,7 +16,7 @@ const TOO_CLOSE: f64 = 3e-8;
 
 /// What brute force says of one flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Judged {
+enum Verdict {
     Feasible,
     Infeasible(Limit),
     TooClose,
@@ -68,18 +68,19 @@ impl Flight {
     }
 }
 
-/// Judges one take-off angle by flying it and comparing what happens with what each limit says.
-fn judge(test: &HopTest<'_>, takeoff: &Station, landing: &Station, theta: f64) -> Judged {
+/// Evaluates one take-off angle by flying it and comparing what happens with what each limit says.
+fn evaluate(test: &HopTest<'_>, takeoff: &Station, landing: &Station, theta: f64) -> Verdict {
     let (run, rise) = ((landing.point.x_m - takeoff.point.x_m).abs(), landing.point.z_m - takeoff.point.z_m);
     let flight = Flight::through(run, rise, theta, test.gravity_m_s2());
     let end = flight.time_to(run);
     let (vx, vz) = (flight.v * theta.cos(), flight.v * theta.sin() - flight.g * end);
     let (landing_angle, landing_speed) = (vz.atan2(vx), vx.hypot(vz));
     let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).unwrap();
-    let (Ok(from), Ok(to)) =
-        (test.chain().judged(takeoff, Contact::Takeoff, direction), test.chain().judged(landing, Contact::Landing, direction))
-    else {
-        return Judged::Infeasible(Limit::Direction);
+    let (Ok(from), Ok(to)) = (
+        test.chain().check_contact(takeoff, Contact::Takeoff, direction),
+        test.chain().check_contact(landing, Contact::Landing, direction),
+    ) else {
+        return Verdict::Infeasible(Limit::Direction);
     };
     let mut slack = Slack { least: f64::INFINITY, by: Limit::LineOfSight };
     slack.at_most(flight.v, from.speed_max_m_s() * (1.0 + SPEED_TOLERANCE), flight.v, Limit::TakeoffSpeed);
@@ -91,11 +92,11 @@ fn judge(test: &HopTest<'_>, takeoff: &Station, landing: &Station, theta: f64) -
     machine(test.hopper(), &flight, end, run.hypot(rise), &mut slack);
     terrain(test, takeoff, landing, &flight, &mut slack);
     if slack.least.abs() < TOO_CLOSE || slack.least.is_nan() {
-        Judged::TooClose
+        Verdict::TooClose
     } else if slack.least > 0.0 {
-        Judged::Feasible
+        Verdict::Feasible
     } else {
-        Judged::Infeasible(slack.by)
+        Verdict::Infeasible(slack.by)
     }
 }
 
@@ -212,10 +213,10 @@ fn sampled_angles(draw: &mut Draw, set: &TakeoffSet) -> Vec<f64> {
     angles
 }
 
-/// Samples pairs of one kind of world; returns (pairs, feasible pairs, judged flights, too close).
+/// Samples pairs of one kind of world; returns (pairs, feasible pairs, evaluated flights, too close).
 fn compare(seed: u64, worlds: u32, make: fn(&mut Draw) -> (ConstrainedChain, Hopper, f64)) -> (u32, u32, u32, u32) {
     let draw = &mut Draw::seeded(seed);
-    let (mut pairs, mut feasible, mut judged, mut close) = (0, 0, 0, 0);
+    let (mut pairs, mut feasible, mut evaluated, mut close) = (0, 0, 0, 0);
     for _ in 0..worlds {
         let (chain, hopper, g) = make(draw);
         let test = HopTest::new(&chain, &hopper, g);
@@ -229,19 +230,19 @@ fn compare(seed: u64, worlds: u32, make: fn(&mut Draw) -> (ConstrainedChain, Hop
             pairs += 1;
             feasible += u32::from(set.loft().is_some());
             for theta in sampled_angles(draw, &set) {
-                judged += 1;
+                evaluated += 1;
                 let inside = set.angles().is_some_and(|a| a.min.radians() <= theta && theta <= a.max.radians());
-                match judge(&test, &takeoff, &landing, theta) {
-                    Judged::TooClose => close += 1,
-                    Judged::Feasible => assert!(inside, "flies at {theta} rad, not in {set:?}\n{chain:?}\n{hopper:?} g {g}"),
-                    Judged::Infeasible(by) => {
+                match evaluate(&test, &takeoff, &landing, theta) {
+                    Verdict::TooClose => close += 1,
+                    Verdict::Feasible => assert!(inside, "flies at {theta} rad, not in {set:?}\n{chain:?}\n{hopper:?} g {g}"),
+                    Verdict::Infeasible(by) => {
                         assert!(!inside, "{by} broken at {theta} rad, yet in {set:?}\n{chain:?}\n{hopper:?} g {g}");
                     }
                 }
             }
         }
     }
-    (pairs, feasible, judged, close)
+    (pairs, feasible, evaluated, close)
 }
 
 fn chain_length(chain: &ConstrainedChain) -> f64 {
@@ -251,16 +252,16 @@ fn chain_length(chain: &ConstrainedChain) -> f64 {
 
 #[test]
 fn every_sampled_angle_is_in_the_set_exactly_if_it_flies() {
-    let (pairs, feasible, judged, close) = compare(1, 700, world);
-    assert!(pairs > 5000 && feasible > 400 && judged > 200_000, "{pairs} pairs, {feasible} feasible, {judged} flights");
-    assert!(close * 50 < judged, "{close} of {judged} flights too close to call");
+    let (pairs, feasible, evaluated, close) = compare(1, 700, world);
+    assert!(pairs > 5000 && feasible > 400 && evaluated > 200_000, "{pairs} pairs, {feasible} feasible, {evaluated} flights");
+    assert!(close * 50 < evaluated, "{close} of {evaluated} flights too close to call");
 }
 
 #[test]
 fn every_sampled_angle_is_in_the_set_exactly_if_it_flies_on_rocky_ground() {
-    let (pairs, feasible, judged, close) = compare(2, 700, rocky_world);
-    assert!(pairs > 5000 && feasible > 400 && judged > 200_000, "{pairs} pairs, {feasible} feasible, {judged} flights");
-    assert!(close * 50 < judged, "{close} of {judged} flights too close to call");
+    let (pairs, feasible, evaluated, close) = compare(2, 700, rocky_world);
+    assert!(pairs > 5000 && feasible > 400 && evaluated > 200_000, "{pairs} pairs, {feasible} feasible, {evaluated} flights");
+    assert!(close * 50 < evaluated, "{close} of {evaluated} flights too close to call");
 }
 
 /// Flies from a station until the arc meets the chain again; the x of that point.
@@ -455,7 +456,7 @@ fn rest_slope_cross_slope_and_keep_out_refuse_at_the_end_that_has_them() {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).unwrap();
         let ends = [(takeoff, Contact::Takeoff), (landing, Contact::Landing)];
         let refusals: Vec<_> =
-            ends.iter().filter_map(|(s, c)| test.chain().judged(s, *c, direction).err().map(|r| r.limit(*c))).collect();
+            ends.iter().filter_map(|(s, c)| test.chain().check_contact(s, *c, direction).err().map(|r| r.limit(*c))).collect();
         if let Some(&first) = refusals.first() {
             assert_eq!(test.loft(takeoff, landing), Err(first));
             let set = test.takeoff_set(takeoff, landing).unwrap();
@@ -466,7 +467,7 @@ fn rest_slope_cross_slope_and_keep_out_refuse_at_the_end_that_has_them() {
         }
         // The steepness by hand, from the two vertices of the segment that a point lies on.
         if let Site::Inside(segment) = takeoff.site
-            && let Err(GroundRefusal::TooSteep { tilt, max }) = test.chain().judged(takeoff, Contact::Takeoff, direction)
+            && let Err(GroundRefusal::TooSteep { tilt, max }) = test.chain().check_contact(takeoff, Contact::Takeoff, direction)
         {
             let v = &test.chain().geometry().vertices()[segment.index()..=segment.index() + 1];
             let alpha = ((v[1].z_m - v[0].z_m) / (v[1].x_m - v[0].x_m)).atan();

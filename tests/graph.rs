@@ -350,7 +350,9 @@ fn refusing_ends_are_named_with_a_usable_point_where_there_is_one() {
             continue;
         }
         let allowed = |station: &Station, contact| {
-            Direction::BOTH.into_iter().any(|d| chain.judged(station, contact, d).is_ok_and(|rule| rule.speed_max_m_s() > 0.0))
+            Direction::BOTH
+                .into_iter()
+                .any(|d| chain.check_contact(station, contact, d).is_ok_and(|rule| rule.speed_max_m_s() > 0.0))
         };
         let expected: Vec<Contact> = [(start, Contact::Takeoff), (goal, Contact::Landing)]
             .into_iter()

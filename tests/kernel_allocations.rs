@@ -16,7 +16,7 @@ use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
 #[test]
-fn ten_thousand_pairs_are_judged_without_an_allocation_either_way() {
+fn ten_thousand_pairs_are_evaluated_without_an_allocation_either_way() {
     let vertices = (0..=100).map(|i| ChainPoint::new(f64::from(i), 0.3 * f64::from(i * i % 7))).collect();
     let hopper =
         Hopper { clearance_m: 0.05, apex_height_max_m: Some(20.0), flight_time_max_s: Some(10.0), ..Hopper::with_speeds(9.0, 9.0) };
@@ -24,7 +24,7 @@ fn ten_thousand_pairs_are_judged_without_an_allocation_either_way() {
     let surface = Surface { grip, rest: RestSlope::AsFrictionHolds };
     let chain = ConstrainedChain::new(PolygonalChain::bare(vertices).unwrap(), &hopper, &surface).unwrap();
     let test = HopTest::new(&chain, &hopper, 3.711);
-    let judge_all = || {
+    let evaluate_all = || {
         let (mut feasible, mut refused) = (0, 0);
         for i in 0..=100 {
             let takeoff = chain.geometry().vertex_station(VertexId(i));
@@ -52,7 +52,7 @@ fn ten_thousand_pairs_are_judged_without_an_allocation_either_way() {
             }
             (feasible, refused)
         };
-    let (allocations, (feasible, refused)) = quietest(judge_all);
+    let (allocations, (feasible, refused)) = quietest(evaluate_all);
     assert_eq!(allocations, 0);
     assert!(feasible > 300 && refused > 3000, "the pairs are all alike: {feasible} feasible, {refused} refused");
     // The first round makes the working memory; the other two have it.

@@ -11,7 +11,7 @@ use chta::{
     chain::{ConstrainedChain, PolygonalChain},
     hop::HopTest,
     quantity::{Angle, AngleInterval, MapPoint, SlopeInterval, VertexId},
-    reach::map::{MapRequest, NO_GROUND, Post, PostHops, SECTORS, Search, UNREACHED, Way, mobility, search},
+    reach::map::{Journey, MapRequest, NO_GROUND, Post, PostHops, SECTORS, Search, UNREACHED, mobility, search},
     terrain::{Dem, FrictionRaster, GeoReference, KeepOut, Profile, read_dem, read_friction_raster, read_keep_out, slice},
     world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
 };
@@ -85,23 +85,23 @@ impl World {
     }
 
     /// Fewest hops the plain way: every pair of posts within the parabolas of safety (the test of random grids takes all pairs).
-    fn plain_map(&self, start: Post, stride: usize, way: Way) -> Vec<i16> {
+    fn plain_map(&self, start: Post, stride: usize, journey: Journey) -> Vec<i16> {
         let posts = self.posts(stride);
         let no_ground = |post: &Post| self.dem.elevation(post.row, post.col).is_none();
         let mut hops: Vec<i16> = posts.iter().map(|post| if no_ground(post) { NO_GROUND } else { UNREACHED }).collect();
         hops[posts.iter().position(|&post| post == start).unwrap()] = 0;
-        for front in 0.. {
-            let fronts: Vec<usize> = (0..posts.len()).filter(|&i| hops[i] == front).collect();
-            if fronts.is_empty() {
+        for layer in 0.. {
+            let layer_posts: Vec<usize> = (0..posts.len()).filter(|&i| hops[i] == layer).collect();
+            if layer_posts.is_empty() {
                 break;
             }
             for to in 0..posts.len() {
                 let joins = |&from: &usize| {
-                    let (from, to) = if way == Way::Out { (posts[from], posts[to]) } else { (posts[to], posts[from]) };
+                    let (from, to) = if journey == Journey::Outbound { (posts[from], posts[to]) } else { (posts[to], posts[from]) };
                     self.within_safety(from, to) && self.lofts(from, to).is_some()
                 };
-                if hops[to] == UNREACHED && fronts.iter().any(joins) {
-                    hops[to] = front + 1;
+                if hops[to] == UNREACHED && layer_posts.iter().any(joins) {
+                    hops[to] = layer + 1;
                 }
             }
         }
@@ -213,19 +213,19 @@ fn every_pair_of_random_grids_has_the_answer_of_slice_and_hop() {
 }
 
 /// Compares whole maps, out and back, with one and with several threads; the plain way's hops.
-fn compare_maps(world: &World, start: Post, stride: usize, ways: &[Way], what: &str) -> Vec<i16> {
+fn compare_maps(world: &World, start: Post, stride: usize, journeys: &[Journey], what: &str) -> Vec<i16> {
     let mut last = Vec::new();
-    for &way in ways {
-        let expected = world.plain_map(start, stride, way);
+    for &journey in journeys {
+        let expected = world.plain_map(start, stride, journey);
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             let ground = |profile| world.chain(profile);
             let found = pool.install(|| {
                 let hops = PostHops::new(world.request(stride), &ground).unwrap();
                 let start = Post { row: start.row / stride, col: start.col / stride };
-                search(&hops, start, Search { way, effort: None }, &mut |_| {}).unwrap()
+                search(&hops, start, Search { journey, effort: None }, &mut |_| {}).unwrap()
             });
-            assert_eq!(found.hops, expected, "{what}, {way:?}, {threads} threads");
+            assert_eq!(found.hops, expected, "{what}, {journey:?}, {threads} threads");
         }
         last = expected;
     }
@@ -273,7 +273,7 @@ fn compare_cut_outs(file: &str, hopper: Hopper, surface: Surface, gravity_m_s2: 
             continue;
         }
         let what = format!("{file} from row {}, column {}", first.row, first.col);
-        compare_maps(&world, start, 1, &[Way::Out], &what);
+        compare_maps(&world, start, 1, &[Journey::Outbound], &what);
         compared += 1;
         if compared == 20 {
             return;
@@ -353,15 +353,15 @@ fn ways_back_and_strides_have_the_hops_of_every_pair() {
         // Falling is easier than climbing for legs that land hard and leap little.
         let hopper = Hopper { clearance_m: 0.02, ..Hopper::with_speeds(2.2, 3.5) };
         let world = World::new(dem, hopper, friction(0.9), 1.62);
-        let out = compare_maps(&world, start, 1, &[Way::Out], &format!("grid {number}"));
-        let back = compare_maps(&world, start, 1, &[Way::Back], &format!("grid {number}"));
+        let out = compare_maps(&world, start, 1, &[Journey::Outbound], &format!("grid {number}"));
+        let back = compare_maps(&world, start, 1, &[Journey::Return], &format!("grid {number}"));
         unlike += out.iter().zip(&back).filter(|(out, back)| out != back).count();
-        compare_maps(&world, start, 2, &[Way::Out, Way::Back], &format!("grid {number}, every second post"));
+        compare_maps(&world, start, 2, &[Journey::Outbound, Journey::Return], &format!("grid {number}, every second post"));
     }
     assert!(unlike > 50, "ways out and back differ at {unlike} posts only");
 }
 
-/// The least effort among ways of fewest hops, against a plain search over all pairs of neighbouring fronts; and the paths themselves.
+/// The least effort among paths of fewest hops, against a plain search over all pairs of neighbouring layers; and the paths themselves.
 #[test]
 #[expect(clippy::cast_precision_loss, reason = "small numbers")]
 fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
@@ -369,7 +369,7 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
         ballistics::{Arc, LineOfSight, TakeoffChoice},
         graph::Effort,
         path::execute,
-        reach::map::{joined, way_hops},
+        reach::map::{joined, path_hops},
     };
     let mut draw = Draw::seeded(55);
     let mut compared = 0;
@@ -384,13 +384,13 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
         let world = World::new(dem.unwrap(), Hopper { clearance_m: 0.05, ..Hopper::with_speeds(2.6, 2.8) }, friction(1.2), 1.62);
         let start = Post { row: 2, col: 1 };
         let posts = world.posts(1);
-        let hops = world.plain_map(start, 1, Way::Out);
+        let hops = world.plain_map(start, 1, Journey::Outbound);
         let mut expected = vec![f64::NAN; posts.len()];
         expected[start.row * 9 + start.col] = 0.0;
-        for front in 1..=hops.iter().copied().max().unwrap() {
-            for to in (0..posts.len()).filter(|&to| hops[to] == front) {
+        for layer in 1..=hops.iter().copied().max().unwrap() {
+            for to in (0..posts.len()).filter(|&to| hops[to] == layer) {
                 let mut least = f64::INFINITY;
-                for from in (0..posts.len()).filter(|&from| hops[from] == front - 1) {
+                for from in (0..posts.len()).filter(|&from| hops[from] == layer - 1) {
                     let Some(lofts) = world.lofts(posts[from], posts[to]) else { continue };
                     let run_m =
                         (posts[to].row as f64 - posts[from].row as f64).hypot(posts[to].col as f64 - posts[from].col as f64);
@@ -410,13 +410,14 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
         }
         let ground = |profile| world.chain(profile);
         let post_hops = PostHops::new(world.request(1), &ground).unwrap();
-        let map = search(&post_hops, start, Search { way: Way::Out, effort: Some((effort, choice)) }, &mut |_| {}).unwrap();
+        let map =
+            search(&post_hops, start, Search { journey: Journey::Outbound, effort: Some((effort, choice)) }, &mut |_| {}).unwrap();
         assert_eq!(map.hops, hops);
         for (index, (&found, &expected)) in map.effort.iter().zip(&expected).enumerate() {
             assert_eq!(found.is_nan(), expected.is_nan());
             assert!(found.is_nan() || (found - expected).abs() <= 1e-9 * expected, "{}: {found} against {expected}", effort.name());
-            let Some(way) = map.way(&post_hops, posts[index]) else { continue };
-            let flown = way_hops(&post_hops, &way, choice).unwrap();
+            let Some(path) = map.path(&post_hops, posts[index]) else { continue };
+            let flown = path_hops(&post_hops, &path, choice).unwrap();
             assert_eq!(flown.len(), usize::try_from(hops[index]).unwrap());
             for hop in &flown {
                 let geometry = hop.chain.geometry();

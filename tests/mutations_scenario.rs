@@ -65,8 +65,8 @@ fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The keys, judged: `true` where they were accepted.
-fn judged(entries: Entries, source: &str) -> bool {
+/// Validates the keys: `true` where they are accepted.
+fn is_accepted(entries: Entries, source: &str) -> bool {
     match Scenario::new(entries) {
         Ok(scenario) => {
             let document = scenario_document(&scenario, &|path| path.to_str().unwrap().to_owned());
@@ -98,11 +98,11 @@ fn assert_both_kinds(accepted: usize, tried: usize) {
 #[test]
 fn no_spoiled_scenario_makes_it_panic() {
     let mut rng = ChaCha8Rng::seed_from_u64(1);
-    assert!(judged(Entries::from_toml(TOML), TOML));
+    assert!(is_accepted(Entries::from_toml(TOML), TOML));
     let accepted = (0..10_000).filter(|_| {
         let bytes = spoiled(&mut rng, TOML.as_bytes());
         let source = String::from_utf8_lossy(&bytes);
-        judged(Entries::from_toml(&source), &source)
+        is_accepted(Entries::from_toml(&source), &source)
     });
     assert_both_kinds(accepted.count(), 10_000);
 }
@@ -116,7 +116,7 @@ fn no_spoiled_result_makes_it_panic() {
         let Ok(result) = serde_json::from_slice::<serde_json::Value>(&bytes) else { continue };
         tried += 1;
         let scenario = result.get("scenario").unwrap_or(&serde_json::Value::Null);
-        accepted += usize::from(judged(Entries::from_json(scenario), ""));
+        accepted += usize::from(is_accepted(Entries::from_json(scenario), ""));
     }
     assert!(tried > 2000, "only {tried} were JSON at all");
     assert_both_kinds(accepted, tried);
@@ -133,7 +133,7 @@ fn no_spoiled_assignment_makes_it_panic() {
         let assignment = String::from_utf8_lossy(&bytes);
         let mut entries = Entries::from_toml(TOML);
         entries.set(&assignment);
-        accepted += usize::from(judged(entries, TOML));
+        accepted += usize::from(is_accepted(entries, TOML));
     }
     assert_both_kinds(accepted, 10_000);
 }

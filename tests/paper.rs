@@ -217,7 +217,7 @@ fn erratum_landing_bounds_of_section_v_b_are_swapped() {
     assert_eq!(hops((-60.0, -90.0)), None);
     assert_eq!(hops((-90.0, -60.0)), Some(4));
     let literal = the_76_m_case((-60.0, -90.0));
-    let refusal = literal.segments()[0].judged(Contact::Landing, Direction::Forward).unwrap_err();
+    let refusal = literal.segments()[0].check_contact(Contact::Landing, Direction::Forward).unwrap_err();
     assert!(matches!(refusal, GroundRefusal::NothingAhead { .. }), "{refusal}");
 }
 

@@ -157,9 +157,10 @@ fn fewest_over(stations: &[Station], journey: &Journey, joined: &dyn Fn(&Station
 fn flies(journey: &Journey, from: &Station, to: &Station, angles: u32) -> bool {
     const SLACK: f64 = 1.0 + 2e-9;
     let Some(direction) = Direction::between(from.point.x_m, to.point.x_m) else { return false };
-    let (Ok(takeoff), Ok(landing)) =
-        (journey.chain.judged(from, Contact::Takeoff, direction), journey.chain.judged(to, Contact::Landing, direction))
-    else {
+    let (Ok(takeoff), Ok(landing)) = (
+        journey.chain.check_contact(from, Contact::Takeoff, direction),
+        journey.chain.check_contact(to, Contact::Landing, direction),
+    ) else {
         return false;
     };
     if journey.chain.geometry().bend_between(from.point.x_m, to.point.x_m).is_some() {

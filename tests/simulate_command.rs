@@ -311,17 +311,17 @@ fn replanning_weighs_risk_as_the_plan_does() {
 }
 
 #[test]
-fn a_surer_path_is_flown_more_surely() {
+fn a_more_reliable_path_is_flown_more_reliably() {
     let scenario = shipped("rolling_surely.toml");
     let document = Desk::new().json(&["simulate", &scenario, "--experiment", "risk-trade", "--trials", "1000"]);
     let paths = document["paths"].as_array().unwrap();
     let interval = |path: &Value| [0, 1].map(|i| number(&path["success_rate_ci95"][i]));
-    let (plain, surest) = (&paths[0], paths.last().unwrap());
-    assert_eq!(paths[1]["hops"], plain["hops"], "the surest of those with the fewest hops");
+    let (plain, reliable) = (&paths[0], paths.last().unwrap());
+    assert_eq!(paths[1]["hops"], plain["hops"], "the most reliable of those with the fewest hops");
     assert!(interval(&paths[1])[0] > interval(plain)[1], "{} beside {plain}", paths[1]);
-    assert!(surest["hops"].as_u64() > plain["hops"].as_u64());
-    assert!(interval(surest)[0] > interval(&paths[1])[1], "{surest} beside {}", paths[1]);
-    // What the scenario plans is the surest.
+    assert!(reliable["hops"].as_u64() > plain["hops"].as_u64());
+    assert!(interval(reliable)[0] > interval(&paths[1])[1], "{reliable} beside {}", paths[1]);
+    // The scenario plans the most reliable.
     let flown = Desk::new().json(&["simulate", &scenario, "--trials", "1000"]);
-    assert_eq!((&flown["hops"], &flown["success_rate"]), (&surest["hops"], &surest["success_rate"]));
+    assert_eq!((&flown["hops"], &flown["success_rate"]), (&reliable["hops"], &reliable["success_rate"]));
 }

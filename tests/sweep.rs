@@ -189,7 +189,7 @@ fn adversarial_ground() {
 
 /// Where the terrain's loft equals the greatest allowed one to the last digits, the verdict hangs on rounding: it is the hop test's.
 #[test]
-fn touching_limits_are_judged_as_pair_by_pair() {
+fn touching_limits_are_evaluated_as_pair_by_pair() {
     let draw = &mut Draw::seeded(403);
     let (mut touching, mut compared) = (0, Compared::default());
     for _ in 0..150 {

@@ -1,4 +1,4 @@
-//! `chta trade` and `chta compare`: every field against a run of its own, files, threads, bad input.
+//! `chta trade` and `chta compare`: every cell against a run of its own, files, threads, bad input.
 
 #![cfg(feature = "cli")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
@@ -50,7 +50,7 @@ fn agrees(desk: &Desk, target: &[&str], vary: &[(&str, &str)], more: &[&str]) ->
 }
 
 #[test]
-fn every_field_is_what_check_says_with_its_values_set() {
+fn every_cell_is_what_check_says_with_its_values_set() {
     let desk = Desk::with_dem();
     let speeds = ("hopper.takeoff_speed_max_m_s", "3:9:3");
     let grid = agrees(&desk, &["scenario.toml"], &[speeds, ("surface.friction_coefficient", "0.1:0.7:3")], &[]);
@@ -72,7 +72,7 @@ fn every_field_is_what_check_says_with_its_values_set() {
 }
 
 #[test]
-fn with_a_proof_fields_are_what_check_proves() {
+fn with_a_proof_cells_are_what_check_proves() {
     let desk = Desk::new();
     let verdicts = agrees(&desk, &["scenario.toml"], &[("surface.friction_coefficient", "0.1:0.7:3")], &["--prove"]);
     assert_eq!(verdicts.first().map(String::as_str), Some("untraversable"));

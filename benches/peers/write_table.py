@@ -1,4 +1,4 @@
-"""Writes a chain with its settled constraints for ompl_prm: `write_table.py CHAIN SCENARIO TABLE`."""
+"""Writes a chain with its resolved constraints for ompl_prm: `write_table.py CHAIN SCENARIO TABLE`."""
 
 import sys
 

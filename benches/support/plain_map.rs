@@ -1,4 +1,4 @@
-//! Hop maps the plain way, to measure against: from each post of the front, every post within reach that has no hops yet, the parabolas of
+//! Hop maps the plain way, to measure against: from each post of the layer, every post within reach that has no hops yet, the parabolas of
 //! safety first, then the slice between the two and the hop test.
 
 use chta::{
@@ -18,11 +18,11 @@ pub(crate) fn plain_map(dem: &Dem, start: (usize, usize), hopper: &Hopper, surfa
     let speeds = [hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s].map(|v| v * (1.0 + 1e-6));
     let reach_m = speeds.map(|v| safety_range_m(high_m - low_m, v, gravity_m_s2)).into_iter().fold(f64::INFINITY, f64::min);
     let mut hops = vec![-1i16; rows * cols];
-    let mut front = vec![start];
+    let mut layer = vec![start];
     hops[start.0 * cols + start.1] = 0;
     for next in 1.. {
         let mut reached = Vec::new();
-        for &(row, col) in &front {
+        for &(row, col) in &layer {
             #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a reach in posts")]
             let (down, across) = ((reach_m / map.dy_m()) as usize, (reach_m / map.dx_m()) as usize);
             for to_row in row.saturating_sub(down)..=(row + down).min(rows - 1) {
@@ -45,7 +45,7 @@ pub(crate) fn plain_map(dem: &Dem, start: (usize, usize), hopper: &Hopper, surfa
         if reached.is_empty() {
             break;
         }
-        front = reached;
+        layer = reached;
     }
     hops
 }

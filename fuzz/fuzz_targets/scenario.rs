@@ -5,8 +5,8 @@
 use chta::scenario::{Entries, Place, Scenario, scenario_document};
 use libfuzzer_sys::fuzz_target;
 
-/// Judges keys that came from a text.
-fn judge(entries: Entries, source: &str) {
+/// Validates keys that came from a text.
+fn validate(entries: Entries, source: &str) {
     match Scenario::new(entries) {
         Ok(scenario) => {
             let written = scenario_document(&scenario, &|path| path.to_str().expect("it came from UTF-8").to_owned());
@@ -26,11 +26,11 @@ fn judge(entries: Entries, source: &str) {
 }
 
 fuzz_target!(|source: &str| {
-    judge(Entries::from_toml(source), source);
+    validate(Entries::from_toml(source), source);
     let mut entries = Entries::from_toml("body.gravity_m_s2 = 1");
     entries.set(source);
-    judge(entries, "body.gravity_m_s2 = 1");
+    validate(entries, "body.gravity_m_s2 = 1");
     if let Ok(scenario) = serde_json::from_str(source) {
-        judge(Entries::from_json(&scenario), "");
+        validate(Entries::from_json(&scenario), "");
     }
 });

@@ -1,4 +1,4 @@
-//! The chain with every segment's constraints settled: the input of all analysis.
+//! The chain with every segment's constraints resolved: the input of all analysis.
 
 use super::{Ground, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, Station};
 use crate::{
@@ -40,7 +40,7 @@ pub enum ConstraintProblem {
 pub struct ConstraintProblems(pub Vec<(ConstraintProblem, usize)>);
 
 impl ConstrainedChain {
-    /// Settles the constraints of every segment from what the chain, the hopper and the scenario's surface say.
+    /// Resolves the constraints of every segment from what the chain, the hopper and the scenario's surface say.
     ///
     /// The chain's own friction, offsets or explicit limits go first, the surface fills what it leaves open; of two speed limits the
     /// smaller counts. The rest slope is checked against the full inclination, `n_z = cos chi cos alpha`; left to friction, it is
@@ -56,14 +56,14 @@ impl ConstrainedChain {
     /// let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.6).unwrap())), rest: RestSlope::AsFrictionHolds };
     /// let chain = ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0), &surface).unwrap();
     /// // 45 degrees is steeper than atan 0.6 = 31 degrees: nothing rests there.
-    /// let refusal = chain.segments()[0].judged(Contact::Landing, Direction::Forward).unwrap_err();
+    /// let refusal = chain.segments()[0].check_contact(Contact::Landing, Direction::Forward).unwrap_err();
     /// assert!((refusal.excess_deg().unwrap() - (45.0 - 30.963_756_532_073_52)).abs() < 1e-9);
     /// ```
     pub fn new(geometry: PolygonalChain, hopper: &Hopper, surface: &Surface) -> Result<Self, ConstraintProblems> {
         let mut problems: Vec<(ConstraintProblem, usize)> = Vec::new();
         let mut segments = Vec::with_capacity(geometry.segment_count());
         for (i, (&slope, ground)) in geometry.slopes().iter().zip(geometry.grounds()).enumerate() {
-            match settle(SegmentId(i), slope, ground, hopper, surface) {
+            match resolve_constraints(SegmentId(i), slope, ground, hopper, surface) {
                 Ok(segment) => segments.push(segment),
                 Err(problem) => {
                     let same =
@@ -112,13 +112,18 @@ impl ConstrainedChain {
     ///
     /// # Errors
     /// The ground's refusal.
-    pub fn judged(&self, station: &Station, contact: Contact, direction: Direction) -> Result<super::ContactRule, GroundRefusal> {
-        self.ruling(station, contact, direction).ok_or(GroundRefusal::NoGround)?.judged(contact, direction)
+    pub fn check_contact(
+        &self,
+        station: &Station,
+        contact: Contact,
+        direction: Direction,
+    ) -> Result<super::ContactRule, GroundRefusal> {
+        self.ruling(station, contact, direction).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction)
     }
 }
 
-/// Settles one segment: what its ground, as met along a slope, allows this hopper.
-pub(crate) fn settle(
+/// Resolves the constraints of one segment: what its ground, as met along a slope, allows this hopper.
+pub(crate) fn resolve_constraints(
     id: SegmentId,
     slope: f64,
     ground: &Ground,
@@ -191,8 +196,8 @@ mod tests {
     #[test]
     fn a_slope_of_exactly_the_friction_angle_still_rests() {
         let chain = |rise| ConstrainedChain::new(one_segment(rise, Ground::BARE.form), &TEN, &friction(0.6)).unwrap();
-        assert!(chain(6.0).segments()[0].judged(Contact::Landing, Direction::Forward).is_ok(), "tan = 0.6 touches 0.6");
-        assert!(chain(6.0f64.next_up().next_up()).segments()[0].judged(Contact::Landing, Direction::Forward).is_err());
+        assert!(chain(6.0).segments()[0].check_contact(Contact::Landing, Direction::Forward).is_ok(), "tan = 0.6 touches 0.6");
+        assert!(chain(6.0f64.next_up().next_up()).segments()[0].check_contact(Contact::Landing, Direction::Forward).is_err());
     }
 
     #[test]
@@ -202,8 +207,8 @@ mod tests {
             let form = GroundForm::Surface { friction: None, cross_slope: Angle::from_degrees(chi_deg) };
             let surface = Surface { rest: RestSlope::Unlimited, ..friction(0.6) };
             let chain = ConstrainedChain::new(one_segment(0.0, form), &TEN, &surface).unwrap();
-            let judged = chain.segments()[0].judged(Contact::Takeoff, Direction::Forward);
-            assert_eq!(judged.is_ok(), allowed, "cross-slope {chi_deg} deg");
+            let checked = chain.segments()[0].check_contact(Contact::Takeoff, Direction::Forward);
+            assert_eq!(checked.is_ok(), allowed, "cross-slope {chi_deg} deg");
         }
     }
 
@@ -224,11 +229,11 @@ mod tests {
         let line = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 6.0, 50.0);
         let form = GroundForm::Explicit { forward: Some(line), reverse: None };
         let chain = ConstrainedChain::new(one_segment(0.0, form), &TEN, &friction(0.6)).unwrap();
-        let rule = |contact| chain.segments()[0].judged(contact, Direction::Forward).unwrap();
+        let rule = |contact| chain.segments()[0].check_contact(contact, Direction::Forward).unwrap();
         assert_eq!(rule(Contact::Takeoff).speed_max_m_s(), 6.0);
         assert_eq!(rule(Contact::Landing).speed_max_m_s(), 10.0);
         assert_eq!(
-            chain.segments()[0].judged(Contact::Takeoff, Direction::Reverse).unwrap_err(),
+            chain.segments()[0].check_contact(Contact::Takeoff, Direction::Reverse).unwrap_err(),
             GroundRefusal::NoGround,
             "no reverse columns, no reverse hop"
         );
@@ -254,7 +259,7 @@ mod tests {
         assert!((angles(Direction::Forward).min.degrees() - 105.0).abs() < 1e-9);
         assert!((angles(Direction::Reverse).min.degrees() - 15.0).abs() < 1e-9);
         assert!(matches!(
-            chain.segments()[0].judged(Contact::Takeoff, Direction::Forward),
+            chain.segments()[0].check_contact(Contact::Takeoff, Direction::Forward),
             Err(GroundRefusal::NothingAhead { .. })
         ));
     }
@@ -264,7 +269,7 @@ mod tests {
         let line = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 0.0, 5.0);
         let form = GroundForm::Explicit { forward: Some(line), reverse: Some(line) };
         let chain = ConstrainedChain::new(one_segment(0.0, form), &TEN, &friction(0.6)).unwrap();
-        assert_eq!(chain.segments()[0].judged(Contact::Takeoff, Direction::Forward), Err(GroundRefusal::SpeedZero));
-        assert!(chain.segments()[0].judged(Contact::Landing, Direction::Forward).is_ok(), "landing keeps its own limit");
+        assert_eq!(chain.segments()[0].check_contact(Contact::Takeoff, Direction::Forward), Err(GroundRefusal::SpeedZero));
+        assert!(chain.segments()[0].check_contact(Contact::Landing, Direction::Forward).is_ok(), "landing keeps its own limit");
     }
 }

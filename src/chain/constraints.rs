@@ -224,8 +224,8 @@ impl SegmentConstraints {
         let mut segment = Self { stated: [forward, reverse], refusal, granted: [Granted::default(); 2] };
         for direction in Direction::BOTH {
             segment.granted[direction as usize] = Granted {
-                takeoff: segment.judged(Contact::Takeoff, direction).ok(),
-                landing: segment.judged(Contact::Landing, direction).ok(),
+                takeoff: segment.check_contact(Contact::Takeoff, direction).ok(),
+                landing: segment.check_contact(Contact::Landing, direction).ok(),
             };
         }
         segment
@@ -235,7 +235,7 @@ impl SegmentConstraints {
     ///
     /// # Errors
     /// The first refusal, in the order of [`Limit::ALL`].
-    pub fn judged(&self, contact: Contact, direction: Direction) -> Result<ContactRule, GroundRefusal> {
+    pub fn check_contact(&self, contact: Contact, direction: Direction) -> Result<ContactRule, GroundRefusal> {
         let stated = self.stated[direction as usize];
         if let Err(refusal @ GroundRefusal::NoGround) = stated {
             return Err(refusal);

@@ -16,7 +16,7 @@ mod polygonal;
 mod quick_cones;
 mod station;
 
-pub(crate) use constrained::settle;
+pub(crate) use constrained::resolve_constraints;
 pub use constrained::{ConstrainedChain, ConstraintProblem, ConstraintProblems};
 pub use constraints::{ContactRule, GroundRefusal, LineConstraints, SegmentConstraints};
 pub use ground::{Ground, GroundForm};

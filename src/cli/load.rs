@@ -150,7 +150,7 @@ pub(crate) fn load_with(
     for (option, table, key, value) in own {
         source.entries.set_by_option(option, table, key, value.clone());
     }
-    settled(target, source, common.quiet, ends, &mut prepare)
+    validate_and_prepare(target, source, common.quiet, ends, &mut prepare)
 }
 
 /// A scenario of which keys are varied: the first field, loaded, and what all the others are made from.
@@ -176,9 +176,9 @@ pub(crate) fn load_to_vary(
 ) -> Result<ToVary, Failure> {
     let mut source = typed(target, common, Some(search), ends)?;
     let (entries, base) = (source.entries.clone(), source.base.clone());
-    source.entries = Trade::first_field(&entries, variations).map_err(|error| Failure::message(format!("--vary: {error}")))?;
+    source.entries = Trade::first_cell(&entries, variations).map_err(|error| Failure::message(format!("--vary: {error}")))?;
     let mut kept = None;
-    let first = settled(target, source, common.quiet, ends, &mut |scenario, terrain, base| {
+    let first = validate_and_prepare(target, source, common.quiet, ends, &mut |scenario, terrain, base| {
         kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
     })?;
     let survey = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.display())))?;
@@ -224,7 +224,13 @@ fn typed(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: 
 type Prepare<'a> = &'a mut dyn FnMut(&Scenario, &TerrainSource, &Path) -> Result<Prepared, PipelineError>;
 
 /// Validates keys and prepares their chain.
-fn settled(target: &Path, source: Source, quiet: bool, ends: EndOptions, prepare: Prepare<'_>) -> Result<Loaded, Failure> {
+fn validate_and_prepare(
+    target: &Path,
+    source: Source,
+    quiet: bool,
+    ends: EndOptions,
+    prepare: Prepare<'_>,
+) -> Result<Loaded, Failure> {
     let base = source.base;
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {

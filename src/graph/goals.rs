@@ -1,13 +1,13 @@
-//! The goals of one search: places that hops may end at but lead no farther, so that none is in the way of another.
+//! The goals of one search: they are sinks. A hop may end at one but never start from one, so goals do not block each other.
 
 use super::{
     Cost, HopGraph,
-    fronts::{Label, Takeoff, Tally},
+    batched_search::{Label, Takeoff, Tally},
     nodes::around,
 };
 use crate::chain::Station;
 
-/// Goals and the best way known to each.
+/// Goals and the best path known to each.
 #[derive(Clone, Debug)]
 pub(super) struct Goals {
     /// From left to right.
@@ -19,7 +19,7 @@ pub(super) struct Goals {
 }
 
 impl Goals {
-    /// Goals to which no way is known yet.
+    /// Goals to which no path is known yet.
     pub(super) fn new(goals: &[Station]) -> Self {
         let mut given: Vec<usize> = (0..goals.len()).collect();
         given.sort_by(|&a, &b| goals[a].point.x_m.total_cmp(&goals[b].point.x_m));
@@ -32,16 +32,16 @@ impl Goals {
         &self.stations
     }
 
-    /// The best way known to each goal, in the order in which they were given; `None` where there is none.
-    pub(super) fn ways(&self) -> Vec<Option<Label>> {
-        let mut ways = vec![None; self.labels.len()];
+    /// The best path known to each goal, in the order in which they were given; `None` where there is none.
+    pub(super) fn labels(&self) -> Vec<Option<Label>> {
+        let mut labels = vec![None; self.labels.len()];
         for (label, &given) in self.labels.iter().zip(&self.given) {
-            ways[given] = label.is_known().then_some(*label);
+            labels[given] = label.is_known().then_some(*label);
         }
-        ways
+        labels
     }
 
-    /// The most hops of the ways known; without bound where to some goal none is, or where there are no goals.
+    /// The most hops of the paths known; unbounded where some goal has no path yet, or where there are no goals.
     pub(super) const fn most_hops(&self) -> u64 {
         self.most_hops
     }

@@ -7,10 +7,11 @@
 //! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing. [`proof`] bounds the
 //! fewest hops from both sides, for every density.
 
+mod batched_search;
 mod cost;
+mod cost_to_go;
 mod edges;
 mod frontier;
-mod fronts;
 mod goals;
 mod local_reach;
 mod nodes;
@@ -18,19 +19,18 @@ pub mod proof;
 mod questions;
 mod reachable;
 mod refusals;
+mod reliability;
+mod reliability_policy;
 mod search;
-mod surest;
-mod surest_to_go;
-mod to_go;
 mod usable;
 
 pub use cost::{Cost, Effort};
+pub use cost_to_go::CostToGo;
 pub use edges::{Edge, HopGraph};
 pub use frontier::{Frontier, NearestMiss};
 pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
+pub use reliability::{ReliabilityOptions, ReliabilityUse, ReliablePath, most_reliable_paths, search_most_reliable};
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search, search_pairs};
-pub use surest::{RiskUse, SurestPath, SuretyOptions, search_surest, surest_paths};
-pub use to_go::CostToGo;
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};

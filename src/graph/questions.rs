@@ -1,11 +1,11 @@
-//! Questions on their way to answers, round by round of denser nodes.
+//! Questions and their answers, in rounds of denser nodes.
 
 use std::collections::HashMap;
 
 use super::{
     Answer, Cost, EndpointRefusal, Frontier, HopGraph, Leg, NodeSet, Outcome, PointSpacing, SearchOptions, TooManyNodes,
+    batched_search::{Aim, BatchedSearch, Label, Tally},
     endpoint_refusal,
-    fronts::{Aim, Fronts, Label, Tally},
     goals::Goals,
     local_reach::LocalReach,
 };
@@ -115,7 +115,7 @@ impl Questions {
     pub(super) fn ask(&mut self, round: &Round<'_>) -> Result<(), TooManyNodes> {
         let graph = round.graph(round.nodes);
         let table = LandingTable::new(round.test, round.nodes.stations());
-        let mut fronts = Fronts::new(&graph, &table, round.reach, Aim::HopsThenEffort);
+        let mut batched = BatchedSearch::new(&graph, &table, round.reach, Aim::HopsThenEffort);
         for of_start in &self.by_start {
             let open: Vec<usize> = of_start.iter().copied().filter(|&i| self.questions[i].answer.is_none()).collect();
             let Some(&first) = open.first() else { continue };
@@ -124,16 +124,16 @@ impl Questions {
             let mut goals = Goals::new(&goals);
             if round.nodes.stations().len() >= SHARED_FROM_NODES {
                 // From inside the pool, whose threads hear of each other sooner than of one outside.
-                rayon::scope(|_| fronts.run(&start, &mut goals));
+                rayon::scope(|_| batched.run(&start, &mut goals));
             } else {
-                fronts.run(&start, &mut goals);
+                batched.run(&start, &mut goals);
             }
-            for (&i, way) in open.iter().zip(goals.ways()) {
+            for (&i, label) in open.iter().zip(goals.labels()) {
                 let Question { ends, tally, answer } = &mut self.questions[i];
-                *tally += fronts.tally();
-                let outcome = match way {
-                    Some(way) => Some(path(&graph, &fronts, ends, &way)),
-                    None if round.is_last => Some(Outcome::NoPath(Box::new(frontier(round, &fronts, *ends)?))),
+                *tally += batched.tally();
+                let outcome = match label {
+                    Some(label) => Some(path(&graph, &batched, ends, &label)),
+                    None if round.is_last => Some(Outcome::NoPath(Box::new(frontier(round, &batched, *ends)?))),
                     None => None,
                 };
                 *answer = outcome.map(|outcome| round.answer(ends, outcome, *tally));
@@ -152,10 +152,10 @@ fn refusing_endpoints(test: &HopTest<'_>, (start, goal): &(Station, Station)) ->
         .collect()
 }
 
-/// The path by the best way to a goal.
-fn path(graph: &HopGraph<'_>, fronts: &Fronts<'_>, (start, goal): &(Station, Station), way: &Label) -> Outcome {
-    let mut stations = fronts.stations_before(start, way);
-    if way.cost > Cost::default() {
+/// The path that a goal's label ends.
+fn path(graph: &HopGraph<'_>, batched: &BatchedSearch<'_>, (start, goal): &(Station, Station), goal_label: &Label) -> Outcome {
+    let mut stations = batched.stations_before(start, goal_label);
+    if goal_label.cost > Cost::default() {
         stations.push(*goal);
     }
     let legs = stations
@@ -165,18 +165,18 @@ fn path(graph: &HopGraph<'_>, fronts: &Fronts<'_>, (start, goal): &(Station, Sta
             graph.edge(&takeoff, &landing).ok().map(|edge| Leg { takeoff, landing, edge })
         })
         .collect();
-    Outcome::Path { legs, cost: way.cost }
+    Outcome::Path { legs, cost: goal_label.cost }
 }
 
 /// What stops a search without success, over the shared nodes and the two ends.
-fn frontier(round: &Round<'_>, fronts: &Fronts<'_>, (start, goal): (Station, Station)) -> Result<Frontier, TooManyNodes> {
+fn frontier(round: &Round<'_>, batched: &BatchedSearch<'_>, (start, goal): (Station, Station)) -> Result<Frontier, TooManyNodes> {
     let nodes = NodeSet::new(round.test.chain(), start, goal, round.spacing)?;
     let mut shared = round.nodes.stations().iter().enumerate().peekable();
     let reached: Vec<bool> = nodes
         .stations()
         .iter()
         .map(|station| match shared.next_if(|(_, shared)| shared.point.x_m == station.point.x_m) {
-            Some((i, _)) => fronts.hops(NodeId(i)).is_some(),
+            Some((i, _)) => batched.hops(NodeId(i)).is_some(),
             None => station.point.x_m == start.point.x_m,
         })
         .collect();

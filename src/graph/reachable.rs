@@ -2,7 +2,7 @@
 
 use super::{
     Effort, HopGraph, NodeSet, PointSpacing, TooManyNodes,
-    fronts::{Aim, Fronts},
+    batched_search::{Aim, BatchedSearch},
     goals::Goals,
     local_reach::LocalReach,
 };
@@ -36,10 +36,10 @@ pub fn reachable(test: &HopTest<'_>, start: Station, spacing: PointSpacing) -> R
     let graph = HopGraph::new(test, &set, Effort::default(), TakeoffChoice::default(), Split::default());
     let table = LandingTable::new(test, set.stations());
     let reach = LocalReach::of(test);
-    let mut fronts = Fronts::new(&graph, &table, &reach, Aim::Hops);
-    fronts.run(&start, &mut Goals::new(&[]));
+    let mut batched = BatchedSearch::new(&graph, &table, &reach, Aim::Hops);
+    batched.run(&start, &mut Goals::new(&[]));
     let stations = set.stations();
-    let nodes: Vec<_> = stations.iter().enumerate().map(|(i, station)| (*station, fronts.hops(NodeId(i)))).collect();
+    let nodes: Vec<_> = stations.iter().enumerate().map(|(i, station)| (*station, batched.hops(NodeId(i)))).collect();
     let farthest = nodes.iter().rposition(|(_, hops)| hops.is_some()).unwrap_or(0);
     let refusing_ahead = stations.get(farthest).zip(stations.get(farthest + 1)).and_then(|(a, b)| graph.edge(a, b).err());
     Ok(Reachable { nodes, refusing_ahead })

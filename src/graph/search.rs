@@ -96,7 +96,7 @@ impl Answer {
 ///
 /// # Complexity
 /// With V nodes, W of them in reach of each ahead of the nodes of as many hops, and S vertices flown past: about O(V W), as
-/// [`Sweep`](crate::hop::Sweep) judges one take-off, in time; some 150 bytes a node in memory, no stored edges.
+/// [`Sweep`](crate::hop::Sweep) evaluates one take-off, in time; some 150 bytes a node in memory, no stored edges.
 pub fn search(
     test: &HopTest<'_>,
     start: Station,
@@ -112,7 +112,7 @@ pub fn search(
 /// Answers many questions, each a start and a goal, with one search for each start.
 ///
 /// Every answer is that of [`search`] for its pair, but for the counts of pairs tested and refused, which are those of the shared
-/// search: goals lead no farther, so that none is in the way of another.
+/// search: goals are sinks, so they do not block each other.
 ///
 /// # Errors
 /// [`TooManyNodes`].

@@ -40,7 +40,7 @@ pub fn endpoint_refusal(
     if is_usable(chain, station, contact) {
         return None;
     }
-    let refusal_in = |direction| chain.judged(station, contact, direction).err().map(|refusal| (direction, refusal));
+    let refusal_in = |direction| chain.check_contact(station, contact, direction).err().map(|refusal| (direction, refusal));
     let away = if towards == Direction::Forward { Direction::Reverse } else { Direction::Forward };
     // At the chain's end the ground ahead does not exist: the other direction then tells more.
     let told =

@@ -103,7 +103,7 @@ impl<'a> HopTest<'a> {
     #[inline]
     pub(super) fn granted(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
         let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
-        segment.granted(contact, direction).ok_or_else(|| match segment.judged(contact, direction) {
+        segment.granted(contact, direction).ok_or_else(|| match segment.check_contact(contact, direction) {
             Err(refusal) => refusal.limit(contact),
             Ok(_) => Limit::Direction,
         })

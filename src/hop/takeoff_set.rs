@@ -52,7 +52,7 @@ impl TakeoffSet {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let sight = test.line_of_sight(takeoff, landing)?;
         let limits = all_limits(test, takeoff, landing, direction, sight);
-        let verdict = judged(sight, &limits);
+        let verdict = evaluate(sight, &limits);
         Some(Self { direction, sight, limits, verdict })
     }
 
@@ -130,7 +130,7 @@ fn all_limits(
     let mut found = Vec::with_capacity(Limit::ALL.len());
     let mut add = |limit, loft, vertex, shortfall| found.push(LimitInterval { limit, loft, vertex, shortfall });
     let mut granted = |contact, station: &Station| -> Option<ContactRule> {
-        match test.chain().judged(station, contact, direction) {
+        match test.chain().check_contact(station, contact, direction) {
             Ok(rule) => Some(rule),
             Err(refusal) => {
                 add(refusal.limit(contact), SlopeInterval::EMPTY, None, Some(Shortfall::Ground { contact, refusal }));
@@ -190,7 +190,7 @@ fn machine_limits(
 }
 
 /// The intersection of all limits and what sets its ends, or the conflict that leaves nothing.
-fn judged(sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
+fn evaluate(sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
     if let Some(alone) = limits.iter().find(|limit| limit.loft.is_empty()) {
         return Verdict::Refused(Conflict::Alone(*alone));
     }

@@ -116,8 +116,9 @@ fn equal_m(leg: &Leg, along: &SegmentHops, direction: Direction) -> Vec<f64> {
 fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, loft: SlopeInterval, otherwise: Limit) -> Hop {
     let direction = if landing.point.x_m < takeoff.point.x_m { Direction::Reverse } else { Direction::Forward };
     let geometry = test.chain().geometry();
-    let limit =
-        |contact, station: &Station| test.chain().judged(station, contact, direction).map_or(0.0, |rule| rule.speed_max_m_s());
+    let limit = |contact, station: &Station| {
+        test.chain().check_contact(station, contact, direction).map_or(0.0, |rule| rule.speed_max_m_s())
+    };
     let binding = test.takeoff_set(&takeoff, &landing).as_ref().and_then(TakeoffSet::binding);
     let takeoff_speed_m_s = arc.takeoff_speed_m_s();
     let landing_speed_m_s = arc.landing_speed_m_s();

@@ -7,7 +7,7 @@ use crate::{
     world::{Direction, Limit},
 };
 
-/// One hop, with everything an operator needs to command and judge it.
+/// One hop, with everything an operator needs to command and check it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hop {
     /// Direction of travel along the chain.

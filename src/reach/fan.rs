@@ -33,16 +33,16 @@ pub struct FanRequest<'a> {
     pub spacing: PointSpacing,
 }
 
-/// What ends a slice before its length.
+/// What ends a slice before the length asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cut {
+pub enum SliceEnd {
     /// The map's border.
     Border,
     /// Posts without elevation.
     NoData,
 }
 
-impl Cut {
+impl SliceEnd {
     /// The name in results.
     pub const fn name(self) -> &'static str {
         match self {
@@ -71,7 +71,7 @@ pub struct FanRay {
     /// How long the slice is, m.
     pub length_m: f64,
     /// What ends it before the length asked for.
-    pub cut: Option<Cut>,
+    pub end: Option<SliceEnd>,
     /// The farthest node that can be reached, m from the start; 0 where none can.
     pub farthest_m: f64,
     /// The fewest hops to it.
@@ -156,7 +156,7 @@ where
         pool.install(|| (0..headings).into_par_iter().map(|number| ray(request, number, ground)).collect());
     let rays: Vec<FanRay> = rays.into_iter().collect::<Result<_, _>>()?;
     // No direction has ground: the start itself has none.
-    if rays.iter().all(|ray| ray.length_m == 0.0 && ray.cut == Some(Cut::NoData)) {
+    if rays.iter().all(|ray| ray.length_m == 0.0 && ray.end == Some(SliceEnd::NoData)) {
         return Err(TerrainError::NoData { at: request.from, distance_m: 0.0 }.into());
     }
     Ok(rays)
@@ -179,13 +179,13 @@ where
     G: Fn(Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> + Sync,
 {
     let heading_deg = 360.0 * f64::from(number) / f64::from(request.headings);
-    let (profile, cut) = cut_slice(request, heading_vector(number, request.headings))?;
+    let (profile, end) = slice_ray(request, heading_vector(number, request.headings))?;
     let Some(profile) = profile else {
         let bands = Vec::new();
         return Ok(FanRay {
             heading_deg,
             length_m: 0.0,
-            cut,
+            end,
             farthest_m: 0.0,
             hops_to_farthest: 0,
             hops_to_end: None,
@@ -203,7 +203,7 @@ where
     Ok(FanRay {
         heading_deg,
         length_m: chain.geometry().extent_m().1,
-        cut,
+        end,
         farthest_m,
         hops_to_farthest,
         hops_to_end: nodes.last().and_then(|(_, hops)| *hops),
@@ -233,7 +233,7 @@ fn bands(nodes: &[(f64, Option<u64>)]) -> Vec<HopBand> {
 }
 
 /// The slice in a direction, as far as there is ground, and what ended it; no slice where there is none at all.
-fn cut_slice(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<Profile>, Option<Cut>), TerrainError> {
+fn slice_ray(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<Profile>, Option<SliceEnd>), TerrainError> {
     let (dem, from) = (request.dem, request.from);
     let bounds = dem.bounds();
     let room = |at: f64, step: f64, low: f64, high: f64| {
@@ -246,18 +246,19 @@ fn cut_slice(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<
         }
     };
     let to_border_m = room(from.x, heading.x, bounds.min.x, bounds.max.x).min(room(from.y, heading.y, bounds.min.y, bounds.max.y));
-    let (length_m, cut) = if to_border_m < request.length_m { (to_border_m, Some(Cut::Border)) } else { (request.length_m, None) };
-    let end = |along_m: f64| {
+    let (length_m, end) =
+        if to_border_m < request.length_m { (to_border_m, Some(SliceEnd::Border)) } else { (request.length_m, None) };
+    let end_at = |along_m: f64| {
         let to = from + heading * along_m;
         MapPoint::new(to.x.clamp(bounds.min.x, bounds.max.x), to.y.clamp(bounds.min.y, bounds.max.y))
     };
     // Closer to the border than this there is nothing to analyse.
     let least_m = 1e-6 * dem.georeference().dx_m().min(dem.georeference().dy_m());
     if length_m <= least_m {
-        return Ok((None, cut));
+        return Ok((None, end));
     }
-    let gap_m = match slice(dem, from, end(length_m)) {
-        Ok(profile) => return Ok((Some(profile), cut)),
+    let gap_m = match slice(dem, from, end_at(length_m)) {
+        Ok(profile) => return Ok((Some(profile), end)),
         Err(TerrainError::NoData { distance_m, .. }) => distance_m,
         Err(other) => return Err(other),
     };
@@ -266,11 +267,11 @@ fn cut_slice(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<
     let mut whole = None;
     while gap_m - ground_m > least_m {
         let middle_m = 0.5 * (ground_m + gap_m);
-        match slice(dem, from, end(middle_m)) {
+        match slice(dem, from, end_at(middle_m)) {
             Ok(profile) => (ground_m, whole) = (middle_m, Some(profile)),
             Err(TerrainError::NoData { .. }) => gap_m = middle_m,
             Err(other) => return Err(other),
         }
     }
-    Ok((whole, Some(Cut::NoData)))
+    Ok((whole, Some(SliceEnd::NoData)))
 }

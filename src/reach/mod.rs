@@ -3,4 +3,4 @@
 mod fan;
 pub mod map;
 
-pub use fan::{Cut, FanError, FanRay, FanRequest, HopBand, fan, heading_vector};
+pub use fan::{FanError, FanRay, FanRequest, HopBand, SliceEnd, fan, heading_vector};

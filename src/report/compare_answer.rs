@@ -98,7 +98,7 @@ impl CompareRow {
     }
 
     /// The hops with what is known of their least number.
-    fn hops_words(&self) -> String {
+    fn format_hops(&self) -> String {
         let hops = self.hops.map_or("-".to_owned(), |hops| hops.to_string());
         match self.lower_bound {
             Some(Some(bound)) if self.hops != Some(bound) => format!("{hops} (at least {bound})"),
@@ -119,7 +119,7 @@ impl CompareAnswer {
         }
         text.push('\n');
         let mut lines: Vec<Vec<String>> =
-            vec![numbers, self.line("verdict", |row| row.verdict.to_owned()), self.line("hops", CompareRow::hops_words)];
+            vec![numbers, self.line("verdict", |row| row.verdict.to_owned()), self.line("hops", CompareRow::format_hops)];
         for (i, column) in COLUMNS.into_iter().enumerate() {
             if self.compared.iter().any(|row| row.numbers()[i].is_some()) {
                 lines.push(self.line(column, |row| row.numbers()[i].map_or("-".to_owned(), |number| format!("{number:.3}"))));

@@ -256,7 +256,7 @@ pub struct RiskTradeAnswer {
     pub seed: u64,
     /// The policy flown.
     pub policy: &'static str,
-    /// The path planned without regard to risk, then the surest for every number of hops that is surer than with fewer.
+    /// The path planned without regard to risk, then the most reliable for every number of hops that is more reliable than with fewer.
     pub paths: Vec<RiskTradeRow>,
 }
 

@@ -140,7 +140,7 @@ impl FanRecord {
         Self {
             heading_deg: ray.heading_deg,
             length_m: ray.length_m,
-            cut: ray.cut.map(crate::reach::Cut::name),
+            cut: ray.end.map(crate::reach::SliceEnd::name),
             farthest_m: ray.farthest_m,
             hops_to_farthest: ray.hops_to_farthest,
             hops_to_end: ray.hops_to_end,

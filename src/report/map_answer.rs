@@ -25,7 +25,7 @@ pub struct MapAnswer {
     pub start_m: [f64; 2],
     /// How far that is from the place asked for.
     pub start_offset_m: f64,
-    /// Posts with a way from the start, itself included.
+    /// Posts with a path from the start, itself included.
     pub reachable_posts: usize,
     /// Their area, each post with that of its cell.
     pub reachable_area_m2: f64,
@@ -40,7 +40,7 @@ pub struct MapAnswer {
     /// The second criterion, where one was asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effort: Option<MapEffortRecord>,
-    /// The way back, where it was asked for.
+    /// The return journeys, where they were asked for.
     #[serde(rename = "return", skip_serializing_if = "Option::is_none")]
     pub back: Option<ReturnRecord>,
     /// Single hops from every post, where they were asked for.
@@ -50,7 +50,7 @@ pub struct MapAnswer {
     pub goals: Vec<GoalRecord>,
 }
 
-/// The least effort among ways of fewest hops.
+/// The least effort among paths of fewest hops.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MapEffortRecord {
     /// Which.
@@ -64,14 +64,14 @@ pub struct MapEffortRecord {
     pub greatest: f64,
 }
 
-/// Ways back to the start.
+/// Paths back to the start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ReturnRecord {
     /// Posts from which the start can be reached, itself included.
     pub return_posts: usize,
     /// Of these, posts that can be reached too.
     pub round_trip_posts: usize,
-    /// The most hops that a way back takes.
+    /// The most hops that a path back takes.
     pub farthest_hops: i16,
 }
 
@@ -103,10 +103,10 @@ pub struct GoalRecord {
     pub offset_m: f64,
     /// Fewest hops; null: not reachable.
     pub hops: Option<i16>,
-    /// Fewest hops back; absent where that was not asked for, null: no way.
+    /// Fewest hops back; absent where that was not asked for, null: no path.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub return_hops: Option<Option<i16>>,
-    /// The hops of one way of fewest (with an effort: of least), x along it.
+    /// The hops of one path of fewest (with an effort: of least), x along it.
     pub path: Vec<HopRecord>,
     /// What they add up to; null: not reachable.
     pub totals: Option<TotalsRecord>,
@@ -197,7 +197,7 @@ impl MapAnswer {
             self.start_m[0],
             self.start_m[1],
             self.reachable_area_m2 * 1.0e-6,
-            hops_words(self.farthest_hops)
+            format_hops(self.farthest_hops)
         );
         // Writing to a String cannot fail.
         let _ = writeln!(
@@ -217,7 +217,7 @@ impl MapAnswer {
                 "return: the start can be reached again from {} posts, {} of them reachable, in at most {}",
                 back.return_posts,
                 back.round_trip_posts,
-                hops_words(back.farthest_hops)
+                format_hops(back.farthest_hops)
             );
         }
         if let Some(mobility) = &self.mobility {
@@ -234,9 +234,9 @@ impl MapAnswer {
             );
         }
         for goal in &self.goals {
-            let hops = goal.hops.map_or("not reachable".to_owned(), hops_words);
+            let hops = goal.hops.map_or("not reachable".to_owned(), format_hops);
             let back = match goal.return_hops {
-                Some(Some(hops)) => format!(", {} back", hops_words(hops)),
+                Some(Some(hops)) => format!(", {} back", format_hops(hops)),
                 Some(None) => ", no way back".to_owned(),
                 None => String::new(),
             };
@@ -257,7 +257,7 @@ impl MapAnswer {
 }
 
 /// A count of hops.
-fn hops_words(hops: i16) -> String {
+fn format_hops(hops: i16) -> String {
     format!("{hops} hop{}", if hops == 1 { "" } else { "s" })
 }
 

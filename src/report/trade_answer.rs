@@ -9,7 +9,7 @@ use std::{
 use serde::Serialize;
 
 #[cfg(feature = "plot")]
-use super::figure::{Caption, TradeAxis, TradeField, TradeFigure};
+use super::figure::{Caption, TradeAxis, TradeCell, TradeFigure};
 use crate::graph::proof::ProofVerdict;
 
 /// What `chta trade` answers.
@@ -20,7 +20,7 @@ pub struct TradeAnswer {
     /// Whether a proof was asked for.
     #[serde(skip)]
     pub proved: bool,
-    /// One for each field; the last key changes fastest.
+    /// One for each cell; the last key changes fastest.
     pub rows: Vec<TradeRow>,
 }
 
@@ -33,7 +33,7 @@ pub struct TradeVariation {
     pub values: Vec<f64>,
 }
 
-/// One field.
+/// One cell.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TradeRow {
     /// The value of each key.
@@ -49,7 +49,7 @@ pub struct TradeRow {
 }
 
 impl TradeRow {
-    /// What a field of a table or a picture says: the hops, `x` where it is proved that there is no path, `-` where none was found.
+    /// What a cell of a table or a picture says: the hops, `x` where it is proved that there is no path, `-` where none was found.
     fn sign(&self) -> String {
         match self.hops {
             Some(hops) => hops.to_string(),
@@ -64,17 +64,17 @@ impl TradeRow {
     }
 
     #[cfg(feature = "plot")]
-    fn field(&self) -> TradeField {
+    fn cell(&self) -> TradeCell {
         match self.hops {
-            Some(hops) => TradeField::Hops(hops),
-            None if self.is_closed() => TradeField::Untraversable,
-            None => TradeField::Open,
+            Some(hops) => TradeCell::Hops(hops),
+            None if self.is_closed() => TradeCell::Untraversable,
+            None => TradeCell::Open,
         }
     }
 }
 
 impl TradeAnswer {
-    /// The fields as a picture shows them, with a title and a line below it: the first key along the horizontal axis, the second along the vertical one.
+    /// The cells as a picture shows them, with a title and a line below it: the first key along the horizontal axis, the second along the vertical one.
     #[cfg(feature = "plot")]
     pub fn figure(&self, title: impl Into<String>, line: impl Into<String>) -> TradeFigure {
         let axis = |v: &TradeVariation| TradeAxis { name: with_unit(&v.key), values: v.values.clone() };
@@ -83,17 +83,17 @@ impl TradeAnswer {
             caption: Caption::new(title, format!("{}; {}", line.into(), self.summary())),
             x: vary.next().unwrap_or_default(),
             y: vary.next(),
-            fields: self.by_lines().flatten().map(TradeRow::field).collect(),
+            cells: self.by_lines().flatten().map(TradeRow::cell).collect(),
         }
     }
 
-    /// The fields line by line: for each value of the second key those of all values of the first.
+    /// The cells line by line: for each value of the second key those of all values of the first.
     fn by_lines(&self) -> impl Iterator<Item = impl Iterator<Item = &TradeRow>> {
         let down = self.vary.get(1).map_or(1, |second| second.values.len());
         (0..down).map(move |line| self.rows.iter().skip(line).step_by(down))
     }
 
-    /// How many fields have a path.
+    /// How many cells have a path.
     fn summary(&self) -> String {
         let paths = self.rows.iter().filter(|row| row.hops.is_some()).count();
         let closed = self.rows.iter().filter(|row| row.is_closed()).count();
@@ -118,9 +118,8 @@ impl TradeAnswer {
             None => vec!["hops".to_owned()],
         };
         let head = heads.iter().map(String::len).max().unwrap_or(0);
-        let row = |name: &str, fields: &[String]| {
-            fields.iter().fold(format!("{name:>head$}"), |row, field| row + &format!("{field:>wide$}"))
-        };
+        let row =
+            |name: &str, cells: &[String]| cells.iter().fold(format!("{name:>head$}"), |row, cell| row + &format!("{cell:>wide$}"));
         let _ = writeln!(text, "{}", row("", &columns));
         for (name, line) in heads.iter().zip(&lines) {
             let _ = writeln!(text, "{}", row(name, line));

@@ -2,7 +2,7 @@
 
 use crate::{
     ballistics::TakeoffChoice,
-    graph::{Effort, RiskUse},
+    graph::{Effort, ReliabilityUse},
     hop::Split,
     uncertainty::Policy,
 };
@@ -116,7 +116,7 @@ const MOST: u64 = i64::MAX as u64;
 
 const EFFORTS: [&str; 4] = [Effort::ALL[0].name(), Effort::ALL[1].name(), Effort::ALL[2].name(), Effort::ALL[3].name()];
 const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].name(), TakeoffChoice::ALL[2].name()];
-const RISK_USES: [&str; 3] = [RiskUse::ALL[0].name(), RiskUse::ALL[1].name(), RiskUse::ALL[2].name()];
+const RELIABILITY_USES: [&str; 3] = [ReliabilityUse::ALL[0].name(), ReliabilityUse::ALL[1].name(), ReliabilityUse::ALL[2].name()];
 const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
@@ -186,7 +186,7 @@ pub const CATALOGUE: [Key; 54] = [
     key(
         "search",
         "risk",
-        Kind::Word(&RISK_USES),
+        Kind::Word(&RELIABILITY_USES),
         "how the probability to fail, or the slack, weighs: ignored; fewest-hops: the surest of the paths of fewest hops; traded: more hops for surety",
     ),
     key(

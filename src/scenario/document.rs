@@ -4,7 +4,7 @@ use serde_json::{Map, Value, json};
 
 use super::{Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
-    graph::{PointSpacing, RiskUse},
+    graph::{PointSpacing, ReliabilityUse},
     quantity::{Angle, AngleInterval},
     terrain::MapPlace,
     world::{Grip, RestSlope},
@@ -145,7 +145,7 @@ fn search(scenario: &Scenario) -> Value {
         ("takeoff_angle", Some(search.takeoff.name().into())),
         ("split", Some(search.split.name().into())),
         ("risk", Some(scenario.risk.name().into())),
-        ("risk_extra_hops_max", (scenario.risk == RiskUse::Traded).then(|| scenario.risk_extra_hops_max.into())),
+        ("risk_extra_hops_max", (scenario.risk == ReliabilityUse::Traded).then(|| scenario.risk_extra_hops_max.into())),
     ])
 }
 

@@ -70,7 +70,7 @@ pub enum PipelineError {
     },
 }
 
-/// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, settles the constraints, finds start and goal on it.
+/// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, resolves the constraints, finds start and goal on it.
 ///
 /// `base` is the folder that the scenario's paths start from.
 ///
@@ -86,7 +86,7 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
         }
         Surveyed::Chain(chain) => (chain, (None, None)),
     };
-    settled(scenario, geometry, ends, projection, warnings)
+    resolved(scenario, geometry, ends, projection, warnings)
 }
 
 /// The terrain of a scenario, read and sliced once, from which chains are prepared for any hopper, grip and search.
@@ -114,22 +114,22 @@ impl Survey {
     /// # Errors
     /// [`PipelineError`].
     pub fn of(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Self, PipelineError> {
-        let cut = match source {
+        let transect = match source {
             TerrainSource::Dem { path, start, goal } => {
-                Cut::of_dem(&base.join(path), [start, goal], &scenario.via, scenario.accept_map_scale)?
+                Transect::of_dem(&base.join(path), [start, goal], &scenario.via, scenario.accept_map_scale)?
             }
             TerrainSource::Mesh { path, scale, start, goal } => {
                 let via: Vec<MapPoint> = scenario.via.iter().filter_map(MapPlace::metres).collect();
-                Cut::of_mesh(&base.join(path), *scale, [*start, *goal], &via)?
+                Transect::of_mesh(&base.join(path), *scale, [*start, *goal], &via)?
             }
             TerrainSource::Chain { path } => {
                 let file = csv::read_chain_csv_file(base.join(path))?;
                 return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
             }
         };
-        let covers = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds)?;
-        let ground = Surveyed::Slice { legs: cut.legs, covers: Box::new(covers) };
-        Ok(Self { ground, projection: cut.projection, warnings: cut.warnings })
+        let covers = Covers::read(scenario, base, transect.coordinates.as_ref(), transect.bounds)?;
+        let ground = Surveyed::Slice { legs: transect.legs, covers: Box::new(covers) };
+        Ok(Self { ground, projection: transect.projection, warnings: transect.warnings })
     }
 
     /// The chain under another scenario's hopper, grip, rest slope and ends. Its terrain keys and files are not looked at.
@@ -146,7 +146,7 @@ impl Survey {
             }
             Surveyed::Chain(chain) => (chain.clone(), (None, None)),
         };
-        settled(scenario, geometry, ends, self.projection.clone(), warnings)
+        resolved(scenario, geometry, ends, self.projection.clone(), warnings)
     }
 }
 
@@ -156,8 +156,8 @@ fn whole(chain: PolygonalChain) -> (PolygonalChain, (Option<f64>, Option<f64>)) 
     (chain, (Some(first_m), Some(last_m)))
 }
 
-/// Settles the constraints of a chain and finds start and goal on it.
-fn settled(
+/// Resolves the constraints of a chain and finds start and goal on it.
+fn resolved(
     scenario: &Scenario,
     geometry: PolygonalChain,
     ends: (Option<f64>, Option<f64>),
@@ -175,7 +175,7 @@ fn settled(
 
 /// The ground along a journey, leg by leg, and what is known of its map.
 #[derive(Clone, Debug)]
-pub struct Cut {
+pub struct Transect {
     /// One slice for each leg.
     pub legs: Vec<Profile>,
     /// What the terrain says of its map.
@@ -188,7 +188,7 @@ pub struct Cut {
     pub warnings: Vec<String>,
 }
 
-impl Cut {
+impl Transect {
     /// Slices an elevation raster from the first end to the second over the points between, reading only what the slices cross, once
     /// the scale of its map along every leg is found right or accepted.
     ///

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use super::{Entries, Place, ScenarioProblem, UncertaintyKeys};
 use crate::{
     ballistics::TakeoffChoice,
-    graph::{Effort, PointSpacing, RiskUse, SearchOptions},
+    graph::{Effort, PointSpacing, ReliabilityUse, SearchOptions},
     hop::Split,
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace},
@@ -96,9 +96,9 @@ pub struct Scenario {
     pub goal_x_m: Option<f64>,
     /// How to search.
     pub search: SearchOptions,
-    /// Whether surety weighs in the choice of a path.
-    pub risk: RiskUse,
-    /// Hops beyond the fewest that a surer path may take, where hops are traded for surety.
+    /// How path choice weighs reliability.
+    pub risk: ReliabilityUse,
+    /// Hops beyond the fewest that a more reliable path may take, where hops are traded for reliability.
     pub risk_extra_hops_max: u32,
     /// What goes otherwise than planned, where the scenario says it.
     pub uncertainty: Option<UncertaintyKeys>,

@@ -1,4 +1,4 @@
-//! One or two keys of a scenario varied over a grid, and the answer in every field of it.
+//! One or two keys of a scenario varied over a grid, and the answer in every cell of it.
 
 use std::path::Path;
 
@@ -94,11 +94,11 @@ pub enum TradeError {
         /// How many.
         found: usize,
     },
-    /// More fields than make sense.
-    #[error("the grid has {fields} fields, expected at most {}: choose fewer STEPS", Trade::MOST_FIELDS)]
-    Fields {
+    /// More cells than make sense.
+    #[error("the grid has {cells} fields, expected at most {}: choose fewer STEPS", Trade::MOST_CELLS)]
+    Cells {
         /// How many.
-        fields: usize,
+        cells: usize,
     },
     /// A key on which nothing depends.
     #[error(
@@ -113,11 +113,11 @@ pub enum TradeError {
         /// The greatest value.
         to: f64,
     },
-    /// A field whose scenario is refused.
-    #[error("with {field}: {problem}")]
-    Field {
+    /// A cell whose scenario is refused.
+    #[error("with {cell}: {problem}")]
+    Cell {
         /// The keys with their values.
-        field: String,
+        cell: String,
         /// Why it is refused.
         problem: String,
     },
@@ -234,7 +234,7 @@ pub struct Varied {
 ///
 /// # Errors
 /// [`TooManyNodes`].
-pub fn judged(
+pub fn verdict(
     test: &HopTest<'_>,
     (start, goal): (Station, Station),
     options: &SearchOptions,
@@ -260,8 +260,8 @@ pub struct Trade<'a> {
 }
 
 impl<'a> Trade<'a> {
-    /// The most fields of a grid.
-    pub const MOST_FIELDS: usize = 100_000;
+    /// The most cells of a grid.
+    pub const MOST_CELLS: usize = 100_000;
 
     /// Of the keys as typed, over terrain that was read once; `base` is the folder that the scenario's paths start from.
     ///
@@ -272,20 +272,20 @@ impl<'a> Trade<'a> {
         Ok(Self { entries, base, survey, variations })
     }
 
-    /// How many fields there are.
-    pub fn fields(&self) -> usize {
-        fields(self.variations)
+    /// How many cells there are.
+    pub fn cells(&self) -> usize {
+        cells(self.variations)
     }
 
-    /// The answer in every field, in parallel; the same for any number of threads.
+    /// The answer in every cell, in parallel; the same for any number of threads.
     ///
-    /// The last key changes fastest. `progress` is told after each field.
+    /// The last key changes fastest. `progress` is told after each cell.
     ///
     /// # Arguments
     /// `threads`: how many; 0: one for each core.
     ///
     /// # Errors
-    /// [`TradeError`]: a key on which nothing depends, or the first field whose scenario is refused.
+    /// [`TradeError`]: a key on which nothing depends, or the first cell whose scenario is refused.
     pub fn run(
         &self,
         proof_budget_cells: Option<usize>,
@@ -297,10 +297,10 @@ impl<'a> Trade<'a> {
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
         let rows: Vec<_> = pool.install(|| {
-            (0..self.fields())
+            (0..self.cells())
                 .into_par_iter()
-                .map(|field| {
-                    let row = self.row(&self.at(field), proof_budget_cells);
+                .map(|cell| {
+                    let row = self.row(&self.at(cell), proof_budget_cells);
                     progress();
                     row
                 })
@@ -310,24 +310,24 @@ impl<'a> Trade<'a> {
         Ok(TradeAnswer { vary, proved: proof_budget_cells.is_some(), rows: rows.into_iter().collect::<Result<_, _>>()? })
     }
 
-    /// The values of a field by its number.
-    fn at(&self, field: usize) -> Vec<f64> {
+    /// The values of a cell by its number.
+    fn at(&self, cell: usize) -> Vec<f64> {
         match self.variations {
-            [one] => vec![one.values[field]],
+            [one] => vec![one.values[cell]],
             [first, second] => {
                 let across = second.values.len();
-                vec![first.values[field / across], second.values[field % across]]
+                vec![first.values[cell / across], second.values[cell % across]]
             }
             _ => Vec::new(),
         }
     }
 
-    /// The scenario of a field.
+    /// The scenario of a cell.
     fn scenario(&self, values: &[f64]) -> Result<Scenario, TradeError> {
         Scenario::new(varied(self.entries, self.variations, values)).map_err(|problems| self.refused(values, &sentences(&problems)))
     }
 
-    /// The scenario of a field and its chain.
+    /// The scenario of a cell and its chain.
     fn prepared(&self, values: &[f64]) -> Result<(Scenario, Prepared), TradeError> {
         let scenario = self.scenario(values)?;
         // The one number that changes what is read.
@@ -339,7 +339,7 @@ impl<'a> Trade<'a> {
         prepared.map(|prepared| (scenario, prepared)).map_err(|error| self.refused(values, &error.to_string()))
     }
 
-    /// One field.
+    /// One cell.
     fn row(&self, values: &[f64], proof_budget_cells: Option<usize>) -> Result<TradeRow, TradeError> {
         let (scenario, Prepared { chain, start, goal, .. }) = self.prepared(values)?;
         let Some(ends) = start.zip(goal) else {
@@ -347,7 +347,7 @@ impl<'a> Trade<'a> {
         };
         let test = HopTest::new(&chain, &scenario.hopper, scenario.body.gravity_m_s2);
         let answer =
-            judged(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
+            verdict(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
         let keys = self.variations.iter().map(|v| v.key.path());
         Ok(TradeRow {
             values: keys.zip(values.iter().copied()).collect(),
@@ -357,7 +357,7 @@ impl<'a> Trade<'a> {
         })
     }
 
-    /// Whether anything depends on a key: fields next to each other along it are compared until two differ.
+    /// Whether anything depends on a key: cells next to each other along it are compared until two differ.
     fn check_effect(&self, axis: usize) -> Result<(), TradeError> {
         let own = &self.variations[axis];
         let across: &[f64] = self.variations.iter().enumerate().find(|(i, _)| *i != axis).map_or(&[0.0], |(_, v)| &v.values);
@@ -380,39 +380,39 @@ impl<'a> Trade<'a> {
         Err(TradeError::NoEffect { path: own.key.path(), from, to })
     }
 
-    /// A field's problem with the field.
+    /// A cell's problem with the cell.
     fn refused(&self, values: &[f64], problem: &str) -> TradeError {
-        let field: Vec<_> = self.variations.iter().zip(values).map(|(v, value)| format!("{}={value}", v.key.path())).collect();
-        TradeError::Field { field: field.join(" and "), problem: problem.to_owned() }
+        let cell: Vec<_> = self.variations.iter().zip(values).map(|(v, value)| format!("{}={value}", v.key.path())).collect();
+        TradeError::Cell { cell: cell.join(" and "), problem: problem.to_owned() }
     }
 }
 
 impl Trade<'_> {
-    /// The keys as typed with those of the first field in place, for the terrain to be read by.
+    /// The keys as typed with those of the first cell in place, for the terrain to be read by.
     ///
     /// # Errors
     /// As [`Trade::new`].
-    pub fn first_field(entries: &Entries, variations: &[Variation]) -> Result<Entries, TradeError> {
+    pub fn first_cell(entries: &Entries, variations: &[Variation]) -> Result<Entries, TradeError> {
         checked(variations)?;
         let first: Vec<f64> = variations.iter().filter_map(|v| v.values.first().copied()).collect();
         Ok(varied(entries, variations, &first))
     }
 }
 
-/// One key or two different ones, and not too many fields.
+/// One key or two different ones, and not too many cells.
 fn checked(variations: &[Variation]) -> Result<(), TradeError> {
     match variations {
         [first, second] if first.key == second.key => return Err(TradeError::Twice { path: first.key.path() }),
         [_] | [_, _] => {}
         _ => return Err(TradeError::Count { found: variations.len() }),
     }
-    match fields(variations) {
-        fields if fields > Trade::MOST_FIELDS => Err(TradeError::Fields { fields }),
+    match cells(variations) {
+        cells if cells > Trade::MOST_CELLS => Err(TradeError::Cells { cells }),
         _ => Ok(()),
     }
 }
 
-fn fields(variations: &[Variation]) -> usize {
+fn cells(variations: &[Variation]) -> usize {
     variations.iter().map(|v| v.values.len()).product()
 }
 

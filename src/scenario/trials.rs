@@ -2,7 +2,7 @@
 
 use super::{Entries, Place, Scenario, TerrainSource};
 use crate::{
-    graph::{RiskUse, SuretyOptions},
+    graph::{ReliabilityOptions, ReliabilityUse},
     hop::{HopDeviations, RiskModel},
     quantity::Angle,
     uncertainty::{Policy, TrialOptions, Uncertainty, UncertaintyProblem},
@@ -115,12 +115,14 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
 }
 
 /// Whether risk weighs, and how many hops it may cost.
-pub(super) fn risk(entries: &mut Entries) -> (RiskUse, u32) {
+pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, u32) {
     /// Hops beyond the fewest, where none are named: most of what hops buy is bought by the first few.
     const EXTRA_HOPS: u32 = 3;
-    let risk = super::read::named(&RiskUse::ALL, RiskUse::name, entries.text("search", "risk"));
+    let risk = super::read::named(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
-    if let (Some(_), Some(place)) = (extra.filter(|_| risk != RiskUse::Traded), entries.place("search", "risk_extra_hops_max")) {
+    if let (Some(_), Some(place)) =
+        (extra.filter(|_| risk != ReliabilityUse::Traded), entries.place("search", "risk_extra_hops_max"))
+    {
         let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which takes no hop more", risk.name());
         entries.problem(place, message, "set risk = \"traded\", or remove risk_extra_hops_max");
     }
@@ -128,23 +130,23 @@ pub(super) fn risk(entries: &mut Entries) -> (RiskUse, u32) {
 }
 
 impl Scenario {
-    /// How surety is to weigh in the choice of a path; `None` where it does not.
+    /// How path choice weighs reliability; `None` where it ignores it.
     ///
     /// The probability of a hop to fail is estimated from `[uncertainty]`, or, where the scenario has none, the slack of its angle counts.
-    pub fn surety(&self) -> Option<SuretyOptions> {
+    pub fn reliability(&self) -> Option<ReliabilityOptions> {
         let extra_hops_max = match self.risk {
-            RiskUse::Ignored => return None,
-            RiskUse::FewestHops => 0,
-            RiskUse::Traded => self.risk_extra_hops_max,
+            ReliabilityUse::Ignored => return None,
+            ReliabilityUse::FewestHops => 0,
+            ReliabilityUse::Traded => self.risk_extra_hops_max,
         };
-        Some(self.surety_with(extra_hops_max))
+        Some(self.reliability_with(extra_hops_max))
     }
 
     /// The same with so many hops more than the fewest, whatever the scenario says of it.
-    pub fn surety_with(&self, extra_hops_max: u32) -> SuretyOptions {
+    pub fn reliability_with(&self, extra_hops_max: u32) -> ReliabilityOptions {
         let model = self.uncertainty.as_ref().map_or(RiskModel::Slack, |keys| RiskModel::Deviations(self.deviations(&keys.errors)));
         let goal_tolerance_m = self.uncertainty.as_ref().map(|keys| keys.goal_tolerance_m);
-        SuretyOptions { model, extra_hops_max, goal_tolerance_m }
+        ReliabilityOptions { model, extra_hops_max, goal_tolerance_m }
     }
 
     /// The deviations that one hop feels.

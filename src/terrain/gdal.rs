@@ -1,6 +1,6 @@
 //! Whatever raster GDAL reads, through its C library (feature `gdal`).
 //!
-//! Place, units and projection go through the same judgement as a GeoTIFF's: GDAL writes them into the tags of an empty one.
+//! Place, units and projection go through the same checks as a GeoTIFF's: GDAL writes them into the tags of an empty one.
 
 use std::io::Write;
 use std::path::Path;

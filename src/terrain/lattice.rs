@@ -22,8 +22,8 @@ impl PostLattice {
         let MapBounds { min, max } = bounds;
         let near = |edge: f64, step: f64| (edge + step) - edge > 0.5 * step && (edge - step) - edge < -0.5 * step;
         let (dx_m, dy_m) = (georeference.dx_m(), georeference.dy_m());
-        let told_apart = near(min.x, dx_m) && near(max.x, dx_m) && near(min.y, dy_m) && near(max.y, dy_m);
-        if told_apart && [min.x, min.y, max.x, max.y].iter().all(|value| value.is_finite()) {
+        let distinct = near(min.x, dx_m) && near(max.x, dx_m) && near(min.y, dy_m) && near(max.y, dy_m);
+        if distinct && [min.x, min.y, max.x, max.y].iter().all(|value| value.is_finite()) {
             return Ok(Self { rows, cols, georeference });
         }
         Err(TerrainError::InvalidDem(format!(

@@ -1,16 +1,16 @@
-//! How surely a planned path is flown: worst cases and frequencies under errors of command, ground and position.
+//! How reliably a planned path is flown: worst cases and frequencies under errors of command, ground and position.
 //!
 //! A path is a promise made without slip and scatter. Here it is flown many times over ground that is not quite as mapped, with commands
 //! that are not quite as given: each [`HopRecord`] is one arc of a parabola to its first contact with the ground, found exactly, and
-//! judged where it really takes off and lands.
+//! checked where it really takes off and lands.
 //!
 //! ```text
-//!   trial n -> draws (seed, n) -> [ command + errors -> take-off judged -> first contact -> landing judged -> drift ] -> next hop
+//!   trial n -> draws (seed, n) -> [ command + errors -> take-off checked -> first contact -> landing checked -> drift ] -> next hop
 //! ```
 //!
 //! Along a chain flights stay in its vertical plane; over a DEM ([`MapGround`]) they go wherever their heading takes them.
 //!
-//! # What is judged, and what is not
+//! # What is checked, and what is not
 //! The real direction of a take-off against the cone of the ground it leaves; direction and speed of a landing, and the rest slope,
 //! where it really happens; the rest slope and keep-out zones where the robot comes to rest. A cone is that of friction about the real
 //! facet's normal, or the angles stated for the segment. The first contact is with the ground itself: the clearance is a margin of the

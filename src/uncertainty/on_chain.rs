@@ -8,7 +8,7 @@ use super::{
 };
 use crate::{
     ballistics::Arc,
-    chain::{Ground as SegmentGround, GroundForm, GroundRefusal, SegmentConstraints, Site, Station, settle},
+    chain::{Ground as SegmentGround, GroundForm, GroundRefusal, SegmentConstraints, Site, Station, resolve_constraints},
     graph::{CostToGo, Edge},
     hop::HopTest,
     quantity::{ChainPoint, SegmentId, VertexId},
@@ -141,7 +141,7 @@ impl<'a> ChainGround<'a> {
     }
 
     /// A segment as this trial finds it.
-    fn settled(&self, segment: usize) -> Option<SegmentConstraints> {
+    fn resolved(&self, segment: usize) -> Option<SegmentConstraints> {
         let chain = self.test.chain();
         if self.is_nominal() {
             return chain.segments().get(segment).copied();
@@ -157,7 +157,7 @@ impl<'a> ChainGround<'a> {
         }
         let (a, b) = (self.vertices()[segment], self.vertices()[segment + 1]);
         let slope = (b.z_m - a.z_m) / (b.x_m - a.x_m);
-        settle(SegmentId(segment), slope, &ground, self.test.hopper(), self.surface).ok()
+        resolve_constraints(SegmentId(segment), slope, &ground, self.test.hopper(), self.surface).ok()
     }
 
     /// What refuses any contact on a segment.
@@ -165,11 +165,11 @@ impl<'a> ChainGround<'a> {
         if self.is_nominal() {
             return self.test.chain().segments().get(segment)?.refusal();
         }
-        self.settled(segment)?.refusal()
+        self.resolved(segment)?.refusal()
     }
 
     /// What the ground says of a contact on a segment.
-    fn judged(
+    fn check_contact(
         &self,
         segment: Option<SegmentId>,
         contact: Contact,
@@ -181,7 +181,7 @@ impl<'a> ChainGround<'a> {
         {
             return Ok(*rule);
         }
-        self.settled(segment).ok_or(GroundRefusal::NoGround)?.judged(contact, direction)
+        self.resolved(segment).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction)
     }
 
     /// The point of a segment's ground at an x, counted from the nearer vertex, and its site.
@@ -275,7 +275,7 @@ impl Ground for ChainGround<'_> {
     fn holds_takeoff(&self, from: &ChainSpot, launch: &Launch) -> bool {
         let direction = towards(launch.heading);
         let segment = from.station.ruling_segment(Contact::Takeoff, direction, self.test.chain().segments().len());
-        holds(self.judged(segment, Contact::Takeoff, direction), launch)
+        holds(self.check_contact(segment, Contact::Takeoff, direction), launch)
     }
 
     fn fly(&self, from: &ChainSpot, launch: &Launch, aim: &ChainSpot) -> Flight<ChainSpot, SegmentId> {
@@ -335,7 +335,7 @@ impl Ground for ChainGround<'_> {
     }
 
     fn landing_failure(&self, _end: &ChainSpot, footing: &SegmentId, arrival: &Arrival) -> Option<TrialOutcome> {
-        let rule = self.judged(Some(*footing), Contact::Landing, towards(arrival.heading));
+        let rule = self.check_contact(Some(*footing), Contact::Landing, towards(arrival.heading));
         failure(rule, self.test.hopper().landing_speed_max_m_s, arrival)
     }
 

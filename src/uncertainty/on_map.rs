@@ -11,7 +11,7 @@ use super::{
 };
 use crate::{
     ballistics::{self, LineOfSight, limits},
-    chain::{ContactRule, Ground as SegmentGround, GroundForm, LineConstraints, settle},
+    chain::{ContactRule, Ground as SegmentGround, GroundForm, LineConstraints, resolve_constraints},
     graph::{Cost, CostToGo},
     hop::HopTest,
     quantity::{ChainPoint, MapPoint, NodeId, SegmentId},
@@ -146,8 +146,8 @@ impl<'a> DemGround<'a> {
         let friction = self.nominal_friction(beside);
         let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
         let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out: self.is_kept_out(beside) };
-        let settled = settle(SegmentId(0), gradient.dot(&heading), &ground, self.test.hopper(), self.surface).ok()?;
-        settled.granted(contact, Direction::Forward).copied()
+        let resolved = resolve_constraints(SegmentId(0), gradient.dot(&heading), &ground, self.test.hopper(), self.surface).ok()?;
+        resolved.granted(contact, Direction::Forward).copied()
     }
 
     /// The best hop to a node, and what the journey then costs, where it could be better than the best known.
@@ -178,15 +178,15 @@ impl<'a> DemGround<'a> {
         Some((Command::new(launch, target), cost))
     }
 
-    /// Where surety weighs: the surest way on from the node nearest to a place that is feasible from the place itself.
-    fn surest_way_on(&self, to_go: &CostToGo, from: &MapSpot) -> Option<Command<MapSpot>> {
-        if !to_go.weighs_surety() {
+    /// Where reliability counts: the most reliable successor of the node nearest to a place that is feasible from the place itself.
+    fn reliable_successor(&self, to_go: &CostToGo, from: &MapSpot) -> Option<Command<MapSpot>> {
+        if !to_go.weighs_reliability() {
             return None;
         }
         let away2 = |node: &MapSpot| (node.at - from.at).norm_squared();
         let nearest = (0..self.nodes.len()).min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
-        let mut ways_on = to_go.surest_ways_on(NodeId(nearest)).iter();
-        ways_on.find_map(|node| self.tried(to_go, from, node.index(), None)).map(|(command, _)| command)
+        let mut successors = to_go.reliable_successors(NodeId(nearest)).iter();
+        successors.find_map(|node| self.tried(to_go, from, node.index(), None)).map(|(command, _)| command)
     }
 
     /// The arc to fly to a place, by every limit along the slice to it, the ground in between last; `None` where there is none.
@@ -384,8 +384,8 @@ impl Ground for DemGround<'_> {
 
     fn replanned(&self, believed: &MapSpot) -> Option<Command<MapSpot>> {
         let to_go = self.to_go?;
-        if let Some(surest) = self.surest_way_on(to_go, believed) {
-            return Some(surest);
+        if let Some(reliable) = self.reliable_successor(to_go, believed) {
+            return Some(reliable);
         }
         let mut best: Option<(Command<MapSpot>, Cost)> = None;
         for node in to_go.in_order() {

@@ -48,7 +48,7 @@ pub struct MapGround<'a> {
     pub keep_out: Option<&'a KeepOut>,
 }
 
-/// How many trials, and how they are flown and judged.
+/// How many trials, and how they are flown and checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialOptions {
     /// How many trials at most; at least 1.

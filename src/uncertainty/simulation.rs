@@ -100,7 +100,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// Flies one hop from a place of the nominal ground to its first contact, which may be the take-off itself for a launch into the
-    /// ground. Nothing is judged. `None` where there is no ground at that place.
+    /// ground. Nothing is checked. `None` where there is no ground at that place.
     ///
     /// `from`: x and y as in [`HopRecord`](super::HopRecord).
     pub fn fly(&self, from: Point2<f64>, launch: Launch) -> Option<FlightEnd> {

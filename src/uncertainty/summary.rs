@@ -22,7 +22,7 @@ pub struct Summary {
     pub hops_flown: u64,
     /// The landings by number of hop, from 1; as many as any trial had.
     pub landings: Vec<LandingSummary>,
-    /// How the rate settled: after 10, 20, 50, 100, 200 and 500 trials, after each 1 000, and at the end.
+    /// How the rate converged: after 10, 20, 50, 100, 200 and 500 trials, after each 1 000, and at the end.
     pub convergence: Vec<RatePoint>,
     /// The first trials with all their hops, as many as asked for.
     pub trajectories: Vec<Trajectory>,

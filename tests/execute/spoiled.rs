@@ -127,7 +127,7 @@ fn spoil_speed(case: &Case<'_>, tally: &mut Tally) {
         assert!(misses(&execution), "{factor} of the speed hits: {:?}\n{:?}\n{:?}", execution, case.hop, case.world);
         tally.speeds += 1;
         // A take-off speed with nothing to spare is named besides.
-        let rule = case.chain.judged(&case.hop.takeoff, Contact::Takeoff, case.hop.direction).unwrap();
+        let rule = case.chain.check_contact(&case.hop.takeoff, Contact::Takeoff, case.hop.direction).unwrap();
         if case.hop.takeoff_speed_m_s * factor > rule.speed_max_m_s() * 1.000_001 {
             assert!(names(&execution, Limit::TakeoffSpeed), "{:?}", execution.violations);
         }

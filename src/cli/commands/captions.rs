@@ -4,7 +4,7 @@ use std::fmt;
 
 use chta::{report::figure, scenario::Scenario, world::Hopper};
 
-use super::plan::ground_words;
+use super::plan::format_ground;
 
 /// A greatest speed of the hopper's, in words.
 pub(super) struct SpeedLimit {
@@ -39,7 +39,7 @@ impl fmt::Display for SpeedLimit {
 pub(super) fn conditions(scenario: &Scenario) -> String {
     let (hopper, body) = (&scenario.hopper, &scenario.body);
     let bounds_m_s = (hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s);
-    figure::conditions(body.name.as_deref().unwrap_or_default(), body.gravity_m_s2, hopper, bounds_m_s, &ground_words(scenario))
+    figure::conditions(body.name.as_deref().unwrap_or_default(), body.gravity_m_s2, hopper, bounds_m_s, &format_ground(scenario))
 }
 
 /// What a picture shows, and of which scenario where that has a name.

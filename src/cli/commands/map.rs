@@ -8,8 +8,8 @@ use chta::{
     path::HopPath,
     quantity::MapPoint,
     reach::map::{
-        FrontProgress, GroundOf, HopMap, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search,
-        Way, joined, mobility, search, way_hops,
+        GroundOf, HopMap, Journey, LayerProgress, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops,
+        Search, joined, mobility, path_hops, search,
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, TotalsRecord,
@@ -58,7 +58,7 @@ struct Maps {
     back: Option<HopMap>,
     mobility: Option<Mobility>,
     /// Of each goal, where it is reachable.
-    ways: Vec<Option<Vec<MapHop>>>,
+    goal_hops: Vec<Option<Vec<MapHop>>>,
     paths: Vec<Option<HopPath>>,
     /// Of start and goals.
     warnings: Vec<String>,
@@ -67,7 +67,7 @@ struct Maps {
 /// Makes the map.
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let (ground, start, goals) = prepared(args)?;
-    named_well(args)?;
+    check_extensions(args)?;
     let begun = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;
     let maps = mapped(args, &ground, start, &goals)?;
     let effort = args.effort.is_some().then_some(ground.scenario.search.effort);
@@ -137,7 +137,7 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
             return Err(failed(&std::io::Error::other(message)));
         }
     }
-    told_apart(&dem, *stride, &named(start, &goals).map(|(_, spot)| spot).collect::<Vec<_>>())
+    check_distinct_nodes(&dem, *stride, &named(start, &goals).map(|(_, spot)| spot).collect::<Vec<_>>())
         .map_err(|message| failed(&std::io::Error::other(message)))?;
     let mut warnings = Vec::new();
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
@@ -151,8 +151,8 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     Ok((Ground { dem, projection, scenario, covers, lattice, document, inputs, warnings }, start, goals))
 }
 
-/// Whether places that lie at different posts are different nodes: a stride that lays them together would answer for one place.
-fn told_apart(dem: &Dem, stride: u32, spots: &[Spot]) -> Result<(), String> {
+/// Checks that positions at different posts map to different nodes: with a stride that merges them one answer would stand for both.
+fn check_distinct_nodes(dem: &Dem, stride: u32, spots: &[Spot]) -> Result<(), String> {
     let every_post = NodeLattice::new(dem, 1);
     for (i, spot) in spots.iter().enumerate() {
         let post = |spot: &Spot| every_post.nearest(dem.georeference(), spot.asked);
@@ -214,45 +214,44 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
     let began = std::time::Instant::now();
     let maps = pool.install(|| -> Result<Maps, MapError> {
         let hops = PostHops::new(request, ground_of)?;
-        let front = |what: &str, found: FrontProgress| progress.say(front_words(what, found, began.elapsed().as_secs_f64()));
+        let tell = |what: &str, found: LayerProgress| progress.say(format_layer(what, found, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
-        let out = search(&hops, start.post, Search { way: Way::Out, effort }, &mut |found| front("there", found))?;
-        let back = args
-            .back
-            .then(|| search(&hops, start.post, Search { way: Way::Back, effort: None }, &mut |found| front("back", found)));
+        let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &mut |found| tell("there", found))?;
+        let back = args.back.then(|| {
+            search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &mut |found| tell("back", found))
+        });
         let begun = std::time::Instant::now();
         let mobile = args
             .mobility
             .as_ref()
-            .map(|_| mobility(&hops, &|done, of| progress.say(share_words("mobility", done, of, begun.elapsed().as_secs_f64()))));
-        let way = |goal: &Spot| {
-            let nodes = out.way(&hops, goal.post);
-            nodes.map(|nodes| way_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
+            .map(|_| mobility(&hops, &|done, of| progress.say(format_share("mobility", done, of, begun.elapsed().as_secs_f64()))));
+        let hops_to = |goal: &Spot| {
+            let nodes = out.path(&hops, goal.post);
+            nodes.map(|nodes| path_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
         };
-        let ways = goals.iter().map(way).collect::<Result<Vec<_>, _>>()?;
-        let paths = ways.iter().map(|way| way.as_ref().map(|way| joined(&hops, way))).collect();
+        let goal_hops = goals.iter().map(hops_to).collect::<Result<Vec<_>, _>>()?;
+        let paths = goal_hops.iter().map(|found| found.as_ref().map(|found| joined(&hops, found))).collect();
         let warnings = refusals(&hops, start, goals);
-        Ok(Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, ways, paths, warnings })
+        Ok(Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, goal_hops, paths, warnings })
     });
     maps.map_err(|error| failed(&error))
 }
 
 /// What is being done, how far it is, and how long it may still take.
-fn front_words(what: &str, found: FrontProgress, elapsed_s: f64) -> String {
+fn format_layer(what: &str, found: LayerProgress, elapsed_s: f64) -> String {
     let all = found.reached + found.open;
-    format!("hops {what}, front {}: {}", found.front, share_words("posts", found.reached, all, elapsed_s))
+    format!("hops {what}, front {}: {}", found.layer, format_share("posts", found.reached, all, elapsed_s))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a share for reading")]
-fn share_words(what: &str, done: usize, all: usize, elapsed_s: f64) -> String {
+fn format_share(what: &str, done: usize, all: usize, elapsed_s: f64) -> String {
     let share = done as f64 / all.max(1) as f64;
     let left_s = elapsed_s * (1.0 - share) / share.max(1.0e-3);
     format!("{what} {:.0} % done, at most {left_s:.0} s left", 100.0 * share)
 }
 
-/// Whether files are named for what they will hold: a raster that no program opens by its name, or an answer in a file called `-`, is
-/// no one's wish.
-fn named_well(args: &MapArgs) -> Result<(), Failure> {
+/// Checks that each output has an extension that its readers recognise.
+fn check_extensions(args: &MapArgs) -> Result<(), Failure> {
     let MapArgs { output, effort_output, return_output, mobility, paths, geojson, .. } = args;
     let rasters =
         [("-o", output), ("--effort-output", effort_output), ("--return-output", return_output), ("--mobility", mobility)];
@@ -339,7 +338,7 @@ fn write_files<'a>(
         files.extend(prj_path.as_deref().zip(output::prj(projection.as_ref().ok())));
     }
     if let Some(file) = &args.profiles {
-        files.push((file, map_profiles::sheet(&name_of(args), scenario, &maps.ways, file)?));
+        files.push((file, map_profiles::sheet(&name_of(args), scenario, &maps.goal_hops, file)?));
     }
     if let Some(file) = &args.plot {
         files.push((file, picture(args, ground, maps, answer, ends, file)?));

@@ -13,22 +13,22 @@ use super::captions::conditions;
 use crate::cli::{Failure, output};
 
 /// The sheet of all hops to all goals, encoded as the file's name asks.
-pub(super) fn sheet(name: &str, scenario: &Scenario, ways: &[Option<Vec<MapHop>>], file: &Path) -> Result<Vec<u8>, Failure> {
-    let mut hops = Vec::new();
-    for (goal, way) in ways.iter().enumerate() {
-        let way = way.as_deref().unwrap_or_default();
-        for (number, hop) in way.iter().enumerate() {
-            let name = format!("goal {}, hop {} of {}", goal + 1, number + 1, way.len());
-            hops.extend(profile(scenario, hop, name));
+pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<MapHop>>], file: &Path) -> Result<Vec<u8>, Failure> {
+    let mut profiles = Vec::new();
+    for (goal, hops) in goal_hops.iter().enumerate() {
+        let hops = hops.as_deref().unwrap_or_default();
+        for (number, hop) in hops.iter().enumerate() {
+            let name = format!("goal {}, hop {} of {}", goal + 1, number + 1, hops.len());
+            profiles.extend(profile(scenario, hop, name));
         }
     }
-    let told = match hops.len() {
+    let told = match profiles.len() {
         0 => "no goal is reached by a hop".to_owned(),
         1 => "1 hop".to_owned(),
         many => format!("{many} hops, row by row"),
     };
     let caption = Caption { title: format!("Hop by hop: {name}"), lines: vec![conditions(scenario), told] };
-    let figure = HopProfilesFigure { caption, clearance_m: scenario.hopper.clearance_m, hops };
+    let figure = HopProfilesFigure { caption, clearance_m: scenario.hopper.clearance_m, hops: profiles };
     output::encoded(draw_hop_profiles(&figure), file)
 }
 

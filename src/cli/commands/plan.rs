@@ -9,9 +9,9 @@ use chta::{
     path::{HopPath, execute, generate},
     quantity::AngleInterval,
     report::{
-        CheckAnswer, Document, HopRecord, MapKnowledge, SurestRecord, TotalsRecord, check_text,
+        CheckAnswer, Document, HopRecord, MapKnowledge, ReliablePathRecord, TotalsRecord, check_text,
         figure::{FigureInput, FigureTitle, draw},
-        path_geojson, path_text, surest_text, write_path_csv,
+        path_geojson, path_text, reliable_paths_text, write_path_csv,
     },
     scenario::{Extremes, Scenario, constant_gravity_doubts},
     world::{Grip, RestSlope},
@@ -36,9 +36,9 @@ pub(super) struct PlanAnswer {
     verified: Option<bool>,
     path: Vec<HopRecord>,
     totals: Option<TotalsRecord>,
-    /// What hops buy in surety, where risk was asked for.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    surest: Vec<SurestRecord>,
+    /// The Pareto front of hops against success probability, where the scenario weighs risk.
+    #[serde(rename = "surest", skip_serializing_if = "Vec::is_empty")]
+    reliable_paths: Vec<ReliablePathRecord>,
 }
 
 /// A plan with all that is drawn and written of it.
@@ -82,7 +82,7 @@ impl Planned {
             verified: (verify && path.is_some()).then_some(true),
             path: path.as_ref().map(|path| HopRecord::rows(path, loaded.prepared.projection.as_ref())).unwrap_or_default(),
             totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
-            surest: SurestRecord::rows(&searched.surest),
+            reliable_paths: ReliablePathRecord::rows(&searched.reliable_paths),
         };
         Ok(Self { found: searched.found, path, answer, warnings })
     }
@@ -104,7 +104,7 @@ impl Planned {
             text.push('\n');
             text.push_str(&path_text(&self.answer.path, totals));
         }
-        text.push_str(&surest_text(&self.answer.surest));
+        text.push_str(&reliable_paths_text(&self.answer.reliable_paths));
         if self.answer.verified == Some(true) {
             text.push_str("verified: every hop was flown again by direct simulation and breaks no limit\n");
         }
@@ -153,7 +153,7 @@ impl Planned {
             title: FigureTitle {
                 name: scenario.title.clone().unwrap_or_default(),
                 body: scenario.body.name.clone().unwrap_or_default(),
-                ground: ground_words(scenario),
+                ground: format_ground(scenario),
             },
         })
         .map_err(|e| Failure::message(e.to_string()))
@@ -161,7 +161,7 @@ impl Planned {
 }
 
 /// The ground's grip, what it may be rested on and what covers it, in a few words.
-pub(super) fn ground_words(scenario: &Scenario) -> String {
+pub(super) fn format_ground(scenario: &Scenario) -> String {
     let surface = &scenario.surface;
     let mut parts = Vec::new();
     match surface.grip {

@@ -3,9 +3,9 @@
 use chta::{
     chain::Station,
     graph::{
-        self, PointSpacing, SurestPath,
+        self, PointSpacing, ReliablePath,
         proof::{Bounds, BoundsOptions, ProofSummary, bounds},
-        search_surest,
+        search_most_reliable,
     },
     hop::HopTest,
     report::CheckAnswer,
@@ -18,8 +18,8 @@ use crate::cli::{Failure, args::ProveArgs, progress::Progress};
 #[derive(Debug)]
 pub(super) struct Searched {
     pub(super) found: graph::Answer,
-    /// What hops buy in surety, where the scenario asks for it.
-    pub(super) surest: Vec<SurestPath>,
+    /// The Pareto front of hops against success probability, where the scenario weighs risk.
+    pub(super) reliable_paths: Vec<ReliablePath>,
     proof: Option<(Bounds, usize)>,
 }
 
@@ -34,10 +34,10 @@ impl Searched {
     ) -> Result<Self, Failure> {
         match prove.filter(|prove| prove.prove) {
             None => {
-                let (found, surest) = search(test, ends, scenario, quiet)?;
-                Ok(Self { found, surest, proof: None })
+                let (found, reliable_paths) = search(test, ends, scenario, quiet)?;
+                Ok(Self { found, reliable_paths, proof: None })
             }
-            Some(_) if scenario.surety().is_some() => Err(Failure::message(format!(
+            Some(_) if scenario.reliability().is_some() => Err(Failure::message(format!(
                 "--prove bounds the fewest hops, but search.risk is \"{}\", which asks for the surest path: leave --prove away, or add \
                  --set search.risk=ignored",
                 scenario.risk.name()
@@ -46,7 +46,7 @@ impl Searched {
                 let search = scenario.search.clone();
                 let options = BoundsOptions { budget_cells: budget, search, explain: true, ..BoundsOptions::default() };
                 let bounds = proved(test, ends, &options, quiet)?;
-                Ok(Self { found: bounds.answer.clone(), surest: Vec::new(), proof: Some((bounds, budget)) })
+                Ok(Self { found: bounds.answer.clone(), reliable_paths: Vec::new(), proof: Some((bounds, budget)) })
             }
         }
     }
@@ -63,7 +63,7 @@ impl Searched {
             return pairs.iter().map(|&ends| Self::new(test, ends, scenario, Some(prove), quiet)).collect();
         }
         let found = search_pairs(test, pairs, scenario, quiet)?;
-        Ok(found.into_iter().map(|found| Self { found, surest: Vec::new(), proof: None }).collect())
+        Ok(found.into_iter().map(|found| Self { found, reliable_paths: Vec::new(), proof: None }).collect())
     }
 
     /// The bounds, where a proof was asked for.
@@ -93,29 +93,29 @@ pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
         .map_err(|error| Failure::message(format!("the threads cannot be started ({error}): ask for fewer with --threads")))
 }
 
-/// Searches for one pair, for the surest path where the scenario asks for it, and shows what is being tried on a terminal.
+/// Searches for one pair, for the most reliable path where the scenario asks for it, and shows what is being tried on a terminal.
 pub(super) fn search(
     test: &HopTest<'_>,
     (start, goal): (Station, Station),
     scenario: &Scenario,
     quiet: bool,
-) -> Result<(graph::Answer, Vec<SurestPath>), Failure> {
+) -> Result<(graph::Answer, Vec<ReliablePath>), Failure> {
     let options = &scenario.search;
-    let found = match scenario.surety() {
+    let found = match scenario.reliability() {
         None => graph::search(test, start, goal, options, &mut told(quiet)).map(|answer| (answer, Vec::new())),
-        Some(surety) => search_surest(test, start, goal, options, &surety, &mut told(quiet)),
+        Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &mut told(quiet)),
     };
     found.map_err(|error| Failure::message(error.to_string()))
 }
 
-/// Searches for many pairs, once from each start; pair by pair where the surest paths are asked for.
+/// Searches for many pairs, once from each start; pair by pair where the most reliable paths are asked for.
 fn search_pairs(
     test: &HopTest<'_>,
     pairs: &[(Station, Station)],
     scenario: &Scenario,
     quiet: bool,
 ) -> Result<Vec<graph::Answer>, Failure> {
-    if scenario.surety().is_some() {
+    if scenario.reliability().is_some() {
         return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
     }
     graph::search_pairs(test, pairs, &scenario.search, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))

@@ -6,7 +6,7 @@ use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{Covers, Cut, Scenario, friction, sha256_of},
+    scenario::{Covers, Scenario, Transect, friction, sha256_of},
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
@@ -25,37 +25,37 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     }
     let failed = |error: &dyn std::error::Error| Failure::about(terrain, &error.to_string());
     let accepted = args.accept_map_scale || given.as_ref().is_some_and(|(scenario, _)| scenario.accept_map_scale);
-    let cut = cut(args, accepted)?;
+    let transect = read_transect(args, accepted)?;
     claims::reads(terrain);
-    for warning in &cut.warnings {
+    for warning in &transect.warnings {
         output::warn(*quiet, warning);
     }
     let name = name_of(terrain);
     let mut comments = vec![format!("chta {} slice of {name}, sha256 {}", env!("CARGO_PKG_VERSION"), sha256_of(terrain)?)];
-    comments.extend(ends(&cut.legs));
+    comments.extend(ends(&transect.legs));
     comments.extend(via.iter().map(|point| format!("via ({}, {}) m", point.x, point.y)));
     comments.extend(via_lonlat.iter().map(|place| format!("via longitude {}, latitude {} deg", place.lon_deg, place.lat_deg)));
-    comments.extend(map_comments(&cut));
-    let line = geojson.as_deref().map(|file| (file, slice_geojson(&cut.legs, &name, cut.projection.as_ref())));
+    comments.extend(map_comments(&transect));
+    let line = geojson.as_deref().map(|file| (file, slice_geojson(&transect.legs, &name, transect.projection.as_ref())));
     let chain = match &given {
         Some((scenario, base)) => {
             for file in Covers::files(scenario).map(|file| base.join(file)).collect::<Vec<PathBuf>>() {
                 comments.push(format!("under {}, sha256 {}", name_of(&file), sha256_of(&file)?));
             }
-            let covers = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds).map_err(|e| failed(&e))?;
-            let (chain, idle) = covers.chain_with_doubts(cut.legs).map_err(|e| failed(&e))?;
+            let covers = Covers::read(scenario, base, transect.coordinates.as_ref(), transect.bounds).map_err(|e| failed(&e))?;
+            let (chain, idle) = covers.chain_with_doubts(transect.legs).map_err(|e| failed(&e))?;
             for warning in &idle {
                 output::warn(*quiet, warning);
             }
             comments.extend(idle.iter().map(|warning| format!("warning: {warning}")));
             chain
         }
-        None => PolygonalChain::from_legs(&cut.legs, None).map_err(|e| failed(&e))?,
+        None => PolygonalChain::from_legs(&transect.legs, None).map_err(|e| failed(&e))?,
     };
     let mut csv = Vec::new();
     write_chain_csv(&chain, &mut csv, &comments).map_err(|e| failed(&e))?;
     if let Some((file, line)) = line {
-        output::to_geojson_file(file, &line, cut.projection.as_ref())?;
+        output::to_geojson_file(file, &line, transect.projection.as_ref())?;
     }
     output::to_file_or_stdout(file.as_deref(), &csv)?;
     Ok(Answer::Yes)
@@ -72,14 +72,14 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The ground along the slice, and what its user should know.
-fn cut(args: &SliceArgs, accept_map_scale: bool) -> Result<Cut, Failure> {
+fn read_transect(args: &SliceArgs, accept_map_scale: bool) -> Result<Transect, Failure> {
     let SliceArgs { terrain, via, via_lonlat, mesh_scale, .. } = args;
     let from = place("from", args.from, args.from_lonlat)?;
     let to = place("to", args.to, args.to_lonlat)?;
     let failed = |error: TerrainError| Failure::about(terrain, &error.to_string());
     let of_mesh = || match (&from, &to) {
         (MapPlace::Metres(from), MapPlace::Metres(to)) if via_lonlat.is_empty() => {
-            Cut::of_mesh(terrain, mesh_scale.unwrap_or(1.0), [*from, *to], via).map_err(failed)
+            Transect::of_mesh(terrain, mesh_scale.unwrap_or(1.0), [*from, *to], via).map_err(failed)
         }
         _ => Err(Failure::message(
             "--from-lonlat, --to-lonlat, --via-lonlat: a mesh has no projection; give --from X,Y, --to X,Y and --via X,Y",
@@ -90,10 +90,10 @@ fn cut(args: &SliceArgs, accept_map_scale: bool) -> Result<Cut, Failure> {
     }
     let between: Vec<MapPlace> =
         via.iter().copied().map(MapPlace::Metres).chain(via_lonlat.iter().copied().map(MapPlace::LonLat)).collect();
-    let cut = match Cut::of_dem(terrain, [&from, &to], &between, accept_map_scale) {
+    let transect = match Transect::of_dem(terrain, [&from, &to], &between, accept_map_scale) {
         // A damaged mesh is told by the readers of meshes, who know why.
         Err(_) if named_as_mesh(terrain) => return of_mesh(),
-        cut => cut.map_err(failed)?,
+        transect => transect.map_err(failed)?,
     };
     if let Some(scale) = mesh_scale {
         let name = terrain.display();
@@ -101,7 +101,7 @@ fn cut(args: &SliceArgs, accept_map_scale: bool) -> Result<Cut, Failure> {
             "--mesh-scale {scale}: {name} is an elevation raster, expected a mesh; leave the option away"
         )));
     }
-    Ok(cut)
+    Ok(transect)
 }
 
 /// Whether a file's extension is that of a mesh.
@@ -123,7 +123,7 @@ fn ends(legs: &[Profile]) -> Option<String> {
 }
 
 /// The reference system of a slice's map and the doubts about it, for its comments.
-fn map_comments(cut: &Cut) -> Vec<String> {
-    let crs = cut.projection.as_ref().map(|projection| CrsRecord::from(projection).comments()).unwrap_or_default();
-    crs.into_iter().chain(cut.warnings.iter().map(|warning| format!("warning: {warning}"))).collect()
+fn map_comments(transect: &Transect) -> Vec<String> {
+    let crs = transect.projection.as_ref().map(|projection| CrsRecord::from(projection).comments()).unwrap_or_default();
+    crs.into_iter().chain(transect.warnings.iter().map(|warning| format!("warning: {warning}"))).collect()
 }

@@ -28,7 +28,7 @@ fn refused(error: TradeError) -> Failure {
     Failure::message(format!("--vary: {error}"))
 }
 
-/// Answers every field.
+/// Answers every cell.
 pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     let variations: Vec<_> = args.vary.iter().map(|text| Variation::parse(text)).collect::<Result<_, _>>().map_err(refused)?;
     let table = args.output.as_deref().map(TableFormat::of).transpose()?;
@@ -41,8 +41,8 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     first.ends()?;
     let trade = Trade::new(&entries, &base, &survey, &variations).map_err(refused)?;
     let progress = Progress::new(args.common.quiet);
-    let (fields, done) = (trade.fields(), AtomicUsize::new(0));
-    let tell = || progress.say(format!("{} of {fields} fields", done.fetch_add(1, Ordering::Relaxed) + 1));
+    let (cells, done) = (trade.cells(), AtomicUsize::new(0));
+    let tell = || progress.say(format!("{} of {cells} fields", done.fetch_add(1, Ordering::Relaxed) + 1));
     let answer = trade.run(args.prove.prove.then_some(args.prove.budget), args.answer.threads, &tell).map_err(refused)?;
     drop(progress);
     let mut files = Vec::new();

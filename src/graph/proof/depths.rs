@@ -12,13 +12,13 @@ pub(super) const CUT_OFF: u32 = u32::MAX;
 /// No cell.
 const NONE: u32 = u32::MAX;
 
-/// Which way the hops go.
+/// The end of the journey that depths are counted from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Way {
+pub(super) enum Root {
     /// From the start: depth is the least number of may-hops from it.
-    FromStart,
+    Start,
     /// Towards the goal: depth is the least number of may-hops to it.
-    ToGoal,
+    Goal,
 }
 
 /// The depth of every cell, from below.
@@ -28,7 +28,7 @@ pub(super) enum Way {
 /// tested when asked for and none stored). Memory is a few numbers a cell.
 #[derive(Clone, Debug)]
 pub(super) struct Depths {
-    way: Way,
+    root: Root,
     /// At least so many may-hops; [`CUT_OFF`] for proved never.
     depth: Vec<u32>,
     /// The cell one level up that gave the depth, or might.
@@ -50,9 +50,9 @@ impl Depths {
     ///
     /// The distance over the greatest reach would bound more, but not the may-graph: a cell is crossed for nothing there. A depth has to
     /// be one that every may-path keeps to, or the level above holds no parent where one exists.
-    pub(super) fn new(way: Way, cells: usize, end: usize) -> Self {
+    pub(super) fn new(root: Root, cells: usize, end: usize) -> Self {
         let depth = (0..cells).map(|i| u32::from(i != end)).collect();
-        Self { way, depth, parent: vec![NONE; cells], tested: vec![false; cells], pairs_tested: 0 }
+        Self { root, depth, parent: vec![NONE; cells], tested: vec![false; cells], pairs_tested: 0 }
     }
 
     /// The least number of may-hops, as far as it was settled.
@@ -131,9 +131,9 @@ impl Depths {
         let mut may = |other: u32| {
             pairs_tested += 1;
             let (own, other) = (&cells[i], &cells[other as usize]);
-            match self.way {
-                Way::FromStart => prover.may(other, own).is_ok(),
-                Way::ToGoal => prover.may(own, other).is_ok(),
+            match self.root {
+                Root::Start => prover.may(other, own).is_ok(),
+                Root::Goal => prover.may(own, other).is_ok(),
             }
         };
         if known != NONE {
@@ -144,9 +144,9 @@ impl Depths {
                 }
             }
         }
-        let reach_m = match self.way {
-            Way::FromStart => prover.reach_to_m(&cells[i]),
-            Way::ToGoal => prover.reach_from_m(&cells[i]),
+        let reach_m = match self.root {
+            Root::Start => prover.reach_to_m(&cells[i]),
+            Root::Goal => prover.reach_from_m(&cells[i]),
         };
         let parent = nearest_cells(cells, cell, reach_m, above).find(|&other| may(other));
         Found { parent, pairs_tested }

@@ -289,7 +289,7 @@ fn quotient_down<R: Rounding>(dividend: f64, distance: f64) -> f64 {
 /// The relaxed rules of a segment for one direction.
 fn contacts<F: Faults>(segment: &SegmentConstraints, direction: Direction) -> Contacts<F::Rounding> {
     [Contact::Takeoff, Contact::Landing].map(|contact| {
-        segment.judged(contact, direction).map(|rule| relaxed_rule::<F>(&rule)).map_err(|refusal| refusal.limit(contact))
+        segment.check_contact(contact, direction).map(|rule| relaxed_rule::<F>(&rule)).map_err(|refusal| refusal.limit(contact))
     })
 }
 

@@ -34,7 +34,7 @@ pub use require::{CapabilityRange, Threshold, least_capability};
 
 use crate::quantity::{Outwards, Rounding};
 
-/// What a proof may be made to do wrong, to see that the tests notice: all of it is settled when compiled, and only tests can choose
+/// What a proof may be made to do wrong, to see that the tests notice: all of it is fixed at compile time, and only tests can choose
 /// anything but [`Sound`].
 trait Faults: std::fmt::Debug + Send + Sync + 'static {
     /// How ends are rounded.

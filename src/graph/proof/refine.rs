@@ -3,7 +3,7 @@
 use super::{
     Faults, Prover,
     cell::{Cell, partition, stretch},
-    depths::{CUT_OFF, Depths, Way},
+    depths::{CUT_OFF, Depths, Root},
 };
 use crate::chain::{Site, Station};
 
@@ -26,8 +26,8 @@ impl<'a, F: Faults> Refinement<'a, F> {
         let cells = partition::<F>(prover.test().chain().geometry(), prover.slopes(), [start, goal]);
         let at = |station: &Station| place_of(&cells, station.point.x_m);
         let (start, goal) = (at(start), at(goal));
-        let from_start = Depths::new(Way::FromStart, cells.len(), start);
-        let to_goal = Depths::new(Way::ToGoal, cells.len(), goal);
+        let from_start = Depths::new(Root::Start, cells.len(), start);
+        let to_goal = Depths::new(Root::Goal, cells.len(), goal);
         Self { prover, cells, start, goal, from_start, to_goal, splits: 0 }
     }
 

@@ -95,7 +95,7 @@ pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> 
             ProofVerdict::Open => above_proved = value,
         }
     }
-    // A path found below the open value settles the other side as well.
+    // A path found below the open value decides the other side as well.
     let mut below_found = if range.weakest < range.strongest { open.min(high) } else { open.max(high) };
     while !range.is_close(below_found, high) {
         let value = range.middle(below_found, high);
@@ -144,7 +144,7 @@ mod tests {
     }
 
     #[test]
-    fn ends_that_settle_it_settle_it() {
+    fn an_end_value_that_decides_the_answer_ends_the_search() {
         let range = CapabilityRange { weakest: 1.0, strongest: 2.0, resolution: 1e-3 };
         assert_eq!(threshold(range, 5.0, 6.0).0, Threshold { unreachable_at: Some(2.0), reachable_at: None });
         assert_eq!(threshold(range, 0.1, 0.5).0, Threshold { unreachable_at: None, reachable_at: Some(1.0) });

@@ -141,7 +141,7 @@ impl Flight {
 
     /// The probability to strike the most critical vertex on the way.
     ///
-    /// Vertices within four deviations of either end are part of the ground there, which is judged as such.
+    /// Vertices within four deviations of either end are part of the ground there, which is checked as such.
     pub(super) fn strike_probability(
         &self,
         deviations: &HopDeviations,

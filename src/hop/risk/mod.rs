@@ -1,4 +1,4 @@
-//! How surely one hop comes off: an estimate of its probability to fail, without a single draw.
+//! The reliability of one hop: an estimate of its probability to fail, without a single draw.
 //!
 //! Deviations of speed and angle are cut into eight cells each; in every pair of cells the hop is one parabola, whose landing scatters
 //! further by deviations of place and height through the flight's own derivatives. What ground lies within that scatter, and how wide

@@ -42,7 +42,7 @@ fn counted(test: &HopTest<'_>, hop: &PlannedHop, deviations: &HopDeviations, fli
         let angle = hop.arc.takeoff_angle().radians() + deviations.takeoff_angle.radians() * normal();
         let Ok(from) = geometry.station(hop.takeoff.point.x_m + deviations.place_m * normal()) else { return true };
         let within = |station: &Station, contact, angle: f64, speed: f64| {
-            test.chain().judged(station, contact, Direction::Forward).is_ok_and(|rule| {
+            test.chain().check_contact(station, contact, Direction::Forward).is_ok_and(|rule| {
                 rule.angles().min.radians() <= angle && angle <= rule.angles().max.radians() && speed <= rule.speed_max_m_s()
             })
         };
@@ -102,7 +102,7 @@ fn the_estimate_agrees_with_counted_flights() {
         }
     }
     // On the very edge of both cones the estimate is too dark, since take-off and landing then fail together; a landing at a kink of the
-    // ground is judged on the straight ground before it.
+    // ground is checked on the straight ground before it.
     let worst = differences.iter().fold(0.0_f64, |worst, difference| worst.max(difference.abs()));
     #[expect(clippy::cast_precision_loss, reason = "some dozens")]
     let mean = differences.iter().map(|difference| difference.abs()).sum::<f64>() / differences.len() as f64;

@@ -49,8 +49,8 @@ impl Lanes {
         }
     }
 
-    /// Judges the landings `range` of the table, at most [`Self::COUNT`] of them, none on a segment of the take-off.
-    pub(super) fn judge(
+    /// Evaluates the landings `range` of the table, at most [`Self::COUNT`] of them, none on a segment of the take-off.
+    pub(super) fn evaluate(
         &mut self,
         test: &HopTest<'_>,
         from: &Departure,

@@ -61,7 +61,7 @@ impl<'a> Sweep<'a> {
         Self { table, lanes: Lanes::new(), overflight: Overflight::new(test.chain().geometry(), test.hopper().clearance_m) }
     }
 
-    /// Judges every landing of a range of the table's stations that lies in a direction from the take-off, nearest first.
+    /// Evaluates every landing of a range of the table's stations that lies in a direction from the take-off, nearest first.
     ///
     /// `visit` is given each one's index and the verdict of [`HopTest::loft`](super::HopTest::loft) for the pair: always the same one, of feasible or of the
     /// limit that refuses, since where two limits touch within rounding that function itself is asked. The lofts are the same numbers
@@ -97,7 +97,7 @@ impl<'a> Sweep<'a> {
                 outwards(block, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(limit))));
                 continue;
             }
-            self.lanes.judge(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
+            self.lanes.evaluate(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
             for i in outwards(block.clone(), direction) {
                 let verdict = match refusals[i] {
                     Some(limit) => Err(limit),

@@ -40,7 +40,7 @@ pub struct Clearance {
 /// What was flown of one hop.
 ///
 /// Time, angle and speed of the landing are those above the planned landing point, also where the flight meets the ground elsewhere:
-/// so every limit of a hop is judged, not only the first that fails.
+/// so every limit of a hop is checked, not only the first that fails.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flight {
     /// Where it first comes down; `None` where it leaves the chain in flight.

@@ -4,13 +4,13 @@
 //! command of a hop (place, angle, speed), steps Newton's equations from there and looks at what happens. It imports nothing from the
 //! closed forms of `ballistics` nor from the graph, and a test reads these files to see that it stays so.
 
+mod checker;
 mod flight;
-mod judge;
 mod violation;
 
+use checker::Checker;
 use flight::Course;
 pub use flight::{Clearance, Flight};
-use judge::Judge;
 pub use violation::{Measure, StatedValue, ViolatedLimit, Violation};
 
 use super::{Hop, HopPath};
@@ -41,7 +41,7 @@ impl Execution {
 ///     x += v_x dt,   z += v_z dt - g dt^2 / 2,   v_z -= g dt            (constant acceleration: exact for any dt)
 /// ```
 ///
-/// Of each hop are judged: that it begins where the one before landed; the ground's refusals (direction, keep-out, rest slope),
+/// Checks of each hop: that it begins where the one before landed; the ground's refusals (direction, keep-out, rest slope),
 /// directions and speeds at both ends; the machine's angles, height and time; the clearance over every vertex flown past and the
 /// ground between them; where it really comes down; and the numbers that the plan states. Every violation is reported.
 ///
@@ -94,11 +94,11 @@ pub fn execute(
             continue;
         };
         let flown = Course::new(chain, hop, direction, gravity_m_s2, hopper.clearance_m, height_rounding_m).fly();
-        let mut judge =
-            Judge { number: i + 1, chain, hopper, hop, direction, gravity_m_s2, height_rounding_m, violations: &mut violations };
+        let mut checker =
+            Checker { number: i + 1, chain, hopper, hop, direction, gravity_m_s2, height_rounding_m, violations: &mut violations };
         match &flown {
-            Some(flight) => judge.flight(flight),
-            None => judge.no_flight(),
+            Some(flight) => checker.flight(flight),
+            None => checker.no_flight(),
         }
         flights.push(flown);
     }

@@ -1,4 +1,4 @@
-//! All ways from a node to another within reach, each with what is the same for every pair of posts that far apart.
+//! All offsets from a node to another within reach, each with what is the same for every pair of posts that far apart.
 //!
 //! Two posts `(columns, rows)` apart see the lattice's lines at the same places between them, whichever posts they are: where the line of
 //! an offset crosses rows, columns and diagonals, between which two posts, and how far along. All of it follows from whole numbers,
@@ -31,7 +31,7 @@ pub(super) struct Crossing {
     pub(super) stiffness: f64,
 }
 
-/// A way from a node to another.
+/// The offset from a node to another.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Offset {
     /// To the east and to the south, nodes.
@@ -42,7 +42,7 @@ pub(super) struct Offset {
     pub(super) run_m: f64,
     /// East and north, of length 1.
     pub(super) heading: Vector2<f64>,
-    /// Its part of the table of crossings, which it shares with the way back: that meets the same places turned about the take-off.
+    /// Its part of the table of crossings, which it shares with the opposite offset: that one meets the same places turned about the take-off.
     crossings: Range<usize>,
     /// 1 where steps lead as the table has them, -1 where they are turned.
     pub(super) turn: isize,

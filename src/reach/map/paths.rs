@@ -1,4 +1,4 @@
-//! The hops of a way over the map, each on its own slice.
+//! The hops of a path over the map, each on its own slice.
 
 use super::{MapError, PostHops, lattice::Post};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
     quantity::VertexId,
 };
 
-/// One hop of a way, on the slice between its two posts.
+/// One hop of a path, on the slice between its two posts.
 #[derive(Clone, Debug)]
 pub struct MapHop {
     /// The slice from take-off to landing, which [`slice`](crate::terrain::slice()) gives too.
@@ -19,13 +19,13 @@ pub struct MapHop {
     pub path: HopPath,
 }
 
-/// The hops of a way from node to node, as chosen.
+/// The hops of a path from node to node, as chosen.
 ///
 /// # Errors
 /// [`MapError`], as [`PostHops::lofts`].
-pub fn way_hops(hops: &PostHops<'_>, way: &[Post], choice: TakeoffChoice) -> Result<Vec<MapHop>, MapError> {
-    let mut found = Vec::with_capacity(way.len().saturating_sub(1));
-    for (from, to) in way.iter().zip(way.iter().skip(1)) {
+pub fn path_hops(hops: &PostHops<'_>, posts: &[Post], choice: TakeoffChoice) -> Result<Vec<MapHop>, MapError> {
+    let mut found = Vec::with_capacity(posts.len().saturating_sub(1));
+    for (from, to) in posts.iter().zip(posts.iter().skip(1)) {
         let Some(chain) = hops.chain(*from, *to)? else { continue };
         let Some(path) = hop_along(hops, &chain, choice) else { continue };
         found.push(MapHop { chain, path });
@@ -38,16 +38,16 @@ fn hop_along(hops: &PostHops<'_>, chain: &ConstrainedChain, choice: TakeoffChoic
     let test = HopTest::new(chain, hops.request().hopper, hops.request().gravity_m_s2);
     let geometry = chain.geometry();
     let (takeoff, landing) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
-    // Whoever gives a way that this map did not find gets the hops that there are.
+    // A path that this map did not find yields only the hops that exist.
     let loft = test.loft(&takeoff, &landing).ok()?;
     generate(&test, &[Leg { takeoff, landing, edge: Edge::Hop(loft) }], choice, Split::default()).ok()
 }
 
-/// All hops of a way as one path, x counted along it from its beginning.
-pub fn joined(hops: &PostHops<'_>, way: &[MapHop]) -> HopPath {
+/// The hops of a path joined to one [`HopPath`], x counted along it from its beginning.
+pub fn joined(hops: &PostHops<'_>, path: &[MapHop]) -> HopPath {
     let mut begin_m = 0.0;
-    let mut flown: Vec<Hop> = Vec::with_capacity(way.len());
-    for hop in way.iter().flat_map(|hop| &hop.path.hops) {
+    let mut flown: Vec<Hop> = Vec::with_capacity(path.len());
+    for hop in path.iter().flat_map(|hop| &hop.path.hops) {
         let mut hop = *hop;
         let run_m = hop.landing.point.x_m;
         hop.takeoff.point.x_m = begin_m;

@@ -1,15 +1,15 @@
-//! Fewest hops, front by front.
+//! Fewest hops by breadth-first search, layer by layer: a layer is all nodes of one hop count.
 //!
-//! Posts that have no hops yet are pulled towards the front: each asks the posts of the front within reach, nearest first, for a hop, and
-//! stops at the first. Pairs that cannot improve the answer are never tested, nodes without any of the front within reach are told by a
-//! few words of bits, and which thread asks first does not matter.
+//! Unreached nodes look back at the last layer (the nodes of the hop count before), nearest first, and stop at the first feasible hop;
+//! a bitmap of the layer skips nodes with none in reach. Pairs that cannot improve the answer are never tested, and the answer does not
+//! depend on which thread tests a node first.
 
 use rayon::prelude::*;
 
 use super::{
     MapError, PostHops,
-    front::{Disc, Front},
     lattice::Post,
+    layer_bits::{Disc, LayerBits},
 };
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
@@ -26,30 +26,30 @@ pub const NO_GROUND: i16 = i16::MIN;
 /// No offset: the start's, and that of posts without hops.
 const NONE: u32 = u32::MAX;
 
-/// Which way hops lead.
+/// The direction of the hops between the start and the other posts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum Way {
+pub enum Journey {
     /// From the start to every post.
     #[default]
-    Out,
+    Outbound,
     /// From every post to the start.
-    Back,
+    Return,
 }
 
 /// What to search for.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Search {
-    /// Which way.
-    pub way: Way,
+    /// From or to the start.
+    pub journey: Journey,
     /// Also the least effort among the paths of fewest hops, flown as chosen.
     pub effort: Option<(Effort, TakeoffChoice)>,
 }
 
-/// How far a search is.
+/// How far a search has come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct FrontProgress {
-    /// Hops of the front.
-    pub front: i16,
+pub struct LayerProgress {
+    /// Hops of the last complete layer.
+    pub layer: i16,
     /// Posts that have their hops.
     pub reached: usize,
     /// Posts that may still get some.
@@ -66,7 +66,7 @@ pub struct HopMap {
     pub effort: Vec<f64>,
     /// The offset of the hop between each node and the node before it.
     previous: Vec<u32>,
-    way: Way,
+    journey: Journey,
 }
 
 /// A node that got its hops.
@@ -77,40 +77,40 @@ struct Found {
     effort: f64,
 }
 
-/// Fewest hops between a start and every node, told front by front; the same for any number of threads.
+/// Fewest hops between a start and every node, layer by layer, with progress after each; the same for any number of threads.
 ///
 /// # Errors
 /// [`MapError`]; of several, that of the first block.
-pub fn search(hops: &PostHops<'_>, start: Post, asked: Search, tell: &mut dyn FnMut(FrontProgress)) -> Result<HopMap, MapError> {
+pub fn search(hops: &PostHops<'_>, start: Post, asked: Search, tell: &mut dyn FnMut(LayerProgress)) -> Result<HopMap, MapError> {
     let mut state = State::new(hops, start, asked);
-    let mut front: i16 = 0;
+    let mut layer: i16 = 0;
     loop {
-        tell(FrontProgress { front, reached: state.reached, open: state.open.iter().map(|&count| count as usize).sum() });
-        let pull = Pull { hops, map: &state.map, asked, front, nodes: &state.front };
-        let near = blocks_near(hops, &state.front_blocks, &state.open);
+        tell(LayerProgress { layer, reached: state.reached, open: state.open.iter().map(|&count| count as usize).sum() });
+        let pull = Pull { hops, map: &state.map, asked, layer, nodes: &state.layer };
+        let near = blocks_near(hops, &state.layer_blocks, &state.open);
         let found: Vec<Result<Vec<Found>, MapError>> = near.par_iter().map(|&block| pull.block(block)).collect();
         let found = found.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
         if found.is_empty() {
             return Ok(state.map);
         }
-        front = front.checked_add(1).ok_or(MapError::TooManyHops { most: i16::MAX })?;
-        state.front_blocks.fill(false);
-        state.front.clear();
+        layer = layer.checked_add(1).ok_or(MapError::TooManyHops { most: i16::MAX })?;
+        state.layer_blocks.fill(false);
+        state.layer.clear();
         for node in found {
-            state.settle(hops, node, front);
+            state.settle(hops, node, layer);
         }
     }
 }
 
-/// What is known between two fronts.
+/// The state between two layers.
 struct State {
     map: HopMap,
     /// Of each block, nodes that may still get hops.
     open: Vec<u32>,
-    /// The nodes of the front.
-    front: Front,
-    /// Blocks with nodes of the front.
-    front_blocks: Vec<bool>,
+    /// The nodes of the layer.
+    layer: LayerBits,
+    /// Blocks with nodes of the layer.
+    layer_blocks: Vec<bool>,
     /// Nodes that have their hops.
     reached: usize,
 }
@@ -126,10 +126,10 @@ impl State {
             hops: (0..nodes).into_par_iter().map(ground).collect(),
             effort: if asked.effort.is_some() { vec![f64::NAN; nodes] } else { Vec::new() },
             previous: vec![NONE; nodes],
-            way: asked.way,
+            journey: asked.journey,
         };
         let open = (0..down * across).into_par_iter().map(usable).collect();
-        let mut state = Self { map, open, front: Front::none(lattice), front_blocks: vec![false; down * across], reached: 0 };
+        let mut state = Self { map, open, layer: LayerBits::none(lattice), layer_blocks: vec![false; down * across], reached: 0 };
         state.settle(hops, Found { node: lattice.index(start), offset: NONE, effort: 0.0 }, 0);
         state
     }
@@ -144,16 +144,16 @@ impl State {
         }
         let post = lattice.node(node);
         let block = lattice.block_of(post);
-        self.front_blocks[block] = true;
-        self.front.insert(post);
+        self.layer_blocks[block] = true;
+        self.layer.insert(post);
         // The start may lie where no hop begins or ends.
         self.open[block] -= u32::from(hops.usable(post)).min(self.open[block]);
         self.reached += 1;
     }
 }
 
-/// The blocks with open nodes that a front in other blocks may reach.
-fn blocks_near(hops: &PostHops<'_>, front: &[bool], open: &[u32]) -> Vec<usize> {
+/// The blocks with open nodes that a layer in other blocks may reach.
+fn blocks_near(hops: &PostHops<'_>, layer: &[bool], open: &[u32]) -> Vec<usize> {
     let (down, across) = hops.lattice().blocks();
     (0..down * across)
         .into_par_iter()
@@ -165,23 +165,23 @@ fn blocks_near(hops: &PostHops<'_>, front: &[bool], open: &[u32]) -> Vec<usize> 
             let (rows, cols) = hops.blocks_within(hops.offsets()[within - 1].run_m);
             let (row, col) = (block / across, block % across);
             (row.saturating_sub(rows)..=(row + rows).min(down - 1)).any(|row| {
-                front[row * across + col.saturating_sub(cols)..=row * across + (col + cols).min(across - 1)].contains(&true)
+                layer[row * across + col.saturating_sub(cols)..=row * across + (col + cols).min(across - 1)].contains(&true)
             })
         })
         .collect()
 }
 
-/// One round: the front, and what it is asked.
+/// One round of the search: all unreached nodes against the last layer.
 struct Pull<'a> {
     hops: &'a PostHops<'a>,
     map: &'a HopMap,
     asked: Search,
-    front: i16,
-    nodes: &'a Front,
+    layer: i16,
+    nodes: &'a LayerBits,
 }
 
 impl Pull<'_> {
-    /// The nodes of a block that a hop joins to the front.
+    /// The nodes of a block that a hop joins to the layer.
     fn block(&self, block: usize) -> Result<Vec<Found>, MapError> {
         let lattice = self.hops.lattice();
         let steps = &self.hops.node_steps()[..self.hops.within_reach(block)];
@@ -196,30 +196,30 @@ impl Pull<'_> {
         Ok(found)
     }
 
-    /// The node at the other end of an offset, where that is on the front. Where all offsets are `inside` the map, a step tells.
+    /// The node at the other end of an offset, where that is on the layer. Where all offsets are `inside` the map, a step tells.
     #[inline]
-    fn on_front(&self, node: Post, index: usize, (number, step): (usize, isize), inside: bool) -> Option<Post> {
-        let step = if self.asked.way == Way::Out { -step } else { step };
-        let is_front = |at: usize| self.map.hops[at] == self.front;
-        if inside && !is_front(index.wrapping_add_signed(step)) {
+    fn on_layer(&self, node: Post, index: usize, (number, step): (usize, isize), inside: bool) -> Option<Post> {
+        let step = if self.asked.journey == Journey::Outbound { -step } else { step };
+        let is_on_layer = |at: usize| self.map.hops[at] == self.layer;
+        if inside && !is_on_layer(index.wrapping_add_signed(step)) {
             return None;
         }
-        let other = match self.asked.way {
-            Way::Out => self.hops.takeoff(node, number),
-            Way::Back => self.hops.landing(node, number),
+        let other = match self.asked.journey {
+            Journey::Outbound => self.hops.takeoff(node, number),
+            Journey::Return => self.hops.landing(node, number),
         }?;
-        (inside || is_front(self.hops.lattice().index(other))).then_some(other)
+        (inside || is_on_layer(self.hops.lattice().index(other))).then_some(other)
     }
 
-    /// The hop that joins a node to the front: the shortest, or the one of least effort in all.
+    /// The hop that joins a node to the layer: the shortest, or the one of least effort in all.
     fn pulled(&self, node: Post, steps: &[isize], inside: bool) -> Result<Option<Found>, MapError> {
         let lattice = self.hops.lattice();
         let index = lattice.index(node);
         let mut best: Option<Found> = None;
         for (number, &step) in steps.iter().enumerate() {
-            let Some(other) = self.on_front(node, index, (number, step), inside) else { continue };
+            let Some(other) = self.on_layer(node, index, (number, step), inside) else { continue };
             let offset = &self.hops.offsets()[number];
-            let from = if self.asked.way == Way::Out { other } else { node };
+            let from = if self.asked.journey == Journey::Outbound { other } else { node };
             #[expect(clippy::cast_possible_truncation, reason = "the table of offsets is far smaller")]
             let offset_number = number as u32;
             let Some((effort, choice)) = self.asked.effort else {
@@ -266,26 +266,26 @@ fn at_least(effort: Effort, sight: LineOfSight, lofts: SlopeInterval, gravity_m_
 }
 
 impl HopMap {
-    /// The node before this one on its way from the start (after it, on a way back); `None` for the start and for nodes without hops.
+    /// The node before this one on its path from the start (after it, on a return path); `None` for the start and for nodes without hops.
     pub fn previous(&self, hops: &PostHops<'_>, node: Post) -> Option<Post> {
         let offset = self.previous[hops.lattice().index(node)];
         if offset == NONE {
             return None;
         }
-        match self.way {
-            Way::Out => hops.takeoff(node, offset as usize),
-            Way::Back => hops.landing(node, offset as usize),
+        match self.journey {
+            Journey::Outbound => hops.takeoff(node, offset as usize),
+            Journey::Return => hops.landing(node, offset as usize),
         }
     }
 
-    /// The nodes of a way of fewest hops between the start and a node, in the order of flight; `None` where there is none.
-    pub fn way(&self, hops: &PostHops<'_>, node: Post) -> Option<Vec<Post>> {
+    /// The nodes of a path of fewest hops between the start and a node, in the order of flight; `None` where there is none.
+    pub fn path(&self, hops: &PostHops<'_>, node: Post) -> Option<Vec<Post>> {
         if self.hops[hops.lattice().index(node)] < 0 {
             return None;
         }
         let mut nodes = vec![node];
         nodes.extend(std::iter::successors(self.previous(hops, node), |&node| self.previous(hops, node)));
-        if self.way == Way::Out {
+        if self.journey == Journey::Outbound {
             nodes.reverse();
         }
         Some(nodes)

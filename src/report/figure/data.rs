@@ -194,7 +194,7 @@ fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
         .unwrap_or_else(|| crate::ballistics::LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m));
     let gravity_m_s2 = test.gravity_m_s2();
     let cone = |station: &Station, contact| {
-        let rule = test.chain().judged(station, contact, hop.direction).ok()?;
+        let rule = test.chain().check_contact(station, contact, hop.direction).ok()?;
         Some(Cone { apex: station.point, contact, direction: hop.direction, slopes: rule.slopes() })
     };
     HopFigure {

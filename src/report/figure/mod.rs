@@ -46,7 +46,7 @@ mod tests;
 
 pub use chains::{
     CompareFigure, ComparedScenario, Flight, HopProfile, HopProfilesFigure, ProofClass, ProofFigure, ProofGap, ProofStretch,
-    TradeAxis, TradeField, TradeFigure, draw_compare, draw_hop_profiles, draw_proof, draw_trade,
+    TradeAxis, TradeCell, TradeFigure, draw_compare, draw_hop_profiles, draw_proof, draw_trade,
 };
 pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
 pub use heading::conditions;
@@ -110,7 +110,7 @@ pub enum FigureError {
     /// The nodes of the search cannot be laid out again.
     #[error(transparent)]
     TooManyNodes(#[from] TooManyNodes),
-    /// A raster, or the fields of a trade, of the wrong size.
+    /// A raster, or the cells of a trade, of the wrong size.
     #[error("the {what} has {found} values, expected {rows} rows times {cols} columns")]
     RasterSize {
         /// What was to be drawn.

@@ -81,7 +81,8 @@ fn use_of(segment: &SegmentConstraints, towards: Direction) -> GroundUse {
         (true, false) => GroundUse::TakeoffOnly,
         (false, false) => {
             let away = if towards == Direction::Forward { Direction::Reverse } else { Direction::Forward };
-            let refusals = [towards, away].into_iter().filter_map(|direction| segment.judged(Contact::Takeoff, direction).err());
+            let refusals =
+                [towards, away].into_iter().filter_map(|direction| segment.check_contact(Contact::Takeoff, direction).err());
             let told = refusals.min_by_key(|refusal| matches!(refusal, GroundRefusal::NoGround));
             GroundUse::Closed(told.as_ref().map_or(Closure::NoLimits, Closure::of))
         }

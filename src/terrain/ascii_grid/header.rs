@@ -29,7 +29,7 @@ pub(super) struct Header {
 
 type Fields = BTreeMap<&'static str, Token>;
 
-/// Takes words in pairs up to the first that is a number, then judges them together. `None`: see `problems`.
+/// Takes words in pairs up to the first that is a number, then checks them together. `None`: see `problems`.
 pub(super) fn read_header<R: BufRead>(tokens: &mut Tokens<R>, problems: &mut Problems) -> io::Result<Option<Header>> {
     let mut fields = Fields::new();
     while let Some(token) = tokens.peek()? {
@@ -58,10 +58,10 @@ pub(super) fn read_header<R: BufRead>(tokens: &mut Tokens<R>, problems: &mut Pro
         }
     }
     let place = tokens.place();
-    Ok(judge(&fields, place, problems))
+    Ok(check_header(&fields, place, problems))
 }
 
-fn judge(fields: &Fields, place: (usize, usize), problems: &mut Problems) -> Option<Header> {
+fn check_header(fields: &Fields, place: (usize, usize), problems: &mut Problems) -> Option<Header> {
     let before = problems.count();
     let cols = count(fields, "ncols", place, problems);
     let rows = count(fields, "nrows", place, problems);
@@ -155,7 +155,7 @@ pub(super) fn number_hint(text: &str) -> &'static str {
     if text.contains(',') { "a finite number with a decimal point (replace decimal commas by points)" } else { "a finite number" }
 }
 
-/// Words that begin like a number end the header, so that `1,5` is judged as a number gone wrong.
+/// Words that begin like a number end the header, so that `1,5` is reported as a number gone wrong.
 fn looks_like_number(text: &str) -> bool {
     let lower = text.to_ascii_lowercase();
     text.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '-' | '+' | '.'))

@@ -47,7 +47,7 @@ impl GeoTags {
         }
     }
 
-    /// Judges units and transform, and places the raster's posts.
+    /// Checks units and transform, and places the raster's posts.
     ///
     /// # Errors
     /// [`TerrainError::Unsuitable`] for degrees, other units than metres, rotated or mirrored transforms, or none at all.

@@ -1,4 +1,4 @@
-//! GeoTIFF: `read` picks the image and judges it, `samples` decodes it, `keys` understands its map, `write` makes one.
+//! GeoTIFF: `read` picks the image and checks it, `samples` decodes it, `keys` understands its map, `write` makes one.
 //!
 //! The `tiff-reader` and `tiff-writer` crates are used here and nowhere else.
 

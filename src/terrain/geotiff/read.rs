@@ -77,7 +77,7 @@ fn open_error(error: TiffError) -> TerrainError {
 
 fn read_tiff(file: &TiffFile) -> Result<Dem, TerrainError> {
     let images = Images::of(file)?;
-    let (decoder, Placement { georeference, south_up, states_metres }) = judge(file, &images)?;
+    let (decoder, Placement { georeference, south_up, states_metres }) = check_tags(file, &images)?;
     let (rows, cols) = (images.layout.height, images.layout.width);
     let dem = match decoder.all(file, &images)? {
         Elevations::Single(mut posts) => {
@@ -96,7 +96,7 @@ fn read_tiff(file: &TiffFile) -> Result<Dem, TerrainError> {
 }
 
 /// How the samples are meant and where they lie.
-fn judge(file: &TiffFile, images: &Images<'_>) -> Result<(Decoder, Placement), TerrainError> {
+fn check_tags(file: &TiffFile, images: &Images<'_>) -> Result<(Decoder, Placement), TerrainError> {
     let tags = GeoTags::of(images.elevations);
     let no_data = tags.transform.no_data.as_deref().map(NoData::parse).transpose()?.flatten();
     let metadata = images.elevations.tag(tag::GDAL_METADATA).and_then(|tag| tag.value.as_str());
@@ -123,7 +123,7 @@ fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
     let block = {
         let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
         let images = Images::of(&file)?;
-        let (_, Placement { georeference, states_metres, .. }) = judge(&file, &images)?;
+        let (_, Placement { georeference, states_metres, .. }) = check_tags(&file, &images)?;
         let (rows, cols) = (images.layout.height, images.layout.width);
         // Degrees show only in the relief of the whole.
         if !states_metres && georeference.bounds(rows, cols).may_be_degrees() {
@@ -134,7 +134,7 @@ fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
     options.block_cache_bytes = block.saturating_mul(KEPT_BLOCKS).max(KEPT_BYTES);
     let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
     let images = Images::of(&file)?;
-    let (decoder, Placement { georeference, south_up, .. }) = judge(&file, &images)?;
+    let (decoder, Placement { georeference, south_up, .. }) = check_tags(&file, &images)?;
     let lattice = PostLattice::new(images.layout.height, images.layout.width, georeference)?;
     Ok(Box::new(OpenGeoTiff { file, decoder, lattice, south_up }))
 }
@@ -172,7 +172,7 @@ pub(in crate::terrain) struct Placed {
     pub(in crate::terrain) states_metres: bool,
 }
 
-/// Judges the tags alone, whatever the image.
+/// Checks the tags alone, whatever the image.
 #[cfg(feature = "gdal")]
 pub(in crate::terrain) fn place_by_tags(bytes: Vec<u8>, rows: usize) -> Result<Placed, TerrainError> {
     let options = open_options(bytes.len() as u64);

@@ -132,12 +132,12 @@ fn user_defined(system: &CoordinateSystem) -> Result<(Definition, Option<u16>), 
     if method.has_scale() {
         definition.scale = only(&[key::ORIGIN_SCALE, key::CENTER_SCALE], "scales")?.unwrap_or(1.0);
     }
-    settle(&mut definition, system)?;
+    resolve_definition(&mut definition, system)?;
     Ok((definition, None))
 }
 
 /// What differs from method to method: standard parallels, and how a pole is said.
-fn settle(definition: &mut Definition, system: &CoordinateSystem) -> Result<(), String> {
+fn resolve_definition(definition: &mut Definition, system: &CoordinateSystem) -> Result<(), String> {
     let parallel_1_deg = double_key(system, key::PARALLEL_1);
     match definition.method {
         Method::Equirectangular => definition.parallels_deg[0] = Some(parallel_1_deg.unwrap_or(0.0)),

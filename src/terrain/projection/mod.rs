@@ -67,7 +67,7 @@ impl MapPlace {
     ///
     /// # Errors
     /// For longitude and latitude: [`TerrainError::NoProjection`] without a projection, [`TerrainError::LonLatOffTheMap`] where the
-    /// DEM does not cover it. Map coordinates are given back as they are: the slice judges them.
+    /// DEM does not cover it. Map coordinates are given back as they are: the slice checks them.
     pub fn on_map(
         &self,
         which: &'static str,
@@ -235,12 +235,12 @@ impl MapProjection {
     /// Some inverse projections are cut-off series or loops that end early (some 1e-9 degrees); the forward ones are exact. So what the
     /// way back misses is added to the point, and the inverse taken again.
     fn inverse(&self, at: MapPoint) -> Option<(f64, f64)> {
-        let settled_m = 1.0e-14 * self.definition.ellipsoid.semi_major_m;
+        let converged_m = 1.0e-14 * self.definition.ellipsoid.semi_major_m;
         let (mut target, mut place) = (at, self.rough_inverse(at)?);
         for _ in 0..3 {
             let Some(back) = self.forward(place.0, place.1) else { break };
             let miss = at - back;
-            if !(settled_m..ROUGH_SHARE * self.definition.ellipsoid.semi_major_m).contains(&miss.norm()) {
+            if !(converged_m..ROUGH_SHARE * self.definition.ellipsoid.semi_major_m).contains(&miss.norm()) {
                 break;
             }
             target += miss;

@@ -153,7 +153,7 @@ pub fn check_scale(
         Err(NoProjection::Local) => return Ok(TransectScale::Local),
         Err(unknown @ NoProjection::Unknown(_)) => return Ok(TransectScale::Unknown(unknown.to_string())),
     };
-    judged(dem, projection, [from, to], accepted, "the transect", &|| mend(dem, projection, [from, to], file))
+    check_line(dem, projection, [from, to], accepted, "the transect", &|| mend(dem, projection, [from, to], file))
 }
 
 /// Whether a DEM is true to scale from a point to the corners of its map, so that hops in any direction are; the worst of these lines.
@@ -175,7 +175,7 @@ pub fn check_map_scale(
     let mut worst = TransectScale::Local;
     for corner in corners(dem) {
         let line = "the line from the start to a corner of the map";
-        let scale = judged(dem, projection, [from, corner], accepted, line, &|| mend_map(dem, projection, from, file))?;
+        let scale = check_line(dem, projection, [from, corner], accepted, line, &|| mend_map(dem, projection, from, file))?;
         if scale.error() > worst.error() {
             worst = scale;
         }
@@ -190,7 +190,7 @@ fn corners(dem: &dyn DemFile) -> [MapPoint; 4] {
 }
 
 /// What is to be said of the scale along a line, called so; `mend`: what else to do where it is off.
-fn judged(
+fn check_line(
     dem: &dyn DemFile,
     projection: &MapProjection,
     [from, to]: [MapPoint; 2],

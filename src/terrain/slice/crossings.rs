@@ -53,7 +53,7 @@ pub(super) fn crossings(ground: &Ground<'_>, from: MapPoint, to: MapPoint, lengt
     vertices
 }
 
-/// Adds a vertex, or settles which of two at the same place stays.
+/// Adds a vertex, or decides which of two at the same place stays.
 fn push_apart(vertices: &mut Vec<Crossing>, crossing: Crossing, closest_m: f64) {
     // The first vertex, the start, stays whatever comes.
     while let Some(previous) = vertices.last() {

@@ -70,7 +70,7 @@ pub fn narrowed(chain: &ConstrainedChain, share: f64) -> Result<PolygonalChain, 
         .map(|segment| {
             let [forward, reverse] = Direction::BOTH.map(|direction| {
                 let granted =
-                    [Contact::Takeoff, Contact::Landing].iter().all(|&contact| segment.judged(contact, direction).is_ok());
+                    [Contact::Takeoff, Contact::Landing].iter().all(|&contact| segment.check_contact(contact, direction).is_ok());
                 segment.stated(direction).filter(|_| granted).map(|line| narrowed_line(line, share))
             });
             let keep_out = segment.refusal().is_some() || (forward.is_none() && reverse.is_none());

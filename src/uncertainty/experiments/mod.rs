@@ -14,7 +14,7 @@ pub enum Experiment {
     WorstDrift,
     /// Narrower cones about the vertical on the same draws (P section V-B, last sentence).
     ConeWidth,
-    /// What hops buy in surety: the surest path for every number of hops, estimated and flown.
+    /// Hops against reliability: the most reliable path for every number of hops, estimated and flown.
     RiskTrade,
 }
 

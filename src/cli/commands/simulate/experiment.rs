@@ -2,7 +2,7 @@
 
 use chta::{
     chain::ConstrainedChain,
-    graph::{self, NodeSet, Outcome, SearchOptions, surest_paths},
+    graph::{self, NodeSet, Outcome, SearchOptions, most_reliable_paths},
     path::{Hop, generate},
     report::{
         ConeWidthAnswer, Document, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer,
@@ -156,7 +156,7 @@ fn mean_takeoff_width_deg(chain: &ConstrainedChain) -> f64 {
     widths.iter().sum::<f64>() / widths.len().max(1) as f64
 }
 
-/// The surest path for every number of hops, estimated and flown.
+/// The most reliable path for every number of hops, estimated and flown.
 fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result<RiskTradeAnswer, Failure> {
     let scenario = &loaded.scenario;
     let Some(keys) = scenario.uncertainty else {
@@ -173,7 +173,8 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let (start, goal) = loaded.ends()?;
     let failed = |error: &dyn std::fmt::Display| Failure::message(error.to_string());
     let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| failed(&error))?;
-    let surest = surest_paths(&test, &nodes, &scenario.search, &scenario.surety_with(scenario.risk_extra_hops_max));
+    let reliable_paths =
+        most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max));
     // What would be planned without regard to risk, over the same nodes.
     let without_risk = SearchOptions { spacing: Some(planned.found.spacing), ..scenario.search.clone() };
     let found = graph::search(&test, start, goal, &without_risk, &mut |_| {}).map_err(|error| failed(&error))?;
@@ -184,7 +185,7 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy), args.common.quiet)?;
     let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
     let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
-    for candidate in &surest {
+    for candidate in &reliable_paths {
         let path =
             generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
         let summary = flyer.fly_along(&path, &options)?;

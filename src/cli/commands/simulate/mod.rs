@@ -1,4 +1,4 @@
-//! `chta simulate`: how surely the planned path is flown.
+//! `chta simulate`: how reliably the planned path is flown.
 
 mod experiment;
 mod listen;

@@ -41,7 +41,7 @@ pub(super) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Re
 fn caption<'a>(loaded: &Loaded, summaries: impl Iterator<Item = &'a Summary>) -> Caption {
     let keys = loaded.scenario.uncertainty.unwrap_or_default();
     let mut lines =
-        vec![format!("{}; goal tolerance {} m; seed {}", errors_in_words(&keys.errors), keys.goal_tolerance_m, keys.seed)];
+        vec![format!("{}; goal tolerance {} m; seed {}", format_errors(&keys.errors), keys.goal_tolerance_m, keys.seed)];
     lines.extend(summaries.map(|summary| {
         let Wilson { rate, low, high } = summary.success;
         format!(
@@ -55,7 +55,7 @@ fn caption<'a>(loaded: &Loaded, summaries: impl Iterator<Item = &'a Summary>) ->
 }
 
 /// The deviations that are not zero, each with its unit.
-fn errors_in_words(errors: &Uncertainty) -> String {
+fn format_errors(errors: &Uncertainty) -> String {
     let given = errors.by_key().into_iter().filter(|(_, deviation, _)| *deviation > 0.0);
     let words: Vec<String> = given
         .map(|(key, deviation, unit)| {

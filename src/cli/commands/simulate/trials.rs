@@ -63,8 +63,8 @@ impl<'a> Flyer<'a> {
             let options = &loaded.scenario.search;
             let progress = Progress::new(quiet);
             progress.say("ranking the ways on from every node".to_owned());
-            Ok(match loaded.scenario.surety() {
-                Some(surety) => CostToGo::surely(test, nodes, options, &surety),
+            Ok(match loaded.scenario.reliability() {
+                Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability),
                 None => CostToGo::of(test, nodes, options),
             })
         });

@@ -54,7 +54,7 @@ fn is_hop(chain: &ConstrainedChain, hopper: &Hopper, g: f64, takeoff: &Place, la
             Site::Vertex(v) if (contact == Contact::Takeoff) == forward => (v.index() + 1 < station.len()).then_some(v.index()),
             Site::Vertex(v) => v.index().checked_sub(1),
         };
-        segment.and_then(|segment| chain.segments()[segment].judged(contact, direction).ok())
+        segment.and_then(|segment| chain.segments()[segment].check_contact(contact, direction).ok())
     };
     let (Some(from), Some(to)) = (rule(takeoff, Contact::Takeoff), rule(landing, Contact::Landing)) else { return false };
     let run = (&landing.x - &takeoff.x).abs();

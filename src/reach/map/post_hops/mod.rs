@@ -202,7 +202,7 @@ impl<'a> PostHops<'a> {
         offset: &Offset,
         worth: impl FnOnce(LineOfSight, SlopeInterval) -> bool,
     ) -> Result<Option<Lofts>, MapError> {
-        match self.judged(from, offset, worth) {
+        match self.evaluate(from, offset, worth) {
             Verdict::No => Ok(None),
             Verdict::Hop(sight, lofts) => Ok(Some((sight, lofts))),
             Verdict::Close => self.exact(from, offset),
@@ -211,7 +211,7 @@ impl<'a> PostHops<'a> {
 
     /// Quick arithmetic on a pair.
     #[inline]
-    fn judged(&self, from: Post, offset: &Offset, worth: impl FnOnce(LineOfSight, SlopeInterval) -> bool) -> Verdict {
+    fn evaluate(&self, from: Post, offset: &Offset, worth: impl FnOnce(LineOfSight, SlopeInterval) -> bool) -> Verdict {
         let takeoff = self.lattice.post_index(from);
         let landing = takeoff.wrapping_add_signed(offset.post_step);
         let takeoff_m = self.heights.at(takeoff);

@@ -43,9 +43,9 @@ impl PostHops<'_> {
             ranges_m =
                 self.block_reliefs(&blocks, longest_m).into_iter().map(|relief_m| range_m(relief_m).min(longest_m)).collect();
             let next_m = ranges_m.iter().copied().fold(0.0, f64::max);
-            let settled = next_m > 0.95 * longest_m;
+            let converged = next_m > 0.95 * longest_m;
             longest_m = next_m;
-            if settled {
+            if converged {
                 break;
             }
         }

@@ -89,9 +89,9 @@ pub struct TradeAxis {
     pub values: Vec<f64>,
 }
 
-/// One field of a trade.
+/// One cell of a trade.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TradeField {
+pub enum TradeCell {
     /// A path with so many hops.
     Hops(u64),
     /// Proved: no path.
@@ -110,7 +110,7 @@ pub struct TradeFigure {
     /// Varied along the vertical axis; `None`: a single row.
     pub y: Option<TradeAxis>,
     /// The fields: for the first value of `y` every value of `x`, then for the second, and so on.
-    pub fields: Vec<TradeField>,
+    pub cells: Vec<TradeCell>,
 }
 
 /// One of several scenarios.

@@ -10,7 +10,7 @@ mod trade;
 
 pub use compare::draw_compare;
 pub use data::{
-    CompareFigure, ComparedScenario, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch, TradeAxis, TradeField, TradeFigure,
+    CompareFigure, ComparedScenario, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch, TradeAxis, TradeCell, TradeFigure,
 };
 pub use hops::{HopProfile, HopProfilesFigure, draw_hop_profiles};
 pub use proof::draw_proof;

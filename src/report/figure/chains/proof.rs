@@ -53,7 +53,7 @@ pub fn draw_proof(figure: &ProofFigure) -> Result<Picture, FigureError> {
     }
     drawing.ends(&mut sheet);
     let end_mm = keys::draw(&mut sheet, &drawing.keys(every), drawing.profile.end_mm() + 2.5);
-    let end_mm = figure.gap.as_ref().map_or(end_mm, |gap| gap_words(&mut sheet, gap, end_mm + 1.5));
+    let end_mm = figure.gap.as_ref().map_or(end_mm, |gap| draw_gap_text(&mut sheet, gap, end_mm + 1.5));
     Ok(Picture::page(sheet, end_mm + 2.5))
 }
 
@@ -289,7 +289,7 @@ impl Drawing<'_> {
 }
 
 /// What the gap is and what refuses there; returns where it ends.
-fn gap_words(sheet: &mut Sheet, gap: &ProofGap, top_mm: f64) -> f64 {
+fn draw_gap_text(sheet: &mut Sheet, gap: &ProofGap, top_mm: f64) -> f64 {
     let text = format!(
         "Proved: no path from the start comes nearer to the goal than x = {} m; no place nearer to the start than x = {} m leads to \
          the goal.",

@@ -202,33 +202,33 @@ fn trade(cols: usize, rows: usize, most: u64) -> TradeFigure {
         name: name.to_owned(),
         values: (0..count).map(|i| from + step * i as f64).collect(),
     };
-    let field = |i: usize| {
+    let cell = |i: usize| {
         let (row, col) = ((i / cols) as u64, (i % cols) as u64);
         match row + col {
-            0 => TradeField::Untraversable,
-            1 => TradeField::Open,
-            sum => TradeField::Hops(most / sum + 1),
+            0 => TradeCell::Untraversable,
+            1 => TradeCell::Open,
+            sum => TradeCell::Hops(most / sum + 1),
         }
     };
     TradeFigure {
         caption: Caption::new("Fewest hops", "Moon, g = 1.624 m/s²; friction coefficient 0.6"),
         x: axis("hopper.takeoff_speed_max_m_s (m/s)", cols, 4.0, 0.5),
         y: (rows > 0).then(|| axis("hopper.landing_speed_max_m_s (m/s)", rows, 5.0, 1.0)),
-        fields: (0..cols * rows.max(1)).map(field).collect(),
+        cells: (0..cols * rows.max(1)).map(cell).collect(),
     }
 }
 
 #[test]
-fn a_trade_has_its_number_in_every_field() {
+fn a_trade_has_its_number_in_every_cell() {
     for (name, cols, rows, most) in
         [("trade", 10, 7, 60), ("trade-row", 8, 0, 9), ("trade-two", 2, 2, 5), ("trade-many", 40, 30, 900)]
     {
         let figure = trade(cols, rows, most);
         let picture = check_picture(name, || draw_trade(&figure).unwrap());
         let said = texts(&picture);
-        for field in &figure.fields {
-            if let TradeField::Hops(hops) = field {
-                let count = |hops: u64| figure.fields.iter().filter(|field| **field == TradeField::Hops(hops)).count();
+        for cell in &figure.cells {
+            if let TradeCell::Hops(hops) = cell {
+                let count = |hops: u64| figure.cells.iter().filter(|cell| **cell == TradeCell::Hops(hops)).count();
                 let words = hops.to_string();
                 assert!(said.lines().filter(|line| *line == words).count() >= count(*hops), "{name}: {hops}");
             }
@@ -255,9 +255,9 @@ fn odd_trades_are_whole() {
     assert!(picture.to_svg().unwrap().contains("&amp;"));
     let mut one = trade(1, 1, 3);
     check_picture("trade-one", || draw_trade(&one).unwrap());
-    one.fields = vec![TradeField::Hops(0)];
+    one.cells = vec![TradeCell::Hops(0)];
     assert_says(&check_picture("trade-zero", || draw_trade(&one).unwrap()), &["0 hops"]);
-    one.fields.clear();
+    one.cells.clear();
     let wrong = draw_trade(&one).unwrap_err();
     assert_eq!(wrong, FigureError::RasterSize { what: "trade", found: 0, rows: 1, cols: 1 });
     assert_says(&check_picture("trade-empty", || draw_trade(&TradeFigure::default()).unwrap()), &["There are no fields."]);

@@ -13,33 +13,33 @@ use super::{
         sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm, wrapped},
         ticks::{one_in, short},
     },
-    TradeAxis, TradeField, TradeFigure,
+    TradeAxis, TradeCell, TradeFigure,
     profile::fitted,
 };
 
-/// Widest field.
+/// Widest cell.
 const WIDEST_MM: f64 = 26.0;
-/// Highest field, and the most height of all fields together.
+/// Highest cell, and the most height of all cells together.
 const HIGHEST_MM: (f64, f64) = (11.0, 190.0);
-/// The largest number in a field, and the smallest that is still read.
+/// The largest number in a cell, and the smallest that is still read.
 const NUMBER_MM: (f64, f64) = (3.2, 1.1);
 /// No path: grey, which no number of hops has.
 const CLOSED: RGBColor = RGBColor(190, 190, 190);
-/// Edges of fields.
+/// Edges of cells.
 const EDGE_PEN: Pen = Pen { colour: WHITE, width_mm: 0.2 };
 /// Most samples of hops in the legend.
 const MOST_SAMPLES: usize = 8;
 
-/// Draws the fewest hops over a grid of two capabilities, or over a row of one, each field with its number.
+/// Draws the fewest hops over a grid of two capabilities, or over a row of one, each cell with its number.
 ///
 /// Few hops are light, many dark, on a logarithmic scale from the fewest to the most; grey with a cross: proved that there is no path;
 /// white with a question mark: no path found. Numbers too small to be read are left out, and the picture says so.
 ///
 /// # Errors
-/// [`FigureError::RasterSize`] where there is not one field for every pair of values.
+/// [`FigureError::RasterSize`] where there is not one cell for every pair of values.
 pub fn draw_trade(figure: &TradeFigure) -> Result<Picture, FigureError> {
     let (rows, cols) = (figure.y.as_ref().map_or(1, |y| y.values.len()), figure.x.values.len());
-    let found = figure.fields.len();
+    let found = figure.cells.len();
     if rows.checked_mul(cols) != Some(found) {
         return Err(FigureError::RasterSize { what: "trade", found, rows, cols });
     }
@@ -49,11 +49,11 @@ pub fn draw_trade(figure: &TradeFigure) -> Result<Picture, FigureError> {
         let end_mm = paragraph(&mut sheet, "There are no fields.", TEXT_MM, false, top_mm);
         return Ok(Picture::page(sheet, end_mm + 2.0));
     }
-    let shades = Shades::of(&figure.fields);
+    let shades = Shades::of(&figure.cells);
     let grid = Grid::new(figure, (rows, cols), top_mm);
     let end_mm = grid.axes(&mut sheet, figure);
-    grid.fields(&mut sheet, &figure.fields, &shades);
-    let end_mm = keys::draw(&mut sheet, &shades.keys(&figure.fields), end_mm + 2.5);
+    grid.cells(&mut sheet, &figure.cells, &shades);
+    let end_mm = keys::draw(&mut sheet, &shades.keys(&figure.cells), end_mm + 2.5);
     let end_mm = if grid.number_mm.is_some() {
         end_mm
     } else {
@@ -70,44 +70,44 @@ struct Shades {
 }
 
 impl Shades {
-    fn of(fields: &[TradeField]) -> Self {
-        let hops = |field: &TradeField| if let TradeField::Hops(hops) = field { Some(*hops) } else { None };
-        let mut hops: Vec<u64> = fields.iter().filter_map(hops).collect();
+    fn of(cells: &[TradeCell]) -> Self {
+        let hops = |cell: &TradeCell| if let TradeCell::Hops(hops) = cell { Some(*hops) } else { None };
+        let mut hops: Vec<u64> = cells.iter().filter_map(hops).collect();
         hops.sort_unstable();
         hops.dedup();
         Self { hops }
     }
 
-    fn colour(&self, field: TradeField) -> RGBColor {
+    fn colour(&self, cell: TradeCell) -> RGBColor {
         #[expect(clippy::cast_precision_loss, reason = "a shade")]
         let log = |hops: u64| libm::log1p(hops as f64);
-        match (field, self.hops.first(), self.hops.last()) {
-            (TradeField::Hops(hops), Some(&fewest), Some(&most)) if fewest < most => {
+        match (cell, self.hops.first(), self.hops.last()) {
+            (TradeCell::Hops(hops), Some(&fewest), Some(&most)) if fewest < most => {
                 ramp((log(hops) - log(fewest)) / (log(most) - log(fewest)))
             }
-            (TradeField::Hops(_), ..) => ramp(0.3),
-            (TradeField::Untraversable, ..) => CLOSED,
-            (TradeField::Open, ..) => WHITE,
+            (TradeCell::Hops(_), ..) => ramp(0.3),
+            (TradeCell::Untraversable, ..) => CLOSED,
+            (TradeCell::Open, ..) => WHITE,
         }
     }
 
-    /// Samples of the numbers there are, the fewest and the most among them, then the signs of fields without a path.
-    fn keys(&self, fields: &[TradeField]) -> Vec<(Swatch, String)> {
+    /// Samples of the numbers there are, the fewest and the most among them, then the signs of cells without a path.
+    fn keys(&self, cells: &[TradeCell]) -> Vec<(Swatch, String)> {
         let last = self.hops.len().saturating_sub(1);
         let samples = last.min(MOST_SAMPLES - 1);
         let mut picks: Vec<usize> = (0..=samples).map(|i| (i * last).checked_div(samples).unwrap_or(0)).collect();
         picks.dedup();
         let hops = picks.into_iter().filter_map(|i| self.hops.get(i)).map(|&hops| {
             let text = if hops == 1 { "1 hop".to_owned() } else { format!("{hops} hops") };
-            (Swatch::Fill(self.colour(TradeField::Hops(hops))), text)
+            (Swatch::Fill(self.colour(TradeCell::Hops(hops))), text)
         });
-        let count = |wanted: TradeField| fields.iter().filter(|field| **field == wanted).count();
+        let count = |wanted: TradeCell| cells.iter().filter(|cell| **cell == wanted).count();
         let signs = [
-            (TradeField::Untraversable, closed_sample as fn(&mut Sheet, Place), "proved: no path"),
-            (TradeField::Open, open_sample, "open: no path found, none excluded"),
+            (TradeCell::Untraversable, closed_sample as fn(&mut Sheet, Place), "proved: no path"),
+            (TradeCell::Open, open_sample, "open: no path found, none excluded"),
         ];
-        let signs = signs.into_iter().filter(|(field, ..)| count(*field) > 0);
-        hops.chain(signs.map(|(field, symbol, text)| (Swatch::Symbol(symbol), format!("{text} ({})", count(field))))).collect()
+        let signs = signs.into_iter().filter(|(cell, ..)| count(*cell) > 0);
+        hops.chain(signs.map(|(cell, symbol, text)| (Swatch::Symbol(symbol), format!("{text} ({})", count(cell))))).collect()
     }
 }
 
@@ -140,7 +140,7 @@ fn numbers(axis: &TradeAxis) -> Vec<String> {
     if same { axis.values.iter().map(|value| (value + 0.0).to_string()).collect() } else { four }
 }
 
-/// Where the fields lie.
+/// Where the cells lie.
 struct Grid {
     panel: Panel,
     rows: usize,
@@ -161,14 +161,14 @@ impl Grid {
         let above = figure.y.as_ref().map_or(0.0, |y| if fits(&y.name, high * rows as f64) { 0.0 } else { 1.6 * TEXT_MM });
         let top = top_mm + 0.5 + above;
         let panel = Panel { left, top, right: left + wide * cols as f64, bottom: top + high * rows as f64 };
-        let signs: Vec<String> = figure.fields.iter().map(|field| sign(*field)).collect();
+        let signs: Vec<String> = figure.cells.iter().map(|cell| sign(*cell)).collect();
         let number_mm = (0.9 * wide / widest(&signs, 1.0).max(0.6)).min(0.65 * high).min(NUMBER_MM.0);
         Self { panel, rows, cols, number_mm: (number_mm >= NUMBER_MM.1).then_some(number_mm) }
     }
 
-    /// Left, top, right and bottom of a field; rows count upwards.
+    /// Left, top, right and bottom of a cell; rows count upwards.
     #[expect(clippy::cast_precision_loss, reason = "counts of rows and columns")]
-    fn field(&self, row: usize, col: usize) -> (Place, Place) {
+    fn cell(&self, row: usize, col: usize) -> (Place, Place) {
         let (wide, high) = (self.panel.width() / self.cols as f64, self.panel.height() / self.rows as f64);
         let (left, bottom) = (self.panel.left + wide * col as f64, self.panel.bottom - high * row as f64);
         ((left, bottom - high), (left + wide, bottom))
@@ -177,17 +177,17 @@ impl Grid {
     /// Numbers and names of both axes; returns where they end.
     fn axes(&self, sheet: &mut Sheet, figure: &TradeFigure) -> f64 {
         let along = numbers(&figure.x);
-        let (from, to) = self.field(0, 0);
+        let (from, to) = self.cell(0, 0);
         let widest_mm = along.iter().map(|text| text_width_mm(text, SMALL_MM)).fold(0.0, f64::max);
         let every = one_in((widest_mm + 1.5) / (to.0 - from.0));
         let middle = |(from, to): (Place, Place)| (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1));
         let ticks: Vec<_> =
-            along.into_iter().enumerate().step_by(every).map(|(col, text)| (middle(self.field(0, col)).0, text)).collect();
+            along.into_iter().enumerate().step_by(every).map(|(col, text)| (middle(self.cell(0, col)).0, text)).collect();
         self.panel.x_axis(sheet, &ticks, "", false);
         if let Some(y) = &figure.y {
             let every = one_in((SMALL_MM + 0.6) / (to.1 - from.1));
             let ticks = numbers(y).into_iter().enumerate().step_by(every);
-            let ticks: Vec<_> = ticks.map(|(row, text)| (middle(self.field(row, 0)).1, fitted(&text, SMALL_MM, 40.0))).collect();
+            let ticks: Vec<_> = ticks.map(|(row, text)| (middle(self.cell(row, 0)).1, fitted(&text, SMALL_MM, 40.0))).collect();
             let inside = fits(&y.name, self.panel.height());
             self.panel.y_axis(sheet, &ticks, if inside { &y.name } else { "" }, false);
             if !inside {
@@ -208,32 +208,32 @@ impl Grid {
     }
 
     /// Colours, neighbours of one colour in a row as one area, then the numbers.
-    fn fields(&self, sheet: &mut Sheet, fields: &[TradeField], shades: &Shades) {
-        for (row, fields) in fields.chunks(self.cols).enumerate() {
+    fn cells(&self, sheet: &mut Sheet, cells: &[TradeCell], shades: &Shades) {
+        for (row, cells) in cells.chunks(self.cols).enumerate() {
             let mut col = 0;
-            for run in fields.chunk_by(|a, b| shades.colour(*a) == shades.colour(*b)) {
-                let (from, to) = (self.field(row, col).0, self.field(row, col + run.len() - 1).1);
+            for run in cells.chunk_by(|a, b| shades.colour(*a) == shades.colour(*b)) {
+                let (from, to) = (self.cell(row, col).0, self.cell(row, col + run.len() - 1).1);
                 sheet.area(rectangle(from, to), shades.colour(run[0]), 1.0);
                 col += run.len();
             }
         }
         if let Some(size_mm) = self.number_mm {
             for i in 1..self.cols {
-                let x_mm = self.field(0, i).0.0;
+                let x_mm = self.cell(0, i).0.0;
                 sheet.line(vec![(x_mm, self.panel.top), (x_mm, self.panel.bottom)], EDGE_PEN);
             }
             for i in 1..self.rows {
-                let y_mm = self.field(i, 0).1.1;
+                let y_mm = self.cell(i, 0).1.1;
                 sheet.line(vec![(self.panel.left, y_mm), (self.panel.right, y_mm)], EDGE_PEN);
             }
-            for (i, &field) in fields.iter().enumerate() {
-                let (from, to) = self.field(i / self.cols, i % self.cols);
+            for (i, &cell) in cells.iter().enumerate() {
+                let (from, to) = self.cell(i / self.cols, i % self.cols);
                 let at = (0.5 * (from.0 + to.0), 0.5 * (from.1 + to.1));
-                if field == TradeField::Untraversable {
+                if cell == TradeCell::Untraversable {
                     cross(sheet, at, 0.38 * size_mm);
                 } else {
-                    let label = Label::new(sign(field), at, size_mm).hung(Anchor::Middle, Hang::Through);
-                    sheet.label(Label { colour: ink(shades.colour(field)), ..label });
+                    let label = Label::new(sign(cell), at, size_mm).hung(Anchor::Middle, Hang::Through);
+                    sheet.label(Label { colour: ink(shades.colour(cell)), ..label });
                 }
             }
         }
@@ -241,12 +241,12 @@ impl Grid {
     }
 }
 
-/// What stands in a field.
-fn sign(field: TradeField) -> String {
-    match field {
-        TradeField::Hops(hops) => hops.to_string(),
-        TradeField::Untraversable => "x".to_owned(),
-        TradeField::Open => "?".to_owned(),
+/// What stands in a cell.
+fn sign(cell: TradeCell) -> String {
+    match cell {
+        TradeCell::Hops(hops) => hops.to_string(),
+        TradeCell::Untraversable => "x".to_owned(),
+        TradeCell::Open => "?".to_owned(),
     }
 }
 

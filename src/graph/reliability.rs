@@ -1,4 +1,4 @@
-//! The surest path, and what hops buy in surety.
+//! The most reliable path problem, and the Pareto front of hops against success probability.
 
 use std::collections::BTreeMap;
 
@@ -11,19 +11,19 @@ use crate::{
     world::Direction,
 };
 
-/// Whether surety weighs in the choice of a path.
+/// Whether, and how, reliability counts in the choice of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
-pub enum RiskUse {
-    /// It does not.
+pub enum ReliabilityUse {
+    /// It does not count.
     #[default]
     Ignored,
-    /// The surest path among those with the fewest hops.
+    /// The most reliable of the paths with the fewest hops.
     FewestHops,
-    /// Hops are traded for surety: the surest path with some hops more than the fewest.
+    /// Hops are traded for reliability: the most reliable path with some hops more than the fewest.
     Traded,
 }
 
-impl RiskUse {
+impl ReliabilityUse {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Ignored, Self::FewestHops, Self::Traded];
 
@@ -37,20 +37,20 @@ impl RiskUse {
     }
 }
 
-/// How surety weighs in the choice of a path.
+/// How reliability is estimated and weighed in the choice of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SuretyOptions {
+pub struct ReliabilityOptions {
     /// What the probability of a hop to fail is estimated from.
     pub model: RiskModel,
-    /// How many hops more than the fewest a surer path may take; 0: the surest of those with the fewest hops.
+    /// How many hops more than the fewest a more reliable path may take; 0: the most reliable path with the fewest hops.
     pub extra_hops_max: u32,
     /// How far from the goal the last hop may come down, m.
     pub goal_tolerance_m: Option<f64>,
 }
 
-/// A path of some number of hops that no path of as few hops or fewer is surer than.
+/// The most reliable path of its hop count, more reliable than every path with fewer hops.
 #[derive(Clone, Debug, PartialEq)]
-pub struct SurestPath {
+pub struct ReliablePath {
     /// Its edges from start to goal.
     pub legs: Vec<Leg>,
     /// Its hops, and its effort.
@@ -59,8 +59,8 @@ pub struct SurestPath {
     pub success: f64,
 }
 
-/// The surest path of the fewest hops, then for every further hop the surest path, where that is surer than all before: what hops
-/// buy in surety. Empty where there is no path over the nodes.
+/// For the fewest hops, and for each extra hop allowed, the most reliable path, kept only if it beats all shorter ones (the Pareto front
+/// of hops against success probability). Empty where there is no path over the nodes.
 ///
 /// A hop weighs `-ln(1 - p)`, so weights add up as probabilities multiply. Shortest paths by hops and weight together, layer by layer
 /// over the number of hops (Bellman 1958, restricted to nodes from which the goal is still within the hops allowed). Ties go to the
@@ -68,42 +68,47 @@ pub struct SurestPath {
 ///
 /// # Complexity
 /// With E edges within reach of the budget: E hop tests and E risk estimates, `E (1 + extra)` additions; 12 bytes for each edge.
-pub fn surest_paths(test: &HopTest<'_>, nodes: &NodeSet, options: &SearchOptions, surety: &SuretyOptions) -> Vec<SurestPath> {
+pub fn most_reliable_paths(
+    test: &HopTest<'_>,
+    nodes: &NodeSet,
+    options: &SearchOptions,
+    reliability: &ReliabilityOptions,
+) -> Vec<ReliablePath> {
     let graph = HopGraph::new(test, nodes, options.effort, options.takeoff, options.split);
-    let Some(lattice) = Lattice::within(&graph, u64::from(surety.extra_hops_max)) else { return Vec::new() };
-    let labels = lattice.labelled(&graph, options, surety);
-    let mut surest = f64::INFINITY;
+    let Some(lattice) = Lattice::within(&graph, u64::from(reliability.extra_hops_max)) else { return Vec::new() };
+    let labels = lattice.labelled(&graph, options, reliability);
+    let mut least = f64::INFINITY;
     let mut paths = Vec::new();
     for (&hops, layer) in &labels {
-        let Some(label) = layer.get(&nodes.goal().index()).filter(|label| label.weight < surest) else { continue };
-        surest = label.weight;
+        let Some(label) = layer.get(&nodes.goal().index()).filter(|label| label.weight < least) else { continue };
+        least = label.weight;
         paths.extend(path_to_goal(&graph, &labels, hops, label.weight));
     }
     paths
 }
 
-/// Finds a path as [`search`] does, then the surest one that surety allows over the same nodes.
+/// Finds a path as [`search`] does, then replaces it by the most reliable path over the same nodes that the options allow.
 ///
 /// # Errors
 /// [`TooManyNodes`].
-pub fn search_surest(
+pub fn search_most_reliable(
     test: &HopTest<'_>,
     start: Station,
     goal: Station,
     options: &SearchOptions,
-    surety: &SuretyOptions,
+    reliability: &ReliabilityOptions,
     progress: &mut dyn FnMut(super::PointSpacing),
-) -> Result<(super::Answer, Vec<SurestPath>), TooManyNodes> {
+) -> Result<(super::Answer, Vec<ReliablePath>), TooManyNodes> {
     let mut answer = search(test, start, goal, options, progress)?;
     let mut paths = Vec::new();
     if let Outcome::Path { legs, cost } = &mut answer.outcome
         && !legs.is_empty()
     {
         let nodes = NodeSet::new(test.chain(), start, goal, answer.spacing)?;
-        paths = surest_paths(test, &nodes, options, surety);
-        if let Some(surest) = paths.last() {
-            legs.clone_from(&surest.legs);
-            *cost = surest.cost;
+        paths = most_reliable_paths(test, &nodes, options, reliability);
+        if let Some(best) = paths.last() {
+            legs.clone_from(&best.legs);
+            *cost = best.cost;
         }
     }
     Ok((answer, paths))
@@ -125,7 +130,7 @@ struct Lattice {
     budget: u64,
 }
 
-/// The best way to a node in some number of hops.
+/// The most reliable path to a node with some number of hops.
 #[derive(Clone, Copy)]
 struct Label {
     weight: f64,
@@ -173,7 +178,7 @@ impl Lattice {
     }
 
     /// Every label from which the goal is still within the budget.
-    fn labelled(&self, graph: &HopGraph<'_>, options: &SearchOptions, surety: &SuretyOptions) -> Labels {
+    fn labelled(&self, graph: &HopGraph<'_>, options: &SearchOptions, reliability: &ReliabilityOptions) -> Labels {
         let nodes = graph.nodes();
         let start = nodes.start().index();
         let mut weights: BTreeMap<(usize, usize), f64> = BTreeMap::new();
@@ -183,7 +188,7 @@ impl Lattice {
         loop {
             let layer: Vec<(usize, Label)> = labels[&hops].iter().map(|(&node, &label)| (node, label)).collect();
             for (node, label) in layer {
-                // With fewer hops one was there as surely.
+                // The node was reached with fewer hops and at least the same reliability.
                 if label.weight >= least[node] {
                     continue;
                 }
@@ -196,7 +201,7 @@ impl Lattice {
                     let weight = label.weight
                         + *weights
                             .entry((node, step.target))
-                            .or_insert_with(|| edge_weight(graph, (node, step.target), options, surety));
+                            .or_insert_with(|| edge_weight(graph, (node, step.target), options, reliability));
                     let layer = labels.entry(reached).or_default();
                     if layer.get(&step.target).is_none_or(|known| weight < known.weight) {
                         layer.insert(step.target, Label { weight, from: Some((hops, node)) });
@@ -262,18 +267,18 @@ pub(super) fn edge_weight(
     graph: &HopGraph<'_>,
     (from, to): (usize, usize),
     options: &SearchOptions,
-    surety: &SuretyOptions,
+    reliability: &ReliabilityOptions,
 ) -> f64 {
     let (test, nodes) = (graph.test(), graph.nodes());
     let (takeoff, landing) = (*nodes.station(NodeId(from)), *nodes.station(NodeId(to)));
-    let tolerance_m = surety.goal_tolerance_m.filter(|_| nodes.goal() == NodeId(to));
+    let tolerance_m = reliability.goal_tolerance_m.filter(|_| nodes.goal() == NodeId(to));
     match graph.edge(&takeoff, &landing) {
         Ok(Edge::Hop(lofts)) => test.line_of_sight(&takeoff, &landing).map_or(0.0, |sight| {
             let arc = Arc::new(sight, options.takeoff.loft(sight, lofts), test.gravity_m_s2());
-            surety.model.weight(test, &PlannedHop { takeoff, landing, arc, lofts, tolerance_m })
+            reliability.model.weight(test, &PlannedHop { takeoff, landing, arc, lofts, tolerance_m })
         }),
         Ok(Edge::Along(along)) => {
-            along_weight(test, (takeoff, landing), &along, (options.takeoff, options.split), surety, tolerance_m)
+            along_weight(test, (takeoff, landing), &along, (options.takeoff, options.split), reliability, tolerance_m)
         }
         // It was an edge when the lattice was built.
         Err(_) => f64::INFINITY,
@@ -288,7 +293,7 @@ fn along_weight(
     (takeoff, landing): (Station, Station),
     along: &SegmentHops,
     (choice, split): (TakeoffChoice, Split),
-    surety: &SuretyOptions,
+    reliability: &ReliabilityOptions,
     tolerance_m: Option<f64>,
 ) -> f64 {
     const BESIDE_AN_END: u64 = 16;
@@ -306,7 +311,7 @@ fn along_weight(
         let arc = along.arc(test, length_m, choice);
         let tolerance_m = tolerance_m.filter(|_| i + 1 == along.hops());
         let hop = PlannedHop { takeoff: from, landing: to, arc, lofts: along.lofts(test, length_m), tolerance_m };
-        surety.model.weight(test, &hop)
+        reliability.model.weight(test, &hop)
     };
     if along.hops() <= 2 * BESIDE_AN_END {
         return (0..along.hops()).map(weight).sum();
@@ -317,7 +322,7 @@ fn along_weight(
 }
 
 /// The path to the goal that a label ends.
-fn path_to_goal(graph: &HopGraph<'_>, labels: &Labels, hops: u64, weight: f64) -> Option<SurestPath> {
+fn path_to_goal(graph: &HopGraph<'_>, labels: &Labels, hops: u64, weight: f64) -> Option<ReliablePath> {
     let nodes = graph.nodes();
     let mut at = (hops, nodes.goal().index());
     let (mut legs, mut cost) = (Vec::new(), Cost::default());
@@ -329,5 +334,5 @@ fn path_to_goal(graph: &HopGraph<'_>, labels: &Labels, hops: u64, weight: f64) -
         at = from;
     }
     legs.reverse();
-    Some(SurestPath { legs, cost, success: libm::exp(-weight) })
+    Some(ReliablePath { legs, cost, success: libm::exp(-weight) })
 }

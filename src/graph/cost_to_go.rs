@@ -1,8 +1,10 @@
-//! What every node has still to go to the goal.
+//! The cost-to-go: the cost of the cheapest path from every node to the goal.
 
 use std::{cmp::Reverse, collections::BinaryHeap};
 
-use super::{Cost, Effort, HopGraph, Leg, NodeSet, SearchOptions, SuretyOptions, nodes::around, surest_to_go::SurestToGo};
+use super::{
+    Cost, Effort, HopGraph, Leg, NodeSet, ReliabilityOptions, SearchOptions, nodes::around, reliability_policy::ReliabilityPolicy,
+};
 use crate::{
     ballistics::{Arc, LineOfSight},
     chain::Station,
@@ -11,7 +13,7 @@ use crate::{
     world::{Direction, tolerant_speed_m_s},
 };
 
-/// The cost of the cheapest way from every node to the goal, computed once: what a robot needs that finds itself elsewhere than planned.
+/// The cost of the cheapest path from every node to the goal, computed once, for a robot that landed elsewhere than planned.
 ///
 /// A hop from anywhere to any node, and that node's cost-to-go, is a whole journey; the best of them is the best plan from there whose
 /// landings after the first are nodes.
@@ -22,8 +24,8 @@ pub struct CostToGo {
     costs: Vec<Option<Cost>>,
     /// The nodes from which the goal is reached, the cheapest first.
     in_order: Vec<NodeId>,
-    /// Where surety weighs: how to go on from every node.
-    surest: Option<SurestToGo>,
+    /// Where reliability counts: the successors of every node, the most reliable first.
+    policy: Option<ReliabilityPolicy>,
 }
 
 impl CostToGo {
@@ -34,33 +36,33 @@ impl CostToGo {
     /// # Complexity
     /// With V nodes, W of them in reach of each and S vertices flown past: O(V W S + V W log V) time, O(V W) heap entries at worst.
     pub fn of(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions) -> Self {
-        let costs = settled(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split));
+        let costs = costs_to_go(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split));
         let mut in_order: Vec<NodeId> = (0..costs.len()).map(NodeId).filter(|node| costs[node.index()].is_some()).collect();
         in_order.sort_by_key(|node| (costs[node.index()], *node));
-        Self { nodes, options: options.clone(), costs, in_order, surest: None }
+        Self { nodes, options: options.clone(), costs, in_order, policy: None }
     }
 
-    /// The same, and from every node the ways on that make the rest of the journey surest, for a robot that weighs risk as
-    /// [`surest_paths`](super::surest_paths) does: within as many hops more than the fewest from there.
+    /// The same with a reliability policy: the successors of every node in order of the reliability of the rest of the path, within the
+    /// extra hops allowed, as [`most_reliable_paths`](super::most_reliable_paths) weighs it.
     ///
     /// # Complexity
-    /// As [`of`](Self::of), and a risk estimate for every edge that the hops allowed leave of use.
-    pub fn surely(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions, surety: &SuretyOptions) -> Self {
+    /// As [`of`](Self::of), and a risk estimate for every edge on some path within the hop budget.
+    pub fn with_reliability(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions, reliability: &ReliabilityOptions) -> Self {
         let costs = Self::of(test, nodes, options);
-        let surest = SurestToGo::of(&costs.graph(test), &costs.costs, options, surety);
-        Self { surest: Some(surest), ..costs }
+        let policy = ReliabilityPolicy::of(&costs.graph(test), &costs.costs, options, reliability);
+        Self { policy: Some(policy), ..costs }
     }
 
-    /// Whether surety weighs.
+    /// Whether reliability counts.
     #[inline]
-    pub const fn weighs_surety(&self) -> bool {
-        self.surest.is_some()
+    pub const fn weighs_reliability(&self) -> bool {
+        self.policy.is_some()
     }
 
-    /// Where to go on from a node, the surest way first: nothing where surety does not weigh, at the goal, and where no way leads on.
+    /// The successors of a node, the most reliable first; empty where reliability does not count, at the goal, and where no path leads to it.
     #[inline]
-    pub fn surest_ways_on(&self, node: NodeId) -> &[NodeId] {
-        self.surest.as_ref().map_or(&[], |surest| surest.ways_on(node))
+    pub fn reliable_successors(&self, node: NodeId) -> &[NodeId] {
+        self.policy.as_ref().map_or(&[], |policy| policy.successors(node))
     }
 
     /// The node nearest to a place along the chain.
@@ -87,7 +89,7 @@ impl CostToGo {
         &self.options
     }
 
-    /// What a node has still to go; nothing at the goal, `None` where no way leads there.
+    /// The cost-to-go of a node: zero at the goal, `None` where no path leads to it.
     ///
     /// # Panics
     /// Where there is no such node.
@@ -96,7 +98,7 @@ impl CostToGo {
         self.costs[node.index()]
     }
 
-    /// The nodes from which the goal is reached, those with the least to go first.
+    /// The nodes from which the goal is reached, those with the least cost-to-go first.
     pub fn in_order(&self) -> &[NodeId] {
         &self.in_order
     }
@@ -112,25 +114,25 @@ impl CostToGo {
         }
     }
 
-    /// The best way on from any station of the chain, which need not be a node. `None` where no node that leads to the goal is in reach.
+    /// The best first leg from any station of the chain, which need not be a node. `None` where no node that leads to the goal is in reach.
     ///
-    /// Where surety weighs: of the ways on from the node nearest to it, surest first, the first that is feasible from the station itself
-    /// (risk changes little between a node and the places beside it, feasibility may). Else, and where none of them is: the
-    /// [cheapest](Self::cheapest_leg).
+    /// Where reliability counts: of the successors of the nearest node, the most reliable first, the first that is feasible from the station
+    /// itself (risk changes little between a node and the positions near it, feasibility may). Otherwise, and where none of them is
+    /// feasible: the [cheapest](Self::cheapest_leg).
     pub fn best_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<Leg> {
         let graph = self.graph(test);
         let leg_to = |node: &NodeId| {
             let landing = *self.nodes.station(*node);
             graph.edge(from, &landing).ok().map(|edge| Leg { takeoff: *from, landing, edge })
         };
-        let surest = self.surest_ways_on(self.nearest_node(from.point.x_m)).iter().find_map(leg_to);
-        surest.or_else(|| self.cheapest_leg(test, from).map(|(leg, _)| leg))
+        let reliable = self.reliable_successors(self.nearest_node(from.point.x_m)).iter().find_map(leg_to);
+        reliable.or_else(|| self.cheapest_leg(test, from).map(|(leg, _)| leg))
     }
 
-    /// The cheapest way on from any station of the chain: the first leg, and what the whole journey then costs.
+    /// The first leg of the cheapest path from any station of the chain, and the cost of that path.
     /// `None` where no node that leads to the goal is in reach.
     ///
-    /// Nodes are tried from the goal's side on: those with the least to go come early, and the others need no hop test. Of two legs that
+    /// Nodes are tried from the goal's side on: those with the least cost-to-go come early, and the others need no hop test. Of two legs that
     /// make the journey cost the same, the one tried first is taken.
     ///
     /// # Complexity
@@ -190,8 +192,8 @@ impl OneHop {
     }
 }
 
-/// The least costs of all nodes.
-fn settled(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
+/// The least costs of all nodes, by Dijkstra's algorithm.
+fn costs_to_go(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
     let nodes = graph.nodes();
     let mut costs: Vec<Option<Cost>> = vec![None; nodes.stations().len()];
     let mut done = vec![false; nodes.stations().len()];
@@ -240,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn every_node_has_to_go_what_a_search_from_it_costs() {
+    fn the_cost_to_go_of_every_node_is_what_a_search_from_it_costs() {
         let (chain, hopper) = rough_chain();
         let test = HopTest::new(&chain, &hopper, 1.6);
         let station = |x_m| chain.geometry().station(x_m).unwrap();

@@ -24,7 +24,7 @@ const SPEED_ROUNDING: f64 = 1e-12;
 const MAP_TOLERANCE: f64 = 1e-12;
 
 /// Holds one hop against its limits and notes what it offends.
-pub(super) struct Judge<'a> {
+pub(super) struct Checker<'a> {
     pub(super) number: usize,
     pub(super) chain: &'a ConstrainedChain,
     pub(super) hopper: &'a Hopper,
@@ -45,7 +45,7 @@ struct Meeting {
     speed_rounding_m_s: f64,
 }
 
-impl Judge<'_> {
+impl Checker<'_> {
     fn note(&mut self, limit: ViolatedLimit, measure: Option<Measure>, at_x_m: f64) {
         self.violations.push(Violation { hop: self.number, limit, measure, at_x_m, vertex: None });
     }
@@ -176,7 +176,7 @@ impl Judge<'_> {
             }
         }
         if self.violations.len() == before
-            && let Err(refusal) = segment.judged(meeting.contact, self.direction)
+            && let Err(refusal) = segment.check_contact(meeting.contact, self.direction)
         {
             self.note(ViolatedLimit::Limit(refusal.limit(meeting.contact)), refusal_measure(refusal), x_m);
         }
@@ -285,7 +285,8 @@ impl Judge<'_> {
 
     /// What the two speeds leave of their limits; `None` where the ground grants no contact.
     fn margin_m_s(&self, flight: &Flight) -> Option<f64> {
-        let limit = |station, contact| self.chain.judged(station, contact, self.direction).ok().map(|rule| rule.speed_max_m_s());
+        let limit =
+            |station, contact| self.chain.check_contact(station, contact, self.direction).ok().map(|rule| rule.speed_max_m_s());
         let takeoff = limit(&self.hop.takeoff, Contact::Takeoff)? - self.hop.takeoff_speed_m_s;
         let landing = limit(&self.hop.landing, Contact::Landing)? - flight.landing_speed_m_s;
         Some(takeoff.min(landing))

@@ -1,91 +1,96 @@
-//! Where to go on from every node, the surest way first.
+//! A reliability policy: the successors of every node, the most reliable first.
 
 use rayon::prelude::*;
 
 use super::{
-    Cost, HopGraph, SearchOptions, SuretyOptions,
-    surest::{edge_weight, steps_from},
+    Cost, HopGraph, ReliabilityOptions, SearchOptions,
+    reliability::{edge_weight, steps_from},
 };
 use crate::quantity::NodeId;
 
-/// How many ways on are kept for each node. A robot beside the node takes the first that is feasible from where it really is; if none
-/// of so many is, none of the rest is likely to be surer than any hop that leads on.
+/// How many successors are kept for each node. A robot near the node takes the first that is feasible from its real position; if none of
+/// these is feasible, the remaining ones are unlikely to be more reliable than any feasible hop.
 const KEPT: usize = 32;
 
-/// Of every node the nodes to hop to, those first that make the rest of the journey surest within the hops allowed.
+/// For every node, its successors in order of the reliability of the rest of the path within the hop budget, the most reliable first.
 #[derive(Clone, Debug)]
-pub(super) struct SurestToGo {
+pub(super) struct ReliabilityPolicy {
     /// Of every node, at most [`KEPT`].
-    ways_on: Vec<Vec<NodeId>>,
-    /// Of every node the weight of the surest way to the goal, `-ln` of its estimated success; infinite where there is none.
+    successors: Vec<Vec<NodeId>>,
+    /// Of every node the weight of the most reliable path to the goal, `-ln` of its estimated success; infinite where there is none.
     #[cfg(test)]
     weights: Vec<f64>,
 }
 
-/// An edge that is of use: its target, its hops, its weight.
+/// An edge on some path within the hop budget: its target, its hops, its weight.
 #[derive(Clone, Copy)]
-struct WayOn {
+struct Successor {
     target: usize,
     hops: u64,
     weight: f64,
 }
 
-impl SurestToGo {
+impl ReliabilityPolicy {
     /// From the least costs of all nodes: with `W_k(u)` the least weight from `u` with at most `k` hops,
     ///
     /// ```text
     ///     W_k(u) = min over edges (u, v) of n hops of  w(u, v) + W_(k - n)(v),   W_k(goal) = 0
     /// ```
     ///
-    /// from `k = 0` on (Bellman 1958), for the `k` from the fewest hops of a node to as many more as surety allows.
+    /// from `k = 0` on (Bellman 1958), for the `k` from the fewest hops of a node to as many more as the options allow.
     ///
     /// # Complexity
-    /// With E edges that the hops allowed leave of use: E hop tests and risk estimates, `E (1 + extra)` additions.
-    pub(super) fn of(graph: &HopGraph<'_>, costs: &[Option<Cost>], options: &SearchOptions, surety: &SuretyOptions) -> Self {
-        let extra = u64::from(surety.extra_hops_max);
+    /// With E edges on some path within the hop budget: E hop tests and risk estimates, `E (1 + extra)` additions.
+    pub(super) fn of(
+        graph: &HopGraph<'_>,
+        costs: &[Option<Cost>],
+        options: &SearchOptions,
+        reliability: &ReliabilityOptions,
+    ) -> Self {
+        let extra = u64::from(reliability.extra_hops_max);
         let fewest = |node: usize| costs[node].map(Cost::hops);
         let goal = graph.nodes().goal().index();
-        let ways = |node: usize| -> Vec<WayOn> {
+        let edges = |node: usize| -> Vec<Successor> {
             let Some(own) = fewest(node).filter(|_| node != goal) else { return Vec::new() };
-            let of_use = |step: &super::surest::Step| fewest(step.target).is_some_and(|rest| step.hops + rest <= own + extra);
-            let weighed = |step: super::surest::Step| {
-                let weight = edge_weight(graph, (node, step.target), options, surety);
-                WayOn { target: step.target, hops: step.hops, weight }
+            let of_use = |step: &super::reliability::Step| fewest(step.target).is_some_and(|rest| step.hops + rest <= own + extra);
+            let weighed = |step: super::reliability::Step| {
+                let weight = edge_weight(graph, (node, step.target), options, reliability);
+                Successor { target: step.target, hops: step.hops, weight }
             };
             steps_from(graph, node).into_iter().filter(of_use).map(weighed).collect()
         };
-        let ways: Vec<Vec<WayOn>> = (0..costs.len()).into_par_iter().map(ways).collect();
+        let edges: Vec<Vec<Successor>> = (0..costs.len()).into_par_iter().map(edges).collect();
         let mut table = Table::new(costs, extra);
         for allowed in 0..=table.most_hops {
             for node in (0..costs.len()).filter(|&node| node != goal) {
                 let Some(place) = table.place(node, allowed) else { continue };
-                let least = ways[node].iter().map(|way| table.onward(way, allowed)).fold(f64::INFINITY, f64::min);
+                let least = edges[node].iter().map(|edge| table.onward(edge, allowed)).fold(f64::INFINITY, f64::min);
                 table.weights[place] = least;
             }
         }
         let ranked = |node: usize| -> Vec<NodeId> {
             let Some(own) = fewest(node) else { return Vec::new() };
             let allowed = own + extra;
-            let mut onward: Vec<(f64, u64, usize)> = ways[node]
+            let mut onward: Vec<(f64, u64, usize)> = edges[node]
                 .iter()
-                .map(|way| (table.onward(way, allowed), way, allowed.saturating_sub(way.hops)))
+                .map(|edge| (table.onward(edge, allowed), edge, allowed.saturating_sub(edge.hops)))
                 .filter(|&(weight, ..)| weight < f64::INFINITY)
-                .map(|(weight, way, rest)| (weight, way.hops + table.hops_of_use(way.target, rest), way.target))
+                .map(|(weight, edge, rest)| (weight, edge.hops + table.hops_of_use(edge.target, rest), edge.target))
                 .collect();
-            // Of equally sure ways that of fewest hops: where no hop risks anything, each brings the goal nearer for all that.
+            // Of equally reliable paths the one with the fewest hops, so that hops without risk lead to the goal as well.
             onward.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-            onward.into_iter().take(KEPT).map(|way| NodeId(way.2)).collect()
+            onward.into_iter().take(KEPT).map(|(.., target)| NodeId(target)).collect()
         };
         Self {
-            ways_on: (0..costs.len()).map(ranked).collect(),
+            successors: (0..costs.len()).map(ranked).collect(),
             #[cfg(test)]
             weights: (0..costs.len()).map(|node| fewest(node).map_or(f64::INFINITY, |own| table.at(node, own + extra))).collect(),
         }
     }
 
-    /// The nodes to hop to from a node, the surest way first; none from the goal and where no way leads there.
-    pub(super) fn ways_on(&self, node: NodeId) -> &[NodeId] {
-        &self.ways_on[node.index()]
+    /// The successors of a node, the most reliable first; empty at the goal and where no path leads to it.
+    pub(super) fn successors(&self, node: NodeId) -> &[NodeId] {
+        &self.successors[node.index()]
     }
 }
 
@@ -112,7 +117,7 @@ impl<'a> Table<'a> {
         Self { costs, extra, most_hops, weights }
     }
 
-    /// Where the weight of a node with so many hops allowed stands; `None` where it has no way of so few, or more than enough.
+    /// Where the weight of a node with so many hops allowed stands; `None` where no path is that short, or more hops are allowed than needed.
     fn place(&self, node: usize, allowed: u64) -> Option<usize> {
         let more = allowed.checked_sub(self.costs[node]?.hops()).filter(|&more| more <= self.extra)?;
         #[expect(clippy::cast_possible_truncation, reason = "a few hops more")]
@@ -124,7 +129,7 @@ impl<'a> Table<'a> {
         self.place(node, allowed).map_or(f64::INFINITY, |place| self.weights[place])
     }
 
-    /// The fewest hops of the surest way from a node with so many allowed.
+    /// The fewest hops of the most reliable path from a node with so many allowed.
     fn hops_of_use(&self, node: usize, allowed: u64) -> u64 {
         let weight = self.at(node, allowed);
         let fewer = (0..=allowed).rev().take_while(|&hops| self.place(node, hops).is_some() && self.at(node, hops) == weight);
@@ -132,8 +137,8 @@ impl<'a> Table<'a> {
     }
 
     /// The least weight of a journey that goes on by an edge, with so many hops allowed in all.
-    fn onward(&self, way: &WayOn, allowed: u64) -> f64 {
-        allowed.checked_sub(way.hops).map_or(f64::INFINITY, |rest| way.weight + self.at(way.target, rest))
+    fn onward(&self, edge: &Successor, allowed: u64) -> f64 {
+        allowed.checked_sub(edge.hops).map_or(f64::INFINITY, |rest| edge.weight + self.at(edge.target, rest))
     }
 }
 
@@ -148,7 +153,7 @@ mod tests {
     use super::*;
     use crate::{
         chain::{ConstrainedChain, PolygonalChain},
-        graph::{CostToGo, NodeSet, PointSpacing, surest_paths},
+        graph::{CostToGo, NodeSet, PointSpacing, most_reliable_paths},
         hop::{HopDeviations, HopTest, RiskModel},
         quantity::{Angle, ChainPoint},
         world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
@@ -171,9 +176,9 @@ mod tests {
         [RiskModel::Deviations(deviations), RiskModel::Slack]
     }
 
-    /// The other road: the surest path from each start, forwards.
+    /// Against the most reliable path from each start, found forwards.
     #[test]
-    fn every_node_has_to_go_what_the_surest_path_from_it_risks() {
+    fn the_policy_weighs_every_node_as_the_most_reliable_path_from_it() {
         let (chain, hopper) = rough_chain();
         let test = HopTest::new(&chain, &hopper, 1.6);
         let station = |x_m| chain.geometry().station(x_m).unwrap();
@@ -184,13 +189,13 @@ mod tests {
                 let nodes = NodeSet::new(&chain, station(start_m), station(34.0), SPACING).unwrap();
                 let mut with_fewer = f64::INFINITY;
                 for extra_hops_max in 0..=3 {
-                    let surety = SuretyOptions { model, extra_hops_max, goal_tolerance_m: Some(0.5) };
+                    let reliability = ReliabilityOptions { model, extra_hops_max, goal_tolerance_m: Some(0.5) };
                     let to_go = CostToGo::of(&test, nodes.clone(), &options);
                     let costs: Vec<_> = (0..nodes.stations().len()).map(|node| to_go.of_node(NodeId(node))).collect();
                     let graph = HopGraph::new(&test, &nodes, options.effort, options.takeoff, options.split);
-                    let surest = SurestToGo::of(&graph, &costs, &options, &surety);
-                    let path = surest_paths(&test, &nodes, &options, &surety).pop().expect("a path");
-                    let weight = surest.weights[nodes.start().index()];
+                    let policy = ReliabilityPolicy::of(&graph, &costs, &options, &reliability);
+                    let path = most_reliable_paths(&test, &nodes, &options, &reliability).pop().expect("a path");
+                    let weight = policy.weights[nodes.start().index()];
                     assert!(
                         (libm::exp(-weight) - path.success).abs() <= 1e-12 * path.success,
                         "{start_m} m, {extra_hops_max}: {weight}"
@@ -202,30 +207,30 @@ mod tests {
             }
         }
         assert_eq!(compared, 32);
-        assert!(bought > 4, "hops bought surety {bought} times");
+        assert!(bought > 4, "extra hops raised the reliability {bought} times");
     }
 
     #[test]
-    fn the_first_ways_on_lead_from_every_node_to_the_goal() {
+    fn the_first_successors_lead_from_every_node_to_the_goal() {
         let (chain, hopper) = rough_chain();
         let test = HopTest::new(&chain, &hopper, 1.6);
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         for model in models() {
             for extra_hops_max in [0, 2] {
-                let surety = SuretyOptions { model, extra_hops_max, goal_tolerance_m: None };
+                let reliability = ReliabilityOptions { model, extra_hops_max, goal_tolerance_m: None };
                 let nodes = NodeSet::new(&chain, station(2.0), station(34.0), SPACING).unwrap();
                 let (count, goal) = (nodes.stations().len(), nodes.goal());
                 let options = SearchOptions { spacing: Some(SPACING), ..SearchOptions::default() };
-                let to_go = CostToGo::surely(&test, nodes, &options, &surety);
+                let to_go = CostToGo::with_reliability(&test, nodes, &options, &reliability);
                 let mut arrived = 0;
                 for start in (0..count).map(NodeId) {
                     assert_eq!(
-                        to_go.surest_ways_on(start).is_empty(),
+                        to_go.reliable_successors(start).is_empty(),
                         start == goal || to_go.of_node(start).is_none(),
                         "{start:?}"
                     );
-                    let ways = std::iter::successors(Some(start), |node| to_go.surest_ways_on(*node).first().copied());
-                    let last = ways.take(count + 1).last();
+                    let path = std::iter::successors(Some(start), |node| to_go.reliable_successors(*node).first().copied());
+                    let last = path.take(count + 1).last();
                     if to_go.of_node(start).is_some() {
                         assert_eq!(last, Some(goal), "from {start:?} in circles");
                         arrived += 1;

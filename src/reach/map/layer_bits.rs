@@ -1,4 +1,4 @@
-//! The nodes of one front as bits, so that a node far from all of them is passed over at the cost of a few words.
+//! The nodes of one BFS layer as a bitmap, so that a node far from all of them is skipped after a look at a few words.
 
 use super::{
     lattice::{NodeLattice, Post},
@@ -8,9 +8,9 @@ use super::{
 /// Bits in a word.
 const WORD: usize = u64::BITS as usize;
 
-/// Which nodes of a lattice belong to a front.
+/// A bitmap of the nodes of a lattice that belong to one BFS layer.
 #[derive(Clone, Debug)]
-pub(super) struct Front {
+pub(super) struct LayerBits {
     rows: usize,
     words_in_row: usize,
     words: Vec<u64>,
@@ -18,8 +18,8 @@ pub(super) struct Front {
     occupied: Vec<bool>,
 }
 
-impl Front {
-    /// No node of it.
+impl LayerBits {
+    /// An empty layer.
     pub(super) fn none(lattice: NodeLattice) -> Self {
         let words_in_row = lattice.cols.div_ceil(WORD);
         Self { rows: lattice.rows, words_in_row, words: vec![0; words_in_row * lattice.rows], occupied: vec![false; lattice.rows] }
@@ -139,13 +139,13 @@ mod tests {
             let lattice = lattice(rows, cols);
             let offsets = offsets(lattice, dx_m, range_m);
             let disc = Disc::of(&offsets);
-            let mut front = Front::none(lattice);
+            let mut layer = LayerBits::none(lattice);
             for node in (0..lattice.count()).step_by(3).map(|index| lattice.node(index)) {
-                front.clear();
-                front.insert(node);
+                layer.clear();
+                layer.insert(node);
                 for about in (0..lattice.count()).map(|index| lattice.node(index)) {
                     let (meets, inside) = plainly(lattice, &offsets, about, node);
-                    assert_eq!(front.any_in(&disc, about), meets, "{rows} x {cols}: {node:?} from {about:?}");
+                    assert_eq!(layer.any_in(&disc, about), meets, "{rows} x {cols}: {node:?} from {about:?}");
                     assert_eq!(disc.is_inside(lattice, about), inside, "{rows} x {cols}: {about:?}");
                     (met, missed, within) = (met + usize::from(meets), missed + usize::from(!meets), within + usize::from(inside));
                 }

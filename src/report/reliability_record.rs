@@ -1,13 +1,13 @@
-//! What hops buy in surety, as rows.
+//! The Pareto front of hops against success probability, as rows.
 
 use serde::Serialize;
 
 use super::text::Sheet;
-use crate::graph::SurestPath;
+use crate::graph::ReliablePath;
 
-/// The surest path of one number of hops.
+/// The most reliable path of one hop count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct SurestRecord {
+pub struct ReliablePathRecord {
     /// How many hops.
     pub hops: u64,
     /// The estimated probability that all of them come off.
@@ -16,9 +16,9 @@ pub struct SurestRecord {
     pub effort: f64,
 }
 
-impl SurestRecord {
+impl ReliablePathRecord {
     /// A row for each path.
-    pub fn rows(paths: &[SurestPath]) -> Vec<Self> {
+    pub fn rows(paths: &[ReliablePath]) -> Vec<Self> {
         paths
             .iter()
             .map(|path| Self { hops: path.cost.hops(), estimated_success: path.success, effort: path.cost.effort() })
@@ -27,7 +27,7 @@ impl SurestRecord {
 }
 
 /// The rows for reading; empty where there are none.
-pub fn surest_text(rows: &[SurestRecord]) -> String {
+pub fn reliable_paths_text(rows: &[ReliablePathRecord]) -> String {
     let mut sheet = Sheet::default();
     if !rows.is_empty() {
         sheet.line(format_args!(

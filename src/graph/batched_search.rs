@@ -1,4 +1,5 @@
-//! The search itself: nodes settled in batches of one hop count, their edges evaluated then and never stored.
+//! The search itself: label-setting A* in batches of equal hop count. A batch's edges are evaluated when its nodes are settled, and never
+//! stored.
 //!
 //! Every edge takes one hop at least, so a node's best cost is known once all nodes of fewer hops have had their say: all that are then
 //! due at one hop count are one batch, evaluated in any order and by any number of threads. What a batch offers to a node is compared by
@@ -42,17 +43,17 @@ impl Origin {
     }
 }
 
-/// The best way known to a node or a goal.
+/// The best path known to a node or a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Label {
     pub(super) cost: Cost,
     pub(super) from: Origin,
-    /// Whether no better way can turn up.
+    /// Whether no better path can turn up.
     settled: bool,
 }
 
 impl Label {
-    /// No way known.
+    /// No path known.
     pub(super) const UNKNOWN: Self = Self { cost: Cost::UNREACHED, from: Origin(u32::MAX), settled: false };
 
     /// Where the journey begins.
@@ -72,12 +73,12 @@ impl Label {
         (cost, from) < (self.cost, self.from)
     }
 
-    /// Whether some way is known.
+    /// Whether some path is known.
     pub(super) const fn is_known(&self) -> bool {
         self.cost.hops() < Cost::UNREACHED.hops()
     }
 
-    /// Whether a way of so many hops might be better.
+    /// Whether a path of so many hops might be better.
     const fn waits_for(&self, hops: u64, aim: Aim) -> bool {
         let known = self.cost.hops();
         !self.settled
@@ -119,13 +120,13 @@ pub(super) struct Takeoff {
 pub(super) enum Aim {
     /// Fewest hops, then least effort.
     HopsThenEffort,
-    /// Fewest hops alone: the first way of so many will do.
+    /// Fewest hops alone: the first path with that hop count is enough.
     Hops,
 }
 
-/// A search over one graph, for one start after another.
+/// A label-setting A* search over one graph, for one start after another; nodes of equal hop count are settled as one batch.
 #[derive(Debug)]
-pub(super) struct Fronts<'g> {
+pub(super) struct BatchedSearch<'g> {
     graph: &'g HopGraph<'g>,
     table: &'g LandingTable<'g>,
     reach: &'g LocalReach,
@@ -144,7 +145,7 @@ pub(super) struct Fronts<'g> {
     arrange: fn(&mut [Takeoff]),
 }
 
-impl<'g> Fronts<'g> {
+impl<'g> BatchedSearch<'g> {
     /// Some 100 to 200 microseconds of work.
     const SHARED_FROM_PAIRS: usize = 4096;
     /// Pieces of a shared batch for each thread, so that unequal ones even out.
@@ -173,7 +174,7 @@ impl<'g> Fronts<'g> {
         self.tally
     }
 
-    /// The fewest hops to a node, where the last run found no way to some goal or had none; `None` where no hops get there.
+    /// The fewest hops to a node, where the last run found no path to some goal or had none; `None` where no hops get there.
     pub(super) fn hops(&self, node: NodeId) -> Option<u64> {
         let label = self.labels[node.index()];
         label.is_known().then(|| label.cost.hops())
@@ -247,7 +248,7 @@ impl<'g> Fronts<'g> {
     /// of them to lead there.
     fn settle(&mut self, batch: &mut [Takeoff], goals: &mut Goals, left: HopsLeft<'_>) {
         self.tally += goals.land_from(self.graph, batch);
-        // By way of a landing of this batch it takes two hops more, at least.
+        // A path through a landing of this batch takes at least two hops more.
         let Some(takeoff) = batch.first() else { return };
         if takeoff.cost.hops() + 2 > goals.most_hops() {
             return;
@@ -316,7 +317,7 @@ impl<'g> Fronts<'g> {
     }
 }
 
-/// Nodes side by side on their way to better labels, all from take-offs of the same hops.
+/// Neighbouring nodes that may still get better labels, all from take-offs of the same hops.
 #[derive(Clone, Copy)]
 struct Stretch<'s> {
     graph: &'s HopGraph<'s>,
@@ -345,7 +346,7 @@ impl Stretch<'_> {
                 let waits = |node: &&usize| labels[**node - self.first].waits_for(self.hops, self.aim);
                 let (Some(&first), Some(&last)) = (landings.iter().find(waits), landings.iter().rfind(waits)) else { continue };
                 sweep.landings(&takeoff.station, first..last + 1, direction, |node, single| {
-                    self.judge(takeoff, node, single, &mut labels[node - self.first], &mut tally);
+                    self.evaluate(takeoff, node, single, &mut labels[node - self.first], &mut tally);
                 });
             }
         }
@@ -354,7 +355,7 @@ impl Stretch<'_> {
 
     /// Offers a node what the hop test makes of one pair, where it waits for that.
     #[inline]
-    fn judge(&self, takeoff: &Takeoff, node: usize, single: Result<SlopeInterval, Limit>, label: &mut Label, tally: &mut Tally) {
+    fn evaluate(&self, takeoff: &Takeoff, node: usize, single: Result<SlopeInterval, Limit>, label: &mut Label, tally: &mut Tally) {
         if !label.waits_for(self.hops, self.aim) {
             return;
         }
@@ -424,10 +425,10 @@ mod tests {
                 let mut goals = Goals::new(&[at(59), at(40)]);
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let found = pool.install(|| {
-                    let mut fronts = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
-                    (fronts.arrange, fronts.shared_from_pairs) = (arrange, 0);
-                    fronts.run(&at(1), &mut goals);
-                    (fronts.labels.clone(), fronts.tally, goals.ways())
+                    let mut search = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
+                    (search.arrange, search.shared_from_pairs) = (arrange, 0);
+                    search.run(&at(1), &mut goals);
+                    (search.labels.clone(), search.tally, goals.labels())
                 });
                 assert!(found.2.iter().all(Option::is_some));
                 assert!(expected.get_or_insert_with(|| found.clone()) == &found, "{effort:?}, {threads} threads");
@@ -454,13 +455,13 @@ mod tests {
         let graph = HopGraph::new(&test, &nodes, Effort::Time, TakeoffChoice::MidRange, Split::Equal);
         let (table, reach) = (LandingTable::new(&test, nodes.stations()), LocalReach::of(&test));
         let at = |i| chain.geometry().vertex_station(VertexId(i));
-        let mut one = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+        let mut one = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
         for start in [0, 30, 59, 12] {
-            let mut fresh = Fronts::new(&graph, &table, &reach, Aim::HopsThenEffort);
+            let mut fresh = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
             let (mut goals, mut same) = (Goals::new(&[at(20), at(45)]), Goals::new(&[at(20), at(45)]));
             one.run(&at(start), &mut goals);
             fresh.run(&at(start), &mut same);
-            assert_eq!((one.labels.clone(), one.tally, goals.ways()), (fresh.labels, fresh.tally, same.ways()));
+            assert_eq!((one.labels.clone(), one.tally, goals.labels()), (fresh.labels, fresh.tally, same.labels()));
         }
     }
 }
