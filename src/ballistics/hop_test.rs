@@ -1,6 +1,6 @@
 //! The hop test: may one hop join two stations, and with which take-off slopes?
 
-use super::{GroundGrant, LineOfSight, OpenAir, SegmentHops, SegmentReach, TakeoffSet, limits, reach::Relief};
+use super::{FlightEnvelope, GroundGrant, LineOfSight, SegmentHops, SegmentReach, TakeoffSet, limits, reach::Relief};
 use crate::{
     chain::{ConstrainedChain, Contact, ContactRule, Direction, Station},
     quantity::{SegmentId, SlopeInterval},
@@ -13,7 +13,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct HopTest<'a> {
     chain: &'a ConstrainedChain,
-    air: OpenAir,
+    envelope: FlightEnvelope,
     /// Heights and speeds over any stretch.
     relief: Relief,
     /// How far one hop carries on each segment, by direction.
@@ -23,7 +23,8 @@ pub struct HopTest<'a> {
 impl<'a> HopTest<'a> {
     /// For a chain, a hopper and a gravity above 0 in m/s^2.
     pub fn new(chain: &'a ConstrainedChain, hopper: &Hopper, gravity_m_s2: f64) -> Self {
-        let mut test = Self { chain, air: OpenAir::new(hopper, gravity_m_s2), relief: Relief::of(chain), reaches: Vec::new() };
+        let mut test =
+            Self { chain, envelope: FlightEnvelope::new(hopper, gravity_m_s2), relief: Relief::of(chain), reaches: Vec::new() };
         test.reaches = (0..chain.segments().len())
             .map(|i| Direction::BOTH.map(|direction| SegmentReach::on(&test, SegmentId(i), direction)))
             .collect();
@@ -37,12 +38,12 @@ impl<'a> HopTest<'a> {
 
     /// The hopper it answers for.
     pub const fn hopper(&self) -> &Hopper {
-        self.air.hopper()
+        self.envelope.hopper()
     }
 
     /// Gravity, m/s^2.
     pub const fn gravity_m_s2(&self) -> f64 {
-        self.air.gravity_m_s2()
+        self.envelope.gravity_m_s2()
     }
 
     /// Heights and speeds over any stretch of the chain.
@@ -52,7 +53,7 @@ impl<'a> HopTest<'a> {
 
     /// The machine's own take-off slopes.
     pub const fn mechanical(&self) -> SlopeInterval {
-        self.air.mechanical()
+        self.envelope.mechanical()
     }
 
     /// The line of sight between two stations in the direction of travel; `None` where they share the same x.
@@ -86,16 +87,16 @@ impl<'a> HopTest<'a> {
             return Err(Limit::Bend);
         }
         let sight = self.line_of_sight(takeoff, landing).ok_or(Limit::Direction)?;
-        let open_air = self.open_air(sight, from, to)?;
+        let in_envelope = self.lofts_in_envelope(sight, from, to)?;
         let vertices = self.chain.geometry().vertices();
-        let mut lower = open_air.lower;
+        let mut lower = in_envelope.lower;
         for point in &vertices[limits::flown_past(takeoff, landing)] {
-            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.air.hopper().clearance_m));
-            if lower > open_air.upper {
+            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.envelope.hopper().clearance_m));
+            if lower > in_envelope.upper {
                 return Err(Limit::Terrain);
             }
         }
-        Ok(SlopeInterval { lower, upper: open_air.upper })
+        Ok(SlopeInterval { lower, upper: in_envelope.upper })
     }
 
     /// The rule that the ground grants a contact, or the limit by which it refuses.
@@ -113,22 +114,27 @@ impl<'a> HopTest<'a> {
     /// # Errors
     /// The limit that left nothing.
     #[inline]
-    pub(crate) fn open_air(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Result<SlopeInterval, Limit> {
+    pub(crate) fn lofts_in_envelope(
+        &self,
+        sight: LineOfSight,
+        from: &ContactRule,
+        to: &ContactRule,
+    ) -> Result<SlopeInterval, Limit> {
         let grant = |rule: &ContactRule| GroundGrant { slopes: rule.slopes(), speed_max_m_s: rule.speed_max_m_s() };
-        let loft = self.air.lofts(sight, grant(from), grant(to));
+        let loft = self.envelope.lofts(sight, grant(from), grant(to));
         if loft.is_empty() || loft.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(loft) }
     }
 
     /// The lofts that the machine's greatest height and longest flight allow.
     #[inline]
     pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
-        self.air.machine(sight)
+        self.envelope.machine(sight)
     }
 
     /// Whether the machine has a greatest height or a longest flight.
     #[inline]
     pub(super) const fn has_machine_limits(&self) -> bool {
-        self.air.hopper().apex_height_max_m.is_some() || self.air.hopper().flight_time_max_s.is_some()
+        self.envelope.hopper().apex_height_max_m.is_some() || self.envelope.hopper().flight_time_max_s.is_some()
     }
 
     /// Which limit left nothing, limits taken one after the other.
@@ -157,7 +163,10 @@ impl<'a> HopTest<'a> {
             (Limit::TakeoffCone, limits::takeoff_cone(sight, takeoff_slopes)),
             (Limit::LandingCone, limits::landing_cone(sight, landing_slopes)),
             (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical())),
-            (Limit::ApexHeight, self.air.hopper().apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
+            (
+                Limit::ApexHeight,
+                self.envelope.hopper().apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h)),
+            ),
         ];
         let mut left = speeds;
         for (limit, loft) in in_order {

@@ -171,7 +171,7 @@ impl SegmentHops {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
         // At full reach the set is one point, which rounding may lose.
         let only = SlopeInterval { lower: self.reach.loft, upper: self.reach.loft };
-        test.open_air(sight, &self.reach.from, &self.reach.to).unwrap_or(only)
+        test.lofts_in_envelope(sight, &self.reach.from, &self.reach.to).unwrap_or(only)
     }
 }
 

@@ -201,7 +201,7 @@ impl<'a> DemGround<'a> {
         let (ahead, before) = (from.at + heading * BESIDE_M, to.at - heading * BESIDE_M);
         let takeoff = self.granted(self.triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
         let landing = self.granted(self.triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
-        let mut lofts = self.test.open_air(sight, &takeoff, &landing).ok()?;
+        let mut lofts = self.test.lofts_in_envelope(sight, &takeoff, &landing).ok()?;
         let end_m = sight.run_m() - self.place_rounding_m - BESIDE_M;
         let clearance_m = self.test.hopper().clearance_m;
         let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(sight.run_m(), to.z_m));

@@ -18,7 +18,7 @@ pub(super) struct Departure {
     pub(super) cone: SlopeInterval,
 }
 
-/// The open-air verdicts over one block of landings: the formulas of [`HopTest::loft`], operation by operation, so that every number
+/// The verdicts of the flight envelope over one block of landings: the formulas of [`HopTest::loft`], operation by operation, so that every number
 /// is the same to the last bit; written so that the compiler can take several landings per instruction.
 #[derive(Clone, Debug)]
 pub(super) struct Lanes {

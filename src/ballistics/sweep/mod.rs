@@ -120,17 +120,17 @@ impl<'a> Sweep<'a> {
         lane: usize,
     ) -> Result<SlopeInterval, Limit> {
         let (test, landing) = (self.table.test(), &self.table.stations()[i]);
-        let Some(open_air) = self.lanes.loft(lane) else {
+        let Some(in_envelope) = self.lanes.loft(lane) else {
             let rules = self.table.rules(direction);
             let cone = SlopeInterval { lower: rules.cone_lower[i], upper: rules.cone_upper[i] };
             let run_m = (landing.point.x_m - from.x_m).abs();
             return Err(self.lanes.refusing(test, from, lane, run_m, cone));
         };
-        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), open_air.lower);
-        if (lower - open_air.upper).abs() <= TOUCHING * (lower.abs() + open_air.upper.abs()) && lower > open_air.lower {
+        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), in_envelope.lower);
+        if (lower - in_envelope.upper).abs() <= TOUCHING * (lower.abs() + in_envelope.upper.abs()) && lower > in_envelope.lower {
             return test.loft(takeoff, landing);
         }
-        if lower > open_air.upper { Err(Limit::Terrain) } else { Ok(SlopeInterval { lower, upper: open_air.upper }) }
+        if lower > in_envelope.upper { Err(Limit::Terrain) } else { Ok(SlopeInterval { lower, upper: in_envelope.upper }) }
     }
 }
 

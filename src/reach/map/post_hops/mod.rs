@@ -20,7 +20,7 @@ use super::{
     samples::{Heights, Walk},
 };
 use crate::{
-    ballistics::{GroundGrant, LineOfSight, OpenAir},
+    ballistics::{FlightEnvelope, GroundGrant, LineOfSight},
     chain::{ConstrainedChain, QuickCone, QuickGrip},
     quantity::SlopeInterval,
     terrain::Profile,
@@ -51,7 +51,7 @@ pub struct PostHops<'a> {
     ground: GroundTable,
     covers: Option<CoverTable>,
     grip: Option<QuickGrip>,
-    air: OpenAir,
+    envelope: FlightEnvelope,
     /// How many of the nearest offsets are within reach of each block's nodes.
     within_reach: Vec<usize>,
     /// Whether map coordinates are too coarse for quick arithmetic.
@@ -96,7 +96,7 @@ impl<'a> PostHops<'a> {
             Some(Grip::FromSlope { takeoff, landing }) => Some(QuickGrip::from_slope(takeoff, landing)),
             None => None,
         };
-        let air = OpenAir::new(hopper, request.gravity_m_s2);
+        let envelope = FlightEnvelope::new(hopper, request.gravity_m_s2);
         let bounds = dem.bounds();
         let step_m = dem.georeference().dx_m().min(dem.georeference().dy_m());
         let (low_m, high_m) = dem.elevation_range_m();
@@ -112,7 +112,7 @@ impl<'a> PostHops<'a> {
             ground,
             covers,
             grip,
-            air,
+            envelope,
             within_reach: Vec::new(),
             coarse,
         };
@@ -131,8 +131,8 @@ impl<'a> PostHops<'a> {
     }
 
     /// The hopper under its gravity.
-    pub(super) const fn air(&self) -> &OpenAir {
-        &self.air
+    pub(super) const fn envelope(&self) -> &FlightEnvelope {
+        &self.envelope
     }
 
     /// All offsets, nearest first.
@@ -227,9 +227,9 @@ impl<'a> PostHops<'a> {
         }
         let Some((slopes, mut sure)) = self.cones(takeoff, landing, offset, cover) else { return Verdict::No };
         sure &= cover != Cover::Mixed && !self.coarse;
-        let hopper = self.air.hopper();
+        let hopper = self.envelope.hopper();
         let sight = LineOfSight::new(offset.run_m, rise_m);
-        let lofts = self.air.lofts(
+        let lofts = self.envelope.lofts(
             sight,
             GroundGrant { slopes: slopes[0], speed_max_m_s: hopper.takeoff_speed_max_m_s },
             GroundGrant { slopes: slopes[1], speed_max_m_s: hopper.landing_speed_max_m_s },
