@@ -1,6 +1,6 @@
 //! The hop test: may one hop join two stations, and with which take-off slopes?
 
-use super::{FlightEnvelope, GroundGrant, LineOfSight, SegmentHops, SegmentReach, TakeoffSet, limits, reach::Relief};
+use super::{ContactLimits, FlightEnvelope, LineOfSight, SegmentHops, SegmentReach, TakeoffSet, limits, reach::Relief};
 use crate::{
     chain::{ConstrainedChain, Contact, ContactRule, Direction, Station},
     quantity::{SegmentId, SlopeInterval},
@@ -81,8 +81,8 @@ impl<'a> HopTest<'a> {
     #[inline]
     pub fn loft(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).ok_or(Limit::Direction)?;
-        let from = self.granted(takeoff, Contact::Takeoff, direction)?;
-        let to = self.granted(landing, Contact::Landing, direction)?;
+        let from = self.allowed(takeoff, Contact::Takeoff, direction)?;
+        let to = self.allowed(landing, Contact::Landing, direction)?;
         if self.chain.geometry().bend_between(takeoff.point.x_m, landing.point.x_m).is_some() {
             return Err(Limit::Bend);
         }
@@ -99,11 +99,11 @@ impl<'a> HopTest<'a> {
         Ok(SlopeInterval { lower, upper: in_envelope.upper })
     }
 
-    /// The rule that the ground grants a contact, or the limit by which it refuses.
+    /// The rule that the ground allows a contact, or the limit by which it refuses.
     #[inline]
-    pub(super) fn granted(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
+    pub(super) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
         let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
-        segment.granted(contact, direction).ok_or_else(|| match segment.judged(contact, direction) {
+        segment.allowed(contact, direction).ok_or_else(|| match segment.judged(contact, direction) {
             Err(refusal) => refusal.limit(contact),
             Ok(_) => Limit::Direction,
         })
@@ -120,8 +120,8 @@ impl<'a> HopTest<'a> {
         from: &ContactRule,
         to: &ContactRule,
     ) -> Result<SlopeInterval, Limit> {
-        let grant = |rule: &ContactRule| GroundGrant { slopes: rule.slopes(), speed_max_m_s: rule.speed_max_m_s() };
-        let loft = self.envelope.lofts(sight, grant(from), grant(to));
+        let limits_of = |rule: &ContactRule| ContactLimits { slopes: rule.slopes(), speed_max_m_s: rule.speed_max_m_s() };
+        let loft = self.envelope.lofts(sight, limits_of(from), limits_of(to));
         if loft.is_empty() || loft.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(loft) }
     }
 

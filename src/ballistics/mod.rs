@@ -42,7 +42,7 @@ mod takeoff_set;
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
 pub use choice::TakeoffChoice;
 pub use conflict::{Conflict, Shortfall};
-pub use flight_envelope::{FlightEnvelope, GroundGrant};
+pub use flight_envelope::{ContactLimits, FlightEnvelope};
 pub use hop_test::HopTest;
 pub use line_of_sight::LineOfSight;
 pub use risk::{HopDeviations, PlannedHop, RiskModel};

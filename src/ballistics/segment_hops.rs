@@ -67,8 +67,8 @@ impl SegmentReach {
     /// The reach along a segment; `None` where its ground or its cones allow no arc along it.
     pub(super) fn on(test: &HopTest<'_>, segment: SegmentId, direction: Direction) -> Option<Self> {
         let constraints = test.chain().segments().get(segment.index())?;
-        let from = constraints.granted(Contact::Takeoff, direction)?;
-        let to = constraints.granted(Contact::Landing, direction)?;
+        let from = constraints.allowed(Contact::Takeoff, direction)?;
+        let to = constraints.allowed(Contact::Landing, direction)?;
         let sight_slope = direction.sign() * test.chain().geometry().slopes()[segment.index()];
         let sight = LineOfSight::along(1.0, sight_slope);
         let lofts = limits::takeoff_cone(sight, from.slopes().intersect(test.mechanical()))

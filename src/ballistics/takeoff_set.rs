@@ -128,7 +128,7 @@ fn all_limits(
 ) -> Vec<LimitInterval> {
     let mut found = Vec::with_capacity(Limit::ALL.len());
     let mut add = |limit, loft, vertex, shortfall| found.push(LimitInterval { limit, loft, vertex, shortfall });
-    let mut granted = |contact, station: &Station| -> Option<ContactRule> {
+    let mut allowed = |contact, station: &Station| -> Option<ContactRule> {
         match test.chain().judged(station, contact, direction) {
             Ok(rule) => Some(rule),
             Err(refusal) => {
@@ -137,8 +137,8 @@ fn all_limits(
             }
         }
     };
-    let from = granted(Contact::Takeoff, takeoff);
-    let to = granted(Contact::Landing, landing);
+    let from = allowed(Contact::Takeoff, takeoff);
+    let to = allowed(Contact::Landing, landing);
     if let Some(vertex) = test.chain().geometry().bend_between(takeoff.point.x_m, landing.point.x_m) {
         let x_m = test.chain().geometry().vertices()[vertex.index()].x_m;
         add(Limit::Bend, SlopeInterval::EMPTY, Some(vertex), Some(Shortfall::Bend { x_m }));

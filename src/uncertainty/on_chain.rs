@@ -176,7 +176,7 @@ impl<'a> ChainGround<'a> {
     ) -> Result<crate::chain::ContactRule, GroundRefusal> {
         let segment = segment.ok_or(GroundRefusal::NoGround)?.index();
         if self.is_nominal()
-            && let Some(rule) = self.test.chain().segments().get(segment).and_then(|s| s.granted(contact, direction))
+            && let Some(rule) = self.test.chain().segments().get(segment).and_then(|s| s.allowed(contact, direction))
         {
             return Ok(*rule);
         }

@@ -140,13 +140,13 @@ impl<'a> DemGround<'a> {
         Some(LineConstraints::from_offsets(slope, takeoff, landing, hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s))
     }
 
-    /// What the nominal ground grants a contact on a facet met along a heading: as a slice along that heading has it.
-    fn granted(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint, contact: Contact) -> Option<ContactRule> {
+    /// What the nominal ground allows a contact on a facet met along a heading: as a slice along that heading has it.
+    fn allowed(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint, contact: Contact) -> Option<ContactRule> {
         let friction = self.nominal_friction(beside);
         let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
         let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out: self.is_kept_out(beside) };
         let settled = settle(SegmentId(0), gradient.dot(&heading), &ground, self.test.hopper(), self.surface).ok()?;
-        settled.granted(contact, Direction::Forward).copied()
+        settled.allowed(contact, Direction::Forward).copied()
     }
 
     /// The best hop to a node, and what the journey then costs, where it could be better than the best known.
@@ -199,8 +199,8 @@ impl<'a> DemGround<'a> {
     ) -> Option<ballistics::Arc> {
         let nominal = self.triangles.nominal();
         let (ahead, before) = (from.at + heading * BESIDE_M, to.at - heading * BESIDE_M);
-        let takeoff = self.granted(self.triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
-        let landing = self.granted(self.triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
+        let takeoff = self.allowed(self.triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
+        let landing = self.allowed(self.triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
         let mut lofts = self.test.lofts_in_envelope(sight, &takeoff, &landing).ok()?;
         let end_m = sight.run_m() - self.place_rounding_m - BESIDE_M;
         let clearance_m = self.test.hopper().clearance_m;

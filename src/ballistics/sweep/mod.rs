@@ -80,7 +80,7 @@ impl<'a> Sweep<'a> {
         let table = self.table;
         let (test, stations, refusals) = (table.test(), table.stations(), &table.rules(direction).refusal);
         let among = table.part_ahead(takeoff, among, direction);
-        let rule = match test.granted(takeoff, Contact::Takeoff, direction) {
+        let rule = match test.allowed(takeoff, Contact::Takeoff, direction) {
             Ok(rule) => rule,
             Err(limit) => return outwards(among, direction).for_each(|i| visit(i, Err(limit))),
         };
@@ -109,7 +109,7 @@ impl<'a> Sweep<'a> {
         outwards(beyond_bend, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(Limit::Bend))));
     }
 
-    /// The verdict on a landing that its ground grants and that lies in its block's lane.
+    /// The verdict on a landing that its ground allows and that lies in its block's lane.
     #[inline]
     fn verdict(
         &mut self,

@@ -35,7 +35,7 @@ struct Block {
     speed_squared: [f64; 2],
 }
 
-/// What the ground grants to landings in one direction of travel, column by column.
+/// What the ground allows landings in one direction of travel, column by column.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LandingRules {
     /// The greatest landing speed with its tolerance, squared, m^2/s^2; 0 where the ground refuses.
@@ -101,7 +101,7 @@ impl<'a> LandingTable<'a> {
         self.stations
     }
 
-    /// What the ground grants in one direction.
+    /// What the ground allows in one direction.
     pub(super) const fn rules(&self, direction: Direction) -> &LandingRules {
         &self.rules[direction as usize]
     }
@@ -197,12 +197,12 @@ impl LandingRules {
         rules.cone_upper.reserve_exact(stations.len());
         rules.refusal.reserve_exact(stations.len());
         for station in stations {
-            let granted = test.granted(station, Contact::Landing, direction);
-            let speed = granted.map_or(0.0, |rule| tolerant_speed_m_s(rule.speed_max_m_s()));
+            let allowed = test.allowed(station, Contact::Landing, direction);
+            let speed = allowed.map_or(0.0, |rule| tolerant_speed_m_s(rule.speed_max_m_s()));
             rules.speed_squared.push(speed * speed);
-            rules.cone_lower.push(granted.map_or(0.0, |rule| rule.slopes().lower));
-            rules.cone_upper.push(granted.map_or(0.0, |rule| rule.slopes().upper));
-            rules.refusal.push(granted.err());
+            rules.cone_lower.push(allowed.map_or(0.0, |rule| rule.slopes().lower));
+            rules.cone_upper.push(allowed.map_or(0.0, |rule| rule.slopes().upper));
+            rules.refusal.push(allowed.err());
         }
         rules
     }

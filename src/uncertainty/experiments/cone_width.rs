@@ -68,9 +68,9 @@ pub fn narrowed(chain: &ConstrainedChain, share: f64) -> Result<PolygonalChain, 
         .iter()
         .map(|segment| {
             let [forward, reverse] = Direction::BOTH.map(|direction| {
-                let granted =
+                let allowed =
                     [Contact::Takeoff, Contact::Landing].iter().all(|&contact| segment.judged(contact, direction).is_ok());
-                segment.stated(direction).filter(|_| granted).map(|line| narrowed_line(line, share))
+                segment.stated(direction).filter(|_| allowed).map(|line| narrowed_line(line, share))
             });
             let keep_out = segment.refusal().is_some() || (forward.is_none() && reverse.is_none());
             Ground { form: GroundForm::Explicit { forward, reverse }, keep_out }

@@ -20,7 +20,7 @@ use super::{
     samples::{Heights, Walk},
 };
 use crate::{
-    ballistics::{FlightEnvelope, GroundGrant, LineOfSight},
+    ballistics::{ContactLimits, FlightEnvelope, LineOfSight},
     chain::{ConstrainedChain, QuickCone, QuickGrip},
     quantity::SlopeInterval,
     terrain::Profile,
@@ -231,8 +231,8 @@ impl<'a> PostHops<'a> {
         let sight = LineOfSight::new(offset.run_m, rise_m);
         let lofts = self.envelope.lofts(
             sight,
-            GroundGrant { slopes: slopes[0], speed_max_m_s: hopper.takeoff_speed_max_m_s },
-            GroundGrant { slopes: slopes[1], speed_max_m_s: hopper.landing_speed_max_m_s },
+            ContactLimits { slopes: slopes[0], speed_max_m_s: hopper.takeoff_speed_max_m_s },
+            ContactLimits { slopes: slopes[1], speed_max_m_s: hopper.landing_speed_max_m_s },
         );
         let most = lofts.upper + near(lofts.upper);
         if lofts.lower - near(lofts.lower) > most || most <= 0.0 || !worth(sight, lofts) {
