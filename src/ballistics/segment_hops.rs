@@ -79,7 +79,7 @@ impl SegmentReach {
         let ends = Ends { b: sight_slope, takeoff_m_s: from.speed_max_m_s(), landing_m_s: to.speed_max_m_s(), test };
         let flattest = lofts.lower.max(f64::MIN_POSITIVE);
         // Not `clamp`, which panics where the set ends below the least positive number.
-        let fastest = sight.stretch().min(lofts.upper).max(flattest);
+        let fastest = sight.secant().min(lofts.upper).max(flattest);
         let loft = ends.best_loft(flattest, fastest);
         let (by_speed, limit) = ends.by_speed_m(loft);
         let (by_machine, machine_limit) = ends.by_machine_m(loft);

@@ -74,17 +74,17 @@ impl Lanes {
         for i in 0..count {
             let run_m = (x_m[i] - from.x_m).abs();
             let b = (z_m[i] - from.z_m) / run_m;
-            let stretch = (1.0 + b * b).sqrt();
-            // The two lifts are each other's reciprocals; which one is the take-off's goes by the sign of b.
-            let steep = stretch + b.abs();
+            let secant = (1.0 + b * b).sqrt();
+            // The two least speed ratios are each other's reciprocals; which one is the take-off's goes by the sign of b.
+            let steep = secant + b.abs();
             let gentle = 1.0 / steep;
             let gravity_run = gravity * run_m;
             let takeoff = from.speed_squared / gravity_run - if b >= 0.0 { steep } else { gentle };
             let landing = speed_squared[i] / gravity_run - if b <= 0.0 { steep } else { gentle };
             let excess = takeoff.min(landing);
-            let half_sum = stretch + excess;
-            let larger = half_sum + excess.sqrt() * (half_sum + stretch).sqrt();
-            let smaller = stretch * (stretch / larger);
+            let half_sum = secant + excess;
+            let larger = half_sum + excess.sqrt() * (half_sum + secant).sqrt();
+            let smaller = secant * (secant / larger);
             slope[i] = b;
             takeoff_excess[i] = takeoff;
             landing_excess[i] = landing;

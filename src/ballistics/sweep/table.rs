@@ -82,12 +82,12 @@ impl<'a> LandingTable<'a> {
         let (left_m, right_m) = ((self.x_m[block.start] - from.x_m).abs(), (self.x_m[block.end - 1] - from.x_m).abs());
         let (near_m, far_m) = (left_m.min(right_m), left_m.max(right_m));
         let (low_m, high_m) = (ends.lowest_m - from.z_m, ends.highest_m - from.z_m);
-        let squared = |run_m: f64, lift: f64| gravity * run_m * lift;
-        if squared(near_m, LineOfSight::new(near_m, low_m).lift()) > from.speed_squared * CLEARLY {
+        let squared = |run_m: f64, speed_ratio: f64| gravity * run_m * speed_ratio;
+        if squared(near_m, LineOfSight::new(near_m, low_m).min_speed_ratio()) > from.speed_squared * CLEARLY {
             return Some(Limit::TakeoffSpeed);
         }
-        let all_inside = squared(far_m, LineOfSight::new(far_m, high_m).lift()) * CLEARLY < from.speed_squared;
-        let landing = squared(near_m, LineOfSight::new(near_m, high_m).reversed_lift());
+        let all_inside = squared(far_m, LineOfSight::new(far_m, high_m).min_speed_ratio()) * CLEARLY < from.speed_squared;
+        let landing = squared(near_m, LineOfSight::new(near_m, high_m).min_speed_ratio_reversed());
         (all_inside && landing > landing_squared * CLEARLY).then_some(Limit::LandingSpeed)
     }
 
