@@ -9,7 +9,7 @@ use crate::{
 
 /// A chain, a hopper and a gravity, ready to answer for any pair of stations.
 ///
-/// The kernel, [`loft`](Self::loft), has no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains what it found.
+/// The kernel, [`lofts`](Self::lofts), has no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains what it found.
 #[derive(Clone, Debug)]
 pub struct HopTest<'a> {
     chain: &'a ConstrainedChain,
@@ -79,7 +79,7 @@ impl<'a> HopTest<'a> {
     /// The first limit, in the order of testing (ground, bends, speeds, cones, machine, terrain), that with those before it leaves no arc.
     /// [`takeoff_set`](Self::takeoff_set) tells the whole story. [`Limit::Direction`] where both stations share the same x.
     #[inline]
-    pub fn loft(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
+    pub fn lofts(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).ok_or(Limit::Direction)?;
         let from = self.allowed(takeoff, Contact::Takeoff, direction)?;
         let to = self.allowed(landing, Contact::Landing, direction)?;
@@ -121,8 +121,8 @@ impl<'a> HopTest<'a> {
         to: &ContactRule,
     ) -> Result<SlopeInterval, Limit> {
         let limits_of = |rule: &ContactRule| ContactLimits { slopes: rule.slopes(), speed_max_m_s: rule.speed_max_m_s() };
-        let loft = self.envelope.lofts(sight, limits_of(from), limits_of(to));
-        if loft.is_empty() || loft.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(loft) }
+        let lofts = self.envelope.lofts(sight, limits_of(from), limits_of(to));
+        if lofts.is_empty() || lofts.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(lofts) }
     }
 
     /// The lofts that the machine's greatest height and longest flight allow.
@@ -169,8 +169,8 @@ impl<'a> HopTest<'a> {
             ),
         ];
         let mut left = speeds;
-        for (limit, loft) in in_order {
-            left = left.intersect(loft);
+        for (limit, lofts) in in_order {
+            left = left.intersect(lofts);
             if left.is_empty() || left.upper <= 0.0 {
                 return limit;
             }

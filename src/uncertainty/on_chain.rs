@@ -366,9 +366,9 @@ impl Ground for ChainGround<'_> {
         let leg = to_go.best_leg(self.test, &believed.station)?;
         let direction = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m)?;
         let (arc, landing) = match leg.edge {
-            Edge::Hop(loft) => {
+            Edge::Hop(lofts) => {
                 let sight = self.test.line_of_sight(&leg.takeoff, &leg.landing)?;
-                (Arc::new(sight, to_go.options().takeoff.loft(sight, loft), self.test.gravity_m_s2()), leg.landing)
+                (Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), self.test.gravity_m_s2()), leg.landing)
             }
             Edge::Along(along) => {
                 let (each_m, last_m) = along.lengths_m(to_go.options().split);

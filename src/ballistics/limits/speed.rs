@@ -24,8 +24,8 @@ use crate::{
 /// ```
 /// use chta::ballistics::{LineOfSight, limits};
 /// // Flat, q = 1.25: n^2 - 2.5 n + 1 = (n - 0.5)(n - 2)
-/// let loft = limits::takeoff_speed(LineOfSight::new(8.0, 0.0), 10.0, 10.0);
-/// assert!((loft.lower - 0.5).abs() < 1e-8 && (loft.upper - 2.0).abs() < 1e-8);
+/// let lofts = limits::takeoff_speed(LineOfSight::new(8.0, 0.0), 10.0, 10.0);
+/// assert!((lofts.lower - 0.5).abs() < 1e-8 && (lofts.upper - 2.0).abs() < 1e-8);
 /// ```
 #[inline]
 pub fn takeoff_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {

@@ -18,7 +18,7 @@ pub(super) struct Departure {
     pub(super) cone: SlopeInterval,
 }
 
-/// The verdicts of the flight envelope over one block of landings: the formulas of [`HopTest::loft`], operation by operation, so that every number
+/// The verdicts of the flight envelope over one block of landings: the formulas of [`HopTest::lofts`], operation by operation, so that every number
 /// is the same to the last bit; written so that the compiler can take several landings per instruction.
 #[derive(Clone, Debug)]
 pub(super) struct Lanes {
@@ -107,12 +107,12 @@ impl Lanes {
 
     /// The lofts of one lane; `None` where nothing is left.
     #[inline]
-    pub(super) fn loft(&self, lane: usize) -> Option<SlopeInterval> {
-        let loft = SlopeInterval { lower: self.lower[lane], upper: self.upper[lane] };
-        (loft.lower <= loft.upper && loft.upper > 0.0).then_some(loft)
+    pub(super) fn lofts(&self, lane: usize) -> Option<SlopeInterval> {
+        let lofts = SlopeInterval { lower: self.lower[lane], upper: self.upper[lane] };
+        (lofts.lower <= lofts.upper && lofts.upper > 0.0).then_some(lofts)
     }
 
-    /// Which limit left nothing of a lane, in the order of [`HopTest::loft`].
+    /// Which limit left nothing of a lane, in the order of [`HopTest::lofts`].
     pub(super) fn refusing(
         &self,
         test: &HopTest<'_>,

@@ -38,8 +38,8 @@ fn hop_along(hops: &PostHops<'_>, chain: &ConstrainedChain, choice: TakeoffChoic
     let geometry = chain.geometry();
     let (takeoff, landing) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
     // Whoever gives a way that this map did not find gets the hops that there are.
-    let loft = test.loft(&takeoff, &landing).ok()?;
-    generate(&test, &[Leg { takeoff, landing, edge: Edge::Hop(loft) }], choice, Split::default()).ok()
+    let lofts = test.lofts(&takeoff, &landing).ok()?;
+    generate(&test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts) }], choice, Split::default()).ok()
 }
 
 /// All hops of a way as one path, x counted along it from its beginning.
