@@ -11,8 +11,8 @@ use chta::{
     chain::Station,
     report::InputFile,
     scenario::{
-        Covers, Entries, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, Survey, TerrainSource, Trade,
-        Variation, prepare, scenario_document, sha256_of,
+        Entries, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, Survey, TerrainSource,
+        Trade, Variation, prepare, scenario_document, sha256_of,
     },
 };
 
@@ -249,8 +249,8 @@ fn settled(target: &Path, source: Source, quiet: bool, ends: EndOptions, prepare
         output::warn(quiet, warning);
     }
     let mut inputs = vec![input_file(&file)?];
-    for cover in Covers::files(&scenario) {
-        inputs.push(input_file(&base.join(cover))?);
+    for overlay in Overlays::files(&scenario) {
+        inputs.push(input_file(&base.join(overlay))?);
     }
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
     Ok(Loaded { scenario, prepared, document, inputs, base, ends })

@@ -1,6 +1,6 @@
 //! Numbers as sentences have them.
 
-/// A number with as many digits as a reader has use for: ten significant ones at most, no idle zeros, with an exponent where it would
+/// A number with as many digits as a reader has use for: ten significant ones at most, no trailing zeros, with an exponent where it would
 /// have many zeros. Results that programs read keep all digits.
 ///
 /// ```

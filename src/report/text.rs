@@ -22,7 +22,7 @@ impl Sheet {
     }
 }
 
-/// A place along the chain to the millimetre, without idle zeros.
+/// A place along the chain to the millimetre, without trailing zeros.
 fn place(x_m: f64) -> String {
     let text = format!("{x_m:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');

@@ -14,7 +14,9 @@ pub use alike::ask_the_same;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
-pub use pipeline::{Covers, Cut, Extremes, PipelineError, Prepared, Survey, constant_gravity_doubts, friction, prepare, sha256_of};
+pub use pipeline::{
+    Cut, Extremes, Overlays, PipelineError, Prepared, Survey, constant_gravity_doubts, friction, prepare, sha256_of,
+};
 pub use problem::{ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, Scenario, TerrainSource};
 pub use trade::{Trade, TradeError, Variation, Varied, judged};

@@ -79,9 +79,9 @@ pub enum PipelineError {
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let Survey { ground, projection, mut warnings } = Survey::of(scenario, source, base)?;
     let (geometry, ends) = match ground {
-        Surveyed::Slice { legs, covers } => {
-            let (chain, idle) = covers.laid(legs, friction(scenario))?;
-            warnings.extend(idle);
+        Surveyed::Slice { legs, overlays } => {
+            let (chain, without_effect) = overlays.laid(legs, friction(scenario))?;
+            warnings.extend(without_effect);
             whole(chain)
         }
         Surveyed::Chain(chain) => (chain, (None, None)),
@@ -101,7 +101,7 @@ pub struct Survey {
 #[derive(Clone, Debug)]
 enum Surveyed {
     /// A slice, and what is laid over it.
-    Slice { legs: Vec<Profile>, covers: Box<Covers> },
+    Slice { legs: Vec<Profile>, overlays: Box<Overlays> },
     /// A chain as it was given.
     Chain(PolygonalChain),
 }
@@ -127,8 +127,8 @@ impl Survey {
                 return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
             }
         };
-        let covers = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds)?;
-        let ground = Surveyed::Slice { legs: cut.legs, covers: Box::new(covers) };
+        let overlays = Overlays::read(scenario, base, cut.coordinates.as_ref(), cut.bounds)?;
+        let ground = Surveyed::Slice { legs: cut.legs, overlays: Box::new(overlays) };
         Ok(Self { ground, projection: cut.projection, warnings: cut.warnings })
     }
 
@@ -139,9 +139,9 @@ impl Survey {
     pub fn prepare(&self, scenario: &Scenario) -> Result<Prepared, PipelineError> {
         let mut warnings = self.warnings.clone();
         let (geometry, ends) = match &self.ground {
-            Surveyed::Slice { legs, covers } => {
-                let (chain, idle) = covers.laid(legs.clone(), friction(scenario))?;
-                warnings.extend(idle);
+            Surveyed::Slice { legs, overlays } => {
+                let (chain, without_effect) = overlays.laid(legs.clone(), friction(scenario))?;
+                warnings.extend(without_effect);
                 whole(chain)
             }
             Surveyed::Chain(chain) => (chain.clone(), (None, None)),
@@ -231,21 +231,21 @@ impl Cut {
     }
 }
 
-/// What a scenario lays over its terrain: friction, and keep-out zones.
+/// The overlays of a scenario on its terrain: friction, and keep-out zones.
 #[derive(Clone, Debug)]
-pub struct Covers {
+pub struct Overlays {
     constant: Option<FrictionCone>,
     raster: Option<FrictionRaster>,
     keep_out: Option<KeepOut>,
 }
 
-impl Covers {
+impl Overlays {
     /// Reads the files that a scenario names, for a terrain that says this of its map and covers this.
     ///
     /// `base` is the folder that the scenario's paths start from.
     ///
     /// # Errors
-    /// [`TerrainError::Cover`].
+    /// [`TerrainError::Overlay`].
     pub fn read(
         scenario: &Scenario,
         base: &Path,
@@ -272,26 +272,27 @@ impl Covers {
         [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
     }
 
-    /// What of them has no effect anywhere on a DEM of these bounds, in words.
-    pub fn idle_on_dem(&self, bounds: MapBounds) -> Vec<String> {
-        let raster = self.raster.as_ref().filter(|raster| !raster.covers(bounds)).map(|raster| raster.idle("the DEM"));
-        let keep_out = self.keep_out.as_ref().filter(|keep_out| !keep_out.meets(bounds)).map(|keep_out| keep_out.idle("the DEM"));
+    /// A sentence for each overlay without effect on a DEM of these bounds.
+    pub fn without_effect_on_dem(&self, bounds: MapBounds) -> Vec<String> {
+        let raster = self.raster.as_ref().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
+        let keep_out =
+            self.keep_out.as_ref().filter(|keep_out| !keep_out.meets(bounds)).map(|keep_out| keep_out.without_effect("the DEM"));
         raster.into_iter().chain(keep_out).collect()
     }
 
     /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones.
     ///
     /// # Errors
-    /// [`TerrainError::Cover`] where a raster ends before the slice does.
+    /// [`TerrainError::Overlay`] where a raster ends before the slice does.
     pub fn chain(&self, legs: Vec<Profile>) -> Result<PolygonalChain, PipelineError> {
-        self.chain_with_doubts(legs).map(|(chain, _)| chain)
+        self.chain_with_warnings(legs).map(|(chain, _)| chain)
     }
 
-    /// The same, with what of raster and zones has no effect anywhere on it, in words.
+    /// The same, with a sentence for each overlay without effect on it.
     ///
     /// # Errors
-    /// As [`Covers::chain`].
-    pub fn chain_with_doubts(&self, legs: Vec<Profile>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
+    /// As [`Overlays::chain`].
+    pub fn chain_with_warnings(&self, legs: Vec<Profile>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
         self.laid(legs, self.constant)
     }
 
@@ -306,8 +307,8 @@ impl Covers {
                 keeps_out |= keep_out.mark(leg)?;
             }
         }
-        let raster = self.raster.as_ref().filter(|_| !says_friction).map(|raster| raster.idle("the transect"));
-        let keep_out = self.keep_out.as_ref().filter(|_| !keeps_out).map(|keep_out| keep_out.idle("the transect"));
+        let raster = self.raster.as_ref().filter(|_| !says_friction).map(|raster| raster.without_effect("the transect"));
+        let keep_out = self.keep_out.as_ref().filter(|_| !keeps_out).map(|keep_out| keep_out.without_effect("the transect"));
         Ok((PolygonalChain::from_legs(&legs, constant)?, raster.into_iter().chain(keep_out).collect()))
     }
 }

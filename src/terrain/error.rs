@@ -18,9 +18,9 @@ pub enum TerrainError {
         /// What is wrong with it.
         problem: Box<Self>,
     },
-    /// A problem of keep-out zones or of a raster of friction.
+    /// A problem of an overlay: keep-out zones or a friction raster.
     #[error("{what} '{}': {problem}", path.display())]
-    Cover {
+    Overlay {
         /// "keep-out zones" or "friction raster".
         what: &'static str,
         /// The file.

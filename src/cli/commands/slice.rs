@@ -6,7 +6,7 @@ use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{Covers, Cut, Scenario, friction, sha256_of},
+    scenario::{Cut, Overlays, Scenario, friction, sha256_of},
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
@@ -39,15 +39,15 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     let line = geojson.as_deref().map(|file| (file, slice_geojson(&cut.legs, &name, cut.projection.as_ref())));
     let chain = match &given {
         Some((scenario, base)) => {
-            for file in Covers::files(scenario).map(|file| base.join(file)).collect::<Vec<PathBuf>>() {
+            for file in Overlays::files(scenario).map(|file| base.join(file)).collect::<Vec<PathBuf>>() {
                 comments.push(format!("under {}, sha256 {}", name_of(&file), sha256_of(&file)?));
             }
-            let covers = Covers::read(scenario, base, cut.coordinates.as_ref(), cut.bounds).map_err(|e| failed(&e))?;
-            let (chain, idle) = covers.chain_with_doubts(cut.legs).map_err(|e| failed(&e))?;
-            for warning in &idle {
+            let overlays = Overlays::read(scenario, base, cut.coordinates.as_ref(), cut.bounds).map_err(|e| failed(&e))?;
+            let (chain, without_effect) = overlays.chain_with_warnings(cut.legs).map_err(|e| failed(&e))?;
+            for warning in &without_effect {
                 output::warn(*quiet, warning);
             }
-            comments.extend(idle.iter().map(|warning| format!("warning: {warning}")));
+            comments.extend(without_effect.iter().map(|warning| format!("warning: {warning}")));
             chain
         }
         None => PolygonalChain::from_legs(&cut.legs, None).map_err(|e| failed(&e))?,
@@ -63,7 +63,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
 
 /// Whether a scenario has nothing that goes into a chain.
 fn lays_nothing(scenario: &Scenario) -> bool {
-    friction(scenario).is_none() && Covers::files(scenario).next().is_none()
+    friction(scenario).is_none() && Overlays::files(scenario).next().is_none()
 }
 
 /// A file's own name, for a comment.
