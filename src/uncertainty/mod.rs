@@ -56,7 +56,7 @@ mod trial;
 mod wilson;
 
 pub use deviations::{Uncertainty, UncertaintyProblem};
-pub use ground::Launch;
+pub use ground::LiftoffVelocity;
 pub use options::{MapGround, Mission, Observer, Progress, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
 pub use quantiles::QuantileSketch;
