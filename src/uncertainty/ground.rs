@@ -50,9 +50,9 @@ pub(super) struct Flight<S, F> {
     pub(super) time_s: f64,
 }
 
-/// What is otherwise in one trial than on the map.
+/// The realization of the uncertain ground in one trial: how it differs from the map.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Variation {
+pub(super) struct Realization {
     /// Added to every friction coefficient.
     pub(super) friction: f64,
     pub(super) heights: Option<Box<HeightField>>,
@@ -65,8 +65,8 @@ pub(super) trait Ground: Clone + Send + Sync {
     /// The facet of the ground that supports a landing.
     type SupportFacet: Copy;
 
-    /// Makes it the ground of another trial.
-    fn vary(&mut self, variation: Variation);
+    /// Makes it the ground of another trial, as drawn.
+    fn realize(&mut self, realization: Realization);
 
     /// A position of the plan on the real ground.
     fn real(&self, planned: Self::Position) -> Self::Position;

@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector2};
 
 use super::{
     LiftoffVelocity, TrialOutcome,
-    ground::{Command, Flight, Ground, PLACE_TOLERANCE, TouchdownState, Variation, failure, holds},
+    ground::{Command, Flight, Ground, PLACE_TOLERANCE, Realization, TouchdownState, failure, holds},
 };
 use crate::{
     ballistics::{Arc, HopTest},
@@ -246,10 +246,10 @@ impl Ground for ChainGround<'_> {
     type Position = ChainPosition;
     type SupportFacet = SegmentId;
 
-    fn vary(&mut self, variation: Variation) {
-        self.friction = variation.friction;
+    fn realize(&mut self, realization: Realization) {
+        self.friction = realization.friction;
         self.found.clear();
-        if let Some(field) = variation.heights {
+        if let Some(field) = realization.heights {
             let nominal = self.test.chain().geometry().vertices();
             let first_m = nominal[0].x_m;
             self.found.extend(nominal.iter().map(|v| ChainPoint::new(v.x_m, v.z_m + field.at(v.x_m - first_m, 0.0))));

@@ -6,7 +6,7 @@ use nalgebra::{Point3, Vector2};
 
 use super::{
     LiftoffVelocity, MapGround, TrialOutcome,
-    ground::{ANGLE_TOLERANCE_RAD, Command, Flight, Ground, PLACE_TOLERANCE, TouchdownState, Variation, failure, holds},
+    ground::{ANGLE_TOLERANCE_RAD, Command, Flight, Ground, PLACE_TOLERANCE, Realization, TouchdownState, failure, holds},
     on_chain::comes_down_m,
 };
 use crate::{
@@ -39,7 +39,7 @@ pub(super) struct DemGround<'a> {
     place_rounding_m: f64,
     /// What the rest slope is where friction does not say it.
     rest_slope: Option<f64>,
-    varied: Variation,
+    realization: Realization,
 }
 
 /// A position on the map, and its height.
@@ -76,7 +76,7 @@ impl<'a> DemGround<'a> {
                 RestSlope::AtMost(angle) => Some(angle.slope()),
                 RestSlope::AsFrictionHolds | RestSlope::Unlimited => None,
             },
-            varied: Variation::default(),
+            realization: Realization::default(),
         }
     }
 
@@ -90,7 +90,7 @@ impl<'a> DemGround<'a> {
     fn heights(&self) -> impl Fn(usize, usize) -> f64 + '_ {
         let nominal = self.triangles.nominal();
         let origin = self.map.dem.georeference().north_west();
-        move |row, col| match &self.varied.heights {
+        move |row, col| match &self.realization.heights {
             None => nominal(row, col),
             Some(field) => {
                 let away = self.triangles.post(row, col) - origin;
@@ -115,7 +115,7 @@ impl<'a> DemGround<'a> {
 
     /// The friction that a place has in this trial.
     fn friction(&self, at: MapPoint) -> Option<f64> {
-        self.nominal_friction(at).map(|cone| (cone.coefficient() + self.varied.friction).max(0.0))
+        self.nominal_friction(at).map(|cone| (cone.coefficient() + self.realization.friction).max(0.0))
     }
 
     fn is_kept_out(&self, at: MapPoint) -> bool {
@@ -242,7 +242,7 @@ impl<'a> DemGround<'a> {
         let steepness = 1.0 + (slope - 2.0 * curvature * run_m).abs();
         let over_m = run_m * (slope - curvature * run_m) - rise_m;
         let height_slack_m = slack_m * steepness + self.height_rounding_m;
-        let hits = run_m > 0.0 && across_m <= slack_m && over_m.abs() <= height_slack_m && self.varied.heights.is_none();
+        let hits = run_m > 0.0 && across_m <= slack_m && over_m.abs() <= height_slack_m && self.realization.heights.is_none();
         hits.then_some(Aimed { run: run_m, slack: slack_m, height_slack: height_slack_m })
     }
 }
@@ -259,12 +259,12 @@ impl Ground for DemGround<'_> {
     type Position = MapPosition;
     type SupportFacet = Gradient;
 
-    fn vary(&mut self, variation: Variation) {
-        self.varied = variation;
+    fn realize(&mut self, realization: Realization) {
+        self.realization = realization;
     }
 
     fn real(&self, planned: MapPosition) -> MapPosition {
-        if self.varied.heights.is_none() {
+        if self.realization.heights.is_none() {
             return planned;
         }
         self.triangles.at(planned.at, self.heights()).map_or(planned, |(z_m, _)| MapPosition { z_m, ..planned })
@@ -382,7 +382,7 @@ impl Ground for DemGround<'_> {
     }
 
     fn believed(&self, position: &MapPosition, along_m: f64, across_m: f64) -> Option<MapPosition> {
-        if along_m == 0.0 && across_m == 0.0 && self.varied.heights.is_none() {
+        if along_m == 0.0 && across_m == 0.0 && self.realization.heights.is_none() {
             return Some(*position);
         }
         self.nominal(position.at + Vector2::new(along_m, across_m))

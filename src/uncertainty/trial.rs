@@ -6,7 +6,7 @@ use super::{
     HopRecord, LiftoffVelocity, Policy, TrialOutcome, TrialRecord, Uncertainty,
     draws::{HopDraws, TrialDraws, Wanted},
     field::HeightField,
-    ground::{Command, Ground, TouchdownState, Variation},
+    ground::{Command, Ground, Realization, TouchdownState},
 };
 
 /// The planned journey over one kind of ground.
@@ -65,13 +65,13 @@ impl Rules {
         }
     }
 
-    /// What is otherwise in a trial than on the map.
-    fn variation(&self, draws: &mut TrialDraws, trial: u64) -> Option<Variation> {
+    /// Draws how the ground of a trial differs from the map; `None` where it does not.
+    fn realization(&self, draws: &mut TrialDraws, trial: u64) -> Option<Realization> {
         let u = &self.uncertainty;
         let friction = if u.friction_sigma > 0.0 { u.friction_sigma * draws.friction(trial) } else { 0.0 };
         let heights =
             (u.height_sigma_m > 0.0).then(|| Box::new(HeightField::of(draws, trial, u.height_sigma_m, u.height_correlation_m)));
-        (u.friction_sigma > 0.0 || heights.is_some()).then_some(Variation { friction, heights })
+        (u.friction_sigma > 0.0 || heights.is_some()).then_some(Realization { friction, heights })
     }
 
     /// A command as it is really given: its speed first, then its elevation, then its heading.
@@ -109,8 +109,8 @@ pub(super) fn fly<G: Ground>(
     keep_hops: bool,
     flown: &mut Flown,
 ) {
-    if let Some(variation) = rules.variation(draws, trial) {
-        ground.vary(variation);
+    if let Some(realization) = rules.realization(draws, trial) {
+        ground.realize(realization);
     }
     draws.begin(trial);
     let mut journey = Journey { ground, plan, rules, position: ground.real(plan.start), hops: 0 };
