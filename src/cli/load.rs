@@ -11,8 +11,8 @@ use chta::{
     chain::Station,
     report::InputFile,
     scenario::{
-        Entries, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, Survey, TerrainSource,
-        Trade, Variation, prepare, scenario_document, sha256_of,
+        Entries, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, Survey, SweptKey,
+        TerrainSource, Trade, prepare, scenario_document, sha256_of,
     },
 };
 
@@ -172,11 +172,11 @@ pub(crate) fn load_to_vary(
     common: &CommonArgs,
     search: &SearchArgs,
     ends: EndOptions,
-    variations: &[Variation],
+    swept: &[SweptKey],
 ) -> Result<ToVary, Failure> {
     let mut source = typed(target, common, Some(search), ends)?;
     let (entries, base) = (source.entries.clone(), source.base.clone());
-    source.entries = Trade::first_field(&entries, variations).map_err(|error| Failure::message(format!("--vary: {error}")))?;
+    source.entries = Trade::first_field(&entries, swept).map_err(|error| Failure::message(format!("--vary: {error}")))?;
     let mut kept = None;
     let first = settled(target, source, common.quiet, ends, &mut |scenario, terrain, base| {
         kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)

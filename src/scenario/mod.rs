@@ -19,5 +19,5 @@ pub use pipeline::{
 };
 pub use problem::{ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, Scenario, TerrainSource};
-pub use trade::{Trade, TradeError, Variation, Varied, judged};
+pub use trade::{SweptKey, Trade, TradeError, Varied, judged};
 pub use trials::UncertaintyKeys;
