@@ -93,8 +93,8 @@ pub(super) trait Ground: Clone + Send + Sync {
         touchdown: &TouchdownState,
     ) -> Option<TrialOutcome>;
 
-    /// Where it comes to rest after a drift along and to the left of its heading, or what becomes of it there.
-    fn drifted(
+    /// Where it comes to rest after a bounce-and-roll displacement along and to the left of its heading, or how the trial ends there.
+    fn displaced(
         &self,
         from: &Self::Position,
         heading: Vector2<f64>,

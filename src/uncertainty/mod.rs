@@ -5,7 +5,7 @@
 //! judged where it really takes off and lands.
 //!
 //! ```text
-//!   trial n -> draws (seed, n) -> [ command + errors -> take-off judged -> first contact -> landing judged -> drift ] -> next hop
+//!   trial n -> draws (seed, n) -> [ command + errors -> take-off judged -> first contact -> landing judged -> bounce and roll ] -> next hop
 //! ```
 //!
 //! Along a chain flights stay in its vertical plane; over a DEM ([`MapGround`]) they go wherever their heading takes them.

@@ -16,7 +16,7 @@ use crate::{
 
 /// The chain as the ground of a trial.
 ///
-/// To the sides the ground is taken to go on as it is: drift to the side moves the robot out of the plane and no more.
+/// To the sides the ground is taken to go on as it is: displacement to the side moves the robot out of the plane and no more.
 #[derive(Clone, Debug)]
 pub(super) struct ChainGround<'a> {
     test: &'a HopTest<'a>,
@@ -338,7 +338,7 @@ impl Ground for ChainGround<'_> {
         failure(rule, self.test.hopper().landing_speed_max_m_s, touchdown)
     }
 
-    fn drifted(
+    fn displaced(
         &self,
         from: &ChainPosition,
         heading: Vector2<f64>,

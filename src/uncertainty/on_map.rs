@@ -368,7 +368,7 @@ impl Ground for DemGround<'_> {
         }
     }
 
-    fn drifted(&self, from: &MapPosition, heading: Vector2<f64>, along_m: f64, left_m: f64) -> Result<MapPosition, TrialOutcome> {
+    fn displaced(&self, from: &MapPosition, heading: Vector2<f64>, along_m: f64, left_m: f64) -> Result<MapPosition, TrialOutcome> {
         if along_m == 0.0 && left_m == 0.0 {
             return Ok(*from);
         }

@@ -182,7 +182,7 @@ impl<G: Ground> Journey<'_, G> {
         if self.is_at_goal(&self.position) { TrialOutcome::Reached } else { TrialOutcome::Missed }
     }
 
-    /// Flies a hop and drifts; tells of it, and how the trial ends where it ends with it.
+    /// Flies a hop, with the bounce-and-roll displacement after it; tells of it, and how the trial ends where it ends with it.
     fn hop(
         &mut self,
         liftoff: &LiftoffVelocity,
@@ -194,7 +194,8 @@ impl<G: Ground> Journey<'_, G> {
         let from = self.position;
         let flight = ground.fly(&from, liftoff, aim);
         let touchdown = TouchdownState::after(liftoff, flight.time_s, self.rules.gravity_m_s2);
-        let drift_m = [uncertainty.drift_along_sigma_m * errors.drift[0], uncertainty.drift_across_sigma_m * errors.drift[1]];
+        let displacement_m =
+            [uncertainty.drift_along_sigma_m * errors.drift[0], uncertainty.drift_across_sigma_m * errors.drift[1]];
         let failure = match &flight.support_facet {
             // Nothing happens to a robot that does not move.
             _ if liftoff.stays() => None,
@@ -203,7 +204,7 @@ impl<G: Ground> Journey<'_, G> {
         };
         let (rest, outcome) = match failure {
             Some(outcome) => (flight.end, Some(outcome)),
-            None => match ground.drifted(&flight.end, liftoff.heading, drift_m[0], drift_m[1]) {
+            None => match ground.displaced(&flight.end, liftoff.heading, displacement_m[0], displacement_m[1]) {
                 Ok(rest) => (rest, None),
                 Err(outcome) => (flight.end, Some(outcome)),
             },
