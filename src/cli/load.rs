@@ -113,11 +113,11 @@ impl Loaded {
     }
 
     /// What an analyst should know of the input and of an answer, each once.
-    pub(crate) fn warnings_with(&self, doubts: impl IntoIterator<Item = String>) -> Vec<String> {
+    pub(crate) fn warnings_with(&self, more: impl IntoIterator<Item = String>) -> Vec<String> {
         let mut warnings = self.prepared.warnings.clone();
-        for doubt in doubts {
-            if !warnings.contains(&doubt) {
-                warnings.push(doubt);
+        for warning in more {
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
             }
         }
         warnings

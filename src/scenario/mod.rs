@@ -15,7 +15,7 @@ pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
 pub use pipeline::{
-    Cut, Extremes, Overlays, PipelineError, Prepared, Survey, constant_gravity_doubts, friction, prepare, sha256_of,
+    Cut, Extremes, Overlays, PipelineError, Prepared, Survey, constant_gravity_warnings, friction, prepare, sha256_of,
 };
 pub use problem::{ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, Scenario, TerrainSource};

@@ -344,7 +344,7 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
     }))
 }
 
-/// The largest figures of some hops, to be doubted.
+/// The largest figures of some hops, against which constant gravity is checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extremes {
     /// Greatest horizontal distance, m.
@@ -367,17 +367,17 @@ impl Extremes {
     }
 }
 
-/// Where constant gravity over flat ground is a bad model: what is doubtful and by how much; empty where nothing is.
+/// Warnings where constant gravity over flat ground is a bad model, each with its numbers; empty where it is a good one.
 ///
-/// A hop is doubted where its range or its highest point above the take-off is over a hundredth of the body's radius, or a speed over
+/// A hop gives a warning where its range or its highest point above the take-off is over a hundredth of the body's radius, or a speed over
 /// a tenth of its escape speed `sqrt(2 g R)`. Nothing is said of a body of unknown radius.
-pub fn constant_gravity_doubts(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
+pub fn constant_gravity_warnings(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
     let Some(radius_m) = body.radius_m else { return Vec::new() };
     let name = body.name.as_deref().unwrap_or("the body");
     let escape_m_s = Body { name: "", gravity_m_s2: body.gravity_m_s2, radius_m, source: "" }.escape_speed_m_s();
     let Extremes { range_m, height_m, speed_m_s } = extremes;
     let lengths = [("range", range_m), ("highest point above its take-off", height_m)];
-    let mut doubts: Vec<String> = lengths
+    let mut warnings: Vec<String> = lengths
         .into_iter()
         .filter(|(_, length_m)| *length_m > 0.01 * radius_m)
         .map(|(what, length_m)| {
@@ -385,10 +385,10 @@ pub fn constant_gravity_doubts(body: &BodyChoice, extremes: Extremes) -> Vec<Str
         })
         .collect();
     if speed_m_s > 0.1 * escape_m_s {
-        doubts.push(format!(
+        warnings.push(format!(
             "a hop's speed, {speed_m_s:.4} m/s, is over a tenth of the escape speed of {name} ({escape_m_s:.4} m/s): constant gravity is \
              a bad model there"
         ));
     }
-    doubts
+    warnings
 }

@@ -16,7 +16,7 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Extremes, Overlays, Scenario, constant_gravity_doubts},
+    scenario::{Extremes, Overlays, Scenario, constant_gravity_warnings},
     terrain::{
         Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_map_scale, read_dem,
         result_geotiff_bytes,
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let mut warnings = ground.warnings.clone();
     warnings.extend(maps.warnings.iter().cloned());
     let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
-    warnings.extend(constant_gravity_doubts(&ground.scenario.body, Extremes::of(&hops)));
+    warnings.extend(constant_gravity_warnings(&ground.scenario.body, Extremes::of(&hops)));
     for warning in &warnings {
         output::warn(args.common.quiet, warning);
     }

@@ -122,7 +122,7 @@ fn ends(legs: &[Profile]) -> Option<String> {
     Some(format!("from ({}, {}) m to ({}, {}) m on the map", from.x, from.y, to.x, to.y))
 }
 
-/// The reference system of a slice's map and the doubts about it, for its comments.
+/// The reference system of a slice's map and the warnings about it, for its comments.
 fn map_comments(cut: &Cut) -> Vec<String> {
     let crs = cut.projection.as_ref().map(|projection| CrsRecord::from(projection).comments()).unwrap_or_default();
     crs.into_iter().chain(cut.warnings.iter().map(|warning| format!("warning: {warning}"))).collect()

@@ -56,11 +56,11 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
         }
         Experiment::RiskTrade => {
             let answer = risk_trade(args, loaded, &planned)?;
-            let doubt = loaded.scenario.uncertainty.and_then(|keys| keys.doubt()).map(str::to_owned);
-            if let Some(doubt) = &doubt {
-                output::warn(args.common.quiet, doubt);
+            let warning = loaded.scenario.uncertainty.and_then(|keys| keys.warning()).map(str::to_owned);
+            if let Some(warning) = &warning {
+                output::warn(args.common.quiet, warning);
             }
-            (written(args, loaded, doubt, answer.text(), answer)?, None)
+            (written(args, loaded, warning, answer.text(), answer)?, None)
         }
     };
     if let (Some(file), Some(picture)) = (plot, picture) {
@@ -102,7 +102,7 @@ fn refuse_without_effect(args: &SimulateArgs, experiment: Experiment) -> Result<
 fn written<T: Serialize>(
     args: &SimulateArgs,
     loaded: &Loaded,
-    doubt: Option<String>,
+    warning: Option<String>,
     text: String,
     answer: T,
 ) -> Result<String, Failure> {
@@ -113,7 +113,7 @@ fn written<T: Serialize>(
                 "simulate-experiment",
                 loaded.document.clone(),
                 loaded.inputs.clone(),
-                loaded.warnings_with(doubt),
+                loaded.warnings_with(warning),
                 answer,
             );
             Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
