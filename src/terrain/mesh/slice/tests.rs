@@ -1,4 +1,4 @@
-//! The cut against planes and solids whose outline is known, and against a search through all triangles.
+//! The cut against planes and solids whose upper envelope is known, and against a search through all triangles.
 
 use nalgebra::Point3;
 use rand::rngs::ChaCha8Rng;
