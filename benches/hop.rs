@@ -24,7 +24,7 @@ fn one_pair_kernel(bencher: Bencher<'_, '_>) {
     let (chain, hopper) = support::fractal_chain(200);
     let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
     let at = |i| chain.geometry().vertex_station(VertexId(i));
-    bencher.bench_local(|| test.loft(black_box(&at(100)), black_box(&at(115))));
+    bencher.bench_local(|| test.lofts(black_box(&at(100)), black_box(&at(115))));
 }
 
 /// The same pair explained: every limit by itself and what binds.
@@ -45,7 +45,7 @@ fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
     let takeoff = stations[window];
     bencher
         .counter(ItemsCount::new(2 * window))
-        .bench_local(|| stations.iter().filter(|landing| test.loft(black_box(&takeoff), black_box(landing)).is_ok()).count());
+        .bench_local(|| stations.iter().filter(|landing| test.lofts(black_box(&takeoff), black_box(landing)).is_ok()).count());
 }
 
 /// The same by a sweep: speeds cut the far landings, as they do in a search (`sweep_against_plain` has windows that they do not cut).

@@ -94,7 +94,7 @@ fn measure(scene: &Scene, window: usize) {
 }
 
 fn plain_count(test: &HopTest<'_>, stations: &[Station], takeoff: &Station, among: Range<usize>) -> usize {
-    stations[among].iter().filter(|landing| support::plain::loft(test, black_box(takeoff), black_box(landing)).is_some()).count()
+    stations[among].iter().filter(|landing| support::plain::lofts(test, black_box(takeoff), black_box(landing)).is_some()).count()
 }
 
 fn sweep_count(sweep: &mut Sweep<'_>, takeoff: &Station, among: Range<usize>) -> usize {
@@ -124,7 +124,7 @@ fn survivors<'a>(
     let mut over_ground = 0u32;
     for (takeoff, among) in takeoffs {
         for landing in stations[among].iter().filter(|landing| landing.point.x_m != takeoff.point.x_m) {
-            if let Err(limit) = test.loft(takeoff, landing) {
+            if let Err(limit) = test.lofts(takeoff, landing) {
                 refused[limit.index()] += 1;
             } else {
                 let lower = test.takeoff_set(takeoff, landing).and_then(|set| set.binding()).map(|binding| binding.lower.limit);

@@ -89,11 +89,11 @@ fn the_binding_limits_move_their_end_and_no_other_limit_does() {
     for _ in 0..6000 {
         let case = Case::draw(draw);
         let set = case.set();
-        let (Some(loft), Some(binding)) = (set.loft(), set.binding()) else { continue };
+        let (Some(lofts), Some(binding)) = (set.lofts(), set.binding()) else { continue };
         for limit in REMOVABLE {
-            let wider = case.without(limit).set().loft().unwrap();
-            assert_eq!(wider.lower < loft.lower, binding.lower.limit == limit, "lower end without {limit}: {set:?}");
-            assert_eq!(wider.upper > loft.upper, binding.upper.limit == limit, "upper end without {limit}: {set:?}");
+            let wider = case.without(limit).set().lofts().unwrap();
+            assert_eq!(wider.lower < lofts.lower, binding.lower.limit == limit, "lower end without {limit}: {set:?}");
+            assert_eq!(wider.upper > lofts.upper, binding.upper.limit == limit, "upper end without {limit}: {set:?}");
         }
         if let Some(vertex) = binding.lower.vertex {
             assert_eq!(binding.lower.limit, Limit::Terrain);
@@ -101,8 +101,8 @@ fn the_binding_limits_move_their_end_and_no_other_limit_does() {
             for i in 1..case.points.len() - 1 {
                 let mut lowered = case.clone();
                 lowered.points[i].z_m -= 1e-3 * (case.points[1].x_m - case.points[0].x_m);
-                let lower = lowered.set().loft().unwrap().lower;
-                assert_eq!(lower < loft.lower, vertex.index() == i, "vertex {i}");
+                let lower = lowered.set().lofts().unwrap().lower;
+                assert_eq!(lower < lofts.lower, vertex.index() == i, "vertex {i}");
             }
         }
         lower_seen.insert(binding.lower.limit);
@@ -143,7 +143,7 @@ fn two_limits_in_conflict_leave_nothing_between_them_and_less_of_a_gap_without_e
         let set = case.set();
         let Some(Conflict::Pair { lower, upper, gap_deg }) = set.conflict() else { continue };
         assert!(gap_deg >= 0.0, "a gap of {gap_deg} deg is none");
-        let between = SlopeInterval { lower: lower.loft.lower, upper: upper.loft.upper };
+        let between = SlopeInterval { lower: lower.lofts.lower, upper: upper.lofts.upper };
         assert!(between.is_empty() || between.upper <= 0.0, "{between:?} is left between {} and {}", lower.limit, upper.limit);
         // These two alone, all else taken away, still conflict.
         let only_both = REMOVABLE

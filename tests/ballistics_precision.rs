@@ -94,7 +94,7 @@ fn every_limit_and_the_intersection_agree_with_60_digits_to_a_nanoradian() {
                 assert!(limit.limit == Limit::Terrain && limit.vertex.is_none(), "{name} where none was set");
                 continue;
             }
-            errors.entry(name).or_default().extend(error_rad(case, name, set.angles_of(limit.loft)));
+            errors.entry(name).or_default().extend(error_rad(case, name, set.angles_of(limit.lofts)));
         }
         errors.entry("all").or_default().extend(error_rad(case, "all", set.angles()));
     }

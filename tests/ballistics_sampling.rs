@@ -228,7 +228,7 @@ fn compare(seed: u64, worlds: u32, make: fn(&mut Draw) -> (ConstrainedChain, Hop
                 continue;
             }
             pairs += 1;
-            feasible += u32::from(set.loft().is_some());
+            feasible += u32::from(set.lofts().is_some());
             for theta in sampled_angles(draw, &set) {
                 evaluated += 1;
                 let inside = set.angles().is_some_and(|a| a.min.radians() <= theta && theta <= a.max.radians());
@@ -360,13 +360,13 @@ fn the_kernel_gives_what_the_explained_set_gives() {
     let (mut feasible, mut refused) = (0, 0);
     for_random_pairs(4, 2000, |_, test, takeoff, landing| {
         let set = test.takeoff_set(takeoff, landing).unwrap();
-        match test.loft(takeoff, landing) {
-            Ok(loft) => {
-                assert_eq!(set.loft(), Some(loft));
+        match test.lofts(takeoff, landing) {
+            Ok(lofts) => {
+                assert_eq!(set.lofts(), Some(lofts));
                 feasible += 1;
             }
             Err(limit) => {
-                assert_eq!(set.loft(), None, "the kernel refuses by {limit}");
+                assert_eq!(set.lofts(), None, "the kernel refuses by {limit}");
                 let conflict = set.conflict().unwrap();
                 if let chta::hop::Conflict::Alone(alone) = conflict
                     && matches!(alone.shortfall, Some(chta::hop::Shortfall::Ground { .. }))
@@ -397,7 +397,7 @@ fn a_mirrored_chain_travelled_backwards_gives_the_same_set() {
         for _ in 0..6 {
             let (a, b) = (place(draw, &chain), place(draw, &chain));
             let reflect = |s: &Station| mirror.geometry().station(-s.point.x_m).unwrap();
-            assert_eq!(test.loft(&a, &b), mirror_test.loft(&reflect(&a), &reflect(&b)));
+            assert_eq!(test.lofts(&a, &b), mirror_test.lofts(&reflect(&a), &reflect(&b)));
         }
     }
 }
@@ -425,7 +425,7 @@ fn gravity_times_four_and_speeds_times_two_change_no_bit() {
         let (test, other_test) = (HopTest::new(&chain, &hopper, g), HopTest::new(&other, &slower, g * v * v));
         for _ in 0..6 {
             let (a, b) = (place(draw, &chain), place(draw, &chain));
-            assert_eq!(test.loft(&a, &b), other_test.loft(&a, &b), "gravity times {}", v * v);
+            assert_eq!(test.lofts(&a, &b), other_test.lofts(&a, &b), "gravity times {}", v * v);
         }
     }
 }
@@ -458,10 +458,10 @@ fn rest_slope_cross_slope_and_keep_out_refuse_at_the_end_that_has_them() {
         let refusals: Vec<_> =
             ends.iter().filter_map(|(s, c)| test.chain().check_contact(s, *c, direction).err().map(|r| r.limit(*c))).collect();
         if let Some(&first) = refusals.first() {
-            assert_eq!(test.loft(takeoff, landing), Err(first));
+            assert_eq!(test.lofts(takeoff, landing), Err(first));
             let set = test.takeoff_set(takeoff, landing).unwrap();
             for refusal in &refusals {
-                assert!(set.limits().iter().any(|l| l.limit == *refusal && l.loft.is_empty()));
+                assert!(set.limits().iter().any(|l| l.limit == *refusal && l.lofts.is_empty()));
             }
             seen.insert(first);
         }
@@ -497,7 +497,7 @@ fn limits_that_touch_leave_exactly_one_arc() {
         for (speed, reaches) in [(least, true), (least * (1.0 - 1e-6), false)] {
             let chain = uniform(&points, line((-90.0, 90.0), speed, (-90.0, 90.0), speed));
             let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
-            assert_eq!(test.loft(&at(0), &at(1)).is_ok(), reaches, "{speed} m/s over {run} m");
+            assert_eq!(test.lofts(&at(0), &at(1)).is_ok(), reaches, "{speed} m/s over {run} m");
         }
     }
 }
@@ -512,8 +512,8 @@ fn a_landing_exactly_as_high_as_the_apex_limit_is_allowed_from_below() {
         let test = HopTest::new(&chain, &hopper, 9.81);
         let at = |i| chain.geometry().vertex_station(VertexId(i));
         let set = test.takeoff_set(&at(0), &at(1)).unwrap();
-        assert_eq!(set.loft().is_some(), allowed, "{height} m");
+        assert_eq!(set.lofts().is_some(), allowed, "{height} m");
         // The steepest of them lands level: b - n = 0.
-        assert!(set.loft().is_none_or(|loft| (loft.upper - 3.0).abs() < 1e-12));
+        assert!(set.lofts().is_none_or(|lofts| (lofts.upper - 3.0).abs() < 1e-12));
     }
 }

@@ -59,17 +59,17 @@ fn a_pair_is_refused_for_a_bend_exactly_where_one_lies_strictly_between() {
             for &b in places.iter().filter(|&&b| b != a) {
                 let spans = bends.iter().any(|v| points[v.index()].x_m > a.min(b) && points[v.index()].x_m < a.max(b));
                 let ends = [a, b].map(|x_m| bent.geometry().station(x_m).unwrap());
-                let (expected, found) = (of_straight.loft(&ends[0], &ends[1]), of_bent.loft(&ends[0], &ends[1]));
+                let (expected, found) = (of_straight.lofts(&ends[0], &ends[1]), of_bent.lofts(&ends[0], &ends[1]));
                 let explained = of_bent.takeoff_set(&ends[0], &ends[1]).unwrap();
                 if spans {
-                    assert!(found.is_err() && explained.loft().is_none());
+                    assert!(found.is_err() && explained.lofts().is_none());
                     assert!(found == Err(Limit::Bend) || expected == found, "{found:?} {expected:?}");
                     let limit = explained.limits().iter().find(|limit| limit.limit == Limit::Bend).unwrap();
-                    assert!(limit.loft.is_empty() && bends.contains(&limit.vertex.unwrap()));
+                    assert!(limit.lofts.is_empty() && bends.contains(&limit.vertex.unwrap()));
                     spanning += usize::from(expected.is_ok());
                 } else {
                     assert_eq!(found, expected);
-                    assert_eq!(explained.loft().is_some(), expected.is_ok());
+                    assert_eq!(explained.lofts().is_some(), expected.is_ok());
                     free += usize::from(expected.is_ok());
                 }
             }

@@ -168,7 +168,7 @@ fn what_a_file_cannot_state_is_speed_zero_or_refused() {
     assert!(text.contains("\n1,0,60,90,0,-90,-60,10,0,0,0,0,0,0\n"), "{text}");
     let read = read_chain_csv(text.as_bytes()).unwrap().chain;
     assert_eq!(read.grounds()[0], chain.grounds()[0]);
-    // Nothing granted anywhere stays so, and does not turn into a chain that asks the scenario.
+    // Nothing allowed anywhere stays so, and does not turn into a chain that asks the scenario.
     let nothing = read_chain_csv(written(&one_segment(vec![explicit(None, None)])).unwrap().as_bytes()).unwrap().chain;
     let GroundForm::Explicit { forward: Some(forward), reverse: None } = nothing.grounds()[0].form else { panic!("{nothing:?}") };
     assert_eq!((forward.takeoff.speed_max_m_s(), forward.landing.speed_max_m_s()), (0.0, 0.0));

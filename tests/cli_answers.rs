@@ -382,7 +382,7 @@ fn assert_warned(desk: &Desk, args: &[&str], warnings: &[&str]) {
 }
 
 #[test]
-fn constant_gravity_is_doubted_on_small_bodies() {
+fn constant_gravity_gives_a_warning_on_small_bodies() {
     let desk = Desk::new();
     desk.write("flat.csv", "x_m,z_m\n0,0\n400,0\n");
     let expected = [

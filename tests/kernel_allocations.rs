@@ -29,7 +29,7 @@ fn ten_thousand_pairs_are_evaluated_without_an_allocation_either_way() {
         for i in 0..=100 {
             let takeoff = chain.geometry().vertex_station(VertexId(i));
             for j in 0..=100 {
-                match test.loft(&takeoff, &chain.geometry().vertex_station(VertexId(j))) {
+                match test.lofts(&takeoff, &chain.geometry().vertex_station(VertexId(j))) {
                     Ok(_) => feasible += 1,
                     Err(_) => refused += 1,
                 }

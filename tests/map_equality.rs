@@ -67,7 +67,7 @@ impl World {
         let chain = self.chain(profile).unwrap();
         let test = HopTest::new(&chain, &self.hopper, self.gravity_m_s2);
         let geometry = chain.geometry();
-        test.loft(&geometry.vertex_station(VertexId(0)), &geometry.vertex_station(VertexId(geometry.segment_count()))).ok()
+        test.lofts(&geometry.vertex_station(VertexId(0)), &geometry.vertex_station(VertexId(geometry.segment_count()))).ok()
     }
 
     /// Whether a pair lies within the parabolas of safety of both speeds, a little widened: beyond, no limit but speed needs a look.

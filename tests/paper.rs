@@ -136,15 +136,15 @@ fn in_the_reduced_scenario_speed_forbids_the_one_hop_and_segment_3_joins_no_poin
     let chain = simple_reduced();
     let test = HopTest::new(&chain, &Hopper::UNLIMITED, 9.81);
     let at = |i| chain.geometry().vertex_station(VertexId(i));
-    let refused = test.loft(&at(START), &at(GOAL)).unwrap_err();
+    let refused = test.lofts(&at(START), &at(GOAL)).unwrap_err();
     assert!(matches!(refused, Limit::TakeoffSpeed | Limit::LandingSpeed), "{refused}");
     // Segment 3, forward: its cones leave no angle, however short the hop (P eq. 23 is empty).
     assert_eq!(test.segment_reach(SegmentId(2), Direction::Forward), None);
-    assert!(test.loft(&at(2), &at(3)).is_err() && test.segment_hops(&at(2), &at(3)).is_none());
+    assert!(test.lofts(&at(2), &at(3)).is_err() && test.segment_hops(&at(2), &at(3)).is_none());
     // So nodes 3 and 4 are not joined, while 2 and 3, and 4 and 5, are.
     for i in [1, 3] {
         assert!(
-            test.loft(&at(i), &at(i + 1)).is_ok() || test.segment_hops(&at(i), &at(i + 1)).is_some(),
+            test.lofts(&at(i), &at(i + 1)).is_ok() || test.segment_hops(&at(i), &at(i + 1)).is_some(),
             "nodes {} and {}",
             i + 1,
             i + 2
@@ -285,7 +285,7 @@ fn erratum_algorithm_2_loses_pairs_within_reach() {
     let chain = explicit(&[(0.0, 0.0), (run, 0.0)], &[line((75.0, 90.0), v, (-90.0, 0.0), v)]);
     let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
     let at = |i| chain.geometry().vertex_station(VertexId(i));
-    let single = test.loft(&at(0), &at(1));
+    let single = test.lofts(&at(0), &at(1));
     let many = test.segment_hops(&at(0), &at(1)).unwrap();
     let pseudo_code = {
         let r_max = v * v / g;

@@ -238,7 +238,7 @@ fn no_path_over_random_points_beats_the_lower_bound() {
         let journey = Journey::ugly(draw);
         let found = journey.bounds(200);
         let (stations, test) = (drawn_stations(draw, &journey, 40), journey.test());
-        let Some(hops) = fewest_over(&stations, &journey, &|a, b| test.loft(a, b).is_ok()) else { continue };
+        let Some(hops) = fewest_over(&stations, &journey, &|a, b| test.lofts(a, b).is_ok()) else { continue };
         found_paths += 1;
         assert!(found.lower.is_some_and(|lower| lower <= hops), "journey {i}: bound {:?}, random points {hops}", found.lower);
     }

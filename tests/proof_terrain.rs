@@ -56,7 +56,7 @@ fn drawn_chain(dem: &Dem, seed: u64, most_segments: usize) -> (ConstrainedChain,
     (ConstrainedChain::new(chain, &hopper, &surface).unwrap(), hopper)
 }
 
-/// The first and the last place of a chain, among the middles of its segments, that grants a contact: the journey is to be long, and not
+/// The first and the last place of a chain, among the middles of its segments, that allows a contact: the journey is to be long, and not
 /// refused by the ground below its ends.
 fn usable_ends(chain: &ConstrainedChain) -> Option<(Station, Station)> {
     let middles = chain.geometry().vertices().windows(2).map(|v| 0.5 * (v[0].x_m + v[1].x_m));

@@ -237,7 +237,7 @@ fn a_run_of_exactly_so_many_reaches_takes_so_many_hops() {
         let fresh =
             Slope::new(reach.reach_m(), slope.direction.sign() * slope.b, slope.line, slope.hopper, slope.g, slope.direction);
         let (takeoff, landing) = fresh.ends();
-        assert!(fresh.test().loft(&takeoff, &landing).is_ok(), "one reach of {} m is no hop", reach.reach_m());
+        assert!(fresh.test().lofts(&takeoff, &landing).is_ok(), "one reach of {} m is no hop", reach.reach_m());
     }
 }
 
@@ -252,7 +252,7 @@ fn pairs_that_the_papers_pseudo_code_loses_are_hopped() {
         let sight = test.line_of_sight(&takeoff, &landing).unwrap();
         let within_r_max = chta::ballistics::least_takeoff_speed_m_s(sight, slope.g) <= slope.line.takeoff.speed_max_m_s()
             && chta::ballistics::least_landing_speed_m_s(sight, slope.g) <= slope.line.landing.speed_max_m_s();
-        if !within_r_max || test.loft(&takeoff, &landing).is_ok() {
+        if !within_r_max || test.lofts(&takeoff, &landing).is_ok() {
             continue;
         }
         let Some(along) = test.segment_hops(&takeoff, &landing) else { continue };

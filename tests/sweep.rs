@@ -73,7 +73,7 @@ fn compare_pair(
     swept: Result<chta::quantity::SlopeInterval, Limit>,
     compared: &mut Compared,
 ) {
-    let plain = test.loft(takeoff, landing);
+    let plain = test.lofts(takeoff, landing);
     compared.pairs += 1;
     match (swept, plain) {
         (Err(swept), Err(plain)) => {
@@ -200,15 +200,15 @@ fn touching_limits_are_evaluated_as_pair_by_pair() {
         let at = |chain: &ConstrainedChain, i| chain.geometry().vertex_station(VertexId(i));
         let (from, to) = (draw.below(5), 10 + draw.below(11));
         let roomy = HopTest::new(&fast, &hopper, g);
-        let Ok(loft) = roomy.loft(&at(&fast, from), &at(&fast, to)) else { continue };
-        let slope = roomy.line_of_sight(&at(&fast, from), &at(&fast, to)).unwrap().slope() + loft.lower;
+        let Ok(lofts) = roomy.lofts(&at(&fast, from), &at(&fast, to)) else { continue };
+        let slope = roomy.line_of_sight(&at(&fast, from), &at(&fast, to)).unwrap().slope() + lofts.lower;
         for nudge in -2..=2 {
             // A machine whose greatest angle is the least that clears the ground, give or take rounding.
             let steepest = Angle::from_radians(Angle::from_slope(slope).radians() * (1.0 + f64::from(nudge) * 2.0 * f64::EPSILON));
             let exact = Hopper { takeoff_angle_max: Some(steepest), ..hopper };
             let test = HopTest::new(&fast, &exact, g);
             compare(&test, &stations(&fast, 0), 21, &mut compared);
-            touching += u32::from(test.loft(&at(&fast, from), &at(&fast, to)).is_ok());
+            touching += u32::from(test.lofts(&at(&fast, from), &at(&fast, to)).is_ok());
         }
     }
     assert_eq!(compared.unlike, 0, "{compared:?}");
@@ -287,7 +287,7 @@ fn nothing_feasible_lies_beyond_reach() {
                 for (i, landing) in ahead {
                     let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
                     assert_eq!(in_reach.contains(&i), run_m <= reach_m);
-                    if test.loft(takeoff, landing).is_ok() {
+                    if test.lofts(takeoff, landing).is_ok() {
                         feasible += 1;
                         assert!(run_m <= reach_m, "{run_m} m in one hop, out of a reach of {reach_m} m");
                         assert!(run_m <= test.takeoff_reach_m(landing, direction), "{run_m} m in one hop, seen from its landing");

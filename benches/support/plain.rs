@@ -14,11 +14,11 @@ use chta::{
 /// The bound of a vertex is written with one division, `n >= (h - b d) X / (d (X - d))` for a vertex `h` (with the clearance) above the
 /// take-off at distance `d`, and its maximum without regard to NaN: about as quick as this loop gets.
 #[inline]
-pub(crate) fn loft(test: &HopTest<'_>, takeoff: &Station, landing: &Station) -> Option<SlopeInterval> {
+pub(crate) fn lofts(test: &HopTest<'_>, takeoff: &Station, landing: &Station) -> Option<SlopeInterval> {
     let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
     let chain = test.chain();
-    let from = chain.ruling(takeoff, Contact::Takeoff, direction)?.granted(Contact::Takeoff, direction)?;
-    let to = chain.ruling(landing, Contact::Landing, direction)?.granted(Contact::Landing, direction)?;
+    let from = chain.ruling(takeoff, Contact::Takeoff, direction)?.allowed(Contact::Takeoff, direction)?;
+    let to = chain.ruling(landing, Contact::Landing, direction)?.allowed(Contact::Landing, direction)?;
     let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
     let sight = LineOfSight::new(run_m, landing.point.z_m - takeoff.point.z_m);
     let cheap = limits::speeds(sight, from.speed_max_m_s(), to.speed_max_m_s(), test.gravity_m_s2())

@@ -64,6 +64,6 @@ fn joins(dem: &Dem, from: (usize, usize), to: (usize, usize), hopper: &Hopper, s
     chain.is_some_and(|chain| {
         let geometry = chain.geometry();
         let ends = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
-        HopTest::new(&chain, hopper, gravity_m_s2).loft(&ends.0, &ends.1).is_ok()
+        HopTest::new(&chain, hopper, gravity_m_s2).lofts(&ends.0, &ends.1).is_ok()
     })
 }

@@ -171,7 +171,7 @@ impl Arc {
 /// assert!((least_takeoff_speed_m_s(LineOfSight::new(4.0, 3.0), 10.0) - 80f64.sqrt()).abs() < 1e-12);
 /// ```
 pub fn least_takeoff_speed_m_s(sight: LineOfSight, gravity_m_s2: f64) -> f64 {
-    (gravity_m_s2 * sight.run_m() * sight.lift()).sqrt()
+    (gravity_m_s2 * sight.run_m() * sight.min_speed_ratio()).sqrt()
 }
 
 /// The least landing speed of any arc over a line of sight, m/s: that of the same line travelled backwards (P eq. 18).
@@ -182,5 +182,5 @@ pub fn least_takeoff_speed_m_s(sight: LineOfSight, gravity_m_s2: f64) -> f64 {
 /// assert!((least_landing_speed_m_s(LineOfSight::new(4.0, -3.0), 10.0) - 80f64.sqrt()).abs() < 1e-12);
 /// ```
 pub fn least_landing_speed_m_s(sight: LineOfSight, gravity_m_s2: f64) -> f64 {
-    (gravity_m_s2 * sight.run_m() * sight.reversed_lift()).sqrt()
+    (gravity_m_s2 * sight.run_m() * sight.min_speed_ratio_reversed()).sqrt()
 }

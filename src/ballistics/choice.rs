@@ -53,7 +53,7 @@ impl TakeoffChoice {
         let lower = set.lower.max(f64::MIN_POSITIVE);
         let upper = set.upper.max(lower);
         match self {
-            Self::LeastSpeed => sight.stretch().clamp(lower, upper),
+            Self::LeastSpeed => sight.secant().clamp(lower, upper),
             Self::LeastTime => lower,
             Self::MidRange => bisecting_loft(sight, lower, upper),
         }

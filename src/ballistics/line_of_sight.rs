@@ -7,8 +7,8 @@ use crate::quantity::Angle;
 pub struct LineOfSight {
     run_m: f64,
     slope: f64,
-    /// `sqrt(1 + b^2)`: length per run, and the loft of least speed.
-    stretch: f64,
+    /// `sqrt(1 + b^2) = sec(beta)`: length per run, and the loft of least speed.
+    secant: f64,
 }
 
 impl LineOfSight {
@@ -27,7 +27,7 @@ impl LineOfSight {
     /// From run and slope: for two points on one segment, whose own slope keeps more digits than the two heights.
     #[inline]
     pub fn along(run_m: f64, slope: f64) -> Self {
-        Self { run_m, slope, stretch: (1.0 + slope * slope).sqrt() }
+        Self { run_m, slope, secant: (1.0 + slope * slope).sqrt() }
     }
 
     /// Horizontal distance X, m.
@@ -48,10 +48,10 @@ impl LineOfSight {
         self.slope
     }
 
-    /// `sqrt(1 + b^2)`.
+    /// `sqrt(1 + b^2)`, the secant of the angle beta above the horizontal.
     #[inline]
-    pub const fn stretch(&self) -> f64 {
-        self.stretch
+    pub const fn secant(&self) -> f64 {
+        self.secant
     }
 
     /// `b + sqrt(1 + b^2)`: the least `v^2 / (g X)` of a take-off, and the take-off slope that needs it (P eq. 16, 20).
@@ -60,23 +60,23 @@ impl LineOfSight {
     ///
     /// ```
     /// use chta::ballistics::LineOfSight;
-    /// assert_eq!(LineOfSight::new(4.0, 3.0).lift(), 2.0);
-    /// assert_eq!(LineOfSight::new(4.0, -3.0).lift(), 0.5);
+    /// assert_eq!(LineOfSight::new(4.0, 3.0).min_speed_ratio(), 2.0);
+    /// assert_eq!(LineOfSight::new(4.0, -3.0).min_speed_ratio(), 0.5);
     /// ```
     #[inline]
-    pub fn lift(&self) -> f64 {
-        lift(self.slope, self.stretch)
+    pub fn min_speed_ratio(&self) -> f64 {
+        min_speed_ratio(self.slope, self.secant)
     }
 
     /// `sqrt(1 + b^2) - b`: the least `v^2 / (g X)` of a landing, which is the take-off of the same line travelled backwards (P eq. 18).
     #[inline]
-    pub fn reversed_lift(&self) -> f64 {
-        lift(-self.slope, self.stretch)
+    pub fn min_speed_ratio_reversed(&self) -> f64 {
+        min_speed_ratio(-self.slope, self.secant)
     }
 
     /// The distance R = X sqrt(1 + b^2), m (P eq. 6).
     pub fn length_m(&self) -> f64 {
-        self.run_m * self.stretch
+        self.run_m * self.secant
     }
 
     /// The angle beta above the horizontal (P eq. 7).
@@ -87,6 +87,6 @@ impl LineOfSight {
 
 /// `b + w` for `w = sqrt(1 + b^2)`, without cancellation.
 #[inline]
-fn lift(slope: f64, stretch: f64) -> f64 {
-    if slope >= 0.0 { slope + stretch } else { 1.0 / (stretch - slope) }
+fn min_speed_ratio(slope: f64, secant: f64) -> f64 {
+    if slope >= 0.0 { slope + secant } else { 1.0 / (secant - slope) }
 }

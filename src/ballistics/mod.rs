@@ -27,13 +27,13 @@
 
 mod arc;
 mod choice;
+mod flight_envelope;
 pub mod limits;
 mod line_of_sight;
-mod open_air;
 mod safety;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
 pub use choice::TakeoffChoice;
+pub use flight_envelope::{ContactLimits, FlightEnvelope};
 pub use line_of_sight::LineOfSight;
-pub use open_air::{GroundGrant, OpenAir};
 pub use safety::{safety_ceiling_m, safety_range_m};

@@ -79,7 +79,7 @@ impl ConstrainedChain {
             return Err(ConstraintProblems(problems));
         }
         let bound = |contact: Contact| {
-            let rules = segments.iter().flat_map(|s| Direction::BOTH.map(|d| s.granted(contact, d))).flatten();
+            let rules = segments.iter().flat_map(|s| Direction::BOTH.map(|d| s.allowed(contact, d))).flatten();
             rules.map(super::ContactRule::speed_max_m_s).fold(0.0, f64::max)
         };
         let speed_bounds_m_s = (bound(Contact::Takeoff), bound(Contact::Landing));
@@ -96,7 +96,7 @@ impl ConstrainedChain {
         &self.segments
     }
 
-    /// The greatest take-off and landing speed that any segment grants, m/s.
+    /// The greatest take-off and landing speed that any segment allows, m/s.
     pub const fn speed_bounds_m_s(&self) -> (f64, f64) {
         self.speed_bounds_m_s
     }

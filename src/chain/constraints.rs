@@ -198,9 +198,9 @@ impl fmt::Display for GroundRefusal {
     }
 }
 
-/// What a segment grants, as `None` where the ground refuses whatever the hop.
+/// What a segment allows, as `None` where the ground refuses whatever the hop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-struct Granted {
+struct Allowed {
     takeoff: Option<ContactRule>,
     landing: Option<ContactRule>,
 }
@@ -211,7 +211,7 @@ pub struct SegmentConstraints {
     stated: [Result<LineConstraints, GroundRefusal>; 2],
     /// What holds for both directions.
     refusal: Option<GroundRefusal>,
-    granted: [Granted; 2],
+    allowed: [Allowed; 2],
 }
 
 impl SegmentConstraints {
@@ -221,9 +221,9 @@ impl SegmentConstraints {
         reverse: Result<LineConstraints, GroundRefusal>,
         refusal: Option<GroundRefusal>,
     ) -> Self {
-        let mut segment = Self { stated: [forward, reverse], refusal, granted: [Granted::default(); 2] };
+        let mut segment = Self { stated: [forward, reverse], refusal, allowed: [Allowed::default(); 2] };
         for direction in Direction::BOTH {
-            segment.granted[direction as usize] = Granted {
+            segment.allowed[direction as usize] = Allowed {
                 takeoff: segment.check_contact(Contact::Takeoff, direction).ok(),
                 landing: segment.check_contact(Contact::Landing, direction).ok(),
             };
@@ -253,13 +253,13 @@ impl SegmentConstraints {
         Ok(rule)
     }
 
-    /// The rule of a contact where the ground grants one: what inner loops ask.
+    /// The rule of a contact where the ground allows one: what inner loops ask.
     #[inline]
-    pub const fn granted(&self, contact: Contact, direction: Direction) -> Option<&ContactRule> {
-        let granted = &self.granted[direction as usize];
+    pub const fn allowed(&self, contact: Contact, direction: Direction) -> Option<&ContactRule> {
+        let allowed = &self.allowed[direction as usize];
         match contact {
-            Contact::Takeoff => granted.takeoff.as_ref(),
-            Contact::Landing => granted.landing.as_ref(),
+            Contact::Takeoff => allowed.takeoff.as_ref(),
+            Contact::Landing => allowed.landing.as_ref(),
         }
     }
 

@@ -1,11 +1,11 @@
-//! A place on the chain, and which segment rules there.
+//! A position on the chain, and which segment rules there.
 
 use crate::{
     quantity::{ChainPoint, SegmentId, VertexId},
     world::{Contact, Direction},
 };
 
-/// Where on the chain a station is. A station is at a vertex where its x is the same double; nothing snaps.
+/// Whether a station is at a vertex or inside a segment. It is at a vertex where its x is the same double; nothing snaps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Site {
     /// At a vertex.
@@ -30,7 +30,7 @@ impl Site {
     }
 }
 
-/// A place on the chain.
+/// A position on the chain, by its x: a station, as in surveying, where it is a position by chainage along a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Station {
     /// The point.

@@ -11,8 +11,8 @@ use chta::{
     hop::HopTest,
     report::InputFile,
     scenario::{
-        Covers, Entries, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, Survey, TerrainSource, Trade,
-        Variation, prepare, scenario_document, sha256_of,
+        Entries, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, Survey, SweptKey,
+        TerrainSource, Trade, prepare, scenario_document, sha256_of,
     },
 };
 
@@ -113,11 +113,11 @@ impl Loaded {
     }
 
     /// What an analyst should know of the input and of an answer, each once.
-    pub(crate) fn warnings_with(&self, doubts: impl IntoIterator<Item = String>) -> Vec<String> {
+    pub(crate) fn warnings_with(&self, more: impl IntoIterator<Item = String>) -> Vec<String> {
         let mut warnings = self.prepared.warnings.clone();
-        for doubt in doubts {
-            if !warnings.contains(&doubt) {
-                warnings.push(doubt);
+        for warning in more {
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
             }
         }
         warnings
@@ -172,11 +172,11 @@ pub(crate) fn load_to_vary(
     common: &CommonArgs,
     search: &SearchArgs,
     ends: EndOptions,
-    variations: &[Variation],
+    swept: &[SweptKey],
 ) -> Result<ToVary, Failure> {
     let mut source = typed(target, common, Some(search), ends)?;
     let (entries, base) = (source.entries.clone(), source.base.clone());
-    source.entries = Trade::first_cell(&entries, variations).map_err(|error| Failure::message(format!("--vary: {error}")))?;
+    source.entries = Trade::first_cell(&entries, swept).map_err(|error| Failure::message(format!("--vary: {error}")))?;
     let mut kept = None;
     let first = validate_and_prepare(target, source, common.quiet, ends, &mut |scenario, terrain, base| {
         kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
@@ -255,8 +255,8 @@ fn validate_and_prepare(
         output::warn(quiet, warning);
     }
     let mut inputs = vec![input_file(&file)?];
-    for cover in Covers::files(&scenario) {
-        inputs.push(input_file(&base.join(cover))?);
+    for overlay in Overlays::files(&scenario) {
+        inputs.push(input_file(&base.join(overlay))?);
     }
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
     Ok(Loaded { scenario, prepared, document, inputs, base, ends })

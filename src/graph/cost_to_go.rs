@@ -106,7 +106,7 @@ impl CostToGo {
     /// No hop over this line of sight costs less.
     #[inline]
     pub fn least_cost(&self, sight: LineOfSight, gravity_m_s2: f64) -> Cost {
-        let fastest = Arc::new(sight, sight.stretch(), gravity_m_s2);
+        let fastest = Arc::new(sight, sight.secant(), gravity_m_s2);
         match self.options.effort {
             Effort::TakeoffSpeed | Effort::Energy | Effort::PeakSpeed => self.options.effort.cost(&fastest, 1),
             // A flat and fast arc takes less time than any bound worth computing.
@@ -188,7 +188,7 @@ impl OneHop {
     #[inline]
     fn excludes(&self, sight: LineOfSight) -> bool {
         let g_x = self.gravity * sight.run_m();
-        g_x * sight.lift() > self.takeoff_squared || g_x * sight.reversed_lift() > self.landing_squared
+        g_x * sight.min_speed_ratio() > self.takeoff_squared || g_x * sight.min_speed_ratio_reversed() > self.landing_squared
     }
 }
 

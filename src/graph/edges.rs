@@ -67,7 +67,7 @@ impl<'a> HopGraph<'a> {
     /// The limit that refuses the single hop, where there are no hops along a segment either.
     #[inline]
     pub fn edge(&self, takeoff: &Station, landing: &Station) -> Result<Edge, Limit> {
-        self.edge_of(takeoff, landing, self.test.loft(takeoff, landing))
+        self.edge_of(takeoff, landing, self.test.lofts(takeoff, landing))
     }
 
     /// As [`edge`](Self::edge), where it is known what the hop test says of the single hop.
@@ -79,7 +79,7 @@ impl<'a> HopGraph<'a> {
         single: Result<SlopeInterval, Limit>,
     ) -> Result<Edge, Limit> {
         match single {
-            Ok(loft) => Ok(Edge::Hop(loft)),
+            Ok(lofts) => Ok(Edge::Hop(lofts)),
             Err(limit) => self.test.segment_hops(takeoff, landing).map(Edge::Along).ok_or(limit),
         }
     }
@@ -89,7 +89,7 @@ impl<'a> HopGraph<'a> {
         let Some(sight) = self.test.line_of_sight(takeoff, landing) else { return Cost::default() };
         let g = self.test.gravity_m_s2();
         match edge {
-            Edge::Hop(loft) => self.effort.cost(&Arc::new(sight, self.choice.loft(sight, loft), g), 1),
+            Edge::Hop(lofts) => self.effort.cost(&Arc::new(sight, self.choice.loft(sight, lofts), g), 1),
             Edge::Along(along) => {
                 let (each_m, last_m) = along.lengths_m(self.split);
                 let arc = |length_m| along.arc(self.test, length_m, self.choice);

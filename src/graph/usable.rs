@@ -24,7 +24,7 @@ pub struct EndpointRefusal {
 /// Whether a contact is allowed at a station in at least one direction of travel.
 pub fn is_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> bool {
     Direction::BOTH.into_iter().any(|direction| {
-        chain.ruling(station, contact, direction).is_some_and(|segment| segment.granted(contact, direction).is_some())
+        chain.ruling(station, contact, direction).is_some_and(|segment| segment.allowed(contact, direction).is_some())
     })
 }
 
@@ -51,7 +51,7 @@ pub fn endpoint_refusal(
 
 /// The nearest usable point by x.
 ///
-/// What a segment grants holds all over it, so that is an end of a segment, or, where that vertex obeys another segment, a point a
+/// What a segment allows holds all over it, so that is an end of a segment, or, where that vertex obeys another segment, a point a
 /// hundredth of the segment inside.
 fn nearest_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> Option<Station> {
     let geometry = chain.geometry();

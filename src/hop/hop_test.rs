@@ -2,7 +2,7 @@
 
 use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief};
 use crate::{
-    ballistics::{GroundGrant, LineOfSight, OpenAir, limits},
+    ballistics::{ContactLimits, FlightEnvelope, LineOfSight, limits},
     chain::{ConstrainedChain, ContactRule, Station},
     quantity::{SegmentId, SlopeInterval},
     world::{Contact, Direction, Hopper, Limit},
@@ -10,11 +10,11 @@ use crate::{
 
 /// A chain, a hopper and a gravity, ready to answer for any pair of stations.
 ///
-/// The kernel, [`loft`](Self::loft), has no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains what it found.
+/// The kernel, [`lofts`](Self::lofts), has no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains what it found.
 #[derive(Clone, Debug)]
 pub struct HopTest<'a> {
     chain: &'a ConstrainedChain,
-    air: OpenAir,
+    envelope: FlightEnvelope,
     /// Heights and speeds over any stretch.
     relief: Relief,
     /// How far one hop carries on each segment, by direction.
@@ -24,7 +24,8 @@ pub struct HopTest<'a> {
 impl<'a> HopTest<'a> {
     /// For a chain, a hopper and a gravity above 0 in m/s^2.
     pub fn new(chain: &'a ConstrainedChain, hopper: &Hopper, gravity_m_s2: f64) -> Self {
-        let mut test = Self { chain, air: OpenAir::new(hopper, gravity_m_s2), relief: Relief::of(chain), reaches: Vec::new() };
+        let mut test =
+            Self { chain, envelope: FlightEnvelope::new(hopper, gravity_m_s2), relief: Relief::of(chain), reaches: Vec::new() };
         test.reaches = (0..chain.segments().len())
             .map(|i| Direction::BOTH.map(|direction| SegmentReach::on(&test, SegmentId(i), direction)))
             .collect();
@@ -38,12 +39,12 @@ impl<'a> HopTest<'a> {
 
     /// The hopper it answers for.
     pub const fn hopper(&self) -> &Hopper {
-        self.air.hopper()
+        self.envelope.hopper()
     }
 
     /// Gravity, m/s^2.
     pub const fn gravity_m_s2(&self) -> f64 {
-        self.air.gravity_m_s2()
+        self.envelope.gravity_m_s2()
     }
 
     /// Heights and speeds over any stretch of the chain.
@@ -53,7 +54,7 @@ impl<'a> HopTest<'a> {
 
     /// The machine's own take-off slopes.
     pub const fn mechanical(&self) -> SlopeInterval {
-        self.air.mechanical()
+        self.envelope.mechanical()
     }
 
     /// The line of sight between two stations in the direction of travel; `None` where they share the same x.
@@ -79,31 +80,31 @@ impl<'a> HopTest<'a> {
     /// The first limit, in the order of testing (ground, bends, speeds, cones, machine, terrain), that with those before it leaves no arc.
     /// [`takeoff_set`](Self::takeoff_set) tells the whole story. [`Limit::Direction`] where both stations share the same x.
     #[inline]
-    pub fn loft(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
+    pub fn lofts(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).ok_or(Limit::Direction)?;
-        let from = self.granted(takeoff, Contact::Takeoff, direction)?;
-        let to = self.granted(landing, Contact::Landing, direction)?;
+        let from = self.allowed(takeoff, Contact::Takeoff, direction)?;
+        let to = self.allowed(landing, Contact::Landing, direction)?;
         if self.chain.geometry().bend_between(takeoff.point.x_m, landing.point.x_m).is_some() {
             return Err(Limit::Bend);
         }
         let sight = self.line_of_sight(takeoff, landing).ok_or(Limit::Direction)?;
-        let open_air = self.open_air(sight, from, to)?;
+        let in_envelope = self.lofts_in_envelope(sight, from, to)?;
         let vertices = self.chain.geometry().vertices();
-        let mut lower = open_air.lower;
+        let mut lower = in_envelope.lower;
         for point in &vertices[flown_past(takeoff, landing)] {
-            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.air.hopper().clearance_m));
-            if lower > open_air.upper {
+            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.envelope.hopper().clearance_m));
+            if lower > in_envelope.upper {
                 return Err(Limit::Terrain);
             }
         }
-        Ok(SlopeInterval { lower, upper: open_air.upper })
+        Ok(SlopeInterval { lower, upper: in_envelope.upper })
     }
 
-    /// The rule that the ground grants a contact, or the limit by which it refuses.
+    /// The rule that the ground allows a contact, or the limit by which it refuses.
     #[inline]
-    pub(super) fn granted(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
+    pub(super) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
         let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
-        segment.granted(contact, direction).ok_or_else(|| match segment.check_contact(contact, direction) {
+        segment.allowed(contact, direction).ok_or_else(|| match segment.check_contact(contact, direction) {
             Err(refusal) => refusal.limit(contact),
             Ok(_) => Limit::Direction,
         })
@@ -114,22 +115,27 @@ impl<'a> HopTest<'a> {
     /// # Errors
     /// The limit that left nothing.
     #[inline]
-    pub(crate) fn open_air(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Result<SlopeInterval, Limit> {
-        let grant = |rule: &ContactRule| GroundGrant { slopes: rule.slopes(), speed_max_m_s: rule.speed_max_m_s() };
-        let loft = self.air.lofts(sight, grant(from), grant(to));
-        if loft.is_empty() || loft.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(loft) }
+    pub(crate) fn lofts_in_envelope(
+        &self,
+        sight: LineOfSight,
+        from: &ContactRule,
+        to: &ContactRule,
+    ) -> Result<SlopeInterval, Limit> {
+        let limits_of = |rule: &ContactRule| ContactLimits { slopes: rule.slopes(), speed_max_m_s: rule.speed_max_m_s() };
+        let lofts = self.envelope.lofts(sight, limits_of(from), limits_of(to));
+        if lofts.is_empty() || lofts.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(lofts) }
     }
 
     /// The lofts that the machine's greatest height and longest flight allow.
     #[inline]
     pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
-        self.air.machine(sight)
+        self.envelope.machine(sight)
     }
 
     /// Whether the machine has a greatest height or a longest flight.
     #[inline]
     pub(super) const fn has_machine_limits(&self) -> bool {
-        self.air.hopper().apex_height_max_m.is_some() || self.air.hopper().flight_time_max_s.is_some()
+        self.envelope.hopper().apex_height_max_m.is_some() || self.envelope.hopper().flight_time_max_s.is_some()
     }
 
     /// Which limit left nothing, limits taken one after the other.
@@ -158,11 +164,14 @@ impl<'a> HopTest<'a> {
             (Limit::TakeoffCone, limits::takeoff_cone(sight, takeoff_slopes)),
             (Limit::LandingCone, limits::landing_cone(sight, landing_slopes)),
             (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical())),
-            (Limit::ApexHeight, self.air.hopper().apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h))),
+            (
+                Limit::ApexHeight,
+                self.envelope.hopper().apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h)),
+            ),
         ];
         let mut left = speeds;
-        for (limit, loft) in in_order {
-            left = left.intersect(loft);
+        for (limit, lofts) in in_order {
+            left = left.intersect(lofts);
             if left.is_empty() || left.upper <= 0.0 {
                 return limit;
             }

@@ -13,7 +13,7 @@ use crate::{
 pub(super) struct Extremes {
     lowest_m: f64,
     highest_m: f64,
-    /// The greatest take-off and landing speed that any segment grants, m/s.
+    /// The greatest take-off and landing speed that any segment allows, m/s.
     takeoff_m_s: f64,
     landing_m_s: f64,
 }
@@ -40,7 +40,7 @@ impl Extremes {
     fn at(chain: &ConstrainedChain, vertex: usize) -> Self {
         let z_m = chain.geometry().vertices()[vertex].z_m;
         let greatest = |contact| {
-            let rules = chain.segments().get(vertex).into_iter().flat_map(|s| Direction::BOTH.map(|d| s.granted(contact, d)));
+            let rules = chain.segments().get(vertex).into_iter().flat_map(|s| Direction::BOTH.map(|d| s.allowed(contact, d)));
             rules.flatten().map(ContactRule::speed_max_m_s).fold(0.0, f64::max)
         };
         Self { lowest_m: z_m, highest_m: z_m, takeoff_m_s: greatest(Contact::Takeoff), landing_m_s: greatest(Contact::Landing) }
@@ -133,12 +133,12 @@ impl HopTest<'_> {
     ///     X <= min( v_t v_l / g,  (v_t / g) sqrt(v_t^2 + 2 g drop),  (v_l / g) sqrt(v_l^2 + 2 g climb) )
     /// ```
     ///
-    /// from the parabolas of safety of take-off and landing, with the speed granted here and the greatest landing speed, drop and climb
+    /// from the parabolas of safety of take-off and landing, with the speed allowed here and the greatest landing speed, drop and climb
     /// within the bound itself: it starts from those of the whole chain and shrinks until it stands. Whatever a wall or a canyon may
     /// hide, nothing beyond is in reach. Where the ground here refuses take-offs, the chain's greatest speed is taken.
     pub fn landing_reach_m(&self, takeoff: &Station, direction: Direction) -> f64 {
-        let granted = self.granted(takeoff, Contact::Takeoff, direction).map(ContactRule::speed_max_m_s);
-        let speed = granted.unwrap_or(self.chain().speed_bounds_m_s().0);
+        let allowed = self.allowed(takeoff, Contact::Takeoff, direction).map(ContactRule::speed_max_m_s);
+        let speed = allowed.unwrap_or(self.chain().speed_bounds_m_s().0);
         let z_m = takeoff.point.z_m;
         self.shrunk_m(takeoff, direction, |ground| {
             let (drop_m, climb_m) = ground.about_m(z_m);
@@ -149,8 +149,8 @@ impl HopTest<'_> {
     /// The horizontal distance beyond which no hop that lands on this station in a direction of travel takes off, m: as
     /// [`landing_reach_m`](Self::landing_reach_m), the hop flown backwards.
     pub fn takeoff_reach_m(&self, landing: &Station, direction: Direction) -> f64 {
-        let granted = self.granted(landing, Contact::Landing, direction).map(ContactRule::speed_max_m_s);
-        let speed = granted.unwrap_or(self.chain().speed_bounds_m_s().1);
+        let allowed = self.allowed(landing, Contact::Landing, direction).map(ContactRule::speed_max_m_s);
+        let speed = allowed.unwrap_or(self.chain().speed_bounds_m_s().1);
         let z_m = landing.point.z_m;
         let back = if direction == Direction::Forward { Direction::Reverse } else { Direction::Forward };
         self.shrunk_m(landing, back, |ground| {

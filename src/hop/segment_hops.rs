@@ -68,8 +68,8 @@ impl SegmentReach {
     /// The reach along a segment; `None` where its ground or its cones allow no arc along it.
     pub(super) fn on(test: &HopTest<'_>, segment: SegmentId, direction: Direction) -> Option<Self> {
         let constraints = test.chain().segments().get(segment.index())?;
-        let from = constraints.granted(Contact::Takeoff, direction)?;
-        let to = constraints.granted(Contact::Landing, direction)?;
+        let from = constraints.allowed(Contact::Takeoff, direction)?;
+        let to = constraints.allowed(Contact::Landing, direction)?;
         let sight_slope = direction.sign() * test.chain().geometry().slopes()[segment.index()];
         let sight = LineOfSight::along(1.0, sight_slope);
         let lofts = limits::takeoff_cone(sight, from.slopes().intersect(test.mechanical()))
@@ -80,7 +80,7 @@ impl SegmentReach {
         let ends = Ends { b: sight_slope, takeoff_m_s: from.speed_max_m_s(), landing_m_s: to.speed_max_m_s(), test };
         let flattest = lofts.lower.max(f64::MIN_POSITIVE);
         // Not `clamp`, which panics where the set ends below the least positive number.
-        let fastest = sight.stretch().min(lofts.upper).max(flattest);
+        let fastest = sight.secant().min(lofts.upper).max(flattest);
         let loft = ends.best_loft(flattest, fastest);
         let (by_speed, limit) = ends.by_speed_m(loft);
         let (by_machine, machine_limit) = ends.by_machine_m(loft);
@@ -172,7 +172,7 @@ impl SegmentHops {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
         // At full reach the set is one point, which rounding may lose.
         let only = SlopeInterval { lower: self.reach.loft, upper: self.reach.loft };
-        test.open_air(sight, &self.reach.from, &self.reach.to).unwrap_or(only)
+        test.lofts_in_envelope(sight, &self.reach.from, &self.reach.to).unwrap_or(only)
     }
 }
 

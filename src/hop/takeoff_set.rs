@@ -14,7 +14,7 @@ pub struct LimitInterval {
     /// Which limit.
     pub limit: Limit,
     /// The lofts it allows; empty where it refuses every arc.
-    pub loft: SlopeInterval,
+    pub lofts: SlopeInterval,
     /// For the terrain: the vertex that decides.
     pub vertex: Option<VertexId>,
     /// By how much it refuses every arc, where it does.
@@ -72,9 +72,9 @@ impl TakeoffSet {
     }
 
     /// The feasible lofts; `None` where there are none.
-    pub fn loft(&self) -> Option<SlopeInterval> {
+    pub fn lofts(&self) -> Option<SlopeInterval> {
         match self.verdict {
-            Verdict::Feasible(loft, _) => Some(loft),
+            Verdict::Feasible(lofts, _) => Some(lofts),
             Verdict::Refused(_) => None,
         }
     }
@@ -97,24 +97,24 @@ impl TakeoffSet {
 
     /// The feasible take-off angles; `None` where there are none.
     pub fn angles(&self) -> Option<AngleInterval> {
-        self.angles_of(self.loft()?)
+        self.angles_of(self.lofts()?)
     }
 
     /// Lofts as take-off angles; `None` for an empty interval.
-    pub fn angles_of(&self, loft: SlopeInterval) -> Option<AngleInterval> {
-        loft.shifted(self.sight.slope()).angles()
+    pub fn angles_of(&self, lofts: SlopeInterval) -> Option<AngleInterval> {
+        lofts.shifted(self.sight.slope()).angles()
     }
 
     /// The arc to fly by a choice; `None` where there is none.
     pub fn arc(&self, choice: TakeoffChoice, gravity_m_s2: f64) -> Option<Arc> {
-        Some(Arc::new(self.sight, choice.loft(self.sight, self.loft()?), gravity_m_s2))
+        Some(Arc::new(self.sight, choice.loft(self.sight, self.lofts()?), gravity_m_s2))
     }
 }
 
 /// The line of sight as a limit: open at its lower end, since no arc is the line itself.
 const ABOVE_SIGHT: LimitInterval = LimitInterval {
     limit: Limit::LineOfSight,
-    loft: SlopeInterval { lower: 0.0, upper: f64::INFINITY },
+    lofts: SlopeInterval { lower: 0.0, upper: f64::INFINITY },
     vertex: None,
     shortfall: None,
 };
@@ -128,8 +128,8 @@ fn all_limits(
     sight: LineOfSight,
 ) -> Vec<LimitInterval> {
     let mut found = Vec::with_capacity(Limit::ALL.len());
-    let mut add = |limit, loft, vertex, shortfall| found.push(LimitInterval { limit, loft, vertex, shortfall });
-    let mut granted = |contact, station: &Station| -> Option<ContactRule> {
+    let mut add = |limit, lofts, vertex, shortfall| found.push(LimitInterval { limit, lofts, vertex, shortfall });
+    let mut allowed = |contact, station: &Station| -> Option<ContactRule> {
         match test.chain().check_contact(station, contact, direction) {
             Ok(rule) => Some(rule),
             Err(refusal) => {
@@ -138,8 +138,8 @@ fn all_limits(
             }
         }
     };
-    let from = granted(Contact::Takeoff, takeoff);
-    let to = granted(Contact::Landing, landing);
+    let from = allowed(Contact::Takeoff, takeoff);
+    let to = allowed(Contact::Landing, landing);
     if let Some(vertex) = test.chain().geometry().bend_between(takeoff.point.x_m, landing.point.x_m) {
         let x_m = test.chain().geometry().vertices()[vertex.index()].x_m;
         add(Limit::Bend, SlopeInterval::EMPTY, Some(vertex), Some(Shortfall::Bend { x_m }));
@@ -147,23 +147,23 @@ fn all_limits(
     let gravity = test.gravity_m_s2();
     if let Some(rule) = from {
         add(Limit::TakeoffCone, limits::takeoff_cone(sight, rule.slopes()), None, None);
-        let loft = limits::takeoff_speed(sight, rule.speed_max_m_s(), gravity);
-        let shortfall = loft
+        let lofts = limits::takeoff_speed(sight, rule.speed_max_m_s(), gravity);
+        let shortfall = lofts
             .is_empty()
             .then(|| Shortfall::Speed { needed_m_s: least_takeoff_speed_m_s(sight, gravity), limit_m_s: rule.speed_max_m_s() });
-        add(Limit::TakeoffSpeed, loft, None, shortfall);
+        add(Limit::TakeoffSpeed, lofts, None, shortfall);
     }
     if let Some(rule) = to {
         add(Limit::LandingCone, limits::landing_cone(sight, rule.slopes()), None, None);
-        let loft = limits::landing_speed(sight, rule.speed_max_m_s(), gravity);
-        let shortfall = loft
+        let lofts = limits::landing_speed(sight, rule.speed_max_m_s(), gravity);
+        let shortfall = lofts
             .is_empty()
             .then(|| Shortfall::Speed { needed_m_s: least_landing_speed_m_s(sight, gravity), limit_m_s: rule.speed_max_m_s() });
-        add(Limit::LandingSpeed, loft, None, shortfall);
+        add(Limit::LandingSpeed, lofts, None, shortfall);
     }
-    add(Limit::LineOfSight, ABOVE_SIGHT.loft, None, None);
-    let (loft, vertex) = terrain_limit(test.chain().geometry(), takeoff, landing, test.hopper().clearance_m);
-    add(Limit::Terrain, loft, vertex, None);
+    add(Limit::LineOfSight, ABOVE_SIGHT.lofts, None, None);
+    let (lofts, vertex) = terrain_limit(test.chain().geometry(), takeoff, landing, test.hopper().clearance_m);
+    add(Limit::Terrain, lofts, vertex, None);
     machine_limits(test, sight, &mut add);
     found.sort_by_key(|limit| limit.limit);
     found
@@ -180,9 +180,9 @@ fn machine_limits(
         add(Limit::MechanicalAngle, limits::takeoff_cone(sight, test.mechanical()), None, None);
     }
     if let Some(height_m) = hopper.apex_height_max_m {
-        let loft = limits::apex_height(sight, height_m);
-        let shortfall = loft.is_empty().then(|| Shortfall::Height { needed_m: sight.rise_m(), limit_m: height_m });
-        add(Limit::ApexHeight, loft, None, shortfall);
+        let lofts = limits::apex_height(sight, height_m);
+        let shortfall = lofts.is_empty().then(|| Shortfall::Height { needed_m: sight.rise_m(), limit_m: height_m });
+        add(Limit::ApexHeight, lofts, None, shortfall);
     }
     if let Some(time_s) = hopper.flight_time_max_s {
         add(Limit::FlightTime, limits::flight_time(sight, time_s, test.gravity_m_s2()), None, None);
@@ -191,26 +191,26 @@ fn machine_limits(
 
 /// The intersection of all limits and what sets its ends, or the conflict that leaves nothing.
 fn evaluate(sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
-    if let Some(alone) = limits.iter().find(|limit| limit.loft.is_empty()) {
+    if let Some(alone) = limits.iter().find(|limit| limit.lofts.is_empty()) {
         return Verdict::Refused(Conflict::Alone(*alone));
     }
     let mut binding = Binding { lower: ABOVE_SIGHT, upper: ABOVE_SIGHT };
     for &limit in limits {
-        if limit.loft.lower > binding.lower.loft.lower {
+        if limit.lofts.lower > binding.lower.lofts.lower {
             binding.lower = limit;
         }
-        if limit.loft.upper < binding.upper.loft.upper {
+        if limit.lofts.upper < binding.upper.lofts.upper {
             binding.upper = limit;
         }
     }
-    let loft = SlopeInterval { lower: binding.lower.loft.lower, upper: binding.upper.loft.upper };
-    if loft.is_empty() || loft.upper <= 0.0 {
+    let lofts = SlopeInterval { lower: binding.lower.lofts.lower, upper: binding.upper.lofts.upper };
+    if lofts.is_empty() || lofts.upper <= 0.0 {
         let angle = |loft: f64| Angle::from_slope(sight.slope() + loft).degrees();
         return Verdict::Refused(Conflict::Pair {
             lower: binding.lower,
             upper: binding.upper,
-            gap_deg: angle(loft.lower) - angle(loft.upper),
+            gap_deg: angle(lofts.lower) - angle(lofts.upper),
         });
     }
-    Verdict::Feasible(loft, binding)
+    Verdict::Feasible(lofts, binding)
 }

@@ -42,7 +42,7 @@ pub fn generate(test: &HopTest<'_>, legs: &[Leg], choice: TakeoffChoice, split: 
     let mut hops = Vec::new();
     for leg in legs {
         match leg.edge {
-            Edge::Hop(loft) => hops.extend(single(test, leg, loft, choice)),
+            Edge::Hop(lofts) => hops.extend(single(test, leg, lofts, choice)),
             Edge::Along(along) => hops.extend(along_segment(test, leg, &along, choice, split)),
         }
     }
@@ -58,10 +58,10 @@ impl HopPath {
 }
 
 /// The hop of a leg that takes one.
-fn single(test: &HopTest<'_>, leg: &Leg, loft: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
+fn single(test: &HopTest<'_>, leg: &Leg, lofts: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
     let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
-    let arc = Arc::new(sight, choice.loft(sight, loft), test.gravity_m_s2());
-    Some(hop(test, leg.takeoff, leg.landing, &arc, loft, Limit::TakeoffSpeed))
+    let arc = Arc::new(sight, choice.loft(sight, lofts), test.gravity_m_s2());
+    Some(hop(test, leg.takeoff, leg.landing, &arc, lofts, Limit::TakeoffSpeed))
 }
 
 /// The hops of a leg that runs along one segment.
@@ -113,7 +113,7 @@ fn equal_m(leg: &Leg, along: &SegmentHops, direction: Direction) -> Vec<f64> {
 /// A hop with all that is said of it.
 ///
 /// `otherwise` is the limit named where the set is one point that rounding loses.
-fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, loft: SlopeInterval, otherwise: Limit) -> Hop {
+fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, lofts: SlopeInterval, otherwise: Limit) -> Hop {
     let direction = if landing.point.x_m < takeoff.point.x_m { Direction::Reverse } else { Direction::Forward };
     let geometry = test.chain().geometry();
     let limit = |contact, station: &Station| {
@@ -134,7 +134,7 @@ fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, loft: 
         landing_speed_m_s,
         flight_time_s: arc.flight_time_s(),
         apex_z_m: takeoff.point.z_m + arc.apex_height_m(),
-        takeoff_angles: crate::quantity::AngleInterval { min: angle(loft.lower), max: angle(loft.upper) },
+        takeoff_angles: crate::quantity::AngleInterval { min: angle(lofts.lower), max: angle(lofts.upper) },
         speed_margin_m_s: (limit(Contact::Takeoff, &takeoff) - takeoff_speed_m_s)
             .min(limit(Contact::Landing, &landing) - landing_speed_m_s),
         lower_limit: binding.map_or(otherwise, |b| b.lower.limit),

@@ -3,14 +3,15 @@
 //! Inside the program a direction is its slope `m = tan(theta)`; [`Angle`] is for the edges, where degrees come in and go out.
 
 mod angle;
+mod format;
 mod ids;
 mod interval;
 mod points;
 mod quadratic;
 mod slope;
-mod written;
 
 pub use angle::{Angle, AngleInterval};
+pub use format::{format_number, unit_of};
 pub use ids::{NodeId, SegmentId, VertexId};
 #[cfg(test)]
 pub(crate) use interval::Inwards;
@@ -18,4 +19,3 @@ pub use interval::{Interval, Outwards, Rounding};
 pub use points::{ChainPoint, MapPoint};
 pub use quadratic::{MonicQuadratic, Roots};
 pub use slope::SlopeInterval;
-pub use written::{unit_of, written};

@@ -109,7 +109,7 @@ pub struct ConeWidthAnswer {
     pub seed: u64,
     /// Flights from each landing.
     pub flights: u32,
-    /// The horizontal speed at which drift with speed is as far as the paper says.
+    /// The horizontal speed at which the displacement with speed is as far as the paper says.
     pub reference_horizontal_speed_m_s: f64,
     /// From the widest cones to the narrowest.
     pub widths: Vec<ConeWidthRecord>,
@@ -128,13 +128,13 @@ pub struct ConeWidthRecord {
     pub mean_takeoff_angle_deg: Option<f64>,
     /// Mean of the hops' horizontal speeds.
     pub mean_horizontal_speed_m_s: Option<f64>,
-    /// Errors over all landings, drift as the paper draws it, the same after every landing.
+    /// Errors over all landings, displacement as the paper draws it, the same after every landing.
     pub all_landings_fixed: ErrorRecord,
     /// Errors of the last landing alone.
     pub last_landing_fixed: ErrorRecord,
     /// Root mean square spread of one hop's landings about their own mean, from the second hop on.
     pub landing_spread_fixed_m: Option<f64>,
-    /// Errors over all landings, drift in proportion to the horizontal speed, as the paper argues.
+    /// Errors over all landings, displacement in proportion to the horizontal speed, as the paper argues.
     pub all_landings_with_speed: ErrorRecord,
     /// Errors of the last landing alone.
     pub last_landing_with_speed: ErrorRecord,
@@ -172,7 +172,7 @@ impl ConeWidthAnswer {
         });
     }
 
-    /// A width with its path and the landings under both laws of drift.
+    /// A width with its path and the landings under both laws of bounce-and-roll displacement.
     pub fn add(
         &mut self,
         (cone_share, takeoff_cone_deg): (f64, f64),
@@ -325,7 +325,7 @@ mod figures {
     }
 
     impl ConeWidthAnswer {
-        /// Landing errors against the width of the cones, drift with the horizontal speed.
+        /// Landing errors against the width of the cones, displacement with the horizontal speed.
         pub fn figure(&self, title: &str) -> ConeWidthFigure {
             let words = format!(
                 "both cones narrowed about the vertical; drift after a landing in proportion to its horizontal speed; {} flights from the \

@@ -163,7 +163,7 @@ impl HopAnswer {
 
 impl LimitRecord {
     fn new(test: &HopTest<'_>, set: &TakeoffSet, limit: &LimitInterval) -> Self {
-        let angles = set.angles_of(limit.loft);
+        let angles = set.angles_of(limit.lofts);
         Self {
             name: limit.limit.name(),
             min_deg: angles.map(|a| a.min.degrees()),

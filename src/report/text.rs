@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, ProofRecord, RequireAnswer, TotalsRecord};
-use crate::quantity::{unit_of, written};
+use crate::quantity::{format_number, unit_of};
 
 /// A sheet of text; writing to it does not fail.
 #[derive(Default)]
@@ -22,7 +22,7 @@ impl Sheet {
     }
 }
 
-/// A place along the chain to the millimetre, without idle zeros.
+/// A place along the chain to the millimetre, without trailing zeros.
 fn place(x_m: f64) -> String {
     let text = format!("{x_m:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -106,8 +106,8 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     let mut sheet = Sheet::default();
     let RequireAnswer { vary, .. } = answer;
     let unit = unit_of(vary);
-    let with_unit = |value: f64| format!("{} {unit}", written(value)).trim_end().to_owned();
-    let (from, to) = (written(answer.from), with_unit(answer.to));
+    let with_unit = |value: f64| format!("{} {unit}", format_number(value)).trim_end().to_owned();
+    let (from, to) = (format_number(answer.from), with_unit(answer.to));
     sheet.line(format_args!("{vary}: from x = {} m to x = {} m", place(answer.start_x_m), place(answer.goal_x_m)));
     match answer.reachable_at {
         Some(value) => {

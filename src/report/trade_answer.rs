@@ -16,7 +16,7 @@ use crate::graph::proof::ProofVerdict;
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TradeAnswer {
     /// What was varied: one key, or two.
-    pub vary: Vec<TradeVariation>,
+    pub vary: Vec<SweptKeyRecord>,
     /// Whether a proof was asked for.
     #[serde(skip)]
     pub proved: bool,
@@ -26,7 +26,7 @@ pub struct TradeAnswer {
 
 /// One key that was varied.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct TradeVariation {
+pub struct SweptKeyRecord {
     /// The scenario's key, `table.name`.
     pub key: String,
     /// Its values, rising.
@@ -77,7 +77,7 @@ impl TradeAnswer {
     /// The cells as a picture shows them, with a title and a line below it: the first key along the horizontal axis, the second along the vertical one.
     #[cfg(feature = "plot")]
     pub fn figure(&self, title: impl Into<String>, line: impl Into<String>) -> TradeFigure {
-        let axis = |v: &TradeVariation| TradeAxis { name: with_unit(&v.key), values: v.values.clone() };
+        let axis = |v: &SweptKeyRecord| TradeAxis { name: with_unit(&v.key), values: v.values.clone() };
         let mut vary = self.vary.iter().map(axis);
         TradeFigure {
             caption: Caption::new(title, format!("{}; {}", line.into(), self.summary())),

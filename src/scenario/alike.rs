@@ -5,7 +5,7 @@ use crate::world::Hopper;
 
 /// Whether two scenarios ask the same of every hop between the same ends over the same points: of the ground, the machine and gravity.
 ///
-/// Greatest speeds count as the segments grant them, so one beyond the chain's own limits changes nothing; mass and rest time weigh
+/// Greatest speeds count as the segments allow them, so one beyond the chain's own limits changes nothing; mass and rest time weigh
 /// nothing.
 pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &Prepared)) -> bool {
     let machine = |hopper: &Hopper| Hopper {

@@ -15,9 +15,9 @@ pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
 pub use pipeline::{
-    Covers, Extremes, PipelineError, Prepared, Survey, Transect, constant_gravity_doubts, friction, prepare, sha256_of,
+    Extremes, Overlays, PipelineError, Prepared, Survey, Transect, constant_gravity_warnings, friction, prepare, sha256_of,
 };
 pub use problem::{ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, Scenario, TerrainSource};
-pub use trade::{Trade, TradeError, Variation, Varied, verdict};
+pub use trade::{SweptKey, Trade, TradeError, Varied, verdict};
 pub use trials::UncertaintyKeys;

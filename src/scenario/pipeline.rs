@@ -79,9 +79,9 @@ pub enum PipelineError {
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let Survey { ground, projection, mut warnings } = Survey::of(scenario, source, base)?;
     let (geometry, ends) = match ground {
-        Surveyed::Slice { legs, covers } => {
-            let (chain, idle) = covers.laid(legs, friction(scenario))?;
-            warnings.extend(idle);
+        Surveyed::Slice { legs, overlays } => {
+            let (chain, without_effect) = overlays.laid(legs, friction(scenario))?;
+            warnings.extend(without_effect);
             whole(chain)
         }
         Surveyed::Chain(chain) => (chain, (None, None)),
@@ -101,7 +101,7 @@ pub struct Survey {
 #[derive(Clone, Debug)]
 enum Surveyed {
     /// A slice, and what is laid over it.
-    Slice { legs: Vec<Profile>, covers: Box<Covers> },
+    Slice { legs: Vec<Profile>, overlays: Box<Overlays> },
     /// A chain as it was given.
     Chain(PolygonalChain),
 }
@@ -127,8 +127,8 @@ impl Survey {
                 return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
             }
         };
-        let covers = Covers::read(scenario, base, transect.coordinates.as_ref(), transect.bounds)?;
-        let ground = Surveyed::Slice { legs: transect.legs, covers: Box::new(covers) };
+        let overlays = Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.bounds)?;
+        let ground = Surveyed::Slice { legs: transect.legs, overlays: Box::new(overlays) };
         Ok(Self { ground, projection: transect.projection, warnings: transect.warnings })
     }
 
@@ -139,9 +139,9 @@ impl Survey {
     pub fn prepare(&self, scenario: &Scenario) -> Result<Prepared, PipelineError> {
         let mut warnings = self.warnings.clone();
         let (geometry, ends) = match &self.ground {
-            Surveyed::Slice { legs, covers } => {
-                let (chain, idle) = covers.laid(legs.clone(), friction(scenario))?;
-                warnings.extend(idle);
+            Surveyed::Slice { legs, overlays } => {
+                let (chain, without_effect) = overlays.laid(legs.clone(), friction(scenario))?;
+                warnings.extend(without_effect);
                 whole(chain)
             }
             Surveyed::Chain(chain) => (chain.clone(), (None, None)),
@@ -231,21 +231,21 @@ impl Transect {
     }
 }
 
-/// What a scenario lays over its terrain: friction, and keep-out zones.
+/// The overlays of a scenario on its terrain: friction, and keep-out zones.
 #[derive(Clone, Debug)]
-pub struct Covers {
+pub struct Overlays {
     constant: Option<FrictionCone>,
     raster: Option<FrictionRaster>,
     keep_out: Option<KeepOut>,
 }
 
-impl Covers {
+impl Overlays {
     /// Reads the files that a scenario names, for a terrain that says this of its map and covers this.
     ///
     /// `base` is the folder that the scenario's paths start from.
     ///
     /// # Errors
-    /// [`TerrainError::Cover`].
+    /// [`TerrainError::Overlay`].
     pub fn read(
         scenario: &Scenario,
         base: &Path,
@@ -272,26 +272,27 @@ impl Covers {
         [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
     }
 
-    /// What of them has no effect anywhere on a DEM of these bounds, in words.
-    pub fn idle_on_dem(&self, bounds: MapBounds) -> Vec<String> {
-        let raster = self.raster.as_ref().filter(|raster| !raster.covers(bounds)).map(|raster| raster.idle("the DEM"));
-        let keep_out = self.keep_out.as_ref().filter(|keep_out| !keep_out.meets(bounds)).map(|keep_out| keep_out.idle("the DEM"));
+    /// A sentence for each overlay without effect on a DEM of these bounds.
+    pub fn without_effect_on_dem(&self, bounds: MapBounds) -> Vec<String> {
+        let raster = self.raster.as_ref().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
+        let keep_out =
+            self.keep_out.as_ref().filter(|keep_out| !keep_out.meets(bounds)).map(|keep_out| keep_out.without_effect("the DEM"));
         raster.into_iter().chain(keep_out).collect()
     }
 
     /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones.
     ///
     /// # Errors
-    /// [`TerrainError::Cover`] where a raster ends before the slice does.
+    /// [`TerrainError::Overlay`] where a raster ends before the slice does.
     pub fn chain(&self, legs: Vec<Profile>) -> Result<PolygonalChain, PipelineError> {
-        self.chain_with_doubts(legs).map(|(chain, _)| chain)
+        self.chain_with_warnings(legs).map(|(chain, _)| chain)
     }
 
-    /// The same, with what of raster and zones has no effect anywhere on it, in words.
+    /// The same, with a sentence for each overlay without effect on it.
     ///
     /// # Errors
-    /// As [`Covers::chain`].
-    pub fn chain_with_doubts(&self, legs: Vec<Profile>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
+    /// As [`Overlays::chain`].
+    pub fn chain_with_warnings(&self, legs: Vec<Profile>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
         self.laid(legs, self.constant)
     }
 
@@ -306,8 +307,8 @@ impl Covers {
                 keeps_out |= keep_out.mark(leg)?;
             }
         }
-        let raster = self.raster.as_ref().filter(|_| !says_friction).map(|raster| raster.idle("the transect"));
-        let keep_out = self.keep_out.as_ref().filter(|_| !keeps_out).map(|keep_out| keep_out.idle("the transect"));
+        let raster = self.raster.as_ref().filter(|_| !says_friction).map(|raster| raster.without_effect("the transect"));
+        let keep_out = self.keep_out.as_ref().filter(|_| !keeps_out).map(|keep_out| keep_out.without_effect("the transect"));
         Ok((PolygonalChain::from_legs(&legs, constant)?, raster.into_iter().chain(keep_out).collect()))
     }
 }
@@ -343,7 +344,7 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
     }))
 }
 
-/// The largest figures of some hops, to be doubted.
+/// The largest figures of some hops, against which constant gravity is checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extremes {
     /// Greatest horizontal distance, m.
@@ -366,17 +367,17 @@ impl Extremes {
     }
 }
 
-/// Where constant gravity over flat ground is a bad model: what is doubtful and by how much; empty where nothing is.
+/// Warnings where constant gravity over flat ground is a bad model, each with its numbers; empty where it is a good one.
 ///
-/// A hop is doubted where its range or its highest point above the take-off is over a hundredth of the body's radius, or a speed over
+/// A hop gives a warning where its range or its highest point above the take-off is over a hundredth of the body's radius, or a speed over
 /// a tenth of its escape speed `sqrt(2 g R)`. Nothing is said of a body of unknown radius.
-pub fn constant_gravity_doubts(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
+pub fn constant_gravity_warnings(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
     let Some(radius_m) = body.radius_m else { return Vec::new() };
     let name = body.name.as_deref().unwrap_or("the body");
     let escape_m_s = Body { name: "", gravity_m_s2: body.gravity_m_s2, radius_m, source: "" }.escape_speed_m_s();
     let Extremes { range_m, height_m, speed_m_s } = extremes;
     let lengths = [("range", range_m), ("highest point above its take-off", height_m)];
-    let mut doubts: Vec<String> = lengths
+    let mut warnings: Vec<String> = lengths
         .into_iter()
         .filter(|(_, length_m)| *length_m > 0.01 * radius_m)
         .map(|(what, length_m)| {
@@ -384,10 +385,10 @@ pub fn constant_gravity_doubts(body: &BodyChoice, extremes: Extremes) -> Vec<Str
         })
         .collect();
     if speed_m_s > 0.1 * escape_m_s {
-        doubts.push(format!(
+        warnings.push(format!(
             "a hop's speed, {speed_m_s:.4} m/s, is over a tenth of the escape speed of {name} ({escape_m_s:.4} m/s): constant gravity is \
              a bad model there"
         ));
     }
-    doubts
+    warnings
 }

@@ -120,7 +120,7 @@ impl Scenario {
         let surface = surface(&mut entries);
         let terrain = terrain(&mut entries);
         let via = via(&mut entries, terrain.as_ref());
-        let [friction_raster, keep_out] = covers(&mut entries, &surface, terrain.as_ref());
+        let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
         let search = search(&mut entries);
         let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
@@ -280,8 +280,8 @@ fn surface(entries: &mut Entries) -> Surface {
     Surface { grip, rest }
 }
 
-/// The files that lie over the terrain: friction raster and keep-out zones.
-fn covers(entries: &mut Entries, surface: &Surface, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 2] {
+/// The files of the overlays on the terrain: friction raster and keep-out zones.
+fn overlays(entries: &mut Entries, surface: &Surface, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 2] {
     let own_columns = [("friction_raster", "friction_coefficient"), ("keep_out", "keep_out")];
     if matches!(terrain, Some(TerrainSource::Chain { .. })) {
         for (name, column) in own_columns {

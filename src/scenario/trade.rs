@@ -16,12 +16,12 @@ use crate::{
         search,
     },
     hop::HopTest,
-    report::{TradeAnswer, TradeRow, TradeVariation},
+    report::{SweptKeyRecord, TradeAnswer, TradeRow},
 };
 
-/// A key of the scenario and the values that it takes in turn.
+/// A key of the scenario that is swept, and the values that it takes in turn.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Variation {
+pub struct SweptKey {
     key: &'static Key,
     values: Vec<f64>,
 }
@@ -65,7 +65,7 @@ pub enum TradeError {
         to: f64,
     },
     /// Too few values, too many, or no whole number.
-    #[error("{path}: STEPS is {found}, expected how many values to try, a whole number from 2 to {}", Variation::MOST)]
+    #[error("{path}: STEPS is {found}, expected how many values to try, a whole number from 2 to {}", SweptKey::MOST)]
     Steps {
         /// The key.
         path: String,
@@ -126,7 +126,7 @@ pub enum TradeError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-impl Variation {
+impl SweptKey {
     /// The most values of one key.
     pub const MOST: usize = 1000;
 
@@ -137,10 +137,10 @@ impl Variation {
     ///
     /// # Examples
     /// ```
-    /// use chta::scenario::Variation;
-    /// let speeds = Variation::parse("hopper.takeoff_speed_max_m_s=4:10:7").unwrap();
+    /// use chta::scenario::SweptKey;
+    /// let speeds = SweptKey::parse("hopper.takeoff_speed_max_m_s=4:10:7").unwrap();
     /// assert_eq!(speeds.values(), [4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]);
-    /// assert!(Variation::parse("hopper.takeof_speed_max_m_s=4:10:7").unwrap_err().to_string().contains("hopper.takeoff_speed_max_m_s"));
+    /// assert!(SweptKey::parse("hopper.takeof_speed_max_m_s=4:10:7").unwrap_err().to_string().contains("hopper.takeoff_speed_max_m_s"));
     /// ```
     pub fn parse(text: &str) -> Result<Self, TradeError> {
         let (path, range) = text.split_once('=').unwrap_or((text, ""));
@@ -256,7 +256,7 @@ pub struct Trade<'a> {
     entries: &'a Entries,
     base: &'a Path,
     survey: &'a Survey,
-    variations: &'a [Variation],
+    swept: &'a [SweptKey],
 }
 
 impl<'a> Trade<'a> {
@@ -266,15 +266,15 @@ impl<'a> Trade<'a> {
     /// Of the keys as typed, over terrain that was read once; `base` is the folder that the scenario's paths start from.
     ///
     /// # Errors
-    /// [`TradeError`], where the variations do not make a row or a grid.
-    pub fn new(entries: &'a Entries, base: &'a Path, survey: &'a Survey, variations: &'a [Variation]) -> Result<Self, TradeError> {
-        checked(variations)?;
-        Ok(Self { entries, base, survey, variations })
+    /// [`TradeError`], where the swept keys do not make a row or a grid.
+    pub fn new(entries: &'a Entries, base: &'a Path, survey: &'a Survey, swept: &'a [SweptKey]) -> Result<Self, TradeError> {
+        checked(swept)?;
+        Ok(Self { entries, base, survey, swept })
     }
 
     /// How many cells there are.
     pub fn cells(&self) -> usize {
-        cells(self.variations)
+        cells(self.swept)
     }
 
     /// The answer in every cell, in parallel; the same for any number of threads.
@@ -292,7 +292,7 @@ impl<'a> Trade<'a> {
         threads: usize,
         progress: &(dyn Fn() + Sync),
     ) -> Result<TradeAnswer, TradeError> {
-        for axis in 0..self.variations.len() {
+        for axis in 0..self.swept.len() {
             self.check_effect(axis)?;
         }
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
@@ -306,13 +306,13 @@ impl<'a> Trade<'a> {
                 })
                 .collect()
         });
-        let vary = self.variations.iter().map(|v| TradeVariation { key: v.key.path(), values: v.values.clone() }).collect();
+        let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key.path(), values: v.values.clone() }).collect();
         Ok(TradeAnswer { vary, proved: proof_budget_cells.is_some(), rows: rows.into_iter().collect::<Result<_, _>>()? })
     }
 
     /// The values of a cell by its number.
     fn at(&self, cell: usize) -> Vec<f64> {
-        match self.variations {
+        match self.swept {
             [one] => vec![one.values[cell]],
             [first, second] => {
                 let across = second.values.len();
@@ -324,14 +324,14 @@ impl<'a> Trade<'a> {
 
     /// The scenario of a cell.
     fn scenario(&self, values: &[f64]) -> Result<Scenario, TradeError> {
-        Scenario::new(varied(self.entries, self.variations, values)).map_err(|problems| self.refused(values, &sentences(&problems)))
+        Scenario::new(varied(self.entries, self.swept, values)).map_err(|problems| self.refused(values, &sentences(&problems)))
     }
 
     /// The scenario of a cell and its chain.
     fn prepared(&self, values: &[f64]) -> Result<(Scenario, Prepared), TradeError> {
         let scenario = self.scenario(values)?;
         // The one number that changes what is read.
-        let rereads = self.variations.iter().any(|v| (v.key.table, v.key.name) == ("terrain", "mesh_scale"));
+        let rereads = self.swept.iter().any(|v| (v.key.table, v.key.name) == ("terrain", "mesh_scale"));
         let prepared = match scenario.terrain.as_ref().filter(|_| rereads) {
             Some(source) => Survey::of(&scenario, source, self.base).and_then(|survey| survey.prepare(&scenario)),
             None => self.survey.prepare(&scenario),
@@ -348,7 +348,7 @@ impl<'a> Trade<'a> {
         let test = HopTest::new(&chain, &scenario.hopper, scenario.body.gravity_m_s2);
         let answer =
             verdict(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
-        let keys = self.variations.iter().map(|v| v.key.path());
+        let keys = self.swept.iter().map(|v| v.key.path());
         Ok(TradeRow {
             values: keys.zip(values.iter().copied()).collect(),
             verdict: answer.verdict.name(),
@@ -359,12 +359,12 @@ impl<'a> Trade<'a> {
 
     /// Whether anything depends on a key: cells next to each other along it are compared until two differ.
     fn check_effect(&self, axis: usize) -> Result<(), TradeError> {
-        let own = &self.variations[axis];
-        let across: &[f64] = self.variations.iter().enumerate().find(|(i, _)| *i != axis).map_or(&[0.0], |(_, v)| &v.values);
+        let own = &self.swept[axis];
+        let across: &[f64] = self.swept.iter().enumerate().find(|(i, _)| *i != axis).map_or(&[0.0], |(_, v)| &v.values);
         for &other in across {
             let mut before = None;
             for &value in &own.values {
-                let values = match (self.variations.len(), axis) {
+                let values = match (self.swept.len(), axis) {
                     (1, _) => vec![value],
                     (_, 0) => vec![value, other],
                     _ => vec![other, value],
@@ -382,7 +382,7 @@ impl<'a> Trade<'a> {
 
     /// A cell's problem with the cell.
     fn refused(&self, values: &[f64], problem: &str) -> TradeError {
-        let cell: Vec<_> = self.variations.iter().zip(values).map(|(v, value)| format!("{}={value}", v.key.path())).collect();
+        let cell: Vec<_> = self.swept.iter().zip(values).map(|(v, value)| format!("{}={value}", v.key.path())).collect();
         TradeError::Cell { cell: cell.join(" and "), problem: problem.to_owned() }
     }
 }
@@ -392,34 +392,34 @@ impl Trade<'_> {
     ///
     /// # Errors
     /// As [`Trade::new`].
-    pub fn first_cell(entries: &Entries, variations: &[Variation]) -> Result<Entries, TradeError> {
-        checked(variations)?;
-        let first: Vec<f64> = variations.iter().filter_map(|v| v.values.first().copied()).collect();
-        Ok(varied(entries, variations, &first))
+    pub fn first_cell(entries: &Entries, swept: &[SweptKey]) -> Result<Entries, TradeError> {
+        checked(swept)?;
+        let first: Vec<f64> = swept.iter().filter_map(|v| v.values.first().copied()).collect();
+        Ok(varied(entries, swept, &first))
     }
 }
 
 /// One key or two different ones, and not too many cells.
-fn checked(variations: &[Variation]) -> Result<(), TradeError> {
-    match variations {
+fn checked(swept: &[SweptKey]) -> Result<(), TradeError> {
+    match swept {
         [first, second] if first.key == second.key => return Err(TradeError::Twice { path: first.key.path() }),
         [_] | [_, _] => {}
-        _ => return Err(TradeError::Count { found: variations.len() }),
+        _ => return Err(TradeError::Count { found: swept.len() }),
     }
-    match cells(variations) {
+    match cells(swept) {
         cells if cells > Trade::MOST_CELLS => Err(TradeError::Cells { cells }),
         _ => Ok(()),
     }
 }
 
-fn cells(variations: &[Variation]) -> usize {
-    variations.iter().map(|v| v.values.len()).product()
+fn cells(swept: &[SweptKey]) -> usize {
+    swept.iter().map(|v| v.values.len()).product()
 }
 
 /// The keys with values in place.
-fn varied(entries: &Entries, variations: &[Variation], values: &[f64]) -> Entries {
+fn varied(entries: &Entries, swept: &[SweptKey], values: &[f64]) -> Entries {
     let mut entries = entries.clone();
-    for (Variation { key, .. }, &value) in variations.iter().zip(values) {
+    for (SweptKey { key, .. }, &value) in swept.iter().zip(values) {
         entries.set_by_option(&format!("--vary {}", key.path()), key.table, key.name, typed(key, value));
     }
     entries
@@ -449,7 +449,7 @@ mod tests {
     fn every_key_that_takes_a_number_can_be_varied_and_no_other() {
         for key in &CATALOGUE {
             let text = format!("{}=1:3:3", key.path());
-            let parsed = Variation::parse(&text);
+            let parsed = SweptKey::parse(&text);
             let number = matches!(key.kind, Kind::Number { .. } | Kind::AngleOrUnlimited | Kind::CountOrAuto);
             assert_eq!(parsed.is_ok(), number, "{text}: {parsed:?}");
         }

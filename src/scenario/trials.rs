@@ -53,9 +53,9 @@ impl UncertaintyKeys {
         }
     }
 
-    /// What is doubtful about them: no errors, so that the trials tell nothing, or a tolerance of nothing, which no trial with an error
+    /// A warning about them: no errors, so that the trials tell nothing, or a tolerance of nothing, which no trial with an error
     /// meets.
-    pub fn doubt(&self) -> Option<&'static str> {
+    pub fn warning(&self) -> Option<&'static str> {
         if self.errors == Uncertainty::NONE {
             Some(
                 "no errors are given, so that every trial flies the plan exactly and the rate tells nothing: give [uncertainty] a standard \

@@ -4,7 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use super::{LonLat, MapBounds, NoProjection};
-use crate::quantity::{MapPoint, written};
+use crate::quantity::{MapPoint, format_number};
 
 /// Why a DEM could not be read, written, sliced or made up.
 #[derive(Debug, thiserror::Error)]
@@ -18,9 +18,9 @@ pub enum TerrainError {
         /// What is wrong with it.
         problem: Box<Self>,
     },
-    /// A problem of keep-out zones or of a raster of friction.
+    /// A problem of an overlay: keep-out zones or a friction raster.
     #[error("{what} '{}': {problem}", path.display())]
-    Cover {
+    Overlay {
         /// "keep-out zones" or "friction raster".
         what: &'static str,
         /// The file.
@@ -74,13 +74,13 @@ pub enum TerrainError {
     #[error("{0}")]
     InvalidDem(String),
     /// A transect without a direction.
-    #[error("the transect starts and ends at the same point ({} m, {} m), expected two different points", written(at.x), written(at.y))]
+    #[error("the transect starts and ends at the same point ({} m, {} m), expected two different points", format_number(at.x), format_number(at.y))]
     SamePoint {
         /// The point.
         at: MapPoint,
     },
     /// A point that the DEM does not cover.
-    #[error("the {which} point ({} m, {} m) is off the map, expected {bounds} (the outermost posts)", written(at.x), written(at.y))]
+    #[error("the {which} point ({} m, {} m) is off the map, expected {bounds} (the outermost posts)", format_number(at.x), format_number(at.y))]
     OffTheMap {
         /// "from" or "to".
         which: &'static str,
@@ -126,7 +126,7 @@ pub enum TerrainError {
     #[error(
         "the line from ({} m, {} m) to ({} m, {} m) leaves the part of the map that shows the body, expected longitude and latitude all \
          the way; choose another line, or cut the map to the part that is needed (gdalwarp -te)",
-        written(from.x), written(from.y), written(to.x), written(to.y)
+        format_number(from.x), format_number(from.y), format_number(to.x), format_number(to.y)
     )]
     OffTheBody {
         /// Where it begins.

@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::TerrainError;
 use super::projection::{MapProjection, NoProjection, stated_ellipsoid};
-use crate::quantity::{MapPoint, written};
+use crate::quantity::{MapPoint, format_number};
 
 /// The place of a raster on the map: north up, posts on a lattice of rectangles.
 ///
@@ -80,7 +80,7 @@ impl MapBounds {
 
 impl fmt::Display for MapBounds {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [west, south, east, north] = [self.min.x, self.min.y, self.max.x, self.max.y].map(written);
+        let [west, south, east, north] = [self.min.x, self.min.y, self.max.x, self.max.y].map(format_number);
         write!(formatter, "x from {west} to {east} m and y from {south} to {north} m")
     }
 }

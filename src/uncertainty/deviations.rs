@@ -26,7 +26,7 @@ pub struct Uncertainty {
     /// What the robot believes its position to be, m: on a chain along it, on a map both east and north. Only a policy that asks
     /// where the robot is can feel it.
     pub position_sigma_m: f64,
-    /// Bounce and roll after a landing, along the direction of flight, m.
+    /// Standard deviation of the bounce-and-roll displacement after a landing, along the direction of flight, m.
     pub drift_along_sigma_m: f64,
     /// The same to the side, m. On a chain, whose ground is taken to go on as it is to both sides, it moves the robot out of the
     /// plane of travel and counts as distance.

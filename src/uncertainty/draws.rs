@@ -39,7 +39,7 @@ pub(super) struct HopDraws {
     pub(super) speed: [f64; 2],
     /// Of elevation and heading.
     pub(super) direction: [f64; 2],
-    /// Of the drift along and across.
+    /// Of the bounce-and-roll displacement along and across.
     pub(super) drift: [f64; 2],
     /// Of the believed position, along or east, and north.
     pub(super) position: [f64; 2],

@@ -8,9 +8,9 @@ use crate::{
     world::tolerant_speed_m_s,
 };
 
-/// How a hop really leaves the ground.
+/// The velocity at which a hop really leaves the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Launch {
+pub struct LiftoffVelocity {
     /// Direction on the map (east, north), of length 1; on a chain (1, 0) or (-1, 0).
     pub heading: Vector2<f64>,
     /// Horizontal speed, not negative, m/s.
@@ -19,7 +19,7 @@ pub struct Launch {
     pub vertical_m_s: f64,
 }
 
-impl Launch {
+impl LiftoffVelocity {
     /// Whether there is no speed at all: the robot stays where it is.
     pub(super) fn stays(&self) -> bool {
         self.horizontal_m_s == 0.0 && self.vertical_m_s == 0.0
@@ -29,14 +29,14 @@ impl Launch {
 /// A command, and the landing that it aims at.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Command<S> {
-    pub(super) launch: Launch,
+    pub(super) liftoff: LiftoffVelocity,
     pub(super) speed_m_s: f64,
     pub(super) aim: S,
 }
 
 impl<S> Command<S> {
-    pub(super) fn new(launch: Launch, aim: S) -> Self {
-        Self { launch, speed_m_s: libm::hypot(launch.horizontal_m_s, launch.vertical_m_s), aim }
+    pub(super) fn new(liftoff: LiftoffVelocity, aim: S) -> Self {
+        Self { liftoff, speed_m_s: libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s), aim }
     }
 }
 
@@ -45,14 +45,14 @@ impl<S> Command<S> {
 pub(super) struct Flight<S, F> {
     /// The first contact, or the last place over known ground.
     pub(super) end: S,
-    /// What it meets there; `None` where it leaves the known ground in flight.
-    pub(super) footing: Option<F>,
+    /// The facet met there; `None` where it leaves the known ground in flight.
+    pub(super) support_facet: Option<F>,
     pub(super) time_s: f64,
 }
 
-/// What is otherwise in one trial than on the map.
+/// The realization of the uncertain ground in one trial: how it differs from the map.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Variation {
+pub(super) struct Realization {
     /// Added to every friction coefficient.
     pub(super) friction: f64,
     pub(super) heights: Option<Box<HeightField>>,
@@ -60,37 +60,53 @@ pub(super) struct Variation {
 
 /// Ground to fly over: nominal, or as one trial finds it.
 pub(super) trait Ground: Clone + Send + Sync {
-    /// Where the robot can stand.
-    type Spot: Copy + PartialEq + Send + Sync + std::fmt::Debug;
-    /// The ground under a landing.
-    type Footing: Copy;
+    /// A position at which the robot can stand.
+    type Position: Copy + PartialEq + Send + Sync + std::fmt::Debug;
+    /// The facet of the ground that supports a landing.
+    type SupportFacet: Copy;
 
-    /// Makes it the ground of another trial.
-    fn vary(&mut self, variation: Variation);
+    /// Makes it the ground of another trial, as drawn.
+    fn realize(&mut self, realization: Realization);
 
-    /// A place of the plan as it really is.
-    fn real(&self, planned: Self::Spot) -> Self::Spot;
+    /// A position of the plan on the real ground.
+    fn real(&self, planned: Self::Position) -> Self::Position;
 
-    /// Where that is: x, y, z.
-    fn point(&self, spot: &Self::Spot) -> Point3<f64>;
+    /// The coordinates of a position: x, y, z.
+    fn point(&self, position: &Self::Position) -> Point3<f64>;
 
     /// Whether the ground holds a take-off in this direction.
-    fn holds_takeoff(&self, from: &Self::Spot, launch: &Launch) -> bool;
+    fn holds_takeoff(&self, from: &Self::Position, liftoff: &LiftoffVelocity) -> bool;
 
     /// Flies to the first contact. A flight that passes its aim as closely as rounding allows lands on it.
-    fn fly(&self, from: &Self::Spot, launch: &Launch, aim: &Self::Spot) -> Flight<Self::Spot, Self::Footing>;
+    fn fly(
+        &self,
+        from: &Self::Position,
+        liftoff: &LiftoffVelocity,
+        aim: &Self::Position,
+    ) -> Flight<Self::Position, Self::SupportFacet>;
 
     /// What the landing does to the robot; `None` where it holds.
-    fn landing_failure(&self, end: &Self::Spot, footing: &Self::Footing, arrival: &Arrival) -> Option<TrialOutcome>;
+    fn landing_failure(
+        &self,
+        end: &Self::Position,
+        support_facet: &Self::SupportFacet,
+        touchdown: &TouchdownState,
+    ) -> Option<TrialOutcome>;
 
-    /// Where it comes to rest after a drift along and to the left of its heading, or what becomes of it there.
-    fn drifted(&self, from: &Self::Spot, heading: Vector2<f64>, along_m: f64, left_m: f64) -> Result<Self::Spot, TrialOutcome>;
+    /// Where it comes to rest after a bounce-and-roll displacement along and to the left of its heading, or how the trial ends there.
+    fn displaced(
+        &self,
+        from: &Self::Position,
+        heading: Vector2<f64>,
+        along_m: f64,
+        left_m: f64,
+    ) -> Result<Self::Position, TrialOutcome>;
 
     /// Where the robot believes to be, so far off: a place of the nominal ground; `None` where that has no ground.
-    fn believed(&self, spot: &Self::Spot, along_m: f64, across_m: f64) -> Option<Self::Spot>;
+    fn believed(&self, position: &Self::Position, along_m: f64, across_m: f64) -> Option<Self::Position>;
 
     /// The best next hop from a place of the nominal ground; `None` where none leads on.
-    fn replanned(&self, believed: &Self::Spot) -> Option<Command<Self::Spot>>;
+    fn replanned(&self, believed: &Self::Position) -> Option<Command<Self::Position>>;
 }
 
 /// How far rounding may carry a flight from its place, as a share of its size: the tolerance of `path::execute`, for the same reasons.
@@ -103,9 +119,9 @@ pub(super) const ANGLE_TOLERANCE_RAD: f64 = 1e-9;
 /// What may be lost of a speed by the formulas that gave it, as a share.
 const SPEED_ROUNDING: f64 = 1e-12;
 
-/// How a robot meets the ground.
+/// The state of the robot at touchdown.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Arrival {
+pub(super) struct TouchdownState {
     pub(super) heading: Vector2<f64>,
     pub(super) horizontal_m_s: f64,
     pub(super) vertical_m_s: f64,
@@ -115,18 +131,18 @@ pub(super) struct Arrival {
     speed_tolerance_m_s: f64,
 }
 
-impl Arrival {
+impl TouchdownState {
     /// After so much time of flight under gravity.
-    pub(super) fn after(launch: &Launch, time_s: f64, gravity_m_s2: f64) -> Self {
-        let vertical_m_s = launch.vertical_m_s - gravity_m_s2 * time_s;
-        let (across, up) = (launch.horizontal_m_s, vertical_m_s);
+    pub(super) fn after(liftoff: &LiftoffVelocity, time_s: f64, gravity_m_s2: f64) -> Self {
+        let vertical_m_s = liftoff.vertical_m_s - gravity_m_s2 * time_s;
+        let (across, up) = (liftoff.horizontal_m_s, vertical_m_s);
         let speed_m_s = (across * across + up * up).sqrt();
         // A place uncertain by e turns the direction by e g v_x / v^3 and changes the speed by e g v_z / v^2.
-        let size_m = across * time_s + launch.vertical_m_s.abs() * time_s;
+        let size_m = across * time_s + liftoff.vertical_m_s.abs() * time_s;
         let along_s = PLACE_TOLERANCE * size_m * gravity_m_s2 / (speed_m_s * speed_m_s);
         let uncertain = if along_s.is_finite() { along_s } else { 0.0 };
         Self {
-            heading: launch.heading,
+            heading: liftoff.heading,
             horizontal_m_s: across,
             vertical_m_s,
             speed_m_s,
@@ -152,24 +168,24 @@ pub(super) fn within(rule: &ContactRule, horizontal_m_s: f64, vertical_m_s: f64,
 }
 
 /// Whether a rule, or what the ground says instead, holds a take-off.
-pub(super) fn holds(rule: Result<ContactRule, GroundRefusal>, launch: &Launch) -> bool {
-    rule.is_ok_and(|rule| within(&rule, launch.horizontal_m_s, launch.vertical_m_s, ANGLE_TOLERANCE_RAD))
+pub(super) fn holds(rule: Result<ContactRule, GroundRefusal>, liftoff: &LiftoffVelocity) -> bool {
+    rule.is_ok_and(|rule| within(&rule, liftoff.horizontal_m_s, liftoff.vertical_m_s, ANGLE_TOLERANCE_RAD))
 }
 
 /// What a landing under a rule, or what the ground says instead, does to the robot.
 pub(super) fn failure(
     rule: Result<ContactRule, GroundRefusal>,
     landing_speed_max_m_s: f64,
-    arrival: &Arrival,
+    touchdown: &TouchdownState,
 ) -> Option<TrialOutcome> {
     match rule {
         Err(GroundRefusal::KeepOut) => Some(TrialOutcome::Lost),
         Err(GroundRefusal::SpeedZero) => Some(TrialOutcome::Damaged),
-        Err(_) if arrival.is_over(landing_speed_max_m_s) => Some(TrialOutcome::Damaged),
+        Err(_) if touchdown.is_over(landing_speed_max_m_s) => Some(TrialOutcome::Damaged),
         Err(_) => Some(TrialOutcome::SlidAtLanding),
-        Ok(rule) if arrival.is_over(rule.speed_max_m_s()) => Some(TrialOutcome::Damaged),
+        Ok(rule) if touchdown.is_over(rule.speed_max_m_s()) => Some(TrialOutcome::Damaged),
         Ok(rule) => {
-            let stays = within(&rule, arrival.horizontal_m_s, arrival.vertical_m_s, arrival.angle_tolerance_rad);
+            let stays = within(&rule, touchdown.horizontal_m_s, touchdown.vertical_m_s, touchdown.angle_tolerance_rad);
             (!stays).then_some(TrialOutcome::SlidAtLanding)
         }
     }

@@ -5,7 +5,7 @@
 //! checked where it really takes off and lands.
 //!
 //! ```text
-//!   trial n -> draws (seed, n) -> [ command + errors -> take-off checked -> first contact -> landing checked -> drift ] -> next hop
+//!   trial n -> draws (seed, n) -> [ command + errors -> take-off checked -> first contact -> landing checked -> bounce and roll ] -> next hop
 //! ```
 //!
 //! Along a chain flights stay in its vertical plane; over a DEM ([`MapGround`]) they go wherever their heading takes them.
@@ -56,7 +56,7 @@ mod trial;
 mod wilson;
 
 pub use deviations::{Uncertainty, UncertaintyProblem};
-pub use ground::Launch;
+pub use ground::LiftoffVelocity;
 pub use options::{MapGround, Mission, Observer, Progress, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
 pub use quantiles::QuantileSketch;

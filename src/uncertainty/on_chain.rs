@@ -3,8 +3,8 @@
 use nalgebra::{Point3, Vector2};
 
 use super::{
-    Launch, TrialOutcome,
-    ground::{Arrival, Command, Flight, Ground, PLACE_TOLERANCE, Variation, failure, holds},
+    LiftoffVelocity, TrialOutcome,
+    ground::{Command, Flight, Ground, PLACE_TOLERANCE, Realization, TouchdownState, failure, holds},
 };
 use crate::{
     ballistics::Arc,
@@ -17,7 +17,7 @@ use crate::{
 
 /// The chain as the ground of a trial.
 ///
-/// To the sides the ground is taken to go on as it is: drift to the side moves the robot out of the plane and no more.
+/// To the sides the ground is taken to go on as it is: displacement to the side moves the robot out of the plane and no more.
 #[derive(Clone, Debug)]
 pub(super) struct ChainGround<'a> {
     test: &'a HopTest<'a>,
@@ -30,14 +30,14 @@ pub(super) struct ChainGround<'a> {
     found: Vec<ChainPoint>,
 }
 
-/// A place on the chain, and how far to the left of it.
+/// A position: a station of the chain, and the distance to the left of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ChainSpot {
+pub(super) struct ChainPosition {
     pub(super) station: Station,
     pub(super) left_m: f64,
 }
 
-impl ChainSpot {
+impl ChainPosition {
     pub(super) const fn on_chain(station: Station) -> Self {
         Self { station, left_m: 0.0 }
     }
@@ -177,7 +177,7 @@ impl<'a> ChainGround<'a> {
     ) -> Result<crate::chain::ContactRule, GroundRefusal> {
         let segment = segment.ok_or(GroundRefusal::NoGround)?.index();
         if self.is_nominal()
-            && let Some(rule) = self.test.chain().segments().get(segment).and_then(|s| s.granted(contact, direction))
+            && let Some(rule) = self.test.chain().segments().get(segment).and_then(|s| s.allowed(contact, direction))
         {
             return Ok(*rule);
         }
@@ -219,12 +219,12 @@ impl<'a> ChainGround<'a> {
     }
 
     /// Whether a flight over nominal ground comes down on its aim, as closely as rounding allows.
-    fn hits(&self, course: &Course, mut ahead: Ahead, aim: &Station, launch: &Launch) -> bool {
+    fn hits(&self, course: &Course, mut ahead: Ahead, aim: &Station, liftoff: &LiftoffVelocity) -> bool {
         let (run_m, rise_m) = course.seen(aim.point);
         if run_m <= 0.0 || !self.found.is_empty() {
             return false;
         }
-        let top_m = launch.vertical_m_s * launch.vertical_m_s / (2.0 * self.test.gravity_m_s2());
+        let top_m = liftoff.vertical_m_s * liftoff.vertical_m_s / (2.0 * self.test.gravity_m_s2());
         let slack_m = PLACE_TOLERANCE * (run_m + top_m + rise_m.abs()) + self.height_rounding_m;
         let misses = |over_m: f64, at_m: f64| over_m.abs() > slack_m * (1.0 + course.slope_at(at_m).abs());
         if misses(course.over_m((run_m, rise_m)), run_m) {
@@ -244,20 +244,20 @@ impl<'a> ChainGround<'a> {
 }
 
 impl Ground for ChainGround<'_> {
-    type Spot = ChainSpot;
-    type Footing = SegmentId;
+    type Position = ChainPosition;
+    type SupportFacet = SegmentId;
 
-    fn vary(&mut self, variation: Variation) {
-        self.friction = variation.friction;
+    fn realize(&mut self, realization: Realization) {
+        self.friction = realization.friction;
         self.found.clear();
-        if let Some(field) = variation.heights {
+        if let Some(field) = realization.heights {
             let nominal = self.test.chain().geometry().vertices();
             let first_m = nominal[0].x_m;
             self.found.extend(nominal.iter().map(|v| ChainPoint::new(v.x_m, v.z_m + field.at(v.x_m - first_m, 0.0))));
         }
     }
 
-    fn real(&self, planned: ChainSpot) -> ChainSpot {
+    fn real(&self, planned: ChainPosition) -> ChainPosition {
         if self.found.is_empty() {
             return planned;
         }
@@ -265,44 +265,44 @@ impl Ground for ChainGround<'_> {
             Site::Vertex(v) => Station { point: self.found[v.index()], ..planned.station },
             Site::Inside(s) => self.station_on(s.index(), planned.station.point.x_m),
         };
-        ChainSpot { station, ..planned }
+        ChainPosition { station, ..planned }
     }
 
-    fn point(&self, spot: &ChainSpot) -> Point3<f64> {
-        Point3::new(spot.station.point.x_m, spot.left_m, spot.station.point.z_m)
+    fn point(&self, position: &ChainPosition) -> Point3<f64> {
+        Point3::new(position.station.point.x_m, position.left_m, position.station.point.z_m)
     }
 
-    fn holds_takeoff(&self, from: &ChainSpot, launch: &Launch) -> bool {
-        let direction = towards(launch.heading);
+    fn holds_takeoff(&self, from: &ChainPosition, liftoff: &LiftoffVelocity) -> bool {
+        let direction = towards(liftoff.heading);
         let segment = from.station.ruling_segment(Contact::Takeoff, direction, self.test.chain().segments().len());
-        holds(self.check_contact(segment, Contact::Takeoff, direction), launch)
+        holds(self.check_contact(segment, Contact::Takeoff, direction), liftoff)
     }
 
-    fn fly(&self, from: &ChainSpot, launch: &Launch, aim: &ChainSpot) -> Flight<ChainSpot, SegmentId> {
-        let direction = towards(launch.heading);
+    fn fly(&self, from: &ChainPosition, liftoff: &LiftoffVelocity, aim: &ChainPosition) -> Flight<ChainPosition, SegmentId> {
+        let direction = towards(liftoff.heading);
         let g = self.test.gravity_m_s2();
         let segment_under = from.station.ruling_segment(Contact::Takeoff, direction, self.test.chain().segments().len());
-        let across = launch.horizontal_m_s;
+        let across = liftoff.horizontal_m_s;
         let course = Course {
             takeoff: from.station.point,
             direction,
-            slope: launch.vertical_m_s / across,
+            slope: liftoff.vertical_m_s / across,
             curvature: g / (2.0 * across * across),
         };
         let upright = !(course.curvature.is_finite() && course.slope.is_finite());
         let Some(mut ahead) = self.ahead(&from.station, direction) else {
-            return Flight { end: *from, footing: None, time_s: 0.0 };
+            return Flight { end: *from, support_facet: None, time_s: 0.0 };
         };
         if upright {
             // Straight up, and down where it began.
-            return Flight { end: *from, footing: segment_under, time_s: (2.0 * launch.vertical_m_s / g).max(0.0) };
+            return Flight { end: *from, support_facet: segment_under, time_s: (2.0 * liftoff.vertical_m_s / g).max(0.0) };
         }
         let lands = |station: Station, distance_m: f64, segment: Option<SegmentId>| Flight {
-            end: ChainSpot { station, left_m: from.left_m },
-            footing: segment,
+            end: ChainPosition { station, left_m: from.left_m },
+            support_facet: segment,
             time_s: distance_m / across,
         };
-        if self.hits(&course, ahead, &aim.station, launch) {
+        if self.hits(&course, ahead, &aim.station, liftoff) {
             let under = aim.station.ruling_segment(Contact::Landing, direction, self.test.chain().segments().len());
             return lands(aim.station, course.seen(aim.station.point).0, under);
         }
@@ -334,12 +334,18 @@ impl Ground for ChainGround<'_> {
         }
     }
 
-    fn landing_failure(&self, _end: &ChainSpot, footing: &SegmentId, arrival: &Arrival) -> Option<TrialOutcome> {
-        let rule = self.check_contact(Some(*footing), Contact::Landing, towards(arrival.heading));
-        failure(rule, self.test.hopper().landing_speed_max_m_s, arrival)
+    fn landing_failure(&self, _end: &ChainPosition, support_facet: &SegmentId, touchdown: &TouchdownState) -> Option<TrialOutcome> {
+        let rule = self.check_contact(Some(*support_facet), Contact::Landing, towards(touchdown.heading));
+        failure(rule, self.test.hopper().landing_speed_max_m_s, touchdown)
     }
 
-    fn drifted(&self, from: &ChainSpot, heading: Vector2<f64>, along_m: f64, left_m: f64) -> Result<ChainSpot, TrialOutcome> {
+    fn displaced(
+        &self,
+        from: &ChainPosition,
+        heading: Vector2<f64>,
+        along_m: f64,
+        left_m: f64,
+    ) -> Result<ChainPosition, TrialOutcome> {
         if along_m == 0.0 && left_m == 0.0 {
             return Ok(*from);
         }
@@ -347,29 +353,29 @@ impl Ground for ChainGround<'_> {
         let x_m = from.station.point.x_m + sign * along_m;
         let geometry = self.test.chain().geometry();
         let nominal = geometry.station(x_m).map_err(|_| TrialOutcome::Lost)?;
-        let spot = self.real(ChainSpot { station: nominal, left_m: from.left_m + sign * left_m });
-        let under = spot.station.ruling_segment(Contact::Landing, towards(heading), geometry.segment_count());
+        let position = self.real(ChainPosition { station: nominal, left_m: from.left_m + sign * left_m });
+        let under = position.station.ruling_segment(Contact::Landing, towards(heading), geometry.segment_count());
         match under.and_then(|segment| self.refusal(segment.index())) {
-            None => Ok(spot),
+            None => Ok(position),
             Some(GroundRefusal::KeepOut) => Err(TrialOutcome::Lost),
             Some(_) => Err(TrialOutcome::SlidAtLanding),
         }
     }
 
-    fn believed(&self, spot: &ChainSpot, along_m: f64, _across_m: f64) -> Option<ChainSpot> {
+    fn believed(&self, position: &ChainPosition, along_m: f64, _across_m: f64) -> Option<ChainPosition> {
         let (first_m, last_m) = self.test.chain().geometry().extent_m();
-        let x_m = (spot.station.point.x_m + along_m).clamp(first_m, last_m);
-        self.test.chain().geometry().station(x_m).ok().map(ChainSpot::on_chain)
+        let x_m = (position.station.point.x_m + along_m).clamp(first_m, last_m);
+        self.test.chain().geometry().station(x_m).ok().map(ChainPosition::on_chain)
     }
 
-    fn replanned(&self, believed: &ChainSpot) -> Option<Command<ChainSpot>> {
+    fn replanned(&self, believed: &ChainPosition) -> Option<Command<ChainPosition>> {
         let to_go = self.to_go?;
         let leg = to_go.best_leg(self.test, &believed.station)?;
         let direction = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m)?;
         let (arc, landing) = match leg.edge {
-            Edge::Hop(loft) => {
+            Edge::Hop(lofts) => {
                 let sight = self.test.line_of_sight(&leg.takeoff, &leg.landing)?;
-                (Arc::new(sight, to_go.options().takeoff.loft(sight, loft), self.test.gravity_m_s2()), leg.landing)
+                (Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), self.test.gravity_m_s2()), leg.landing)
             }
             Edge::Along(along) => {
                 let (each_m, last_m) = along.lengths_m(to_go.options().split);
@@ -381,8 +387,8 @@ impl Ground for ChainGround<'_> {
         };
         let across = arc.horizontal_speed_m_s();
         let heading = Vector2::new(direction.sign(), 0.0);
-        let launch = Launch { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() };
-        Some(Command::new(launch, ChainSpot::on_chain(landing)))
+        let liftoff = LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() };
+        Some(Command::new(liftoff, ChainPosition::on_chain(landing)))
     }
 }
 

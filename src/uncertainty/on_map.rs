@@ -5,8 +5,8 @@ use std::sync::Arc;
 use nalgebra::{Point3, Vector2};
 
 use super::{
-    Launch, MapGround, TrialOutcome,
-    ground::{ANGLE_TOLERANCE_RAD, Arrival, Command, Flight, Ground, PLACE_TOLERANCE, Variation, failure, holds},
+    LiftoffVelocity, MapGround, TrialOutcome,
+    ground::{ANGLE_TOLERANCE_RAD, Command, Flight, Ground, PLACE_TOLERANCE, Realization, TouchdownState, failure, holds},
     on_chain::comes_down_m,
 };
 use crate::{
@@ -35,17 +35,17 @@ pub(super) struct DemGround<'a> {
     triangles: Triangles<'a>,
     to_go: Option<&'a CostToGo>,
     /// The nodes of the costs-to-go on the map.
-    nodes: Arc<[MapSpot]>,
+    nodes: Arc<[MapPosition]>,
     height_rounding_m: f64,
     place_rounding_m: f64,
     /// What the rest slope is where friction does not say it.
     rest_slope: Option<f64>,
-    varied: Variation,
+    realization: Realization,
 }
 
-/// A place on the map and its height.
+/// A position on the map, and its height.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct MapSpot {
+pub(super) struct MapPosition {
     pub(super) at: MapPoint,
     pub(super) z_m: f64,
 }
@@ -59,7 +59,7 @@ impl<'a> DemGround<'a> {
         surface: &'a Surface,
         map: MapGround<'a>,
         to_go: Option<&'a CostToGo>,
-        nodes: Arc<[MapSpot]>,
+        nodes: Arc<[MapPosition]>,
     ) -> Self {
         let (low_m, high_m) = map.dem.elevation_range_m();
         let bounds = map.dem.bounds();
@@ -77,13 +77,13 @@ impl<'a> DemGround<'a> {
                 RestSlope::AtMost(angle) => Some(angle.slope()),
                 RestSlope::AsFrictionHolds | RestSlope::Unlimited => None,
             },
-            varied: Variation::default(),
+            realization: Realization::default(),
         }
     }
 
     /// A place of the nominal ground; `None` where there is none.
-    pub(super) fn nominal(&self, at: MapPoint) -> Option<MapSpot> {
-        self.triangles.at(at, self.triangles.nominal()).map(|(z_m, _)| MapSpot { at, z_m })
+    pub(super) fn nominal(&self, at: MapPoint) -> Option<MapPosition> {
+        self.triangles.at(at, self.triangles.nominal()).map(|(z_m, _)| MapPosition { at, z_m })
     }
 
     /// Height of a post as this trial finds it.
@@ -91,7 +91,7 @@ impl<'a> DemGround<'a> {
     fn heights(&self) -> impl Fn(usize, usize) -> f64 + '_ {
         let nominal = self.triangles.nominal();
         let origin = self.map.dem.georeference().north_west();
-        move |row, col| match &self.varied.heights {
+        move |row, col| match &self.realization.heights {
             None => nominal(row, col),
             Some(field) => {
                 let away = self.triangles.post(row, col) - origin;
@@ -116,7 +116,7 @@ impl<'a> DemGround<'a> {
 
     /// The friction that a place has in this trial.
     fn friction(&self, at: MapPoint) -> Option<f64> {
-        self.nominal_friction(at).map(|cone| (cone.coefficient() + self.varied.friction).max(0.0))
+        self.nominal_friction(at).map(|cone| (cone.coefficient() + self.realization.friction).max(0.0))
     }
 
     fn is_kept_out(&self, at: MapPoint) -> bool {
@@ -141,17 +141,17 @@ impl<'a> DemGround<'a> {
         Some(LineConstraints::from_offsets(slope, takeoff, landing, hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s))
     }
 
-    /// What the nominal ground grants a contact on a facet met along a heading: as a slice along that heading has it.
-    fn granted(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint, contact: Contact) -> Option<ContactRule> {
+    /// What the nominal ground allows a contact on a facet met along a heading: as a slice along that heading has it.
+    fn allowed(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint, contact: Contact) -> Option<ContactRule> {
         let friction = self.nominal_friction(beside);
         let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
         let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out: self.is_kept_out(beside) };
         let resolved = resolve_constraints(SegmentId(0), gradient.dot(&heading), &ground, self.test.hopper(), self.surface).ok()?;
-        resolved.granted(contact, Direction::Forward).copied()
+        resolved.allowed(contact, Direction::Forward).copied()
     }
 
     /// The best hop to a node, and what the journey then costs, where it could be better than the best known.
-    fn tried(&self, to_go: &CostToGo, from: &MapSpot, node: usize, best: Option<Cost>) -> Option<(Command<MapSpot>, Cost)> {
+    fn tried(&self, to_go: &CostToGo, from: &MapPosition, node: usize, best: Option<Cost>) -> Option<(Command<MapPosition>, Cost)> {
         let target = self.nodes[node];
         let rest = to_go.of_node(NodeId(node))?;
         let away = target.at - from.at;
@@ -162,8 +162,8 @@ impl<'a> DemGround<'a> {
         }
         let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
         let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
-        let too_far = g * run_m * sight.lift() > squared(hopper.takeoff_speed_max_m_s)
-            || g * run_m * sight.reversed_lift() > squared(hopper.landing_speed_max_m_s);
+        let too_far = g * run_m * sight.min_speed_ratio() > squared(hopper.takeoff_speed_max_m_s)
+            || g * run_m * sight.min_speed_ratio_reversed() > squared(hopper.landing_speed_max_m_s);
         if too_far || best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
             return None;
         }
@@ -174,16 +174,16 @@ impl<'a> DemGround<'a> {
             return None;
         }
         let across = arc.horizontal_speed_m_s();
-        let launch = Launch { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() };
-        Some((Command::new(launch, target), cost))
+        let liftoff = LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() };
+        Some((Command::new(liftoff, target), cost))
     }
 
-    /// Where reliability counts: the most reliable successor of the node nearest to a place that is feasible from the place itself.
-    fn reliable_successor(&self, to_go: &CostToGo, from: &MapSpot) -> Option<Command<MapSpot>> {
+    /// Where reliability weighs: of the node nearest to a position, the most reliable successor that a hop from the position itself reaches.
+    fn reliable_successor(&self, to_go: &CostToGo, from: &MapPosition) -> Option<Command<MapPosition>> {
         if !to_go.weighs_reliability() {
             return None;
         }
-        let away2 = |node: &MapSpot| (node.at - from.at).norm_squared();
+        let away2 = |node: &MapPosition| (node.at - from.at).norm_squared();
         let nearest = (0..self.nodes.len()).min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
         let mut successors = to_go.reliable_successors(NodeId(nearest)).iter();
         successors.find_map(|node| self.tried(to_go, from, node.index(), None)).map(|(command, _)| command)
@@ -193,16 +193,16 @@ impl<'a> DemGround<'a> {
     fn arc(
         &self,
         to_go: &CostToGo,
-        from: &MapSpot,
-        to: &MapSpot,
+        from: &MapPosition,
+        to: &MapPosition,
         sight: LineOfSight,
         heading: Vector2<f64>,
     ) -> Option<ballistics::Arc> {
         let nominal = self.triangles.nominal();
         let (ahead, before) = (from.at + heading * BESIDE_M, to.at - heading * BESIDE_M);
-        let takeoff = self.granted(self.triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
-        let landing = self.granted(self.triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
-        let mut lofts = self.test.open_air(sight, &takeoff, &landing).ok()?;
+        let takeoff = self.allowed(self.triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
+        let landing = self.allowed(self.triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
+        let mut lofts = self.test.lofts_in_envelope(sight, &takeoff, &landing).ok()?;
         let end_m = sight.run_m() - self.place_rounding_m - BESIDE_M;
         let clearance_m = self.test.hopper().clearance_m;
         let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(sight.run_m(), to.z_m));
@@ -226,17 +226,24 @@ impl<'a> DemGround<'a> {
     }
 
     /// How far off its aim, ahead and across, an arc may pass and still land on it.
-    fn aimed_at(&self, from: &MapSpot, launch: &Launch, aim: &MapSpot, slope: f64, curvature: f64) -> Option<Aimed> {
+    fn aimed_at(
+        &self,
+        from: &MapPosition,
+        liftoff: &LiftoffVelocity,
+        aim: &MapPosition,
+        slope: f64,
+        curvature: f64,
+    ) -> Option<Aimed> {
         let away = aim.at - from.at;
-        let run_m = away.dot(&launch.heading);
+        let run_m = away.dot(&liftoff.heading);
         let rise_m = aim.z_m - from.z_m;
-        let top_m = launch.vertical_m_s * launch.vertical_m_s / (2.0 * self.test.gravity_m_s2());
+        let top_m = liftoff.vertical_m_s * liftoff.vertical_m_s / (2.0 * self.test.gravity_m_s2());
         let slack_m = PLACE_TOLERANCE * (run_m + top_m + rise_m.abs()) + self.place_rounding_m;
-        let across_m = launch.heading.perp(&away).abs();
+        let across_m = liftoff.heading.perp(&away).abs();
         let steepness = 1.0 + (slope - 2.0 * curvature * run_m).abs();
         let over_m = run_m * (slope - curvature * run_m) - rise_m;
         let height_slack_m = slack_m * steepness + self.height_rounding_m;
-        let hits = run_m > 0.0 && across_m <= slack_m && over_m.abs() <= height_slack_m && self.varied.heights.is_none();
+        let hits = run_m > 0.0 && across_m <= slack_m && over_m.abs() <= height_slack_m && self.realization.heights.is_none();
         hits.then_some(Aimed { run: run_m, slack: slack_m, height_slack: height_slack_m })
     }
 }
@@ -250,30 +257,30 @@ struct Aimed {
 }
 
 impl Ground for DemGround<'_> {
-    type Spot = MapSpot;
-    type Footing = Gradient;
+    type Position = MapPosition;
+    type SupportFacet = Gradient;
 
-    fn vary(&mut self, variation: Variation) {
-        self.varied = variation;
+    fn realize(&mut self, realization: Realization) {
+        self.realization = realization;
     }
 
-    fn real(&self, planned: MapSpot) -> MapSpot {
-        if self.varied.heights.is_none() {
+    fn real(&self, planned: MapPosition) -> MapPosition {
+        if self.realization.heights.is_none() {
             return planned;
         }
-        self.triangles.at(planned.at, self.heights()).map_or(planned, |(z_m, _)| MapSpot { z_m, ..planned })
+        self.triangles.at(planned.at, self.heights()).map_or(planned, |(z_m, _)| MapPosition { z_m, ..planned })
     }
 
-    fn point(&self, spot: &MapSpot) -> Point3<f64> {
-        Point3::new(spot.at.x, spot.at.y, spot.z_m)
+    fn point(&self, position: &MapPosition) -> Point3<f64> {
+        Point3::new(position.at.x, position.at.y, position.z_m)
     }
 
-    fn holds_takeoff(&self, from: &MapSpot, launch: &Launch) -> bool {
-        let Some(gradient) = self.facet_ahead(from.at, launch.heading) else {
+    fn holds_takeoff(&self, from: &MapPosition, liftoff: &LiftoffVelocity) -> bool {
+        let Some(gradient) = self.facet_ahead(from.at, liftoff.heading) else {
             // Beyond the edge of the known ground: nothing is known against it.
             return true;
         };
-        let ahead = from.at + launch.heading * BESIDE_M;
+        let ahead = from.at + liftoff.heading * BESIDE_M;
         if self.is_kept_out(ahead) {
             return false;
         }
@@ -281,35 +288,35 @@ impl Ground for DemGround<'_> {
         if !self.rests(gradient, friction) {
             return false;
         }
-        match (friction, self.stated(gradient, launch.heading)) {
-            (Some(friction), _) => holds_on(gradient, friction, velocity(launch), ANGLE_TOLERANCE_RAD),
-            (None, Some(stated)) => holds(Ok(stated.takeoff), launch),
+        match (friction, self.stated(gradient, liftoff.heading)) {
+            (Some(friction), _) => holds_on(gradient, friction, velocity(liftoff), ANGLE_TOLERANCE_RAD),
+            (None, Some(stated)) => holds(Ok(stated.takeoff), liftoff),
             (None, None) => false,
         }
     }
 
-    fn fly(&self, from: &MapSpot, launch: &Launch, aim: &MapSpot) -> Flight<MapSpot, Gradient> {
+    fn fly(&self, from: &MapPosition, liftoff: &LiftoffVelocity, aim: &MapPosition) -> Flight<MapPosition, Gradient> {
         let g = self.test.gravity_m_s2();
-        let across = launch.horizontal_m_s;
-        let (slope, curvature) = (launch.vertical_m_s / across, g / (2.0 * across * across));
+        let across = liftoff.horizontal_m_s;
+        let (slope, curvature) = (liftoff.vertical_m_s / across, g / (2.0 * across * across));
         let mut last = FacetSpan { from_m: 0.0, to_m: 0.0, from_z_m: from.z_m, to_z_m: from.z_m, gradient: Gradient::zeros() };
         if !(curvature.is_finite() && slope.is_finite()) {
             // Straight up, and down where it began.
-            let time_s = (2.0 * launch.vertical_m_s / g).max(0.0);
-            return Flight { end: *from, footing: self.facet_ahead(from.at, launch.heading), time_s };
+            let time_s = (2.0 * liftoff.vertical_m_s / g).max(0.0);
+            return Flight { end: *from, support_facet: self.facet_ahead(from.at, liftoff.heading), time_s };
         }
-        let aimed = self.aimed_at(from, launch, aim, slope, curvature);
+        let aimed = self.aimed_at(from, liftoff, aim, slope, curvature);
         let mut over_m = 0.0;
-        for span in self.triangles.walk(from.at, launch.heading, self.heights()) {
+        for span in self.triangles.walk(from.at, liftoff.heading, self.heights()) {
             if let Some(aimed) = aimed
                 && span.to_m >= aimed.run - aimed.slack
             {
-                return Flight { end: *aim, footing: Some(span.gradient), time_s: aimed.run / across };
+                return Flight { end: *aim, support_facet: Some(span.gradient), time_s: aimed.run / across };
             }
             if span.to_m == span.from_m {
                 continue;
             }
-            let ground = span.gradient.dot(&launch.heading);
+            let ground = span.gradient.dot(&liftoff.heading);
             // The first facet passes through the take-off itself, whatever the rounding of its posts' plane.
             let over_next_m = if last.to_m == 0.0 {
                 span.to_m * ((slope - ground) - curvature * span.to_m)
@@ -325,44 +332,44 @@ impl Ground for DemGround<'_> {
                 } else {
                     let share = further_m / (span.to_m - span.from_m);
                     let z_m = span.from_z_m + (span.to_z_m - span.from_z_m) * share;
-                    MapSpot { at: from.at + launch.heading * distance_m, z_m }
+                    MapPosition { at: from.at + liftoff.heading * distance_m, z_m }
                 };
-                return Flight { end, footing: Some(span.gradient), time_s: distance_m / across };
+                return Flight { end, support_facet: Some(span.gradient), time_s: distance_m / across };
             }
             over_m = over_next_m.max(0.0);
             last = span;
         }
-        let end = MapSpot { at: from.at + launch.heading * last.to_m, z_m: last.to_z_m };
-        Flight { end, footing: None, time_s: last.to_m / across }
+        let end = MapPosition { at: from.at + liftoff.heading * last.to_m, z_m: last.to_z_m };
+        Flight { end, support_facet: None, time_s: last.to_m / across }
     }
 
-    fn landing_failure(&self, end: &MapSpot, footing: &Gradient, arrival: &Arrival) -> Option<TrialOutcome> {
-        let flown_over = end.at - arrival.heading * BESIDE_M;
+    fn landing_failure(&self, end: &MapPosition, support_facet: &Gradient, touchdown: &TouchdownState) -> Option<TrialOutcome> {
+        let flown_over = end.at - touchdown.heading * BESIDE_M;
         if self.is_kept_out(flown_over) {
             return Some(TrialOutcome::Lost);
         }
-        if arrival.is_over(self.test.hopper().landing_speed_max_m_s) {
+        if touchdown.is_over(self.test.hopper().landing_speed_max_m_s) {
             return Some(TrialOutcome::Damaged);
         }
         let friction = self.friction(flown_over);
-        if !self.rests(*footing, friction) {
+        if !self.rests(*support_facet, friction) {
             return Some(TrialOutcome::SlidAtLanding);
         }
-        match (friction, self.stated(*footing, arrival.heading)) {
+        match (friction, self.stated(*support_facet, touchdown.heading)) {
             (Some(friction), _) => {
                 let back = -nalgebra::Vector3::new(
-                    arrival.heading.x * arrival.horizontal_m_s,
-                    arrival.heading.y * arrival.horizontal_m_s,
-                    arrival.vertical_m_s,
+                    touchdown.heading.x * touchdown.horizontal_m_s,
+                    touchdown.heading.y * touchdown.horizontal_m_s,
+                    touchdown.vertical_m_s,
                 );
-                (!holds_on(*footing, friction, back, arrival.angle_tolerance_rad)).then_some(TrialOutcome::SlidAtLanding)
+                (!holds_on(*support_facet, friction, back, touchdown.angle_tolerance_rad)).then_some(TrialOutcome::SlidAtLanding)
             }
-            (None, Some(stated)) => failure(Ok(stated.landing), self.test.hopper().landing_speed_max_m_s, arrival),
+            (None, Some(stated)) => failure(Ok(stated.landing), self.test.hopper().landing_speed_max_m_s, touchdown),
             (None, None) => Some(TrialOutcome::SlidAtLanding),
         }
     }
 
-    fn drifted(&self, from: &MapSpot, heading: Vector2<f64>, along_m: f64, left_m: f64) -> Result<MapSpot, TrialOutcome> {
+    fn displaced(&self, from: &MapPosition, heading: Vector2<f64>, along_m: f64, left_m: f64) -> Result<MapPosition, TrialOutcome> {
         if along_m == 0.0 && left_m == 0.0 {
             return Ok(*from);
         }
@@ -372,22 +379,22 @@ impl Ground for DemGround<'_> {
         if self.is_kept_out(at) {
             return Err(TrialOutcome::Lost);
         }
-        if self.rests(gradient, self.friction(at)) { Ok(MapSpot { at, z_m }) } else { Err(TrialOutcome::SlidAtLanding) }
+        if self.rests(gradient, self.friction(at)) { Ok(MapPosition { at, z_m }) } else { Err(TrialOutcome::SlidAtLanding) }
     }
 
-    fn believed(&self, spot: &MapSpot, along_m: f64, across_m: f64) -> Option<MapSpot> {
-        if along_m == 0.0 && across_m == 0.0 && self.varied.heights.is_none() {
-            return Some(*spot);
+    fn believed(&self, position: &MapPosition, along_m: f64, across_m: f64) -> Option<MapPosition> {
+        if along_m == 0.0 && across_m == 0.0 && self.realization.heights.is_none() {
+            return Some(*position);
         }
-        self.nominal(spot.at + Vector2::new(along_m, across_m))
+        self.nominal(position.at + Vector2::new(along_m, across_m))
     }
 
-    fn replanned(&self, believed: &MapSpot) -> Option<Command<MapSpot>> {
+    fn replanned(&self, believed: &MapPosition) -> Option<Command<MapPosition>> {
         let to_go = self.to_go?;
         if let Some(reliable) = self.reliable_successor(to_go, believed) {
             return Some(reliable);
         }
-        let mut best: Option<(Command<MapSpot>, Cost)> = None;
+        let mut best: Option<(Command<MapPosition>, Cost)> = None;
         for node in to_go.in_order() {
             let known = best.as_ref().map(|(_, cost)| *cost);
             let rest = to_go.of_node(*node)?;
@@ -403,8 +410,12 @@ impl Ground for DemGround<'_> {
     }
 }
 
-fn velocity(launch: &Launch) -> nalgebra::Vector3<f64> {
-    nalgebra::Vector3::new(launch.heading.x * launch.horizontal_m_s, launch.heading.y * launch.horizontal_m_s, launch.vertical_m_s)
+fn velocity(liftoff: &LiftoffVelocity) -> nalgebra::Vector3<f64> {
+    nalgebra::Vector3::new(
+        liftoff.heading.x * liftoff.horizontal_m_s,
+        liftoff.heading.y * liftoff.horizontal_m_s,
+        liftoff.vertical_m_s,
+    )
 }
 
 /// Whether a facet of a gradient, with such friction, holds a direction away from it.

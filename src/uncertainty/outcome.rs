@@ -30,7 +30,7 @@ pub enum TrialOutcome {
     Reached,
     /// It stopped elsewhere: all planned commands flown (open loop), or it believed to be at the goal and was not (replan).
     Missed,
-    /// The real direction of a take-off left the cone of the ground it really stood on, or that ground grants none.
+    /// The real direction of a take-off left the cone of the ground it really stood on, or that ground allows none.
     SlidAtTakeoff,
     /// The real direction of a landing left the cone of the ground it really met, or the surface is too steep to rest on there or
     /// where it came to rest.

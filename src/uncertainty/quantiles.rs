@@ -7,7 +7,8 @@ const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - KEPT_BITS;
 /// Distances below this are counted as zero: a billionth of a metre is below every rounding of a place on a map.
 const LEAST_M: f64 = 1e-9;
 
-/// A histogram with bins of equal relative width, from which quantiles are read.
+/// A histogram with bins of equal relative width, from which quantiles are read: a log-linear histogram, as
+/// `HdrHistogram`, with a bounded relative error, as `DDSketch`.
 ///
 /// A bin is the exponent and the first eight bits of the significand of a double, so finding it takes a shift. A quantile is the middle of
 /// its bin, within 1/512 (0.2 %) of the true order statistic; below a nanometre, zero. Bins hold counts, so merging is exact and in any

@@ -8,7 +8,7 @@ use crate::quantity::Angle;
 /// One flown hop of one trial.
 ///
 /// Places are (x, y, z) in m. On a map x is east and y north. On a chain x runs along it and y is the offset to the left of its plane,
-/// which only drift to the side changes.
+/// which only bounce-and-roll displacement to the side changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HopRecord {
     /// Which trial, from 0.
@@ -31,7 +31,7 @@ pub struct HopRecord {
     pub planned_m: Point3<f64>,
     /// Where it first met the ground; where it left the known ground in flight, for a hop that did not land.
     pub contact_m: Point3<f64>,
-    /// Where it came to rest after the drift; the contact itself where the trial ended with it.
+    /// Where it came to rest after the bounce-and-roll displacement; the contact itself where the trial ended with it.
     pub rest_m: Point3<f64>,
     /// Horizontal distance from the planned landing to the place of rest, m.
     pub error_m: f64,

@@ -6,11 +6,12 @@ use nalgebra::{Point2, Point3, Vector2};
 use rayon::prelude::*;
 
 use super::{
-    Launch, MapGround, Mission, Observer, Policy, Progress, SimulationError, Summary, Trajectory, TrialOptions, Uncertainty,
+    LiftoffVelocity, MapGround, Mission, Observer, Policy, Progress, SimulationError, Summary, Trajectory, TrialOptions,
+    Uncertainty,
     draws::TrialDraws,
     ground::{Command, Ground},
-    on_chain::{ChainGround, ChainSpot},
-    on_map::{DemGround, MapSpot},
+    on_chain::{ChainGround, ChainPosition},
+    on_map::{DemGround, MapPosition},
     tally::Tally,
     trial::{Flown, Plan, PlannedHop, Rules, fly},
 };
@@ -38,8 +39,8 @@ pub struct Simulation<'a> {
 /// The mission's plan over the ground that it is flown on.
 #[derive(Debug)]
 enum Course<'a> {
-    Chain(ChainGround<'a>, Plan<ChainSpot>),
-    Map(DemGround<'a>, Plan<MapSpot>),
+    Chain(ChainGround<'a>, Plan<ChainPosition>),
+    Map(DemGround<'a>, Plan<MapPosition>),
 }
 
 /// Where a flight ends.
@@ -99,17 +100,17 @@ impl<'a> Simulation<'a> {
         Ok([of(open_loop)?, of(replan)?])
     }
 
-    /// Flies one hop from a place of the nominal ground to its first contact, which may be the take-off itself for a launch into the
+    /// Flies one hop from a place of the nominal ground to its first contact, which may be the take-off itself for a take-off into the
     /// ground. Nothing is checked. `None` where there is no ground at that place.
     ///
     /// `from`: x and y as in [`HopRecord`](super::HopRecord).
-    pub fn fly(&self, from: Point2<f64>, launch: Launch) -> Option<FlightEnd> {
+    pub fn fly(&self, from: Point2<f64>, liftoff: LiftoffVelocity) -> Option<FlightEnd> {
         match &self.course {
             Course::Chain(ground, _) => {
                 let station = self.mission.test.chain().geometry().station(from.x).ok()?;
-                Some(flown(ground, &ChainSpot { station, left_m: from.y }, &launch))
+                Some(flown(ground, &ChainPosition { station, left_m: from.y }, &liftoff))
             }
-            Course::Map(ground, _) => Some(flown(ground, &ground.nominal(from)?, &launch)),
+            Course::Map(ground, _) => Some(flown(ground, &ground.nominal(from)?, &liftoff)),
         }
     }
 
@@ -137,7 +138,7 @@ impl<'a> Simulation<'a> {
     fn fly_all<G: Ground>(
         &self,
         ground: &G,
-        plan: &Plan<G::Spot>,
+        plan: &Plan<G::Position>,
         options: &TrialOptions,
         observer: &mut dyn Observer,
     ) -> Result<Summary, SimulationError> {
@@ -224,37 +225,37 @@ fn tell(flown: &Flown, observer: &mut dyn Observer) {
 }
 
 /// A flight that aims at nothing.
-fn flown<G: Ground>(ground: &G, from: &G::Spot, launch: &Launch) -> FlightEnd {
-    let flight = ground.fly(from, launch, from);
-    FlightEnd { at_m: ground.point(&flight.end), landed: flight.footing.is_some(), time_s: flight.time_s }
+fn flown<G: Ground>(ground: &G, from: &G::Position, liftoff: &LiftoffVelocity) -> FlightEnd {
+    let flight = ground.fly(from, liftoff, from);
+    FlightEnd { at_m: ground.point(&flight.end), landed: flight.support_facet.is_some(), time_s: flight.time_s }
 }
 
 /// The command of a planned hop along a heading.
 fn command<S>(hop: &Hop, heading: Vector2<f64>, aim: S) -> Command<S> {
     let (sine, cosine) = libm::sincos(hop.takeoff_angle.radians());
     let speed_m_s = hop.takeoff_speed_m_s;
-    let launch = Launch { heading, horizontal_m_s: speed_m_s * cosine, vertical_m_s: speed_m_s * sine };
-    Command { launch, speed_m_s, aim }
+    let liftoff = LiftoffVelocity { heading, horizontal_m_s: speed_m_s * cosine, vertical_m_s: speed_m_s * sine };
+    Command { liftoff, speed_m_s, aim }
 }
 
 /// The plan along the chain.
-fn chain_plan(mission: &Mission<'_>) -> Plan<ChainSpot> {
-    let spot = ChainSpot::on_chain;
+fn chain_plan(mission: &Mission<'_>) -> Plan<ChainPosition> {
+    let position = ChainPosition::on_chain;
     let hops = mission.path.hops.iter().map(|hop| PlannedHop {
-        from: spot(hop.takeoff),
-        command: command(hop, Vector2::new(hop.direction.sign(), 0.0), spot(hop.landing)),
+        from: position(hop.takeoff),
+        command: command(hop, Vector2::new(hop.direction.sign(), 0.0), position(hop.landing)),
     });
-    Plan { start: spot(mission.start), goal: Point2::new(mission.goal.point.x_m, 0.0), hops: hops.collect() }
+    Plan { start: position(mission.start), goal: Point2::new(mission.goal.point.x_m, 0.0), hops: hops.collect() }
 }
 
 /// The plan on the map.
-fn map_plan(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Plan<MapSpot>, SimulationError> {
+fn map_plan(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Plan<MapPosition>, SimulationError> {
     let HopPath { hops, .. } = mission.path;
     let planned = hops.iter().enumerate().map(|(i, hop)| {
         let ends = hop.map.ok_or(SimulationError::NotOnMap { hop: i + 1 })?;
         let away = ends.landing - ends.takeoff;
-        let aim = MapSpot { at: ends.landing, z_m: hop.landing.point.z_m };
-        let from = MapSpot { at: ends.takeoff, z_m: hop.takeoff.point.z_m };
+        let aim = MapPosition { at: ends.landing, z_m: hop.landing.point.z_m };
+        let from = MapPosition { at: ends.takeoff, z_m: hop.takeoff.point.z_m };
         Ok(PlannedHop { from, command: command(hop, away / away.norm(), aim) })
     });
     let hops = planned.collect::<Result<_, SimulationError>>()?;
@@ -263,16 +264,21 @@ fn map_plan(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Plan<MapSpot>, 
 }
 
 /// The nodes of the costs-to-go on the map.
-fn map_nodes(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Arc<[MapSpot]>, SimulationError> {
+fn map_nodes(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Arc<[MapPosition]>, SimulationError> {
     let stations = mission.to_go.map(CostToGo::nodes).map_or(&[][..], |nodes| nodes.stations());
     stations.iter().map(|station| on_map(mission, map, station, "node")).collect()
 }
 
 /// A station of the chain on the map, which must have ground there.
-fn on_map(mission: &Mission<'_>, map: MapGround<'_>, station: &Station, which: &'static str) -> Result<MapSpot, SimulationError> {
+fn on_map(
+    mission: &Mission<'_>,
+    map: MapGround<'_>,
+    station: &Station,
+    which: &'static str,
+) -> Result<MapPosition, SimulationError> {
     let at = mission.test.chain().geometry().map_point(station).ok_or(SimulationError::NotOnMap { hop: 1 })?;
     if !Triangles::of(map.dem).covers(at) {
         return Err(SimulationError::NoGround { which, x_m: at.x, y_m: at.y });
     }
-    Ok(MapSpot { at, z_m: station.point.z_m })
+    Ok(MapPosition { at, z_m: station.point.z_m })
 }

@@ -5,7 +5,7 @@ use std::fmt;
 /// A limit that can shape or refuse a hop. Its [`name`](Self::name) is the one that every result uses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Limit {
-    /// The ground grants nothing in this direction of travel (a chain CSV without the six columns for it, or the chain's end).
+    /// The ground allows nothing in this direction of travel (a chain CSV without the six columns for it, or the chain's end).
     Direction,
     /// The point lies in a keep-out zone.
     KeepOut,

@@ -5,7 +5,7 @@ use chta::{
     path::{HopPath, Totals, execute},
     quantity::{Angle, MapPoint},
     terrain::{Dem, FractalGround, SyntheticTerrain, synthesise},
-    uncertainty::{FlightEnd, Launch, Mission, Policy, Simulation, TrialOptions, Uncertainty},
+    uncertainty::{FlightEnd, LiftoffVelocity, Mission, Policy, Simulation, TrialOptions, Uncertainty},
     world::Hopper,
 };
 use nalgebra::{Point2, Vector2};
@@ -23,19 +23,19 @@ const LOOKS: u32 = 1000;
 fn is_first_contact(
     what: &str,
     (from, z_m): (Point2<f64>, f64),
-    launch: Launch,
+    liftoff: LiftoffVelocity,
     gravity_m_s2: f64,
     end: FlightEnd,
     ground: impl Fn(Point2<f64>) -> Option<f64>,
 ) {
     let at = |time_s: f64| {
-        let place = from + launch.heading * (launch.horizontal_m_s * time_s);
-        (place, z_m + time_s * (launch.vertical_m_s - 0.5 * gravity_m_s2 * time_s))
+        let place = from + liftoff.heading * (liftoff.horizontal_m_s * time_s);
+        (place, z_m + time_s * (liftoff.vertical_m_s - 0.5 * gravity_m_s2 * time_s))
     };
-    let size_m = launch.horizontal_m_s * end.time_s + launch.vertical_m_s.abs() * end.time_s;
+    let size_m = liftoff.horizontal_m_s * end.time_s + liftoff.vertical_m_s.abs() * end.time_s;
     let slack_m = 1e-9 * (1.0 + size_m);
     let (place, height_m) = at(end.time_s);
-    let steep = 1.0 + ((launch.vertical_m_s - gravity_m_s2 * end.time_s) / launch.horizontal_m_s).abs();
+    let steep = 1.0 + ((liftoff.vertical_m_s - gravity_m_s2 * end.time_s) / liftoff.horizontal_m_s).abs();
     assert!((place - end.at_m.xy()).norm() < slack_m, "{what}: {place} is not {end:?}");
     if end.landed {
         assert!((height_m - end.at_m.z).abs() < slack_m * steep, "{what}: the arc is at {height_m} m, {end:?}");
@@ -51,9 +51,9 @@ fn is_first_contact(
     }
 }
 
-fn launch(draw: &mut Draw, heading: Vector2<f64>, speed_m_s: f64) -> Launch {
+fn liftoff(draw: &mut Draw, heading: Vector2<f64>, speed_m_s: f64) -> LiftoffVelocity {
     let (angle, speed_m_s) = (draw.uniform(-1.0, 1.55), speed_m_s * draw.log_uniform(0.02, 2.0));
-    Launch { heading, horizontal_m_s: speed_m_s * angle.cos(), vertical_m_s: speed_m_s * angle.sin() }
+    LiftoffVelocity { heading, horizontal_m_s: speed_m_s * angle.cos(), vertical_m_s: speed_m_s * angle.sin() }
 }
 
 fn no_path() -> HopPath {
@@ -83,10 +83,10 @@ fn contact_with_random_chains_is_the_first_a_dense_look_finds() {
         for i in 0..20 {
             // Some from vertices, some from inside.
             let x_m = if i % 4 == 0 { points[draw.below(points.len())].0 } else { draw.uniform(scene.ends_m.0, scene.ends_m.1) };
-            let launch = launch(&mut draw, Vector2::new(if i % 2 == 0 { 1.0 } else { -1.0 }, 0.0), 9.0);
-            let end = simulation.fly(Point2::new(x_m, 0.0), launch).unwrap();
+            let liftoff = liftoff(&mut draw, Vector2::new(if i % 2 == 0 { 1.0 } else { -1.0 }, 0.0), 9.0);
+            let end = simulation.fly(Point2::new(x_m, 0.0), liftoff).unwrap();
             let z_m = chain.geometry().station(x_m).unwrap().point.z_m;
-            is_first_contact("chain", (Point2::new(x_m, 0.0), z_m), launch, scene.gravity_m_s2, end, |p| height_on(chain, p.x));
+            is_first_contact("chain", (Point2::new(x_m, 0.0), z_m), liftoff, scene.gravity_m_s2, end, |p| height_on(chain, p.x));
             match (end.landed, end.time_s > 0.0) {
                 (true, true) => landed += 1,
                 (true, false) => stayed += 1,
@@ -138,10 +138,10 @@ fn contact_with_a_map_is_the_first_a_dense_look_finds() {
             from.x = if i % 2 == 0 { from.x.round() } else { from.x };
         }
         let turn = if i % 5 == 0 { f64::from(i % 8) * std::f64::consts::FRAC_PI_4 } else { draw.uniform(0.0, 6.3) };
-        let launch = launch(&mut draw, Vector2::new(turn.cos(), turn.sin()), 6.0);
-        let end = simulation.fly(from, launch).unwrap();
+        let liftoff = liftoff(&mut draw, Vector2::new(turn.cos(), turn.sin()), 6.0);
+        let end = simulation.fly(from, liftoff).unwrap();
         let z_m = height_of(dem, from).unwrap();
-        is_first_contact("map", (from, z_m), launch, scene.gravity_m_s2, end, |p| height_of(dem, p));
+        is_first_contact("map", (from, z_m), liftoff, scene.gravity_m_s2, end, |p| height_of(dem, p));
         match (end.landed, end.time_s > 0.0) {
             (true, true) => landed += 1,
             (true, false) => stayed += 1,
@@ -164,12 +164,12 @@ fn contact_agrees_with_the_checker() {
             spoiled.hops[i].takeoff_speed_m_s *= speed;
             spoiled.hops[i].takeoff_angle = Angle::from_degrees(hop.takeoff_angle.degrees() + turn_deg);
             let angle = spoiled.hops[i].takeoff_angle.radians();
-            let launch = Launch {
+            let liftoff = LiftoffVelocity {
                 heading: Vector2::new(hop.direction.sign(), 0.0),
                 horizontal_m_s: spoiled.hops[i].takeoff_speed_m_s * angle.cos(),
                 vertical_m_s: spoiled.hops[i].takeoff_speed_m_s * angle.sin(),
             };
-            let end = simulation.fly(Point2::new(hop.takeoff.point.x_m, 0.0), launch).unwrap();
+            let end = simulation.fly(Point2::new(hop.takeoff.point.x_m, 0.0), liftoff).unwrap();
             let execution = execute(&scene.chain, &scene.hopper, scene.gravity_m_s2, &spoiled, None);
             match execution.flights[i].as_ref().unwrap().contact {
                 Some(contact) => {

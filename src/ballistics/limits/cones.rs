@@ -31,8 +31,8 @@ pub fn takeoff_cone(sight: LineOfSight, slopes: SlopeInterval) -> SlopeInterval 
 /// ```
 /// use chta::{ballistics::{LineOfSight, limits}, quantity::SlopeInterval};
 /// let cone = SlopeInterval { lower: -3.0, upper: -1.0 };
-/// let loft = limits::landing_cone(LineOfSight::new(2.0, 1.0), cone);
-/// assert_eq!((loft.lower, loft.upper), (1.5, 3.5));
+/// let lofts = limits::landing_cone(LineOfSight::new(2.0, 1.0), cone);
+/// assert_eq!((lofts.lower, lofts.upper), (1.5, 3.5));
 /// ```
 #[inline]
 pub fn landing_cone(sight: LineOfSight, slopes: SlopeInterval) -> SlopeInterval {

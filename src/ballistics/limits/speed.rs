@@ -24,12 +24,12 @@ use crate::{
 /// ```
 /// use chta::ballistics::{LineOfSight, limits};
 /// // Flat, q = 1.25: n^2 - 2.5 n + 1 = (n - 0.5)(n - 2)
-/// let loft = limits::takeoff_speed(LineOfSight::new(8.0, 0.0), 10.0, 10.0);
-/// assert!((loft.lower - 0.5).abs() < 1e-8 && (loft.upper - 2.0).abs() < 1e-8);
+/// let lofts = limits::takeoff_speed(LineOfSight::new(8.0, 0.0), 10.0, 10.0);
+/// assert!((lofts.lower - 0.5).abs() < 1e-8 && (lofts.upper - 2.0).abs() < 1e-8);
 /// ```
 #[inline]
 pub fn takeoff_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {
-    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) - sight.lift())
+    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) - sight.min_speed_ratio())
 }
 
 /// The lofts at which the landing speed stays within its limit.
@@ -50,7 +50,7 @@ pub fn takeoff_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) 
 /// ```
 #[inline]
 pub fn landing_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {
-    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) - sight.reversed_lift())
+    between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) - sight.min_speed_ratio_reversed())
 }
 
 /// Both speed limits at once, with one square root: the two quadratics have the same product of roots, so the one with the smaller
@@ -64,8 +64,8 @@ pub fn landing_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) 
 /// ```
 #[inline]
 pub fn speeds(sight: LineOfSight, takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64, gravity_m_s2: f64) -> SlopeInterval {
-    let takeoff = reach_ratio(sight, takeoff_speed_max_m_s, gravity_m_s2) - sight.lift();
-    let landing = reach_ratio(sight, landing_speed_max_m_s, gravity_m_s2) - sight.reversed_lift();
+    let takeoff = reach_ratio(sight, takeoff_speed_max_m_s, gravity_m_s2) - sight.min_speed_ratio();
+    let landing = reach_ratio(sight, landing_speed_max_m_s, gravity_m_s2) - sight.min_speed_ratio_reversed();
     between_roots(sight, takeoff.min(landing))
 }
 
@@ -79,7 +79,7 @@ fn reach_ratio(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> f64
 /// Between the roots of `n^2 - 2 (w + e) n + w^2`, with `w = sqrt(1 + b^2)` and the excess `e` of `q` over the ratio of least speed.
 #[inline]
 fn between_roots(sight: LineOfSight, excess: f64) -> SlopeInterval {
-    match (MonicQuadratic { excess, geometric_mean: sight.stretch() }).roots() {
+    match (MonicQuadratic { excess, geometric_mean: sight.secant() }).roots() {
         Some(roots) => SlopeInterval { lower: roots.smaller, upper: roots.larger },
         None => SlopeInterval::EMPTY,
     }

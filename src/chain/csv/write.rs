@@ -130,7 +130,7 @@ impl Layout {
                 _ => return Err(ChainWriteError::MixedForms(SegmentId(i))),
             }
         }
-        // A chain that grants nothing anywhere: without any of the twelve it would be one that leaves all to the scenario.
+        // A chain that allows nothing anywhere: without any of the twelve it would be one that leaves all to the scenario.
         if matches!(first.form, GroundForm::Explicit { .. }) && !layout.reverse {
             layout.forward = true;
         }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use chta::{quantity::written, world::KNOWN_BODIES};
+use chta::{quantity::format_number, world::KNOWN_BODIES};
 
 use crate::cli::{Answer, Failure, output};
 
@@ -20,5 +20,5 @@ pub(crate) fn run() -> Result<Answer, Failure> {
 /// Gravity to four significant digits, more than it changes by over any of these bodies, whatever its size.
 fn figures(gravity_m_s2: f64) -> String {
     let rounded = format!("{gravity_m_s2:.3e}").parse().unwrap_or(gravity_m_s2);
-    written(rounded)
+    format_number(rounded)
 }

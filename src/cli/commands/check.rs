@@ -13,7 +13,7 @@ use chta::{
         CheckAnswer, Document, check_text,
         figure::{Caption, ProofFigure, draw_proof},
     },
-    scenario::{Extremes, constant_gravity_doubts},
+    scenario::{Extremes, constant_gravity_warnings},
 };
 use serde::Serialize;
 
@@ -40,24 +40,24 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     use_threads(args.answer.threads)?;
     let loaded =
         load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
-    let mut doubts = Vec::new();
+    let mut warnings = Vec::new();
     let pairs = match &args.pairs {
         None => vec![loaded.ends()?],
         Some(path) => {
             let file = read_pairs_csv_file(path)?;
-            doubts.extend(file.warnings.iter().map(|warning| format!("{}: {warning}", path.display())));
+            warnings.extend(file.warnings.iter().map(|warning| format!("{}: {warning}", path.display())));
             stations(&loaded, path, &file.pairs)?
         }
     };
     // Opened before the work, which may take long.
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
-    let (answers, pictures) = answers(&loaded, &pairs, args, &mut doubts)?;
+    let (answers, pictures) = answers(&loaded, &pairs, args, &mut warnings)?;
     output::finish(plot.into_iter().zip(pictures).collect())?;
-    for doubt in &doubts {
-        output::warn(args.common.quiet, doubt);
+    for warning in &warnings {
+        output::warn(args.common.quiet, warning);
     }
     let verdict = if answers.iter().all(CheckAnswer::is_traversable) { Answer::Yes } else { Answer::No };
-    output::to_stdout(written(args, loaded, answers, doubts)?.as_bytes())?;
+    output::to_stdout(written(args, loaded, answers, warnings)?.as_bytes())?;
     Ok(verdict)
 }
 
@@ -76,12 +76,12 @@ fn stations(loaded: &Loaded, file: &Path, pairs: &[StartGoal]) -> Result<Vec<(St
     Ok(stations)
 }
 
-/// The answers for all pairs, what is doubtful about their paths, and the picture of the proof where one is asked for.
+/// The answers for all pairs, the warnings about their paths, and the picture of the proof where one is asked for.
 fn answers(
     loaded: &Loaded,
     pairs: &[(Station, Station)],
     args: &CheckArgs,
-    doubts: &mut Vec<String>,
+    warnings: &mut Vec<String>,
 ) -> Result<(Vec<CheckAnswer>, Option<Vec<u8>>), Failure> {
     let test = loaded.hop_test();
     let options = &loaded.scenario.search;
@@ -94,8 +94,8 @@ fn answers(
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
         if let Some(path) = &path {
-            let of_path = constant_gravity_doubts(&loaded.scenario.body, Extremes::of(&path.hops));
-            doubts.extend(of_path.into_iter().filter(|doubt| !doubts.contains(doubt)).collect::<Vec<_>>());
+            let of_path = constant_gravity_warnings(&loaded.scenario.body, Extremes::of(&path.hops));
+            warnings.extend(of_path.into_iter().filter(|warning| !warnings.contains(warning)).collect::<Vec<_>>());
         }
         let answer = searched.answer(&test, ends, options.effort);
         if let (Some(file), Some(bounds)) = (args.plot.as_deref(), searched.bounds()) {
@@ -123,11 +123,11 @@ fn picture(
 }
 
 /// The answers as text or as one document.
-fn written(args: &CheckArgs, loaded: Loaded, mut answers: Vec<CheckAnswer>, doubts: Vec<String>) -> Result<String, Failure> {
+fn written(args: &CheckArgs, loaded: Loaded, mut answers: Vec<CheckAnswer>, warnings: Vec<String>) -> Result<String, Failure> {
     if args.answer.format == Format::Text {
         return Ok(answers.iter().map(check_text).collect::<Vec<_>>().join("\n"));
     }
-    let warnings = loaded.warnings_with(doubts);
+    let warnings = loaded.warnings_with(warnings);
     let Loaded { document, inputs, prepared, .. } = loaded;
     let projection = prepared.projection.as_ref();
     Ok(match (&args.pairs, answers.pop()) {

@@ -8,7 +8,7 @@ use chta::{
         CompareAnswer, CompareRow, Document, MarginsRecord, TotalsRecord,
         figure::{Caption, CompareFigure, ComparedScenario, Flight, draw_compare},
     },
-    scenario::{Extremes, constant_gravity_doubts},
+    scenario::{Extremes, constant_gravity_warnings},
 };
 
 use super::search::{Searched, use_threads};
@@ -86,11 +86,11 @@ impl Compared {
             _ => None,
         };
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
-        let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
-        for doubt in &doubts {
-            output::warn(args.quiet, doubt);
+        let warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
+        for warning in &warnings {
+            output::warn(args.quiet, warning);
         }
-        let warnings = loaded.warnings_with(doubts);
+        let warnings = loaded.warnings_with(warnings);
         let name = loaded.scenario.title.clone().unwrap_or_else(|| file.display().to_string());
         let row = CompareRow {
             file: relative_name(file),

@@ -6,7 +6,7 @@ use chta::{
     quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer, figure::draw_rose},
-    scenario::Covers,
+    scenario::Overlays,
     terrain::{check_scale, read_dem},
 };
 use nalgebra::Vector2;
@@ -41,8 +41,8 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let dem = read_dem(file).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
-    let covers =
-        Covers::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
+    let overlays =
+        Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
     let request = FanRequest {
         dem: &dem,
@@ -53,10 +53,10 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         gravity_m_s2: scenario.body.gravity_m_s2,
         spacing,
     };
-    let ground = |profile| Ok(ConstrainedChain::new(covers.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?);
+    let ground = |profile| Ok(ConstrainedChain::new(overlays.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?);
     let rays = fan(&request, *threads, &ground).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
-    let mut warnings = covers.idle_on_dem(dem.bounds());
+    let mut warnings = overlays.without_effect_on_dem(dem.bounds());
     for ray in &rays {
         let heading = Angle::from_degrees(ray.heading_deg).radians();
         let end = from + Vector2::new(libm::sin(heading), libm::cos(heading)) * ray.length_m;
@@ -91,8 +91,8 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         Format::Text => answer.text(),
         Format::Json => {
             let mut inputs = vec![input_file(file)?];
-            for cover in Covers::files(&scenario) {
-                inputs.push(input_file(&base.join(cover))?);
+            for overlay in Overlays::files(&scenario) {
+                inputs.push(input_file(&base.join(overlay))?);
             }
             Document::new("fan", document, inputs, warnings, answer).on_map(projection.as_ref().ok()).to_json()?
         }

@@ -2,7 +2,7 @@
 
 use chta::{
     report::{Document, HopAnswer, hop_text},
-    scenario::{Extremes, constant_gravity_doubts},
+    scenario::{Extremes, constant_gravity_warnings},
 };
 
 use crate::cli::{
@@ -28,11 +28,11 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
         height_m: best.apex_height_m,
         speed_m_s: best.takeoff_speed_m_s.max(best.landing_speed_m_s),
     });
-    let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
-    for doubt in &doubts {
-        output::warn(args.common.quiet, doubt);
+    let warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
+    for warning in &warnings {
+        output::warn(args.common.quiet, warning);
     }
-    let warnings = loaded.warnings_with(doubts);
+    let warnings = loaded.warnings_with(warnings);
     let projection = loaded.prepared.projection.as_ref();
     let verdict = if answer.feasible { Answer::Yes } else { Answer::No };
     let text = match args.format {

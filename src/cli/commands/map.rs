@@ -16,7 +16,7 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Covers, Extremes, Scenario, constant_gravity_doubts},
+    scenario::{Extremes, Overlays, Scenario, constant_gravity_warnings},
     terrain::{
         Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_map_scale, read_dem,
         result_geotiff_bytes,
@@ -37,7 +37,7 @@ struct Ground {
     dem: Dem,
     projection: Result<MapProjection, NoProjection>,
     scenario: Scenario,
-    covers: Covers,
+    overlays: Overlays,
     lattice: NodeLattice,
     document: serde_json::Value,
     inputs: Vec<InputFile>,
@@ -84,7 +84,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let mut warnings = ground.warnings.clone();
     warnings.extend(maps.warnings.iter().cloned());
     let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
-    warnings.extend(constant_gravity_doubts(&ground.scenario.body, Extremes::of(&hops)));
+    warnings.extend(constant_gravity_warnings(&ground.scenario.body, Extremes::of(&hops)));
     for warning in &warnings {
         output::warn(args.common.quiet, warning);
     }
@@ -110,8 +110,8 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
     let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
     let dem = read_dem(file).map_err(|e| Failure::message(e.to_string()))?;
-    let covers =
-        Covers::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
+    let overlays =
+        Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
     let lattice = NodeLattice::new(&dem, *stride as usize);
     let nodes = dem.georeference().every(*stride as usize);
@@ -141,14 +141,14 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
         .map_err(|message| failed(&std::io::Error::other(message)))?;
     let mut warnings = Vec::new();
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
-    warnings.extend(covers.idle_on_dem(dem.bounds()));
+    warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
     warnings.extend(scale.warning());
     let mut inputs = vec![input_file(file)?];
-    for cover in Covers::files(&scenario) {
-        inputs.push(input_file(&base.join(cover))?);
+    for overlay in Overlays::files(&scenario) {
+        inputs.push(input_file(&base.join(overlay))?);
     }
-    Ok((Ground { dem, projection, scenario, covers, lattice, document, inputs, warnings }, start, goals))
+    Ok((Ground { dem, projection, scenario, overlays, lattice, document, inputs, warnings }, start, goals))
 }
 
 /// Checks that positions at different posts map to different nodes: with a stride that merges them one answer would stand for both.
@@ -194,11 +194,11 @@ fn refusals(hops: &PostHops<'_>, start: Spot, goals: &[Spot]) -> Vec<String> {
 
 /// Searches, with progress on a terminal.
 fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
-    let Ground { dem, scenario, covers, lattice, .. } = ground;
+    let Ground { dem, scenario, overlays, lattice, .. } = ground;
     let failed = |error: &MapError| Failure::about(&args.dem, &error.to_string());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.answer.threads).build().map_err(|e| failed(&e.into()))?;
     let chain = |profile: Profile| -> Result<ConstrainedChain, Box<dyn std::error::Error + Send + Sync>> {
-        Ok(ConstrainedChain::new(covers.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?)
+        Ok(ConstrainedChain::new(overlays.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?)
     };
     let ground_of: &GroundOf<'_> = &chain;
     let request = MapRequest {
@@ -207,8 +207,8 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
         hopper: &scenario.hopper,
         surface: &scenario.surface,
         gravity_m_s2: scenario.body.gravity_m_s2,
-        friction: covers.friction_raster(),
-        keep_out: covers.keep_out(),
+        friction: overlays.friction_raster(),
+        keep_out: overlays.keep_out(),
     };
     let progress = Progress::new(args.common.quiet);
     let began = std::time::Instant::now();
@@ -372,7 +372,7 @@ fn picture(
 ) -> Result<Vec<u8>, Failure> {
     let name = name_of(args);
     let can_return: Option<Vec<bool>> = maps.back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
-    let kept_out = ground.covers.keep_out().map(|zones| kept_out(ground, zones));
+    let kept_out = ground.overlays.keep_out().map(|zones| kept_out(ground, zones));
     let places = |path: &HopPath| {
         let landings = path.hops.iter().filter_map(|hop| hop.map.map(|map| map.landing));
         std::iter::once(start.at).chain(landings).collect()

@@ -13,7 +13,7 @@ use chta::{
         figure::{FigureInput, FigureTitle, draw},
         path_geojson, path_text, reliable_paths_text, write_path_csv,
     },
-    scenario::{Extremes, Scenario, constant_gravity_doubts},
+    scenario::{Extremes, Scenario, constant_gravity_warnings},
     world::{Grip, RestSlope},
 };
 use serde::Serialize;
@@ -72,11 +72,11 @@ impl Planned {
             verified(loaded, path, ends)?;
         }
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
-        let doubts = constant_gravity_doubts(&loaded.scenario.body, extremes);
-        for doubt in &doubts {
-            output::warn(quiet, doubt);
+        let warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
+        for warning in &warnings {
+            output::warn(quiet, warning);
         }
-        let warnings = loaded.warnings_with(doubts);
+        let warnings = loaded.warnings_with(warnings);
         let answer = PlanAnswer {
             check: searched.answer(test, ends, options.effort),
             verified: (verify && path.is_some()).then_some(true),

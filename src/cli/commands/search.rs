@@ -102,8 +102,8 @@ pub(super) fn search(
 ) -> Result<(graph::Answer, Vec<ReliablePath>), Failure> {
     let options = &scenario.search;
     let found = match scenario.reliability() {
-        None => graph::search(test, start, goal, options, &mut told(quiet)).map(|answer| (answer, Vec::new())),
-        Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &mut told(quiet)),
+        None => graph::search(test, start, goal, options, &mut progress_printer(quiet)).map(|answer| (answer, Vec::new())),
+        Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &mut progress_printer(quiet)),
     };
     found.map_err(|error| Failure::message(error.to_string()))
 }
@@ -118,11 +118,12 @@ fn search_pairs(
     if scenario.reliability().is_some() {
         return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
     }
-    graph::search_pairs(test, pairs, &scenario.search, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
+    graph::search_pairs(test, pairs, &scenario.search, &mut progress_printer(quiet))
+        .map_err(|error| Failure::message(error.to_string()))
 }
 
-/// Tells what is being tried.
-fn told(quiet: bool) -> impl FnMut(PointSpacing) {
+/// Prints on a terminal what is being tried.
+fn progress_printer(quiet: bool) -> impl FnMut(PointSpacing) {
     let progress = Progress::new(quiet);
     move |spacing| {
         progress.say(match spacing {

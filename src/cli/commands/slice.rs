@@ -6,7 +6,7 @@ use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{Covers, Scenario, Transect, friction, sha256_of},
+    scenario::{Overlays, Scenario, Transect, friction, sha256_of},
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
@@ -39,15 +39,16 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     let line = geojson.as_deref().map(|file| (file, slice_geojson(&transect.legs, &name, transect.projection.as_ref())));
     let chain = match &given {
         Some((scenario, base)) => {
-            for file in Covers::files(scenario).map(|file| base.join(file)).collect::<Vec<PathBuf>>() {
+            for file in Overlays::files(scenario).map(|file| base.join(file)).collect::<Vec<PathBuf>>() {
                 comments.push(format!("under {}, sha256 {}", name_of(&file), sha256_of(&file)?));
             }
-            let covers = Covers::read(scenario, base, transect.coordinates.as_ref(), transect.bounds).map_err(|e| failed(&e))?;
-            let (chain, idle) = covers.chain_with_doubts(transect.legs).map_err(|e| failed(&e))?;
-            for warning in &idle {
+            let overlays =
+                Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.bounds).map_err(|e| failed(&e))?;
+            let (chain, without_effect) = overlays.chain_with_warnings(transect.legs).map_err(|e| failed(&e))?;
+            for warning in &without_effect {
                 output::warn(*quiet, warning);
             }
-            comments.extend(idle.iter().map(|warning| format!("warning: {warning}")));
+            comments.extend(without_effect.iter().map(|warning| format!("warning: {warning}")));
             chain
         }
         None => PolygonalChain::from_legs(&transect.legs, None).map_err(|e| failed(&e))?,
@@ -63,7 +64,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
 
 /// Whether a scenario has nothing that goes into a chain.
 fn lays_nothing(scenario: &Scenario) -> bool {
-    friction(scenario).is_none() && Covers::files(scenario).next().is_none()
+    friction(scenario).is_none() && Overlays::files(scenario).next().is_none()
 }
 
 /// A file's own name, for a comment.
@@ -122,7 +123,7 @@ fn ends(legs: &[Profile]) -> Option<String> {
     Some(format!("from ({}, {}) m to ({}, {}) m on the map", from.x, from.y, to.x, to.y))
 }
 
-/// The reference system of a slice's map and the doubts about it, for its comments.
+/// The reference system of a slice's map and the warnings about it, for its comments.
 fn map_comments(transect: &Transect) -> Vec<String> {
     let crs = transect.projection.as_ref().map(|projection| CrsRecord::from(projection).comments()).unwrap_or_default();
     crs.into_iter().chain(transect.warnings.iter().map(|warning| format!("warning: {warning}"))).collect()

@@ -10,7 +10,7 @@ use chta::{
         Document, TradeAnswer,
         figure::{Picture, draw_trade},
     },
-    scenario::{Trade, TradeError, Variation},
+    scenario::{SweptKey, Trade, TradeError},
 };
 
 use super::captions::{SpeedLimit, title};
@@ -22,7 +22,7 @@ use crate::cli::{
     progress::Progress,
 };
 
-/// What is wrong with a variation.
+/// What is wrong with a swept key.
 #[expect(clippy::needless_pass_by_value, reason = "as map_err gives it")]
 fn refused(error: TradeError) -> Failure {
     Failure::message(format!("--vary: {error}"))
@@ -30,16 +30,16 @@ fn refused(error: TradeError) -> Failure {
 
 /// Answers every cell.
 pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
-    let variations: Vec<_> = args.vary.iter().map(|text| Variation::parse(text)).collect::<Result<_, _>>().map_err(refused)?;
+    let swept: Vec<_> = args.vary.iter().map(|text| SweptKey::parse(text)).collect::<Result<_, _>>().map_err(refused)?;
     let table = args.output.as_deref().map(TableFormat::of).transpose()?;
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
     // Opened before the work, which may take long.
     let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let ends = EndOptions::of_path(args.journey.start, args.journey.goal);
-    let ToVary { first, survey, entries, base } = load_to_vary(&args.journey.chain, &args.common, &args.search, ends, &variations)?;
+    let ToVary { first, survey, entries, base } = load_to_vary(&args.journey.chain, &args.common, &args.search, ends, &swept)?;
     first.ends()?;
-    let trade = Trade::new(&entries, &base, &survey, &variations).map_err(refused)?;
+    let trade = Trade::new(&entries, &base, &survey, &swept).map_err(refused)?;
     let progress = Progress::new(args.common.quiet);
     let (cells, done) = (trade.cells(), AtomicUsize::new(0));
     let tell = || progress.say(format!("{} of {cells} fields", done.fetch_add(1, Ordering::Relaxed) + 1));

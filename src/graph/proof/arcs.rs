@@ -57,15 +57,15 @@ pub(super) fn least_speed_slopes<R: Rounding>(ratio: f64, sight_slope: f64) -> I
         return Interval::ALL;
     }
     let (one, q, b) = (Interval::point(1.0), Interval::<R>::point(ratio), Interval::<R>::point(sight_slope));
-    let stretch = (one + b.squared()).sqrt();
-    let lift = if sight_slope >= 0.0 { b + stretch } else { one / (stretch - b) };
-    let excess = q - lift;
+    let secant = (one + b.squared()).sqrt();
+    let speed_ratio = if sight_slope >= 0.0 { b + secant } else { one / (secant - b) };
+    let excess = q - speed_ratio;
     if excess.upper < 0.0 {
         return Interval::EMPTY;
     }
     let excess = Interval::new(excess.lower.max(0.0), excess.upper);
     // q - b + w = (q - b - w) + 2 w, without the cancellation.
-    let root = (excess * (excess + stretch + stretch)).sqrt();
+    let root = (excess * (excess + secant + secant)).sqrt();
     let larger = q + root;
     let smaller = (one + (q + q) * b) / larger;
     Interval::new(smaller.lower, larger.upper)

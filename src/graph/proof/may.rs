@@ -31,7 +31,7 @@ struct Rule<R> {
     speed_squared: f64,
 }
 
-/// What a segment grants take-off and landing in one direction, or the limit by which it refuses.
+/// What a segment allows take-off and landing in one direction, or the limit by which it refuses.
 type Contacts<R> = [Result<Rule<R>, Limit>; 2];
 
 /// A chain, a hopper and a gravity as intervals, ready to rule out hops.
@@ -58,8 +58,8 @@ impl<'a, F: Faults> Prover<'a, F> {
         let chain = test.chain();
         let rules: Vec<_> = chain.segments().iter().map(|segment| Direction::BOTH.map(|d| contacts::<F>(segment, d))).collect();
         let fastest = |contact: usize| {
-            let granted = rules.iter().flatten().filter_map(|contacts: &Contacts<F::Rounding>| contacts[contact].ok());
-            granted.map(|rule| rule.speed_squared).fold(0.0, f64::max)
+            let allowed = rules.iter().flatten().filter_map(|contacts: &Contacts<F::Rounding>| contacts[contact].ok());
+            allowed.map(|rule| rule.speed_squared).fold(0.0, f64::max)
         };
         let vertices = chain.geometry().vertices();
         let mut bends_before = vec![0; vertices.len() + 1];

@@ -156,20 +156,21 @@ impl Tried {
         let x_m = |i: usize| self.candidates[i].station.point.x_m;
         let around = frontier.partition_point(|&i| i < to);
         let mut nearest = nearest_first(frontier, around..around, |i| (x_m(i) - x_m(to)).abs(), reach_m);
-        nearest
-            .find_map(|from| test.loft(&self.candidates[from].station, &self.candidates[to].station).ok().map(|loft| (from, loft)))
+        nearest.find_map(|from| {
+            test.lofts(&self.candidates[from].station, &self.candidates[to].station).ok().map(|lofts| (from, lofts))
+        })
     }
 
     /// The path to the goal with its cost, where the goal was reached.
     pub(super) fn path(&self, test: &HopTest<'_>, options: &SearchOptions) -> Option<(Cost, Vec<Leg>)> {
         let (mut cost, mut legs) = (Cost::default(), Vec::new());
         let mut here = self.goal;
-        while let Some((from, loft)) = self.reached[here]?.by {
+        while let Some((from, lofts)) = self.reached[here]?.by {
             let (takeoff, landing) = (self.candidates[from].station, self.candidates[here].station);
             let sight = test.line_of_sight(&takeoff, &landing)?;
-            let arc = Arc::new(sight, options.takeoff.loft(sight, loft), test.gravity_m_s2());
+            let arc = Arc::new(sight, options.takeoff.loft(sight, lofts), test.gravity_m_s2());
             cost = cost + options.effort.cost(&arc, 1);
-            legs.push(Leg { takeoff, landing, edge: Edge::Hop(loft) });
+            legs.push(Leg { takeoff, landing, edge: Edge::Hop(lofts) });
             here = from;
         }
         legs.reverse();

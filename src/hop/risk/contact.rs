@@ -1,4 +1,4 @@
-//! The probability that the ground grants a contact whose place, angle and speed scatter.
+//! The probability that the ground allows a contact whose place, angle and speed scatter.
 
 use super::flight::normal;
 use crate::{
@@ -52,7 +52,7 @@ pub(super) fn contact_success(
             at
         };
         let near = scatter.tolerance_m.is_none_or(|tolerance_m| scatter.shift_m.abs() <= tolerance_m);
-        let rule = chain.ruling(&at, scatter.contact, direction).and_then(|rule| rule.granted(scatter.contact, direction));
+        let rule = chain.ruling(&at, scatter.contact, direction).and_then(|rule| rule.allowed(scatter.contact, direction));
         return kept(rule.filter(|_| near), 0.0);
     }
     let tolerance_m = scatter.tolerance_m.unwrap_or(f64::INFINITY);
@@ -67,7 +67,7 @@ pub(super) fn contact_success(
         let to = (ends[1].x_m.min(high_m) - mean_m) / scatter.place_m;
         if to > from {
             let middle_m = 0.5 * (from + to) * scatter.place_m;
-            let rule = chain.segments()[segment].granted(scatter.contact, direction);
+            let rule = chain.segments()[segment].allowed(scatter.contact, direction);
             success += (normal(to) - normal(from)) * kept(rule, direction.sign() * middle_m);
         }
     }

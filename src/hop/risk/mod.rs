@@ -31,7 +31,7 @@ pub struct HopDeviations {
     pub takeoff_speed_fraction: f64,
     /// Take-off angle.
     pub takeoff_angle: Angle,
-    /// Where along the chain it takes off, m: drift after the landing before, and what it knows of its place.
+    /// Where along the chain it takes off, m: bounce-and-roll displacement after the landing before, and what it knows of its place.
     pub place_m: f64,
     /// Friction coefficient, where the ground's cones are made of friction.
     pub friction: f64,

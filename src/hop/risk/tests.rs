@@ -24,7 +24,7 @@ fn chain(points: &[(f64, f64)], friction: f64, landing_speed_max_m_s: f64) -> (C
 fn planned(test: &HopTest<'_>, from_m: f64, to_m: f64, choice: TakeoffChoice) -> PlannedHop {
     let station = |x_m| test.chain().geometry().station(x_m).unwrap();
     let (takeoff, landing) = (station(from_m), station(to_m));
-    let lofts = test.loft(&takeoff, &landing).unwrap();
+    let lofts = test.lofts(&takeoff, &landing).unwrap();
     let sight = test.line_of_sight(&takeoff, &landing).unwrap();
     PlannedHop { takeoff, landing, arc: Arc::new(sight, choice.loft(sight, lofts), test.gravity_m_s2()), lofts, tolerance_m: None }
 }
@@ -87,7 +87,7 @@ fn the_estimate_agrees_with_counted_flights() {
         let test = HopTest::new(&chain, &hopper, G);
         for (from_m, to_m) in [(3.0, 11.0), (5.0, 15.5), (12.0, 20.0), (2.0, 8.0), (20.0, 30.0)] {
             let station = |x_m| chain.geometry().station(x_m).unwrap();
-            if test.loft(&station(from_m), &station(to_m)).is_err() {
+            if test.lofts(&station(from_m), &station(to_m)).is_err() {
                 continue;
             }
             for deviations in [small, pushed] {

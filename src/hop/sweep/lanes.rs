@@ -14,7 +14,7 @@ pub(super) struct Departure {
     pub(super) cone: SlopeInterval,
 }
 
-/// The open-air verdicts over one block of landings: the formulas of [`HopTest::loft`], operation by operation, so that every number
+/// The verdicts of the flight envelope over one block of landings: the formulas of [`HopTest::lofts`], operation by operation, so that every number
 /// is the same to the last bit; written so that the compiler can take several landings per instruction.
 #[derive(Clone, Debug)]
 pub(super) struct Lanes {
@@ -70,17 +70,17 @@ impl Lanes {
         for i in 0..count {
             let run_m = (x_m[i] - from.x_m).abs();
             let b = (z_m[i] - from.z_m) / run_m;
-            let stretch = (1.0 + b * b).sqrt();
-            // The two lifts are each other's reciprocals; which one is the take-off's goes by the sign of b.
-            let steep = stretch + b.abs();
+            let secant = (1.0 + b * b).sqrt();
+            // The two least speed ratios are each other's reciprocals; which one is the take-off's goes by the sign of b.
+            let steep = secant + b.abs();
             let gentle = 1.0 / steep;
             let gravity_run = gravity * run_m;
             let takeoff = from.speed_squared / gravity_run - if b >= 0.0 { steep } else { gentle };
             let landing = speed_squared[i] / gravity_run - if b <= 0.0 { steep } else { gentle };
             let excess = takeoff.min(landing);
-            let half_sum = stretch + excess;
-            let larger = half_sum + excess.sqrt() * (half_sum + stretch).sqrt();
-            let smaller = stretch * (stretch / larger);
+            let half_sum = secant + excess;
+            let larger = half_sum + excess.sqrt() * (half_sum + secant).sqrt();
+            let smaller = secant * (secant / larger);
             slope[i] = b;
             takeoff_excess[i] = takeoff;
             landing_excess[i] = landing;
@@ -103,12 +103,12 @@ impl Lanes {
 
     /// The lofts of one lane; `None` where nothing is left.
     #[inline]
-    pub(super) fn loft(&self, lane: usize) -> Option<SlopeInterval> {
-        let loft = SlopeInterval { lower: self.lower[lane], upper: self.upper[lane] };
-        (loft.lower <= loft.upper && loft.upper > 0.0).then_some(loft)
+    pub(super) fn lofts(&self, lane: usize) -> Option<SlopeInterval> {
+        let lofts = SlopeInterval { lower: self.lower[lane], upper: self.upper[lane] };
+        (lofts.lower <= lofts.upper && lofts.upper > 0.0).then_some(lofts)
     }
 
-    /// Which limit left nothing of a lane, in the order of [`HopTest::loft`].
+    /// Which limit left nothing of a lane, in the order of [`HopTest::lofts`].
     pub(super) fn refusing(
         &self,
         test: &HopTest<'_>,

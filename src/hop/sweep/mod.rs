@@ -20,7 +20,7 @@ use crate::{
     world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
 
-/// One take-off against many landings: all limits, with the verdicts of [`HopTest::loft`](super::HopTest::loft) at a fraction of its cost.
+/// One take-off against many landings: all limits, with the verdicts of [`HopTest::lofts`](super::HopTest::lofts) at a fraction of its cost.
 ///
 /// Holds the working memory, which one sweep hands to the next: make one per thread.
 ///
@@ -36,7 +36,7 @@ use crate::{
 /// let table = LandingTable::new(&test, &stations);
 /// let mut farthest = 0;
 /// Sweep::new(&table).landings(&stations[0], 0..21, Direction::Forward, |i, verdict| {
-///     assert_eq!(verdict, test.loft(&stations[0], &stations[i]));
+///     assert_eq!(verdict, test.lofts(&stations[0], &stations[i]));
 ///     if verdict.is_ok() {
 ///         farthest = i;
 ///     }
@@ -51,7 +51,7 @@ pub struct Sweep<'a> {
     overflight: Overflight<'a>,
 }
 
-/// Two lofts closer than this share of their size are told apart by [`HopTest::loft`](super::HopTest::loft): far more than rounding, far less than matters.
+/// Two lofts closer than this share of their size are told apart by [`HopTest::lofts`](super::HopTest::lofts): far more than rounding, far less than matters.
 const TOUCHING: f64 = 1e-11;
 
 impl<'a> Sweep<'a> {
@@ -63,7 +63,7 @@ impl<'a> Sweep<'a> {
 
     /// Evaluates every landing of a range of the table's stations that lies in a direction from the take-off, nearest first.
     ///
-    /// `visit` is given each one's index and the verdict of [`HopTest::loft`](super::HopTest::loft) for the pair: always the same one, of feasible or of the
+    /// `visit` is given each one's index and the verdict of [`HopTest::lofts`](super::HopTest::lofts) for the pair: always the same one, of feasible or of the
     /// limit that refuses, since where two limits touch within rounding that function itself is asked. The lofts are the same numbers
     /// too, to the last bit; where vertices stand more than thirty times closer together than their neighbours, to some 1e-15.
     ///
@@ -80,7 +80,7 @@ impl<'a> Sweep<'a> {
         let table = self.table;
         let (test, stations, refusals) = (table.test(), table.stations(), &table.rules(direction).refusal);
         let among = table.part_ahead(takeoff, among, direction);
-        let rule = match test.granted(takeoff, Contact::Takeoff, direction) {
+        let rule = match test.allowed(takeoff, Contact::Takeoff, direction) {
             Ok(rule) => rule,
             Err(limit) => return outwards(among, direction).for_each(|i| visit(i, Err(limit))),
         };
@@ -89,7 +89,7 @@ impl<'a> Sweep<'a> {
         let from = Departure { x_m: point.x_m, z_m: point.z_m, speed_squared: speed * speed, cone: rule.slopes() };
         let (in_plane, beyond_bend) = table.split_at_bend(takeoff, among, direction);
         let (on_segment, mut left) = table.split_at_segment(takeoff, in_plane, direction);
-        outwards(on_segment, direction).for_each(|i| visit(i, test.loft(takeoff, &stations[i])));
+        outwards(on_segment, direction).for_each(|i| visit(i, test.lofts(takeoff, &stations[i])));
         self.overflight.begin(takeoff, direction);
         while !left.is_empty() {
             let block = next_block(&mut left, direction);
@@ -109,7 +109,7 @@ impl<'a> Sweep<'a> {
         outwards(beyond_bend, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(Limit::Bend))));
     }
 
-    /// The verdict on a landing that its ground grants and that lies in its block's lane.
+    /// The verdict on a landing that its ground allows and that lies in its block's lane.
     #[inline]
     fn verdict(
         &mut self,
@@ -120,17 +120,17 @@ impl<'a> Sweep<'a> {
         lane: usize,
     ) -> Result<SlopeInterval, Limit> {
         let (test, landing) = (self.table.test(), &self.table.stations()[i]);
-        let Some(open_air) = self.lanes.loft(lane) else {
+        let Some(in_envelope) = self.lanes.lofts(lane) else {
             let rules = self.table.rules(direction);
             let cone = SlopeInterval { lower: rules.cone_lower[i], upper: rules.cone_upper[i] };
             let run_m = (landing.point.x_m - from.x_m).abs();
             return Err(self.lanes.refusing(test, from, lane, run_m, cone));
         };
-        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), open_air.lower);
-        if (lower - open_air.upper).abs() <= TOUCHING * (lower.abs() + open_air.upper.abs()) && lower > open_air.lower {
-            return test.loft(takeoff, landing);
+        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), in_envelope.lower);
+        if (lower - in_envelope.upper).abs() <= TOUCHING * (lower.abs() + in_envelope.upper.abs()) && lower > in_envelope.lower {
+            return test.lofts(takeoff, landing);
         }
-        if lower > open_air.upper { Err(Limit::Terrain) } else { Ok(SlopeInterval { lower, upper: open_air.upper }) }
+        if lower > in_envelope.upper { Err(Limit::Terrain) } else { Ok(SlopeInterval { lower, upper: in_envelope.upper }) }
     }
 }
 

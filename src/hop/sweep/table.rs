@@ -36,7 +36,7 @@ struct Block {
     speed_squared: [f64; 2],
 }
 
-/// What the ground grants to landings in one direction of travel, column by column.
+/// What the ground allows landings in one direction of travel, column by column.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LandingRules {
     /// The greatest landing speed with its tolerance, squared, m^2/s^2; 0 where the ground refuses.
@@ -83,12 +83,12 @@ impl<'a> LandingTable<'a> {
         let (left_m, right_m) = ((self.x_m[block.start] - from.x_m).abs(), (self.x_m[block.end - 1] - from.x_m).abs());
         let (near_m, far_m) = (left_m.min(right_m), left_m.max(right_m));
         let (low_m, high_m) = (ends.lowest_m - from.z_m, ends.highest_m - from.z_m);
-        let squared = |run_m: f64, lift: f64| gravity * run_m * lift;
-        if squared(near_m, LineOfSight::new(near_m, low_m).lift()) > from.speed_squared * CLEARLY {
+        let squared = |run_m: f64, speed_ratio: f64| gravity * run_m * speed_ratio;
+        if squared(near_m, LineOfSight::new(near_m, low_m).min_speed_ratio()) > from.speed_squared * CLEARLY {
             return Some(Limit::TakeoffSpeed);
         }
-        let all_inside = squared(far_m, LineOfSight::new(far_m, high_m).lift()) * CLEARLY < from.speed_squared;
-        let landing = squared(near_m, LineOfSight::new(near_m, high_m).reversed_lift());
+        let all_inside = squared(far_m, LineOfSight::new(far_m, high_m).min_speed_ratio()) * CLEARLY < from.speed_squared;
+        let landing = squared(near_m, LineOfSight::new(near_m, high_m).min_speed_ratio_reversed());
         (all_inside && landing > landing_squared * CLEARLY).then_some(Limit::LandingSpeed)
     }
 
@@ -102,7 +102,7 @@ impl<'a> LandingTable<'a> {
         self.stations
     }
 
-    /// What the ground grants in one direction.
+    /// What the ground allows in one direction.
     pub(super) const fn rules(&self, direction: Direction) -> &LandingRules {
         &self.rules[direction as usize]
     }
@@ -198,12 +198,12 @@ impl LandingRules {
         rules.cone_upper.reserve_exact(stations.len());
         rules.refusal.reserve_exact(stations.len());
         for station in stations {
-            let granted = test.granted(station, Contact::Landing, direction);
-            let speed = granted.map_or(0.0, |rule| tolerant_speed_m_s(rule.speed_max_m_s()));
+            let allowed = test.allowed(station, Contact::Landing, direction);
+            let speed = allowed.map_or(0.0, |rule| tolerant_speed_m_s(rule.speed_max_m_s()));
             rules.speed_squared.push(speed * speed);
-            rules.cone_lower.push(granted.map_or(0.0, |rule| rule.slopes().lower));
-            rules.cone_upper.push(granted.map_or(0.0, |rule| rule.slopes().upper));
-            rules.refusal.push(granted.err());
+            rules.cone_lower.push(allowed.map_or(0.0, |rule| rule.slopes().lower));
+            rules.cone_upper.push(allowed.map_or(0.0, |rule| rule.slopes().upper));
+            rules.refusal.push(allowed.err());
         }
         rules
     }

@@ -283,7 +283,7 @@ impl Checker<'_> {
         self.map_ends();
     }
 
-    /// What the two speeds leave of their limits; `None` where the ground grants no contact.
+    /// What the two speeds leave of their limits; `None` where the ground allows no contact.
     fn margin_m_s(&self, flight: &Flight) -> Option<f64> {
         let limit =
             |station, contact| self.chain.check_contact(station, contact, self.direction).ok().map(|rule| rule.speed_max_m_s());

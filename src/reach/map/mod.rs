@@ -3,13 +3,13 @@
 //! Nodes are posts, an edge is a single hop whose limits hold on the exact slice between its two posts ([`PostHops`]). [`search`] finds
 //! the fewest hops from a start to every post, layer by layer.
 
-mod covers;
 mod facets;
 mod ground;
 mod lattice;
 mod layer_bits;
 mod mobility;
 mod offsets;
+mod overlays;
 mod paths;
 mod post_hops;
 mod request;

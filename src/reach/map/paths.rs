@@ -38,9 +38,9 @@ fn hop_along(hops: &PostHops<'_>, chain: &ConstrainedChain, choice: TakeoffChoic
     let test = HopTest::new(chain, hops.request().hopper, hops.request().gravity_m_s2);
     let geometry = chain.geometry();
     let (takeoff, landing) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
-    // A path that this map did not find yields only the hops that exist.
-    let loft = test.loft(&takeoff, &landing).ok()?;
-    generate(&test, &[Leg { takeoff, landing, edge: Edge::Hop(loft) }], choice, Split::default()).ok()
+    // Whoever gives a way that this map did not find gets the hops that there are.
+    let lofts = test.lofts(&takeoff, &landing).ok()?;
+    generate(&test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts) }], choice, Split::default()).ok()
 }
 
 /// The hops of a path joined to one [`HopPath`], x counted along it from its beginning.

@@ -17,7 +17,7 @@ pub struct MapRequest<'a> {
     pub stride: usize,
     /// The robot.
     pub hopper: &'a Hopper,
-    /// What the ground grants.
+    /// What the ground allows.
     pub surface: &'a Surface,
     /// Gravity, m/s^2.
     pub gravity_m_s2: f64,

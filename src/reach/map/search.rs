@@ -230,7 +230,7 @@ impl Pull<'_> {
             };
             let so_far = self.map.effort[lattice.index(other)];
             let least = best.map_or(f64::INFINITY, |best| best.effort);
-            let gravity = self.hops.air().gravity_m_s2();
+            let gravity = self.hops.envelope().gravity_m_s2();
             let worth = |sight: LineOfSight, lofts: SlopeInterval| {
                 choice != TakeoffChoice::LeastSpeed || joined(effort, so_far, at_least(effort, sight, lofts, gravity)) < least
             };

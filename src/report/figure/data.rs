@@ -77,7 +77,7 @@ pub struct HopFigure {
     pub hop: Hop,
     /// Its flight.
     pub arc: Arc,
-    /// The take-off cone at its take-off, and the landing cone at its landing, where the ground grants them.
+    /// The take-off cone at its take-off, and the landing cone at its landing, where the ground allows them.
     pub cones: [Option<Cone>; 2],
 }
 

@@ -74,7 +74,7 @@ pub struct GroundSpan {
 /// What one segment allows; for a closed one the reason told is that of the journey's direction, unless the chain just states nothing
 /// for that direction.
 fn use_of(segment: &SegmentConstraints, towards: Direction) -> GroundUse {
-    let allowed = |contact| Direction::BOTH.into_iter().any(|direction| segment.granted(contact, direction).is_some());
+    let allowed = |contact| Direction::BOTH.into_iter().any(|direction| segment.allowed(contact, direction).is_some());
     match (allowed(Contact::Takeoff), allowed(Contact::Landing)) {
         (true, true) => GroundUse::Both,
         (false, true) => GroundUse::LandingOnly,

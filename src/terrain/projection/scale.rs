@@ -35,7 +35,7 @@ impl ScaleExtreme {
     }
 
     /// The factor along such a line and its place, in words.
-    fn told(&self, line: &str) -> String {
+    fn described(&self, line: &str) -> String {
         let Self { factor, at, place, distance_m } = self;
         format!(
             "the map's scale along {line} is {factor:.5} at {:.6}, {:.6} (longitude, latitude; map point ({:.3} m, {:.3} m), {distance_m:.3} m \
@@ -73,7 +73,7 @@ impl TransectScale {
         match self {
             Self::Local | Self::True(_) => None,
             Self::Accepted(extreme, line) => {
-                Some(format!("{}, which was accepted; distances along it and slopes are off by as much", extreme.told(line)))
+                Some(format!("{}, which was accepted; distances along it and slopes are off by as much", extreme.described(line)))
             }
             Self::Unknown(reason) => {
                 Some(format!("{reason}, so its scale was not checked; distances count as true, make sure that they are"))
@@ -208,7 +208,7 @@ fn check_line(
         (true, true) => Ok(TransectScale::Accepted(extreme, line)),
         (true, false) => {
             let mend = mend().ok_or(TerrainError::OffTheBody { from, to })?;
-            Err(TerrainError::MapScale { found: extreme.told(line), mend })
+            Err(TerrainError::MapScale { found: extreme.described(line), mend })
         }
     }
 }

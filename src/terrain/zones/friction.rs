@@ -27,9 +27,9 @@ pub struct FrictionRaster {
 /// that, where it says anything.
 ///
 /// # Errors
-/// [`TerrainError::Cover`]: the file cannot be read, is no raster on a map in metres, lies on another map, or holds a negative number.
+/// [`TerrainError::Overlay`]: the file cannot be read, is no raster on a map in metres, lies on another map, or holds a negative number.
 pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>) -> Result<FrictionRaster, TerrainError> {
-    let failed = |problem: String| TerrainError::Cover { what: WHAT, path: path.to_path_buf(), problem };
+    let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
     let raster = read_dem(path).map_err(|error| failed(of_raster(error)))?;
     if let Some(difference) = coordinates.and_then(|terrain| disagreement(&raster.georeference().coordinate_system, terrain)) {
         return Err(failed(format!("the raster lies on another map ({difference}); warp it with: gdalwarp -r near -t_srs ..")));
@@ -53,7 +53,7 @@ impl FrictionRaster {
     }
 
     /// What to say where it has no data, on "the transect" or wherever else.
-    pub(crate) fn idle(&self, on: &str) -> String {
+    pub(crate) fn without_effect(&self, on: &str) -> String {
         let name = name_of(&self.path);
         format!("{WHAT} '{name}' has no data on {on}, so that it has no effect there: friction_coefficient counts all over")
     }
@@ -77,7 +77,7 @@ impl FrictionRaster {
     /// or does not reach, `constant` holds. Whether the raster has data for any of it.
     ///
     /// # Errors
-    /// [`TerrainError::Cover`] where there is neither data nor a constant, naming where.
+    /// [`TerrainError::Overlay`] where there is neither data nor a constant, naming where.
     pub fn lay(&self, profile: &mut Profile, constant: Option<FrictionCone>) -> Result<bool, TerrainError> {
         let Some(line) = Line::of(profile) else { return Ok(false) };
         let mut stretches = Vec::new();
@@ -96,7 +96,7 @@ impl FrictionRaster {
                      scenario a friction_coefficient for where it has none",
                     at.x, at.y
                 );
-                return Err(TerrainError::Cover { what: WHAT, path: self.path.clone(), problem });
+                return Err(TerrainError::Overlay { what: WHAT, path: self.path.clone(), problem });
             };
             stretches.push(Stretch { from_m: cell.from_m, to_m: cell.to_m, value: cone });
         }

@@ -43,10 +43,10 @@ enum Zones {
 /// In a raster each pixel holds for its cell, half a spacing to every side of its centre, and no-data keeps nothing out.
 ///
 /// # Errors
-/// [`TerrainError::Cover`]: the file cannot be read, holds no polygons, one that is broken (named by feature and ring), coordinates
+/// [`TerrainError::Overlay`]: the file cannot be read, holds no polygons, one that is broken (named by feature and ring), coordinates
 /// in degrees or on another map, or lies wholly off the terrain.
 pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds: MapBounds) -> Result<KeepOut, TerrainError> {
-    let failed = |problem: String| TerrainError::Cover { what: WHAT, path: path.to_path_buf(), problem };
+    let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
     let zones = if looks_like_json(path).map_err(|error| failed(unread(&error)))? {
         let size = fs::metadata(path).map_err(|error| failed(unread(&error)))?.len();
         if size > LARGEST_BYTES {
@@ -95,7 +95,7 @@ impl KeepOut {
     /// Whether any of the profile lies in a zone.
     ///
     /// # Errors
-    /// [`TerrainError::Cover`] where a mask ends before the profile does.
+    /// [`TerrainError::Overlay`] where a mask ends before the profile does.
     ///
     /// # Examples
     /// ```
@@ -123,7 +123,7 @@ impl KeepOut {
     }
 
     /// What to say where no zone meets "the transect", or whatever else.
-    pub(crate) fn idle(&self, on: &str) -> String {
+    pub(crate) fn without_effect(&self, on: &str) -> String {
         format!("{WHAT} '{}': no zone meets {on}, so that none has an effect there", name_of(&self.path))
     }
 
@@ -156,7 +156,7 @@ impl KeepOut {
                 at.y,
                 cell_bounds(mask)
             );
-            return Err(TerrainError::Cover { what: WHAT, path: self.path.clone(), problem });
+            return Err(TerrainError::Overlay { what: WHAT, path: self.path.clone(), problem });
         }
         let kept = |values: &[Option<f64>]| values.iter().flatten().any(|value| *value != 0.0);
         Ok(cells.iter().filter(|cell| kept(&cell.value)).map(|cell| (cell.from_m, cell.to_m)).collect())

@@ -1,4 +1,4 @@
-//! Does a narrower cone about the vertical lower the drift? The paper says so without testing it (P section V-B, last sentence).
+//! Does a narrower cone about the vertical lower the bounce-and-roll displacement? The paper says so without testing it (P section V-B, last sentence).
 
 use super::worst_drift::{DriftExperiment, DriftLanding, drift_with};
 use crate::{
@@ -11,7 +11,7 @@ use crate::{
 /// The widths tried: these shares of every cone's own distance from the vertical.
 pub const CONE_SHARES: [f64; 5] = [1.0, 0.8, 0.6, 0.4, 0.2];
 
-/// How far a robot bounces and rolls after a landing.
+/// The bounce-and-roll displacement after a landing, called drift in the paper and in keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriftLaw {
     /// As the paper draws it: equally far after every landing, whatever its angle.
@@ -34,9 +34,9 @@ impl DriftLaw {
     }
 }
 
-/// Flies the paper's experiment along a path under a law of drift.
+/// Flies the paper's experiment along a path under a law of bounce-and-roll displacement.
 ///
-/// `reference_m_s` is the horizontal speed at which the paper's drift is as far as it says.
+/// `reference_m_s` is the horizontal speed at which the displacement is as far as the paper says.
 pub fn cone_width(
     chain: &ConstrainedChain,
     hops: &[Hop],
@@ -69,9 +69,9 @@ pub fn narrowed(chain: &ConstrainedChain, share: f64) -> Result<PolygonalChain, 
         .iter()
         .map(|segment| {
             let [forward, reverse] = Direction::BOTH.map(|direction| {
-                let granted =
+                let allowed =
                     [Contact::Takeoff, Contact::Landing].iter().all(|&contact| segment.check_contact(contact, direction).is_ok());
-                segment.stated(direction).filter(|_| granted).map(|line| narrowed_line(line, share))
+                segment.stated(direction).filter(|_| allowed).map(|line| narrowed_line(line, share))
             });
             let keep_out = segment.refusal().is_some() || (forward.is_none() && reverse.is_none());
             Ground { form: GroundForm::Explicit { forward, reverse }, keep_out }

@@ -1,4 +1,4 @@
-//! The worst drift that a hundred tries from each landing find (P section V-B, Fig. 6b).
+//! The worst bounce-and-roll displacement that a hundred tries from each landing find (P section V-B, Fig. 6b).
 
 use nalgebra::{Point3, Vector3};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -91,7 +91,7 @@ const STEP_S: f64 = 0.1;
 ///
 /// The first hundred starts at the planned start itself, and differs by noise alone. Every flight has the planned speed, angle and
 /// direction of its hop; it lands where its parabola first comes down on the chain, which goes on unchanged to both sides of the plane of
-/// travel, and beyond its ends as its first and last segments do. The landing that goes on is the centre of the next hundred take-offs, so a robot that has drifted stays drifted.
+/// travel, and beyond its ends as its first and last segments do. The landing that goes on is the centre of the next hundred take-offs, so a displacement stays.
 ///
 /// Source: P section V-B; model section 6.
 ///

@@ -32,7 +32,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
     let experiment = named(&Experiment::ALL, Experiment::name, name, "--experiment")?;
     let reading =
         args.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading")).transpose()?;
-    refuse_idle(args, experiment)?;
+    refuse_without_effect(args, experiment)?;
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let test = loaded.hop_test();
     let planned = Planned::new(loaded, &test, None, false, args.common.quiet)?;
@@ -57,11 +57,11 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
         }
         Experiment::RiskTrade => {
             let answer = risk_trade(args, loaded, &planned)?;
-            let doubt = loaded.scenario.uncertainty.and_then(|keys| keys.doubt()).map(str::to_owned);
-            if let Some(doubt) = &doubt {
-                output::warn(args.common.quiet, doubt);
+            let warning = loaded.scenario.uncertainty.and_then(|keys| keys.warning()).map(str::to_owned);
+            if let Some(warning) = &warning {
+                output::warn(args.common.quiet, warning);
             }
-            (written(args, loaded, doubt, answer.text(), answer)?, None)
+            (written(args, loaded, warning, answer.text(), answer)?, None)
         }
     };
     if let (Some(file), Some(picture)) = (plot, picture) {
@@ -82,9 +82,9 @@ fn named<T: Copy>(all: &[T], name: fn(T) -> &'static str, given: &str, option: &
 }
 
 /// Refuses options that the experiment has no use for.
-fn refuse_idle(args: &SimulateArgs, experiment: Experiment) -> Result<(), Failure> {
+fn refuse_without_effect(args: &SimulateArgs, experiment: Experiment) -> Result<(), Failure> {
     let trades = experiment == Experiment::RiskTrade;
-    let idle = [
+    let without_effect = [
         ("--output", args.output.is_some()),
         ("--reading", args.reading.is_some() && experiment != Experiment::WorstDrift),
         ("--trials", args.trials.is_some() && !trades),
@@ -92,7 +92,7 @@ fn refuse_idle(args: &SimulateArgs, experiment: Experiment) -> Result<(), Failur
         ("--threads", args.answer.threads != 0 && !trades),
         ("--plot", args.plot.is_some() && trades),
     ];
-    match idle.into_iter().find(|(_, given)| *given) {
+    match without_effect.into_iter().find(|(_, given)| *given) {
         Some((option, _)) => {
             Err(Failure::message(format!("{option} has no effect on the experiment {}: leave it away", experiment.name())))
         }
@@ -103,7 +103,7 @@ fn refuse_idle(args: &SimulateArgs, experiment: Experiment) -> Result<(), Failur
 fn written<T: Serialize>(
     args: &SimulateArgs,
     loaded: &Loaded,
-    doubt: Option<String>,
+    warning: Option<String>,
     text: String,
     answer: T,
 ) -> Result<String, Failure> {
@@ -114,7 +114,7 @@ fn written<T: Serialize>(
                 "simulate-experiment",
                 loaded.document.clone(),
                 loaded.inputs.clone(),
-                loaded.warnings_with(doubt),
+                loaded.warnings_with(warning),
                 answer,
             );
             Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)

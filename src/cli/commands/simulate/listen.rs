@@ -150,14 +150,14 @@ impl Observer for Listener<'_> {
         if self.failed.is_some() {
             return ControlFlow::Break(());
         }
-        self.progress.say(told(self.policy, done, self.begun.elapsed().as_secs_f64()));
+        self.progress.say(progress_text(self.policy, done, self.begun.elapsed().as_secs_f64()));
         ControlFlow::Continue(())
     }
 }
 
-/// How far the trials are, how fast they go, and how long they take still.
+/// The line of progress: how far the trials are, how fast they go, and how long they take still.
 #[expect(clippy::cast_precision_loss, reason = "for reading")]
-fn told(policy: Policy, done: &Done, elapsed_s: f64) -> String {
+fn progress_text(policy: Policy, done: &Done, elapsed_s: f64) -> String {
     let rate = done.done as f64 / elapsed_s.max(1e-9);
     let left_s = (done.of - done.done.min(done.of)) as f64 / rate.max(1e-9);
     format!(
@@ -179,7 +179,7 @@ mod tests {
     fn progress_has_rate_and_time_left() {
         let done = Done { done: 3000, of: 9000, outcomes: OutcomeCounts::default(), success: Wilson::of(1500, 3000) };
         assert_eq!(
-            told(Policy::Replan, &done, 2.0),
+            progress_text(Policy::Replan, &done, 2.0),
             "replan: 3000 of 9000 trials, 1500 a second, 4 s left at most, 0.5000 reach the goal"
         );
     }

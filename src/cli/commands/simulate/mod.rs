@@ -72,9 +72,9 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let Some(path) = &planned.path else {
         return no_path(args, &loaded, &planned);
     };
-    let doubts: Vec<String> = keys.doubt().map(str::to_owned).into_iter().collect();
-    for doubt in &doubts {
-        output::warn(args.common.quiet, doubt);
+    let warnings: Vec<String> = keys.warning().map(str::to_owned).into_iter().collect();
+    for warning in &warnings {
+        output::warn(args.common.quiet, warning);
     }
     let policies: &[Policy] = if args.compare { &Policy::ALL } else { std::slice::from_ref(&keys.policy) };
     let flyer = Flyer::new(&loaded, &test, path, &planned.found, policies, args.common.quiet)?;
@@ -107,7 +107,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
         Format::Json => {
             let compare = if args.compare { records } else { Vec::new() };
             let answer = SimulateAnswer { check: planned.check().clone(), simulation: asked, compare };
-            document(&loaded, doubts, answer)?
+            document(&loaded, warnings, answer)?
         }
     };
     output::to_stdout(text.as_bytes())?;
@@ -135,9 +135,9 @@ pub(super) fn of_run(
 ) -> Result<RunTrials, Failure> {
     let mut trials = RunTrials { text: String::new(), files: Vec::new() };
     let (Some(keys), Some(path)) = (loaded.scenario.uncertainty, &planned.path) else { return Ok(trials) };
-    let doubts: Vec<String> = keys.doubt().map(str::to_owned).into_iter().collect();
-    for doubt in &doubts {
-        output::warn(quiet, doubt);
+    let warnings: Vec<String> = keys.warning().map(str::to_owned).into_iter().collect();
+    for warning in &warnings {
+        output::warn(quiet, warning);
     }
     let policies = std::slice::from_ref(&keys.policy);
     let flyer = Flyer::new(loaded, test, path, &planned.found, policies, quiet)?;
@@ -146,7 +146,7 @@ pub(super) fn of_run(
     let Some(record) = flown.first().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())) else { return Ok(trials) };
     trials.text = format!("\n{}", record.text());
     let simulation = SimulateAnswer { check: planned.check().clone(), simulation: Some(record), compare: Vec::new() };
-    trials.files.push((answer, document(loaded, doubts, simulation)?.into_bytes()));
+    trials.files.push((answer, document(loaded, warnings, simulation)?.into_bytes()));
     trials.files.push((sheet_name, sheet(&flyer, &flown, Path::new(sheet_name))?));
     trials.files.extend(landing_map(&flyer, &flown, Path::new(map_name))?.map(|picture| (map_name, picture)));
     Ok(trials)
@@ -166,9 +166,9 @@ fn no_path(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result<An
     Ok(Answer::No)
 }
 
-fn document<T: Serialize>(loaded: &Loaded, doubts: Vec<String>, answer: T) -> Result<String, Failure> {
+fn document<T: Serialize>(loaded: &Loaded, warnings: Vec<String>, answer: T) -> Result<String, Failure> {
     let document = loaded.document.clone();
-    let document = Document::new("simulate", document, loaded.inputs.clone(), loaded.warnings_with(doubts), answer);
+    let document = Document::new("simulate", document, loaded.inputs.clone(), loaded.warnings_with(warnings), answer);
     Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
 }
 

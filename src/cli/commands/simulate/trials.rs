@@ -4,7 +4,7 @@ use chta::{
     graph::{self, CostToGo, NodeSet},
     hop::HopTest,
     path::HopPath,
-    scenario::{Covers, TerrainSource},
+    scenario::{Overlays, TerrainSource},
     terrain::{Dem, read_dem},
     uncertainty::{MapGround, Mission, Policy, Simulation, Summary, TrialOptions},
 };
@@ -21,7 +21,7 @@ pub(super) struct Flyer<'a> {
     pub(super) test: &'a HopTest<'a>,
     pub(super) path: &'a HopPath,
     /// The whole raster with what lies over it, for flights in three dimensions.
-    terrain: Option<(Dem, Covers)>,
+    terrain: Option<(Dem, Overlays)>,
     to_go: Option<CostToGo>,
 }
 
@@ -50,9 +50,9 @@ impl<'a> Flyer<'a> {
                 let file = loaded.base.join(path);
                 let dem = read_dem(&file).map_err(|error| Failure::about(&file, &error.to_string()))?;
                 let coordinates = &dem.georeference().coordinate_system;
-                let covers = Covers::read(&loaded.scenario, &loaded.base, Some(coordinates), dem.bounds())
+                let overlays = Overlays::read(&loaded.scenario, &loaded.base, Some(coordinates), dem.bounds())
                     .map_err(|error| Failure::message(error.to_string()))?;
-                Some((dem, covers))
+                Some((dem, overlays))
             }
             Some(TerrainSource::Mesh { .. } | TerrainSource::Chain { .. }) | None => None,
         };
@@ -79,10 +79,10 @@ impl<'a> Flyer<'a> {
     /// The mission along a path over this ground.
     fn mission<'b>(&'b self, path: &'b HopPath) -> Result<Mission<'b>, Failure> {
         let (start, goal) = self.loaded.ends()?;
-        let map = self.terrain.as_ref().map(|(dem, covers)| MapGround {
+        let map = self.terrain.as_ref().map(|(dem, overlays)| MapGround {
             dem,
-            friction: covers.friction_raster(),
-            keep_out: covers.keep_out(),
+            friction: overlays.friction_raster(),
+            keep_out: overlays.keep_out(),
         });
         let surface = &self.loaded.scenario.surface;
         Ok(Mission { test: self.test, surface, path, start, goal, map, to_go: self.to_go.as_ref() })

@@ -18,7 +18,7 @@ impl PostHops<'_> {
         let test = HopTest::new(&chain, self.request.hopper, self.request.gravity_m_s2);
         let geometry = chain.geometry();
         let (start, end) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
-        Ok(test.line_of_sight(&start, &end).zip(test.loft(&start, &end).ok()))
+        Ok(test.line_of_sight(&start, &end).zip(test.lofts(&start, &end).ok()))
     }
 
     /// The slice between two nodes with its constraints; `None` where an elevation is missing on the way.

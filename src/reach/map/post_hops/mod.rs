@@ -12,15 +12,15 @@ use std::error::Error;
 
 use super::{
     MapError, MapRequest,
-    covers::CoverTable,
     facets::Facets,
     ground::{Footing, GroundTable},
     lattice::{NodeLattice, Post},
     offsets::{Offset, OffsetTable},
+    overlays::OverlayTable,
     samples::{Heights, Walk},
 };
 use crate::{
-    ballistics::{GroundGrant, LineOfSight, OpenAir},
+    ballistics::{ContactLimits, FlightEnvelope, LineOfSight},
     chain::{ConstrainedChain, QuickCone, QuickGrip},
     quantity::SlopeInterval,
     terrain::Profile,
@@ -49,9 +49,9 @@ pub struct PostHops<'a> {
     lattice: NodeLattice,
     table: OffsetTable,
     ground: GroundTable,
-    covers: Option<CoverTable>,
+    overlays: Option<OverlayTable>,
     grip: Option<QuickGrip>,
-    air: OpenAir,
+    envelope: FlightEnvelope,
     /// How many of the nearest offsets are within reach of each block's nodes.
     within_reach: Vec<usize>,
     /// Whether map coordinates are too coarse for quick arithmetic.
@@ -83,20 +83,20 @@ impl<'a> PostHops<'a> {
     /// Prepares all that pairs share.
     ///
     /// # Errors
-    /// [`MapError`]: a reach of too many posts, constraints that are missing, covers that end before the terrain does.
+    /// [`MapError`]: a reach of too many posts, constraints that are missing, overlays that end before the terrain does.
     pub fn new(request: MapRequest<'a>, ground_of: &'a GroundOf<'a>) -> Result<Self, MapError> {
         let (dem, hopper) = (request.dem, request.hopper);
         let lattice = NodeLattice::new(dem, request.stride);
         exact::probe(&request, ground_of)?;
         let heights = Heights::of(dem);
-        let covers = CoverTable::new(dem, request.friction, request.keep_out, constant_friction(&request))?;
-        let ground = GroundTable::new(heights, &|post| rest_tangent(&request, covers.as_ref(), post));
+        let overlays = OverlayTable::new(dem, request.friction, request.keep_out, constant_friction(&request))?;
+        let ground = GroundTable::new(heights, &|post| rest_tangent(&request, overlays.as_ref(), post));
         let grip = match request.surface.grip {
             Some(Grip::Friction(cone)) => Some(QuickGrip::friction(cone)),
             Some(Grip::FromSlope { takeoff, landing }) => Some(QuickGrip::from_slope(takeoff, landing)),
             None => None,
         };
-        let air = OpenAir::new(hopper, request.gravity_m_s2);
+        let envelope = FlightEnvelope::new(hopper, request.gravity_m_s2);
         let bounds = dem.bounds();
         let step_m = dem.georeference().dx_m().min(dem.georeference().dy_m());
         let (low_m, high_m) = dem.elevation_range_m();
@@ -110,9 +110,9 @@ impl<'a> PostHops<'a> {
             lattice,
             table: OffsetTable::default(),
             ground,
-            covers,
+            overlays,
             grip,
-            air,
+            envelope,
             within_reach: Vec::new(),
             coarse,
         };
@@ -131,8 +131,8 @@ impl<'a> PostHops<'a> {
     }
 
     /// The hopper under its gravity.
-    pub(super) const fn air(&self) -> &OpenAir {
-        &self.air
+    pub(super) const fn envelope(&self) -> &FlightEnvelope {
+        &self.envelope
     }
 
     /// All offsets, nearest first.
@@ -187,7 +187,7 @@ impl<'a> PostHops<'a> {
     /// The feasible lofts of a hop from a node by an offset that ends on the map; `None` where there are none.
     ///
     /// # Errors
-    /// [`MapError::Ground`] where the exact code finds covers that end.
+    /// [`MapError::Ground`] where the exact code finds overlays that end.
     pub fn lofts(&self, from: Post, offset: usize) -> Result<Option<Lofts>, MapError> {
         self.lofts_where(from, &self.table.offsets[offset], |_, _| true)
     }
@@ -221,18 +221,18 @@ impl<'a> PostHops<'a> {
         if !in_reach {
             return Verdict::No;
         }
-        let cover = self.cover(from, takeoff, offset);
-        if cover == Cover::Kept {
+        let overlay = self.overlay(from, takeoff, offset);
+        if overlay == Overlay::Kept {
             return Verdict::No;
         }
-        let Some((slopes, mut sure)) = self.cones(takeoff, landing, offset, cover) else { return Verdict::No };
-        sure &= cover != Cover::Mixed && !self.coarse;
-        let hopper = self.air.hopper();
+        let Some((slopes, mut sure)) = self.cones(takeoff, landing, offset, overlay) else { return Verdict::No };
+        sure &= overlay != Overlay::Mixed && !self.coarse;
+        let hopper = self.envelope.hopper();
         let sight = LineOfSight::new(offset.run_m, rise_m);
-        let lofts = self.air.lofts(
+        let lofts = self.envelope.lofts(
             sight,
-            GroundGrant { slopes: slopes[0], speed_max_m_s: hopper.takeoff_speed_max_m_s },
-            GroundGrant { slopes: slopes[1], speed_max_m_s: hopper.landing_speed_max_m_s },
+            ContactLimits { slopes: slopes[0], speed_max_m_s: hopper.takeoff_speed_max_m_s },
+            ContactLimits { slopes: slopes[1], speed_max_m_s: hopper.landing_speed_max_m_s },
         );
         let most = lofts.upper + near(lofts.upper);
         if lofts.lower - near(lofts.lower) > most || most <= 0.0 || !worth(sight, lofts) {
@@ -252,24 +252,24 @@ impl<'a> PostHops<'a> {
         }
     }
 
-    /// What lies over a pair.
+    /// The overlays on the line between a pair of posts.
     #[inline]
-    fn cover(&self, from: Post, takeoff: usize, offset: &Offset) -> Cover {
-        match &self.covers {
-            None => Cover::Bare,
-            Some(covers) => {
+    fn overlay(&self, from: Post, takeoff: usize, offset: &Offset) -> Overlay {
+        match &self.overlays {
+            None => Overlay::Bare,
+            Some(overlays) => {
                 let post = self.lattice.post(from);
                 let stride = self.lattice.stride.cast_signed();
                 let end = Post {
                     row: post.row.wrapping_add_signed(offset.rows as isize * stride),
                     col: post.col.wrapping_add_signed(offset.cols as isize * stride),
                 };
-                if covers.has_border(post, end) {
-                    Cover::Mixed
-                } else if covers.kept(takeoff) {
-                    Cover::Kept
+                if overlays.has_border(post, end) {
+                    Overlay::Mixed
+                } else if overlays.kept(takeoff) {
+                    Overlay::Kept
                 } else {
-                    Cover::Bare
+                    Overlay::Bare
                 }
             }
         }
@@ -277,11 +277,11 @@ impl<'a> PostHops<'a> {
 
     /// The directions that both ends allow, and whether they are sure; `None` where an end allows none.
     #[inline]
-    fn cones(&self, takeoff: usize, landing: usize, offset: &Offset, cover: Cover) -> Option<([SlopeInterval; 2], bool)> {
+    fn cones(&self, takeoff: usize, landing: usize, offset: &Offset, overlay: Overlay) -> Option<([SlopeInterval; 2], bool)> {
         let everything = ([SlopeInterval::ALL; 2], false);
-        let friction = match (&self.covers, cover) {
-            (Some(covers), Cover::Mixed) if covers.has_friction() => return Some(everything),
-            (Some(covers), _) => covers.friction(takeoff),
+        let friction = match (&self.overlays, overlay) {
+            (Some(overlays), Overlay::Mixed) if overlays.has_friction() => return Some(everything),
+            (Some(overlays), _) => overlays.friction(takeoff),
             (None, _) => None,
         };
         let Some(grip) = friction.map(|mu| QuickGrip::Friction { squared: mu * mu }).or(self.grip) else {
@@ -330,9 +330,9 @@ impl<'a> PostHops<'a> {
     }
 }
 
-/// What lies over a pair: nothing (or the same friction everywhere), a zone all over, or borders.
+/// The overlays between a pair of posts: none (or the same friction everywhere), a zone all over, or borders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Cover {
+enum Overlay {
     Bare,
     Kept,
     Mixed,

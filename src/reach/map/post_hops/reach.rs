@@ -20,9 +20,9 @@ const MOST_CROSSINGS: usize = 1 << 23;
 impl PostHops<'_> {
     /// Makes the table of offsets, and finds how far hops reach from each block.
     pub(super) fn set_reach(&mut self) -> Result<(), MapError> {
-        let hopper = self.air.hopper();
+        let hopper = self.envelope.hopper();
         let speeds = [hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s].map(|v| tolerant_speed_m_s(v) * WIDER);
-        let gravity = self.air.gravity_m_s2();
+        let gravity = self.envelope.gravity_m_s2();
         // The longest hop that falls or climbs no further than a height.
         let range_m =
             |height_m: f64| safety_range_m(height_m, speeds[0], gravity).min(safety_range_m(height_m, speeds[1], gravity)) * WIDER;

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{CoverTable, PostHops};
+use super::{OverlayTable, PostHops};
 use crate::{
     quantity::Angle,
     reach::map::{MapRequest, lattice::Post},
@@ -42,10 +42,10 @@ impl fmt::Display for PostRefusal {
 }
 
 /// The tangent of the steepest slope to rest on at a post; `None` where every slope holds.
-pub(super) fn rest_tangent(request: &MapRequest<'_>, covers: Option<&CoverTable>, post: usize) -> Option<f64> {
+pub(super) fn rest_tangent(request: &MapRequest<'_>, overlays: Option<&OverlayTable>, post: usize) -> Option<f64> {
     match request.surface.rest {
         RestSlope::AsFrictionHolds => {
-            covers.and_then(|covers| covers.friction(post)).or(constant_friction(request).map(FrictionCone::coefficient))
+            overlays.and_then(|overlays| overlays.friction(post)).or(constant_friction(request).map(FrictionCone::coefficient))
         }
         RestSlope::AtMost(angle) => Some(angle.slope()),
         RestSlope::Unlimited => None,
@@ -77,7 +77,7 @@ impl PostHops<'_> {
             .map(|facet| self.heights.gradient(index, facet))
             .map(|(east, north)| libm::hypot(east, north))
             .fold(f64::INFINITY, f64::min);
-        let rest = rest_tangent(&self.request, self.covers.as_ref(), index);
+        let rest = rest_tangent(&self.request, self.overlays.as_ref(), index);
         Some(match rest.filter(|_| mildest.is_finite()) {
             Some(rest) => PostRefusal::TooSteep { slope: Angle::from_slope(mildest), rest_slope: Angle::from_slope(rest) },
             None => PostRefusal::NoGround,

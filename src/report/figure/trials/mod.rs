@@ -1,4 +1,4 @@
-//! Pictures of many trials: trajectories, box plots of the landing error, outcomes, convergence, and drift against cone width.
+//! Pictures of many trials: trajectories, box plots of the landing error, outcomes, convergence, and landing error against cone width.
 
 mod boxes;
 mod cone_width;

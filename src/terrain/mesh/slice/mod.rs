@@ -1,26 +1,26 @@
-//! The exact cut of a vertical plane through a mesh, and its upper outline.
+//! The exact cut of a vertical plane through a mesh, and its upper envelope.
 //!
 //! ```text
 //!   z      ___c___                 every triangle that meets the plane gives a segment (cut.rs);
-//!         /       \                of several above one another the uppermost counts (envelope.rs);
-//!   --a--/----b----\----d---- x    vertices: edges crossed, and where the uppermost changes; walls get a run (outline.rs)
+//!         /       \                of several above one another the upper envelope counts (envelope.rs);
+//!   --a--/----b----\----d---- x    vertices: edges crossed, and where the uppermost changes; walls get a run (envelope_profile.rs)
 //! ```
 
 mod cut;
 mod envelope;
-mod outline;
+mod envelope_profile;
 
 use nalgebra::Vector2;
 
 use self::cut::{Cut, Plane};
 use self::envelope::{Side, envelope};
-use self::outline::Outline;
+use self::envelope_profile::EnvelopeProfile;
 use super::Mesh;
 use crate::quantity::MapPoint;
 use crate::terrain::{Profile, TerrainError};
 
 /// A wall becomes a segment of this run, m, or of a quarter of the segment at its foot, where that is less. It lies on the wall's lower side:
-/// the outline is never below the surface, and its upper edge stays where it is.
+/// the upper envelope is never below the surface, and its upper edge stays where it is.
 pub const WALL_RUN_M: f64 = 1.0e-3;
 
 /// So many median edges apart, points are in the same place; the plane runs along an edge this near.
@@ -33,16 +33,16 @@ const RESOLUTION: f64 = 16.0;
 const NO_WALL: f64 = 100.0;
 
 /// How many walls a warning names one by one.
-const WALLS_TOLD: usize = 20;
+const WALLS_LISTED: usize = 20;
 
-/// The upper outline of a mesh along a vertical plane, and where it had to be chosen.
+/// The upper envelope of a mesh along a vertical plane, and where it had to be chosen.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshSlice {
     /// The ground, as a DEM gives it.
     pub profile: Profile,
     /// Where the plane meets several surfaces.
     pub layers: Layers,
-    /// Where the outline jumps, in the order of travel.
+    /// Where the upper envelope jumps, in the order of travel.
     pub walls: Vec<Wall>,
 }
 
@@ -55,7 +55,7 @@ pub struct Layers {
     pub length_m: f64,
 }
 
-/// A vertical step of the outline.
+/// A wall: a vertical step of the upper envelope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
     /// Where it stands along the transect, m: its upper edge.
@@ -73,12 +73,12 @@ pub struct Wall {
     pub closed: bool,
 }
 
-/// Cuts a mesh along the straight map line from one point to another and takes its upper outline.
+/// Cuts a mesh along the straight map line from one point to another and takes its upper envelope.
 ///
 /// Every edge of the upper surface that the plane crosses is a vertex, and so is every place where another surface becomes the uppermost. A
 /// segment takes the facet under it, its normal turned upward; where the plane runs along an edge (within 1e-9 median edges of the
 /// mesh, or the resolution of its coordinates), that of the edge's triangles with the larger cross-slope. A triangle that stands in the plane
-/// has 90 degrees. Where the outline jumps, at a wall or at the rim of an overhang, the step becomes a segment of [`WALL_RUN_M`] on its
+/// has 90 degrees. Where the upper envelope jumps, at a wall or at the rim of an overhang, the step becomes a segment of [`WALL_RUN_M`] on its
 /// lower side, with the cross-slope of the wall's own triangles; a thin wall that stands on the ground becomes a spike.
 ///
 /// # Units
@@ -128,13 +128,13 @@ pub fn slice_mesh(mesh: &Mesh, from: MapPoint, to: MapPoint) -> Result<MeshSlice
     let plane = Plane { first, last, heading, length_m, tolerance_m };
     let cut = Cut::new(mesh, &plane);
     let upper = envelope(&cut.segments, Side::Upper, tolerance_m);
-    if let Some(gap) = outline::first_gap(&upper, &plane, backwards) {
+    if let Some(gap) = envelope_profile::first_gap(&upper, &plane, backwards) {
         return Err(gap);
     }
     let lower = envelope(&cut.segments, Side::Lower, tolerance_m);
-    let layers = outline::layers(&cut.segments, &upper, &lower, NO_WALL * tolerance_m);
-    let outline = Outline::new(&plane, &cut, &upper, NO_WALL * tolerance_m);
-    Ok(outline.oriented(&plane, backwards, layers))
+    let layers = envelope_profile::layers(&cut.segments, &upper, &lower, NO_WALL * tolerance_m);
+    let profile = EnvelopeProfile::new(&plane, &cut, &upper, NO_WALL * tolerance_m);
+    Ok(profile.oriented(&plane, backwards, layers))
 }
 
 /// Within this distance points are the same, m.
@@ -160,15 +160,15 @@ impl MeshSlice {
             ));
         }
         if !self.walls.is_empty() {
-            let told: Vec<String> = self.walls.iter().take(WALLS_TOLD).map(ToString::to_string).collect();
-            let more = match self.walls.len().saturating_sub(WALLS_TOLD) {
+            let listed: Vec<String> = self.walls.iter().take(WALLS_LISTED).map(ToString::to_string).collect();
+            let more = match self.walls.len().saturating_sub(WALLS_LISTED) {
                 0 => String::new(),
                 more => format!("; and {more} more"),
             };
             warnings.push(format!(
                 "the upper surface jumps in {} places; each became a segment of {WALL_RUN_M} m run or less on its lower side: {}{more}",
                 self.walls.len(),
-                told.join("; ")
+                listed.join("; ")
             ));
         }
         warnings

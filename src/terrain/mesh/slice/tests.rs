@@ -1,4 +1,4 @@
-//! The cut against planes and solids whose outline is known, and against a search through all triangles.
+//! The cut against planes and solids whose upper envelope is known, and against a search through all triangles.
 
 use nalgebra::Point3;
 use rand::rngs::ChaCha8Rng;
@@ -135,7 +135,7 @@ fn a_plate_in_the_air_ends_in_steps_that_nothing_stands_on() {
 }
 
 #[test]
-fn where_slopes_pierce_each_other_the_outline_bends() {
+fn where_slopes_pierce_each_other_the_upper_envelope_bends() {
     let rising = [[0.0, 0.0, 0.0], [10.0, 0.0, 5.0], [10.0, 10.0, 5.0], [0.0, 10.0, 0.0]];
     let falling = [[0.0, 0.0, 4.0], [10.0, 0.0, -1.0], [10.0, 10.0, -1.0], [0.0, 10.0, 4.0]];
     let slice = check(&mesh(&[&rising, &falling]), at(0.0, 3.0), at(10.0, 3.0));
@@ -246,7 +246,7 @@ fn highest(mesh: &Mesh, place: MapPoint) -> Option<f64> {
 }
 
 #[test]
-fn a_heap_of_random_triangles_has_the_outline_that_a_search_through_all_of_them_finds() {
+fn a_heap_of_random_triangles_has_the_upper_envelope_that_a_search_through_all_of_them_finds() {
     let mut random = ChaCha8Rng::seed_from_u64(12);
     let (mut compared, mut walls) = (0, 0);
     for case in 0..160 {

@@ -1,5 +1,5 @@
-//! What lies over the terrain, seen from its posts: which squares of posts a border of zones or friction runs through, and what holds
-//! elsewhere.
+//! The overlays of the terrain, friction raster and keep-out zones, by post: the squares of posts that a border runs through, and the
+//! values elsewhere.
 //!
 //! Between two posts whose bounding box no border touches, one answer holds all the way, and the slice has no vertices but its own.
 
@@ -17,7 +17,7 @@ const TOUCHING: f64 = 1.0e-6;
 
 /// Zones and friction at every post.
 #[derive(Clone, Debug)]
-pub(super) struct CoverTable {
+pub(super) struct OverlayTable {
     cols: usize,
     kept: Vec<bool>,
     /// Friction coefficient, NaN where there is none; empty where no raster gives any.
@@ -26,11 +26,11 @@ pub(super) struct CoverTable {
     borders_before: Vec<u32>,
 }
 
-impl CoverTable {
+impl OverlayTable {
     /// Of zones and friction over a DEM; `None` where there are neither.
     ///
     /// # Errors
-    /// [`TerrainError::Cover`] where a mask ends before the terrain does, or there is neither friction nor a constant for it.
+    /// [`TerrainError::Overlay`] where a mask ends before the terrain does, or there is neither friction nor a constant for it.
     pub(super) fn new(
         dem: &Dem,
         friction: Option<&FrictionRaster>,

@@ -1,4 +1,4 @@
-//! From the uppermost segments to a profile: gaps refused, walls given a run, overlaps measured.
+//! From the upper envelope to a profile: gaps refused, walls given a run, overlaps measured.
 
 use nalgebra::Vector3;
 
@@ -54,8 +54,8 @@ pub(super) fn layers(segments: &[Segment], upper: &[Piece], lower: &[Piece], apa
     layers
 }
 
-/// The profile that is being drawn, from the plane's first end.
-pub(super) struct Outline<'a> {
+/// The profile along the upper envelope while it is built, from the plane's first end.
+pub(super) struct EnvelopeProfile<'a> {
     plane: &'a Plane,
     cut: &'a Cut,
     /// A jump of more than this is a wall, m.
@@ -65,20 +65,20 @@ pub(super) struct Outline<'a> {
     walls: Vec<Wall>,
 }
 
-impl<'a> Outline<'a> {
-    /// Draws the uppermost pieces, which leave no gap.
+impl<'a> EnvelopeProfile<'a> {
+    /// Follows the pieces of the upper envelope, which leave no gap.
     pub(super) fn new(plane: &'a Plane, cut: &'a Cut, upper: &[Piece], jump_m: f64) -> Self {
-        let mut outline = Self { plane, cut, jump_m, points: Vec::new(), facets: Vec::new(), walls: Vec::new() };
-        let pieces = outline.split_at_spikes(upper);
+        let mut profile = Self { plane, cut, jump_m, points: Vec::new(), facets: Vec::new(), walls: Vec::new() };
+        let pieces = profile.split_at_spikes(upper);
         let mut left: Option<&Piece> = None;
         for right in &pieces {
-            outline.join(left, Some(right), right.x_m[0]);
+            profile.join(left, Some(right), right.x_m[0]);
             left = Some(right);
         }
         if let Some(last) = left {
-            outline.join(Some(last), None, last.x_m[1]);
+            profile.join(Some(last), None, last.x_m[1]);
         }
-        outline
+        profile
     }
 
     /// Cuts a piece in two where something thin stands on it.

@@ -1,4 +1,4 @@
-//! All limits of a hop but the terrain's, taken together.
+//! The flight envelope: all limits of a hop but the terrain, taken together.
 
 use super::{LineOfSight, limits};
 use crate::{
@@ -6,25 +6,26 @@ use crate::{
     world::Hopper,
 };
 
-/// A hopper under a gravity: what it may fly where nothing stands in the way.
+/// The flight envelope of a hopper under a gravity: the hops that its limits and the contacts allow over ground without obstacles.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct OpenAir {
+pub struct FlightEnvelope {
     hopper: Hopper,
     gravity_m_s2: f64,
     /// The machine's own take-off slopes.
     mechanical: SlopeInterval,
 }
 
-/// What the ground grants one end of a hop.
+/// The limits that the ground sets to one contact, take-off or landing: directions of travel as slopes, and a greatest speed. The
+/// constraints of a chain state the same with their angles ([`ContactRule`](crate::chain::ContactRule)).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GroundGrant {
+pub struct ContactLimits {
     /// Directions of travel.
     pub slopes: SlopeInterval,
     /// Greatest speed, m/s.
     pub speed_max_m_s: f64,
 }
 
-impl OpenAir {
+impl FlightEnvelope {
     /// For a hopper and a gravity above 0 in m/s^2.
     pub fn new(hopper: &Hopper, gravity_m_s2: f64) -> Self {
         let mechanical = SlopeInterval {
@@ -53,16 +54,16 @@ impl OpenAir {
     ///
     /// # Examples
     /// ```
-    /// use chta::{ballistics::{GroundGrant, LineOfSight, OpenAir}, quantity::SlopeInterval, world::Hopper};
-    /// let air = OpenAir::new(&Hopper::with_speeds(10.0, 10.0), 10.0);
-    /// let free = GroundGrant { slopes: SlopeInterval::ALL, speed_max_m_s: 10.0 };
+    /// use chta::{ballistics::{ContactLimits, LineOfSight, FlightEnvelope}, quantity::SlopeInterval, world::Hopper};
+    /// let envelope = FlightEnvelope::new(&Hopper::with_speeds(10.0, 10.0), 10.0);
+    /// let free = ContactLimits { slopes: SlopeInterval::ALL, speed_max_m_s: 10.0 };
     /// // Flat, q = 1.25: n^2 - 2.5 n + 1 = (n - 0.5)(n - 2); a take-off of 45 degrees or more leaves 1 to 2.
-    /// let steep = GroundGrant { slopes: SlopeInterval { lower: 1.0, upper: f64::INFINITY }, ..free };
-    /// let lofts = air.lofts(LineOfSight::new(8.0, 0.0), steep, free);
+    /// let steep = ContactLimits { slopes: SlopeInterval { lower: 1.0, upper: f64::INFINITY }, ..free };
+    /// let lofts = envelope.lofts(LineOfSight::new(8.0, 0.0), steep, free);
     /// assert!((lofts.lower - 1.0).abs() < 1e-8 && (lofts.upper - 2.0).abs() < 1e-8);
     /// ```
     #[inline]
-    pub fn lofts(&self, sight: LineOfSight, takeoff: GroundGrant, landing: GroundGrant) -> SlopeInterval {
+    pub fn lofts(&self, sight: LineOfSight, takeoff: ContactLimits, landing: ContactLimits) -> SlopeInterval {
         limits::speeds(sight, takeoff.speed_max_m_s, landing.speed_max_m_s, self.gravity_m_s2)
             .intersect(limits::takeoff_cone(sight, takeoff.slopes.intersect(self.mechanical)))
             .intersect(limits::landing_cone(sight, landing.slopes))

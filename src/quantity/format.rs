@@ -1,17 +1,17 @@
-//! Numbers as sentences have them.
+//! Numbers and their units as text for readers.
 
-/// A number with as many digits as a reader has use for: ten significant ones at most, no idle zeros, with an exponent where it would
+/// A number with as many digits as a reader has use for: ten significant ones at most, no trailing zeros, with an exponent where it would
 /// have many zeros. Results that programs read keep all digits.
 ///
 /// ```
-/// use chta::quantity::written;
-/// assert_eq!(written(0.1 + 0.2), "0.3");
-/// assert_eq!(written(120.69500000000001), "120.695");
-/// assert_eq!(written(-6301862.204093784), "-6301862.204");
-/// assert_eq!(written(1e-300), "1e-300");
-/// assert_eq!(written(2.0), "2");
+/// use chta::quantity::format_number;
+/// assert_eq!(format_number(0.1 + 0.2), "0.3");
+/// assert_eq!(format_number(120.69500000000001), "120.695");
+/// assert_eq!(format_number(-6301862.204093784), "-6301862.204");
+/// assert_eq!(format_number(1e-300), "1e-300");
+/// assert_eq!(format_number(2.0), "2");
 /// ```
-pub fn written(number: f64) -> String {
+pub fn format_number(number: f64) -> String {
     // Ten significant digits, read back: the shortest text of that number has no more.
     // The very largest numbers would round to infinity.
     let rounded = format!("{number:.9e}").parse().ok().filter(|rounded: &f64| rounded.is_finite()).unwrap_or(number);
@@ -40,10 +40,10 @@ pub fn unit_of(name: &str) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::{unit_of, written};
+    use super::{format_number, unit_of};
 
     #[test]
-    fn numbers_are_written_for_readers() {
+    fn numbers_are_formatted_for_readers() {
         for (number, text) in [
             (0.0, "0"),
             (-0.0, "0"),
@@ -59,7 +59,7 @@ mod tests {
             (f64::NAN, "NaN"),
             (9.999_999_999_9, "10"),
         ] {
-            assert_eq!(written(number), text);
+            assert_eq!(format_number(number), text);
         }
     }
 
