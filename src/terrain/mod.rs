@@ -27,6 +27,7 @@ mod georeference;
 mod geotiff;
 mod lattice;
 mod mesh;
+mod overlaid;
 mod pds3;
 mod profile;
 mod projection;
@@ -48,6 +49,7 @@ pub use mesh::{
     Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
     slice_mesh,
 };
+pub use overlaid::{OverlaidDem, OverlayEffect, Overlays};
 pub use pds3::read_pds3_bytes;
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
 pub use projection::{

@@ -3,13 +3,13 @@
 use std::path::Path;
 
 use chta::{
-    chain::ConstrainedChain,
     graph::Effort,
+    ground::DemGround,
     path::HopPath,
     quantity::MapPoint,
     reach::map::{
-        GroundOf, HopMap, Journey, LayerProgress, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops,
-        Search, joined, mobility, path_hops, search,
+        HopMap, Journey, LayerProgress, MapError, MapHop, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, joined,
+        mobility, path_hops, search,
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, TotalsRecord,
@@ -18,7 +18,7 @@ use chta::{
     },
     scenario::{Extremes, Overlays, Scenario, constant_gravity_warnings},
     terrain::{
-        Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_map_scale, read_dem,
+        Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem,
         result_geotiff_bytes,
     },
 };
@@ -34,14 +34,19 @@ use crate::cli::{
 
 /// The terrain of a map and what is known of it.
 struct Ground {
-    dem: Dem,
+    ground: DemGround,
     projection: Result<MapProjection, NoProjection>,
     scenario: Scenario,
-    overlays: Overlays,
     lattice: NodeLattice,
     document: serde_json::Value,
     inputs: Vec<InputFile>,
     warnings: Vec<String>,
+}
+
+impl Ground {
+    fn dem(&self) -> &Dem {
+        self.ground.terrain().dem()
+    }
 }
 
 /// A place asked for, and the post nearest to it.
@@ -72,7 +77,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let maps = mapped(args, &ground, start, &goals)?;
     let effort = args.effort.is_some().then_some(ground.scenario.search.effort);
     let mut answer = MapAnswer::new(&MapSummary {
-        dem: &ground.dem,
+        dem: ground.dem(),
         lattice: ground.lattice,
         start: (start.asked, start.post),
         out: &maps.out,
@@ -144,11 +149,12 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
     warnings.extend(scale.warning());
+    let ground = overlays.ground(dem, &scenario);
     let mut inputs = vec![input_file(file)?];
     for overlay in Overlays::files(&scenario) {
         inputs.push(input_file(&base.join(overlay))?);
     }
-    Ok((Ground { dem, projection, scenario, overlays, lattice, document, inputs, warnings }, start, goals))
+    Ok((Ground { ground, projection, scenario, lattice, document, inputs, warnings }, start, goals))
 }
 
 /// Checks that positions at different posts map to different nodes: with a stride that merges them one answer would stand for both.
@@ -172,7 +178,7 @@ fn named(start: Spot, goals: &[Spot]) -> impl Iterator<Item = (&'static str, Spo
 }
 
 /// What to say of start and goals whose ground takes no hop and gives none.
-fn refusals(hops: &PostHops<'_>, start: Spot, goals: &[Spot]) -> Vec<String> {
+fn refusals(hops: &PostHops, start: Spot, goals: &[Spot]) -> Vec<String> {
     named(start, goals)
         .filter_map(|(which, spot)| {
             let refusal = hops.refusal(spot.post)?;
@@ -180,7 +186,7 @@ fn refusals(hops: &PostHops<'_>, start: Spot, goals: &[Spot]) -> Vec<String> {
                 || "no post of the DEM is usable".to_owned(),
                 |node| {
                     let post = hops.lattice().post(node);
-                    let at = hops.request().dem.georeference().post(post.row, post.col);
+                    let at = hops.ground().terrain().dem().georeference().post(post.row, post.col);
                     format!("the nearest usable one is ({:.3}, {:.3}) m", at.x, at.y)
                 },
             );
@@ -194,26 +200,13 @@ fn refusals(hops: &PostHops<'_>, start: Spot, goals: &[Spot]) -> Vec<String> {
 
 /// Searches, with progress on a terminal.
 fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
-    let Ground { dem, scenario, overlays, lattice, .. } = ground;
+    let Ground { scenario, lattice, .. } = ground;
     let failed = |error: &MapError| Failure::about(&args.dem, &error.to_string());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.answer.threads).build().map_err(|e| failed(&e.into()))?;
-    let chain = |profile: Profile| -> Result<ConstrainedChain, Box<dyn std::error::Error + Send + Sync>> {
-        Ok(ConstrainedChain::new(overlays.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?)
-    };
-    let ground_of: &GroundOf<'_> = &chain;
-    let request = MapRequest {
-        dem,
-        stride: lattice.stride,
-        hopper: &scenario.hopper,
-        surface: &scenario.surface,
-        gravity_m_s2: scenario.body.gravity_m_s2,
-        friction: overlays.friction_raster(),
-        keep_out: overlays.keep_out(),
-    };
     let progress = Progress::new(args.common.quiet);
     let began = std::time::Instant::now();
     let maps = pool.install(|| -> Result<Maps, MapError> {
-        let hops = PostHops::new(request, ground_of)?;
+        let hops = PostHops::new(ground.ground.clone(), lattice.stride)?;
         let tell = |what: &str, found: LayerProgress| progress.say(format_layer(what, found, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
         let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &mut |found| tell("there", found))?;
@@ -301,8 +294,8 @@ fn write_files<'a>(
     ends: (Spot, &[Spot]),
 ) -> Result<(), Failure> {
     let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
-    let Ground { dem, lattice, scenario, projection, .. } = ground;
-    let map = dem.georeference().every(lattice.stride);
+    let Ground { lattice, scenario, projection, .. } = ground;
+    let map = ground.dem().georeference().every(lattice.stride);
     let raster = |bands: &ResultBands<'_>| result_geotiff_bytes(lattice.rows, lattice.cols, &map, bands).map_err(|e| failed(&e));
     let whole = |name, hops| raster(&ResultBands::Int16(vec![Band { name, samples: hops }], NO_GROUND));
     let mut files: Vec<(&Path, Vec<u8>)> = Vec::new();
@@ -372,14 +365,14 @@ fn picture(
 ) -> Result<Vec<u8>, Failure> {
     let name = name_of(args);
     let can_return: Option<Vec<bool>> = maps.back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
-    let kept_out = ground.overlays.keep_out().map(|zones| kept_out(ground, zones));
+    let kept_out = ground.ground.terrain().overlays().keep_out().map(|zones| kept_out(ground, zones));
     let places = |path: &HopPath| {
-        let landings = path.hops.iter().filter_map(|hop| hop.map.map(|map| map.landing));
+        let landings = path.hops.iter().filter_map(|hop| hop.landing.map());
         std::iter::once(start.at).chain(landings).collect()
     };
     let figure = HopMapFigure {
         caption: Caption { title: format!("Where in how few hops: {name}"), lines: subtitle(answer, &ground.scenario) },
-        posts: MapPosts { dem: &ground.dem, stride: ground.lattice.stride },
+        posts: MapPosts { dem: ground.dem(), stride: ground.lattice.stride },
         hops: &maps.out.hops,
         can_return: can_return.as_deref(),
         kept_out: kept_out.as_deref(),
@@ -397,7 +390,7 @@ fn picture(
 /// Which posts of the lattice lie in a keep-out zone.
 fn kept_out(ground: &Ground, zones: &KeepOut) -> Vec<bool> {
     let NodeLattice { rows, cols, stride, .. } = ground.lattice;
-    let nodes = ground.dem.georeference().every(stride);
+    let nodes = ground.dem().georeference().every(stride);
     (0..rows * cols).map(|index| zones.keeps_out(nodes.post(index / cols, index % cols))).collect()
 }
 

@@ -209,7 +209,7 @@ fn flights_follow_the_commanded_speed_and_angle_from_point_to_point() {
     for case in cases() {
         let data = case.with(|input| FigureData::new(input).unwrap());
         for hop in hops(&data) {
-            let (from, to) = (hop.hop.takeoff.point, hop.hop.landing.point);
+            let (from, to) = (hop.hop.takeoff.in_profile(), hop.hop.landing.in_profile());
             let run_m = (to.x_m - from.x_m).abs();
             let tolerance_m = 1e-9 * (run_m + hop.hop.apex_z_m - from.z_m);
             // Newton's parabola from the commands alone.

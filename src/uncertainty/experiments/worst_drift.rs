@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector3};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 use super::ground::{FreeArc, comes_down};
-use crate::{chain::ConstrainedChain, path::Hop, quantity::ChainPoint, uncertainty::draws::normals, world::Direction};
+use crate::{chain::ConstrainedChain, path::Hop, quantity::{ChainPoint, standard_normals}, world::Direction};
 
 /// How the paper's sentence is read, which leaves two things open: at what rate the noise acts, and which landing is farthest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -110,9 +110,9 @@ pub(super) fn drift_with(
     experiment: &DriftExperiment,
     takeoff_sigmas_m: &dyn Fn(&Hop) -> [f64; 3],
 ) -> Vec<DriftLanding> {
-    let Some(goal) = hops.last().map(|hop| solid(hop.landing.point)) else { return Vec::new() };
+    let Some(goal) = hops.last().map(|hop| solid(hop.landing.in_profile())) else { return Vec::new() };
     let mut landings: Vec<DriftLanding> = Vec::new();
-    let mut centre = solid(hops[0].takeoff.point);
+    let mut centre = solid(hops[0].takeoff.in_profile());
     let mut sigmas_m = [0.0; 3];
     for (number, hop) in hops.iter().enumerate() {
         let landing = hundred(chain, hop, gravity_m_s2, experiment, number as u64, (centre, sigmas_m), goal);
@@ -142,7 +142,7 @@ fn hundred(
     (centre, sigmas_m): (Point3<f64>, [f64; 3]),
     goal: Point3<f64>,
 ) -> DriftLanding {
-    let planned = solid(hop.landing.point);
+    let planned = solid(hop.landing.in_profile());
     let mut landing =
         DriftLanding { errors_m: Vec::new(), landings_m: Vec::new(), takeoffs_m: Vec::new(), lost: 0, farthest_m: centre };
     let mut farthest_m = f64::NEG_INFINITY;
@@ -193,7 +193,7 @@ fn flown(chain: &ConstrainedChain, hop: &Hop, gravity_m_s2: f64, from: Point3<f6
 
 /// Four standard normals.
 fn four(draws: &mut ChaCha8Rng) -> [f64; 4] {
-    let mut two = || normals([draws.random::<f64>(), draws.random::<f64>()]);
+    let mut two = || standard_normals([draws.random::<f64>(), draws.random::<f64>()]);
     let ([a, b], [c, d]) = (two(), two());
     [a, b, c, d]
 }

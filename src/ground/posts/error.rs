@@ -1,31 +1,6 @@
-//! What a map is asked, and why there is none.
+//! Why the hops of a map cannot be computed.
 
-use std::error::Error;
-
-use crate::{
-    quantity::MapPoint,
-    terrain::{Dem, FrictionRaster, KeepOut, TerrainError},
-    world::{Hopper, Surface},
-};
-
-/// What a map is made of.
-#[derive(Clone, Copy, Debug)]
-pub struct MapRequest<'a> {
-    /// The terrain.
-    pub dem: &'a Dem,
-    /// Every so many posts is a node; at least 1. The terrain in the way is always the full DEM.
-    pub stride: usize,
-    /// The robot.
-    pub hopper: &'a Hopper,
-    /// What the ground allows.
-    pub surface: &'a Surface,
-    /// Gravity, m/s^2.
-    pub gravity_m_s2: f64,
-    /// Friction from a raster.
-    pub friction: Option<&'a FrictionRaster>,
-    /// Where nothing takes off and nothing lands.
-    pub keep_out: Option<&'a KeepOut>,
-}
+use crate::{ground::SliceProblem, quantity::MapPoint, terrain::TerrainError};
 
 /// Why there is no map.
 #[derive(Debug, thiserror::Error)]
@@ -50,7 +25,7 @@ pub enum MapError {
         /// Where it begins.
         at: MapPoint,
         /// Why not.
-        reason: Box<dyn Error + Send + Sync>,
+        reason: Box<SliceProblem>,
     },
     /// A hop that spans too many posts.
     #[error(

@@ -33,15 +33,15 @@ pub(super) struct Crossing {
 
 /// The offset from a node to another.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Offset {
+pub(crate) struct Offset {
     /// To the east and to the south, nodes.
-    pub(super) cols: i32,
-    pub(super) rows: i32,
+    pub(crate) cols: i32,
+    pub(crate) rows: i32,
     /// Steps among the DEM's elevations.
     pub(super) post_step: isize,
-    pub(super) run_m: f64,
+    pub(crate) run_m: f64,
     /// East and north, of length 1.
-    pub(super) heading: Vector2<f64>,
+    pub(crate) heading: Vector2<f64>,
     /// Its part of the table of crossings, which it shares with the opposite offset: that one meets the same places turned about the take-off.
     crossings: Range<usize>,
     /// 1 where steps lead as the table has them, -1 where they are turned.
