@@ -11,7 +11,7 @@ use crate::{
     hop::HopTest,
     quantity::MapPoint,
     terrain::{Dem, Profile, TerrainError, slice},
-    world::{Hopper, Limit},
+    world::Limit,
 };
 
 /// What a fan is made of.
@@ -25,10 +25,6 @@ pub struct FanRequest<'a> {
     pub headings: u32,
     /// How long they are, m, where the map lets them.
     pub length_m: f64,
-    /// The robot.
-    pub hopper: &'a Hopper,
-    /// Gravity, m/s^2.
-    pub gravity_m_s2: f64,
     /// How densely the slices are filled with nodes.
     pub spacing: PointSpacing,
 }
@@ -194,7 +190,8 @@ where
         });
     };
     let chain = ground(profile).map_err(|reason| FanError::Ground { heading_deg, reason })?;
-    let test = HopTest::new(&chain, request.hopper, request.gravity_m_s2);
+    let test = HopTest::new(chain);
+    let chain = test.chain();
     let start = chain.geometry().vertex_station(crate::quantity::VertexId(0));
     let found = reachable(&test, start, request.spacing).map_err(|problem| FanError::TooManyNodes { heading_deg, problem })?;
     let farthest = found.nodes.iter().rev().find_map(|(station, hops)| Some((station.point.x_m, (*hops)?)));

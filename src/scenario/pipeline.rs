@@ -5,6 +5,7 @@ use std::{
     fs::File,
     io::{self, Read},
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use sha2::{Digest, Sha256};
@@ -25,7 +26,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The chain with its constraints.
-    pub chain: ConstrainedChain,
+    pub chain: Arc<ConstrainedChain>,
     /// Where the journey begins.
     pub start: Option<Station>,
     /// Where it ends.
@@ -164,7 +165,7 @@ fn resolved(
     projection: Option<MapProjection>,
     warnings: Vec<String>,
 ) -> Result<Prepared, PipelineError> {
-    let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface)?;
+    let chain = Arc::new(ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)?);
     let station = |which, x_m: Option<f64>| {
         x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
     };
@@ -374,7 +375,7 @@ impl Extremes {
 pub fn constant_gravity_warnings(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
     let Some(radius_m) = body.radius_m else { return Vec::new() };
     let name = body.name.as_deref().unwrap_or("the body");
-    let escape_m_s = Body { name: "", gravity_m_s2: body.gravity_m_s2, radius_m, source: "" }.escape_speed_m_s();
+    let escape_m_s = Body { name: "", gravity: body.gravity, radius_m, source: "" }.escape_speed_m_s();
     let Extremes { range_m, height_m, speed_m_s } = extremes;
     let lengths = [("range", range_m), ("highest point above its take-off", height_m)];
     let mut warnings: Vec<String> = lengths

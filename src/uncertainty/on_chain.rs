@@ -8,11 +8,11 @@ use super::{
 };
 use crate::{
     ballistics::Arc,
-    chain::{Ground as SegmentGround, GroundForm, GroundRefusal, SegmentConstraints, Site, Station, resolve_constraints},
+    chain::{GroundForm, GroundRefusal, SegmentConstraints, SegmentGround, Site, Station, resolve_constraints},
     graph::{CostToGo, Edge},
     hop::HopTest,
     quantity::{ChainPoint, SegmentId, VertexId},
-    world::{Contact, Direction, FrictionCone, Grip, Surface},
+    world::{Contact, Direction, FrictionCone, Grip, SurfaceProperties},
 };
 
 /// The chain as the ground of a trial.
@@ -20,8 +20,8 @@ use crate::{
 /// To the sides the ground is taken to go on as it is: displacement to the side moves the robot out of the plane and no more.
 #[derive(Clone, Debug)]
 pub(super) struct ChainGround<'a> {
-    test: &'a HopTest<'a>,
-    surface: &'a Surface,
+    test: &'a HopTest,
+    surface: &'a SurfaceProperties,
     to_go: Option<&'a CostToGo>,
     /// How much a height of the chain may be rounded, m.
     height_rounding_m: f64,
@@ -125,7 +125,7 @@ impl Ahead {
 }
 
 impl<'a> ChainGround<'a> {
-    pub(super) fn new(test: &'a HopTest<'a>, surface: &'a Surface, to_go: Option<&'a CostToGo>) -> Self {
+    pub(super) fn new(test: &'a HopTest, surface: &'a SurfaceProperties, to_go: Option<&'a CostToGo>) -> Self {
         let highest_m = test.chain().geometry().vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max);
         let height_rounding_m = HEIGHT_ULPS * f64::EPSILON * highest_m;
         Self { test, surface, to_go, height_rounding_m, friction: 0.0, found: Vec::new() }
@@ -336,7 +336,7 @@ impl Ground for ChainGround<'_> {
 
     fn landing_failure(&self, _end: &ChainPosition, support_facet: &SegmentId, touchdown: &TouchdownState) -> Option<TrialOutcome> {
         let rule = self.check_contact(Some(*support_facet), Contact::Landing, towards(touchdown.heading));
-        failure(rule, self.test.hopper().landing_speed_max_m_s, touchdown)
+        failure(rule, self.test.hopper().limits().landing_speed_max_m_s, touchdown)
     }
 
     fn displaced(

@@ -11,12 +11,12 @@ use super::{
 };
 use crate::{
     ballistics::{self, LineOfSight, limits},
-    chain::{ContactRule, Ground as SegmentGround, GroundForm, LineConstraints, resolve_constraints},
+    chain::{ContactRule, GroundForm, LineConstraints, SegmentGround, resolve_constraints},
     graph::{Cost, CostToGo},
     hop::HopTest,
     quantity::{ChainPoint, MapPoint, NodeId, SegmentId},
     terrain::{FacetSpan, ProfileFacet, Triangles},
-    world::{Contact, Direction, FrictionCone, Grip, RestSlope, SPEED_TOLERANCE, Surface, tolerant_speed_m_s},
+    world::{Contact, Direction, FrictionCone, Grip, RestSlope, SPEED_TOLERANCE, SurfaceProperties, tolerant_speed_m_s},
 };
 
 /// How far before a landing, or beyond a take-off, friction and keep-out zones are asked for, m: a landing obeys the ground just flown
@@ -29,8 +29,8 @@ const ULPS: f64 = 4.0;
 /// A DEM as the ground of a trial.
 #[derive(Clone, Debug)]
 pub(super) struct DemGround<'a> {
-    test: &'a HopTest<'a>,
-    surface: &'a Surface,
+    test: &'a HopTest,
+    surface: &'a SurfaceProperties,
     map: MapGround<'a>,
     triangles: Triangles<'a>,
     to_go: Option<&'a CostToGo>,
@@ -55,8 +55,8 @@ pub(super) type Gradient = Vector2<f64>;
 
 impl<'a> DemGround<'a> {
     pub(super) fn new(
-        test: &'a HopTest<'a>,
-        surface: &'a Surface,
+        test: &'a HopTest,
+        surface: &'a SurfaceProperties,
         map: MapGround<'a>,
         to_go: Option<&'a CostToGo>,
         nodes: Arc<[MapPosition]>,
@@ -138,7 +138,13 @@ impl<'a> DemGround<'a> {
         let Some(Grip::FromSlope { takeoff, landing }) = self.surface.grip else { return None };
         let hopper = self.test.hopper();
         let slope = gradient.dot(&heading);
-        Some(LineConstraints::from_offsets(slope, takeoff, landing, hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s))
+        Some(LineConstraints::from_offsets(
+            slope,
+            takeoff,
+            landing,
+            hopper.limits().takeoff_speed_max_m_s,
+            hopper.limits().landing_speed_max_m_s,
+        ))
     }
 
     /// What the nominal ground allows a contact on a facet met along a heading: as a slice along that heading has it.
@@ -162,8 +168,8 @@ impl<'a> DemGround<'a> {
         }
         let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
         let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
-        let too_far = g * run_m * sight.min_speed_ratio() > squared(hopper.takeoff_speed_max_m_s)
-            || g * run_m * sight.min_speed_ratio_reversed() > squared(hopper.landing_speed_max_m_s);
+        let too_far = g * run_m * sight.min_speed_ratio() > squared(hopper.limits().takeoff_speed_max_m_s)
+            || g * run_m * sight.min_speed_ratio_reversed() > squared(hopper.limits().landing_speed_max_m_s);
         if too_far || best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
             return None;
         }
@@ -204,7 +210,7 @@ impl<'a> DemGround<'a> {
         let landing = self.allowed(self.triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
         let mut lofts = self.test.lofts_in_envelope(sight, &takeoff, &landing).ok()?;
         let end_m = sight.run_m() - self.place_rounding_m - BESIDE_M;
-        let clearance_m = self.test.hopper().clearance_m;
+        let clearance_m = self.test.hopper().limits().clearance_m;
         let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(sight.run_m(), to.z_m));
         let mut reached_m = 0.0;
         for span in self.triangles.walk(from.at, heading, nominal) {
@@ -348,7 +354,7 @@ impl Ground for DemGround<'_> {
         if self.is_kept_out(flown_over) {
             return Some(TrialOutcome::Lost);
         }
-        if touchdown.is_over(self.test.hopper().landing_speed_max_m_s) {
+        if touchdown.is_over(self.test.hopper().limits().landing_speed_max_m_s) {
             return Some(TrialOutcome::Damaged);
         }
         let friction = self.friction(flown_over);
@@ -364,7 +370,7 @@ impl Ground for DemGround<'_> {
                 );
                 (!holds_on(*support_facet, friction, back, touchdown.angle_tolerance_rad)).then_some(TrialOutcome::SlidAtLanding)
             }
-            (None, Some(stated)) => failure(Ok(stated.landing), self.test.hopper().landing_speed_max_m_s, touchdown),
+            (None, Some(stated)) => failure(Ok(stated.landing), self.test.hopper().limits().landing_speed_max_m_s, touchdown),
             (None, None) => Some(TrialOutcome::SlidAtLanding),
         }
     }

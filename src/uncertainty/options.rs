@@ -9,7 +9,7 @@ use crate::{
     hop::HopTest,
     path::HopPath,
     terrain::{Dem, FrictionRaster, KeepOut},
-    world::Surface,
+    world::SurfaceProperties,
 };
 
 /// A planned journey and the ground it is to be flown over.
@@ -22,9 +22,9 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 pub struct Mission<'a> {
     /// The chain planned on, the robot and gravity.
-    pub test: &'a HopTest<'a>,
+    pub test: &'a HopTest,
     /// Grip and rest slope where the chain or the map says nothing: for grounds that errors change, and for all places of a map.
-    pub surface: &'a Surface,
+    pub surface: &'a SurfaceProperties,
     /// The planned path.
     pub path: &'a HopPath,
     /// Where the journey begins.

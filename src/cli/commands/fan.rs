@@ -44,16 +44,10 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
-    let request = FanRequest {
-        dem: &dem,
-        from,
-        headings: *headings,
-        length_m: *length,
-        hopper: &scenario.hopper,
-        gravity_m_s2: scenario.body.gravity_m_s2,
-        spacing,
+    let request = FanRequest { dem: &dem, from, headings: *headings, length_m: *length, spacing };
+    let ground = |profile| {
+        Ok(ConstrainedChain::new(overlays.chain(vec![profile])?, &scenario.hopper, scenario.body.gravity, &scenario.surface)?)
     };
-    let ground = |profile| Ok(ConstrainedChain::new(overlays.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?);
     let rays = fan(&request, *threads, &ground).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     let mut warnings = overlays.without_effect_on_dem(dem.bounds());

@@ -198,7 +198,7 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
     let failed = |error: &MapError| Failure::about(&args.dem, &error.to_string());
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.answer.threads).build().map_err(|e| failed(&e.into()))?;
     let chain = |profile: Profile| -> Result<ConstrainedChain, Box<dyn std::error::Error + Send + Sync>> {
-        Ok(ConstrainedChain::new(overlays.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?)
+        Ok(ConstrainedChain::new(overlays.chain(vec![profile])?, &scenario.hopper, scenario.body.gravity, &scenario.surface)?)
     };
     let ground_of: &GroundOf<'_> = &chain;
     let request = MapRequest {
@@ -206,7 +206,7 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
         stride: lattice.stride,
         hopper: &scenario.hopper,
         surface: &scenario.surface,
-        gravity_m_s2: scenario.body.gravity_m_s2,
+        gravity: scenario.body.gravity,
         friction: overlays.friction_raster(),
         keep_out: overlays.keep_out(),
     };
@@ -333,7 +333,7 @@ fn write_files<'a>(
     let paths: Vec<&HopPath> = maps.paths.iter().map(|path| path.as_ref().unwrap_or(&none)).collect();
     let prj_path = args.geojson.as_ref().map(|path| path.with_extension("prj"));
     if let Some(file) = &args.geojson {
-        let geojson = paths_geojson(&paths, scenario.body.gravity_m_s2, projection.as_ref().ok()).unwrap_or_default();
+        let geojson = paths_geojson(&paths, scenario.body.gravity.m_s2(), projection.as_ref().ok()).unwrap_or_default();
         files.push((file, geojson.into_bytes()));
         files.extend(prj_path.as_deref().zip(output::prj(projection.as_ref().ok())));
     }

@@ -28,13 +28,13 @@ pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<Map
         many => format!("{many} hops, row by row"),
     };
     let caption = Caption { title: format!("Hop by hop: {name}"), lines: vec![conditions(scenario), told] };
-    let figure = HopProfilesFigure { caption, clearance_m: scenario.hopper.clearance_m, hops: profiles };
+    let figure = HopProfilesFigure { caption, clearance_m: scenario.hopper.limits().clearance_m, hops: profiles };
     output::encoded(draw_hop_profiles(&figure), file)
 }
 
 /// One hop over its slice, flown again for the place where it passes lowest.
 fn profile(scenario: &Scenario, hop: &MapHop, name: String) -> Option<HopProfile> {
-    let flown = execute(&hop.chain, &scenario.hopper, scenario.body.gravity_m_s2, &hop.path, None);
+    let flown = execute(&hop.chain, &hop.path, None);
     let least = flown.flights.first().and_then(|flight| flight.as_ref()?.least_clearance);
     Some(HopProfile {
         name,

@@ -7,7 +7,7 @@ use crate::{
     chain::{ConstrainedChain, GroundRefusal, Station},
     path::Hop,
     quantity::{Angle, AngleInterval, MapPoint},
-    world::{Contact, Direction, Hopper, Limit, tolerant_speed_m_s},
+    world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
 
 /// How far an angle may lie over its limit, rad: what the speeds' tolerance is in directions. A tangent and its arc tangent on the
@@ -27,10 +27,8 @@ const MAP_TOLERANCE: f64 = 1e-12;
 pub(super) struct Checker<'a> {
     pub(super) number: usize,
     pub(super) chain: &'a ConstrainedChain,
-    pub(super) hopper: &'a Hopper,
     pub(super) hop: &'a Hop,
     pub(super) direction: Direction,
-    pub(super) gravity_m_s2: f64,
     pub(super) height_rounding_m: f64,
     pub(super) violations: &'a mut Vec<Violation>,
 }
@@ -116,13 +114,13 @@ impl Checker<'_> {
     /// there, `g v_x / v^3`.
     fn landing_angle_tolerance_rad(&self, flight: &Flight) -> f64 {
         let v = flight.landing_speed_m_s;
-        ANGLE_TOLERANCE_RAD + flight.rounding_m * (self.gravity_m_s2 / v) * (flight.across_m_s / v) / v
+        ANGLE_TOLERANCE_RAD + flight.rounding_m * (self.chain.gravity().m_s2() / v) * (flight.across_m_s / v) / v
     }
 
     /// How uncertain the landing's speed is: it changes by `g v_z / v^2` per metre flown.
     fn landing_speed_rounding_m_s(&self, flight: &Flight) -> f64 {
         let v = flight.landing_speed_m_s;
-        flight.rounding_m * (self.gravity_m_s2 / v) * (flight.landing_climb_m_s.abs() / v)
+        flight.rounding_m * (self.chain.gravity().m_s2() / v) * (flight.landing_climb_m_s.abs() / v)
     }
 
     /// What holds at the landing.
@@ -203,7 +201,7 @@ impl Checker<'_> {
 
     /// The machine's own take-off angles.
     fn mechanical_angle(&mut self) {
-        let (min, max) = (self.hopper.takeoff_angle_min, self.hopper.takeoff_angle_max);
+        let (min, max) = (self.chain.hopper().limits().takeoff_angle_min, self.chain.hopper().limits().takeoff_angle_max);
         if min.is_some() || max.is_some() {
             let ends = (min.map_or(-FRAC_PI_2, Angle::radians), max.map_or(FRAC_PI_2, Angle::radians));
             let (angle_rad, x_m) = (self.hop.takeoff_angle.radians(), self.hop.takeoff.point.x_m);
@@ -215,7 +213,7 @@ impl Checker<'_> {
     fn terrain(&mut self, flight: &Flight) {
         let limit = ViolatedLimit::Limit(Limit::Terrain);
         for low in &flight.too_low {
-            let measure = Some(Measure { found: low.height_m, allowed: self.hopper.clearance_m, unit: "m" });
+            let measure = Some(Measure { found: low.height_m, allowed: self.chain.hopper().limits().clearance_m, unit: "m" });
             self.violations.push(Violation { hop: self.number, limit, measure, at_x_m: low.x_m, vertex: Some(low.vertex) });
         }
         if flight.too_low.is_empty()
@@ -246,13 +244,13 @@ impl Checker<'_> {
     /// Greatest height and longest flight.
     fn machine(&mut self, flight: &Flight) {
         let x_m = self.hop.takeoff.point.x_m;
-        if let Some(height_m) = self.hopper.apex_height_max_m {
+        if let Some(height_m) = self.chain.hopper().limits().apex_height_max_m {
             let within = flight.apex_height_m <= height_m + flight.place_tolerance_m;
             if !within {
                 self.note_limit(Limit::ApexHeight, flight.apex_height_m, height_m, "m", x_m);
             }
         }
-        if let Some(time_s) = self.hopper.flight_time_max_s {
+        if let Some(time_s) = self.chain.hopper().limits().flight_time_max_s {
             let within = flight.flight_time_s <= time_s * (1.0 + TIME_TOLERANCE) + time_rounding_s(flight);
             if !within {
                 self.note_limit(Limit::FlightTime, flight.flight_time_s, time_s, "s", x_m);

@@ -158,15 +158,15 @@ pub(super) struct Course<'a> {
 
 impl<'a> Course<'a> {
     /// The course of a hop, flown in the direction that its two ends say.
-    pub(super) fn new(
-        chain: &'a ConstrainedChain,
-        hop: &'a Hop,
-        direction: Direction,
-        gravity_m_s2: f64,
-        clearance_m: f64,
-        height_rounding_m: f64,
-    ) -> Self {
-        Self { chain, hop, direction, gravity_m_s2, clearance_m, height_rounding_m }
+    pub(super) fn new(chain: &'a ConstrainedChain, hop: &'a Hop, direction: Direction, height_rounding_m: f64) -> Self {
+        Self {
+            chain,
+            hop,
+            direction,
+            gravity_m_s2: chain.gravity().m_s2(),
+            clearance_m: chain.hopper().limits().clearance_m,
+            height_rounding_m,
+        }
     }
 
     /// Distance and height of a point, from the take-off along the direction of travel. Close doubles subtract without error.

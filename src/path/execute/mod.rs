@@ -16,7 +16,7 @@ pub use violation::{Measure, StatedValue, ViolatedLimit, Violation};
 use super::{Hop, HopPath};
 use crate::{
     chain::{ConstrainedChain, Station},
-    world::{Direction, Hopper},
+    world::Direction,
 };
 
 /// What came of flying a path.
@@ -55,31 +55,25 @@ impl Execution {
 /// # Examples
 /// ```
 /// use chta::{ballistics::TakeoffChoice, chain::*, graph::*, hop::{HopTest, Split}, path::{execute, generate}, quantity::*, world::*};
-/// let hopper = Hopper::with_speeds(5.0, 5.0);
+/// let hopper = Hopper::with_speeds(5.0, 5.0).unwrap();
 /// let grip = Some(Grip::Friction(FrictionCone::new(1.0).unwrap()));
 /// let chain = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(20.0, 0.0)]).unwrap();
-/// let chain = ConstrainedChain::new(chain, &hopper, &Surface { grip, rest: RestSlope::AsFrictionHolds }).unwrap();
-/// let test = HopTest::new(&chain, &hopper, 1.0);
+/// let chain = ConstrainedChain::new(chain, &hopper, Gravity::new(1.0).unwrap(), &SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds }).unwrap();
+/// let test = HopTest::new(chain.clone());
 /// let (start, goal) = (chain.geometry().station(0.0).unwrap(), chain.geometry().station(20.0).unwrap());
 /// let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {}).unwrap();
 /// let Outcome::Path { legs, .. } = answer.outcome else { panic!() };
 /// let mut path = generate(&test, &legs, TakeoffChoice::LeastSpeed, Split::FullReach).unwrap();
 /// // 45 degrees over flat ground: v = sqrt(g X) = 4.472 m/s, and 5 m up.
-/// let execution = execute(&chain, &hopper, 1.0, &path, Some((start, goal)));
+/// let execution = execute(&chain, &path, Some((start, goal)));
 /// assert!(execution.passes());
 /// assert!((execution.flights[0].as_ref().unwrap().apex_z_m - 5.0).abs() < 1e-12);
 /// // 1 % too slow: X = v^2 / g falls short by 2 %.
 /// path.hops[0].takeoff_speed_m_s *= 0.99;
-/// let execution = execute(&chain, &hopper, 1.0, &path, None);
+/// let execution = execute(&chain, &path, None);
 /// assert!((execution.flights[0].as_ref().unwrap().contact.unwrap().x_m - 19.602).abs() < 1e-9);
 /// ```
-pub fn execute(
-    chain: &ConstrainedChain,
-    hopper: &Hopper,
-    gravity_m_s2: f64,
-    path: &HopPath,
-    ends: Option<(Station, Station)>,
-) -> Execution {
+pub fn execute(chain: &ConstrainedChain, path: &HopPath, ends: Option<(Station, Station)>) -> Execution {
     let height_rounding_m = flight::height_rounding_m(chain);
     let mut violations = Vec::new();
     let mut flights = Vec::with_capacity(path.hops.len());
@@ -93,9 +87,8 @@ pub fn execute(
             flights.push(None);
             continue;
         };
-        let flown = Course::new(chain, hop, direction, gravity_m_s2, hopper.clearance_m, height_rounding_m).fly();
-        let mut checker =
-            Checker { number: i + 1, chain, hopper, hop, direction, gravity_m_s2, height_rounding_m, violations: &mut violations };
+        let flown = Course::new(chain, hop, direction, height_rounding_m).fly();
+        let mut checker = Checker { number: i + 1, chain, hop, direction, height_rounding_m, violations: &mut violations };
         match &flown {
             Some(flight) => checker.flight(flight),
             None => checker.no_flight(),

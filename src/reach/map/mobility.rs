@@ -29,8 +29,8 @@ pub struct Mobility {
 pub fn mobility(hops: &PostHops<'_>, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Mobility, MapError> {
     let lattice = hops.lattice();
     let hopper = hops.request().hopper;
-    let range_m = |speed_m_s: f64| safety_range_m(0.0, tolerant_speed_m_s(speed_m_s), hops.request().gravity_m_s2);
-    let disc_radius_m = range_m(hopper.takeoff_speed_max_m_s.min(hopper.landing_speed_max_m_s));
+    let range_m = |speed_m_s: f64| safety_range_m(0.0, tolerant_speed_m_s(speed_m_s), hops.request().gravity.m_s2());
+    let disc_radius_m = range_m(hopper.limits().takeoff_speed_max_m_s.min(hopper.limits().landing_speed_max_m_s));
     let disc: Vec<(usize, &Offset)> =
         hops.offsets().iter().enumerate().take_while(|(_, offset)| offset.run_m <= disc_radius_m).collect();
     let sectors: Vec<u16> = disc.iter().map(|(_, offset)| 1 << sector(offset)).collect();

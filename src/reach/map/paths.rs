@@ -1,5 +1,7 @@
 //! The hops of a path over the map, each on its own slice.
 
+use std::sync::Arc;
+
 use super::{MapError, PostHops, lattice::Post};
 use crate::{
     ballistics::TakeoffChoice,
@@ -14,7 +16,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct MapHop {
     /// The slice from take-off to landing, which [`slice`](crate::terrain::slice()) gives too.
-    pub chain: ConstrainedChain,
+    pub chain: Arc<ConstrainedChain>,
     /// The hop along it.
     pub path: HopPath,
 }
@@ -27,16 +29,17 @@ pub fn path_hops(hops: &PostHops<'_>, posts: &[Post], choice: TakeoffChoice) -> 
     let mut found = Vec::with_capacity(posts.len().saturating_sub(1));
     for (from, to) in posts.iter().zip(posts.iter().skip(1)) {
         let Some(chain) = hops.chain(*from, *to)? else { continue };
-        let Some(path) = hop_along(hops, &chain, choice) else { continue };
+        let chain = Arc::new(chain);
+        let Some(path) = hop_along(Arc::clone(&chain), choice) else { continue };
         found.push(MapHop { chain, path });
     }
     Ok(found)
 }
 
 /// The single hop over a slice.
-fn hop_along(hops: &PostHops<'_>, chain: &ConstrainedChain, choice: TakeoffChoice) -> Option<HopPath> {
-    let test = HopTest::new(chain, hops.request().hopper, hops.request().gravity_m_s2);
-    let geometry = chain.geometry();
+fn hop_along(chain: Arc<ConstrainedChain>, choice: TakeoffChoice) -> Option<HopPath> {
+    let test = HopTest::new(chain);
+    let geometry = test.chain().geometry();
     let (takeoff, landing) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
     // Whoever gives a way that this map did not find gets the hops that there are.
     let lofts = test.lofts(&takeoff, &landing).ok()?;

@@ -5,7 +5,7 @@ use std::error::Error;
 use crate::{
     quantity::MapPoint,
     terrain::{Dem, FrictionRaster, KeepOut, TerrainError},
-    world::{Hopper, Surface},
+    world::{Gravity, Hopper, SurfaceProperties},
 };
 
 /// What a map is made of.
@@ -18,9 +18,9 @@ pub struct MapRequest<'a> {
     /// The robot.
     pub hopper: &'a Hopper,
     /// What the ground allows.
-    pub surface: &'a Surface,
-    /// Gravity, m/s^2.
-    pub gravity_m_s2: f64,
+    pub surface: &'a SurfaceProperties,
+    /// Gravity.
+    pub gravity: Gravity,
     /// Friction from a raster.
     pub friction: Option<&'a FrictionRaster>,
     /// Where nothing takes off and nothing lands.

@@ -18,7 +18,7 @@ const KEPT_TRIALS: u64 = 300;
 /// A planned path, and all that its trials need.
 pub(super) struct Flyer<'a> {
     pub(super) loaded: &'a Loaded,
-    pub(super) test: &'a HopTest<'a>,
+    pub(super) test: &'a HopTest,
     pub(super) path: &'a HopPath,
     /// The whole raster with what lies over it, for flights in three dimensions.
     terrain: Option<(Dem, Overlays)>,
@@ -39,7 +39,7 @@ impl<'a> Flyer<'a> {
     /// Reads the raster, and computes once what replanning needs.
     pub(super) fn new(
         loaded: &'a Loaded,
-        test: &'a HopTest<'a>,
+        test: &'a HopTest,
         path: &'a HopPath,
         found: &graph::Answer,
         policies: &[Policy],

@@ -15,8 +15,8 @@ impl PostHops<'_> {
     pub(super) fn exact(&self, from: Post, offset: &Offset) -> Result<Option<Lofts>, MapError> {
         let Some(to) = self.moved(from, offset.rows, offset.cols) else { return Ok(None) };
         let Some(chain) = self.chain(from, to)? else { return Ok(None) };
-        let test = HopTest::new(&chain, self.request.hopper, self.request.gravity_m_s2);
-        let geometry = chain.geometry();
+        let test = HopTest::new(chain);
+        let geometry = test.chain().geometry();
         let (start, end) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
         Ok(test.line_of_sight(&start, &end).zip(test.lofts(&start, &end).ok()))
     }

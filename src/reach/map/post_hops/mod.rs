@@ -96,7 +96,7 @@ impl<'a> PostHops<'a> {
             Some(Grip::FromSlope { takeoff, landing }) => Some(QuickGrip::from_slope(takeoff, landing)),
             None => None,
         };
-        let envelope = FlightEnvelope::new(hopper, request.gravity_m_s2);
+        let envelope = FlightEnvelope::new(hopper, request.gravity);
         let bounds = dem.bounds();
         let step_m = dem.georeference().dx_m().min(dem.georeference().dy_m());
         let (low_m, high_m) = dem.elevation_range_m();
@@ -231,14 +231,14 @@ impl<'a> PostHops<'a> {
         let sight = LineOfSight::new(offset.run_m, rise_m);
         let lofts = self.envelope.lofts(
             sight,
-            ContactLimits { slopes: slopes[0], speed_max_m_s: hopper.takeoff_speed_max_m_s },
-            ContactLimits { slopes: slopes[1], speed_max_m_s: hopper.landing_speed_max_m_s },
+            ContactLimits { slopes: slopes[0], speed_max_m_s: hopper.limits().takeoff_speed_max_m_s },
+            ContactLimits { slopes: slopes[1], speed_max_m_s: hopper.limits().landing_speed_max_m_s },
         );
         let most = lofts.upper + near(lofts.upper);
         if lofts.lower - near(lofts.lower) > most || most <= 0.0 || !worth(sight, lofts) {
             return Verdict::No;
         }
-        let walk = Walk { from: takeoff, turn: offset.turn, base_m: takeoff_m - hopper.clearance_m, rise_m, most };
+        let walk = Walk { from: takeoff, turn: offset.turn, base_m: takeoff_m - hopper.limits().clearance_m, rise_m, most };
         let Some(terrain) = self.heights.clearing_loft(walk, self.table.crossings_of(offset)) else { return Verdict::No };
         if self.ground.gaps && offset.departure.along_edge() && !self.has_facets_along(takeoff, offset) {
             return Verdict::No;

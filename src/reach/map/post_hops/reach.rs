@@ -21,7 +21,8 @@ impl PostHops<'_> {
     /// Makes the table of offsets, and finds how far hops reach from each block.
     pub(super) fn set_reach(&mut self) -> Result<(), MapError> {
         let hopper = self.envelope.hopper();
-        let speeds = [hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s].map(|v| tolerant_speed_m_s(v) * WIDER);
+        let speeds =
+            [hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s].map(|v| tolerant_speed_m_s(v) * WIDER);
         let gravity = self.envelope.gravity_m_s2();
         // The longest hop that falls or climbs no further than a height.
         let range_m =
