@@ -10,7 +10,7 @@ use chta::{
     chain::PolygonalChain,
     hop::{HopTest, LandingTable, Sweep},
     quantity::VertexId,
-    world::{Direction, Hopper},
+    world::{Direction, Hopper, HopperLimits},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
 
@@ -22,7 +22,7 @@ fn main() {
 #[divan::bench]
 fn one_pair_kernel(bencher: Bencher<'_, '_>) {
     let (chain, hopper) = support::fractal_chain(200);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let test = HopTest::new(chain.clone());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     bencher.bench_local(|| test.lofts(black_box(&at(100)), black_box(&at(115))));
 }
@@ -31,7 +31,7 @@ fn one_pair_kernel(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn one_pair_explained(bencher: Bencher<'_, '_>) {
     let (chain, hopper) = support::fractal_chain(200);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let test = HopTest::new(chain.clone());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     bencher.bench_local(|| test.takeoff_set(black_box(&at(100)), black_box(&at(115))));
 }
@@ -40,7 +40,7 @@ fn one_pair_explained(bencher: Bencher<'_, '_>) {
 #[divan::bench(args = [30, 200, 2000])]
 fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
     let (chain, hopper) = support::fractal_chain(2 * window + 1);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let test = HopTest::new(chain.clone());
     let stations: Vec<_> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
     let takeoff = stations[window];
     bencher
@@ -52,11 +52,11 @@ fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
 #[divan::bench(args = [30, 200, 2000])]
 fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
     let (chain, hopper) = support::fractal_chain(2 * window + 1);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let test = HopTest::new(chain.clone());
     let stations: Vec<_> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
     let takeoff = stations[window];
-    let table = LandingTable::new(&test, &stations);
-    let mut sweep = Sweep::new(&table);
+    let table = Arc::new(LandingTable::new(&test, stations.as_slice()));
+    let mut sweep = Sweep::new(Arc::clone(&table));
     bencher.counter(ItemsCount::new(2 * window)).bench_local(|| {
         let mut feasible = 0;
         for direction in Direction::BOTH {
@@ -70,10 +70,10 @@ fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
 /// The bound on reach that a search asks for at every take-off, on a chain of 100 000 segments.
 #[divan::bench]
 fn reach_of_one_takeoff(bencher: Bencher<'_, '_>) {
-    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(10.0, 10.0) };
+    let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(10.0, 10.0) }).expect("a valid hopper");
     let geometry = PolygonalChain::bare(support::long_chain(100_000, 1)).expect("a chain");
     let chain = support::constrained(geometry, &hopper);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let test = HopTest::new(chain.clone());
     let takeoff = chain.geometry().vertex_station(VertexId(50_000));
     bencher.bench_local(|| test.reach_bound_m(black_box(&takeoff)));
 }

@@ -17,7 +17,7 @@ use chta::{
     graph::Effort,
     reach::map::{Journey, MapRequest, Post, PostHops, Search, UNREACHED, mobility, search},
     terrain::{Dem, Profile, SyntheticTerrain, synthesise},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 /// Gravity of the Moon, m/s^2.
@@ -29,7 +29,7 @@ const SPEED_M_S: f64 = 4.414;
 struct Scene {
     dem: Dem,
     hopper: Hopper,
-    surface: Surface,
+    surface: SurfaceProperties,
 }
 
 impl Scene {
@@ -38,13 +38,23 @@ impl Scene {
         let dem = synthesise(&SyntheticTerrain { rows: side, cols: side, seed: 3, ..SyntheticTerrain::default() })
             .expect("sound options");
         let friction = FrictionCone::new(0.6).expect("a friction coefficient");
-        let surface = Surface { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
-        Self { dem, hopper: Hopper { clearance_m: 0.05, ..Hopper::with_speeds(SPEED_M_S, SPEED_M_S) }, surface }
+        let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
+        Self {
+            dem,
+            hopper: Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(SPEED_M_S, SPEED_M_S) })
+                .expect("a valid hopper"),
+            surface,
+        }
     }
 
     fn chain(&self, profile: &Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> {
         let friction = FrictionCone::new(0.6)?;
-        Ok(ConstrainedChain::new(PolygonalChain::from_profile(profile, Some(friction))?, &self.hopper, &self.surface)?)
+        Ok(ConstrainedChain::new(
+            PolygonalChain::from_profile(profile, Some(friction))?,
+            &self.hopper,
+            Gravity::new(MOON_M_S2).expect("a gravity"),
+            &self.surface,
+        )?)
     }
 
     fn request(&self) -> MapRequest<'_> {

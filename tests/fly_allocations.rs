@@ -13,7 +13,7 @@ use chta::{
     quantity::{Angle, MapPoint},
     terrain::{SyntheticTerrain, slice, synthesise},
     uncertainty::{MapGround, Mission, Simulation, TrialOptions, Uncertainty},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -24,10 +24,13 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 fn a_thousand_trials_take_few_allocations_on_chain_and_map() {
     let dem = synthesise(&SyntheticTerrain { rows: 60, cols: 90, ..SyntheticTerrain::default() }).unwrap();
     let profile = slice(&dem, MapPoint::new(5.0, 30.0), MapPoint::new(85.0, 28.0)).unwrap();
-    let hopper = Hopper::with_speeds(7.0, 12.0);
-    let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(1.4).unwrap())), rest: RestSlope::AsFrictionHolds };
-    let chain = ConstrainedChain::new(PolygonalChain::from_profile(&profile, None).unwrap(), &hopper, &surface).unwrap();
-    let test = HopTest::new(&chain, &hopper, 1.6);
+    let hopper = Hopper::with_speeds(7.0, 12.0).unwrap();
+    let surface =
+        SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(1.4).unwrap())), rest: RestSlope::AsFrictionHolds };
+    let chain =
+        ConstrainedChain::new(PolygonalChain::from_profile(&profile, None).unwrap(), &hopper, Gravity::new(1.6).unwrap(), &surface)
+            .unwrap();
+    let test = HopTest::new(chain.clone());
     let station = |x_m| chain.geometry().station(x_m).unwrap();
     let (start, goal) = (station(2.0), station(70.0));
     let options = SearchOptions { spacing: Some(PointSpacing::AtMostM(1.0)), ..SearchOptions::default() };

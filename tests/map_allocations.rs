@@ -9,7 +9,7 @@ use chta::{
     chain::{ConstrainedChain, PolygonalChain},
     reach::map::{MapRequest, Post, PostHops},
     terrain::{Profile, SyntheticTerrain, synthesise},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -19,18 +19,23 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 #[test]
 fn hardly_a_pair_of_rough_ground_needs_an_allocation() {
     let dem = synthesise(&SyntheticTerrain { rows: 80, cols: 80, seed: 5, ..SyntheticTerrain::default() }).unwrap();
-    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(3.5, 3.5) };
+    let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(3.5, 3.5) }).unwrap();
     let friction = FrictionCone::new(0.6).unwrap();
-    let surface = Surface { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
+    let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
     let ground = |profile: Profile| -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> {
-        Ok(ConstrainedChain::new(PolygonalChain::from_profile(&profile, Some(friction))?, &hopper, &surface)?)
+        Ok(ConstrainedChain::new(
+            PolygonalChain::from_profile(&profile, Some(friction))?,
+            &hopper,
+            Gravity::new(1.624).unwrap(),
+            &surface,
+        )?)
     };
     let request = MapRequest {
         dem: &dem,
         stride: 1,
         hopper: &hopper,
         surface: &surface,
-        gravity_m_s2: 1.624,
+        gravity: Gravity::new(1.624).unwrap(),
         friction: None,
         keep_out: None,
     };

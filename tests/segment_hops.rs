@@ -10,7 +10,7 @@ use chta::{
     hop::{HopTest, SegmentHops, Split},
     path::generate,
     quantity::{Angle, ChainPoint, SegmentId, VertexId},
-    world::{Direction, Hopper, Limit, SPEED_TOLERANCE},
+    world::{Direction, Gravity, Hopper, HopperLimits, Limit, SPEED_TOLERANCE},
 };
 use support::{Draw, line, uniform};
 
@@ -38,17 +38,18 @@ impl Slope {
         let slope = if draw.chance(0.2) { 0.0 } else { draw.uniform(-1.5, 1.5) };
         let speed = (g * run / draw.log_uniform(0.5, 30.0)).sqrt();
         let line = draw.line(speed);
-        let mut hopper = Hopper::UNLIMITED;
+        let mut limits = HopperLimits::UNLIMITED;
         if machine {
-            hopper.takeoff_angle_max = draw.chance(0.5).then(|| Angle::from_degrees(draw.uniform(20.0, 85.0)));
-            hopper.apex_height_max_m = draw.chance(0.5).then(|| speed * speed / g * draw.log_uniform(1e-2, 1.0));
-            hopper.flight_time_max_s = draw.chance(0.5).then(|| speed / g * draw.log_uniform(1e-1, 3.0));
+            limits.takeoff_angle_max = draw.chance(0.5).then(|| Angle::from_degrees(draw.uniform(20.0, 85.0)));
+            limits.apex_height_max_m = draw.chance(0.5).then(|| speed * speed / g * draw.log_uniform(1e-2, 1.0));
+            limits.flight_time_max_s = draw.chance(0.5).then(|| speed / g * draw.log_uniform(1e-1, 3.0));
         }
+        let hopper = Hopper::new(limits).unwrap();
         Self::new(run, slope, line, hopper, g, Direction::BOTH[draw.below(2)])
     }
 
-    fn test(&self) -> HopTest<'_> {
-        HopTest::new(&self.chain, &self.hopper, self.g)
+    fn test(&self) -> HopTest {
+        HopTest::new(self.chain.with_hopper(&self.hopper, Gravity::new(self.g).unwrap()).unwrap())
     }
 
     /// Take-off and landing of the whole segment.
@@ -78,9 +79,9 @@ impl Slope {
             && within(down, self.line.landing)
             && v <= self.line.takeoff.speed_max_m_s() * more
             && landing_speed <= self.line.landing.speed_max_m_s() * more
-            && self.hopper.takeoff_angle_max.is_none_or(|max| theta <= max.radians() + hair)
-            && self.hopper.apex_height_max_m.is_none_or(|max| highest <= max * (1.0 + hair))
-            && self.hopper.flight_time_max_s.is_none_or(|max| end <= max * (1.0 + hair))
+            && self.hopper.limits().takeoff_angle_max.is_none_or(|max| theta <= max.radians() + hair)
+            && self.hopper.limits().apex_height_max_m.is_none_or(|max| highest <= max * (1.0 + hair))
+            && self.hopper.limits().flight_time_max_s.is_none_or(|max| end <= max * (1.0 + hair))
     }
 
     /// The longest flight at an angle, by bisection on flights.
@@ -280,13 +281,13 @@ fn machine_limits_end_the_reach_where_hand_calculation_says() {
     };
     near(reach(Hopper::UNLIMITED), 10.0, 45.0, &[Limit::TakeoffSpeed]);
     // 1 s in the air: 10 sin(theta) / 5 = 1, 30 degrees, 10 sin(60).
-    let timed = Hopper { flight_time_max_s: Some(1.0), ..Hopper::UNLIMITED };
+    let timed = Hopper::new(HopperLimits { flight_time_max_s: Some(1.0), ..HopperLimits::UNLIMITED }).unwrap();
     near(reach(timed), 75f64.sqrt(), 30.0, &[Limit::FlightTime, Limit::TakeoffSpeed]);
     // Half a metre high: 5 sin^2 = 0.5, 20 sin cos = 6.
-    let low = Hopper { apex_height_max_m: Some(0.5), ..Hopper::UNLIMITED };
+    let low = Hopper::new(HopperLimits { apex_height_max_m: Some(0.5), ..HopperLimits::UNLIMITED }).unwrap();
     near(reach(low), 6.0, 0.1f64.sqrt().asin().to_degrees(), &[Limit::ApexHeight, Limit::TakeoffSpeed]);
     // No steeper than 15 degrees: 10 sin(30).
-    let flat = Hopper { takeoff_angle_max: Some(Angle::from_degrees(15.0)), ..Hopper::UNLIMITED };
+    let flat = Hopper::new(HopperLimits { takeoff_angle_max: Some(Angle::from_degrees(15.0)), ..HopperLimits::UNLIMITED }).unwrap();
     near(reach(flat), 5.0, 15.0, &[Limit::TakeoffSpeed]);
 }
 

@@ -3,14 +3,14 @@
 use super::{LineOfSight, limits};
 use crate::{
     quantity::{Angle, SlopeInterval},
-    world::Hopper,
+    world::{Gravity, Hopper},
 };
 
 /// The flight envelope of a hopper under a gravity: the hops that its limits and the contacts allow over ground without obstacles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightEnvelope {
     hopper: Hopper,
-    gravity_m_s2: f64,
+    gravity: Gravity,
     /// The machine's own take-off slopes.
     mechanical: SlopeInterval,
 }
@@ -26,13 +26,13 @@ pub struct ContactLimits {
 }
 
 impl FlightEnvelope {
-    /// For a hopper and a gravity above 0 in m/s^2.
-    pub fn new(hopper: &Hopper, gravity_m_s2: f64) -> Self {
+    /// For a hopper and a gravity.
+    pub fn new(hopper: &Hopper, gravity: Gravity) -> Self {
         let mechanical = SlopeInterval {
-            lower: hopper.takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
-            upper: hopper.takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
+            lower: hopper.limits().takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
+            upper: hopper.limits().takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
         };
-        Self { hopper: *hopper, gravity_m_s2, mechanical }
+        Self { hopper: *hopper, gravity, mechanical }
     }
 
     /// The hopper.
@@ -40,9 +40,14 @@ impl FlightEnvelope {
         &self.hopper
     }
 
+    /// The gravity.
+    pub const fn gravity(&self) -> Gravity {
+        self.gravity
+    }
+
     /// Gravity, m/s^2.
     pub const fn gravity_m_s2(&self) -> f64 {
-        self.gravity_m_s2
+        self.gravity.m_s2()
     }
 
     /// The machine's own take-off slopes.
@@ -54,8 +59,8 @@ impl FlightEnvelope {
     ///
     /// # Examples
     /// ```
-    /// use chta::{ballistics::{ContactLimits, LineOfSight, FlightEnvelope}, quantity::SlopeInterval, world::Hopper};
-    /// let envelope = FlightEnvelope::new(&Hopper::with_speeds(10.0, 10.0), 10.0);
+    /// use chta::{ballistics::{ContactLimits, LineOfSight, FlightEnvelope}, quantity::SlopeInterval, world::{Gravity, Hopper}};
+    /// let envelope = FlightEnvelope::new(&Hopper::with_speeds(10.0, 10.0).unwrap(), Gravity::new(10.0).unwrap());
     /// let free = ContactLimits { slopes: SlopeInterval::ALL, speed_max_m_s: 10.0 };
     /// // Flat, q = 1.25: n^2 - 2.5 n + 1 = (n - 0.5)(n - 2); a take-off of 45 degrees or more leaves 1 to 2.
     /// let steep = ContactLimits { slopes: SlopeInterval { lower: 1.0, upper: f64::INFINITY }, ..free };
@@ -64,7 +69,7 @@ impl FlightEnvelope {
     /// ```
     #[inline]
     pub fn lofts(&self, sight: LineOfSight, takeoff: ContactLimits, landing: ContactLimits) -> SlopeInterval {
-        limits::speeds(sight, takeoff.speed_max_m_s, landing.speed_max_m_s, self.gravity_m_s2)
+        limits::speeds(sight, takeoff.speed_max_m_s, landing.speed_max_m_s, self.gravity.m_s2())
             .intersect(limits::takeoff_cone(sight, takeoff.slopes.intersect(self.mechanical)))
             .intersect(limits::landing_cone(sight, landing.slopes))
             .intersect(self.machine(sight))
@@ -73,9 +78,10 @@ impl FlightEnvelope {
     /// The lofts that the machine's greatest height and longest flight allow.
     #[inline]
     pub fn machine(&self, sight: LineOfSight) -> SlopeInterval {
-        let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
-        match self.hopper.flight_time_max_s {
-            Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),
+        let apex =
+            self.hopper.limits().apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
+        match self.hopper.limits().flight_time_max_s {
+            Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity.m_s2())),
             None => apex,
         }
     }

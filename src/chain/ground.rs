@@ -5,7 +5,7 @@ use crate::{quantity::Angle, world::FrictionCone};
 
 /// What the chain says of one segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ground {
+pub struct SegmentGround {
     /// How the constraints are stated.
     pub form: GroundForm,
     /// No take-off, no landing; flying over is allowed.
@@ -31,7 +31,7 @@ pub enum GroundForm {
     },
 }
 
-impl Ground {
+impl SegmentGround {
     /// Flat across, all else from the scenario: what a chain of bare `x_m,z_m` says.
     pub const BARE: Self =
         Self { form: GroundForm::Surface { friction: None, cross_slope: Angle::from_radians(0.0) }, keep_out: false };

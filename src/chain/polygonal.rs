@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Ground, GroundForm, OffChain, Site, Station};
+use super::{GroundForm, OffChain, SegmentGround, Site, Station};
 use crate::{
     quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
     terrain::{Profile, ProfilePoint},
@@ -15,7 +15,7 @@ pub struct PolygonalChain {
     vertices: Vec<ChainPoint>,
     /// Slope dz/dx of each segment.
     slopes: Vec<f64>,
-    grounds: Vec<Ground>,
+    grounds: Vec<SegmentGround>,
     map: Option<Vec<MapPoint>>,
     /// Vertices where the plane of travel turns, rising.
     bends: Vec<VertexId>,
@@ -98,7 +98,7 @@ impl PolygonalChain {
     ///
     /// # Errors
     /// [`InvalidChain`] with every problem there is.
-    pub fn new(vertices: Vec<ChainPoint>, grounds: Vec<Ground>, map: Option<Vec<MapPoint>>) -> Result<Self, InvalidChain> {
+    pub fn new(vertices: Vec<ChainPoint>, grounds: Vec<SegmentGround>, map: Option<Vec<MapPoint>>) -> Result<Self, InvalidChain> {
         let mut problems = Vec::new();
         if vertices.len() < 2 {
             problems.push(ChainProblem::TooFewVertices { count: vertices.len() });
@@ -151,7 +151,7 @@ impl PolygonalChain {
     /// assert_eq!(chain.slopes(), [0.5]);
     /// ```
     pub fn bare(vertices: Vec<ChainPoint>) -> Result<Self, InvalidChain> {
-        let grounds = vec![Ground::BARE; vertices.len().saturating_sub(1)];
+        let grounds = vec![SegmentGround::BARE; vertices.len().saturating_sub(1)];
         Self::new(vertices, grounds, None)
     }
 
@@ -165,7 +165,7 @@ impl PolygonalChain {
         let grounds = profile
             .facets
             .iter()
-            .map(|facet| Ground {
+            .map(|facet| SegmentGround {
                 form: GroundForm::Surface { friction: facet.friction.or(friction), cross_slope: facet.cross_slope },
                 keep_out: facet.keep_out,
             })
@@ -252,7 +252,7 @@ impl PolygonalChain {
     }
 
     /// What the chain says of each segment.
-    pub fn grounds(&self) -> &[Ground] {
+    pub fn grounds(&self) -> &[SegmentGround] {
         &self.grounds
     }
 

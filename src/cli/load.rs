@@ -4,6 +4,7 @@ use std::{
     fs,
     io::Read,
     path::{Component, Path, PathBuf},
+    sync::Arc,
 };
 
 use chta::{
@@ -101,8 +102,8 @@ impl End {
 
 impl Loaded {
     /// The hop test over the chain.
-    pub(crate) fn hop_test(&self) -> HopTest<'_> {
-        HopTest::new(&self.prepared.chain, &self.scenario.hopper, self.scenario.body.gravity_m_s2)
+    pub(crate) fn hop_test(&self) -> HopTest {
+        HopTest::new(Arc::clone(&self.prepared.chain))
     }
 
     /// Start and goal, or what is missing.

@@ -35,7 +35,7 @@ impl CostToGo {
     ///
     /// # Complexity
     /// With V nodes, W of them in reach of each and S vertices flown past: O(V W S + V W log V) time, O(V W) heap entries at worst.
-    pub fn of(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions) -> Self {
+    pub fn of(test: &HopTest, nodes: NodeSet, options: &SearchOptions) -> Self {
         let costs = costs_to_go(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split));
         let mut in_order: Vec<NodeId> = (0..costs.len()).map(NodeId).filter(|node| costs[node.index()].is_some()).collect();
         in_order.sort_by_key(|node| (costs[node.index()], *node));
@@ -47,7 +47,7 @@ impl CostToGo {
     ///
     /// # Complexity
     /// As [`of`](Self::of), and a risk estimate for every edge on some path within the hop budget.
-    pub fn with_reliability(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions, reliability: &ReliabilityOptions) -> Self {
+    pub fn with_reliability(test: &HopTest, nodes: NodeSet, options: &SearchOptions, reliability: &ReliabilityOptions) -> Self {
         let costs = Self::of(test, nodes, options);
         let policy = ReliabilityPolicy::of(&costs.graph(test), &costs.costs, options, reliability);
         Self { policy: Some(policy), ..costs }
@@ -75,7 +75,7 @@ impl CostToGo {
     }
 
     /// The graph that the costs are counted in.
-    fn graph<'g>(&'g self, test: &'g HopTest<'g>) -> HopGraph<'g> {
+    fn graph<'g>(&'g self, test: &'g HopTest) -> HopGraph<'g> {
         HopGraph::new(test, &self.nodes, self.options.effort, self.options.takeoff, self.options.split)
     }
 
@@ -119,7 +119,7 @@ impl CostToGo {
     /// Where reliability counts: of the successors of the nearest node, the most reliable first, the first that is feasible from the station
     /// itself (risk changes little between a node and the positions near it, feasibility may). Otherwise, and where none of them is
     /// feasible: the [cheapest](Self::cheapest_leg).
-    pub fn best_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<Leg> {
+    pub fn best_leg(&self, test: &HopTest, from: &Station) -> Option<Leg> {
         let graph = self.graph(test);
         let leg_to = |node: &NodeId| {
             let landing = *self.nodes.station(*node);
@@ -137,7 +137,7 @@ impl CostToGo {
     ///
     /// # Complexity
     /// A hop test for each node in reach that could still be better than the best known.
-    pub fn cheapest_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<(Leg, Cost)> {
+    pub fn cheapest_leg(&self, test: &HopTest, from: &Station) -> Option<(Leg, Cost)> {
         let graph = self.graph(test);
         let stations = self.nodes.stations();
         let reach = OneHop::of(test);
@@ -177,7 +177,7 @@ struct OneHop {
 }
 
 impl OneHop {
-    fn of(test: &HopTest<'_>) -> Self {
+    fn of(test: &HopTest) -> Self {
         // A billionth more than the tolerance allows: rounding must not lose a hop that touches.
         let squared = |speed_m_s: f64| tolerant_speed_m_s(tolerant_speed_m_s(speed_m_s)) * tolerant_speed_m_s(speed_m_s);
         let (takeoff_m_s, landing_m_s) = test.chain().speed_bounds_m_s();
@@ -230,21 +230,21 @@ mod tests {
         chain::{ConstrainedChain, PolygonalChain},
         graph::{Outcome, PointSpacing, search},
         quantity::ChainPoint,
-        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+        world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
     };
 
-    fn rough_chain() -> (ConstrainedChain, Hopper) {
+    fn rough_chain() -> ConstrainedChain {
         let points = (0..60).map(|i| ChainPoint::new(f64::from(i), 0.5 * f64::from(i * i % 7) - 0.02 * f64::from(i))).collect();
-        let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(6.0, 6.0) };
+        let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(6.0, 6.0) }).unwrap();
         let grip = Some(Grip::Friction(FrictionCone::new(1.1).unwrap()));
-        let surface = Surface { grip, rest: RestSlope::Unlimited };
-        (ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, &surface).unwrap(), hopper)
+        let surface = SurfaceProperties { grip, rest: RestSlope::Unlimited };
+        ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, Gravity::new(1.6).unwrap(), &surface).unwrap()
     }
 
     #[test]
     fn the_cost_to_go_of_every_node_is_what_a_search_from_it_costs() {
-        let (chain, hopper) = rough_chain();
-        let test = HopTest::new(&chain, &hopper, 1.6);
+        let chain = rough_chain();
+        let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         for effort in Effort::ALL {
             let spacing = PointSpacing::PerSegment(1);
@@ -273,8 +273,8 @@ mod tests {
 
     #[test]
     fn the_cheapest_leg_is_the_cheapest_of_all_legs() {
-        let (chain, hopper) = rough_chain();
-        let test = HopTest::new(&chain, &hopper, 1.6);
+        let chain = rough_chain();
+        let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         let spacing = PointSpacing::PerSegment(1);
         for effort in Effort::ALL {

@@ -40,11 +40,8 @@ fn next_vertex(site: Site, direction: Direction, last: usize) -> Option<usize> {
 /// What a segment is to a traveller.
 fn facet(segment: &SegmentConstraints, direction: Direction) -> Facet {
     let contact = |contact| segment.check_contact(contact, direction);
-    let hold = Hold::Stated {
-        line: segment.stated(direction),
-        takeoff: contact(Contact::Takeoff),
-        landing: contact(Contact::Landing),
-    };
+    let hold =
+        Hold::Stated { line: segment.stated(direction), takeoff: contact(Contact::Takeoff), landing: contact(Contact::Landing) };
     Facet { refusal: segment.refusal(), hold }
 }
 
@@ -56,7 +53,7 @@ impl Surface for ConstrainedChain {
     }
 
     fn gravity_m_s2(&self) -> f64 {
-        Self::gravity_m_s2(self)
+        self.gravity().m_s2()
     }
 
     fn contact_point(&self, station: &Station) -> ContactPoint {

@@ -6,7 +6,7 @@ use nalgebra::{Point3, Vector2};
 
 use super::{
     ContactPoint, Element, Facet, FirstContact, Flight, LiftoffVelocity, Side, Surface, TakeoffWindows, TouchdownState, Windows,
-    chain::{direction_of, heading_of},
+    chain::direction_of,
     first_contact::{ContactFailure, PLACE_TOLERANCE, Realization, check_landing, holds},
 };
 use crate::{
@@ -39,6 +39,7 @@ pub struct ChainPosition {
 }
 
 impl ChainPosition {
+    /// The position of a station, in the plane of the chain.
     pub const fn on_chain(station: Station) -> Self {
         Self { station, left_m: 0.0 }
     }
@@ -333,7 +334,11 @@ impl FirstContact for ChainGround {
     }
 
     fn first_contact(
-        &self, from: &ChainPosition, liftoff: &LiftoffVelocity, aim: &ChainPosition) -> Flight<ChainPosition, SegmentId> {
+        &self,
+        from: &ChainPosition,
+        liftoff: &LiftoffVelocity,
+        aim: &ChainPosition,
+    ) -> Flight<ChainPosition, SegmentId> {
         let direction = direction_of(liftoff.heading);
         let g = self.test.gravity_m_s2();
         let segment_under = from.station.ruling_segment(Contact::Takeoff, direction, self.test.chain().segments().len());

@@ -8,13 +8,13 @@ use super::{ContactPoint, Element, Facet, Frame, Hold, Realization, Side, Surfac
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, limits},
     chain::{
-        ConstrainedChain, ConstraintProblem, ConstraintProblems, ContactRule, GroundForm, GroundRefusal, InvalidChain,
-        PolygonalChain, SegmentConstraints, SegmentGround, resolve_constraints,
+        ConstrainedChain, ConstraintProblem, ConstraintProblems, ContactRule, GroundForm, InvalidChain, PolygonalChain,
+        SegmentConstraints, SegmentGround, resolve_constraints,
     },
     hop::HopTest,
-    quantity::{Angle, ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
+    quantity::{ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
     terrain::{OverlaidDem, Profile, ProfileFacet, TerrainError, Triangles},
-    world::{Contact, Direction, FrictionCone, Grip, Hopper, RestSlope, SurfaceProperties},
+    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
 
 /// How far before a landing, or beyond a take-off, friction and keep-out zones are looked up, m: a landing obeys the ground just flown
@@ -54,7 +54,7 @@ pub struct MapPosition {
 pub(super) type Gradient = Vector2<f64>;
 
 /// Why a slice of a DEM makes no chain.
-#[derive(Clone, Debug, thiserror::Error)]
+#[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SliceProblem {
     /// The terrain, or what lies over it.
@@ -72,7 +72,7 @@ impl DemGround {
     /// The ground of a DEM for a hopper under a gravity.
     ///
     /// `surface` holds where the friction raster gives nothing.
-    pub fn new(terrain: OverlaidDem, hopper: &Hopper, gravity_m_s2: f64, surface: &SurfaceProperties) -> Self {
+    pub fn new(terrain: OverlaidDem, hopper: &Hopper, gravity: Gravity, surface: &SurfaceProperties) -> Self {
         let dem = terrain.dem();
         let (low_m, high_m) = dem.elevation_range_m();
         let (bounds, map) = (dem.bounds(), dem.georeference());
@@ -82,7 +82,7 @@ impl DemGround {
             height_rounding_m: ULPS * f64::EPSILON * low_m.abs().max(high_m.abs()),
             position_rounding_m,
             resolution_m: 4.0 * (ON_THE_LINE * map.dx_m().min(map.dy_m())).max(position_rounding_m),
-            envelope: FlightEnvelope::new(hopper, gravity_m_s2),
+            envelope: FlightEnvelope::new(hopper, gravity),
             surface: *surface,
             realization: Realization::default(),
             terrain,
@@ -132,7 +132,7 @@ impl DemGround {
 
     fn constrained(&self, profile: &Profile) -> Result<ConstrainedChain, SliceProblem> {
         let chain = PolygonalChain::from_profile(profile, self.constant_friction())?;
-        Ok(ConstrainedChain::new(chain, self.hopper(), self.gravity_m_s2(), &self.surface)?)
+        Ok(ConstrainedChain::new(chain, self.hopper(), self.envelope.gravity(), &self.surface)?)
     }
 
     pub(super) fn triangles(&self) -> Triangles<'_> {
@@ -156,7 +156,12 @@ impl DemGround {
     }
 
     /// What the nominal ground allows on a facet met along a heading, as a slice along that heading has it.
-    fn constraints(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint) -> Result<SegmentConstraints, ConstraintProblem> {
+    fn constraints(
+        &self,
+        gradient: Gradient,
+        heading: Vector2<f64>,
+        beside: MapPoint,
+    ) -> Result<SegmentConstraints, ConstraintProblem> {
         let friction = self.nominal_friction(beside);
         let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
         let keep_out = self.terrain.overlays().keeps_out(beside);
@@ -185,7 +190,7 @@ impl DemGround {
         let (ahead, before) = (from.at + heading * BESIDE_M, to.at - heading * BESIDE_M);
         let takeoff = self.allowed(triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
         let landing = self.allowed(triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
-        let mut lofts = self.envelope.lofts(sight, takeoff.limits(), landing.limits());
+        let mut lofts = self.envelope.lofts(sight, takeoff.contact_limits(), landing.contact_limits());
         if lofts.is_empty() || lofts.upper <= 0.0 {
             return None;
         }

@@ -19,8 +19,9 @@ impl DemGround {
     /// Height of a post as this trial finds it.
     #[inline]
     fn heights<'a>(&'a self, triangles: Triangles<'a>) -> impl Fn(usize, usize) -> f64 + 'a {
-        let nominal = triangles.nominal();
-        let origin = self.terrain().dem().georeference().north_west();
+        let dem = self.terrain().dem();
+        let nominal = move |row, col| dem.elevation(row, col).unwrap_or(f64::NAN);
+        let origin = dem.georeference().north_west();
         move |row, col| match &self.realization.heights {
             None => nominal(row, col),
             Some(field) => {
@@ -127,8 +128,7 @@ impl FirstContact for DemGround {
         }
     }
 
-    fn first_contact(
-        &self, from: &MapPosition, liftoff: &LiftoffVelocity, aim: &MapPosition) -> Flight<MapPosition, Gradient> {
+    fn first_contact(&self, from: &MapPosition, liftoff: &LiftoffVelocity, aim: &MapPosition) -> Flight<MapPosition, Gradient> {
         let g = self.gravity_m_s2();
         let across = liftoff.horizontal_m_s;
         let (slope, curvature) = (liftoff.vertical_m_s / across, g / (2.0 * across * across));
@@ -202,7 +202,13 @@ impl FirstContact for DemGround {
         }
     }
 
-    fn displaced(&self, from: &MapPosition, heading: Vector2<f64>, along_m: f64, left_m: f64) -> Result<MapPosition, ContactFailure> {
+    fn displaced(
+        &self,
+        from: &MapPosition,
+        heading: Vector2<f64>,
+        along_m: f64,
+        left_m: f64,
+    ) -> Result<MapPosition, ContactFailure> {
         if along_m == 0.0 && left_m == 0.0 {
             return Ok(*from);
         }
@@ -224,11 +230,7 @@ impl FirstContact for DemGround {
 }
 
 fn velocity(liftoff: &LiftoffVelocity) -> Vector3<f64> {
-    Vector3::new(
-        liftoff.heading.x * liftoff.horizontal_m_s,
-        liftoff.heading.y * liftoff.horizontal_m_s,
-        liftoff.vertical_m_s,
-    )
+    Vector3::new(liftoff.heading.x * liftoff.horizontal_m_s, liftoff.heading.y * liftoff.horizontal_m_s, liftoff.vertical_m_s)
 }
 
 /// Whether a facet of a gradient, with such friction, holds a direction away from it.

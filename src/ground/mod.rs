@@ -23,6 +23,8 @@ pub use chain_flight::{ChainGround, ChainPosition};
 pub use dem::{DemGround, MapPosition, SliceProblem};
 pub use first_contact::{ContactFailure, FirstContact, Flight, LiftoffVelocity, Realization, TouchdownState};
 pub use height_field::HeightField;
-pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostRefusal};
 pub(crate) use posts::Offset;
+pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostRefusal};
+#[cfg(test)]
+pub(crate) use posts::{OffsetTable, Spacing};
 pub use surface::{ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Windows};

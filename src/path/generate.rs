@@ -31,7 +31,7 @@ impl TooManyHops {
 ///
 /// # Errors
 /// [`TooManyHops`].
-pub fn generate(test: &HopTest<'_>, legs: &[Leg], choice: TakeoffChoice, split: Split) -> Result<HopPath, TooManyHops> {
+pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Split) -> Result<HopPath, TooManyHops> {
     let count = |leg: &Leg| match leg.edge {
         Edge::Hop(_) => 1,
         Edge::Along(along) => along.hops(),
@@ -59,14 +59,14 @@ impl HopPath {
 }
 
 /// The hop of a leg that takes one.
-fn single(test: &HopTest<'_>, leg: &Leg, lofts: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
+fn single(test: &HopTest, leg: &Leg, lofts: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
     let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
     let arc = Arc::new(sight, choice.loft(sight, lofts), test.gravity_m_s2());
     Some(hop(test, leg.takeoff, leg.landing, &arc, lofts, Limit::TakeoffSpeed))
 }
 
 /// The hops of a leg that runs along one segment.
-fn along_segment(test: &HopTest<'_>, leg: &Leg, along: &SegmentHops, choice: TakeoffChoice, split: Split) -> Vec<Hop> {
+fn along_segment(test: &HopTest, leg: &Leg, along: &SegmentHops, choice: TakeoffChoice, split: Split) -> Vec<Hop> {
     let Some(direction) = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m) else { return Vec::new() };
     let landings = full_reach_m(leg, along, direction, split).unwrap_or_else(|| equal_m(leg, along, direction));
     let mut hops = Vec::with_capacity(landings.len() + 1);
@@ -114,7 +114,7 @@ fn equal_m(leg: &Leg, along: &SegmentHops, direction: Direction) -> Vec<f64> {
 /// A hop with all that is said of it.
 ///
 /// `otherwise` is the limit named where the set is one point that rounding loses.
-fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, lofts: SlopeInterval, otherwise: Limit) -> Hop {
+fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc, lofts: SlopeInterval, otherwise: Limit) -> Hop {
     let direction = if landing.point.x_m < takeoff.point.x_m { Direction::Reverse } else { Direction::Forward };
     let limit = |contact, station: &Station| {
         test.chain().check_contact(station, contact, direction).map_or(0.0, |rule| rule.speed_max_m_s())
@@ -156,7 +156,7 @@ fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
         energy_j_kg,
         peak_takeoff_speed_m_s: hops.iter().map(|h| h.takeoff_speed_m_s).fold(0.0, f64::max),
         ground_distance_m: sum(Hop::run_m),
-        energy_j: hopper.mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
-        mission_time_s: hopper.rest_time_s.map(|rest_time_s| flight_time_s + rest_time_s * rests),
+        energy_j: hopper.limits().mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
+        mission_time_s: hopper.limits().rest_time_s.map(|rest_time_s| flight_time_s + rest_time_s * rests),
     }
 }

@@ -7,7 +7,7 @@ use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, P
 
 use super::path_record::{HopRecord, tenth_digit};
 use crate::{
-    path::{Hop, HopPath, MapEnds},
+    path::{Hop, HopPath},
     quantity::MapPoint,
     terrain::{MapProjection, Profile},
 };
@@ -47,7 +47,10 @@ fn path_features(
         let (takeoff, landing) = hop.map_ends()?;
         let serde_json::Value::Object(mut properties) = serde_json::to_value(row).ok()? else { return None };
         properties.insert("kind".to_owned(), "hop".into());
-        features.push(feature(GeometryValue::LineString { coordinates: arc_positions(hop, (takeoff, landing), gravity_m_s2) }, properties));
+        features.push(feature(
+            GeometryValue::LineString { coordinates: arc_positions(hop, (takeoff, landing), gravity_m_s2) },
+            properties,
+        ));
         if row.hop == 1 {
             features.push(contact(0, takeoff, hop.takeoff.point_m.z, projection));
         }
@@ -114,12 +117,12 @@ fn feature(geometry: GeometryValue, properties: JsonObject) -> Feature {
 }
 
 /// The arc of a hop, in three dimensions.
-fn arc_positions(hop: &Hop, map: &MapEnds, gravity_m_s2: f64) -> Vec<Position> {
-    let along = map.landing - map.takeoff;
+fn arc_positions(hop: &Hop, (takeoff, landing): (MapPoint, MapPoint), gravity_m_s2: f64) -> Vec<Position> {
+    let along = landing - takeoff;
     hop.flight_points(gravity_m_s2, POINTS_PER_ARC + 1)
         .into_iter()
         .map(|(fraction, point)| {
-            let place = map.takeoff + along * fraction;
+            let place = takeoff + along * fraction;
             Position::from([place.x, place.y, point.z_m])
         })
         .collect()

@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use crate::{
-    path::{Hop, HopPath, MapEnds, Totals},
+    path::{Hop, HopPath, Totals},
+    quantity::MapPoint,
     terrain::MapProjection,
 };
 
@@ -81,8 +82,8 @@ pub struct LonLatRecord {
 }
 
 impl LonLatRecord {
-    fn new(map: &MapEnds, projection: &MapProjection) -> Option<Self> {
-        let [takeoff, landing] = [map.takeoff, map.landing].map(|at| projection.lon_lat(at));
+    fn new((takeoff, landing): (MapPoint, MapPoint), projection: &MapProjection) -> Option<Self> {
+        let [takeoff, landing] = [takeoff, landing].map(|at| projection.lon_lat(at));
         let (takeoff, landing) = (takeoff?, landing?);
         Some(Self {
             takeoff_lon_deg: tenth_digit(takeoff.lon_deg),

@@ -13,9 +13,9 @@ use sha2::{Digest, Sha256};
 use super::{BodyChoice, Scenario, TerrainSource};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
+    ground::DemGround,
     path::Hop,
     quantity::MapPoint,
-    ground::DemGround,
     terrain::{
         self, CoordinateSystem, Dem, MapBounds, MapPlace, MapProjection, OverlaidDem, OverlayEffect, Profile, TerrainError,
         check_scale, open_dem, read_friction_raster, read_keep_out, read_mesh, slice_legs, slice_mesh,
@@ -27,7 +27,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The chain with its constraints.
-    pub chain: ConstrainedChain,
+    pub chain: Arc<ConstrainedChain>,
     /// Where the journey begins.
     pub start: Option<Station>,
     /// Where it ends.
@@ -166,7 +166,7 @@ fn resolved(
     projection: Option<MapProjection>,
     warnings: Vec<String>,
 ) -> Result<Prepared, PipelineError> {
-    let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface)?;
+    let chain = Arc::new(ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)?);
     let station = |which, x_m: Option<f64>| {
         x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
     };
@@ -262,7 +262,7 @@ impl Overlays {
     /// The ground of a whole DEM under these overlays, for a scenario's hopper, gravity and surface.
     pub fn ground(&self, dem: Dem, scenario: &Scenario) -> DemGround {
         let terrain = OverlaidDem::new(dem, Arc::clone(&self.overlays));
-        DemGround::new(terrain, &scenario.hopper, scenario.body.gravity_m_s2, &scenario.surface)
+        DemGround::new(terrain, &scenario.hopper, scenario.body.gravity, &scenario.surface)
     }
 
     /// The files of a scenario that are read, from its folder.
@@ -272,7 +272,8 @@ impl Overlays {
 
     /// A sentence for each overlay without effect on a DEM of these bounds.
     pub fn without_effect_on_dem(&self, bounds: MapBounds) -> Vec<String> {
-        let raster = self.overlays.friction().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
+        let raster =
+            self.overlays.friction().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
         let keep_out = self.overlays.keep_out().filter(|zones| !zones.meets(bounds)).map(|zones| zones.without_effect("the DEM"));
         raster.into_iter().chain(keep_out).collect()
     }
@@ -361,7 +362,7 @@ impl Extremes {
 pub fn constant_gravity_warnings(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
     let Some(radius_m) = body.radius_m else { return Vec::new() };
     let name = body.name.as_deref().unwrap_or("the body");
-    let escape_m_s = Body { name: "", gravity_m_s2: body.gravity_m_s2, radius_m, source: "" }.escape_speed_m_s();
+    let escape_m_s = Body { name: "", gravity: body.gravity, radius_m, source: "" }.escape_speed_m_s();
     let Extremes { range_m, height_m, speed_m_s } = extremes;
     let lengths = [("range", range_m), ("highest point above its take-off", height_m)];
     let mut warnings: Vec<String> = lengths

@@ -9,7 +9,7 @@ use crate::{
     hop::Split,
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace},
-    world::{Body, FrictionCone, Grip, Hopper, KNOWN_BODIES, RestSlope, Surface},
+    world::{Body, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES, RestSlope, SurfaceProperties},
 };
 
 /// Gravity, and the body it belongs to where that is known.
@@ -17,8 +17,8 @@ use crate::{
 pub struct BodyChoice {
     /// The known body's name.
     pub name: Option<String>,
-    /// Gravity, m/s^2.
-    pub gravity_m_s2: f64,
+    /// Gravity.
+    pub gravity: Gravity,
     /// Mean radius, m, where known.
     pub radius_m: Option<f64>,
 }
@@ -79,7 +79,7 @@ pub struct Scenario {
     /// The robot.
     pub hopper: Hopper,
     /// The ground's grip.
-    pub surface: Surface,
+    pub surface: SurfaceProperties,
     /// Raster of friction coefficients, from the scenario's folder.
     pub friction_raster: Option<PathBuf>,
     /// Keep-out zones, from the scenario's folder.
@@ -159,8 +159,8 @@ impl Scenario {
         let no_grip = self.surface.grip.is_none() && self.friction_raster.is_none();
         let from_slope = " (or surface.takeoff_from_slope_deg and surface.landing_from_slope_deg)";
         let keys = [
-            (self.hopper.takeoff_speed_max_m_s.is_infinite(), "hopper.takeoff_speed_max_m_s", "8", ""),
-            (self.hopper.landing_speed_max_m_s.is_infinite(), "hopper.landing_speed_max_m_s", "8", ""),
+            (self.hopper.limits().takeoff_speed_max_m_s.is_infinite(), "hopper.takeoff_speed_max_m_s", "8", ""),
+            (self.hopper.limits().landing_speed_max_m_s.is_infinite(), "hopper.landing_speed_max_m_s", "8", ""),
             (no_grip, "surface.friction_coefficient", "0.6", from_slope),
         ];
         let missing = || keys.iter().filter(|(missing, ..)| *missing);
@@ -179,7 +179,8 @@ impl Scenario {
 
 /// Gravity and radius: from a known body, from numbers, or from both.
 fn body(entries: &mut Entries) -> Option<BodyChoice> {
-    let gravity = entries.number("body", "gravity_m_s2");
+    // The catalogue's range lies within that of `Gravity`.
+    let gravity = entries.number("body", "gravity_m_s2").and_then(|m_s2| Gravity::new(m_s2).ok());
     let radius = entries.number("body", "radius_m");
     let name = entries.text("body", "name").map(str::to_owned);
     match (&name, gravity) {
@@ -190,11 +191,11 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
             };
             Some(BodyChoice {
                 name: Some(known.name.to_owned()),
-                gravity_m_s2: gravity.unwrap_or(known.gravity_m_s2),
+                gravity: gravity.unwrap_or(known.gravity),
                 radius_m: Some(radius.unwrap_or(known.radius_m)),
             })
         }
-        (None, Some(gravity_m_s2)) => Some(BodyChoice { name: None, gravity_m_s2, radius_m: radius }),
+        (None, Some(gravity)) => Some(BodyChoice { name: None, gravity, radius_m: radius }),
         (None, None) => {
             // A gravity that was given but refused has told its own problem.
             if !entries.problems().iter().any(|problem| problem.message.contains("body.")) {
@@ -220,7 +221,7 @@ fn unknown_body(entries: &mut Entries, name: &str) {
 /// The robot; what is absent does not limit.
 fn hopper(entries: &mut Entries) -> Hopper {
     let number = |name| entries.number("hopper", name);
-    let hopper = Hopper {
+    let limits = HopperLimits {
         takeoff_speed_max_m_s: number("takeoff_speed_max_m_s").unwrap_or(f64::INFINITY),
         landing_speed_max_m_s: number("landing_speed_max_m_s").unwrap_or(f64::INFINITY),
         clearance_m: number("clearance_m").unwrap_or(0.0),
@@ -231,7 +232,7 @@ fn hopper(entries: &mut Entries) -> Hopper {
         mass_kg: number("mass_kg"),
         rest_time_s: number("rest_time_s"),
     };
-    if let (Some(min), Some(max)) = (hopper.takeoff_angle_min, hopper.takeoff_angle_max)
+    if let (Some(min), Some(max)) = (limits.takeoff_angle_min, limits.takeoff_angle_max)
         && min > max
     {
         let place = entries.place("hopper", "takeoff_angle_min_deg").unwrap_or(Place::Nowhere);
@@ -241,12 +242,20 @@ fn hopper(entries: &mut Entries) -> Hopper {
             max.degrees()
         );
         entries.problem(place, message, "swap the two or widen the range");
+        return Hopper::UNLIMITED;
     }
-    hopper
+    // The catalogue's ranges lie within those of a hopper; should they ever not, the hopper's own words are the problem.
+    Hopper::new(limits).unwrap_or_else(|InvalidHopper(problems)| {
+        for problem in problems {
+            let place = entries.place("hopper", problem.key).unwrap_or(Place::Nowhere);
+            entries.problem(place, problem.to_string(), "give a value in that range");
+        }
+        Hopper::UNLIMITED
+    })
 }
 
 /// Friction or angles from the slope, and the rest slope.
-fn surface(entries: &mut Entries) -> Surface {
+fn surface(entries: &mut Entries) -> SurfaceProperties {
     let friction = entries.number("surface", "friction_coefficient");
     let offsets = |entries: &Entries, name| entries.pair("surface", name).map(|[min, max]| AngleInterval::from_degrees(min, max));
     let takeoff = offsets(entries, "takeoff_from_slope_deg");
@@ -277,11 +286,11 @@ fn surface(entries: &mut Entries) -> Surface {
             _ => RestSlope::Unlimited,
         },
     };
-    Surface { grip, rest }
+    SurfaceProperties { grip, rest }
 }
 
 /// The files of the overlays on the terrain: friction raster and keep-out zones.
-fn overlays(entries: &mut Entries, surface: &Surface, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 2] {
+fn overlays(entries: &mut Entries, surface: &SurfaceProperties, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 2] {
     let own_columns = [("friction_raster", "friction_coefficient"), ("keep_out", "keep_out")];
     if matches!(terrain, Some(TerrainSource::Chain { .. })) {
         for (name, column) in own_columns {

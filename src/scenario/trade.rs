@@ -235,7 +235,7 @@ pub struct Varied {
 /// # Errors
 /// [`TooManyNodes`].
 pub fn verdict(
-    test: &HopTest<'_>,
+    test: &HopTest,
     (start, goal): (Station, Station),
     options: &SearchOptions,
     proof_budget_cells: Option<usize>,
@@ -345,7 +345,7 @@ impl<'a> Trade<'a> {
         let Some(ends) = start.zip(goal) else {
             return Err(self.refused(values, "found no start or no goal: give --start X and --goal X along the chain"));
         };
-        let test = HopTest::new(&chain, &scenario.hopper, scenario.body.gravity_m_s2);
+        let test = HopTest::new(chain);
         let answer =
             verdict(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
         let keys = self.swept.iter().map(|v| v.key.path());

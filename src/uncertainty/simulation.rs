@@ -14,7 +14,9 @@ use super::{
 };
 use crate::{
     flight::{Command, Errors, TrialDraws, Uncertainty},
-    ground::{ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, Surface, heading_of},
+    ground::{
+        ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, Surface, heading_of,
+    },
     path::Hop,
 };
 
@@ -235,9 +237,8 @@ fn command<C>(hop: &Hop, heading: Vector2<f64>, aim: C) -> Command<C> {
 
 /// The plan along a chain.
 fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError> {
-    let position = |point: &ContactPoint, hop: usize| {
-        point.station.map(ChainPosition::on_chain).ok_or(SimulationError::NotOnChain { hop })
-    };
+    let position =
+        |point: &ContactPoint, hop: usize| point.station.map(ChainPosition::on_chain).ok_or(SimulationError::NotOnChain { hop });
     let planned = mission.path.hops.iter().enumerate().map(|(i, hop)| {
         let (from, aim) = (position(&hop.takeoff, i + 1)?, position(&hop.landing, i + 1)?);
         Ok(PlannedHop { from, command: command(hop, heading_of(hop.direction), aim) })

@@ -30,7 +30,7 @@ pub enum RestSlope {
 
 /// The ground where the chain itself says nothing.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Surface {
+pub struct SurfaceProperties {
     /// What keeps the hopper from sliding; `None` where every segment of the chain says it.
     pub grip: Option<Grip>,
     /// What it may rest on.

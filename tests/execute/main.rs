@@ -13,7 +13,7 @@ use chta::{
     hop::HopTest,
     path::{Flight, Hop, HopPath, StatedValue, Totals, ViolatedLimit, Violation, execute},
     quantity::{Angle, AngleInterval, ChainPoint, VertexId},
-    world::{Direction, Grip, Hopper, Limit, RestSlope, Surface},
+    world::{Direction, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
 use world::{Dice, World};
 
@@ -44,9 +44,9 @@ fn thousands_of_random_paths_pass_unspoiled() {
     for world_number in 0..20_000 {
         let world = World::random(&mut dice);
         let Some(chain) = world.chain() else { continue };
-        let test = HopTest::new(&chain, &world.hopper, world.gravity_m_s2);
+        let test = HopTest::new(chain.clone());
         let Some(path) = world.plan(&test) else { continue };
-        let execution = execute(&chain, &world.hopper, world.gravity_m_s2, &path, Some(world.ends(&chain)));
+        let execution = execute(&chain, &path, Some(world.ends(&chain)));
         let said: Vec<String> = execution.violations.iter().map(ToString::to_string).collect();
         let ends: Vec<_> = path.hops.iter().map(|h| (h.lower_limit, h.upper_limit)).collect();
         assert!(execution.passes(), "world {world_number}: {said:#?}\n{ends:?}\n{world:?}");
@@ -76,7 +76,7 @@ fn a_changed_number_is_named() {
     for _ in 0..400 {
         let world = World::random(&mut dice);
         let Some(chain) = world.chain() else { continue };
-        let test = HopTest::new(&chain, &world.hopper, world.gravity_m_s2);
+        let test = HopTest::new(chain.clone());
         let Some(path) = world.plan(&test) else { continue };
         let Some(last) = path.hops.len().checked_sub(1) else { continue };
         let changes: [(StatedValue, Change); 8] = [
@@ -101,7 +101,7 @@ fn a_changed_number_is_named() {
             if value == StatedValue::Heading && path.hops[last].map.is_none() {
                 continue;
             }
-            let execution = execute(&chain, &world.hopper, world.gravity_m_s2, &other, None);
+            let execution = execute(&chain, &other, None);
             let named = execution.violations.iter().any(|v| v.hop == last + 1 && v.limit == ViolatedLimit::StatedValue(value));
             assert!(named, "{} changed, but found {:?}", value.name(), execution.violations);
             changed[i] += 1;
@@ -117,11 +117,11 @@ fn a_path_must_join_its_ends_without_a_gap() {
     while checked < 20 {
         let world = World::random(&mut dice);
         let Some(chain) = world.chain() else { continue };
-        let test = HopTest::new(&chain, &world.hopper, world.gravity_m_s2);
+        let test = HopTest::new(chain.clone());
         let Some(path) = world.plan(&test).filter(|path| path.hops.len() > 2) else { continue };
         let (start, goal) = world.ends(&chain);
         let gaps = |path: &_, ends| {
-            let execution = execute(&chain, &world.hopper, world.gravity_m_s2, path, ends);
+            let execution = execute(&chain, path, ends);
             execution.violations.iter().filter(|v| v.limit == ViolatedLimit::Continuity).map(|v| v.hop).collect::<Vec<_>>()
         };
         assert!(gaps(&path, Some((start, goal))).is_empty());
@@ -141,9 +141,18 @@ fn over_a_needle(clearance_m: f64) -> (ConstrainedChain, Hopper) {
     let points = [(0.0, 0.0), (1.9, 0.0), (2.0, 1.0), (2.1, 0.0), (6.0, 0.0)];
     let grip =
         Grip::FromSlope { takeoff: AngleInterval::from_degrees(10.0, 80.0), landing: AngleInterval::from_degrees(-80.0, -10.0) };
-    let hopper = Hopper { clearance_m, ..Hopper::with_speeds(20.0, 20.0) };
+    let hopper = Hopper::new(HopperLimits { clearance_m, ..HopperLimits::with_speeds(20.0, 20.0) }).unwrap();
     let chain = PolygonalChain::bare(points.map(|(x, z)| ChainPoint::new(x, z)).to_vec()).unwrap();
-    (ConstrainedChain::new(chain, &hopper, &Surface { grip: Some(grip), rest: RestSlope::Unlimited }).unwrap(), hopper)
+    (
+        ConstrainedChain::new(
+            chain,
+            &hopper,
+            Gravity::new(10.0).unwrap(),
+            &SurfaceProperties { grip: Some(grip), rest: RestSlope::Unlimited },
+        )
+        .unwrap(),
+        hopper,
+    )
 }
 
 /// A hop from 0 to 4 m with a take-off slope `m`, flown at g = 10: `z = m d (1 - d / 4)`.
@@ -168,7 +177,7 @@ fn flown_over_the_needle(m: f64, clearance_m: f64, change: Change) -> (Option<Fl
         upper_limit: Limit::TakeoffCone,
     };
     change(&mut hop);
-    let execution = execute(&chain, &hopper, 10.0, &HopPath { hops: vec![hop], totals: Totals::default() }, None);
+    let execution = execute(&chain, &HopPath { hops: vec![hop], totals: Totals::default() }, None);
     (execution.flights[0].clone(), execution.violations)
 }
 

@@ -2,7 +2,7 @@
 
 use chta::{
     ballistics::{Arc, LineOfSight},
-    chain::{ConstrainedChain, Ground, GroundForm},
+    chain::{ConstrainedChain, GroundForm, SegmentGround},
     hop::HopTest,
     path::{Execution, Hop, HopPath, ViolatedLimit, execute},
     quantity::{Angle, VertexId},
@@ -26,7 +26,7 @@ struct Tally {
 struct Case<'a> {
     world: &'a World,
     chain: &'a ConstrainedChain,
-    test: &'a HopTest<'a>,
+    test: &'a HopTest,
     path: &'a HopPath,
     hop: &'a Hop,
 }
@@ -35,7 +35,7 @@ impl Case<'_> {
     /// Flies one hop alone over a chain.
     fn flown_over(&self, chain: &ConstrainedChain, hop: Hop) -> Execution {
         let path = HopPath { hops: vec![hop], totals: self.path.totals };
-        execute(chain, &self.world.hopper, self.world.gravity_m_s2, &path, None)
+        execute(chain, &path, None)
     }
 
     fn flown(&self, hop: Hop) -> Execution {
@@ -174,7 +174,7 @@ fn spoil_ground(case: &Case<'_>, contact: Contact, tally: &mut Tally) {
         Direction::Forward => GroundForm::Explicit { forward: None, reverse: line },
         Direction::Reverse => GroundForm::Explicit { forward: line, reverse: None },
     };
-    closed.grounds[segment] = Ground { form, keep_out: false };
+    closed.grounds[segment] = SegmentGround { form, keep_out: false };
     let mut steep = case.world.clone();
     let tilt_rad = tilt_rad(case, segment);
     steep.surface.rest = RestSlope::AtMost(Angle::from_radians(0.99 * tilt_rad));
@@ -208,7 +208,7 @@ fn every_spoiled_hop_is_refused_under_its_limits_name() {
     for _ in 0..20_000 {
         let world = World::random(&mut dice);
         let Some(chain) = world.chain() else { continue };
-        let test = HopTest::new(&chain, &world.hopper, world.gravity_m_s2);
+        let test = HopTest::new(chain.clone());
         let Some(path) = world.plan(&test) else { continue };
         for hop in path.hops.iter().take(8) {
             let case = Case { world: &world, chain: &chain, test: &test, path: &path, hop };

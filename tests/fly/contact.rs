@@ -75,7 +75,7 @@ fn contact_with_random_chains_is_the_first_a_dense_look_finds() {
         let points: Vec<(f64, f64)> = draw.profile(25, 4.0).iter().map(|p| (p.x_m, p.z_m)).collect();
         let scene = Scene::of_chain(&points, 10.0, friction(5.0));
         let chain = &scene.chain;
-        let test = chta::hop::HopTest::new(chain, &scene.hopper, scene.gravity_m_s2);
+        let test = chta::hop::HopTest::new(chain.clone());
         let start = chain.geometry().station(scene.ends_m.0).unwrap();
         let path = no_path();
         let mission = Mission { test: &test, surface: &scene.surface, path: &path, start, goal: start, map: None, to_go: None };
@@ -121,9 +121,10 @@ fn rough_map() -> Dem {
 #[test]
 fn contact_with_a_map_is_the_first_a_dense_look_finds() {
     let mut draw = Draw::seeded(7);
-    let scene = Scene::of_dem(rough_map(), [(2.0, 20.0), (47.0, 21.0)], Hopper::with_speeds(10.0, 10.0), friction(5.0), 1.6);
+    let scene =
+        Scene::of_dem(rough_map(), [(2.0, 20.0), (47.0, 21.0)], Hopper::with_speeds(10.0, 10.0).unwrap(), friction(5.0), 1.6);
     let dem = scene.dem.as_ref().unwrap();
-    let test = chta::hop::HopTest::new(&scene.chain, &scene.hopper, scene.gravity_m_s2);
+    let test = chta::hop::HopTest::new(scene.chain.clone());
     let start = scene.chain.geometry().station(0.0).unwrap();
     let path = no_path();
     let map = Some(chta::uncertainty::MapGround { dem, friction: None, keep_out: None });
@@ -170,7 +171,7 @@ fn contact_agrees_with_the_checker() {
                 vertical_m_s: spoiled.hops[i].takeoff_speed_m_s * angle.sin(),
             };
             let end = simulation.fly(Point2::new(hop.takeoff.point.x_m, 0.0), liftoff).unwrap();
-            let execution = execute(&scene.chain, &scene.hopper, scene.gravity_m_s2, &spoiled, None);
+            let execution = execute(&scene.chain, &spoiled, None);
             match execution.flights[i].as_ref().unwrap().contact {
                 Some(contact) => {
                     let miss_m = (contact.x_m - end.at_m.x).abs();

@@ -9,7 +9,7 @@ use chta::{
     uncertainty::{
         MapGround, Mission, Observer, Policy, Progress, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty,
     },
-    world::{Grip, Hopper, RestSlope, Surface},
+    world::{Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
 
 use super::{
@@ -41,7 +41,13 @@ fn ravine() -> Scene {
     let mut scene =
         Scene::of_chain(&[(0.0, 0.0), (20.0, 0.0), (20.1, -30.0), (31.9, -30.0), (32.0, 0.0), (60.0, 0.0)], 8.0, friction(0.9));
     scene.hopper.landing_speed_max_m_s = 60.0;
-    scene.chain = ConstrainedChain::new(scene.chain.geometry().clone(), &scene.hopper, &scene.surface).unwrap();
+    scene.chain = ConstrainedChain::new(
+        scene.chain.geometry().clone(),
+        &scene.hopper,
+        Gravity::new(scene.gravity_m_s2).unwrap(),
+        &scene.surface,
+    )
+    .unwrap();
     scene.ends_m = (19.0, 34.0);
     scene
 }
@@ -60,7 +66,8 @@ fn every_outcome_occurs_where_it_is_planted() {
     // Cones of 2 degrees about the planned directions.
     let mut narrow = Scene::flat();
     let about = |deg: f64| AngleInterval::from_degrees(deg - 1.0, deg + 1.0);
-    let of_cones = |takeoff, landing| Surface { grip: Some(Grip::FromSlope { takeoff, landing }), rest: RestSlope::Unlimited };
+    let of_cones =
+        |takeoff, landing| SurfaceProperties { grip: Some(Grip::FromSlope { takeoff, landing }), rest: RestSlope::Unlimited };
     let open = AngleInterval::from_degrees(0.0, 180.0);
     let turned = Uncertainty { takeoff_angle_sigma: Angle::from_degrees(3.0), ..none };
     for (surface, outcome) in [
@@ -68,14 +75,26 @@ fn every_outcome_occurs_where_it_is_planted() {
         (of_cones(open, about(-45.0)), TrialOutcome::SlidAtLanding),
     ] {
         narrow.surface = surface;
-        narrow.chain = ConstrainedChain::new(narrow.chain.geometry().clone(), &narrow.hopper, &surface).unwrap();
+        narrow.chain = ConstrainedChain::new(
+            narrow.chain.geometry().clone(),
+            &narrow.hopper,
+            Gravity::new(scene.gravity_m_s2).unwrap(),
+            &surface,
+        )
+        .unwrap();
         assert!(count(&narrow, turned, &HUNDRED, outcome) > 50);
     }
     // Landing 1 % over the speed of the planned landing is too much.
     let mut brittle = Scene::flat();
     let planned_m_s = brittle.planned().path.hops[0].landing_speed_m_s;
     brittle.hopper.landing_speed_max_m_s = planned_m_s * 1.01;
-    brittle.chain = ConstrainedChain::new(brittle.chain.geometry().clone(), &brittle.hopper, &brittle.surface).unwrap();
+    brittle.chain = ConstrainedChain::new(
+        brittle.chain.geometry().clone(),
+        &brittle.hopper,
+        Gravity::new(scene.gravity_m_s2).unwrap(),
+        &brittle.surface,
+    )
+    .unwrap();
     assert!(count(&brittle, speed, &HUNDRED, TrialOutcome::Damaged) > 20);
     // A robot that falls into the ravine does not come out again.
     let slow = Uncertainty { takeoff_speed_sigma_fraction: 0.2, ..none };
@@ -89,7 +108,7 @@ fn every_outcome_occurs_where_it_is_planted() {
 fn plain() -> Scene {
     let map = GeoReference::local(MapPoint::new(0.0, 100.0), 10.0, 10.0).unwrap();
     let dem = Dem::new(11, 11, vec![5.0; 121], map).unwrap();
-    Scene::of_dem(dem, [(15.0, 47.0), (93.0, 47.0)], Hopper::with_speeds(12.0, 12.0), friction(1.5), 3.711)
+    Scene::of_dem(dem, [(15.0, 47.0), (93.0, 47.0)], Hopper::with_speeds(12.0, 12.0).unwrap(), friction(1.5), 3.711)
 }
 
 #[test]
@@ -119,15 +138,15 @@ fn zones_gaps_and_borders_lose_the_robot() {
     assert_eq!(lost(planned.mission(), aside).0, 0, "without zones all stay on the map");
     // Twice as fast, it flies over the border 7 m behind the goal.
     let fast = Uncertainty { takeoff_speed_sigma_fraction: 0.3, ..Uncertainty::NONE };
-    let strong = Hopper::with_speeds(50.0, 50.0);
+    let strong = Hopper::with_speeds(50.0, 50.0).unwrap();
     let chain = PolygonalChain::new(
         scene.chain.geometry().vertices().to_vec(),
         scene.chain.geometry().grounds().to_vec(),
         scene.chain.geometry().map_points().map(<[_]>::to_vec),
     )
     .unwrap();
-    let chain = ConstrainedChain::new(chain, &strong, &scene.surface).unwrap();
-    let test = chta::hop::HopTest::new(&chain, &strong, scene.gravity_m_s2);
+    let chain = ConstrainedChain::new(chain, &strong, Gravity::new(scene.gravity_m_s2).unwrap(), &scene.surface).unwrap();
+    let test = chta::hop::HopTest::new(chain.with_hopper(&strong, Gravity::new(scene.gravity_m_s2).unwrap()).unwrap());
     let (off, listener) = lost(Mission { test: &test, ..planned.mission() }, fast);
     assert!(off > 20, "{off} off the map");
     let beyond = listener.hops.iter().find(|hop| hop.outcome == Some(TrialOutcome::Lost)).unwrap();
@@ -139,7 +158,7 @@ fn a_bend_loses_those_that_fly_over_it() {
     let points = [0.0, 100.0, 140.0, 400.0].map(|x| ChainPoint::new(x, 2.0)).to_vec();
     let mut scene = Scene::flat();
     let bent = PolygonalChain::bare(points).unwrap().with_bends(vec![chta::quantity::VertexId(2)]).unwrap();
-    scene.chain = ConstrainedChain::new(bent, &scene.hopper, &scene.surface).unwrap();
+    scene.chain = ConstrainedChain::new(bent, &scene.hopper, Gravity::new(scene.gravity_m_s2).unwrap(), &scene.surface).unwrap();
     let speed = Uncertainty { takeoff_speed_sigma_m_s: 0.3, ..Uncertainty::NONE };
     let lost = count(&scene, speed, &HUNDRED, TrialOutcome::Lost);
     assert!((30..70).contains(&lost), "about half overshoot: {lost}");
@@ -163,7 +182,7 @@ fn a_rate_known_well_enough_ends_the_run_after_whole_thousands() {
 fn a_map_needs_grip_and_the_path_must_lie_on_it() {
     let scene = plain();
     let planned = scene.planned();
-    let bare = Surface { grip: None, rest: RestSlope::Unlimited };
+    let bare = SurfaceProperties { grip: None, rest: RestSlope::Unlimited };
     let error = Simulation::new(Mission { surface: &bare, ..planned.mission() }, Uncertainty::NONE).unwrap_err();
     assert!(matches!(error, SimulationError::NoGrip), "{error}");
     let map = GeoReference::local(MapPoint::new(0.0, 100.0), 10.0, 10.0).unwrap();

@@ -5,25 +5,25 @@ use std::path::Path;
 use chta::{
     graph::Effort,
     ground::DemGround,
-    path::HopPath,
+    path::{Execution, HopPath},
     quantity::MapPoint,
     reach::map::{
         HopMap, Journey, LayerProgress, MapError, MapHop, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, joined,
-        mobility, path_hops, search,
+        mobility, path_hops, search, verify,
     },
     report::{
-        Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, TotalsRecord,
+        Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, SimulationRecord, TotalsRecord,
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Extremes, Overlays, Scenario, constant_gravity_warnings},
+    scenario::{Extremes, Overlays, Scenario, UncertaintyKeys, constant_gravity_warnings},
     terrain::{
-        Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem,
-        result_geotiff_bytes,
+        Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
+    uncertainty::{Mission, Policy, Simulation, SimulationError, TrialOptions},
 };
 
-use super::{captions::conditions, map_profiles, slice::place};
+use super::{captions::conditions, map_profiles, plan::passed, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
@@ -65,6 +65,8 @@ struct Maps {
     /// Of each goal, where it is reachable.
     goal_hops: Vec<Option<Vec<MapHop>>>,
     paths: Vec<Option<HopPath>>,
+    /// Of each goal, where it is reachable and trials were asked for.
+    trials: Vec<Option<SimulationRecord>>,
     /// Of start and goals.
     warnings: Vec<String>,
 }
@@ -74,7 +76,11 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let (ground, start, goals) = prepared(args)?;
     check_extensions(args)?;
     let begun = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;
-    let maps = mapped(args, &ground, start, &goals)?;
+    let keys = args.simulate.then(|| trial_keys(&ground.scenario)).transpose()?;
+    let mut maps = mapped(args, &ground, start, &goals)?;
+    if let Some(keys) = &keys {
+        maps.trials = simulated(args, &ground, &maps, keys)?;
+    }
     let effort = args.effort.is_some().then_some(ground.scenario.search.effort);
     let mut answer = MapAnswer::new(&MapSummary {
         dem: ground.dem(),
@@ -87,6 +93,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     });
     answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&ground, &maps, goal, index)).collect();
     let mut warnings = ground.warnings.clone();
+    warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
     warnings.extend(maps.warnings.iter().cloned());
     let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
     warnings.extend(constant_gravity_warnings(&ground.scenario.body, Extremes::of(&hops)));
@@ -205,7 +212,7 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.answer.threads).build().map_err(|e| failed(&e.into()))?;
     let progress = Progress::new(args.common.quiet);
     let began = std::time::Instant::now();
-    let maps = pool.install(|| -> Result<Maps, MapError> {
+    let maps = pool.install(|| -> Result<(Maps, Vec<Option<Execution>>), MapError> {
         let hops = PostHops::new(ground.ground.clone(), lattice.stride)?;
         let tell = |what: &str, found: LayerProgress| progress.say(format_layer(what, found, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
@@ -223,11 +230,48 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
             nodes.map(|nodes| path_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
         };
         let goal_hops = goals.iter().map(hops_to).collect::<Result<Vec<_>, _>>()?;
-        let paths = goal_hops.iter().map(|found| found.as_ref().map(|found| joined(&hops, found))).collect();
+        let paths: Vec<_> = goal_hops.iter().map(|found| found.as_ref().map(|found| joined(&hops, found))).collect();
+        let checks = paths.iter().zip(goals).map(|(path, goal)| Some(verify(&hops, path.as_ref()?, start.post, goal.post)));
+        let checks = checks.collect::<Vec<_>>();
         let warnings = refusals(&hops, start, goals);
-        Ok(Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, goal_hops, paths, warnings })
+        let trials = vec![None; goals.len()];
+        let maps = Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, goal_hops, paths, trials, warnings };
+        Ok((maps, checks))
     });
-    maps.map_err(|error| failed(&error))
+    let (maps, checks) = maps.map_err(|error| failed(&error))?;
+    for check in checks.iter().flatten() {
+        passed(check)?;
+    }
+    Ok(maps)
+}
+
+/// The errors and trials that `--simulate` asks for.
+fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
+    let keys = scenario.uncertainty.unwrap_or_default();
+    if keys.policy == Policy::Replan {
+        let message = "--simulate: the trials of a map fly open loop, but uncertainty.policy is \"replan\"; give it as \"open-loop\", or \
+                       simulate a transect, whose nodes replanning needs: chta simulate";
+        return Err(Failure::message(message));
+    }
+    Ok(keys)
+}
+
+/// Flies the path to every reachable goal many times.
+fn simulated(
+    args: &MapArgs,
+    ground: &Ground,
+    maps: &Maps,
+    keys: &UncertaintyKeys,
+) -> Result<Vec<Option<SimulationRecord>>, Failure> {
+    let failed = |error: SimulationError| Failure::about(&args.dem, &error.to_string());
+    let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
+    let fly = |path: &HopPath| {
+        let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
+        let mission = Mission::over_dem(ground.ground.clone(), path.clone(), first.takeoff, last.landing);
+        let summary = Simulation::new(&mission, keys.errors).map_err(failed)?.run(&options, &mut ()).map_err(failed)?;
+        Ok(Some(SimulationRecord::new(&summary, path.hops.len())))
+    };
+    maps.paths.iter().map(|path| path.as_ref().map_or(Ok(None), fly)).collect()
 }
 
 /// What is being done, how far it is, and how long it may still take.
@@ -281,6 +325,9 @@ fn goal_record(ground: &Ground, maps: &Maps, goal: &Spot, index: usize) -> GoalR
         return_hops: maps.back.as_ref().map(reached),
         path: path.map(|path| HopRecord::rows(path, ground.projection.as_ref().ok())).unwrap_or_default(),
         totals: path.map(|path| TotalsRecord::from(&path.totals)),
+        // A path that does not pass never gets here.
+        verified: path.map(|_| true),
+        simulation: maps.trials[index].clone(),
     }
 }
 
@@ -326,7 +373,7 @@ fn write_files<'a>(
     let paths: Vec<&HopPath> = maps.paths.iter().map(|path| path.as_ref().unwrap_or(&none)).collect();
     let prj_path = args.geojson.as_ref().map(|path| path.with_extension("prj"));
     if let Some(file) = &args.geojson {
-        let geojson = paths_geojson(&paths, scenario.body.gravity_m_s2, projection.as_ref().ok()).unwrap_or_default();
+        let geojson = paths_geojson(&paths, scenario.body.gravity.m_s2(), projection.as_ref().ok()).unwrap_or_default();
         files.push((file, geojson.into_bytes()));
         files.extend(prj_path.as_deref().zip(output::prj(projection.as_ref().ok())));
     }

@@ -26,7 +26,7 @@ pub(super) struct Searched {
 impl Searched {
     /// Searches, and proves where that is asked for.
     pub(super) fn new(
-        test: &HopTest<'_>,
+        test: &HopTest,
         ends: (Station, Station),
         scenario: &Scenario,
         prove: Option<ProveArgs>,
@@ -53,7 +53,7 @@ impl Searched {
 
     /// The same for many pairs: one search from each start, or a proof for each pair.
     pub(super) fn all(
-        test: &HopTest<'_>,
+        test: &HopTest,
         pairs: &[(Station, Station)],
         scenario: &Scenario,
         prove: ProveArgs,
@@ -72,7 +72,7 @@ impl Searched {
     }
 
     /// The answer as plain data.
-    pub(super) fn answer(&self, test: &HopTest<'_>, (start, goal): (Station, Station), effort: graph::Effort) -> CheckAnswer {
+    pub(super) fn answer(&self, test: &HopTest, (start, goal): (Station, Station), effort: graph::Effort) -> CheckAnswer {
         let answer = CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &self.found, effort);
         match &self.proof {
             None => answer,
@@ -95,7 +95,7 @@ pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
 
 /// Searches for one pair, for the most reliable path where the scenario asks for it, and shows what is being tried on a terminal.
 pub(super) fn search(
-    test: &HopTest<'_>,
+    test: &HopTest,
     (start, goal): (Station, Station),
     scenario: &Scenario,
     quiet: bool,
@@ -110,7 +110,7 @@ pub(super) fn search(
 
 /// Searches for many pairs, once from each start; pair by pair where the most reliable paths are asked for.
 fn search_pairs(
-    test: &HopTest<'_>,
+    test: &HopTest,
     pairs: &[(Station, Station)],
     scenario: &Scenario,
     quiet: bool,
@@ -135,7 +135,7 @@ fn progress_printer(quiet: bool) -> impl FnMut(PointSpacing) {
 
 /// Bounds the fewest hops, and shows how far the proof is on a terminal.
 pub(super) fn proved(
-    test: &HopTest<'_>,
+    test: &HopTest,
     (start, goal): (Station, Station),
     options: &BoundsOptions,
     quiet: bool,

@@ -15,5 +15,7 @@ mod samples;
 pub use error::MapError;
 pub use lattice::{NodeLattice, Post};
 pub(crate) use offsets::Offset;
+#[cfg(test)]
+pub(crate) use offsets::{OffsetTable, Spacing};
 pub use post_hops::{Lofts, PostHops};
 pub use refusal::PostRefusal;

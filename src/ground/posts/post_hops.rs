@@ -17,7 +17,7 @@ use super::{
 use crate::{
     ballistics::{ContactLimits, FlightEnvelope, LineOfSight},
     chain::{QuickCone, QuickGrip},
-    ground::{DemGround, Surface},
+    ground::{DemGround, MapPosition, Surface},
     quantity::SlopeInterval,
     world::Grip,
 };
@@ -130,6 +130,14 @@ impl PostHops {
     /// How many of the nearest offsets matter to the nodes of a block.
     pub(crate) fn within_reach(&self, block: usize) -> usize {
         self.within_reach[block]
+    }
+
+    /// The position of a node; `None` where it has no elevation.
+    pub fn position(&self, node: Post) -> Option<MapPosition> {
+        let post = self.lattice.post(node);
+        let dem = self.ground.terrain().dem();
+        let z_m = dem.elevation(post.row, post.col)?;
+        Some(MapPosition { at: dem.georeference().post(post.row, post.col), z_m })
     }
 
     /// Whether a node has an elevation.

@@ -79,7 +79,8 @@ impl<'a> Heights<'a> {
 
     #[inline]
     fn gradient_of<T: Copy + Into<f64>>(&self, heights: &[T], post: usize, facet: usize) -> (f64, f64) {
-        let [east, west, north, south] = self.scale.corners[facet].map(|step| -> f64 { heights[post.wrapping_add_signed(step)].into() });
+        let [east, west, north, south] =
+            self.scale.corners[facet].map(|step| -> f64 { heights[post.wrapping_add_signed(step)].into() });
         ((east - west) * self.scale.per_dx, (north - south) * self.scale.per_dy)
     }
 

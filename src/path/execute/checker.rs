@@ -211,7 +211,11 @@ impl<S: Surface> Checker<'_, S> {
             Hold::Friction { normal, cone } => {
                 self.friction(normal, cone, meeting, x_m);
                 let limits = self.surface.hopper().limits();
-                self.speed(meeting, speed_max_m_s(limits.takeoff_speed_max_m_s, limits.landing_speed_max_m_s, meeting.contact), x_m);
+                self.speed(
+                    meeting,
+                    speed_max_m_s(limits.takeoff_speed_max_m_s, limits.landing_speed_max_m_s, meeting.contact),
+                    x_m,
+                );
             }
             Hold::Stated { line, .. } => {
                 if let Some(line) = line {

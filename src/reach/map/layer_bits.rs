@@ -101,8 +101,8 @@ impl Disc {
 mod tests {
     use super::*;
     use crate::{
+        ground::{OffsetTable, Spacing},
         quantity::MapPoint,
-        reach::map::offsets::{OffsetTable, Spacing},
         terrain::{Dem, GeoReference},
     };
 

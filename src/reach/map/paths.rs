@@ -6,7 +6,7 @@ use crate::{
     graph::{Edge, Leg},
     ground::{ContactPoint, Surface},
     hop::{HopTest, Split},
-    path::{Hop, HopPath, generate},
+    path::{Execution, Hop, HopPath, execute, generate},
     quantity::VertexId,
 };
 
@@ -54,4 +54,12 @@ pub fn joined(hops: &PostHops, path: &[MapHop]) -> HopPath {
         begin_m = end_m;
     }
     HopPath::of_hops(flown, hops.ground().hopper())
+}
+
+/// Flies a joined path again over the ground itself, from one node to another, by the independent checker.
+///
+/// The checker walks the triangles of the DEM, where the hops were found on slices and by a table of offsets.
+pub fn verify(hops: &PostHops, path: &HopPath, start: Post, goal: Post) -> Execution {
+    let [start, goal] = [start, goal].map(|node| hops.position(node));
+    execute(hops.ground(), path, start.zip(goal))
 }

@@ -2,7 +2,7 @@
 
 use super::worst_drift::{DriftExperiment, DriftLanding, drift_with};
 use crate::{
-    chain::{ConstrainedChain, Ground, GroundForm, InvalidChain, LineConstraints, PolygonalChain},
+    chain::{ConstrainedChain, GroundForm, InvalidChain, LineConstraints, PolygonalChain, SegmentGround},
     path::Hop,
     quantity::{Angle, AngleInterval},
     world::{Contact, Direction},
@@ -74,7 +74,7 @@ pub fn narrowed(chain: &ConstrainedChain, share: f64) -> Result<PolygonalChain, 
                 segment.stated(direction).filter(|_| allowed).map(|line| narrowed_line(line, share))
             });
             let keep_out = segment.refusal().is_some() || (forward.is_none() && reverse.is_none());
-            Ground { form: GroundForm::Explicit { forward, reverse }, keep_out }
+            SegmentGround { form: GroundForm::Explicit { forward, reverse }, keep_out }
         })
         .collect();
     let map = geometry.map_points().map(<[_]>::to_vec);

@@ -4,7 +4,12 @@ use nalgebra::{Point3, Vector3};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 use super::ground::{FreeArc, comes_down};
-use crate::{chain::ConstrainedChain, path::Hop, quantity::{ChainPoint, standard_normals}, world::Direction};
+use crate::{
+    chain::ConstrainedChain,
+    path::Hop,
+    quantity::{ChainPoint, standard_normals},
+    world::Direction,
+};
 
 /// How the paper's sentence is read, which leaves two things open: at what rate the noise acts, and which landing is farthest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]

@@ -40,7 +40,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
         return super::no_path(args, loaded, &planned);
     };
     let seed = loaded.scenario.uncertainty.unwrap_or_default().seed;
-    let g = loaded.scenario.body.gravity_m_s2;
+    let g = loaded.scenario.body.gravity.m_s2();
     let title = loaded.scenario.title.clone().unwrap_or_default();
     let (text, picture) = match experiment {
         Experiment::WorstDrift => {
@@ -125,23 +125,24 @@ fn written<T: Serialize>(
 /// Plans and flies with ever narrower cones, on the same draws.
 fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) -> Result<ConeWidthAnswer, Failure> {
     let scenario = &loaded.scenario;
-    let g = scenario.body.gravity_m_s2;
+    let g = scenario.body.gravity.m_s2();
     let numbers = DriftExperiment::of_the_paper(DriftReading::default(), seed);
     let reference_m_s = widest.first().map_or(1.0, Hop::horizontal_speed_m_s);
     let mut answer = ConeWidthAnswer::new(&numbers, reference_m_s);
     for share in CONE_SHARES {
         let failed = |error: &dyn std::fmt::Display| Failure::message(format!("cones at {share} of their width: {error}"));
         let geometry = narrowed(&loaded.prepared.chain, share).map_err(|error| failed(&error))?;
-        let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface).map_err(|error| failed(&error))?;
+        let chain = ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)
+            .map_err(|error| failed(&error))?;
         let width_deg = mean_takeoff_width_deg(&chain);
-        let test = chta::hop::HopTest::new(&chain, &scenario.hopper, g);
+        let test = chta::hop::HopTest::new(chain);
         let (found, _) = search(&test, loaded.ends()?, scenario, args.common.quiet)?;
         let Outcome::Path { legs, .. } = &found.outcome else {
             answer.add_none((share, width_deg));
             continue;
         };
         let path = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
-        let [fixed, with_speed] = DriftLaw::ALL.map(|law| cone_width(&chain, &path.hops, g, &numbers, (law, reference_m_s)));
+        let [fixed, with_speed] = DriftLaw::ALL.map(|law| cone_width(test.chain(), &path.hops, g, &numbers, (law, reference_m_s)));
         answer.add((share, width_deg), &path.hops, &fixed, &with_speed);
     }
     Ok(answer)

@@ -128,7 +128,7 @@ pub(super) const RUN_FILES: [&str; 3] = ["simulation.json", "trials.svg", "landi
 /// Flies and draws what the scenario's `[uncertainty]` asks for, beside the plan of a run.
 pub(super) fn of_run(
     loaded: &Loaded,
-    test: &HopTest<'_>,
+    test: &HopTest,
     planned: &Planned,
     threads: usize,
     quiet: bool,
