@@ -15,7 +15,7 @@ use crate::{
     chain::PolygonalChain,
     ground::{ContactPoint, Frame},
     path::Hop,
-    quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
+    quantity::{Angle, AngleInterval, ChainPoint},
     report::figure::FigureError,
     world::{Direction, Limit},
 };
