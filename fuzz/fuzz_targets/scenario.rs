@@ -28,7 +28,7 @@ fn judge(entries: Entries, source: &str) {
 fuzz_target!(|source: &str| {
     judge(Entries::from_toml(source), source);
     let mut entries = Entries::from_toml("body.gravity_m_s2 = 1");
-    entries.set(source);
+    entries.set("fuzz", source);
     judge(entries, "body.gravity_m_s2 = 1");
     if let Ok(scenario) = serde_json::from_str(source) {
         judge(Entries::from_json(&scenario), "");

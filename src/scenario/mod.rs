@@ -14,8 +14,10 @@ pub use alike::ask_the_same;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
-pub use pipeline::{Covers, Cut, Extremes, PipelineError, Prepared, Survey, constant_gravity_doubts, friction, prepare, sha256_of};
-pub use problem::{ScenarioProblem, ScenarioProblems};
-pub use read::{BodyChoice, Scenario, TerrainSource};
+pub use pipeline::{
+    Covers, Cut, Extremes, JourneyEnd, PipelineError, Prepared, Survey, constant_gravity_doubts, friction, prepare, sha256_of,
+};
+pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
+pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};
 pub use trade::{Trade, TradeError, Variation, Varied, judged};
 pub use trials::UncertaintyKeys;

@@ -105,7 +105,7 @@ pub(super) fn search(
         None => graph::search(test, start, goal, options, &mut told(quiet)).map(|answer| (answer, Vec::new())),
         Some(surety) => search_surest(test, start, goal, options, &surety, &mut told(quiet)),
     };
-    found.map_err(|error| Failure::message(error.to_string()))
+    found.map_err(|error| Failure::of(&error))
 }
 
 /// Searches for many pairs, once from each start; pair by pair where the surest paths are asked for.
@@ -118,7 +118,7 @@ fn search_pairs(
     if scenario.surety().is_some() {
         return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
     }
-    graph::search_pairs(test, pairs, &scenario.search, &mut told(quiet)).map_err(|error| Failure::message(error.to_string()))
+    graph::search_pairs(test, pairs, &scenario.search, &mut told(quiet)).map_err(|error| Failure::of(&error))
 }
 
 /// Tells what is being tried.
@@ -141,5 +141,5 @@ pub(super) fn proved(
 ) -> Result<Bounds, Failure> {
     let progress = Progress::new(quiet);
     let mut tell = |summary: ProofSummary| progress.say(format!("proving with {} cells, round {}", summary.cells, summary.rounds));
-    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::message(error.to_string()))
+    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::of(&error))
 }

@@ -22,6 +22,7 @@ use super::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
+    hints,
     load::Loaded,
     output,
 };
@@ -129,7 +130,9 @@ fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) 
     let reference_m_s = widest.first().map_or(1.0, Hop::horizontal_speed_m_s);
     let mut answer = ConeWidthAnswer::new(&numbers, reference_m_s);
     for share in CONE_SHARES {
-        let failed = |error: &dyn std::fmt::Display| Failure::message(format!("cones at {share} of their width: {error}"));
+        let failed = |error: &(dyn std::error::Error + 'static)| {
+            Failure::message(format!("cones at {share} of their width: {}", hints::sentence(error)))
+        };
         let geometry = narrowed(&loaded.prepared.chain, share).map_err(|error| failed(&error))?;
         let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface).map_err(|error| failed(&error))?;
         let width_deg = mean_takeoff_width_deg(&chain);
@@ -170,7 +173,7 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     }
     let test = loaded.hop_test();
     let (start, goal) = loaded.ends()?;
-    let failed = |error: &dyn std::fmt::Display| Failure::message(error.to_string());
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| failed(&error))?;
     let surest = surest_paths(&test, &nodes, &scenario.search, &scenario.surety_with(scenario.risk_extra_hops_max));
     // What would be planned without regard to risk, over the same nodes.
