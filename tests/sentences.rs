@@ -69,12 +69,14 @@ impl Source {
             source.code.extend(std::iter::repeat_n('\n', lines));
             line += lines;
         }
-        source.without_tests()
+        source
     }
 
     /// The same without modules that are compiled for tests alone.
     fn without_tests(mut self) -> Self {
-        while let Some(begin) = self.code.find("#[cfg(test)]\nmod ") {
+        loop {
+            let next = for_tests(&self.code).next().map(|(begin, _)| begin);
+            let Some(begin) = next else { return self };
             let open = self.code[begin..].find(['{', ';']).map_or(self.code.len(), |length| begin + length);
             let mut depth = 0_usize;
             let body = self.code[open..].char_indices().find_map(|(i, c)| {
@@ -88,8 +90,19 @@ impl Source {
             let newlines = "\n".repeat(self.code[begin..end].matches('\n').count());
             self.code.replace_range(begin..end, &newlines);
         }
-        self
     }
+}
+
+/// The modules of a code that are compiled for tests alone: where each begins, with its attributes, and from its name on.
+fn for_tests(code: &str) -> impl Iterator<Item = (usize, &str)> {
+    const ATTRIBUTE: &str = "#[cfg(test)]";
+    code.match_indices(ATTRIBUTE).filter_map(|(begin, _)| {
+        let mut rest = code[begin + ATTRIBUTE.len()..].trim_start();
+        while rest.starts_with("#[") {
+            rest = rest.split_once("]\n")?.1.trim_start();
+        }
+        Some((begin, rest.strip_prefix("mod ")?))
+    })
 }
 
 /// The line of a byte, from 1.
@@ -147,23 +160,19 @@ fn all_sources(folder: &Path) -> Vec<(PathBuf, Source)> {
     add(folder, &mut files);
     files.sort();
     let texts: Vec<_> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
-    // A module that another file declares for tests alone.
-    let mut for_tests = BTreeSet::new();
-    for (file, text) in files.iter().zip(&texts) {
-        let own = if file.file_stem().is_some_and(|stem| stem == "mod" || stem == "lib") {
-            PathBuf::new()
-        } else {
-            file.with_extension("")
-        };
-        let folder = file.parent().unwrap().join(own);
-        for declared in text.split("#[cfg(test)]\nmod ").skip(1) {
-            if let Some(name) = declared.split([';', ' ']).next() {
-                for_tests.extend([folder.join(name).with_extension("rs"), folder.join(name).join("mod.rs")]);
-            }
+    let parsed: Vec<_> = texts.iter().map(|text| Source::parse(text)).collect();
+    // Modules that another file declares for tests alone.
+    let mut left_out = BTreeSet::new();
+    for (file, source) in files.iter().zip(&parsed) {
+        let is_root = file.file_stem().is_some_and(|stem| stem == "mod" || stem == "lib");
+        let own = if is_root { file.parent().unwrap().to_path_buf() } else { file.with_extension("") };
+        for (_, module) in for_tests(&source.code) {
+            let name = &module[..module.find(|c: char| !(c.is_alphanumeric() || c == '_')).unwrap()];
+            left_out.extend([own.join(name).with_extension("rs"), own.join(name).join("mod.rs")]);
         }
     }
-    let kept = files.iter().zip(&texts).filter(|(file, _)| !for_tests.contains(*file));
-    kept.map(|(file, text)| (file.strip_prefix(folder).unwrap().to_path_buf(), Source::parse(text))).collect()
+    let kept = files.into_iter().zip(parsed).filter(|(file, _)| !left_out.contains(file));
+    kept.map(|(file, source)| (file.strip_prefix(folder).unwrap().to_path_buf(), source.without_tests())).collect()
 }
 
 /// The names of the commands, as `enum Command` of the command line lists them.
@@ -260,7 +269,7 @@ fn decisions(source: &Source) -> Vec<usize> {
     for comparison in ["==", "!="] {
         for (at, _) in code.match_indices(comparison) {
             let right = code[at + 2..].trim_start();
-            let compared = &right[..right.find([';', '{', '}', '&', '|', ',']).unwrap_or(right.len())];
+            let compared = &right[..right.find([';', '{', '}', '&', '|', ',', '=']).unwrap_or(right.len())];
             if is_made_text(code[..at].trim_end()) || is_made_text(compared.trim_end()) {
                 found.insert(line_of(code, at));
             }
@@ -309,7 +318,7 @@ fn an_option_in_a_sentence_of_the_library_would_be_found() {
                    --stride {stride}\")]\nfn a() -> char {\n    let b = r#\"or \"ask\" `chta check`\"#;\n    let c = '\"';\n    \
                    let d = format!(\"--{d}\");\n    let e = \"gdal_calc.py --calc='A', a -- b\";\n}\n\n#[cfg(test)]\nmod tests {\n    \
                    const A: &str = \"{--threads\";\n}\n\nconst Z: &str = \"--last\";\n";
-    let found = of_the_command_line(&Source::parse(planted), &commands);
+    let found = of_the_command_line(&Source::parse(planted).without_tests(), &commands);
     let found: Vec<(usize, &str)> = found.iter().map(|(line, what)| (*line, what.as_str())).collect();
     assert_eq!(found, [(3, "--stride"), (5, "--stride"), (8, "chta check"), (10, "--"), (19, "--last")]);
 }
@@ -338,7 +347,7 @@ fn a_decision_on_the_text_of_a_message_would_be_found() {
         "if \"off\" != error.to_string() {}",
         "let text = error.to_string();\nlet (a, b) = text.split_once(\": \").unwrap_or_default();",
     ] {
-        assert!(!decisions(&Source::parse(planted)).is_empty(), "{planted} is not found");
+        assert!(!decisions(&Source::parse(planted).without_tests()).is_empty(), "{planted} is not found");
     }
     for harmless in [
         "// error.to_string().contains(\"off\")",
@@ -348,7 +357,7 @@ fn a_decision_on_the_text_of_a_message_would_be_found() {
         "if kind == ProblemKind::Missing { help.push_str(&error.to_string()); }",
         "#[cfg(test)]\nmod tests {\n    fn a() { assert!(error.to_string().contains(\"off\")); }\n}",
     ] {
-        assert!(decisions(&Source::parse(harmless)).is_empty(), "{harmless} is found");
+        assert!(decisions(&Source::parse(harmless).without_tests()).is_empty(), "{harmless} is found");
     }
 }
 

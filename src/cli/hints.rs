@@ -184,7 +184,8 @@ mod tests {
             assert!(sentence.contains(part), "{part:?} is not in {sentence}");
             assert!(options(&error.to_string(), saying).is_empty(), "the library names options: {error}");
             for (command, option) in options(&sentence, saying) {
-                assert!(offers(command, option), "{command} has no --{option}: {sentence}");
+                // The name of a command may be a plain word of the sentence, such as hop.
+                assert!(offers(command, option) || offers(saying, option), "{command} has no --{option}: {sentence}");
             }
         }
         assert!(!offers("slice", "body") && offers("slice", "via"), "the lookup tells options apart");
