@@ -25,10 +25,10 @@ pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
 pub(crate) fn names(error: &(dyn Error + 'static), file: &Path) -> bool {
     let same = |path: &Path| path.file_name() == file.file_name();
     match (of_terrain(error), error.downcast_ref()) {
-        (Some(TerrainError::InFile { path, .. } | TerrainError::Cover { path, .. }), _) => same(path),
+        (Some(TerrainError::InFile { path, .. } | TerrainError::Cover { path, .. }), _)
+        | (_, Some(PipelineError::Read { path, .. })) => same(path),
         // Their commands do.
         (Some(TerrainError::MapScale { mend, .. }), _) => !matches!(mend, ScaleMend::Shorter { .. }),
-        (_, Some(PipelineError::Read { path, .. })) => same(path),
         _ => false,
     }
 }

@@ -112,7 +112,7 @@ pub(super) fn risk(entries: &mut Entries) -> (RiskUse, u32) {
     const EXTRA_HOPS: u32 = 3;
     let risk = super::read::named(&RiskUse::ALL, RiskUse::name, entries.text("search", "risk"));
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
-    if let Some(_) = extra.filter(|_| risk != RiskUse::Traded) {
+    if extra.is_some() && risk != RiskUse::Traded {
         let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which takes no hop more", risk.name());
         entries.problem(
             ("search", "risk_extra_hops_max"),
