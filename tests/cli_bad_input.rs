@@ -166,7 +166,7 @@ fn options_that_say_nothing_sensible_are_refused_by_name() {
         (&["--gravity-m-s2", "inf"], &["--gravity-m-s2: body.gravity_m_s2 is inf"]),
         (&["--clearance-m", "-1"], &["--clearance-m: hopper.limits().clearance_m is -1.0, expected a number from 0 to 1e9"]),
         (&["--body", "marz"], &["--body: body.name is \"marz\", expected one of moon, mars,", "the nearest known name is mars"]),
-        (&["--set", "foo"], &["--set foo: found no table.key=value; write it as --set hopper.takeoff_speed_max_m_s=8"]),
+        (&["--set", "foo"], &["--set foo: found no table.key=value; write it as hopper.takeoff_speed_max_m_s=8"]),
         (&["--set", "="], &["--set =: found no table.key=value"]),
         (
             &["--set", "hopper.takeof_speed_max_m_s=3"],

@@ -13,10 +13,7 @@ use crate::{
 
 /// A path longer than this program lists hop by hop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "the path has {hops} hops, expected at most {} to list: raise the speed limits, or ask `chta check` for the count alone",
-    TooManyHops::MOST
-)]
+#[error("the path has {hops} hops, expected at most {} to list: raise the speed limits", TooManyHops::MOST)]
 pub struct TooManyHops {
     /// How many hops the path has.
     pub hops: u64,

@@ -38,6 +38,25 @@ pub struct Prepared {
     pub warnings: Vec<String>,
 }
 
+/// One end of a journey.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JourneyEnd {
+    /// Where it begins.
+    Start,
+    /// Where it ends.
+    Goal,
+}
+
+impl JourneyEnd {
+    /// `start` or `goal`, with which the names of its keys begin.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Goal => "goal",
+        }
+    }
+}
+
 /// Why a scenario's terrain gives no chain to analyse.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -55,10 +74,10 @@ pub enum PipelineError {
     #[error(transparent)]
     Constraints(#[from] ConstraintProblems),
     /// A start or goal off the chain.
-    #[error("{which}: {problem}")]
+    #[error("{}: {problem}", which.name())]
     OffChain {
-        /// `start` or `goal`.
-        which: &'static str,
+        /// Which of the two.
+        which: JourneyEnd,
         /// Where, and where the chain is.
         problem: OffChain,
     },
@@ -170,8 +189,8 @@ fn resolved(
     let station = |which, x_m: Option<f64>| {
         x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
     };
-    let start = station("start", scenario.start_x_m.or(ends.0))?;
-    let goal = station("goal", scenario.goal_x_m.or(ends.1))?;
+    let start = station(JourneyEnd::Start, scenario.start_x_m.or(ends.0))?;
+    let goal = station(JourneyEnd::Goal, scenario.goal_x_m.or(ends.1))?;
     Ok(Prepared { chain, start, goal, projection, warnings })
 }
 

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use super::{LonLat, MapBounds, NoProjection};
+use super::{LonLat, MapBounds, NoProjection, ScaleMend};
 use crate::quantity::{MapPoint, format_number};
 
 /// Why a DEM could not be read, written, sliced or made up.
@@ -62,6 +62,14 @@ pub enum TerrainError {
         /// A command that makes a usable file.
         mend: String,
     },
+    /// A map whose coordinates are no lengths: degrees, or places in space.
+    #[error("{found}, expected a projected map in metres; mend it with: {mend}")]
+    NotProjected {
+        /// What the file holds.
+        found: String,
+        /// A command that makes a usable file.
+        mend: String,
+    },
     /// Every problem found in the text of an ASCII or XYZ grid.
     #[error("{}", list_problems(problems, *further))]
     AsciiGrid {
@@ -113,14 +121,12 @@ pub enum TerrainError {
         bounds: MapBounds,
     },
     /// A map whose scale along the transect is not 1.
-    #[error(
-        "{found}, expected 1 within 1 %; mend it with: {mend}; or take it as it is with --accept-map-scale (terrain.accept_map_scale = true)"
-    )]
+    #[error("{found}, expected 1 within 1 %; mend it with: {mend}; or take it as it is with terrain.accept_map_scale = true")]
     MapScale {
         /// The factor and its place.
         found: String,
-        /// A command that makes a map that is true along the transect.
-        mend: String,
+        /// What makes a map that is true along the transect.
+        mend: ScaleMend,
     },
     /// A line that leaves what its projection shows of the body.
     #[error(

@@ -182,28 +182,24 @@ pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
     let (low_m, high_m) = dem.elevation_range_m();
     let relief_m = high_m - low_m;
     if relief_m > RELIEF_TO_WIDTH_OF_DEGREES * width {
-        return Err(TerrainError::Unsuitable {
+        return Err(TerrainError::NotProjected {
             found: format!(
                 "the map spans {} by {} units but the elevations {relief_m} m, so its coordinates look like degrees",
                 max.x - min.x,
                 max.y - min.y
             ),
-            expected: EXPECTED_METRES,
             mend: mend_degrees(&dem.georeference().coordinate_system),
         });
     }
     Ok(())
 }
 
-/// What every map must be.
-pub(super) const EXPECTED_METRES: &str = "a projected map in metres";
-
 /// How a map in degrees becomes one in metres: a stereographic map about the transect, true to scale around it.
 pub(super) fn mend_degrees(system: &CoordinateSystem) -> String {
     let figure = stated_ellipsoid(system).map_or_else(|| "+R=RADIUS_M".to_owned(), |ellipsoid| ellipsoid.proj());
     format!(
         "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {figure} +units=m +no_defs' in.tif out.tif, where \
-         LATITUDE and LONGITUDE are the middle of the journey; then give its places as longitude and latitude (slice: --from-lonlat and \
-         --to-lonlat; fan: --from-lonlat; map: --start-lonlat and --goal-lonlat; scenario: start_lonlat_deg and goal_lonlat_deg)"
+         LATITUDE and LONGITUDE are the middle of the journey; then give its places as longitude and latitude (scenario: \
+         start_lonlat_deg and goal_lonlat_deg)"
     )
 }

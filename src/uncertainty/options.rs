@@ -56,7 +56,7 @@ pub enum SimulationError {
     #[error(transparent)]
     Uncertainty(#[from] UncertaintyProblem),
     /// No trials.
-    #[error("0 trials, expected at least 1: give --trials a number above 0")]
+    #[error("trials is 0, expected at least 1")]
     NoTrials,
     /// A hop limit below 1.
     #[error("hop_limit is 0, expected at least 1: leave it out for twice the planned hops and ten more")]
@@ -105,7 +105,7 @@ pub enum SimulationError {
         y_m: f64,
     },
     /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer with --threads")]
+    #[error("the threads cannot be started ({0}): ask for fewer")]
     Threads(#[from] rayon::ThreadPoolBuildError),
     /// The observer asked to stop.
     #[error("the simulation was stopped after {trials} trials")]

@@ -212,7 +212,7 @@ fn what_makes_no_sense_is_refused_by_name() {
     let planned = scene.planned();
     let simulation = planned.simulation(Uncertainty::NONE);
     let refused = |options: TrialOptions| simulation.run(&options, &mut ()).unwrap_err().to_string();
-    assert!(refused(TrialOptions { trials: 0, ..HUNDRED }).contains("0 trials"));
+    assert!(refused(TrialOptions { trials: 0, ..HUNDRED }).contains("trials is 0"));
     assert!(refused(TrialOptions { hop_limit: Some(0), ..HUNDRED }).contains("hop_limit"));
     assert!(refused(TrialOptions { goal_tolerance_m: f64::NAN, ..HUNDRED }).contains("goal_tolerance_m"));
     assert!(refused(TrialOptions { until_half_width: Some(0.5), ..HUNDRED }).contains("0.5"));

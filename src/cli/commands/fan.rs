@@ -35,7 +35,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         search,
         common,
     } = args;
-    let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let Bare { scenario, base, document } = load_bare(file, common, search)?;
     let dem = read_dem(file).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();

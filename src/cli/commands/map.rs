@@ -115,13 +115,13 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
 /// Reads terrain and scenario and finds the posts of start and goals.
 fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     let MapArgs { dem: file, start, start_lonlat, goal, goal_lonlat, stride, effort, common, .. } = args;
-    let failed = |error: &dyn std::error::Error| Failure::about(file, &error.to_string());
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     if *stride == 0 {
         return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
     }
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
     let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
-    let dem = read_dem(file).map_err(|e| Failure::message(e.to_string()))?;
+    let dem = read_dem(file).map_err(|e| Failure::of(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
@@ -208,7 +208,7 @@ fn refusals(hops: &PostHops, start: Spot, goals: &[Spot]) -> Vec<String> {
 /// Searches, with progress on a terminal.
 fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
     let Ground { scenario, lattice, .. } = ground;
-    let failed = |error: &MapError| Failure::about(&args.dem, &error.to_string());
+    let failed = |error: &MapError| Failure::about(&args.dem, error);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.answer.threads).build().map_err(|e| failed(&e.into()))?;
     let progress = Progress::new(args.common.quiet);
     let began = std::time::Instant::now();
@@ -263,7 +263,7 @@ fn simulated(
     maps: &Maps,
     keys: &UncertaintyKeys,
 ) -> Result<Vec<Option<SimulationRecord>>, Failure> {
-    let failed = |error: SimulationError| Failure::about(&args.dem, &error.to_string());
+    let failed = |error: SimulationError| Failure::about(&args.dem, &error);
     let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
     let fly = |path: &HopPath| {
         let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
@@ -340,7 +340,7 @@ fn write_files<'a>(
     answer: &MapAnswer,
     ends: (Spot, &[Spot]),
 ) -> Result<(), Failure> {
-    let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let Ground { lattice, scenario, projection, .. } = ground;
     let map = ground.dem().georeference().every(lattice.stride);
     let raster = |bands: &ResultBands<'_>| result_geotiff_bytes(lattice.rows, lattice.cols, &map, bands).map_err(|e| failed(&e));

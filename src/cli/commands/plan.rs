@@ -22,6 +22,7 @@ use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs, ProveArgs},
+    hints::further_means,
     load::{EndOptions, Loaded, load},
     output::{self, Pending},
 };
@@ -63,9 +64,7 @@ impl Planned {
         let options = &loaded.scenario.search;
         let searched = Searched::new(test, ends, &loaded.scenario, prove, quiet)?;
         let path = match &searched.found.outcome {
-            Outcome::Path { legs, .. } => {
-                Some(generate(test, legs, options.takeoff, options.split).map_err(|e| Failure::message(e.to_string()))?)
-            }
+            Outcome::Path { legs, .. } => Some(generate(test, legs, options.takeoff, options.split).map_err(|e| Failure::of(&e))?),
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
         if let Some(path) = path.as_ref().filter(|_| verify) {
@@ -99,7 +98,7 @@ impl Planned {
 
     /// The answer for reading.
     pub(super) fn text(&self) -> String {
-        let mut text = check_text(&self.answer.check);
+        let mut text = check_text(&self.answer.check, further_means());
         if let Some(totals) = &self.answer.totals {
             text.push('\n');
             text.push_str(&path_text(&self.answer.path, totals));
@@ -151,7 +150,7 @@ impl Planned {
                 ground: format_ground(scenario),
             },
         })
-        .map_err(|e| Failure::message(e.to_string()))
+        .map_err(|e| Failure::of(&e))
     }
 }
 

@@ -105,7 +105,7 @@ pub(super) fn search(
         None => graph::search(test, start, goal, options, &mut progress_printer(quiet)).map(|answer| (answer, Vec::new())),
         Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &mut progress_printer(quiet)),
     };
-    found.map_err(|error| Failure::message(error.to_string()))
+    found.map_err(|error| Failure::of(&error))
 }
 
 /// Searches for many pairs, once from each start; pair by pair where the most reliable paths are asked for.
@@ -118,8 +118,7 @@ fn search_pairs(
     if scenario.reliability().is_some() {
         return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
     }
-    graph::search_pairs(test, pairs, &scenario.search, &mut progress_printer(quiet))
-        .map_err(|error| Failure::message(error.to_string()))
+    graph::search_pairs(test, pairs, &scenario.search, &mut progress_printer(quiet)).map_err(|error| Failure::of(&error))
 }
 
 /// Prints on a terminal what is being tried.
@@ -142,5 +141,5 @@ pub(super) fn proved(
 ) -> Result<Bounds, Failure> {
     let progress = Progress::new(quiet);
     let mut tell = |summary: ProofSummary| progress.say(format!("proving with {} cells, round {}", summary.cells, summary.rounds));
-    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::message(error.to_string()))
+    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::of(&error))
 }

@@ -30,7 +30,7 @@ pub enum MapError {
     /// A hop that spans too many posts.
     #[error(
         "one hop reaches {range_m:.1} m, {posts:.0} posts, which makes {offsets} landings from every post, more than fit a table of 256 MiB \
-         (some 150 posts): give --stride {stride}, a coarser raster (gdalwarp -tr), or lower speed limits"
+         (some 150 posts): take a stride of {stride}, a coarser raster (gdalwarp -tr), or lower speed limits"
     )]
     TooFar {
         /// How far, m.
@@ -43,12 +43,12 @@ pub enum MapError {
         stride: usize,
     },
     /// More hops than the map's numbers hold.
-    #[error("a post is more than {most} hops away, expected fewer: give a greater --stride or higher speed limits")]
+    #[error("a post is more than {most} hops away, expected fewer: take a greater stride or higher speed limits")]
     TooManyHops {
         /// The most there are.
         most: i16,
     },
     /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer with --threads")]
+    #[error("the threads cannot be started ({0}): ask for fewer")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }

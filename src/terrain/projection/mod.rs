@@ -24,7 +24,7 @@ use proj4rs::{Proj, transform::transform};
 
 pub use self::definition::{Definition, Ellipsoid, Method};
 use self::geokeys::Reading;
-pub use self::scale::{ScaleExtreme, TransectScale, check_map_scale, check_scale};
+pub use self::scale::{ScaleExtreme, ScaleMend, TransectScale, check_map_scale, check_scale};
 use super::{CoordinateSystem, MapBounds, TerrainError};
 use crate::quantity::MapPoint;
 

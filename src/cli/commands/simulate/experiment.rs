@@ -23,6 +23,7 @@ use super::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
+    hints,
     load::Loaded,
     output,
 };
@@ -130,7 +131,9 @@ fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) 
     let reference_m_s = widest.first().map_or(1.0, Hop::horizontal_speed_m_s);
     let mut answer = ConeWidthAnswer::new(&numbers, reference_m_s);
     for share in CONE_SHARES {
-        let failed = |error: &dyn std::fmt::Display| Failure::message(format!("cones at {share} of their width: {error}"));
+        let failed = |error: &(dyn std::error::Error + 'static)| {
+            Failure::message(format!("cones at {share} of their width: {}", hints::sentence(error)))
+        };
         let geometry = narrowed(&loaded.prepared.chain, share).map_err(|error| failed(&error))?;
         let chain = ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)
             .map_err(|error| failed(&error))?;
@@ -172,7 +175,7 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     }
     let test = loaded.hop_test();
     let (start, goal) = loaded.ends()?;
-    let failed = |error: &dyn std::fmt::Display| Failure::message(error.to_string());
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| failed(&error))?;
     let reliable_paths =
         most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max));

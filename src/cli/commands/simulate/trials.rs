@@ -51,18 +51,17 @@ impl<'a> Flyer<'a> {
         let ground = match &loaded.scenario.terrain {
             Some(TerrainSource::Dem { path, .. }) => {
                 let file = loaded.base.join(path);
-                let dem = read_dem(&file).map_err(|error| Failure::about(&file, &error.to_string()))?;
+                let dem = read_dem(&file).map_err(|error| Failure::about(&file, &error))?;
                 let coordinates = &dem.georeference().coordinate_system;
                 let overlays = Overlays::read(&loaded.scenario, &loaded.base, Some(coordinates), dem.bounds())
-                    .map_err(|error| Failure::message(error.to_string()))?;
+                    .map_err(|error| Failure::of(&error))?;
                 Some(overlays.ground(dem, &loaded.scenario))
             }
             Some(TerrainSource::Mesh { .. } | TerrainSource::Chain { .. }) | None => None,
         };
         let to_go = policies.contains(&Policy::Replan).then(|| -> Result<_, Failure> {
             let (start, goal) = loaded.ends()?;
-            let nodes =
-                NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::message(error.to_string()))?;
+            let nodes = NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::of(&error))?;
             let options = &loaded.scenario.search;
             let progress = Progress::new(quiet);
             progress.say("ranking the ways on from every node".to_owned());
@@ -104,7 +103,7 @@ impl<'a> Flyer<'a> {
         quiet: bool,
     ) -> Result<Vec<Flown>, Failure> {
         let errors = self.loaded.scenario.uncertainty.unwrap_or_default().errors;
-        let simulation = Simulation::new(&self.mission(self.path)?, errors).map_err(|error| Failure::message(error.to_string()))?;
+        let simulation = Simulation::new(&self.mission(self.path)?, errors).map_err(|error| Failure::of(&error))?;
         let mut listener = Listener::new(rows, policies.first().copied().unwrap_or_default(), quiet);
         let mut flown = Vec::new();
         for &policy in policies {
@@ -112,7 +111,7 @@ impl<'a> Flyer<'a> {
             let options = TrialOptions { policy, trajectories: KEPT_TRIALS, ..*options };
             match simulation.run(&options, &mut listener) {
                 Ok(summary) => flown.push(Flown { summary }),
-                Err(error) => return Err(listener.failure().unwrap_or_else(|| Failure::message(error.to_string()))),
+                Err(error) => return Err(listener.failure().unwrap_or_else(|| Failure::of(&error))),
             }
         }
         listener.finish()?;
@@ -122,7 +121,7 @@ impl<'a> Flyer<'a> {
     /// Flies the trials of another path over the same ground.
     pub(super) fn fly_along(&self, path: &HopPath, options: &TrialOptions) -> Result<Summary, Failure> {
         let errors = self.loaded.scenario.uncertainty.unwrap_or_default().errors;
-        let failed = |error: chta::uncertainty::SimulationError| Failure::message(error.to_string());
+        let failed = |error: chta::uncertainty::SimulationError| Failure::of(&error);
         Simulation::new(&self.mission(path)?, errors).map_err(failed)?.run(options, &mut ()).map_err(failed)
     }
 }
