@@ -19,7 +19,7 @@ pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<Map
         let hops = hops.as_deref().unwrap_or_default();
         for (number, hop) in hops.iter().enumerate() {
             let name = format!("goal {}, hop {} of {}", goal + 1, number + 1, hops.len());
-            profiles.extend(profile(scenario, hop, name));
+            profiles.extend(profile(hop, name));
         }
     }
     let told = match profiles.len() {
@@ -33,7 +33,7 @@ pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<Map
 }
 
 /// One hop over its slice, flown again for the place where it passes lowest.
-fn profile(scenario: &Scenario, hop: &MapHop, name: String) -> Option<HopProfile> {
+fn profile(hop: &MapHop, name: String) -> Option<HopProfile> {
     let flown = execute(&hop.chain, &hop.path, None);
     let least = flown.flights.first().and_then(|flight| flight.as_ref()?.least_clearance);
     Some(HopProfile {

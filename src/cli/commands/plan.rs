@@ -186,7 +186,6 @@ pub(super) fn format_ground(scenario: &Scenario) -> String {
 
 /// Flies a path again; a broken limit is a failure of the program, told as such.
 fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result<(), Failure> {
-    let scenario = &loaded.scenario;
     let execution = execute(&loaded.prepared.chain, path, Some(ends));
     if execution.passes() {
         return Ok(());
