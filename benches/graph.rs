@@ -9,7 +9,7 @@ mod support;
 use chta::{
     graph::{PointSpacing, SearchOptions, search},
     hop::HopTest,
-    world::Hopper,
+    world::{Hopper, HopperLimits},
 };
 use divan::{Bencher, black_box};
 

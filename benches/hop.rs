@@ -6,6 +6,8 @@
 
 mod support;
 
+use std::sync::Arc;
+
 use chta::{
     chain::PolygonalChain,
     hop::{HopTest, LandingTable, Sweep},
@@ -21,7 +23,7 @@ fn main() {
 /// One pair 15 vertices apart, by the kernel: all limits, no explanation.
 #[divan::bench]
 fn one_pair_kernel(bencher: Bencher<'_, '_>) {
-    let (chain, hopper) = support::fractal_chain(200);
+    let (chain, _) = support::fractal_chain(200);
     let test = HopTest::new(chain.clone());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     bencher.bench_local(|| test.lofts(black_box(&at(100)), black_box(&at(115))));
@@ -30,7 +32,7 @@ fn one_pair_kernel(bencher: Bencher<'_, '_>) {
 /// The same pair explained: every limit by itself and what binds.
 #[divan::bench]
 fn one_pair_explained(bencher: Bencher<'_, '_>) {
-    let (chain, hopper) = support::fractal_chain(200);
+    let (chain, _) = support::fractal_chain(200);
     let test = HopTest::new(chain.clone());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     bencher.bench_local(|| test.takeoff_set(black_box(&at(100)), black_box(&at(115))));
@@ -39,7 +41,7 @@ fn one_pair_explained(bencher: Bencher<'_, '_>) {
 /// One take-off in the middle against all landings within a window of vertices on either side.
 #[divan::bench(args = [30, 200, 2000])]
 fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
-    let (chain, hopper) = support::fractal_chain(2 * window + 1);
+    let (chain, _) = support::fractal_chain(2 * window + 1);
     let test = HopTest::new(chain.clone());
     let stations: Vec<_> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
     let takeoff = stations[window];
@@ -51,7 +53,7 @@ fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
 /// The same by a sweep: speeds cut the far landings, as they do in a search (`sweep_against_plain` has windows that they do not cut).
 #[divan::bench(args = [30, 200, 2000])]
 fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
-    let (chain, hopper) = support::fractal_chain(2 * window + 1);
+    let (chain, _) = support::fractal_chain(2 * window + 1);
     let test = HopTest::new(chain.clone());
     let stations: Vec<_> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
     let takeoff = stations[window];

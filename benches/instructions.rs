@@ -17,10 +17,10 @@
 
 mod support;
 
-use std::{hint::black_box, process::Command};
+use std::{hint::black_box, process::Command, sync::Arc};
 
 use chta::{
-    chain::{ConstrainedChain, Station},
+    chain::Station,
     hop::{HopTest, LandingTable, Sweep},
     quantity::VertexId,
     world::{Direction, Hopper, HopperLimits},
@@ -77,7 +77,7 @@ fn sweep(mut scene: Scene) -> usize {
 #[bench::window_200(scene(200, 0.6))]
 fn plain(scene: Scene) -> usize {
     let takeoff = black_box(&scene.stations[scene.window]);
-    scene.stations.iter().filter(|landing| support::plain::lofts(scene.test, takeoff, landing).is_some()).count()
+    scene.stations.iter().filter(|landing| support::plain::lofts(&scene.test, takeoff, landing).is_some()).count()
 }
 
 library_benchmark_group!(name = hop; benchmarks = sweep, plain);

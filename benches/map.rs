@@ -63,7 +63,7 @@ impl Scene {
             stride: 1,
             hopper: &self.hopper,
             surface: &self.surface,
-            gravity_m_s2: MOON_M_S2,
+            gravity: Gravity::new(MOON_M_S2).expect("a gravity"),
             friction: None,
             keep_out: None,
         }

@@ -14,7 +14,7 @@ fn main() {
 }
 
 fn hopper() -> Hopper {
-    Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(8.0, 8.0) }).expect("a valid hopper")
+    Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(8.0, 8.0) }).unwrap()
 }
 
 /// Rough ground of so many segments, each about a metre long, as slices of a DEM of 1 m posts have them.
@@ -27,8 +27,7 @@ fn rough(segments: u32) -> ConstrainedChain {
     }
     let surface =
         SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.7).unwrap())), rest: RestSlope::AsFrictionHolds };
-    ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper(), Gravity::new(3.711).expect("a gravity"), &surface)
-        .unwrap()
+    ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper(), Gravity::new(3.711).unwrap(), &surface).unwrap()
 }
 
 #[divan::bench(args = [12, 25, 50, 100, 200, 400, 800])]

@@ -14,6 +14,8 @@ use std::{
     time::{Duration, Instant},
 };
 
+use std::sync::Arc;
+
 use chta::{
     chain::Station,
     hop::{HopTest, LandingTable, Sweep},

@@ -152,22 +152,21 @@ fn world(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
     let lines: Vec<_> = (0..segments).map(|_| (draw.line(speed), draw.line(speed))).collect();
     let rest =
         if draw.chance(0.2) { RestSlope::AtMost(Angle::from_degrees(draw.uniform(20.0, 80.0))) } else { RestSlope::Unlimited };
-    let mut hopper = Hopper::new(HopperLimits {
+    let mut limits = HopperLimits {
         clearance_m: if draw.chance(0.5) { 0.0 } else { size * draw.log_uniform(1e-4, 1e-1) },
         ..HopperLimits::UNLIMITED
-    })
-    .unwrap();
+    };
     if draw.chance(0.3) {
-        hopper.takeoff_angle_min = Some(Angle::from_degrees(draw.uniform(-30.0, 50.0)));
-        hopper.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(50.0, 89.0)));
+        limits.takeoff_angle_min = Some(Angle::from_degrees(draw.uniform(-30.0, 50.0)));
+        limits.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(50.0, 89.0)));
     }
     if draw.chance(0.3) {
-        hopper.apex_height_max_m = Some(size * draw.log_uniform(1e-1, 3.0));
+        limits.apex_height_max_m = Some(size * draw.log_uniform(1e-1, 3.0));
     }
     if draw.chance(0.3) {
-        hopper.flight_time_max_s = Some((size / g).sqrt() * draw.log_uniform(0.5, 3.0));
+        limits.flight_time_max_s = Some((size / g).sqrt() * draw.log_uniform(0.5, 3.0));
     }
-    (explicit(&points, &lines, rest), hopper, g)
+    (explicit(&points, &lines, rest), Hopper::new(limits).unwrap(), g)
 }
 
 /// A chain by friction and cross-slope, as slices of terrain give.

@@ -448,7 +448,13 @@ fn node_spacing_puts_as_few_points_as_keep_it() {
 fn too_many_nodes_are_refused_before_they_are_made() {
     let chain = World::draw(&mut Draw::seeded(38), 3).chain();
     let at = |i| chain.geometry().vertex_station(VertexId(i));
-    for spacing in [PointSpacing::PerSegment(u32::MAX), PointSpacing::AtMostM(1e-9), PointSpacing::AtMostM(0.0)] {
+    for spacing in [
+        PointSpacing::PerSegment(u32::MAX),
+        PointSpacing::AtMostM(1e-9),
+        PointSpacing::AtMostM(0.0),
+        PointSpacing::AtMostM(-1.0),
+        PointSpacing::AtMostM(f64::NAN),
+    ] {
         let TooManyNodes { nodes } = NodeSet::new(&chain, at(0), at(3), spacing).unwrap_err();
         assert!(nodes > NodeSet::MAX_NODES, "{nodes} nodes for {spacing:?}");
     }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene should stop")]
 
-use std::alloc::System;
+use std::{alloc::System, sync::Arc};
 
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},

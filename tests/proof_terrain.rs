@@ -19,7 +19,7 @@ use chta::{
     path::{execute, generate},
     quantity::MapPoint,
     terrain::{Dem, read_dem, slice},
-    world::{Body, Contact, FrictionCone, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
+    world::{Body, Contact, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use support::Draw;
 
@@ -38,7 +38,7 @@ fn real(name: &str) -> Option<Dem> {
 }
 
 /// A slice of at most so many segments between two places drawn from a seed, and the hopper to cross it.
-fn drawn_chain(dem: &Dem, seed: u64, most_segments: usize) -> (ConstrainedChain, Hopper) {
+fn drawn_chain(dem: &Dem, gravity: Gravity, seed: u64, most_segments: usize) -> ConstrainedChain {
     let draw = &mut Draw::seeded(seed);
     let area = dem.georeference().bounds(dem.rows(), dem.cols());
     let mut point = || MapPoint::new(draw.uniform(area.min.x, area.max.x), draw.uniform(area.min.y, area.max.y));
@@ -53,7 +53,7 @@ fn drawn_chain(dem: &Dem, seed: u64, most_segments: usize) -> (ConstrainedChain,
     let friction = FrictionCone::new(draw.uniform(0.5, 1.0)).unwrap();
     let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
     let chain = PolygonalChain::from_profile(&profile, Some(friction)).unwrap();
-    (ConstrainedChain::new(chain, &hopper, gravity, &surface).unwrap(), hopper)
+    ConstrainedChain::new(chain, &hopper, gravity, &surface).unwrap()
 }
 
 /// The first and the last place of a chain, among the middles of its segments, that allows a contact: the journey is to be long, and not
@@ -73,8 +73,7 @@ fn left_open(slices: u64) -> usize {
         let Some(dem) = real(name) else { continue };
         let (mut found_none, mut slowest) = (0, 0.0f64);
         for seed in 0..slices {
-            let (chain, hopper) = drawn_chain(&dem, seed, 200);
-            let g = Body::named(body).unwrap().gravity.m_s2();
+            let chain = drawn_chain(&dem, Body::named(body).unwrap().gravity, seed, 200);
             let test = HopTest::new(chain.clone());
             let Some((start, goal)) = usable_ends(&chain) else { continue };
             let began = Instant::now();

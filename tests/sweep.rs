@@ -3,6 +3,8 @@
 
 mod support;
 
+use std::sync::Arc;
+
 use chta::{
     chain::{ConstrainedChain, LineConstraints, PolygonalChain, Station},
     hop::{HopTest, LandingTable, Sweep},
@@ -322,4 +324,28 @@ fn reach_does_not_grow_with_the_chain() {
     // On flat ground the slower end decides: 64 / 2 m and a little for the roughness of 1 m.
     let flat = test.reach_bound_m(&chain.geometry().vertex_station(VertexId(50)));
     assert!((32.0..34.0).contains(&flat), "{flat} m");
+}
+
+/// What another language may keep as a value and hand to its threads.
+const fn shareable<T: Clone + Send + Sync + 'static>() {}
+
+const _: () = {
+    shareable::<ConstrainedChain>();
+    shareable::<HopTest>();
+    shareable::<LandingTable>();
+    shareable::<Sweep>();
+};
+
+#[test]
+fn a_clone_answers_alike_from_the_same_chain_after_the_first_is_gone() {
+    let points: Vec<_> = (0..40).map(|i| ChainPoint::new(f64::from(i), f64::from(i % 3))).collect();
+    let chain = support::uniform(&points, support::line((-90.0, 90.0), 4.0, (-90.0, 90.0), 4.0));
+    let first = HopTest::new(chain.clone());
+    let second = first.clone();
+    assert!(std::ptr::eq(first.chain(), second.chain()), "a clone shares its chain");
+    let takeoff = chain.geometry().station(7.5).unwrap();
+    let reach_m = first.reach_bound_m(&takeoff);
+    drop(first);
+    let sweep = std::thread::spawn(move || (second.reach_bound_m(&takeoff), HopTest::new(chain).reach_bound_m(&takeoff)));
+    assert_eq!(sweep.join().unwrap(), (reach_m, reach_m));
 }

@@ -3,7 +3,7 @@
 use super::{GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station};
 use crate::{
     quantity::{Angle, SegmentId},
-    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
+    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, InvalidSurface, RestSlope, SurfaceProperties},
 };
 
 /// A chain whose segments all know what they allow one hopper under one gravity: all that a question about hops needs.
@@ -19,7 +19,7 @@ pub struct ConstrainedChain {
 }
 
 /// What keeps a chain from being analysed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConstraintProblem {
     /// Neither the chain nor the scenario says what holds on this segment.
@@ -35,10 +35,13 @@ pub enum ConstraintProblem {
         .0.index() + 1
     )]
     NoSpeed(SegmentId),
+    /// A property of the surface that has no meaning.
+    #[error(transparent)]
+    Surface(#[from] InvalidSurface),
 }
 
 /// All that keeps a chain from being analysed: the first segment with each problem and how many share it.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", .0.iter().map(|(problem, others)| if *others == 0 { problem.to_string() } else { format!("{problem} (and {others} more segments)") }).collect::<Vec<_>>().join("; "))]
 pub struct ConstraintProblems(pub Vec<(ConstraintProblem, usize)>);
 
@@ -50,7 +53,7 @@ impl ConstrainedChain {
     /// that of the coefficient which rules the segment.
     ///
     /// # Errors
-    /// [`ConstraintProblems`] where a segment is left without constraints.
+    /// [`ConstraintProblems`] where a segment is left without constraints, or the surface has a property without meaning.
     ///
     /// # Examples
     /// ```
@@ -68,6 +71,7 @@ impl ConstrainedChain {
         gravity: Gravity,
         surface: &SurfaceProperties,
     ) -> Result<Self, ConstraintProblems> {
+        surface.check().map_err(|problem| ConstraintProblems(vec![(problem.into(), 0)]))?;
         let mut problems: Vec<(ConstraintProblem, usize)> = Vec::new();
         let mut segments = Vec::with_capacity(geometry.segment_count());
         for (i, (&slope, ground)) in geometry.slopes().iter().zip(geometry.grounds()).enumerate() {

@@ -35,4 +35,26 @@ impl SegmentGround {
     /// Flat across, all else from the scenario: what a chain of bare `x_m,z_m` says.
     pub const BARE: Self =
         Self { form: GroundForm::Surface { friction: None, cross_slope: Angle::from_radians(0.0) }, keep_out: false };
+
+    /// A stated limit that is not a number, or a cross-slope beyond the vertical: what it is, and its value.
+    pub(super) fn not_a_limit(&self) -> Option<(&'static str, f64)> {
+        match self.form {
+            GroundForm::Surface { cross_slope, .. } => {
+                let within = cross_slope.radians().abs() <= std::f64::consts::FRAC_PI_2;
+                (!within).then(|| ("cross-slope in degrees", cross_slope.degrees()))
+            }
+            GroundForm::Explicit { forward, reverse } => {
+                let rules = [forward, reverse].into_iter().flatten().flat_map(|line| [line.takeoff, line.landing]);
+                let mut stated = rules.flat_map(|rule| {
+                    let (min, max) = (rule.angles().min, rule.angles().max);
+                    [
+                        ("least angle in degrees", min.degrees()),
+                        ("greatest angle in degrees", max.degrees()),
+                        ("greatest speed in m/s", rule.speed_max_m_s()),
+                    ]
+                });
+                stated.find(|(_, number)| number.is_nan())
+            }
+        }
+    }
 }

@@ -54,6 +54,15 @@ pub enum ChainProblem {
         /// Which vertex.
         vertex: VertexId,
     },
+    /// A stated limit of a segment that is not a number, or a cross-slope beyond the vertical.
+    NotALimit {
+        /// Which segment.
+        segment: SegmentId,
+        /// Of what, with its unit.
+        what: &'static str,
+        /// What was found.
+        found: f64,
+    },
     /// Grounds and segments, or map points and vertices, do not pair up.
     CountMismatch {
         /// Of what.
@@ -81,6 +90,13 @@ impl fmt::Display for ChainProblem {
                     f,
                     "vertex {} is marked as a bend, expected bends only between the first and the last vertex",
                     vertex.index() + 1
+                )
+            }
+            Self::NotALimit { segment, what, found } => {
+                write!(
+                    f,
+                    "segment {} has a {what} of {found}, expected a number, no cross-slope beyond 90 degrees",
+                    segment.index() + 1
                 )
             }
             Self::CountMismatch { what, found, expected } => write!(f, "{found} {what}, expected {expected}"),
@@ -121,6 +137,11 @@ impl PolygonalChain {
         }
         if grounds.len() != slopes.len() {
             problems.push(ChainProblem::CountMismatch { what: "grounds", found: grounds.len(), expected: slopes.len() });
+        }
+        for (i, ground) in grounds.iter().enumerate() {
+            if let Some((what, found)) = ground.not_a_limit() {
+                problems.push(ChainProblem::NotALimit { segment: SegmentId(i), what, found });
+            }
         }
         if let Some(points) = &map {
             if points.len() != vertices.len() {

@@ -13,5 +13,5 @@ pub use friction_cone::{FrictionCone, InvalidFriction};
 pub use gravity::{Gravity, InvalidGravity};
 pub use hopper::{Hopper, HopperLimits, HopperProblem, InvalidHopper};
 pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
-pub use surface::{Grip, RestSlope, SurfaceProperties};
+pub use surface::{Grip, InvalidSurface, RestSlope, SurfaceProperties};
 pub use travel::{Contact, Direction};

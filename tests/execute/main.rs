@@ -137,27 +137,24 @@ fn a_path_must_join_its_ends_without_a_gap() {
 }
 
 /// A needle of 1 m at (2, 0), on flat ground from 0 to 6 m.
-fn over_a_needle(clearance_m: f64) -> (ConstrainedChain, Hopper) {
+fn over_a_needle(clearance_m: f64) -> ConstrainedChain {
     let points = [(0.0, 0.0), (1.9, 0.0), (2.0, 1.0), (2.1, 0.0), (6.0, 0.0)];
     let grip =
         Grip::FromSlope { takeoff: AngleInterval::from_degrees(10.0, 80.0), landing: AngleInterval::from_degrees(-80.0, -10.0) };
     let hopper = Hopper::new(HopperLimits { clearance_m, ..HopperLimits::with_speeds(20.0, 20.0) }).unwrap();
     let chain = PolygonalChain::bare(points.map(|(x, z)| ChainPoint::new(x, z)).to_vec()).unwrap();
-    (
-        ConstrainedChain::new(
-            chain,
-            &hopper,
-            Gravity::new(10.0).unwrap(),
-            &SurfaceProperties { grip: Some(grip), rest: RestSlope::Unlimited },
-        )
-        .unwrap(),
-        hopper,
+    ConstrainedChain::new(
+        chain,
+        &hopper,
+        Gravity::new(10.0).unwrap(),
+        &SurfaceProperties { grip: Some(grip), rest: RestSlope::Unlimited },
     )
+    .unwrap()
 }
 
 /// A hop from 0 to 4 m with a take-off slope `m`, flown at g = 10: `z = m d (1 - d / 4)`.
 fn flown_over_the_needle(m: f64, clearance_m: f64, change: Change) -> (Option<Flight>, Vec<Violation>) {
-    let (chain, hopper) = over_a_needle(clearance_m);
+    let chain = over_a_needle(clearance_m);
     let arc = Arc::new(LineOfSight::new(4.0, 0.0), m, 10.0);
     let mut hop = Hop {
         direction: Direction::Forward,

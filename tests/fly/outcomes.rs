@@ -9,7 +9,7 @@ use chta::{
     uncertainty::{
         MapGround, Mission, Observer, Policy, Progress, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty,
     },
-    world::{Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
+    world::{Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 use super::{
@@ -40,7 +40,7 @@ const REPLAN: TrialOptions = TrialOptions { policy: Policy::Replan, ..HUNDRED };
 fn ravine() -> Scene {
     let mut scene =
         Scene::of_chain(&[(0.0, 0.0), (20.0, 0.0), (20.1, -30.0), (31.9, -30.0), (32.0, 0.0), (60.0, 0.0)], 8.0, friction(0.9));
-    scene.hopper.landing_speed_max_m_s = 60.0;
+    scene.hopper = Hopper::new(HopperLimits { landing_speed_max_m_s: 60.0, ..*scene.hopper.limits() }).unwrap();
     scene.chain = ConstrainedChain::new(
         scene.chain.geometry().clone(),
         &scene.hopper,
@@ -78,7 +78,7 @@ fn every_outcome_occurs_where_it_is_planted() {
         narrow.chain = ConstrainedChain::new(
             narrow.chain.geometry().clone(),
             &narrow.hopper,
-            Gravity::new(scene.gravity_m_s2).unwrap(),
+            Gravity::new(narrow.gravity_m_s2).unwrap(),
             &surface,
         )
         .unwrap();
@@ -87,11 +87,11 @@ fn every_outcome_occurs_where_it_is_planted() {
     // Landing 1 % over the speed of the planned landing is too much.
     let mut brittle = Scene::flat();
     let planned_m_s = brittle.planned().path.hops[0].landing_speed_m_s;
-    brittle.hopper.landing_speed_max_m_s = planned_m_s * 1.01;
+    brittle.hopper = Hopper::new(HopperLimits { landing_speed_max_m_s: planned_m_s * 1.01, ..*brittle.hopper.limits() }).unwrap();
     brittle.chain = ConstrainedChain::new(
         brittle.chain.geometry().clone(),
         &brittle.hopper,
-        Gravity::new(scene.gravity_m_s2).unwrap(),
+        Gravity::new(brittle.gravity_m_s2).unwrap(),
         &brittle.surface,
     )
     .unwrap();

@@ -20,8 +20,6 @@ struct Case {
     name: &'static str,
     ground: &'static str,
     chain: ConstrainedChain,
-    hopper: Hopper,
-    gravity_m_s2: f64,
     ends_m: (f64, f64),
     options: SearchOptions,
 }
@@ -31,9 +29,7 @@ impl Case {
         Self {
             name,
             ground: "friction coefficient 0.6",
-            chain: ConstrainedChain::new(chain, &hopper, Gravity::new(3.711).unwrap(), &friction(0.6)).unwrap(),
-            hopper,
-            gravity_m_s2,
+            chain: ConstrainedChain::new(chain, &hopper, Gravity::new(gravity_m_s2).unwrap(), &friction(0.6)).unwrap(),
             ends_m,
             options: SearchOptions::default(),
         }
@@ -83,15 +79,7 @@ fn paper() -> Case {
     let chain =
         ConstrainedChain::new(bare([(0.0, 54.61), (76.0, 59.24)]), &hopper, Gravity::new(3.711).unwrap(), &surface).unwrap();
     let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(0)), ..SearchOptions::default() };
-    Case {
-        name: "The paper's 76 m case",
-        ground: "cones 60 to 90 deg over the slope",
-        chain,
-        hopper,
-        gravity_m_s2: 3.711,
-        ends_m: (0.0, 76.0),
-        options,
-    }
+    Case { name: "The paper's 76 m case", ground: "cones 60 to 90 deg over the slope", chain, ends_m: (0.0, 76.0), options }
 }
 
 /// Walls, a keep-out zone, a side-slope, a stretch without speed, a stretch without limits, one for landing only.
@@ -235,7 +223,7 @@ fn flights_follow_the_commanded_speed_and_angle_from_point_to_point() {
             for share in [0.0, 0.1, 0.5, 0.77, 1.0] {
                 let point = hop.point_at(share);
                 let time_s = run_m * share / (v * angle.cos());
-                let height_m = from.z_m + v * angle.sin() * time_s - 0.5 * case.gravity_m_s2 * time_s * time_s;
+                let height_m = from.z_m + v * angle.sin() * time_s - 0.5 * case.chain.gravity().m_s2() * time_s * time_s;
                 assert!((point.z_m - height_m).abs() <= tolerance_m + 1e-12 * from.z_m.abs(), "{} hop {}", case.name, hop.number);
                 assert!((point.x_m - from.x_m - (to.x_m - from.x_m) * share).abs() <= tolerance_m + 1e-12 * from.x_m.abs());
             }

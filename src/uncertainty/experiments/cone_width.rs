@@ -40,7 +40,6 @@ impl DriftLaw {
 pub fn cone_width(
     chain: &ConstrainedChain,
     hops: &[Hop],
-    gravity_m_s2: f64,
     experiment: &DriftExperiment,
     (law, reference_m_s): (DriftLaw, f64),
 ) -> Vec<DriftLanding> {
@@ -52,7 +51,7 @@ pub fn cone_width(
         };
         sigmas_m.map(|sigma_m| sigma_m * share)
     };
-    drift_with(chain, hops, gravity_m_s2, experiment, &scatter)
+    drift_with(chain, hops, experiment, &scatter)
 }
 
 /// A chain with all its cones narrowed about the vertical: every bound keeps this share of its distance from straight up (take-off) or

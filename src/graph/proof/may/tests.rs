@@ -140,7 +140,7 @@ fn refusals(chains: usize) -> (usize, usize) {
             let caught = (0..3).any(|_| {
                 let (from_m, to_m) = (point(draw, a), point(draw, b));
                 let (from, to) = (Place::at(geometry, a.site, from_m), Place::at(geometry, b.site, to_m));
-                from_m != to_m && is_hop(&chain, &hopper, g, &from, &to)
+                from_m != to_m && is_hop(&chain, &hopper, chain.gravity().m_s2(), &from, &to)
             });
             wrong += usize::from(caught);
         }
