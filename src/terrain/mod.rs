@@ -51,8 +51,8 @@ pub use mesh::{
 pub use pds3::read_pds3_bytes;
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
 pub use projection::{
-    Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, TransectScale, check_map_scale,
-    check_scale,
+    CrsError, Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, TransectScale,
+    check_map_scale, check_scale,
 };
 pub use slice::{slice, slice_file, slice_legs};
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
