@@ -265,15 +265,23 @@ fn a_map_by_code_by_proj_string_and_by_every_well_known_text_is_the_map_of_gdal(
             same_map(&format!("{code} as {form}"), &text, &by_code);
         }
     }
-    for (srs, at, reach_m) in systems() {
+    for (srs, (x, y), reach_m) in systems() {
         let by_proj: MapProjection = srs.parse().unwrap();
-        agree(&srs, &by_proj, &srs, at, reach_m);
+        agree(&srs, &by_proj, &srs, (x, y), reach_m);
         for form in ["wkt1", "wkt_esri", "wkt2_2015", "wkt2_2019"] {
             let text = run("gdalsrsinfo", &["-o", form, &srs], "");
-            if form == "wkt_esri" && (text.contains("PROJECTION[\"Local\"]") || text.contains("PROJECTION[\"Mercator\"]")) {
+            // GDAL rounds the scale of a Mercator map to a parallel there, and drops the latitude of an equirectangular one.
+            let lossy = ["\"Local\"", "\"Mercator\""].iter().any(|name| text.contains(name))
+                || srs.starts_with("+proj=eqc +lat_ts=20 +lat_0=3");
+            if form == "wkt_esri" && lossy {
                 continue;
             }
-            agree(&format!("{srs} as {form}"), &text.parse().unwrap(), &srs, at, reach_m);
+            let by_wkt: MapProjection = text.parse().unwrap_or_else(|error| panic!("{srs} as {form}: {error}\n{text}"));
+            for at in [MapPoint::new(x, y), MapPoint::new(x - 0.4 * reach_m, y + 0.3 * reach_m)] {
+                let place = by_proj.lon_lat(at).unwrap();
+                let found = by_wkt.map_point(place).unwrap();
+                assert!((found - at).norm() < 1e-6, "{srs} as {form}: {found} {at}");
+            }
         }
     }
 }
