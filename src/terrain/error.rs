@@ -81,6 +81,9 @@ pub enum TerrainError {
     /// Numbers that make no raster.
     #[error("{0}")]
     InvalidDem(String),
+    /// Numbers that make no profile.
+    #[error("{0}")]
+    InvalidProfile(String),
     /// A transect without a direction.
     #[error("the transect starts and ends at the same point ({} m, {} m), expected two different points", format_number(at.x), format_number(at.y))]
     SamePoint {

@@ -113,7 +113,37 @@ impl GeoReference {
         })
     }
 
-    /// The map projection, from what the file said of it.
+    /// The same place on a map of this projection, for a raster that is built in memory. What was said of the map before is replaced.
+    ///
+    /// The projection states how map coordinates become longitude and latitude; posts stay where they are. Map coordinates are metres.
+    ///
+    /// # Examples
+    /// A DEM in memory, cut between two places given by longitude and latitude:
+    /// ```
+    /// use chta::quantity::MapPoint;
+    /// use chta::terrain::{Dem, GeoReference, LonLat, MapPlace, MapProjection, slice};
+    ///
+    /// // 101 x 101 posts, 5 m apart, around the south pole of the Moon; the ground rises by 0.1 m for every metre eastward.
+    /// let crs: MapProjection = "IAU_2015:30135".parse()?;
+    /// let map = GeoReference::local(MapPoint::new(-250.0, 250.0), 5.0, 5.0)?.with_projection(&crs);
+    /// let elevations_m: Vec<f32> = (0..101 * 101_u16).map(|post| 0.5 * f32::from(post % 101)).collect();
+    /// let dem = Dem::from_single(101, 101, elevations_m, map)?;
+    ///
+    /// let projection = dem.georeference().projection();
+    /// let place = |which, lon_deg, lat_deg| {
+    ///     MapPlace::LonLat(LonLat { lon_deg, lat_deg }).on_map(which, projection.as_ref(), dem.bounds())
+    /// };
+    /// // A thousandth of a degree of latitude is 30.3 m on the Moon.
+    /// let profile = slice(&dem, place("from", 90.0, -89.999)?, place("to", 90.0, -89.993)?)?;
+    /// assert!((profile.length_m() - 0.006_f64.to_radians() * 1_737_400.0).abs() < 1e-3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_projection(self, projection: &MapProjection) -> Self {
+        Self { coordinate_system: projection.coordinate_system(), transform_tags: TransformTags::default(), ..self }
+    }
+
+    /// The map projection, from what the file or the caller said of it.
     ///
     /// # Errors
     /// [`NoProjection`] where it said nothing, or a projection that is not known here.

@@ -53,7 +53,7 @@ pub use overlaid::{OverlaidDem, OverlayEffect, Overlays};
 pub use pds3::read_pds3_bytes;
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
 pub use projection::{
-    Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, ScaleMend, TransectScale,
+    CrsError, Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, ScaleMend, TransectScale,
     check_map_scale, check_scale,
 };
 pub use slice::{slice, slice_file, slice_legs};
