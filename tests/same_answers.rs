@@ -30,7 +30,12 @@ fn help(arguments: &[&str]) -> String {
 fn subcommands() -> Vec<String> {
     let text = help(&[]);
     let listed = text.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
-    listed.lines().filter_map(|line| line.strip_prefix("  ")?.split(' ').next()).filter(|name| !name.is_empty()).map(str::to_owned).collect()
+    listed
+        .lines()
+        .filter_map(|line| line.strip_prefix("  ")?.split(' ').next())
+        .filter(|name| !name.is_empty())
+        .map(str::to_owned)
+        .collect()
 }
 
 /// The options of a subcommand, each with its names: `-o` and `--output`.
@@ -46,8 +51,11 @@ fn options(subcommand: &str) -> Vec<Vec<String>> {
 #[test]
 fn its_commands_use_every_subcommand_with_every_option() {
     let Some(list) = same_answers(&["--list"]) else { return };
-    let commands: Vec<Vec<&str>> =
-        list.lines().flat_map(|line| line.split("&&").flat_map(|part| part.split("; "))).map(|part| part.split_whitespace().collect()).collect();
+    let commands: Vec<Vec<&str>> = list
+        .lines()
+        .flat_map(|line| line.split("&&").flat_map(|part| part.split("; ")))
+        .map(|part| part.split_whitespace().collect())
+        .collect();
     let uses = |subcommand: &str, names: &[String]| {
         commands.iter().any(|words| {
             let called = words.windows(2).any(|pair| pair[0] == "chta" && pair[1] == subcommand);
