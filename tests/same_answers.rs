@@ -4,6 +4,7 @@
 
 #![cfg(all(feature = "cli", unix))]
 #![allow(clippy::unwrap_used, reason = "a test that cannot run the program should stop")]
+#![allow(clippy::print_stdout, reason = "it says why it skips")]
 
 use std::process::Command;
 
