@@ -8,17 +8,18 @@
 
 mod support;
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use chta::{
     ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain, csv::read_chain_csv_file},
     graph::{CostToGo, NodeSet, Outcome, PointSpacing, SearchOptions, search},
+    ground::{DemGround, Surface},
     hop::{HopTest, Split},
     path::generate,
     quantity::{Angle, MapPoint},
-    terrain::{Dem, read_dem, slice},
-    uncertainty::{MapGround, Mission, Policy, Simulation, TrialOptions, Uncertainty},
+    terrain::{Dem, OverlaidDem, Overlays, read_dem, slice},
+    uncertainty::{Mission, Policy, Simulation, TrialOptions, Uncertainty},
     world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
@@ -72,10 +73,17 @@ fn fly(
     let path = generate(&test, &legs, options.takeoff, Split::FullReach).expect("few hops");
     let real = HopTest::new(chains[1].clone());
     let nodes = NodeSet::new(&chains[1], start, goal, spacing).expect("few nodes");
-    let to_go = CostToGo::of(&real, nodes, &options);
-    let map = dem.map(|dem| MapGround { dem, friction: None, keep_out: None });
-    let mission = Mission { test: &real, surface: &flier.1, path: &path, start, goal, map, to_go: Some(&to_go) };
-    let simulation = Simulation::new(mission, errors).expect("sound errors");
+    let to_go = Arc::new(CostToGo::of(&real, nodes, &options));
+    let mission = match dem {
+        None => Mission::along_chain(real.clone(), path.clone(), start, goal),
+        Some(dem) => {
+            let terrain = OverlaidDem::new(dem.clone(), Overlays::default());
+            let ground = DemGround::new(terrain, &flier.0, real.chain().gravity(), &flier.1);
+            let [start, goal] = [start, goal].map(|station| real.chain().contact_point(&station));
+            Mission::over_dem(ground, path.clone(), start, goal)
+        }
+    };
+    let simulation = Simulation::new(&mission.with_replanning(real, to_go), errors).expect("sound errors");
     let trials = TrialOptions { trials: 1000, threads: 1, policy, goal_tolerance_m: 3.0, ..TrialOptions::default() };
     let run = || simulation.run(black_box(&trials), &mut ()).expect("a simulation");
     let summary = run();

@@ -97,7 +97,7 @@ fn the_checker_refuses_a_hop_that_spans_a_bend() {
     };
     let (over, around) = (planned(&straight), planned(&bent));
     assert_eq!((over.hops.len(), around.hops.len()), (1, 2));
-    assert_eq!(around.hops[0].landing.point.x_m, 7.0, "it lands on the bend");
+    assert_eq!(around.hops[0].landing.along_m, 7.0, "it lands on the bend");
     assert!(execute(&bent, &around, None).passes());
     assert!(execute(&straight, &over, None).passes());
     let violations = execute(&bent, &over, None).violations;

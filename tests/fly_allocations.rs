@@ -8,11 +8,12 @@ use std::alloc::System;
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
     graph::{Outcome, PointSpacing, SearchOptions, search},
+    ground::{DemGround, Surface},
     hop::{HopTest, Split},
     path::generate,
     quantity::{Angle, MapPoint},
-    terrain::{SyntheticTerrain, slice, synthesise},
-    uncertainty::{MapGround, Mission, Simulation, TrialOptions, Uncertainty},
+    terrain::{OverlaidDem, Overlays, SyntheticTerrain, slice, synthesise},
+    uncertainty::{Mission, Simulation, TrialOptions, Uncertainty},
     world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
@@ -42,9 +43,12 @@ fn a_thousand_trials_take_few_allocations_on_chain_and_map() {
         drift_along_sigma_m: 0.1,
         ..Uncertainty::NONE
     };
-    for map in [None, Some(MapGround { dem: &dem, friction: None, keep_out: None })] {
-        let mission = Mission { test: &test, surface: &surface, path: &path, start, goal, map, to_go: None };
-        let simulation = Simulation::new(mission, errors).unwrap();
+    let terrain = OverlaidDem::new(dem, Overlays::default());
+    let ground = DemGround::new(terrain, &hopper, Gravity::new(1.6).unwrap(), &surface);
+    let [from, to] = [start, goal].map(|station| chain.contact_point(&station));
+    let over_dem = Mission::over_dem(ground, path.clone(), from, to);
+    for mission in [Mission::along_chain(test, path, start, goal), over_dem] {
+        let simulation = Simulation::new(&mission, errors).unwrap();
         let trials = TrialOptions { trials: 1000, threads: 1, ..TrialOptions::default() };
         // The harness has a thread of its own: the quietest of three rounds is the run's.
         let rounds = [(); 3].map(|()| {

@@ -9,10 +9,14 @@ use std::{error::Error, path::Path};
 
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
+    ground::DemGround,
     hop::HopTest,
     quantity::{Angle, AngleInterval, MapPoint, SlopeInterval, VertexId},
-    reach::map::{Journey, MapRequest, NO_GROUND, Post, PostHops, SECTORS, Search, UNREACHED, mobility, search},
-    terrain::{Dem, FrictionRaster, GeoReference, KeepOut, Profile, read_dem, read_friction_raster, read_keep_out, slice},
+    reach::map::{Journey, NO_GROUND, Post, PostHops, SECTORS, Search, UNREACHED, mobility, search},
+    terrain::{
+        Dem, FrictionRaster, GeoReference, KeepOut, OverlaidDem, Overlays, Profile, read_dem, read_friction_raster, read_keep_out,
+        slice,
+    },
     world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use support::Draw;
@@ -48,16 +52,11 @@ impl World {
         Ok(ConstrainedChain::new(geometry, &self.hopper, Gravity::new(self.gravity_m_s2).unwrap(), &self.surface)?)
     }
 
-    fn request(&self, stride: usize) -> MapRequest<'_> {
-        MapRequest {
-            dem: &self.dem,
-            stride,
-            hopper: &self.hopper,
-            surface: &self.surface,
-            gravity: Gravity::new(self.gravity_m_s2).unwrap(),
-            friction: self.friction.as_ref(),
-            keep_out: self.keep_out.as_ref(),
-        }
+    /// What the fast form is asked on.
+    fn ground(&self) -> DemGround {
+        let overlays = Overlays::new(self.friction.clone(), self.keep_out.clone());
+        let terrain = OverlaidDem::new(self.dem.clone(), overlays);
+        DemGround::new(terrain, &self.hopper, Gravity::new(self.gravity_m_s2).unwrap(), &self.surface)
     }
 
     /// The plain way: slice, chain, hop test.
@@ -115,8 +114,7 @@ fn friction(mu: f64) -> SurfaceProperties {
 
 /// Every pair of posts: the same answer, and the same lofts to rounding.
 fn compare_pairs(world: &World, what: &str) -> (usize, usize) {
-    let ground = |profile| world.chain(profile);
-    let hops = PostHops::new(world.request(1), &ground).unwrap();
+    let hops = PostHops::new(world.ground(), 1).unwrap();
     let (mut yes, mut no) = (0, 0);
     for from in world.posts(1) {
         let mut found = std::collections::HashMap::new();
@@ -219,9 +217,8 @@ fn compare_maps(world: &World, start: Post, stride: usize, journeys: &[Journey],
         let expected = world.plain_map(start, stride, journey);
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let ground = |profile| world.chain(profile);
             let found = pool.install(|| {
-                let hops = PostHops::new(world.request(stride), &ground).unwrap();
+                let hops = PostHops::new(world.ground(), stride).unwrap();
                 let start = Post { row: start.row / stride, col: start.col / stride };
                 search(&hops, start, Search { journey, effort: None }, &mut |_| {}).unwrap()
             });
@@ -265,8 +262,7 @@ fn compare_cut_outs(file: &str, hopper: Hopper, surface: SurfaceProperties, grav
         if world.dem.elevation(start.row, start.col).is_none() {
             continue;
         }
-        let ground = |profile| world.chain(profile);
-        let hops = PostHops::new(world.request(1), &ground).unwrap();
+        let hops = PostHops::new(world.ground(), 1).unwrap();
         let map = search(&hops, start, Search::default(), &mut |_| {}).unwrap();
         let reached = map.hops.iter().filter(|&&hops| hops > 0).count();
         if !(SIDE * SIDE / 4..=SIDE * SIDE * 4 / 5).contains(&reached) {
@@ -413,8 +409,7 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
                 expected[to] = least;
             }
         }
-        let ground = |profile| world.chain(profile);
-        let post_hops = PostHops::new(world.request(1), &ground).unwrap();
+        let post_hops = PostHops::new(world.ground(), 1).unwrap();
         let map =
             search(&post_hops, start, Search { journey: Journey::Outbound, effort: Some((effort, choice)) }, &mut |_| {}).unwrap();
         assert_eq!(map.hops, hops);
@@ -425,10 +420,10 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
             let flown = path_hops(&post_hops, &path, choice).unwrap();
             assert_eq!(flown.len(), usize::try_from(hops[index]).unwrap());
             for hop in &flown {
-                let geometry = hop.chain.geometry();
+                let geometry = hop.test.chain().geometry();
                 let (first, last) = geometry.extent_m();
                 let ends = (geometry.station(first).unwrap(), geometry.station(last).unwrap());
-                assert!(execute(&hop.chain, &hop.path, Some(ends)).passes());
+                assert!(execute(hop.test.chain(), &hop.path, Some(ends)).passes());
             }
             let path = joined(&post_hops, &flown);
             let total = match effort {
@@ -457,8 +452,7 @@ fn raising_a_speed_limit_never_makes_a_post_unreachable_nor_farther() {
         for speed in [1.8, 2.2, 2.7, 3.5] {
             let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(speed, speed) }).unwrap();
             let world = World::new(dem.clone(), hopper, friction(0.9), 1.62);
-            let ground = |profile| world.chain(profile);
-            let hops = PostHops::new(world.request(1), &ground).unwrap();
+            let hops = PostHops::new(world.ground(), 1).unwrap();
             let map = search(&hops, start, Search::default(), &mut |_| {}).unwrap();
             for (&faster, &slower) in map.hops.iter().zip(before.iter().flatten()) {
                 assert!(slower < 0 || (0..=slower).contains(&faster), "{slower} hops became {faster} at {speed} m/s");
@@ -482,8 +476,7 @@ fn planes_have_the_analytic_shape() {
     let map = |slope: f64| {
         let surface = SurfaceProperties { rest: RestSlope::Unlimited, ..friction(mu) };
         let world = World::new(plane(slope), Hopper::with_speeds(speed, speed).unwrap(), surface, gravity);
-        let ground = |profile| world.chain(profile);
-        let hops = PostHops::new(world.request(1), &ground).unwrap();
+        let hops = PostHops::new(world.ground(), 1).unwrap();
         search(&hops, Post { row: 20, col: 20 }, Search::default(), &mut |_| {}).unwrap().hops
     };
     // The cone keeps hops at atan(1 / mu) or steeper.
@@ -504,8 +497,7 @@ fn planes_have_the_analytic_shape() {
     );
     let counted = |most: f64| disc.clone().filter(|&distance| distance > 0.0 && distance <= most).count() as f64;
     let world = World::new(plane(0.0), Hopper::with_speeds(speed, speed).unwrap(), friction(mu), gravity);
-    let ground = |profile| world.chain(profile);
-    let mobile = mobility(&PostHops::new(world.request(1), &ground).unwrap(), &|_, _| ()).unwrap();
+    let mobile = mobility(&PostHops::new(world.ground(), 1).unwrap(), &|_, _| ()).unwrap();
     assert!((mobile.disc_radius_m - within).abs() < 1e-6);
     assert!((f64::from(mobile.share[20 * 41 + 20]) - counted(reach) / counted(within)).abs() < 1e-6);
     assert_eq!(mobile.directions[20 * 41 + 20], f32::from(SECTORS));
@@ -545,8 +537,7 @@ fn a_cone_too_steep_to_rest_on_is_an_island() {
         .collect();
     let dem = Dem::new(side, side, heights, GeoReference::local(MapPoint::new(0.0, 0.0), 1.0, 1.0).unwrap()).unwrap();
     let world = World::new(dem, Hopper::with_speeds(3.0, 3.0).unwrap(), friction(0.6), 1.62);
-    let ground = |profile| world.chain(profile);
-    let hops = PostHops::new(world.request(1), &ground).unwrap();
+    let hops = PostHops::new(world.ground(), 1).unwrap();
     let map = search(&hops, Post { row: 1, col: 1 }, Search::default(), &mut |_| {}).unwrap();
     for (index, &hops) in map.hops.iter().enumerate() {
         let (row, col) = (f64::from(u32::try_from(index / side).unwrap()), f64::from(u32::try_from(index % side).unwrap()));

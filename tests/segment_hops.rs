@@ -177,9 +177,9 @@ fn every_hop_of_both_splits_and_all_choices_flies_and_they_add_up_to_the_run() {
         for (split, choice) in Split::ALL.into_iter().flat_map(|s| TakeoffChoice::ALL.map(|c| (s, c))) {
             let hops = flown(&slope, along, choice, split);
             assert_eq!(hops.len() as u64, along.hops());
-            assert_eq!((hops[0].takeoff, hops[hops.len() - 1].landing), (takeoff, landing));
+            assert_eq!((hops[0].takeoff.station, hops[hops.len() - 1].landing.station), (Some(takeoff), Some(landing)));
             for hop in &hops {
-                let length = (hop.landing.point.x_m - hop.takeoff.point.x_m).abs();
+                let length = hop.run_m();
                 assert!(
                     slope.flies(length, hop.takeoff_angle.radians(), 1e-7),
                     "{} of {length} m at {} deg, {}, {}",
@@ -259,7 +259,7 @@ fn pairs_that_the_papers_pseudo_code_loses_are_hopped() {
         let Some(along) = test.segment_hops(&takeoff, &landing) else { continue };
         assert!(along.hops() >= 2);
         for hop in flown(&slope, along, TakeoffChoice::LeastSpeed, Split::FullReach) {
-            let length = (hop.landing.point.x_m - hop.takeoff.point.x_m).abs();
+            let length = hop.run_m();
             assert!(slope.flies(length, hop.takeoff_angle.radians(), 1e-7));
         }
         lost += 1;
@@ -305,7 +305,11 @@ fn mid_range_hops_fly_the_middle_of_their_own_set_and_are_no_more() {
         }
         for hop in flown(&slope, along, TakeoffChoice::MidRange, Split::Equal) {
             // At full reach the set is one point, and rounding may leave the explained set empty.
-            let Some(set) = test.takeoff_set(&hop.takeoff, &hop.landing).and_then(|set| set.angles()) else { continue };
+            let Some(set) =
+                test.takeoff_set(&hop.takeoff.station.unwrap(), &hop.landing.station.unwrap()).and_then(|set| set.angles())
+            else {
+                continue;
+            };
             let middle = 0.5 * (set.min.radians().max(slope.b.atan()) + set.max.radians());
             assert!((hop.takeoff_angle.radians() - middle).abs() < 1e-9, "{} against {middle}", hop.takeoff_angle.radians());
             middles += 1;
@@ -327,7 +331,7 @@ fn hops_of_full_reach_lie_in_their_own_set_whatever_limit_ends_the_reach() {
             continue;
         }
         for hop in flown(&slope, along, TakeoffChoice::LeastSpeed, Split::FullReach) {
-            let set = test.takeoff_set(&hop.takeoff, &hop.landing).unwrap();
+            let set = test.takeoff_set(&hop.takeoff.station.unwrap(), &hop.landing.station.unwrap()).unwrap();
             let angles = set.angles().unwrap_or_else(|| panic!("{}: {}", along.reach().limit(), set.conflict().unwrap()));
             let angle = hop.takeoff_angle.radians();
             assert!(angles.min.radians() <= angle && angle <= angles.max.radians());

@@ -5,10 +5,8 @@ use std::ops::ControlFlow;
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
-    terrain::{Dem, GeoReference, KeepOut, read_keep_out},
-    uncertainty::{
-        MapGround, Mission, Observer, Policy, Progress, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty,
-    },
+    terrain::{Dem, GeoReference, KeepOut, Overlays, read_keep_out},
+    uncertainty::{Mission, Observer, Policy, Progress, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty},
     world::{Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
@@ -123,14 +121,15 @@ fn zones_gaps_and_borders_lose_the_robot() {
     std::fs::write(&file, text).unwrap();
     let zones: KeepOut = read_keep_out(&file, None, scene.dem.as_ref().unwrap().bounds()).unwrap();
     let aside = Uncertainty { heading_sigma: Angle::from_degrees(3.0), ..Uncertainty::NONE };
-    let lost = |mission: Mission<'_>, uncertainty| {
+    let lost = |mission: Mission, uncertainty| {
         let options = TrialOptions { trials: 200, goal_tolerance_m: 8.0, ..HUNDRED };
         let mut listener = Listener::default();
-        let summary = Simulation::new(mission, uncertainty).unwrap().run(&options, &mut listener).unwrap();
+        let summary = Simulation::new(&mission, uncertainty).unwrap().run(&options, &mut listener).unwrap();
         (summary.outcomes.of(TrialOutcome::Lost), listener)
     };
-    let map = MapGround { keep_out: Some(&zones), ..planned.mission().map.unwrap() };
-    let (in_zones, listener) = lost(Mission { map: Some(map), ..planned.mission() }, aside);
+    let robot = (&scene.hopper, &scene.surface);
+    let dem = scene.dem.clone().unwrap();
+    let (in_zones, listener) = lost(planned.over_dem(dem, Overlays::new(None, Some(zones)), planned.path.clone(), robot), aside);
     assert!(in_zones > 50, "{in_zones} in the zones");
     for hop in listener.hops.iter().filter(|hop| hop.outcome == Some(TrialOutcome::Lost)) {
         assert!(hop.landed && (hop.contact_m.y >= 47.5 || hop.contact_m.y <= 46.5), "{hop:?}");
@@ -147,7 +146,7 @@ fn zones_gaps_and_borders_lose_the_robot() {
     .unwrap();
     let chain = ConstrainedChain::new(chain, &strong, Gravity::new(scene.gravity_m_s2).unwrap(), &scene.surface).unwrap();
     let test = chta::hop::HopTest::new(chain.with_hopper(&strong, Gravity::new(scene.gravity_m_s2).unwrap()).unwrap());
-    let (off, listener) = lost(Mission { test: &test, ..planned.mission() }, fast);
+    let (off, listener) = lost(planned.without_replanning(test, planned.path.clone()), fast);
     assert!(off > 20, "{off} off the map");
     let beyond = listener.hops.iter().find(|hop| hop.outcome == Some(TrialOutcome::Lost)).unwrap();
     assert!(!beyond.landed && (beyond.contact_m.x - 100.0).abs() < 1e-9 && beyond.contact_m.z > 5.0, "{beyond:?}");
@@ -183,16 +182,20 @@ fn a_map_needs_grip_and_the_path_must_lie_on_it() {
     let scene = plain();
     let planned = scene.planned();
     let bare = SurfaceProperties { grip: None, rest: RestSlope::Unlimited };
-    let error = Simulation::new(Mission { surface: &bare, ..planned.mission() }, Uncertainty::NONE).unwrap_err();
+    let over = |dem: &Dem, path: &chta::path::HopPath, surface: &SurfaceProperties| {
+        let mission = planned.over_dem(dem.clone(), Overlays::default(), path.clone(), (&scene.hopper, surface));
+        Simulation::new(&mission, Uncertainty::NONE).unwrap_err()
+    };
+    let dem = scene.dem.as_ref().unwrap();
+    let error = over(dem, &planned.path, &bare);
     assert!(matches!(error, SimulationError::NoGrip), "{error}");
     let map = GeoReference::local(MapPoint::new(0.0, 100.0), 10.0, 10.0).unwrap();
     let small = Dem::new(11, 6, vec![5.0; 66], map).unwrap();
-    let map = Some(MapGround { dem: &small, friction: None, keep_out: None });
-    let error = Simulation::new(Mission { map, to_go: None, ..planned.mission() }, Uncertainty::NONE).unwrap_err().to_string();
+    let error = over(&small, &planned.path, &scene.surface).to_string();
     assert!(error.contains("the goal lies at (93 m, 47 m)"), "{error}");
     let mut path = planned.path.clone();
-    path.hops[0].map = None;
-    let error = Simulation::new(Mission { path: &path, ..planned.mission() }, Uncertainty::NONE).unwrap_err();
+    path.hops[0].takeoff.frame = chta::ground::Frame::Chain;
+    let error = over(dem, &path, &scene.surface);
     assert!(matches!(error, SimulationError::NotOnMap { hop: 1 }), "{error}");
 }
 
@@ -216,10 +219,10 @@ fn what_makes_no_sense_is_refused_by_name() {
     assert!(refused(TrialOptions { hop_limit: Some(0), ..HUNDRED }).contains("hop_limit"));
     assert!(refused(TrialOptions { goal_tolerance_m: f64::NAN, ..HUNDRED }).contains("goal_tolerance_m"));
     assert!(refused(TrialOptions { until_half_width: Some(0.5), ..HUNDRED }).contains("0.5"));
-    let without = Mission { to_go: None, ..planned.mission() };
-    let error = Simulation::new(without, Uncertainty::NONE).unwrap().run(&REPLAN, &mut ()).unwrap_err();
+    let without = planned.without_replanning(planned.test.clone(), planned.path.clone());
+    let error = Simulation::new(&without, Uncertainty::NONE).unwrap().run(&REPLAN, &mut ()).unwrap_err();
     assert!(matches!(error, SimulationError::NoCostsToGo));
-    let refused = |uncertainty: Uncertainty| Simulation::new(planned.mission(), uncertainty).unwrap_err().to_string();
+    let refused = |uncertainty: Uncertainty| Simulation::new(&planned.mission(), uncertainty).unwrap_err().to_string();
     let none = Uncertainty::NONE;
     for (key, _, _) in none.by_key() {
         assert!(!key.is_empty());

@@ -1,14 +1,17 @@
 //! Journeys to simulate: on a flat chain, on a rough one, on the shipped DEM.
 
+use std::sync::Arc;
+
 use chta::{
     ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain, Station},
     graph::{CostToGo, NodeSet, Outcome, PointSpacing, SearchOptions, search},
+    ground::{DemGround, Surface},
     hop::{HopTest, Split},
     path::{HopPath, generate},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
-    terrain::{Dem, slice},
-    uncertainty::{MapGround, Mission, Simulation, Summary, TrialOptions, Uncertainty},
+    terrain::{Dem, OverlaidDem, Overlays, slice},
+    uncertainty::{Mission, Simulation, Summary, TrialOptions, Uncertainty},
     world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
@@ -28,7 +31,7 @@ pub(crate) struct Planned<'a> {
     pub(crate) scene: &'a Scene,
     pub(crate) test: HopTest,
     pub(crate) path: HopPath,
-    pub(crate) to_go: CostToGo,
+    pub(crate) to_go: Arc<CostToGo>,
     pub(crate) start: Station,
     pub(crate) goal: Station,
 }
@@ -108,26 +111,49 @@ impl Scene {
         let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path: {:?}", answer.outcome) };
         let path = generate(&test, &legs, self.options.takeoff, Split::FullReach).unwrap();
         let nodes = NodeSet::new(&self.chain, start, goal, answer.spacing).unwrap();
-        let to_go = CostToGo::of(&test, nodes, &self.options);
+        let to_go = Arc::new(CostToGo::of(&test, nodes, &self.options));
         Planned { scene: self, test, path, to_go, start, goal }
     }
 }
 
 impl Planned<'_> {
-    pub(crate) fn mission(&self) -> Mission<'_> {
-        Mission {
-            test: &self.test,
-            surface: &self.scene.surface,
-            path: &self.path,
-            start: self.start,
-            goal: self.goal,
-            map: self.scene.dem.as_ref().map(|dem| MapGround { dem, friction: None, keep_out: None }),
-            to_go: Some(&self.to_go),
+    /// The mission over the DEM where the scene has one, else along the chain; with replanning.
+    pub(crate) fn mission(&self) -> Mission {
+        self.without_replanning(self.test.clone(), self.path.clone()).with_replanning(self.test.clone(), Arc::clone(&self.to_go))
+    }
+
+    /// The mission along the chain, also where the scene has a DEM.
+    pub(crate) fn chain_mission(&self) -> Mission {
+        Mission::along_chain(self.test.clone(), self.path.clone(), self.start, self.goal)
+            .with_replanning(self.test.clone(), Arc::clone(&self.to_go))
+    }
+
+    /// The mission of another path, or with the hopper of another hop test.
+    pub(crate) fn without_replanning(&self, test: HopTest, path: HopPath) -> Mission {
+        match &self.scene.dem {
+            None => Mission::along_chain(test, path, self.start, self.goal),
+            Some(dem) => {
+                let chain = test.chain();
+                self.over_dem(dem.clone(), Overlays::default(), path, (chain.hopper(), chain.surface()))
+            }
         }
     }
 
-    pub(crate) fn simulation(&self, uncertainty: Uncertainty) -> Simulation<'_> {
-        Simulation::new(self.mission(), uncertainty).unwrap()
+    /// The mission over any DEM with overlays.
+    pub(crate) fn over_dem(
+        &self,
+        dem: Dem,
+        overlays: Overlays,
+        path: HopPath,
+        (hopper, surface): (&Hopper, &SurfaceProperties),
+    ) -> Mission {
+        let ground = DemGround::new(OverlaidDem::new(dem, overlays), hopper, self.test.chain().gravity(), surface);
+        let [start, goal] = [self.start, self.goal].map(|station| self.test.chain().contact_point(&station));
+        Mission::over_dem(ground, path, start, goal)
+    }
+
+    pub(crate) fn simulation(&self, uncertainty: Uncertainty) -> Simulation {
+        Simulation::new(&self.mission(), uncertainty).unwrap()
     }
 
     pub(crate) fn run(&self, uncertainty: Uncertainty, options: &TrialOptions) -> Summary {

@@ -41,12 +41,11 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
         return super::no_path(args, loaded, &planned);
     };
     let seed = loaded.scenario.uncertainty.unwrap_or_default().seed;
-    let g = loaded.scenario.body.gravity.m_s2();
     let title = loaded.scenario.title.clone().unwrap_or_default();
     let (text, picture) = match experiment {
         Experiment::WorstDrift => {
             let numbers = DriftExperiment::of_the_paper(reading.unwrap_or_default(), seed);
-            let landings = worst_drift(test.chain(), &path.hops, g, &numbers);
+            let landings = worst_drift(test.chain(), &path.hops, &numbers);
             let answer = WorstDriftAnswer::new(&numbers, &landings);
             let picture = draw_landing_errors(&answer.figure(&title));
             (written(args, loaded, None, answer.text(), answer)?, Some(picture))
@@ -126,7 +125,6 @@ fn written<T: Serialize>(
 /// Plans and flies with ever narrower cones, on the same draws.
 fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) -> Result<ConeWidthAnswer, Failure> {
     let scenario = &loaded.scenario;
-    let g = scenario.body.gravity.m_s2();
     let numbers = DriftExperiment::of_the_paper(DriftReading::default(), seed);
     let reference_m_s = widest.first().map_or(1.0, Hop::horizontal_speed_m_s);
     let mut answer = ConeWidthAnswer::new(&numbers, reference_m_s);
@@ -145,7 +143,7 @@ fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) 
             continue;
         };
         let path = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
-        let [fixed, with_speed] = DriftLaw::ALL.map(|law| cone_width(test.chain(), &path.hops, g, &numbers, (law, reference_m_s)));
+        let [fixed, with_speed] = DriftLaw::ALL.map(|law| cone_width(test.chain(), &path.hops, &numbers, (law, reference_m_s)));
         answer.add((share, width_deg), &path.hops, &fixed, &with_speed);
     }
     Ok(answer)
