@@ -48,13 +48,15 @@
 //! quantity     angles, slopes, points, ids, sign-safe roots
 //! world        bodies, the hopper, friction cones, directions of travel
 //! ballistics   the equations of one arc: every limit as an interval of its take-off slope
-//! terrain      elevation rasters, slices of them, terrain made up from a seed
+//! terrain      elevation rasters with their overlays, slices of them, terrain made up from a seed
 //! chain        the polygonal chain and what each segment allows
 //! hop          the hop test: feasible take-off slopes between two stations of a chain, many hops on a segment
+//! ground       chains and DEMs under the same traits: raw facts, feasible windows between two contacts, first contact of an arc
+//! flight       one hop flown under drawn errors
 //! graph        nodes, hops as edges, the search
 //! path         the hops to fly, and `execute`, which flies them again without those equations
-//! uncertainty  how reliably a path is flown: trials under errors, first contact in two and three dimensions
-//! reach        how far one gets from one place of a map: along slices in all directions, and over all posts of a DEM
+//! uncertainty  how reliably a path is flown: policies, trials, statistics
+//! reach        hop counts from one position of a map: along slices in all directions, and over all posts of a DEM
 //! report       results as plain data; text, JSON, CSV, GeoJSON and the picture are views of it
 //! scenario     TOML, validated; wires the pipeline
 //! ```
