@@ -19,11 +19,39 @@ fn contributing_lists_what_ci_runs() {
     let steps = ci.lines().filter_map(|line| {
         let (settings, command) = line.split_once("step ")?;
         let runs = !line.trim_start().starts_with('#') && !line.contains("step()");
-        runs.then(|| format!("{settings}{command}").replace("$test_command", test_command[0]))
+        runs.then(|| {
+            let line = format!("{}{command}", settings.trim_start());
+            line.replace("$test_command", test_command[0]).replace("$features", "gdal,parquet")
+        })
     });
     let contributing = read("CONTRIBUTING.md");
     let listed: Vec<_> = contributing.split("```").nth(1).unwrap().lines().skip(1).map(str::to_owned).collect();
     assert_eq!(listed, steps.collect::<Vec<_>>());
+}
+
+#[test]
+fn every_test_that_the_documents_name_is_there() {
+    let mut named = 0;
+    for document in [
+        "CONTRIBUTING.md",
+        "README.md",
+        "data/README.md",
+        "docs/formats.md",
+        "docs/performance.md",
+        "docs/proof.md",
+        "docs/validation.md",
+        "fuzz/README.md",
+        "plots/README.md",
+        "src/lib.rs",
+    ] {
+        for path in read(document).split(|c: char| !c.is_alphanumeric() && !"/_.".contains(c)) {
+            if path.starts_with("tests/") && path.ends_with(".rs") {
+                assert!(Path::new(env!("CARGO_MANIFEST_DIR")).join(path).is_file(), "{document} names {path}");
+                named += 1;
+            }
+        }
+    }
+    assert!(named >= 15, "only {named} names found");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Every file of the shared folder read or refused: docs/formats.md says how, by real runs, and GDAL agrees on what was read.
 //!
-//! `CHTA_UPDATE_DOCS=1 cargo test --test formats_table` writes the table anew.
+//! `CHTA_UPDATE_DOCS=1 cargo test --test library formats_table` writes the table anew.
 #![allow(clippy::cast_precision_loss, reason = "rows and columns are small")]
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
@@ -10,7 +10,7 @@ use std::process::Command;
 
 use chta::terrain::{Dem, FORMATS, TerrainError, looks_like_mesh, read_dem, read_mesh};
 
-const BEGIN: &str = "<!-- table: tests/formats_table.rs writes it -->\n";
+const BEGIN: &str = "<!-- table: tests/library/formats_table.rs writes it -->\n";
 const END: &str = "<!-- end of table -->\n";
 
 /// All files but the folder's own README, by name.

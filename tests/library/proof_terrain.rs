@@ -111,7 +111,7 @@ fn bounds_meet_on_slices_of_both_real_dems() {
     assert!(open <= 1, "{open} of 24 left open");
 }
 
-/// The whole count: `cargo test --release --test proof_terrain -- --ignored --nocapture`.
+/// The whole count: `cargo test --release --test library proof_terrain -- --ignored --nocapture`.
 #[test]
 #[ignore = "the long run: 400 slices"]
 fn bounds_meet_on_four_hundred_slices_of_both_real_dems() {

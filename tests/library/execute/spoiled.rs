@@ -235,7 +235,7 @@ fn every_spoiled_hop_is_refused_under_its_limits_name() {
     println!("landing points {landing_points}, speeds {speeds}, reaches {reaches}, too fine to tell {too_fine}");
     for limit in Limit::ALL {
         // No finite speed lets an arc come down to its line of sight: that limit never sets an end. These chains do not bend: see
-        // tests/bends.rs.
+        // tests/library/bends.rs.
         let least = if matches!(limit, Limit::LineOfSight | Limit::Bend) { 0 } else { 300 };
         assert!(tally.by_limit[limit.index()] >= least, "{limit} was spoiled {} times only", tally.by_limit[limit.index()]);
     }
