@@ -222,6 +222,25 @@ fn what_makes_no_sense_is_refused_by_name() {
     }
 }
 
+#[cfg(feature = "parquet")]
+#[test]
+fn landings_as_parquet_have_the_rows_of_the_table() {
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+
+    let desk = desk();
+    for name in ["landings.csv", "landings.parquet"] {
+        assert_eq!(desk.run(&["simulate", "map.toml", "-o", name]).stderr, "");
+    }
+    let table = desk.read("landings.csv");
+    let rows = table.lines().filter(|line| !line.starts_with('#')).skip(1).count();
+    let file = std::fs::File::open(desk.path().join("landings.parquet")).unwrap();
+    let reader = SerializedFileReader::new(file).unwrap();
+    let metadata = reader.metadata().file_metadata();
+    assert_eq!(usize::try_from(metadata.num_rows()).unwrap(), rows);
+    let words = metadata.key_value_metadata().unwrap();
+    assert!(words.iter().any(|word| word.key == "seed" && word.value.as_deref() == Some("4")), "{words:?}");
+}
+
 #[test]
 fn without_a_nominal_path_the_answer_is_no() {
     let desk = desk();
