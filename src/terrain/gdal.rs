@@ -52,6 +52,11 @@ impl DemReader for GdalReader {
     }
 }
 
+/// Whether GDAL knows the format of this file.
+pub(super) fn can_open(path: &Path) -> bool {
+    Dataset::open(path).is_ok()
+}
+
 struct OpenRaster {
     dataset: Dataset,
     lattice: PostLattice,
