@@ -52,9 +52,10 @@ impl DemReader for GdalReader {
     }
 }
 
-/// Whether GDAL knows the format of this file.
+/// Whether GDAL can open this file as a raster.
 pub(super) fn can_open(path: &Path) -> bool {
-    Dataset::open(path).is_ok()
+    let options = gdal::DatasetOptions { open_flags: gdal::GdalOpenFlags::GDAL_OF_RASTER, ..gdal::DatasetOptions::default() };
+    Dataset::open_ex(path, options).is_ok()
 }
 
 struct OpenRaster {
