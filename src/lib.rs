@@ -42,7 +42,7 @@
 //!
 //! # The ladder
 //!
-//! A module uses only those above it; `tests/layers.rs` reads the sources and holds it so.
+//! A module uses only those above it; `tests/library/layers.rs` reads the sources and holds it so.
 //!
 //! ```text
 //! quantity     angles, slopes, points, ids, sign-safe roots

@@ -81,7 +81,7 @@ fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {
         return Ok(reader);
     }
     #[cfg(feature = "gdal")]
-    if !beginning.is_empty() {
+    if !beginning.is_empty() && super::gdal::can_open(path) {
         return Ok(&super::gdal::GdalReader);
     }
     #[cfg(not(feature = "gdal"))]

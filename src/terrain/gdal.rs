@@ -52,6 +52,12 @@ impl DemReader for GdalReader {
     }
 }
 
+/// Whether GDAL can open this file as a raster.
+pub(super) fn can_open(path: &Path) -> bool {
+    let options = gdal::DatasetOptions { open_flags: gdal::GdalOpenFlags::GDAL_OF_RASTER, ..gdal::DatasetOptions::default() };
+    Dataset::open_ex(path, options).is_ok()
+}
+
 struct OpenRaster {
     dataset: Dataset,
     lattice: PostLattice,
