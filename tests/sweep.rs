@@ -339,7 +339,7 @@ const _: () = {
 #[test]
 fn a_clone_answers_alike_from_the_same_chain_after_the_first_is_gone() {
     let points: Vec<_> = (0..40).map(|i| ChainPoint::new(f64::from(i), f64::from(i % 3))).collect();
-    let chain = support::uniform(&points, support::line((-90.0, 90.0), 4.0, (-90.0, 90.0), 4.0));
+    let chain = uniform(&points, line((-90.0, 90.0), 4.0, (-90.0, 90.0), 4.0));
     let first = HopTest::new(chain.clone());
     let second = first.clone();
     assert!(std::ptr::eq(first.chain(), second.chain()), "a clone shares its chain");
