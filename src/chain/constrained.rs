@@ -312,6 +312,13 @@ mod tests {
     }
 
     #[test]
+    fn a_surface_without_meaning_makes_no_chain() {
+        let surface = SurfaceProperties { rest: RestSlope::AtMost(Angle::from_degrees(f64::NAN)), ..friction(0.6) };
+        let ConstraintProblems(problems) = constrained(one_segment(0.0, SegmentGround::BARE.form), &ten(), &surface).unwrap_err();
+        assert!(matches!(problems.as_slice(), [(ConstraintProblem::Surface(InvalidSurface::RestSlope { .. }), 0)]), "{problems:?}");
+    }
+
+    #[test]
     fn speed_zero_is_refused_before_any_formula() {
         let line = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 0.0, 5.0);
         let form = GroundForm::Explicit { forward: Some(line), reverse: Some(line) };

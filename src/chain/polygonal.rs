@@ -353,6 +353,32 @@ mod tests {
     }
 
     #[test]
+    fn limits_that_are_not_numbers_are_refused() {
+        use crate::{
+            chain::{ContactRule, GroundForm, LineConstraints},
+            quantity::{Angle, AngleInterval},
+        };
+        let refused = |form| {
+            let vertices = vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 0.0)];
+            let made = PolygonalChain::new(vertices, vec![SegmentGround { form, keep_out: false }], None);
+            made.err().is_some_and(|InvalidChain(problems)| matches!(problems.as_slice(), [ChainProblem::NotALimit { .. }]))
+        };
+        let explicit = |min, max, speed| {
+            let rule = ContactRule::new(AngleInterval::from_degrees(min, max), speed);
+            GroundForm::Explicit { forward: Some(LineConstraints { takeoff: rule, landing: rule }), reverse: None }
+        };
+        assert!(!refused(explicit(10.0, 80.0, 5.0)));
+        assert!(!refused(explicit(80.0, 10.0, 5.0)), "an empty cone is a limit: it refuses every hop");
+        for (min, max, speed) in [(f64::NAN, 80.0, 5.0), (10.0, f64::NAN, 5.0), (10.0, 80.0, f64::NAN)] {
+            assert!(refused(explicit(min, max, speed)), "{min} to {max} deg, {speed} m/s");
+        }
+        for degrees in [f64::NAN, f64::INFINITY, 90.1, -91.0] {
+            let cross_slope = Angle::from_degrees(degrees);
+            assert!(refused(GroundForm::Surface { friction: None, cross_slope }), "cross-slope {degrees} deg");
+        }
+    }
+
+    #[test]
     fn every_problem_is_reported_at_once() {
         let InvalidChain(problems) = chain(&[(0.0, 0.0), (0.0, 1.0), (f64::NAN, 0.0), (3.0, f64::INFINITY)]).unwrap_err();
         assert!(problems.contains(&ChainProblem::NotFinite { vertex: VertexId(2) }), "{problems:?}");

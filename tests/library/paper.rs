@@ -13,13 +13,18 @@ use chta::{
 
 const NO_REST: RestSlope = RestSlope::Unlimited;
 
+/// Section V-B's angles from the slope, with these for the landing.
+fn from_slope(landing_deg: (f64, f64)) -> Grip {
+    Grip::FromSlope {
+        takeoff: AngleInterval::from_degrees(60.0, 90.0),
+        landing: AngleInterval::from_degrees(landing_deg.0, landing_deg.1),
+    }
+}
+
 /// Section V-B as one straight segment: 76 m along, from 54.61 to 59.24 m, angles stated from the slope, 10 m/s, g = 3.711.
 fn the_76_m_case(landing_from_slope_deg: (f64, f64)) -> ConstrainedChain {
     let chain = PolygonalChain::bare(vec![ChainPoint::new(0.0, 54.61), ChainPoint::new(76.0, 59.24)]).unwrap();
-    let grip = Grip::FromSlope {
-        takeoff: AngleInterval::from_degrees(60.0, 90.0),
-        landing: AngleInterval::from_degrees(landing_from_slope_deg.0, landing_from_slope_deg.1),
-    };
+    let grip = from_slope(landing_from_slope_deg);
     ConstrainedChain::new(
         chain,
         &Hopper::with_speeds(10.0, 10.0).unwrap(),
@@ -217,15 +222,22 @@ fn erratum_summary_of_theta_prints_the_takeoff_limit_for_the_landing_speed() {
 /// Taken literally nothing lands anywhere; swapped, the traverse takes the paper's four hops.
 #[test]
 fn erratum_landing_bounds_of_section_v_b_are_swapped() {
-    let hops = |landing| {
-        let chain = the_76_m_case(landing);
-        let test =
-            HopTest::new(chain.with_hopper(&Hopper::with_speeds(10.0, 10.0).unwrap(), Gravity::new(3.711).unwrap()).unwrap());
-        between(&test, 0, 1, &with_points(0)).hops()
+    let right = the_76_m_case((-90.0, -60.0));
+    assert_eq!(between(&HopTest::new(right.clone()), 0, 1, &with_points(0)).hops(), Some(4));
+    // A surface refuses angles in that order, so the literal bounds are stated as the limits of the segment.
+    let reversed = SurfaceProperties { grip: Some(from_slope((-60.0, -90.0))), rest: NO_REST };
+    let bare = PolygonalChain::bare(right.geometry().vertices().to_vec()).unwrap();
+    assert!(ConstrainedChain::new(bare, right.hopper(), right.gravity(), &reversed).is_err());
+    let line = |slope| {
+        let (takeoff, landing) = (AngleInterval::from_degrees(60.0, 90.0), AngleInterval::from_degrees(-60.0, -90.0));
+        Some(LineConstraints::from_offsets(slope, takeoff, landing, 10.0, 10.0))
     };
-    assert_eq!(hops((-60.0, -90.0)), None);
-    assert_eq!(hops((-90.0, -60.0)), Some(4));
-    let literal = the_76_m_case((-60.0, -90.0));
+    let slope = right.geometry().slopes()[0];
+    let form = GroundForm::Explicit { forward: line(slope), reverse: line(-slope) };
+    let ground = SegmentGround { form, keep_out: false };
+    let literal = PolygonalChain::new(right.geometry().vertices().to_vec(), vec![ground], None).unwrap();
+    let literal = ConstrainedChain::new(literal, right.hopper(), right.gravity(), right.surface()).unwrap();
+    assert_eq!(between(&HopTest::new(literal.clone()), 0, 1, &with_points(0)).hops(), None);
     let refusal = literal.segments()[0].check_contact(Contact::Landing, Direction::Forward).unwrap_err();
     assert!(matches!(refusal, GroundRefusal::NothingAhead { .. }), "{refusal}");
 }

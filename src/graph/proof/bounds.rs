@@ -137,8 +137,10 @@ impl Bounds {
 /// let grip = Some(Grip::Friction(FrictionCone::new(1.0).unwrap()));
 /// let points = [(0.0, 0.0), (60.0, 0.0), (60.5, 50.0), (80.0, 50.0)].map(|(x, z)| ChainPoint::new(x, z));
 /// let chain = PolygonalChain::bare(points.to_vec()).unwrap();
-/// let chain = ConstrainedChain::new(chain, &hopper, Gravity::new(1.0).unwrap(), &SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds }).unwrap();
-/// let test = HopTest::new(chain.clone());
+/// let (gravity, surface) = (Gravity::new(1.0).unwrap(), SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds });
+/// let chain = ConstrainedChain::new(chain, &hopper, gravity, &surface).unwrap();
+/// let test = HopTest::new(chain);
+/// let chain = test.chain();
 /// let at = |x| chain.geometry().station(x).unwrap();
 /// // A hop at 45 degrees carries v^2 / g = 25 m: 60 m take three, and no path takes two.
 /// let there = bounds(&test, at(0.0), at(60.0), &BoundsOptions::default(), &mut |_| {}).unwrap();

@@ -26,16 +26,17 @@ use crate::{
 ///
 /// # Examples
 /// ```
-/// use chta::{ballistics::*, chain::*, quantity::*, world::*};
+/// use chta::{chain::*, hop::*, quantity::*, world::*};
 /// let points = (0..=20).map(|i| ChainPoint::new(f64::from(i), 0.0)).collect();
 /// let hopper = Hopper::with_speeds(4.0, 4.0).unwrap();
 /// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(1.0).unwrap())), rest: RestSlope::AsFrictionHolds };
 /// let chain = ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, Gravity::new(1.6).unwrap(), &surface).unwrap();
-/// let test = HopTest::new(chain.clone());
+/// let test = HopTest::new(chain);
+/// let chain = test.chain();
 /// let stations: Vec<_> = (0..=20).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
-/// let table = LandingTable::new(&test, &stations);
+/// let table = LandingTable::new(&test, stations.as_slice());
 /// let mut farthest = 0;
-/// Sweep::new(&table).landings(&stations[0], 0..21, Direction::Forward, |i, verdict| {
+/// Sweep::new(table).landings(&stations[0], 0..21, Direction::Forward, |i, verdict| {
 ///     assert_eq!(verdict, test.lofts(&stations[0], &stations[i]));
 ///     if verdict.is_ok() {
 ///         farthest = i;
