@@ -1,4 +1,4 @@
-//! The flight envelope: all limits of a hop but the terrain, taken together.
+//! The flight envelope: all limits of a hop except the terrain, combined.
 
 use super::{LineOfSight, limits};
 use crate::{
@@ -6,27 +6,28 @@ use crate::{
     world::Hopper,
 };
 
-/// The flight envelope of a hopper under a gravity: the hops that its limits and the contacts allow over ground without obstacles.
+/// The flight envelope of a hopper under a given gravity: the hops that its limits and the contacts allow over ground without
+/// obstacles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightEnvelope {
     hopper: Hopper,
     gravity_m_s2: f64,
-    /// The machine's own take-off slopes.
+    /// The take-off slopes that the mechanism allows.
     mechanical: SlopeInterval,
 }
 
-/// The limits that the ground sets to one contact, take-off or landing: directions of travel as slopes, and a greatest speed. The
-/// constraints of a chain state the same with their angles ([`ContactRule`](crate::chain::ContactRule)).
+/// The limits of one contact (take-off or landing): directions of travel as slopes, and a greatest speed.
+/// [`ContactRule`](crate::chain::ContactRule) is the form with angles that the chain's constraints use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLimits {
-    /// Directions of travel.
+    /// Allowed directions of travel.
     pub slopes: SlopeInterval,
     /// Greatest speed, m/s.
     pub speed_max_m_s: f64,
 }
 
 impl FlightEnvelope {
-    /// For a hopper and a gravity above 0 in m/s^2.
+    /// The envelope of a hopper under a gravity above 0 in m/s^2.
     pub fn new(hopper: &Hopper, gravity_m_s2: f64) -> Self {
         let mechanical = SlopeInterval {
             lower: hopper.takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
@@ -45,12 +46,13 @@ impl FlightEnvelope {
         self.gravity_m_s2
     }
 
-    /// The machine's own take-off slopes.
+    /// The take-off slopes that the mechanism allows.
     pub const fn mechanical(&self) -> SlopeInterval {
         self.mechanical
     }
 
-    /// The lofts that all limits but the terrain allow. There is an arc where the interval is not empty and has a positive loft.
+    /// The lofts that all limits except the terrain allow. A hop exists if the interval is not empty and contains a positive
+    /// loft.
     ///
     /// # Examples
     /// ```
@@ -70,7 +72,7 @@ impl FlightEnvelope {
             .intersect(self.machine(sight))
     }
 
-    /// The lofts that the machine's greatest height and longest flight allow.
+    /// The lofts that the hopper's greatest apex height and longest flight time allow.
     #[inline]
     pub fn machine(&self, sight: LineOfSight) -> SlopeInterval {
         let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));

@@ -1,4 +1,4 @@
-//! Directions: the cones of the ground, and the machine's own take-off angles.
+//! Direction limits: the cones of the ground, and the take-off angles of the mechanism.
 
 use crate::{ballistics::LineOfSight, quantity::SlopeInterval};
 
@@ -8,7 +8,7 @@ use crate::{ballistics::LineOfSight, quantity::SlopeInterval};
 ///     m1 <= b + n <= m2                                                        (CHTA paper, Definition 2)
 /// ```
 ///
-/// Serves the take-off cone of the ground and the mechanical take-off angles of the machine alike.
+/// Used both for the take-off cone of the ground and for the take-off angles of the mechanism.
 ///
 /// # Examples
 /// ```

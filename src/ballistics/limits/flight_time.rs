@@ -1,8 +1,8 @@
-//! The machine's longest flight.
+//! The flight time limit.
 
 use crate::{ballistics::LineOfSight, quantity::SlopeInterval};
 
-/// The lofts at which the flight is no longer than a time.
+/// The lofts at which the flight takes at most a given time.
 ///
 /// ```text
 ///     sqrt(2 X n / g) <= T   <=>   n <= g T^2 / (2 X)                          (model section 2)
