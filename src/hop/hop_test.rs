@@ -1,4 +1,4 @@
-//! The hop test: may one hop join two stations, and with which take-off slopes?
+//! The hop test: whether a single hop can join two stations, and with which take-off slopes.
 
 use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief};
 use crate::{
@@ -8,21 +8,22 @@ use crate::{
     world::{Contact, Direction, Hopper, Limit},
 };
 
-/// A chain, a hopper and a gravity, ready to answer for any pair of stations.
+/// The hop test over a chain, for a hopper and a gravity.
 ///
-/// The kernel, [`lofts`](Self::lofts), has no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains what it found.
+/// The kernel, [`lofts`](Self::lofts), uses no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains
+/// the result.
 #[derive(Clone, Debug)]
 pub struct HopTest<'a> {
     chain: &'a ConstrainedChain,
     envelope: FlightEnvelope,
-    /// Heights and speeds over any stretch.
+    /// Bounds of height and speed over any part of the chain.
     relief: Relief,
-    /// How far one hop carries on each segment, by direction.
+    /// The reach of one hop along each segment, by direction.
     reaches: Vec<[Option<SegmentReach>; 2]>,
 }
 
 impl<'a> HopTest<'a> {
-    /// For a chain, a hopper and a gravity above 0 in m/s^2.
+    /// The test for a chain, a hopper and a gravity above 0 in m/s^2.
     pub fn new(chain: &'a ConstrainedChain, hopper: &Hopper, gravity_m_s2: f64) -> Self {
         let mut test =
             Self { chain, envelope: FlightEnvelope::new(hopper, gravity_m_s2), relief: Relief::of(chain), reaches: Vec::new() };
@@ -32,12 +33,12 @@ impl<'a> HopTest<'a> {
         test
     }
 
-    /// The chain it answers for.
+    /// The chain.
     pub const fn chain(&self) -> &'a ConstrainedChain {
         self.chain
     }
 
-    /// The hopper it answers for.
+    /// The hopper.
     pub const fn hopper(&self) -> &Hopper {
         self.envelope.hopper()
     }
@@ -47,19 +48,20 @@ impl<'a> HopTest<'a> {
         self.envelope.gravity_m_s2()
     }
 
-    /// Heights and speeds over any stretch of the chain.
+    /// Bounds of height and speed over any part of the chain.
     pub(super) const fn relief(&self) -> &Relief {
         &self.relief
     }
 
-    /// The machine's own take-off slopes.
+    /// The take-off slopes that the mechanism allows.
     pub const fn mechanical(&self) -> SlopeInterval {
         self.envelope.mechanical()
     }
 
-    /// The line of sight between two stations in the direction of travel; `None` where they share the same x.
+    /// The line of sight between two stations in the direction of travel; `None` if both have the same x.
     ///
-    /// For two stations on one segment its slope is the segment's own: the quotient of two nearly equal heights would lose digits.
+    /// For two stations on one segment its slope is the segment's own slope: the difference of two nearly equal heights would
+    /// lose digits.
     #[inline]
     pub fn line_of_sight(&self, takeoff: &Station, landing: &Station) -> Option<LineOfSight> {
         let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
@@ -70,15 +72,16 @@ impl<'a> HopTest<'a> {
         })
     }
 
-    /// The feasible lofts of one hop between two stations, all limits included, or the limit that left nothing.
+    /// The feasible lofts of one hop between two stations under all limits, or the limit that leaves no arc.
     ///
-    /// Cheap limits go first, the terrain last, and it stops at the first vertex that leaves nothing.
+    /// Cheap limits are tested first and the terrain last; the test stops at the first vertex that leaves no arc.
     ///
     /// Source: P eq. 21; model section 2.
     ///
     /// # Errors
-    /// The first limit, in the order of testing (ground, bends, speeds, cones, machine, terrain), that with those before it leaves no arc.
-    /// [`takeoff_set`](Self::takeoff_set) tells the whole story. [`Limit::Direction`] where both stations share the same x.
+    /// The first limit, in the order of testing (ground, bends, speeds, cones, machine, terrain), that leaves no arc together
+    /// with those before it. [`takeoff_set`](Self::takeoff_set) evaluates every limit. [`Limit::Direction`] if both stations
+    /// have the same x.
     #[inline]
     pub fn lofts(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).ok_or(Limit::Direction)?;
@@ -100,7 +103,7 @@ impl<'a> HopTest<'a> {
         Ok(SlopeInterval { lower, upper: in_envelope.upper })
     }
 
-    /// The rule that the ground allows a contact, or the limit by which it refuses.
+    /// The rule of a contact, or the limit by which the ground refuses it.
     #[inline]
     pub(super) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
         let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
@@ -110,10 +113,10 @@ impl<'a> HopTest<'a> {
         })
     }
 
-    /// The lofts that all limits but the terrain allow, with at least one positive loft.
+    /// The lofts that all limits except the terrain allow, with at least one positive loft.
     ///
     /// # Errors
-    /// The limit that left nothing.
+    /// The limit that leaves no arc.
     #[inline]
     pub(crate) fn lofts_in_envelope(
         &self,
@@ -126,19 +129,19 @@ impl<'a> HopTest<'a> {
         if lofts.is_empty() || lofts.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(lofts) }
     }
 
-    /// The lofts that the machine's greatest height and longest flight allow.
+    /// The lofts that the hopper's greatest apex height and longest flight time allow.
     #[inline]
     pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
         self.envelope.machine(sight)
     }
 
-    /// Whether the machine has a greatest height or a longest flight.
+    /// Whether the hopper has a greatest apex height or a longest flight time.
     #[inline]
     pub(super) const fn has_machine_limits(&self) -> bool {
         self.envelope.hopper().apex_height_max_m.is_some() || self.envelope.hopper().flight_time_max_s.is_some()
     }
 
-    /// Which limit left nothing, limits taken one after the other.
+    /// The limit that leaves no arc when the limits are applied in order.
     #[cold]
     fn refusing(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Limit {
         let takeoff = limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2());
@@ -152,7 +155,7 @@ impl<'a> HopTest<'a> {
         self.refusing_after_speeds(sight, both, from.slopes(), to.slopes())
     }
 
-    /// Which limit left nothing of what both speeds allow, limits taken one after the other.
+    /// The limit that leaves no arc of those that both speeds allow, when the limits are applied in order.
     pub(super) fn refusing_after_speeds(
         &self,
         sight: LineOfSight,
@@ -179,18 +182,18 @@ impl<'a> HopTest<'a> {
         Limit::FlightTime
     }
 
-    /// The feasible take-off set with every limit by itself, what sets its ends, or which limits conflict.
+    /// The feasible take-off set, each limit by itself, and the limits that set its ends or that conflict.
     ///
-    /// `None` where the two stations share the same x.
+    /// `None` if both stations have the same x.
     pub fn takeoff_set(&self, takeoff: &Station, landing: &Station) -> Option<TakeoffSet> {
         TakeoffSet::of(self, takeoff, landing)
     }
 
-    /// The least number of hops that join two stations of one segment, hop by hop along the ground; `None` where they share no
-    /// segment or its cones leave no arc.
+    /// The least number of hops along the ground that join two stations of one segment; `None` if they share no segment or
+    /// its cones allow no arc.
     ///
-    /// To be asked where a single hop is impossible: also for pairs within one reach, which the pseudo-code of the paper's
-    /// Algorithm 2 loses (its prose does not).
+    /// Meant for pairs that a single hop cannot join, including pairs within one reach. The pseudo-code of Algorithm 2 in the
+    /// CHTA paper misses the latter (its text does not).
     pub fn segment_hops(&self, takeoff: &Station, landing: &Station) -> Option<SegmentHops> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let segment = takeoff.shared_segment(landing)?;
@@ -198,7 +201,7 @@ impl<'a> HopTest<'a> {
         reach.hops_over((landing.point.x_m - takeoff.point.x_m).abs())
     }
 
-    /// How far one hop carries along a segment; `None` where its ground allows no hop along it.
+    /// The reach of one hop along a segment; `None` if its ground allows no hop along it.
     pub fn segment_reach(&self, segment: SegmentId, direction: Direction) -> Option<SegmentReach> {
         self.reaches.get(segment.index()).and_then(|both| both[direction as usize])
     }
