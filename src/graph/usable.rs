@@ -43,9 +43,9 @@ pub fn endpoint_refusal(
     let refusal_in = |direction| chain.check_contact(station, contact, direction).err().map(|refusal| (direction, refusal));
     let away = if towards == Direction::Forward { Direction::Reverse } else { Direction::Forward };
     // At the chain's end the ground ahead does not exist: the reason for the other direction is then more informative.
-    let told =
+    let reason =
         [towards, away].into_iter().filter_map(refusal_in).min_by_key(|(_, refusal)| matches!(refusal, GroundRefusal::NoGround))?;
-    let (direction, refusal) = told;
+    let (direction, refusal) = reason;
     Some(EndpointRefusal { contact, station: *station, refusal, direction, nearest: nearest_usable(chain, station, contact) })
 }
 

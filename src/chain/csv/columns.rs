@@ -118,11 +118,11 @@ impl CsvColumn {
             Kind::Finite => Ok(number),
             Kind::Friction | Kind::Speed if number >= 0.0 => Ok(number),
             Kind::Friction => Err(fault("dry rock and regolith have 0.3 to 1.2".to_owned())),
-            Kind::Speed => Err(fault("a speed has no sign here: write its amount, or 0 for not allowed".to_owned())),
+            Kind::Speed => Err(fault("speeds are given without sign: write the magnitude, or 0 for not allowed".to_owned())),
             Kind::Degrees { least, greatest } if least <= number && number <= greatest => Ok(read_degrees(text, number).radians()),
             Kind::Degrees { .. } => Err(fault("check the unit: angles are degrees".to_owned())),
             Kind::Flag if number == 0.0 || number == 1.0 => Ok(number),
-            Kind::Flag => Err(fault("write 1 where neither take-off nor landing is allowed, else 0".to_owned())),
+            Kind::Flag => Err(fault("write 1 if neither take-off nor landing is allowed, else 0".to_owned())),
         }
     }
 
@@ -140,14 +140,13 @@ impl CsvColumn {
 
     fn help_for_infinite(&self, text: &str) -> String {
         if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && text.contains(|c: char| c.is_ascii_digit()) {
-            return "no number may be beyond 1.8e308: check the exponent".to_owned();
+            return "numbers must be below 1.8e308: check the exponent".to_owned();
         }
         match self.kind {
             Kind::Speed => {
-                "where nothing limits the speed, write one that is never reached: the smaller of chain and [hopper] counts"
-                    .to_owned()
+                "if the speed has no limit, write one that is never reached: the smaller of chain and [hopper] applies".to_owned()
             }
-            Kind::Degrees { least, .. } if least < 0.0 => "where nothing limits the angle, write -90 or 90".to_owned(),
+            Kind::Degrees { least, .. } if least < 0.0 => "if the angle has no limit, write -90 or 90".to_owned(),
             _ => "write a number, or remove the row".to_owned(),
         }
     }
@@ -160,7 +159,7 @@ fn help_for_text(text: &str) -> String {
     if text.contains(',') && point.parse::<f64>().is_ok() {
         format!("write a decimal point, not a comma: {}", excerpt(&point))
     } else if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && number.parse::<f64>().is_ok() {
-        format!("write the number alone, {}: its unit stands in the column's name", excerpt(number))
+        format!("write the number alone, {}: its unit is given by the column's name", excerpt(number))
     } else {
         "write a plain number such as 12.5 or 1e-3".to_owned()
     }

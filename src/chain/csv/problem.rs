@@ -4,7 +4,7 @@ use std::{fmt, io, ops::Range, path::PathBuf};
 
 /// How many problems of one file are listed; the others are only counted. A longer list would scroll the first problem off
 /// the screen.
-const TOLD_AT_MOST: usize = 50;
+const LISTED_AT_MOST: usize = 50;
 
 /// One problem of a CSV file.
 ///
@@ -54,9 +54,9 @@ pub struct CsvProblems {
 
 impl CsvProblems {
     /// Adds a problem; its message is only composed if it is listed.
-    pub(super) fn push(&mut self, tell: impl FnOnce() -> CsvProblem) {
-        if self.problems.len() < TOLD_AT_MOST {
-            self.problems.push(tell());
+    pub(super) fn push(&mut self, problem: impl FnOnce() -> CsvProblem) {
+        if self.problems.len() < LISTED_AT_MOST {
+            self.problems.push(problem());
         } else {
             self.more += 1;
         }

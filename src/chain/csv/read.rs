@@ -291,9 +291,8 @@ impl<'a> Reading<'a> {
     /// Warns of empty columns, and of a direction without limits.
     fn warn(&mut self) {
         let blank = (0..CHAIN_COLUMNS.len()).filter(|&column| self.table.has(column) && !self.fills(column));
-        let mut warnings: Vec<String> = blank
-            .map(|column| format!("column {} is empty in every row, as if it were not there", CHAIN_COLUMNS[column].name))
-            .collect();
+        let mut warnings: Vec<String> =
+            blank.map(|column| format!("column {} is empty in every row and is ignored", CHAIN_COLUMNS[column].name)).collect();
         match (self.fills(FORWARD), self.fills(REVERSE)) {
             (true, false) => warnings.push("no hop goes towards -x: the chain has no reverse_ columns".to_owned()),
             (false, true) => warnings.push("no hop goes towards +x: the chain has the reverse_ columns alone".to_owned()),

@@ -49,27 +49,30 @@ impl CapabilityRange {
 /// value in between stays open, both bounds are refined separately.
 ///
 /// # Errors
-/// The error of `told` at a value.
+/// The error of `verdict_at` at a value.
 ///
 /// # Examples
 /// ```
 /// use chta::graph::proof::{CapabilityRange, ProofVerdict, least_capability};
 /// Possible from 3 on; the verdict between 2.9 and 3.1 is open.
-/// let mut told = |value: f64| Ok::<_, ()>(match value {
+/// let mut verdict_at = |value: f64| Ok::<_, ()>(match value {
 ///     v if v < 2.9 => ProofVerdict::Untraversable,
 ///     v if v > 3.1 => ProofVerdict::Traversable,
 ///     _ => ProofVerdict::Open,
 /// });
 /// let range = CapabilityRange { weakest: 0.1, strongest: 100.0, resolution: 1e-3 };
-/// let found = least_capability(range, &mut told).unwrap();
+/// let found = least_capability(range, &mut verdict_at).unwrap();
 /// assert!((found.unreachable_at.unwrap() - 2.9).abs() < 0.01 && (found.reachable_at.unwrap() - 3.1).abs() < 0.01);
 /// ```
-pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> Result<ProofVerdict, E>) -> Result<Threshold, E> {
-    let strongest = told(range.strongest)?;
+pub fn least_capability<E>(
+    range: CapabilityRange,
+    verdict_at: &mut dyn FnMut(f64) -> Result<ProofVerdict, E>,
+) -> Result<Threshold, E> {
+    let strongest = verdict_at(range.strongest)?;
     if strongest == ProofVerdict::Untraversable {
         return Ok(Threshold { unreachable_at: Some(range.strongest), reachable_at: None });
     }
-    let weakest = told(range.weakest)?;
+    let weakest = verdict_at(range.weakest)?;
     if weakest == ProofVerdict::Traversable {
         return Ok(Threshold { unreachable_at: None, reachable_at: Some(range.weakest) });
     }
@@ -81,7 +84,7 @@ pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> 
     let mut open = None;
     while open.is_none() && !range.is_close(low, high) {
         let value = range.middle(low, high);
-        match told(value)? {
+        match verdict_at(value)? {
             ProofVerdict::Untraversable => (low, known.unreachable_at) = (value, Some(value)),
             ProofVerdict::Traversable => (high, known.reachable_at) = (value, Some(value)),
             ProofVerdict::Open => open = Some(value),
@@ -91,7 +94,7 @@ pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> 
     let mut above_proved = open;
     while !range.is_close(low, above_proved) {
         let value = range.middle(low, above_proved);
-        match told(value)? {
+        match verdict_at(value)? {
             ProofVerdict::Untraversable => (low, known.unreachable_at) = (value, Some(value)),
             ProofVerdict::Traversable => (above_proved, high, known.reachable_at) = (value, value, Some(value)),
             ProofVerdict::Open => above_proved = value,
@@ -101,7 +104,7 @@ pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> 
     let mut below_found = if range.weakest < range.strongest { open.min(high) } else { open.max(high) };
     while !range.is_close(below_found, high) {
         let value = range.middle(below_found, high);
-        match told(value)? {
+        match verdict_at(value)? {
             ProofVerdict::Traversable => (high, known.reachable_at) = (value, Some(value)),
             ProofVerdict::Untraversable => (below_found, known.unreachable_at) = (value, Some(value)),
             ProofVerdict::Open => below_found = value,
@@ -119,7 +122,7 @@ mod tests {
     fn threshold(range: CapabilityRange, proved_to: f64, found_from: f64) -> (Threshold, u32) {
         let mut asked = 0;
         let rising = range.weakest < range.strongest;
-        let mut told = |value: f64| {
+        let mut verdict_at = |value: f64| {
             asked += 1;
             Ok::<_, ()>(match value {
                 v if (v <= proved_to) == rising && v != proved_to || v == proved_to => ProofVerdict::Untraversable,
@@ -127,7 +130,7 @@ mod tests {
                 _ => ProofVerdict::Open,
             })
         };
-        (least_capability(range, &mut told).unwrap(), asked)
+        (least_capability(range, &mut verdict_at).unwrap(), asked)
     }
 
     #[test]

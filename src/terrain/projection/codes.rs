@@ -1,11 +1,11 @@
-//! Codes of authorities: what an EPSG code means, and which IAU code means a projection.
+//! Codes of authorities: the meaning of EPSG codes, and the IAU codes of projections.
 
 use super::definition::{Definition, Ellipsoid, Method};
 
 /// Codes of `IAU_2015` bodies, and the radii of their spheres, m.
 const IAU_SPHERES: [(u32, f64); 4] = [(199, 2_440_530.0), (299, 6_051_800.0), (301, 1_737_400.0), (499, 3_396_190.0)];
 
-/// The code of the IAU (2015) that means just this projection, such as `IAU_2015:30135`: spheres only.
+/// The code of the IAU (2015) for exactly this projection, such as `IAU_2015:30135`; spheres only.
 pub(super) fn iau_code(definition: &Definition) -> Option<String> {
     let Definition { method, latitude_deg, longitude_deg, parallels_deg, scale, false_easting_m, false_northing_m, ellipsoid } =
         *definition;
@@ -33,7 +33,8 @@ pub(super) fn iau_code(definition: &Definition) -> Option<String> {
     Some(format!("IAU_2015:{}", body * 100 + code))
 }
 
-/// What an EPSG code of a projected map means: UTM on WGS 84, ETRS89 and NAD83, the usual polar maps, and Europe's equal-area map.
+/// The definition of an EPSG code of a projected map: UTM on WGS 84, ETRS89 and NAD83, the usual polar maps, and Europe's
+/// equal-area map.
 pub(super) fn epsg(code: u16) -> Option<Definition> {
     let polar = |latitude_deg: f64, longitude_deg, parallel_deg| Definition {
         parallels_deg: [Some(parallel_deg), None],

@@ -1,4 +1,4 @@
-//! A projection from its proj string, as the comments of a chain CSV keep it.
+//! Parses the proj string of a projection, which the comments of a chain CSV contain.
 
 use std::collections::BTreeMap;
 
@@ -6,10 +6,10 @@ use super::codes;
 use super::{Definition, Ellipsoid, MapProjection, Method, NoProjection};
 
 impl MapProjection {
-    /// A projection from a proj string in metres and degrees, with the name and code that belong to it.
+    /// A projection from a proj string in metres and degrees, with its name and code.
     ///
     /// # Errors
-    /// [`NoProjection::Unknown`] with the first word that is not understood: a word passed over would be another map.
+    /// [`NoProjection::Unknown`] with the first unsupported parameter: ignoring it would give another map.
     ///
     /// # Examples
     /// ```
@@ -22,13 +22,13 @@ impl MapProjection {
         let definition = parse(text).map_err(|reason| NoProjection::Unknown(format!("'{text}': {reason}")))?;
         let mut projection = Self::new(definition, name)?;
         let epsg = |code: &String| codes::epsg(code.strip_prefix("EPSG:")?.parse().ok()?);
-        // A code that belongs to another projection is no code of this one.
+        // A code that belongs to another projection is dropped.
         projection.code = code.filter(|code| epsg(code) == Some(definition)).or(projection.code);
         Ok(projection)
     }
 }
 
-/// The words of a proj string that have been understood so far are taken out; what is left is unknown.
+/// The parameters of a proj string; those used are removed, so that the remaining ones are unsupported.
 struct Words<'a>(BTreeMap<&'a str, &'a str>);
 
 impl<'a> Words<'a> {
@@ -37,7 +37,7 @@ impl<'a> Words<'a> {
         for word in text.split_whitespace() {
             let (key, value) = word.strip_prefix('+').unwrap_or(word).split_once('=').unwrap_or((word, ""));
             if words.insert(key.trim_start_matches('+'), value).is_some() {
-                return Err(format!("{key} stands twice"));
+                return Err(format!("{key} is given twice"));
             }
         }
         Ok(Self(words))
@@ -45,7 +45,7 @@ impl<'a> Words<'a> {
 
     fn number(&mut self, key: &str) -> Result<Option<f64>, String> {
         let Some(value) = self.0.remove(key) else { return Ok(None) };
-        value.parse().ok().filter(|number: &f64| number.is_finite()).map(Some).ok_or_else(|| format!("{key} is no number"))
+        value.parse().ok().filter(|number: &f64| number.is_finite()).map(Some).ok_or_else(|| format!("{key} is not a number"))
     }
 
     fn or_zero(&mut self, key: &str) -> Result<f64, String> {
@@ -67,7 +67,7 @@ fn parse(text: &str) -> Result<Definition, String> {
         (proj, _, _) => Method::ALL
             .into_iter()
             .find(|method| method.proj() == proj && *method != Method::PolarStereographic)
-            .ok_or_else(|| format!("+proj={proj} is not known here"))?,
+            .ok_or_else(|| format!("+proj={proj} is not supported"))?,
     };
     let true_scale = words.number("lat_ts")?;
     let parallels_deg = match method {
@@ -94,7 +94,7 @@ fn parse(text: &str) -> Result<Definition, String> {
         }
     }
     match words.0.into_keys().next() {
-        Some(unknown) => Err(format!("+{unknown} is not known here")),
+        Some(unknown) => Err(format!("+{unknown} is not supported")),
         None => Ok(definition),
     }
 }
