@@ -51,8 +51,15 @@ impl FlightEnvelope {
         self.mechanical
     }
 
-    /// The lofts that all limits except the terrain allow. A hop exists if the interval is not empty and contains a positive
-    /// loft.
+    /// The lofts that all limits except the terrain allow: the intersection of the intervals in [`limits`].
+    ///
+    /// Source: P eq. 21 without eq. 14.
+    ///
+    /// # Returns
+    /// A hop exists if the interval is not empty and contains a positive loft.
+    ///
+    /// # Degenerate
+    /// A speed limit of 0 or NaN gives the empty interval.
     ///
     /// # Examples
     /// ```
@@ -72,7 +79,7 @@ impl FlightEnvelope {
             .intersect(self.machine(sight))
     }
 
-    /// The lofts that the hopper's greatest apex height and longest flight time allow.
+    /// The lofts that the hopper's greatest apex height and longest flight time allow; all lofts if it has neither limit.
     #[inline]
     pub fn machine(&self, sight: LineOfSight) -> SlopeInterval {
         let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));

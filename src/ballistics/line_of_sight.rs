@@ -12,7 +12,7 @@ pub struct LineOfSight {
 }
 
 impl LineOfSight {
-    /// From run `X > 0` and rise `Z`, both in m.
+    /// From run `X > 0` and rise `Z`, both in m. The caller excludes `X = 0`, for which the slope is infinite or NaN.
     ///
     /// ```
     /// use chta::ballistics::LineOfSight;

@@ -30,8 +30,13 @@ pub fn safety_ceiling_m(run_m: f64, speed_m_s: f64, gravity_m_s2: f64) -> f64 {
 ///     X <= (v / g) sqrt(v^2 + 2 g h)
 /// ```
 ///
+/// Source: the parabola of safety at `Z = -h`, see [`safety_ceiling_m`].
+///
 /// # Units
 /// `v` in m/s, `g` in m/s^2, `h` in m, not negative.
+///
+/// # Returns
+/// 0 for `v = 0`; infinity for `g = 0`.
 ///
 /// # Examples
 /// ```

@@ -55,7 +55,7 @@ impl ConstrainedChain {
     /// let chain = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 1.0)]).unwrap();
     /// let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.6).unwrap())), rest: RestSlope::AsFrictionHolds };
     /// let chain = ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0), &surface).unwrap();
-    /// 45 degrees is steeper than atan 0.6 = 31 degrees, so nothing rests there.
+    /// // 45 degrees is steeper than atan 0.6 = 31 degrees, so nothing rests there.
     /// let refusal = chain.segments()[0].check_contact(Contact::Landing, Direction::Forward).unwrap_err();
     /// assert!((refusal.excess_deg().unwrap() - (45.0 - 30.963_756_532_073_52)).abs() < 1e-9);
     /// ```

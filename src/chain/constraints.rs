@@ -71,7 +71,7 @@ impl LineConstraints {
     /// # Examples
     /// ```
     /// use chta::{chain::LineConstraints, quantity::Angle};
-    /// Flat ground, friction angle 30 degrees: take-off between 60 and 120 degrees, of which 60 to 90 point forward.
+    /// // Flat ground, friction angle 30 degrees: take-off between 60 and 120 degrees, of which 60 to 90 point forward.
     /// let c = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 10.0, 8.0);
     /// assert!((c.takeoff.angles().min.degrees() - 60.0).abs() < 1e-12);
     /// assert_eq!(c.takeoff.slopes().upper, f64::INFINITY);
@@ -86,7 +86,26 @@ impl LineConstraints {
         }
     }
 
-    /// The constraints from angles relative to the slope (CHTA paper, section V-B).
+    /// The constraints from angles relative to the slope.
+    ///
+    /// ```text
+    ///     take-off: alpha + [t1, t2],   landing: alpha + [l1, l2],   tan alpha = slope
+    /// ```
+    ///
+    /// Source: CHTA paper, section V-B.
+    ///
+    /// # Arguments
+    /// `slope`: the segment's slope along the direction of travel; the intervals `[t1, t2]` and `[l1, l2]`; the two speeds in m/s.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{chain::LineConstraints, quantity::AngleInterval};
+    /// // Take-off 60 to 90 degrees above a slope of 45 degrees: 105 degrees and more, so no take-off towards +x.
+    /// let (takeoff, landing) = (AngleInterval::from_degrees(60.0, 90.0), AngleInterval::from_degrees(-90.0, -60.0));
+    /// let c = LineConstraints::from_offsets(1.0, takeoff, landing, 10.0, 8.0);
+    /// assert!((c.takeoff.angles().min.degrees() - 105.0).abs() < 1e-12 && c.takeoff.slopes().is_empty());
+    /// assert!((c.landing.angles().max.degrees() + 15.0).abs() < 1e-12);
+    /// ```
     pub fn from_offsets(
         slope: f64,
         takeoff: AngleInterval,

@@ -67,7 +67,7 @@ impl QuickGrip {
     /// The take-off directions on a facet.
     ///
     /// ```text
-    ///     T^2 = tan^2 delta = (mu^2 - G + (1 + mu^2) a^2) / (1 + G)          (model section 1, with cos^2 chi = (1 + a^2) / (1 + G))
+    ///     T^2 = tan^2 delta = (mu^2 - G + (1 + mu^2) a^2) / (1 + G)        (model section 1, with cos^2 chi = (1 + a^2) / (1 + G))
     ///     m >= tan(alpha + pi/2 - delta) = (1 + a T) / (T - a)               closed where T <= a
     ///     m <= tan(alpha + pi/2 + delta) = (a T - 1) / (a + T)               no bound where a + T >= 0
     /// ```
@@ -79,7 +79,7 @@ impl QuickGrip {
     /// # Examples
     /// ```
     /// use chta::{chain::{QuickCone, QuickGrip}, world::FrictionCone};
-    /// Flat ground, mu = 0.5: take-off at atan 2 or steeper.
+    /// // Flat ground, mu = 0.5: take-off at atan 2 or steeper.
     /// let QuickCone::Open(slopes) = QuickGrip::friction(FrictionCone::new(0.5)?).takeoff(0.0, 0.0) else { panic!() };
     /// assert_eq!((slopes.lower, slopes.upper), (2.0, f64::INFINITY));
     /// # Ok::<(), chta::world::InvalidFriction>(())

@@ -12,7 +12,8 @@ use crate::quantity::NodeId;
 /// position; if none of these is feasible, the remaining ones are unlikely to be more reliable than any feasible hop.
 const KEPT: usize = 32;
 
-/// For every node, its successors in order of the reliability of the rest of the path within the hop budget, the most reliable first.
+/// For every node, its successors in order of the reliability of the rest of the path within the hop budget, the most reliable
+/// first.
 #[derive(Clone, Debug)]
 pub(super) struct ReliabilityPolicy {
     /// For every node, at most [`KEPT`] successors.

@@ -185,7 +185,7 @@ struct Ends<'a, 'b> {
 }
 
 impl Ends<'_, '_> {
-    /// The distance that the speed limits allow, and the limit that ends it.
+    /// The distance that the speed limits allow, `min(X_t, X_l)` of [`SegmentReach`], and the limit that ends it.
     fn by_speed_m(&self, n: f64) -> (f64, Limit) {
         let covered = |speed: f64, slope: f64| 2.0 * speed * speed / self.test.gravity_m_s2() * (n / (1.0 + slope * slope));
         let (takeoff, landing) = (covered(self.takeoff_m_s, self.b + n), covered(self.landing_m_s, self.b - n));
@@ -193,6 +193,10 @@ impl Ends<'_, '_> {
     }
 
     /// The distance that flight time and apex height allow, decreasing with the loft, and the limit that ends it.
+    ///
+    /// ```text
+    ///     time T: X <= g T^2 / (2 n),      apex H: X <= 4 H n / (b + n)^2,   H / b for n <= b,   no bound for b + n <= 0
+    /// ```
     fn by_machine_m(&self, n: f64) -> (f64, Limit) {
         let hopper = self.test.hopper();
         let g = self.test.gravity_m_s2();

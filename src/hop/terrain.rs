@@ -8,6 +8,10 @@ use crate::{
 
 /// The lofts that clear every chain vertex flown over, and the vertex that sets the bound.
 ///
+/// ```text
+///     n >= max over vertices p of  s_p - t_p                                   (P eq. 14; see clearing_loft)
+/// ```
+///
 /// Testing vertices is sufficient: between them the arc is concave and the ground straight. The result depends slightly on
 /// how finely flat ground is divided, since a clearance over a vertex just after take-off requires a steep start (model
 /// section 2).

@@ -69,8 +69,8 @@ impl Angle {
             .min_by_key(|degrees| degrees.to_string().len())
     }
 
-    /// The tangent; plus or minus infinity at and beyond a right angle, so that an angle outside (-90, 90) degrees never has the finite
-    /// slope of another direction.
+    /// The tangent; plus or minus infinity at and beyond a right angle, so that an angle outside (-90, 90) degrees never has the
+    /// finite slope of another direction. NaN gives NaN.
     ///
     /// ```
     /// use chta::quantity::Angle;

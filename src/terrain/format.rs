@@ -60,9 +60,9 @@ pub const FORMATS: [(&str, &str); 4] = [
 
 /// Reads a DEM file with any extension. With the feature `gdal`, files in none of the formats are passed to GDAL.
 ///
+/// # Errors
 /// [`TerrainError::InFile`] with the cause: the file cannot be read, has no known format, is damaged, or does not hold
 /// elevations in metres on a north-up map in metres.
-/// other than elevations in metres on a north-up map in metres.
 pub fn read_dem(path: &Path) -> Result<Dem, TerrainError> {
     reader_of(path).and_then(|reader| reader.read_path(path)).map_err(|error| error.in_file(path))
 }

@@ -68,7 +68,7 @@ impl ProfileFacet {
     /// use chta::terrain::ProfileFacet;
     /// use nalgebra::Vector2;
     /// // A side-slope of 45 degrees, walked along its contour.
-    /// A slope of 45 degrees, traversed along its contour.
+    /// // A slope of 45 degrees, traversed along its contour.
     /// assert!((facet.cross_slope.degrees() - 45.0).abs() < 1e-12);
     /// ```
     pub fn from_gradient(gradient: Vector2<f64>, heading: Vector2<f64>) -> Self {
@@ -89,7 +89,7 @@ impl ProfileFacet {
     /// ```
     /// use chta::terrain::ProfileFacet;
     /// use nalgebra::{Vector2, Vector3};
-    /// A wall, traversed along its foot.
+    /// // A wall, traversed along its foot.
     /// let facet = ProfileFacet::from_normal(Vector3::new(0.0, 2.0, 0.0), Vector2::new(1.0, 0.0));
     /// assert_eq!(facet.cross_slope.degrees(), 90.0);
     /// ```

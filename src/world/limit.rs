@@ -90,6 +90,10 @@ impl fmt::Display for Limit {
 pub const SPEED_TOLERANCE: f64 = 1e-9;
 
 /// The speed limit as applied, `v (1 + 1e-9)`.
+///
+/// ```
+/// assert_eq!(chta::world::tolerant_speed_m_s(2.0), 2.000_000_002);
+/// ```
 #[inline]
 pub fn tolerant_speed_m_s(limit_m_s: f64) -> f64 {
     limit_m_s * (1.0 + SPEED_TOLERANCE)

@@ -22,6 +22,9 @@ use crate::{
 /// # Returns
 /// An interval without lower bound; empty if the landing itself is higher than `H`.
 ///
+/// # Degenerate
+/// `H = 0` over falling ground leaves the arcs that never rise, `n <= -b`. `H < 0` and NaN give the empty interval.
+///
 /// # Examples
 /// ```
 /// use chta::ballistics::{LineOfSight, limits};

@@ -10,6 +10,9 @@ use crate::{ballistics::LineOfSight, quantity::SlopeInterval};
 ///
 /// Used both for the take-off cone of the ground and for the take-off angles of the mechanism.
 ///
+/// # Returns
+/// The cone's interval of slopes moved by `-b`; empty if the cone is. An infinite end stays infinite.
+///
 /// # Examples
 /// ```
 /// use chta::{ballistics::{LineOfSight, limits}, quantity::SlopeInterval};
@@ -26,6 +29,9 @@ pub fn takeoff_cone(sight: LineOfSight, slopes: SlopeInterval) -> SlopeInterval 
 /// ```text
 ///     l1 <= b - n <= l2                                                        (P eq. 12, 13)
 /// ```
+///
+/// # Returns
+/// The interval `[b - l2, b - l1]`; empty if the cone is. An infinite end stays infinite.
 ///
 /// # Examples
 /// ```

@@ -11,6 +11,9 @@ use crate::{ballistics::LineOfSight, quantity::SlopeInterval};
 /// # Units
 /// `T` in s, `g` in m/s^2.
 ///
+/// # Returns
+/// An interval without lower bound; without positive lofts for `T = 0`.
+///
 /// # Examples
 /// ```
 /// use chta::ballistics::{LineOfSight, limits};

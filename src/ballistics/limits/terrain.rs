@@ -15,6 +15,10 @@ use crate::quantity::ChainPoint;
 /// # Units
 /// All in m; `eps` is the clearance.
 ///
+/// # Degenerate
+/// The point has to lie strictly between take-off and landing: at the x of either the result is infinite or NaN. A loft of at
+/// most 0 means that every arc clears the point.
+///
 /// # Examples
 /// ```
 /// use chta::{ballistics::limits::clearing_loft, quantity::ChainPoint};

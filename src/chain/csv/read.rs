@@ -20,8 +20,8 @@ use crate::{
 pub struct ChainFile {
     /// The chain.
     pub chain: PolygonalChain,
-    /// The projection of its map, if comments at the head of the file state one (`# crs_proj: +proj=...`, as written by `chta
-    /// slice`).
+    /// The projection of its map, if comments at the head of the file state one (`# crs_proj: +proj=...`, as written by
+    /// `chta slice`).
     pub projection: Option<MapProjection>,
     /// Warnings: ignored content, and directions without any possible hop.
     pub warnings: Vec<String>,

@@ -54,7 +54,7 @@ impl CapabilityRange {
 /// # Examples
 /// ```
 /// use chta::graph::proof::{CapabilityRange, ProofVerdict, least_capability};
-/// Possible from 3 on; the verdict between 2.9 and 3.1 is open.
+/// // Possible from 3 on; the verdict between 2.9 and 3.1 is open.
 /// let mut verdict_at = |value: f64| Ok::<_, ()>(match value {
 ///     v if v < 2.9 => ProofVerdict::Untraversable,
 ///     v if v > 3.1 => ProofVerdict::Traversable,

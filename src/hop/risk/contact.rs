@@ -75,7 +75,8 @@ pub(super) fn contact_success(
 }
 
 impl ContactScatter {
-    /// The probability that a rule is satisfied at an offset from the mean position, in the direction of travel.
+    /// The probability that a rule is satisfied at an offset from the mean position, in the direction of travel: that the angle lies
+    /// in the cone, times that the speed is within its limit.
     fn kept_by(&self, rule: &ContactRule, from_mean_m: f64, friction_sigma: f64) -> f64 {
         let angles = rule.angles();
         let angle = self.angle + self.angle_per_m * from_mean_m;

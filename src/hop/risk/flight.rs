@@ -8,7 +8,7 @@ use crate::{
     world::{Contact, Direction},
 };
 
-/// The standard normal distribution function, from `libm`.
+/// The standard normal distribution function, `Phi(x) = erfc(-x / sqrt 2) / 2`.
 pub(super) fn normal(x: f64) -> f64 {
     0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
 }
@@ -131,6 +131,12 @@ impl Flight {
     }
 
     /// The standard deviation of the arc's height above the ground at a distance `d` from the take-off, m.
+    ///
+    /// The root of the sum of squares of four independent parts, with the derivatives of [`Self::new`]:
+    ///
+    /// ```text
+    ///     (2 c d^2 / v) sigma_v,   ((1 + m^2) d - 2 m c d^2) sigma_theta,   (s_t - z'(d)) sigma_x,   sigma_z
+    /// ```
     fn height_sigma_m(&self, deviations: &HopDeviations, ground: &Ground, d_m: f64) -> f64 {
         let fall_m = self.bend_per_m * d_m * d_m;
         let by_speed = 2.0 * fall_m * self.speed_sigma_m_s / self.speed_m_s;
@@ -139,7 +145,8 @@ impl Flight {
         [by_speed, by_angle, by_place, deviations.height_m].into_iter().fold(0.0, libm::hypot)
     }
 
-    /// The probability of striking the most critical vertex between take-off and landing.
+    /// The probability of striking the most critical vertex between take-off and landing, `Phi(-min(height / sigma))`; 0 without
+    /// such vertices.
     ///
     /// Vertices within four standard deviations of either end belong to the ground of that contact, which is checked there.
     pub(super) fn strike_probability(
@@ -181,8 +188,9 @@ impl Flight {
 
     /// The scatter of the landing.
     ///
-    /// The landing angle changes with the position, `d(slope)/dx = -2 c`; at a fixed position it deviates by `sigma_theta (1
-    /// + m^2) / (1 + l^2)`, since `l = 2 b - m`.
+    /// ```text
+    ///     d(slope)/dx = -2 c,   sigma_landing = sigma_theta (1 + m^2) / (1 + l^2) at a fixed position, since l = 2 b - m
+    /// ```
     pub(super) fn landing(&self, hop: &PlannedHop) -> ContactScatter {
         let steepness = 1.0 + self.landing_slope * self.landing_slope;
         ContactScatter {

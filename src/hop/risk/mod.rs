@@ -73,7 +73,7 @@ impl RiskModel {
     /// The probability that a hop fails.
     ///
     /// ```text
-    ///     1 - P(take-off within its cone) P(no vertex struck on the way) P(landing within cone, speed and tolerance)
+    ///     1 - P(take-off within its cone) P(no vertex struck in flight) P(landing within cone, speed and tolerance)
     /// ```
     ///
     /// Take-off and landing are averaged over the segments around them, weighted by the probability of each position; a

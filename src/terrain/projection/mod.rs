@@ -154,7 +154,7 @@ impl MapProjection {
     /// let moon = Ellipsoid::sphere(1_737_400.0);
     /// let south = MapProjection::new(Definition::about(Method::PolarStereographic, -90.0, 0.0, moon), None).unwrap();
     /// assert_eq!(south.code(), Some("IAU_2015:30135"));
-    /// From the pole along the map's x: longitude 90.
+    /// // From the pole along the map's x: longitude 90.
     /// let place = south.lon_lat(MapPoint::new(1000.0, 0.0)).unwrap();
     /// assert!((place.lon_deg - 90.0).abs() < 1e-12 && (place.lat_deg + 89.967).abs() < 1e-3);
     /// ```

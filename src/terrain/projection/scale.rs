@@ -95,7 +95,7 @@ impl MapProjection {
     /// use chta::quantity::MapPoint;
     /// use chta::terrain::{Definition, Ellipsoid, MapProjection, Method};
     /// use nalgebra::Vector2;
-    /// Equirectangular with true scale at the equator: at 60 degrees latitude, a degree of longitude is drawn twice too long.
+    /// // Equirectangular with true scale at the equator: at 60 degrees latitude, a degree of longitude is drawn twice as long.
     /// let moon = Ellipsoid::sphere(1_737_400.0);
     /// let map = MapProjection::new(Definition::about(Method::Equirectangular, 0.0, 0.0, moon), None).unwrap();
     /// let at = MapPoint::new(0.0, 60_f64.to_radians() * 1_737_400.0);

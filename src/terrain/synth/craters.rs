@@ -11,9 +11,11 @@ const EJECTA_REACH: f64 = 5.0;
 /// Depth of a fresh simple crater from rim to floor, by its rim-to-rim diameter D, both in km.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthLaw {
-    /// Moon: 0.196 D^1.010 (Pike, Size-dependence in the shape of fresh impact craters on the Moon, in Impact and Explosion Cratering, 1977).
+    /// Moon: 0.196 D^1.010 (Pike, Size-dependence in the shape of fresh impact craters on the Moon, in Impact and Explosion
+    /// Cratering, 1977).
     Moon,
-    /// Mars: 0.179 D^1.012 (Robbins and Hynek, A new global database of Mars impact craters >= 1 km: 2, J. Geophys. Res. 117, 2012, E06001).
+    /// Mars: 0.179 D^1.012 (Robbins and Hynek, A new global database of Mars impact craters >= 1 km: 2, J. Geophys. Res. 117,
+    /// 2012, E06001).
     Mars,
 }
 

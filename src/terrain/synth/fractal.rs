@@ -11,8 +11,8 @@ use crate::terrain::TerrainError;
 /// nu(L) = rms_deviation_m (L / baseline_m)^hurst_exponent
 /// ```
 ///
-/// Source: Shepard et al., The roughness of natural terrain, J. Geophys. Res. 106 (2001) 32777, eqs. 3 and 5. Planetary surfaces have Hurst
-/// exponents of some 0.5 to 0.95 at metres to hundreds of metres.
+/// Source: Shepard et al., The roughness of natural terrain, J. Geophys. Res. 106 (2001) 32777, eqs. 3 and 5. Planetary surfaces
+/// have Hurst exponents of some 0.5 to 0.95 at metres to hundreds of metres.
 ///
 /// Method: independent complex normal variables for all wave vectors k of a periodic square, weighted by |k|^-(H + 1), and
 /// their inverse Fourier transform (Voss, in Peitgen and Saupe, The Science of Fractal Images, 1988, section 1.6). The weight
