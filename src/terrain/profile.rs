@@ -67,8 +67,8 @@ impl ProfileFacet {
     /// ```
     /// use chta::terrain::ProfileFacet;
     /// use nalgebra::Vector2;
-    /// // A side-slope of 45 degrees, walked along its contour.
     /// // A slope of 45 degrees, traversed along its contour.
+    /// let facet = ProfileFacet::from_gradient(Vector2::new(0.0, 1.0), Vector2::new(1.0, 0.0));
     /// assert!((facet.cross_slope.degrees() - 45.0).abs() < 1e-12);
     /// ```
     pub fn from_gradient(gradient: Vector2<f64>, heading: Vector2<f64>) -> Self {
