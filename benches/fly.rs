@@ -8,18 +8,19 @@
 
 mod support;
 
-use std::path::Path;
+use std::{path::Path, sync::Arc};
 
 use chta::{
     ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain, csv::read_chain_csv_file},
     graph::{CostToGo, NodeSet, Outcome, PointSpacing, SearchOptions, search},
+    ground::{DemGround, Surface},
     hop::{HopTest, Split},
     path::generate,
     quantity::{Angle, MapPoint},
-    terrain::{Dem, read_dem, slice},
-    uncertainty::{MapGround, Mission, Policy, Simulation, TrialOptions, Uncertainty},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    terrain::{Dem, OverlaidDem, Overlays, read_dem, slice},
+    uncertainty::{Mission, Policy, Simulation, TrialOptions, Uncertainty},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
 
@@ -36,11 +37,12 @@ const ERRORS: Uncertainty = Uncertainty {
 };
 
 /// A slower robot on ground of less grip plans, so that the real one has some of both to spare.
-fn robots() -> [(Hopper, Surface); 2] {
+fn robots() -> [(Hopper, SurfaceProperties); 2] {
     [(7.0, 0.8), (10.0, 3.0)].map(|(speed_m_s, friction)| {
-        let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(speed_m_s, speed_m_s) };
+        let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(speed_m_s, speed_m_s) })
+            .expect("a valid hopper");
         let grip = Some(Grip::Friction(FrictionCone::new(friction).expect("a friction coefficient")));
-        (hopper, Surface { grip, rest: RestSlope::AsFrictionHolds })
+        (hopper, SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds })
     })
 }
 
@@ -54,9 +56,12 @@ fn fly(
     policy: Policy,
 ) {
     let [planner, flier] = robots();
-    let constrained = |(hopper, surface)| ConstrainedChain::new(geometry.clone(), hopper, surface).expect("a chain");
+    let constrained = |(hopper, surface)| {
+        ConstrainedChain::new(geometry.clone(), hopper, Gravity::new(support::MARS_M_S2).expect("a gravity"), surface)
+            .expect("a chain")
+    };
     let chains = [constrained((&planner.0, &planner.1)), constrained((&flier.0, &flier.1))];
-    let test = HopTest::new(&chains[0], &planner.0, support::MARS_M_S2);
+    let test = HopTest::new(chains[0].clone());
     let (first_m, last_m) = geometry.extent_m();
     let station = |x_m| geometry.station(x_m).expect("an end of the chain");
     // Ground behind the start and beyond the goal, for those that fly too short or too far.
@@ -66,12 +71,19 @@ fn fly(
     let answer = search(&test, start, goal, &options, &mut |_| {}).expect("few nodes");
     let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path") };
     let path = generate(&test, &legs, options.takeoff, Split::FullReach).expect("few hops");
-    let real = HopTest::new(&chains[1], &flier.0, support::MARS_M_S2);
+    let real = HopTest::new(chains[1].clone());
     let nodes = NodeSet::new(&chains[1], start, goal, spacing).expect("few nodes");
-    let to_go = CostToGo::of(&real, nodes, &options);
-    let map = dem.map(|dem| MapGround { dem, friction: None, keep_out: None });
-    let mission = Mission { test: &real, surface: &flier.1, path: &path, start, goal, map, to_go: Some(&to_go) };
-    let simulation = Simulation::new(mission, errors).expect("sound errors");
+    let to_go = Arc::new(CostToGo::of(&real, nodes, &options));
+    let mission = match dem {
+        None => Mission::along_chain(real.clone(), path.clone(), start, goal),
+        Some(dem) => {
+            let terrain = OverlaidDem::new(dem.clone(), Overlays::default());
+            let ground = DemGround::new(terrain, &flier.0, real.chain().gravity(), &flier.1);
+            let [start, goal] = [start, goal].map(|station| real.chain().contact_point(&station));
+            Mission::over_dem(ground, path.clone(), start, goal)
+        }
+    };
+    let simulation = Simulation::new(&mission.with_replanning(real, to_go), errors).expect("sound errors");
     let trials = TrialOptions { trials: 1000, threads: 1, policy, goal_tolerance_m: 3.0, ..TrialOptions::default() };
     let run = || simulation.run(black_box(&trials), &mut ()).expect("a simulation");
     let summary = run();

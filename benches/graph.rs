@@ -9,7 +9,7 @@ mod support;
 use chta::{
     graph::{PointSpacing, SearchOptions, search},
     hop::HopTest,
-    world::Hopper,
+    world::{Hopper, HopperLimits},
 };
 use divan::{Bencher, black_box};
 
@@ -20,9 +20,10 @@ fn main() {
 /// End to end over a fractal chain of one-metre segments.
 fn across(bencher: Bencher<'_, '_>, segments: usize, points: u32, speed_m_s: f64) {
     let (chain, _) = support::fractal_chain(segments);
-    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(speed_m_s, speed_m_s) };
+    let hopper =
+        Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(speed_m_s, speed_m_s) }).expect("a valid hopper");
     let chain = support::constrained(chain.geometry().clone(), &hopper);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let test = HopTest::new(chain.clone());
     let (first_m, last_m) = chain.geometry().extent_m();
     let station = |x_m| chain.geometry().station(x_m).expect("an end of the chain");
     let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(points)), ..SearchOptions::default() };

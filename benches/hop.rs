@@ -6,11 +6,13 @@
 
 mod support;
 
+use std::sync::Arc;
+
 use chta::{
     chain::PolygonalChain,
     hop::{HopTest, LandingTable, Sweep},
     quantity::VertexId,
-    world::{Direction, Hopper},
+    world::{Direction, Hopper, HopperLimits},
 };
 use divan::{Bencher, black_box, counter::ItemsCount};
 
@@ -21,8 +23,8 @@ fn main() {
 /// One pair 15 vertices apart, by the kernel: all limits, no explanation.
 #[divan::bench]
 fn one_pair_kernel(bencher: Bencher<'_, '_>) {
-    let (chain, hopper) = support::fractal_chain(200);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let (chain, _) = support::fractal_chain(200);
+    let test = HopTest::new(chain.clone());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     bencher.bench_local(|| test.lofts(black_box(&at(100)), black_box(&at(115))));
 }
@@ -30,8 +32,8 @@ fn one_pair_kernel(bencher: Bencher<'_, '_>) {
 /// The same pair explained: every limit by itself and what binds.
 #[divan::bench]
 fn one_pair_explained(bencher: Bencher<'_, '_>) {
-    let (chain, hopper) = support::fractal_chain(200);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let (chain, _) = support::fractal_chain(200);
+    let test = HopTest::new(chain.clone());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     bencher.bench_local(|| test.takeoff_set(black_box(&at(100)), black_box(&at(115))));
 }
@@ -39,8 +41,8 @@ fn one_pair_explained(bencher: Bencher<'_, '_>) {
 /// One take-off in the middle against all landings within a window of vertices on either side.
 #[divan::bench(args = [30, 200, 2000])]
 fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
-    let (chain, hopper) = support::fractal_chain(2 * window + 1);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let (chain, _) = support::fractal_chain(2 * window + 1);
+    let test = HopTest::new(chain.clone());
     let stations: Vec<_> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
     let takeoff = stations[window];
     bencher
@@ -51,12 +53,12 @@ fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
 /// The same by a sweep: speeds cut the far landings, as they do in a search (`sweep_against_plain` has windows that they do not cut).
 #[divan::bench(args = [30, 200, 2000])]
 fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
-    let (chain, hopper) = support::fractal_chain(2 * window + 1);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let (chain, _) = support::fractal_chain(2 * window + 1);
+    let test = HopTest::new(chain.clone());
     let stations: Vec<_> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
     let takeoff = stations[window];
-    let table = LandingTable::new(&test, &stations);
-    let mut sweep = Sweep::new(&table);
+    let table = Arc::new(LandingTable::new(&test, stations.as_slice()));
+    let mut sweep = Sweep::new(Arc::clone(&table));
     bencher.counter(ItemsCount::new(2 * window)).bench_local(|| {
         let mut feasible = 0;
         for direction in Direction::BOTH {
@@ -70,10 +72,10 @@ fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
 /// The bound on reach that a search asks for at every take-off, on a chain of 100 000 segments.
 #[divan::bench]
 fn reach_of_one_takeoff(bencher: Bencher<'_, '_>) {
-    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(10.0, 10.0) };
+    let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(10.0, 10.0) }).expect("a valid hopper");
     let geometry = PolygonalChain::bare(support::long_chain(100_000, 1)).expect("a chain");
     let chain = support::constrained(geometry, &hopper);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let test = HopTest::new(chain.clone());
     let takeoff = chain.geometry().vertex_station(VertexId(50_000));
     bencher.bench_local(|| test.reach_bound_m(black_box(&takeoff)));
 }

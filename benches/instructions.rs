@@ -17,21 +17,21 @@
 
 mod support;
 
-use std::{hint::black_box, process::Command};
+use std::{hint::black_box, process::Command, sync::Arc};
 
 use chta::{
-    chain::{ConstrainedChain, Station},
+    chain::Station,
     hop::{HopTest, LandingTable, Sweep},
     quantity::VertexId,
-    world::{Direction, Hopper},
+    world::{Direction, Hopper, HopperLimits},
 };
 use gungraun::{library_benchmark, library_benchmark_group};
 
-/// Everything that one take-off against a window needs, made before counting begins: it lives as long as the process.
+/// Everything that one take-off against a window needs, made before counting begins.
 struct Scene {
-    test: &'static HopTest<'static>,
-    stations: &'static [Station],
-    sweep: Sweep<'static>,
+    test: HopTest,
+    stations: Arc<[Station]>,
+    sweep: Sweep,
     window: usize,
 }
 
@@ -40,14 +40,14 @@ fn scene(window: usize, friction: f64) -> Scene {
     let (chain, _) = support::fractal_chain(2 * window);
     #[expect(clippy::cast_precision_loss, reason = "a few thousand metres")]
     let speed = (support::MARS_M_S2 * 4.0 * window as f64).sqrt();
-    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(speed, speed) };
-    let chain: &'static ConstrainedChain =
-        Box::leak(Box::new(support::constrained_by(chain.geometry().clone(), &hopper, friction)));
-    let test: &'static HopTest<'static> = Box::leak(Box::new(HopTest::new(chain, &hopper, support::MARS_M_S2)));
+    let hopper =
+        Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(speed, speed) }).expect("a valid hopper");
+    let test = HopTest::new(support::constrained_by(chain.geometry().clone(), &hopper, friction));
+    let chain = test.chain();
     let stations: Vec<Station> = (0..=2 * window).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
-    let stations: &'static [Station] = Vec::leak(stations);
-    let table: &'static LandingTable<'static> = Box::leak(Box::new(LandingTable::new(test, stations)));
-    let mut scene = Scene { test, stations, sweep: Sweep::new(table), window };
+    let stations: Arc<[Station]> = stations.into();
+    let sweep = Sweep::new(LandingTable::new(&test, Arc::clone(&stations)));
+    let mut scene = Scene { test, stations, sweep, window };
     scene.swept();
     scene
 }
@@ -77,7 +77,7 @@ fn sweep(mut scene: Scene) -> usize {
 #[bench::window_200(scene(200, 0.6))]
 fn plain(scene: Scene) -> usize {
     let takeoff = black_box(&scene.stations[scene.window]);
-    scene.stations.iter().filter(|landing| support::plain::lofts(scene.test, takeoff, landing).is_some()).count()
+    scene.stations.iter().filter(|landing| support::plain::lofts(&scene.test, takeoff, landing).is_some()).count()
 }
 
 library_benchmark_group!(name = hop; benchmarks = sweep, plain);

@@ -9,15 +9,15 @@
 #[path = "support/plain_map.rs"]
 mod plain_map;
 
-use std::{error::Error, time::Instant};
+use std::time::Instant;
 
 use chta::{
     ballistics::TakeoffChoice,
-    chain::{ConstrainedChain, PolygonalChain},
     graph::Effort,
-    reach::map::{Journey, MapRequest, Post, PostHops, Search, UNREACHED, mobility, search},
-    terrain::{Dem, Profile, SyntheticTerrain, synthesise},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    ground::DemGround,
+    reach::map::{Journey, Post, PostHops, Search, UNREACHED, mobility, search},
+    terrain::{Dem, OverlaidDem, Overlays, SyntheticTerrain, synthesise},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 /// Gravity of the Moon, m/s^2.
@@ -29,7 +29,7 @@ const SPEED_M_S: f64 = 4.414;
 struct Scene {
     dem: Dem,
     hopper: Hopper,
-    surface: Surface,
+    surface: SurfaceProperties,
 }
 
 impl Scene {
@@ -38,25 +38,18 @@ impl Scene {
         let dem = synthesise(&SyntheticTerrain { rows: side, cols: side, seed: 3, ..SyntheticTerrain::default() })
             .expect("sound options");
         let friction = FrictionCone::new(0.6).expect("a friction coefficient");
-        let surface = Surface { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
-        Self { dem, hopper: Hopper { clearance_m: 0.05, ..Hopper::with_speeds(SPEED_M_S, SPEED_M_S) }, surface }
-    }
-
-    fn chain(&self, profile: &Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> {
-        let friction = FrictionCone::new(0.6)?;
-        Ok(ConstrainedChain::new(PolygonalChain::from_profile(profile, Some(friction))?, &self.hopper, &self.surface)?)
-    }
-
-    fn request(&self) -> MapRequest<'_> {
-        MapRequest {
-            dem: &self.dem,
-            stride: 1,
-            hopper: &self.hopper,
-            surface: &self.surface,
-            gravity_m_s2: MOON_M_S2,
-            friction: None,
-            keep_out: None,
+        let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
+        Self {
+            dem,
+            hopper: Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(SPEED_M_S, SPEED_M_S) })
+                .expect("a valid hopper"),
+            surface,
         }
+    }
+
+    fn ground(&self) -> DemGround {
+        let terrain = OverlaidDem::new(self.dem.clone(), Overlays::default());
+        DemGround::new(terrain, &self.hopper, Gravity::new(MOON_M_S2).expect("a gravity"), &self.surface)
     }
 }
 
@@ -68,7 +61,7 @@ fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
 }
 
 /// Fewest hops by pushing: each post of the layer asks all posts within reach that have no hops yet.
-fn pushed(hops: &PostHops<'_>, start: Post) -> (Vec<i16>, u64) {
+fn pushed(hops: &PostHops, start: Post) -> (Vec<i16>, u64) {
     let lattice = hops.lattice();
     let mut found = vec![UNREACHED; lattice.count()];
     let mut tested = 0;
@@ -100,12 +93,11 @@ fn pushed(hops: &PostHops<'_>, start: Post) -> (Vec<i16>, u64) {
 
 fn against_plain() {
     let scene = Scene::new(72);
-    let ground = |profile: Profile| scene.chain(&profile);
     let start = Post { row: 36, col: 36 };
     let (plain_s, plain) =
         timed(|| plain_map::plain_map(&scene.dem, (start.row, start.col), &scene.hopper, &scene.surface, MOON_M_S2));
     let (quick_s, quick) = timed(|| {
-        let hops = PostHops::new(scene.request(), &ground).expect("a sound request");
+        let hops = PostHops::new(scene.ground(), 1).expect("a sound request");
         search(&hops, start, Search::default(), &mut |_| {}).expect("a sound request")
     });
     assert_eq!(plain, quick.hops, "both ways find the same hops");
@@ -114,9 +106,8 @@ fn against_plain() {
 
 fn pull_against_push() {
     let scene = Scene::new(512);
-    let ground = |profile: Profile| scene.chain(&profile);
     let start = Post { row: 256, col: 256 };
-    let hops = PostHops::new(scene.request(), &ground).expect("a sound request");
+    let hops = PostHops::new(scene.ground(), 1).expect("a sound request");
     let (pull_s, pulled) = timed(|| search(&hops, start, Search::default(), &mut |_| {}).expect("a sound request"));
     let (push_s, (pushed, tested)) = timed(|| pushed(&hops, start));
     assert_eq!(pulled.hops, pushed, "both ways find the same hops");
@@ -133,9 +124,8 @@ fn sizes() {
     );
     for side in [256usize, 512, 1024, 2048] {
         let scene = Scene::new(side);
-        let ground = |profile: Profile| scene.chain(&profile);
         let start = Post { row: side / 2, col: side / 2 };
-        let (prepare_s, hops) = timed(|| PostHops::new(scene.request(), &ground).expect("a sound request"));
+        let (prepare_s, hops) = timed(|| PostHops::new(scene.ground(), 1).expect("a sound request"));
         let asked = |effort| Search { journey: Journey::Outbound, effort };
         let (hops_s, _) = timed(|| search(&hops, start, asked(None), &mut |_| {}).expect("a sound request"));
         let least = Some((Effort::TakeoffSpeed, TakeoffChoice::LeastSpeed));

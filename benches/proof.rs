@@ -6,14 +6,16 @@ use chta::{
     graph::proof::{Bounds, BoundsOptions, bounds},
     hop::HopTest,
     quantity::ChainPoint,
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 fn main() {
     divan::main();
 }
 
-const HOPPER: Hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(8.0, 8.0) };
+fn hopper() -> Hopper {
+    Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(8.0, 8.0) }).unwrap()
+}
 
 /// Rough ground of so many segments, each about a metre long, as slices of a DEM of 1 m posts have them.
 fn rough(segments: u32) -> ConstrainedChain {
@@ -23,14 +25,15 @@ fn rough(segments: u32) -> ConstrainedChain {
         let (a, b) = ((f64::from(i) * 0.37).sin(), (f64::from(i) * 1.73).sin());
         points.push(ChainPoint::new(last.x_m + 0.6 + 0.3 * b.abs(), last.z_m + 0.25 * a + 0.1 * b));
     }
-    let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.7).unwrap())), rest: RestSlope::AsFrictionHolds };
-    ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &HOPPER, &surface).unwrap()
+    let surface =
+        SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.7).unwrap())), rest: RestSlope::AsFrictionHolds };
+    ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper(), Gravity::new(3.711).unwrap(), &surface).unwrap()
 }
 
 #[divan::bench(args = [12, 25, 50, 100, 200, 400, 800])]
 fn bounds_from_end_to_end(bencher: divan::Bencher<'_, '_>, segments: u32) {
     let chain = rough(segments);
-    let test = HopTest::new(&chain, &HOPPER, 3.711);
+    let test = HopTest::new(chain.clone());
     let (first_m, last_m) = chain.geometry().extent_m();
     let (start, goal) = (chain.geometry().station(first_m).unwrap(), chain.geometry().station(last_m).unwrap());
     let prove = || -> Bounds { bounds(&test, start, goal, &BoundsOptions::default(), &mut |_| {}).unwrap() };

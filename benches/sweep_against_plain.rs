@@ -14,11 +14,13 @@ use std::{
     time::{Duration, Instant},
 };
 
+use std::sync::Arc;
+
 use chta::{
     chain::Station,
     hop::{HopTest, LandingTable, Sweep},
     quantity::VertexId,
-    world::{Direction, Hopper, Limit},
+    world::{Direction, Hopper, HopperLimits, Limit},
 };
 
 /// Of so many rounds each, taken in turn, the fastest counts: the one least disturbed.
@@ -64,14 +66,15 @@ fn measure(scene: &Scene, window: usize) {
     let (chain, _) = support::fractal_chain(2 * window + takeoffs_of(window));
     #[expect(clippy::cast_precision_loss, reason = "a few thousand metres")]
     let speed = (support::MARS_M_S2 * scene.reach_per_window * window as f64).sqrt();
-    let hopper = Hopper { clearance_m: scene.clearance_m, ..Hopper::with_speeds(speed, speed) };
+    let hopper = Hopper::new(HopperLimits { clearance_m: scene.clearance_m, ..HopperLimits::with_speeds(speed, speed) })
+        .expect("a valid hopper");
     let chain = support::constrained_by(chain.geometry().clone(), &hopper, scene.friction);
-    let test = HopTest::new(&chain, &hopper, support::MARS_M_S2);
+    let test = HopTest::new(chain.clone());
     let stations: Vec<_> = (0..=chain.geometry().segment_count()).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
-    let table = LandingTable::new(&test, &stations);
+    let table = Arc::new(LandingTable::new(&test, stations.as_slice()));
     let takeoffs = || (window..window + takeoffs_of(window)).map(|i| (&stations[i], i - window..i + window + 1));
     let by_plain = || takeoffs().map(|(takeoff, among)| plain_count(&test, &stations, takeoff, among)).sum::<usize>();
-    let mut sweep = Sweep::new(&table);
+    let mut sweep = Sweep::new(Arc::clone(&table));
     let mut by_sweep = || takeoffs().map(|(takeoff, among)| sweep_count(&mut sweep, takeoff, among)).sum::<usize>();
     let (feasible, swept) = (by_plain(), by_sweep());
     assert_eq!(feasible, swept, "plain test and sweep count different landings");
@@ -93,11 +96,11 @@ fn measure(scene: &Scene, window: usize) {
     );
 }
 
-fn plain_count(test: &HopTest<'_>, stations: &[Station], takeoff: &Station, among: Range<usize>) -> usize {
+fn plain_count(test: &HopTest, stations: &[Station], takeoff: &Station, among: Range<usize>) -> usize {
     stations[among].iter().filter(|landing| support::plain::lofts(test, black_box(takeoff), black_box(landing)).is_some()).count()
 }
 
-fn sweep_count(sweep: &mut Sweep<'_>, takeoff: &Station, among: Range<usize>) -> usize {
+fn sweep_count(sweep: &mut Sweep, takeoff: &Station, among: Range<usize>) -> usize {
     let mut feasible = 0;
     for direction in Direction::BOTH {
         sweep.landings(black_box(takeoff), among.clone(), direction, |_, verdict| {
@@ -115,7 +118,7 @@ fn timed(mut work: impl FnMut() -> usize) -> Duration {
 
 /// Which share of the pairs each limit leaves, limits taken in the order of testing; those that refuse nothing are not named.
 fn survivors<'a>(
-    test: &HopTest<'_>,
+    test: &HopTest,
     stations: &[Station],
     takeoffs: impl Iterator<Item = (&'a Station, Range<usize>)>,
     pairs: f64,

@@ -7,21 +7,21 @@
 //! # From a DEM to a path
 //!
 //! ```
-//! use chta::{ballistics::TakeoffChoice, chain::{ConstrainedChain, PolygonalChain}, graph::{search, Outcome, PointSpacing, SearchOptions}, hop::{HopTest, Split}, path::{execute, generate}, quantity::MapPoint, terrain::{slice, synthesise, SyntheticTerrain}, world::{Body, FrictionCone, Grip, Hopper, RestSlope, Surface}};
+//! use chta::{ballistics::TakeoffChoice, chain::{ConstrainedChain, PolygonalChain}, graph::{search, Outcome, PointSpacing, SearchOptions}, hop::{HopTest, Split}, path::{execute, generate}, quantity::MapPoint, terrain::{slice, synthesise, SyntheticTerrain}, world::{Body, FrictionCone, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties}};
 //!
 //! // Terrain: a DEM (here made up from a seed; `terrain::read_dem` reads one), cut along a vertical plane.
 //! let dem = synthesise(&SyntheticTerrain { rows: 60, cols: 120, ..SyntheticTerrain::default() })?;
 //! let profile = slice(&dem, MapPoint::new(10.0, 30.0), MapPoint::new(110.0, 32.0))?;
 //!
 //! // Chain: what the ground allows this hopper, segment by segment and in both directions.
-//! let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(8.0, 8.0) };
+//! let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(8.0, 8.0) }).unwrap();
 //! let friction = FrictionCone::new(0.6)?;
-//! let surface = Surface { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
-//! let chain = ConstrainedChain::new(PolygonalChain::from_profile(&profile, Some(friction))?, &hopper, &surface)?;
+//! let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
+//! let chain = ConstrainedChain::new(PolygonalChain::from_profile(&profile, Some(friction))?, &hopper, moon.gravity, &surface)?;
 //!
 //! // Hop test: the feasible take-off angles of one pair, limit by limit.
 //! let moon = Body::named("moon").ok_or("no moon")?;
-//! let test = HopTest::new(&chain, &hopper, moon.gravity_m_s2);
+//! let test = HopTest::new(chain.clone());
 //! let (first_m, last_m) = chain.geometry().extent_m();
 //! let (start, goal) = (chain.geometry().station(first_m)?, chain.geometry().station(last_m)?);
 //! let set = test.takeoff_set(&start, &goal).ok_or("the same point")?;
@@ -36,7 +36,7 @@
 //! // Path: the command of every hop; and an independent checker that flies it again.
 //! let path = generate(&test, &legs, TakeoffChoice::LeastSpeed, Split::FullReach)?;
 //! assert!(path.hops.len() >= 3);
-//! assert!(execute(&chain, &hopper, moon.gravity_m_s2, &path, Some((start, goal))).passes());
+//! assert!(execute(&chain, &path, Some((start, goal))).passes());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -72,7 +72,9 @@
 
 pub mod ballistics;
 pub mod chain;
+mod flight;
 pub mod graph;
+pub mod ground;
 pub mod hop;
 pub mod path;
 pub mod quantity;

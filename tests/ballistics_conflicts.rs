@@ -7,7 +7,7 @@ use chta::{
     chain::{ContactRule, LineConstraints, Station},
     hop::{Conflict, HopTest, TakeoffSet},
     quantity::{Angle, AngleInterval, ChainPoint, SlopeInterval},
-    world::{Hopper, Limit},
+    world::{Gravity, Hopper, HopperLimits, Limit},
 };
 use support::{Draw, uniform};
 
@@ -16,7 +16,7 @@ use support::{Draw, uniform};
 struct Case {
     points: Vec<ChainPoint>,
     line: LineConstraints,
-    hopper: Hopper,
+    limits: HopperLimits,
     g: f64,
     reverse: bool,
 }
@@ -29,20 +29,20 @@ impl Case {
         let width = points[segments].x_m - points[0].x_m;
         let speed = (g * width).sqrt() * draw.log_uniform(0.8, 3.0);
         let line = draw.line(speed);
-        let hopper = Hopper {
+        let limits = HopperLimits {
             clearance_m: if draw.chance(0.5) { 0.0 } else { width * draw.log_uniform(1e-4, 1e-1) },
             takeoff_angle_min: Some(Angle::from_degrees(draw.uniform(-30.0, 60.0))),
             takeoff_angle_max: Some(Angle::from_degrees(draw.uniform(60.0, 89.0))),
             apex_height_max_m: Some(width * draw.log_uniform(1e-1, 3.0)),
             flight_time_max_s: Some((width / g).sqrt() * draw.log_uniform(0.5, 4.0)),
-            ..Hopper::UNLIMITED
+            ..HopperLimits::UNLIMITED
         };
-        Self { points, line, hopper, g, reverse: draw.chance(0.5) }
+        Self { points, line, limits, g, reverse: draw.chance(0.5) }
     }
 
     fn set(&self) -> TakeoffSet {
         let chain = uniform(&self.points, self.line);
-        let test = HopTest::new(&chain, &self.hopper, self.g);
+        let test = HopTest::new(chain.with_hopper(&Hopper::new(self.limits).unwrap(), Gravity::new(self.g).unwrap()).unwrap());
         let end = |i: usize| -> Station { chain.geometry().station(self.points[i].x_m).unwrap() };
         let last = self.points.len() - 1;
         if self.reverse { test.takeoff_set(&end(last), &end(0)).unwrap() } else { test.takeoff_set(&end(0), &end(last)).unwrap() }
@@ -59,9 +59,9 @@ impl Case {
             Limit::TakeoffSpeed => other.line.takeoff = ContactRule::new(self.line.takeoff.angles(), fast),
             Limit::LandingSpeed => other.line.landing = ContactRule::new(self.line.landing.angles(), fast),
             Limit::Terrain => other.points = vec![self.points[0], self.points[self.points.len() - 1]],
-            Limit::MechanicalAngle => (other.hopper.takeoff_angle_min, other.hopper.takeoff_angle_max) = (None, None),
-            Limit::ApexHeight => other.hopper.apex_height_max_m = None,
-            Limit::FlightTime => other.hopper.flight_time_max_s = None,
+            Limit::MechanicalAngle => (other.limits.takeoff_angle_min, other.limits.takeoff_angle_max) = (None, None),
+            Limit::ApexHeight => other.limits.apex_height_max_m = None,
+            Limit::FlightTime => other.limits.flight_time_max_s = None,
             Limit::Direction | Limit::KeepOut | Limit::RestSlope | Limit::Bend | Limit::LineOfSight => {
                 panic!("{limit} cannot be taken away")
             }

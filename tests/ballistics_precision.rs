@@ -10,7 +10,7 @@ use chta::{
     chain::ConstrainedChain,
     hop::{HopTest, TakeoffSet},
     quantity::{Angle, AngleInterval, ChainPoint},
-    world::{Hopper, Limit},
+    world::{Gravity, Hopper, HopperLimits, Limit},
 };
 use support::{line, quantile, uniform};
 
@@ -33,14 +33,15 @@ impl Case {
     }
 
     fn hopper(&self) -> Hopper {
-        Hopper {
+        Hopper::new(HopperLimits {
             clearance_m: self.input("clearance_m"),
             takeoff_angle_min: self.number("mechanical_min_deg").map(Angle::from_degrees),
             takeoff_angle_max: self.number("mechanical_max_deg").map(Angle::from_degrees),
             apex_height_max_m: self.number("apex_height_max_m"),
             flight_time_max_s: self.number("flight_time_max_s"),
-            ..Hopper::UNLIMITED
-        }
+            ..HopperLimits::UNLIMITED
+        })
+        .unwrap()
     }
 
     /// The chain of take-off, vertex and landing, from left to right.
@@ -59,7 +60,7 @@ impl Case {
     /// The program's answer.
     fn answer(&self) -> TakeoffSet {
         let chain = self.chain();
-        let test = HopTest::new(&chain, &self.hopper(), self.input("gravity_m_s2"));
+        let test = HopTest::new(chain.with_hopper(&self.hopper(), Gravity::new(self.input("gravity_m_s2")).unwrap()).unwrap());
         let at = |name: &str| chain.geometry().station(self.input(&format!("{name}_x_m"))).unwrap();
         test.takeoff_set(&at("takeoff"), &at("landing")).unwrap()
     }

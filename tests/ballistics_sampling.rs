@@ -7,7 +7,9 @@ use chta::{
     chain::{ConstrainedChain, GroundRefusal, Site, Station},
     hop::{HopTest, TakeoffSet},
     quantity::{Angle, ChainPoint, VertexId},
-    world::{Contact, Direction, FrictionCone, Grip, Hopper, Limit, RestSlope, SPEED_TOLERANCE, Surface},
+    world::{
+        Contact, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SPEED_TOLERANCE, SurfaceProperties,
+    },
 };
 use support::{Draw, explicit, line, uniform};
 
@@ -69,7 +71,7 @@ impl Flight {
 }
 
 /// Evaluates one take-off angle by flying it and comparing what happens with what each limit says.
-fn evaluate(test: &HopTest<'_>, takeoff: &Station, landing: &Station, theta: f64) -> Verdict {
+fn evaluate(test: &HopTest, takeoff: &Station, landing: &Station, theta: f64) -> Verdict {
     let (run, rise) = ((landing.point.x_m - takeoff.point.x_m).abs(), landing.point.z_m - takeoff.point.z_m);
     let flight = Flight::through(run, rise, theta, test.gravity_m_s2());
     let end = flight.time_to(run);
@@ -102,22 +104,22 @@ fn evaluate(test: &HopTest<'_>, takeoff: &Station, landing: &Station, theta: f64
 
 /// The machine's own limits.
 fn machine(hopper: &Hopper, flight: &Flight, end: f64, size: f64, slack: &mut Slack) {
-    if let Some(min) = hopper.takeoff_angle_min {
+    if let Some(min) = hopper.limits().takeoff_angle_min {
         slack.at_most(min.radians(), flight.theta, 1.0, Limit::MechanicalAngle);
     }
-    if let Some(max) = hopper.takeoff_angle_max {
+    if let Some(max) = hopper.limits().takeoff_angle_max {
         slack.at_most(flight.theta, max.radians(), 1.0, Limit::MechanicalAngle);
     }
-    if let Some(max) = hopper.apex_height_max_m {
+    if let Some(max) = hopper.limits().apex_height_max_m {
         slack.at_most(flight.highest(end), max, size.max(max), Limit::ApexHeight);
     }
-    if let Some(max) = hopper.flight_time_max_s {
+    if let Some(max) = hopper.limits().flight_time_max_s {
         slack.at_most(end, max, end, Limit::FlightTime);
     }
 }
 
 /// Clearance over vertices, and no contact with the ground in between.
-fn terrain(test: &HopTest<'_>, takeoff: &Station, landing: &Station, flight: &Flight, slack: &mut Slack) {
+fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, flight: &Flight, slack: &mut Slack) {
     let geometry = test.chain().geometry();
     let (left, right) = (takeoff.point.x_m.min(landing.point.x_m), takeoff.point.x_m.max(landing.point.x_m));
     let run = right - left;
@@ -126,7 +128,7 @@ fn terrain(test: &HopTest<'_>, takeoff: &Station, landing: &Station, flight: &Fl
         // An angle moves a height by its distance from the nearer end: that is the scale.
         let arm = (vertex.x_m - left).min(right - vertex.x_m);
         let steep = arm * (1.0 + flight.theta.tan().powi(2)).max(1.0);
-        slack.at_most(test.hopper().clearance_m, above(vertex.x_m, vertex.z_m), steep, Limit::Terrain);
+        slack.at_most(test.hopper().limits().clearance_m, above(vertex.x_m, vertex.z_m), steep, Limit::Terrain);
     }
     for i in 1..24 {
         let x = left + run * f64::from(i) / 24.0;
@@ -150,38 +152,45 @@ fn world(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
     let lines: Vec<_> = (0..segments).map(|_| (draw.line(speed), draw.line(speed))).collect();
     let rest =
         if draw.chance(0.2) { RestSlope::AtMost(Angle::from_degrees(draw.uniform(20.0, 80.0))) } else { RestSlope::Unlimited };
-    let mut hopper =
-        Hopper { clearance_m: if draw.chance(0.5) { 0.0 } else { size * draw.log_uniform(1e-4, 1e-1) }, ..Hopper::UNLIMITED };
+    let mut limits = HopperLimits {
+        clearance_m: if draw.chance(0.5) { 0.0 } else { size * draw.log_uniform(1e-4, 1e-1) },
+        ..HopperLimits::UNLIMITED
+    };
     if draw.chance(0.3) {
-        hopper.takeoff_angle_min = Some(Angle::from_degrees(draw.uniform(-30.0, 50.0)));
-        hopper.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(50.0, 89.0)));
+        limits.takeoff_angle_min = Some(Angle::from_degrees(draw.uniform(-30.0, 50.0)));
+        limits.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(50.0, 89.0)));
     }
     if draw.chance(0.3) {
-        hopper.apex_height_max_m = Some(size * draw.log_uniform(1e-1, 3.0));
+        limits.apex_height_max_m = Some(size * draw.log_uniform(1e-1, 3.0));
     }
     if draw.chance(0.3) {
-        hopper.flight_time_max_s = Some((size / g).sqrt() * draw.log_uniform(0.5, 3.0));
+        limits.flight_time_max_s = Some((size / g).sqrt() * draw.log_uniform(0.5, 3.0));
     }
-    (explicit(&points, &lines, rest), hopper, g)
+    (explicit(&points, &lines, rest), Hopper::new(limits).unwrap(), g)
 }
 
 /// A chain by friction and cross-slope, as slices of terrain give.
 fn rocky_world(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
-    use chta::chain::{Ground, GroundForm, PolygonalChain};
+    use chta::chain::{GroundForm, PolygonalChain, SegmentGround};
     let (g, size) = (draw.gravity(), draw.log_uniform(1e-2, 1e3));
     let points = draw.profile(5, size);
     let grounds = (0..5)
-        .map(|_| Ground {
+        .map(|_| SegmentGround {
             form: GroundForm::Surface { friction: None, cross_slope: Angle::from_degrees(draw.uniform(0.0, 35.0)) },
             keep_out: draw.chance(0.1),
         })
         .collect();
     let speed = (g * size).sqrt() * draw.log_uniform(0.7, 4.0);
-    let hopper = Hopper::with_speeds(speed, speed * draw.uniform(0.7, 1.3));
+    let hopper = Hopper::with_speeds(speed, speed * draw.uniform(0.7, 1.3)).unwrap();
     let friction = FrictionCone::new(draw.uniform(0.3, 1.2)).unwrap();
     let rest = [RestSlope::AsFrictionHolds, RestSlope::Unlimited][draw.below(2)];
-    let surface = Surface { grip: Some(Grip::Friction(friction)), rest };
-    (ConstrainedChain::new(PolygonalChain::new(points, grounds, None).unwrap(), &hopper, &surface).unwrap(), hopper, g)
+    let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest };
+    (
+        ConstrainedChain::new(PolygonalChain::new(points, grounds, None).unwrap(), &hopper, Gravity::new(g).unwrap(), &surface)
+            .unwrap(),
+        hopper,
+        g,
+    )
 }
 
 /// A place on the chain: often a vertex, sometimes right beside one.
@@ -219,7 +228,7 @@ fn compare(seed: u64, worlds: u32, make: fn(&mut Draw) -> (ConstrainedChain, Hop
     let (mut pairs, mut feasible, mut evaluated, mut close) = (0, 0, 0, 0);
     for _ in 0..worlds {
         let (chain, hopper, g) = make(draw);
-        let test = HopTest::new(&chain, &hopper, g);
+        let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
         for _ in 0..12 {
             let (takeoff, landing) = (place(draw, &chain), place(draw, &chain));
             let Some(set) = test.takeoff_set(&takeoff, &landing) else { continue };
@@ -320,14 +329,15 @@ fn a_planted_flight_is_found_under_limits_that_touch_it() {
         };
         let touched =
             line(touching(flight.theta, draw), flight.v * (1.0 + hair), touching(vz.atan2(vx), draw), vx.hypot(vz) * (1.0 + hair));
-        let hopper = Hopper {
+        let hopper = Hopper::new(HopperLimits {
             apex_height_max_m: Some(flight.highest(end) + hair * size),
             flight_time_max_s: Some(end * (1.0 + hair)),
             takeoff_angle_max: Some(Angle::from_radians(flight.theta + hair)),
-            ..Hopper::UNLIMITED
-        };
+            ..HopperLimits::UNLIMITED
+        })
+        .unwrap();
         let chain = uniform(&points, touched);
-        let test = HopTest::new(&chain, &hopper, g);
+        let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
         let set = test.takeoff_set(&takeoff, &landing).unwrap();
         let angles = set.angles().unwrap_or_else(|| panic!("planted {} rad lost: {:?}", flight.theta, set.conflict()));
         assert!(
@@ -341,11 +351,11 @@ fn a_planted_flight_is_found_under_limits_that_touch_it() {
 }
 
 /// A pair of a random world, with its test.
-fn for_random_pairs(seed: u64, worlds: u32, mut check: impl FnMut(&mut Draw, &HopTest<'_>, &Station, &Station)) {
+fn for_random_pairs(seed: u64, worlds: u32, mut check: impl FnMut(&mut Draw, &HopTest, &Station, &Station)) {
     let draw = &mut Draw::seeded(seed);
     for i in 0..worlds {
         let (chain, hopper, g) = if i % 2 == 0 { world(draw) } else { rocky_world(draw) };
-        let test = HopTest::new(&chain, &hopper, g);
+        let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
         for _ in 0..12 {
             let (takeoff, landing) = (place(draw, &chain), place(draw, &chain));
             if takeoff.point.x_m != landing.point.x_m {
@@ -392,8 +402,13 @@ fn a_mirrored_chain_travelled_backwards_gives_the_same_set() {
         let swapped: Vec<_> = lines.iter().rev().map(|&(forward, reverse)| (reverse, forward)).collect();
         let (chain, mirror) =
             (explicit(&points, &lines, RestSlope::Unlimited), explicit(&mirrored, &swapped, RestSlope::Unlimited));
-        let hopper = Hopper { clearance_m: 0.01 * size, apex_height_max_m: Some(2.0 * size), ..Hopper::UNLIMITED };
-        let (test, mirror_test) = (HopTest::new(&chain, &hopper, g), HopTest::new(&mirror, &hopper, g));
+        let hopper =
+            Hopper::new(HopperLimits { clearance_m: 0.01 * size, apex_height_max_m: Some(2.0 * size), ..HopperLimits::UNLIMITED })
+                .unwrap();
+        let (test, mirror_test) = (
+            HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap()),
+            HopTest::new(mirror.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap()),
+        );
         for _ in 0..6 {
             let (a, b) = (place(draw, &chain), place(draw, &chain));
             let reflect = |s: &Station| mirror.geometry().station(-s.point.x_m).unwrap();
@@ -419,10 +434,19 @@ fn gravity_times_four_and_speeds_times_two_change_no_bit() {
         let both: Vec<_> = lines.iter().map(|l| (*l, *l)).collect();
         let scaled: Vec<_> = lines.iter().map(|l| (faster(l), faster(l))).collect();
         let (chain, other) = (explicit(&points, &both, RestSlope::Unlimited), explicit(&points, &scaled, RestSlope::Unlimited));
-        let hopper =
-            Hopper { flight_time_max_s: Some((size / g).sqrt() * 3.0), apex_height_max_m: Some(size), ..Hopper::UNLIMITED };
-        let slower = Hopper { flight_time_max_s: hopper.flight_time_max_s.map(|t| t / v), ..hopper };
-        let (test, other_test) = (HopTest::new(&chain, &hopper, g), HopTest::new(&other, &slower, g * v * v));
+        let hopper = Hopper::new(HopperLimits {
+            flight_time_max_s: Some((size / g).sqrt() * 3.0),
+            apex_height_max_m: Some(size),
+            ..HopperLimits::UNLIMITED
+        })
+        .unwrap();
+        let slower =
+            Hopper::new(HopperLimits { flight_time_max_s: hopper.limits().flight_time_max_s.map(|t| t / v), ..*hopper.limits() })
+                .unwrap();
+        let (test, other_test) = (
+            HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap()),
+            HopTest::new(other.with_hopper(&slower, Gravity::new(g * v * v).unwrap()).unwrap()),
+        );
         for _ in 0..6 {
             let (a, b) = (place(draw, &chain), place(draw, &chain));
             assert_eq!(test.lofts(&a, &b), other_test.lofts(&a, &b), "gravity times {}", v * v);
@@ -487,7 +511,7 @@ fn limits_that_touch_leave_exactly_one_arc() {
         let (g, run, degrees) = (draw.gravity(), draw.log_uniform(1e-3, 1e5), draw.uniform(5.0, 85.0));
         let points = [ChainPoint::new(0.0, 0.0), ChainPoint::new(run, 0.0)];
         let chain = uniform(&points, line((-90.0, degrees), 1e6, (-90.0, -degrees), 1e6));
-        let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
+        let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(g).unwrap()).unwrap());
         let at = |i| chain.geometry().vertex_station(VertexId(i));
         let angles = test.takeoff_set(&at(0), &at(1)).unwrap().angles().expect("limits that touch still hold");
         assert_eq!(angles.min, angles.max);
@@ -496,7 +520,7 @@ fn limits_that_touch_leave_exactly_one_arc() {
         let least = chta::ballistics::least_takeoff_speed_m_s(chta::ballistics::LineOfSight::new(run, 0.0), g);
         for (speed, reaches) in [(least, true), (least * (1.0 - 1e-6), false)] {
             let chain = uniform(&points, line((-90.0, 90.0), speed, (-90.0, 90.0), speed));
-            let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
+            let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(g).unwrap()).unwrap());
             assert_eq!(test.lofts(&at(0), &at(1)).is_ok(), reaches, "{speed} m/s over {run} m");
         }
     }
@@ -508,8 +532,8 @@ fn a_landing_exactly_as_high_as_the_apex_limit_is_allowed_from_below() {
     let points = [ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 3.0)];
     let chain = uniform(&points, line((-90.0, 90.0), 100.0, (-90.0, 90.0), 100.0));
     for (height, allowed) in [(3.0, true), (3.0f64.next_down(), false)] {
-        let hopper = Hopper { apex_height_max_m: Some(height), ..Hopper::UNLIMITED };
-        let test = HopTest::new(&chain, &hopper, 9.81);
+        let hopper = Hopper::new(HopperLimits { apex_height_max_m: Some(height), ..HopperLimits::UNLIMITED }).unwrap();
+        let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(9.81).unwrap()).unwrap());
         let at = |i| chain.geometry().vertex_station(VertexId(i));
         let set = test.takeoff_set(&at(0), &at(1)).unwrap();
         assert_eq!(set.lofts().is_some(), allowed, "{height} m");

@@ -15,15 +15,17 @@ use chta::{
     path::{ViolatedLimit, execute, generate},
     quantity::{ChainPoint, MapPoint, VertexId},
     terrain::{Dem, GeoReference, slice_legs, write_ascii_grid},
-    world::{FrictionCone, Grip, Hopper, Limit, RestSlope, Surface},
+    world::{FrictionCone, Gravity, Grip, Hopper, Limit, RestSlope, SurfaceProperties},
 };
 use serde_json::Value;
 use support::Draw;
 
-const HOPPER: Hopper = Hopper::with_speeds(6.0, 6.0);
+fn hopper() -> Hopper {
+    Hopper::with_speeds(6.0, 6.0).unwrap()
+}
 
-fn surface() -> Surface {
-    Surface { grip: Some(Grip::Friction(FrictionCone::new(0.8).unwrap())), rest: RestSlope::AsFrictionHolds }
+fn surface() -> SurfaceProperties {
+    SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.8).unwrap())), rest: RestSlope::AsFrictionHolds }
 }
 
 /// A plain of 5 m posts over 60 m by 60 m with a tower of 50 m in its middle.
@@ -50,9 +52,10 @@ fn a_pair_is_refused_for_a_bend_exactly_where_one_lies_strictly_between() {
         let straight = PolygonalChain::bare(points.clone()).unwrap();
         let bends: Vec<VertexId> = (1..8).filter(|_| draw.chance(0.3)).map(VertexId).collect();
         let bent = straight.clone().with_bends(bends.clone()).unwrap();
-        let lenient = Surface { grip: Some(Grip::Friction(FrictionCone::new(3.0).unwrap())), rest: RestSlope::Unlimited };
-        let [straight, bent] = [straight, bent].map(|chain| ConstrainedChain::new(chain, &HOPPER, &lenient).unwrap());
-        let (of_straight, of_bent) = (HopTest::new(&straight, &HOPPER, 2.0), HopTest::new(&bent, &HOPPER, 2.0));
+        let lenient = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(3.0).unwrap())), rest: RestSlope::Unlimited };
+        let [straight, bent] =
+            [straight, bent].map(|chain| ConstrainedChain::new(chain, &hopper(), Gravity::new(2.0).unwrap(), &lenient).unwrap());
+        let (of_straight, of_bent) = (HopTest::new(straight.clone()), HopTest::new(bent.clone()));
         let places: Vec<f64> =
             points.iter().map(|p| p.x_m).chain(points.windows(2).map(|pair| 0.5 * (pair[0].x_m + pair[1].x_m))).collect();
         for &a in &places {
@@ -81,11 +84,11 @@ fn a_pair_is_refused_for_a_bend_exactly_where_one_lies_strictly_between() {
 #[test]
 fn the_checker_refuses_a_hop_that_spans_a_bend() {
     let plain = PolygonalChain::bare([0.0, 7.0, 20.0].map(|x_m| ChainPoint::new(x_m, 0.0)).to_vec()).unwrap();
-    let chain = |geometry| ConstrainedChain::new(geometry, &HOPPER, &surface()).unwrap();
+    let chain = |geometry| ConstrainedChain::new(geometry, &hopper(), Gravity::new(2.0).unwrap(), &surface()).unwrap();
     let (straight, bent) = (chain(plain.clone()), chain(plain.with_bends(vec![VertexId(1)]).unwrap()));
     let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(1)), ..SearchOptions::default() };
     let planned = |chain: &ConstrainedChain| {
-        let test = HopTest::new(chain, &HOPPER, 2.0);
+        let test = HopTest::new(chain.clone());
         let ends = [2.0, 14.0].map(|x_m| chain.geometry().station(x_m).unwrap());
         let Outcome::Path { legs, .. } = search(&test, ends[0], ends[1], &options, &mut |_| {}).unwrap().outcome else {
             panic!("no path")
@@ -94,10 +97,10 @@ fn the_checker_refuses_a_hop_that_spans_a_bend() {
     };
     let (over, around) = (planned(&straight), planned(&bent));
     assert_eq!((over.hops.len(), around.hops.len()), (1, 2));
-    assert_eq!(around.hops[0].landing.point.x_m, 7.0, "it lands on the bend");
-    assert!(execute(&bent, &HOPPER, 2.0, &around, None).passes());
-    assert!(execute(&straight, &HOPPER, 2.0, &over, None).passes());
-    let violations = execute(&bent, &HOPPER, 2.0, &over, None).violations;
+    assert_eq!(around.hops[0].landing.along_m, 7.0, "it lands on the bend");
+    assert!(execute(&bent, &around, None).passes());
+    assert!(execute(&straight, &over, None).passes());
+    let violations = execute(&bent, &over, None).violations;
     assert!(
         violations.iter().any(|v| v.limit == ViolatedLimit::Limit(Limit::Bend) && v.vertex == Some(VertexId(1)) && v.at_x_m == 7.0),
         "{violations:?}"

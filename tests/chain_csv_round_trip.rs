@@ -2,7 +2,7 @@
 
 use chta::{
     chain::{
-        ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain,
+        ContactRule, GroundForm, LineConstraints, PolygonalChain, SegmentGround,
         csv::{CHAIN_COLUMNS, ChainWriteError, read_chain_csv, read_chain_csv_file, write_chain_csv},
     },
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint, SegmentId},
@@ -62,7 +62,7 @@ fn limits() -> impl Strategy<Value = LineConstraints> {
 }
 
 /// The grounds of `count` segments, all in one form.
-fn grounds(count: usize) -> BoxedStrategy<Vec<Ground>> {
+fn grounds(count: usize) -> BoxedStrategy<Vec<SegmentGround>> {
     let surface = (any::<bool>(), any::<bool>()).prop_flat_map(move |(friction, cross)| {
         let angle = prop_oneof![Just(0.0), 0.0..1.57_f64, Just(std::f64::consts::FRAC_PI_2)];
         vec((ugly_number(), angle), count).prop_map(move |all| {
@@ -84,7 +84,9 @@ fn grounds(count: usize) -> BoxedStrategy<Vec<Ground>> {
     });
     let keep_out = prop_oneof![vec(any::<bool>(), count), Just(vec![false; count])];
     (prop_oneof![surface, explicit], keep_out)
-        .prop_map(|(forms, keep_out)| forms.into_iter().zip(keep_out).map(|(form, keep_out)| Ground { form, keep_out }).collect())
+        .prop_map(|(forms, keep_out)| {
+            forms.into_iter().zip(keep_out).map(|(form, keep_out)| SegmentGround { form, keep_out }).collect()
+        })
         .boxed()
 }
 
@@ -117,13 +119,13 @@ proptest! {
     }
 }
 
-fn one_segment(grounds: Vec<Ground>) -> PolygonalChain {
+fn one_segment(grounds: Vec<SegmentGround>) -> PolygonalChain {
     let vertices = [0.0, 1.0, 2.0, 3.0].into_iter().take(grounds.len() + 1).map(|x| ChainPoint::new(x, 0.0)).collect();
     PolygonalChain::new(vertices, grounds, None).unwrap_or_else(|invalid| panic!("{invalid}"))
 }
 
-fn explicit(forward: Option<LineConstraints>, reverse: Option<LineConstraints>) -> Ground {
-    Ground { form: GroundForm::Explicit { forward, reverse }, keep_out: false }
+fn explicit(forward: Option<LineConstraints>, reverse: Option<LineConstraints>) -> SegmentGround {
+    SegmentGround { form: GroundForm::Explicit { forward, reverse }, keep_out: false }
 }
 
 fn rule(min_deg: f64, max_deg: f64, speed_m_s: f64) -> ContactRule {
@@ -138,7 +140,7 @@ fn files_look_as_the_contract_says() {
         "# first\n# second\n#\nx_m,z_m,takeoff_min_deg,takeoff_max_deg,takeoff_speed_max_m_s,landing_min_deg,landing_max_deg,landing_speed_max_m_s\n\
          0,0,63.5,93.5,10,-93.5,-60,0\n1,0,,,,,,\n"
     );
-    let surface = |mu, chi_deg, keep_out| Ground {
+    let surface = |mu, chi_deg, keep_out| SegmentGround {
         form: GroundForm::Surface { friction: FrictionCone::new(mu).ok(), cross_slope: Angle::from_degrees(chi_deg) },
         keep_out,
     };
@@ -146,7 +148,7 @@ fn files_look_as_the_contract_says() {
         written(&one_segment(vec![surface(0.6, 0.0, true), surface(0.7, 2.5, false)])).unwrap(),
         "# first\n# second\n#\nx_m,z_m,friction_coefficient,cross_slope_deg,keep_out\n0,0,0.6,0,1\n1,0,0.7,2.5,0\n2,0,,,\n"
     );
-    assert_eq!(written(&one_segment(vec![Ground::BARE])).unwrap(), "# first\n# second\n#\nx_m,z_m\n0,0\n1,0\n");
+    assert_eq!(written(&one_segment(vec![SegmentGround::BARE])).unwrap(), "# first\n# second\n#\nx_m,z_m\n0,0\n1,0\n");
 }
 
 #[test]
@@ -182,12 +184,12 @@ fn what_a_file_cannot_state_is_speed_zero_or_refused() {
         refusal(vec![explicit(None, Some(beyond))]),
         ChainWriteError::Unwritable { column: "reverse_landing_min_deg", segment: SegmentId(0), .. }
     ));
-    assert!(matches!(refusal(vec![Ground::BARE, explicit(Some(good), None)]), ChainWriteError::MixedForms(SegmentId(1))));
-    let rough = Ground {
+    assert!(matches!(refusal(vec![SegmentGround::BARE, explicit(Some(good), None)]), ChainWriteError::MixedForms(SegmentId(1))));
+    let rough = SegmentGround {
         form: GroundForm::Surface { friction: FrictionCone::new(0.6).ok(), cross_slope: Angle::default() },
         keep_out: false,
     };
-    assert!(matches!(refusal(vec![rough, rough, Ground::BARE]), ChainWriteError::MixedFriction(SegmentId(2))));
+    assert!(matches!(refusal(vec![rough, rough, SegmentGround::BARE]), ChainWriteError::MixedFriction(SegmentId(2))));
 }
 
 #[test]

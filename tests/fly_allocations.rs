@@ -8,12 +8,13 @@ use std::alloc::System;
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
     graph::{Outcome, PointSpacing, SearchOptions, search},
+    ground::{DemGround, Surface},
     hop::{HopTest, Split},
     path::generate,
     quantity::{Angle, MapPoint},
-    terrain::{SyntheticTerrain, slice, synthesise},
-    uncertainty::{MapGround, Mission, Simulation, TrialOptions, Uncertainty},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    terrain::{OverlaidDem, Overlays, SyntheticTerrain, slice, synthesise},
+    uncertainty::{Mission, Simulation, TrialOptions, Uncertainty},
+    world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -24,10 +25,13 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 fn a_thousand_trials_take_few_allocations_on_chain_and_map() {
     let dem = synthesise(&SyntheticTerrain { rows: 60, cols: 90, ..SyntheticTerrain::default() }).unwrap();
     let profile = slice(&dem, MapPoint::new(5.0, 30.0), MapPoint::new(85.0, 28.0)).unwrap();
-    let hopper = Hopper::with_speeds(7.0, 12.0);
-    let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(1.4).unwrap())), rest: RestSlope::AsFrictionHolds };
-    let chain = ConstrainedChain::new(PolygonalChain::from_profile(&profile, None).unwrap(), &hopper, &surface).unwrap();
-    let test = HopTest::new(&chain, &hopper, 1.6);
+    let hopper = Hopper::with_speeds(7.0, 12.0).unwrap();
+    let surface =
+        SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(1.4).unwrap())), rest: RestSlope::AsFrictionHolds };
+    let chain =
+        ConstrainedChain::new(PolygonalChain::from_profile(&profile, None).unwrap(), &hopper, Gravity::new(1.6).unwrap(), &surface)
+            .unwrap();
+    let test = HopTest::new(chain.clone());
     let station = |x_m| chain.geometry().station(x_m).unwrap();
     let (start, goal) = (station(2.0), station(70.0));
     let options = SearchOptions { spacing: Some(PointSpacing::AtMostM(1.0)), ..SearchOptions::default() };
@@ -39,9 +43,12 @@ fn a_thousand_trials_take_few_allocations_on_chain_and_map() {
         drift_along_sigma_m: 0.1,
         ..Uncertainty::NONE
     };
-    for map in [None, Some(MapGround { dem: &dem, friction: None, keep_out: None })] {
-        let mission = Mission { test: &test, surface: &surface, path: &path, start, goal, map, to_go: None };
-        let simulation = Simulation::new(mission, errors).unwrap();
+    let terrain = OverlaidDem::new(dem, Overlays::default());
+    let ground = DemGround::new(terrain, &hopper, Gravity::new(1.6).unwrap(), &surface);
+    let [from, to] = [start, goal].map(|station| chain.contact_point(&station));
+    let over_dem = Mission::over_dem(ground, path.clone(), from, to);
+    for mission in [Mission::along_chain(test, path, start, goal), over_dem] {
+        let simulation = Simulation::new(&mission, errors).unwrap();
         let trials = TrialOptions { trials: 1000, threads: 1, ..TrialOptions::default() };
         // The harness has a thread of its own: the quietest of three rounds is the run's.
         let rounds = [(); 3].map(|()| {

@@ -7,14 +7,14 @@ mod support;
 
 use chta::{
     ballistics::TakeoffChoice,
-    chain::{ConstrainedChain, Ground, GroundForm, LineConstraints, PolygonalChain, Station},
+    chain::{ConstrainedChain, GroundForm, LineConstraints, PolygonalChain, SegmentGround, Station},
     graph::{
         AUTO_POINTS_PER_SEGMENT, Answer, Effort, Frontier, NodeSet, Outcome, PointSpacing, SearchOptions, TooManyNodes, is_usable,
         search,
     },
     hop::{Conflict, HopTest, Split},
     quantity::{ChainPoint, VertexId},
-    world::{Contact, Direction, Hopper, RestSlope, Surface},
+    world::{Contact, Direction, Gravity, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use support::{Draw, explicit, line};
 
@@ -41,7 +41,9 @@ impl World {
             line(takeoff, speed * fast, landing, speed * draw.uniform(0.7, 1.6))
         };
         let lines = (0..segments).map(|_| (cone(draw), cone(draw))).collect();
-        let hopper = Hopper { clearance_m: if draw.chance(0.5) { 0.0 } else { 1e-3 * size }, ..Hopper::UNLIMITED };
+        let hopper =
+            Hopper::new(HopperLimits { clearance_m: if draw.chance(0.5) { 0.0 } else { 1e-3 * size }, ..HopperLimits::UNLIMITED })
+                .unwrap();
         Self { points, lines, hopper, g }
     }
 
@@ -69,7 +71,7 @@ fn place(draw: &mut Draw, chain: &ConstrainedChain) -> Station {
 }
 
 /// The price of what joins two stations; every pair is tried, near or far.
-fn price(test: &HopTest<'_>, a: &Station, b: &Station, options: &SearchOptions) -> Option<Price> {
+fn price(test: &HopTest, a: &Station, b: &Station, options: &SearchOptions) -> Option<Price> {
     let each = |speed: f64, time: f64| match options.effort {
         Effort::TakeoffSpeed | Effort::PeakSpeed => speed,
         Effort::Energy => 0.5 * speed * speed,
@@ -96,7 +98,7 @@ fn joined(a: Price, b: Price, effort: Effort) -> Price {
 }
 
 /// The matrix of all prices.
-fn prices(test: &HopTest<'_>, nodes: &NodeSet, options: &SearchOptions) -> Vec<Vec<Option<Price>>> {
+fn prices(test: &HopTest, nodes: &NodeSet, options: &SearchOptions) -> Vec<Vec<Option<Price>>> {
     let stations = nodes.stations();
     stations.iter().map(|a| stations.iter().map(|b| price(test, a, b, options)).collect()).collect()
 }
@@ -156,7 +158,7 @@ fn options(draw: &mut Draw, k: u32) -> SearchOptions {
     }
 }
 
-fn asked(test: &HopTest<'_>, start: Station, goal: Station, options: &SearchOptions) -> Answer {
+fn asked(test: &HopTest, start: Station, goal: Station, options: &SearchOptions) -> Answer {
     search(test, start, goal, options, &mut |_| {}).unwrap()
 }
 
@@ -183,7 +185,7 @@ fn the_search_finds_what_bellman_and_ford_find_over_all_pairs() {
         let segments = 2 + draw.below(5);
         let world = World::draw(draw, segments);
         let chain = world.chain();
-        let test = HopTest::new(&chain, &world.hopper, world.g);
+        let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
         let points = u32::try_from(draw.below(4)).unwrap();
         let options = options(draw, points);
@@ -209,7 +211,7 @@ fn on_tiny_chains_the_search_finds_the_best_of_all_paths() {
     for _ in 0..800 {
         let world = World::draw(draw, 4);
         let chain = world.chain();
-        let test = HopTest::new(&chain, &world.hopper, world.g);
+        let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
         let options = options(draw, 0);
         let nodes = node_set(&chain, start, goal, &options);
@@ -229,7 +231,7 @@ fn some_journeys_must_first_go_back() {
     for _ in 0..4000 {
         let world = World::draw(draw, 4);
         let chain = world.chain();
-        let test = HopTest::new(&chain, &world.hopper, world.g);
+        let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
         let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(1)), ..SearchOptions::default() };
         let Outcome::Path { legs, .. } = asked(&test, start, goal, &options).outcome else { continue };
@@ -243,11 +245,17 @@ fn some_journeys_must_first_go_back() {
             forward: (towards == Some(Direction::Forward)).then_some(*forward),
             reverse: (towards == Some(Direction::Reverse)).then_some(*reverse),
         };
-        let grounds = world.lines.iter().map(|both| Ground { form: one_way(both), keep_out: false }).collect();
+        let grounds = world.lines.iter().map(|both| SegmentGround { form: one_way(both), keep_out: false }).collect();
         let geometry = PolygonalChain::new(world.points.clone(), grounds, None).unwrap();
-        let chain =
-            ConstrainedChain::new(geometry, &Hopper::UNLIMITED, &Surface { grip: None, rest: RestSlope::Unlimited }).unwrap();
-        let other = asked(&HopTest::new(&chain, &world.hopper, world.g), start, goal, &options);
+        let chain = ConstrainedChain::new(
+            geometry,
+            &Hopper::UNLIMITED,
+            Gravity::new(1.0).unwrap(),
+            &SurfaceProperties { grip: None, rest: RestSlope::Unlimited },
+        )
+        .unwrap();
+        let other =
+            asked(&HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap()), start, goal, &options);
         assert!(other.hops().is_none_or(|hops| hops >= legs.len() as u64));
         needed += u32::from(other.hops().is_none());
     }
@@ -279,7 +287,7 @@ fn the_frontier_is_the_closure_from_either_end() {
     for _ in 0..3000 {
         let world = World::draw(draw, 4).slower(0.7);
         let chain = world.chain();
-        let test = HopTest::new(&chain, &world.hopper, world.g);
+        let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
         let options = options(draw, 1);
         let Outcome::NoPath(frontier) = asked(&test, start, goal, &options).outcome else { continue };
@@ -300,7 +308,7 @@ fn the_frontier_is_the_closure_from_either_end() {
 }
 
 /// Whether there is a near miss; asserts that it is the smallest gap of all pairs out of the reached set.
-fn smallest_gap_agrees(test: &HopTest<'_>, nodes: &NodeSet, reached: &[usize], frontier: &Frontier) -> bool {
+fn smallest_gap_agrees(test: &HopTest, nodes: &NodeSet, reached: &[usize], frontier: &Frontier) -> bool {
     let stations = nodes.stations();
     let mut smallest = f64::INFINITY;
     let outside = |j: &usize| !reached.contains(j);
@@ -325,7 +333,7 @@ fn smallest_gap_agrees(test: &HopTest<'_>, nodes: &NodeSet, reached: &[usize], f
 fn staying_where_one_is_takes_no_hop_even_where_nothing_is_allowed() {
     let still = line((-90.0, 90.0), 0.0, (-90.0, 90.0), 0.0);
     let chain = support::uniform(&[ChainPoint::new(0.0, 0.0), ChainPoint::new(10.0, 1.0)], still);
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 1.62);
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(1.62).unwrap()).unwrap());
     let here = chain.geometry().station(4.0).unwrap();
     let answer = asked(&test, here, here, &SearchOptions::default());
     let Outcome::Path { legs, cost } = answer.outcome else { panic!("no path to where one is") };
@@ -344,7 +352,7 @@ fn refusing_ends_are_named_with_a_usable_point_where_there_is_one() {
             }
         }
         let chain = world.chain();
-        let test = HopTest::new(&chain, &world.hopper, world.g);
+        let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
         if start.point.x_m == goal.point.x_m {
             continue;
@@ -387,7 +395,7 @@ fn automatic_spacing_answers_with_the_first_that_finds_a_path() {
     for _ in 0..150 {
         let world = World::draw(draw, 3);
         let chain = world.chain();
-        let test = HopTest::new(&chain, &world.hopper, world.g);
+        let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
         let mut told = Vec::new();
         let answer = search(&test, start, goal, &SearchOptions::default(), &mut |spacing| told.push(spacing)).unwrap();
@@ -440,7 +448,13 @@ fn node_spacing_puts_as_few_points_as_keep_it() {
 fn too_many_nodes_are_refused_before_they_are_made() {
     let chain = World::draw(&mut Draw::seeded(38), 3).chain();
     let at = |i| chain.geometry().vertex_station(VertexId(i));
-    for spacing in [PointSpacing::PerSegment(u32::MAX), PointSpacing::AtMostM(1e-9), PointSpacing::AtMostM(0.0)] {
+    for spacing in [
+        PointSpacing::PerSegment(u32::MAX),
+        PointSpacing::AtMostM(1e-9),
+        PointSpacing::AtMostM(0.0),
+        PointSpacing::AtMostM(-1.0),
+        PointSpacing::AtMostM(f64::NAN),
+    ] {
         let TooManyNodes { nodes } = NodeSet::new(&chain, at(0), at(3), spacing).unwrap_err();
         assert!(nodes > NodeSet::MAX_NODES, "{nodes} nodes for {spacing:?}");
     }
@@ -457,17 +471,20 @@ fn slower_or_more_limited_never_takes_fewer_hops() {
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
         let options = options(draw, 1);
         let hops = |chain: &ConstrainedChain, hopper: &Hopper| {
-            asked(&HopTest::new(chain, hopper, world.g), start, goal, &options).hops().unwrap_or(u64::MAX)
+            asked(&HopTest::new(chain.with_hopper(hopper, Gravity::new(world.g).unwrap()).unwrap()), start, goal, &options)
+                .hops()
+                .unwrap_or(u64::MAX)
         };
         let free = hops(&chain, &world.hopper);
         assert!(hops(&slow_chain, &world.hopper) >= free, "slower, and fewer hops");
         let reach = (world.lines[0].0.takeoff.speed_max_m_s().powi(2) / world.g).max(1e-3);
-        let limited = Hopper {
-            clearance_m: world.hopper.clearance_m * 2.0,
+        let limited = Hopper::new(HopperLimits {
+            clearance_m: world.hopper.limits().clearance_m * 2.0,
             apex_height_max_m: Some(reach * draw.uniform(0.05, 1.0)),
             flight_time_max_s: Some((reach / world.g).sqrt() * draw.uniform(0.5, 3.0)),
-            ..world.hopper
-        };
+            ..*world.hopper.limits()
+        })
+        .unwrap();
         assert!(hops(&chain, &limited) >= free, "more limits, and fewer hops");
         compared += u32::from(free < u64::MAX && free > 0);
     }

@@ -2,13 +2,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene should stop")]
 
-use std::alloc::System;
+use std::{alloc::System, sync::Arc};
 
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
     hop::{HopTest, LandingTable, Sweep},
     quantity::{ChainPoint, VertexId},
-    world::{Direction, FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -18,12 +18,18 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 #[test]
 fn ten_thousand_pairs_are_evaluated_without_an_allocation_either_way() {
     let vertices = (0..=100).map(|i| ChainPoint::new(f64::from(i), 0.3 * f64::from(i * i % 7))).collect();
-    let hopper =
-        Hopper { clearance_m: 0.05, apex_height_max_m: Some(20.0), flight_time_max_s: Some(10.0), ..Hopper::with_speeds(9.0, 9.0) };
+    let hopper = Hopper::new(HopperLimits {
+        clearance_m: 0.05,
+        apex_height_max_m: Some(20.0),
+        flight_time_max_s: Some(10.0),
+        ..HopperLimits::with_speeds(9.0, 9.0)
+    })
+    .unwrap();
     let grip = Some(Grip::Friction(FrictionCone::new(0.9).unwrap()));
-    let surface = Surface { grip, rest: RestSlope::AsFrictionHolds };
-    let chain = ConstrainedChain::new(PolygonalChain::bare(vertices).unwrap(), &hopper, &surface).unwrap();
-    let test = HopTest::new(&chain, &hopper, 3.711);
+    let surface = SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds };
+    let chain =
+        ConstrainedChain::new(PolygonalChain::bare(vertices).unwrap(), &hopper, Gravity::new(3.711).unwrap(), &surface).unwrap();
+    let test = HopTest::new(chain.clone());
     let evaluate_all = || {
         let (mut feasible, mut refused) = (0, 0);
         for i in 0..=100 {
@@ -38,8 +44,8 @@ fn ten_thousand_pairs_are_evaluated_without_an_allocation_either_way() {
         (feasible, refused)
     };
     let stations: Vec<_> = (0..=100).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
-    let table = LandingTable::new(&test, &stations);
-    let mut sweep = Sweep::new(&table);
+    let table = Arc::new(LandingTable::new(&test, stations.as_slice()));
+    let mut sweep = Sweep::new(Arc::clone(&table));
     let mut sweep_all =
         || {
             let (mut feasible, mut refused) = (0, stations.len());

@@ -3,13 +3,13 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene should stop")]
 
-use std::{alloc::System, error::Error};
+use std::alloc::System;
 
 use chta::{
-    chain::{ConstrainedChain, PolygonalChain},
-    reach::map::{MapRequest, Post, PostHops},
-    terrain::{Profile, SyntheticTerrain, synthesise},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    ground::DemGround,
+    reach::map::{Post, PostHops},
+    terrain::{OverlaidDem, Overlays, SyntheticTerrain, synthesise},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
 
@@ -19,22 +19,12 @@ static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 #[test]
 fn hardly_a_pair_of_rough_ground_needs_an_allocation() {
     let dem = synthesise(&SyntheticTerrain { rows: 80, cols: 80, seed: 5, ..SyntheticTerrain::default() }).unwrap();
-    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(3.5, 3.5) };
+    let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(3.5, 3.5) }).unwrap();
     let friction = FrictionCone::new(0.6).unwrap();
-    let surface = Surface { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
-    let ground = |profile: Profile| -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> {
-        Ok(ConstrainedChain::new(PolygonalChain::from_profile(&profile, Some(friction))?, &hopper, &surface)?)
-    };
-    let request = MapRequest {
-        dem: &dem,
-        stride: 1,
-        hopper: &hopper,
-        surface: &surface,
-        gravity_m_s2: 1.624,
-        friction: None,
-        keep_out: None,
-    };
-    let hops = PostHops::new(request, &ground).unwrap();
+    let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
+    let terrain = OverlaidDem::new(dem, Overlays::default());
+    let ground = DemGround::new(terrain, &hopper, Gravity::new(1.624).unwrap(), &surface);
+    let hops = PostHops::new(ground, 1).unwrap();
     let (mut feasible, mut refused, mut exact) = (0u32, 0u32, 0u32);
     for row in 30..50 {
         for col in 30..50 {

@@ -190,7 +190,7 @@ fn exit_status_is_1_where_a_goal_is_out_of_reach_and_2_with_a_sentence_for_bad_i
 fn what_a_scenario_lacks_for_a_map_is_named_by_its_keys() {
     let desk = walled();
     let bare = ["walled.asc", "--body", "moon"];
-    let speeds = "no hopper.takeoff_speed_max_m_s, no hopper.landing_speed_max_m_s";
+    let speeds = "no hopper.limits().takeoff_speed_max_m_s, no hopper.limits().landing_speed_max_m_s";
     let options =
         "--set hopper.takeoff_speed_max_m_s=8 --set hopper.landing_speed_max_m_s=8 --set surface.friction_coefficient=0.6";
     for command in [&["map", "--start", "102,205"][..], &["fan", "--from", "102,205", "--length", "5"]] {

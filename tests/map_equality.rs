@@ -9,11 +9,15 @@ use std::{error::Error, path::Path};
 
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
+    ground::DemGround,
     hop::HopTest,
     quantity::{Angle, AngleInterval, MapPoint, SlopeInterval, VertexId},
-    reach::map::{Journey, MapRequest, NO_GROUND, Post, PostHops, SECTORS, Search, UNREACHED, mobility, search},
-    terrain::{Dem, FrictionRaster, GeoReference, KeepOut, Profile, read_dem, read_friction_raster, read_keep_out, slice},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    reach::map::{Journey, NO_GROUND, Post, PostHops, SECTORS, Search, UNREACHED, mobility, search},
+    terrain::{
+        Dem, FrictionRaster, GeoReference, KeepOut, OverlaidDem, Overlays, Profile, read_dem, read_friction_raster, read_keep_out,
+        slice,
+    },
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use support::Draw;
 
@@ -21,14 +25,14 @@ use support::Draw;
 struct World {
     dem: Dem,
     hopper: Hopper,
-    surface: Surface,
+    surface: SurfaceProperties,
     gravity_m_s2: f64,
     friction: Option<FrictionRaster>,
     keep_out: Option<KeepOut>,
 }
 
 impl World {
-    fn new(dem: Dem, hopper: Hopper, surface: Surface, gravity_m_s2: f64) -> Self {
+    fn new(dem: Dem, hopper: Hopper, surface: SurfaceProperties, gravity_m_s2: f64) -> Self {
         Self { dem, hopper, surface, gravity_m_s2, friction: None, keep_out: None }
     }
 
@@ -45,19 +49,14 @@ impl World {
             zones.mark(&mut profile)?;
         }
         let geometry = PolygonalChain::from_profile(&profile, constant)?;
-        Ok(ConstrainedChain::new(geometry, &self.hopper, &self.surface)?)
+        Ok(ConstrainedChain::new(geometry, &self.hopper, Gravity::new(self.gravity_m_s2).unwrap(), &self.surface)?)
     }
 
-    fn request(&self, stride: usize) -> MapRequest<'_> {
-        MapRequest {
-            dem: &self.dem,
-            stride,
-            hopper: &self.hopper,
-            surface: &self.surface,
-            gravity_m_s2: self.gravity_m_s2,
-            friction: self.friction.as_ref(),
-            keep_out: self.keep_out.as_ref(),
-        }
+    /// What the fast form is asked on.
+    fn ground(&self) -> DemGround {
+        let overlays = Overlays::new(self.friction.clone(), self.keep_out.clone());
+        let terrain = OverlaidDem::new(self.dem.clone(), overlays);
+        DemGround::new(terrain, &self.hopper, Gravity::new(self.gravity_m_s2).unwrap(), &self.surface)
     }
 
     /// The plain way: slice, chain, hop test.
@@ -65,7 +64,7 @@ impl World {
         let map = self.dem.georeference();
         let profile = slice(&self.dem, map.post(from.row, from.col), map.post(to.row, to.col)).ok()?;
         let chain = self.chain(profile).unwrap();
-        let test = HopTest::new(&chain, &self.hopper, self.gravity_m_s2);
+        let test = HopTest::new(chain.clone());
         let geometry = chain.geometry();
         test.lofts(&geometry.vertex_station(VertexId(0)), &geometry.vertex_station(VertexId(geometry.segment_count()))).ok()
     }
@@ -76,7 +75,7 @@ impl World {
         let height = |post: Post| self.dem.elevation(post.row, post.col).unwrap_or(f64::NAN);
         let (run_m, rise_m) = ((map.post(to.row, to.col) - map.post(from.row, from.col)).norm(), height(to) - height(from));
         let reaches = |speed: f64, rise_m: f64| self.gravity_m_s2 * (rise_m + run_m.hypot(rise_m)) <= speed * speed * 1.001;
-        reaches(self.hopper.takeoff_speed_max_m_s, rise_m) && reaches(self.hopper.landing_speed_max_m_s, -rise_m)
+        reaches(self.hopper.limits().takeoff_speed_max_m_s, rise_m) && reaches(self.hopper.limits().landing_speed_max_m_s, -rise_m)
     }
 
     fn posts(&self, stride: usize) -> Vec<Post> {
@@ -109,14 +108,13 @@ impl World {
     }
 }
 
-fn friction(mu: f64) -> Surface {
-    Surface { grip: Some(Grip::Friction(FrictionCone::new(mu).unwrap())), rest: RestSlope::AsFrictionHolds }
+fn friction(mu: f64) -> SurfaceProperties {
+    SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(mu).unwrap())), rest: RestSlope::AsFrictionHolds }
 }
 
 /// Every pair of posts: the same answer, and the same lofts to rounding.
 fn compare_pairs(world: &World, what: &str) -> (usize, usize) {
-    let ground = |profile| world.chain(profile);
-    let hops = PostHops::new(world.request(1), &ground).unwrap();
+    let hops = PostHops::new(world.ground(), 1).unwrap();
     let (mut yes, mut no) = (0, 0);
     for from in world.posts(1) {
         let mut found = std::collections::HashMap::new();
@@ -163,24 +161,24 @@ fn random_dem(draw: &mut Draw, side: usize) -> Dem {
 fn random_hopper(draw: &mut Draw) -> (Hopper, f64) {
     let gravity = draw.log_uniform(0.05, 10.0);
     let speed = (gravity * draw.uniform(2.0, 9.0)).sqrt();
-    let mut hopper = Hopper {
+    let mut limits = HopperLimits {
         clearance_m: if draw.chance(0.5) { 0.0 } else { draw.log_uniform(0.001, 0.5) },
-        ..Hopper::with_speeds(speed, speed * draw.uniform(0.7, 1.4))
+        ..HopperLimits::with_speeds(speed, speed * draw.uniform(0.7, 1.4))
     };
     if draw.chance(0.25) {
-        hopper.apex_height_max_m = Some(draw.uniform(0.3, 4.0));
+        limits.apex_height_max_m = Some(draw.uniform(0.3, 4.0));
     }
     if draw.chance(0.25) {
-        hopper.flight_time_max_s = Some(draw.uniform(0.5, 3.0) * speed / gravity);
+        limits.flight_time_max_s = Some(draw.uniform(0.5, 3.0) * speed / gravity);
     }
     if draw.chance(0.25) {
-        hopper.takeoff_angle_min = Some(Angle::from_degrees(draw.uniform(0.0, 50.0)));
-        hopper.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(50.0, 90.0)));
+        limits.takeoff_angle_min = Some(Angle::from_degrees(draw.uniform(0.0, 50.0)));
+        limits.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(50.0, 90.0)));
     }
-    (hopper, gravity)
+    (Hopper::new(limits).unwrap(), gravity)
 }
 
-fn random_surface(draw: &mut Draw) -> Surface {
+fn random_surface(draw: &mut Draw) -> SurfaceProperties {
     let rest = match draw.below(3) {
         0 => RestSlope::Unlimited,
         1 => RestSlope::AtMost(Angle::from_degrees(draw.uniform(5.0, 50.0))),
@@ -194,7 +192,7 @@ fn random_surface(draw: &mut Draw) -> Surface {
     } else {
         Grip::Friction(FrictionCone::new(draw.log_uniform(0.1, 3.0)).unwrap())
     };
-    Surface { grip: Some(grip), rest }
+    SurfaceProperties { grip: Some(grip), rest }
 }
 
 #[test]
@@ -219,9 +217,8 @@ fn compare_maps(world: &World, start: Post, stride: usize, journeys: &[Journey],
         let expected = world.plain_map(start, stride, journey);
         for threads in [1, 3] {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-            let ground = |profile| world.chain(profile);
             let found = pool.install(|| {
-                let hops = PostHops::new(world.request(stride), &ground).unwrap();
+                let hops = PostHops::new(world.ground(), stride).unwrap();
                 let start = Post { row: start.row / stride, col: start.col / stride };
                 search(&hops, start, Search { journey, effort: None }, &mut |_| {}).unwrap()
             });
@@ -247,7 +244,7 @@ fn cut_out(dem: &Dem, first: Post, side: usize, holes: usize, draw: &mut Draw) -
 }
 
 /// Twenty cut-outs of a real DEM, each with a start that gets somewhere and with at least a fifth of its posts out of reach.
-fn compare_cut_outs(file: &str, hopper: Hopper, surface: Surface, gravity_m_s2: f64, seed: u64) {
+fn compare_cut_outs(file: &str, hopper: Hopper, surface: SurfaceProperties, gravity_m_s2: f64, seed: u64) {
     const SIDE: usize = 24;
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(file);
     if !path.exists() {
@@ -265,8 +262,7 @@ fn compare_cut_outs(file: &str, hopper: Hopper, surface: Surface, gravity_m_s2: 
         if world.dem.elevation(start.row, start.col).is_none() {
             continue;
         }
-        let ground = |profile| world.chain(profile);
-        let hops = PostHops::new(world.request(1), &ground).unwrap();
+        let hops = PostHops::new(world.ground(), 1).unwrap();
         let map = search(&hops, start, Search::default(), &mut |_| {}).unwrap();
         let reached = map.hops.iter().filter(|&&hops| hops > 0).count();
         if !(SIDE * SIDE / 4..=SIDE * SIDE * 4 / 5).contains(&reached) {
@@ -284,13 +280,13 @@ fn compare_cut_outs(file: &str, hopper: Hopper, surface: Surface, gravity_m_s2: 
 
 #[test]
 fn cut_outs_of_mars_have_the_hops_of_every_pair() {
-    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(4.5, 4.5) };
+    let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(4.5, 4.5) }).unwrap();
     compare_cut_outs("hirise_DTEEC_010228_1490_crop_120x70.tif", hopper, friction(0.6), 3.711, 11);
 }
 
 #[test]
 fn cut_outs_of_the_moon_have_the_hops_of_every_pair() {
-    let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(5.0, 5.0) };
+    let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(5.0, 5.0) }).unwrap();
     compare_cut_outs("lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif", hopper, friction(0.25), 1.62, 12);
 }
 
@@ -304,7 +300,7 @@ fn every_pair_under_zones_and_friction_has_the_answer_of_slice_and_hop() {
         let side = 8;
         let heights = (0..side * side).map(|_| draw.unit() * 0.8).collect();
         let dem = Dem::new(side, side, heights, GeoReference::local(MapPoint::new(0.0, 7.0), 1.0, 1.0).unwrap()).unwrap();
-        let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(4.0, 4.0) };
+        let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(4.0, 4.0) }).unwrap();
         let mut world = World::new(dem, hopper, friction(0.8), 2.0);
         let file = folder.path().join(format!("cover_{number}"));
         // On lattice lines, beside them, and a needle inside one square.
@@ -351,7 +347,7 @@ fn ways_back_and_strides_have_the_hops_of_every_pair() {
             continue;
         }
         // Falling is easier than climbing for legs that land hard and leap little.
-        let hopper = Hopper { clearance_m: 0.02, ..Hopper::with_speeds(2.2, 3.5) };
+        let hopper = Hopper::new(HopperLimits { clearance_m: 0.02, ..HopperLimits::with_speeds(2.2, 3.5) }).unwrap();
         let world = World::new(dem, hopper, friction(0.9), 1.62);
         let out = compare_maps(&world, start, 1, &[Journey::Outbound], &format!("grid {number}"));
         let back = compare_maps(&world, start, 1, &[Journey::Return], &format!("grid {number}"));
@@ -381,7 +377,12 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
     ]) {
         let dem =
             Dem::new(9, 9, (0..81).map(|_| draw.unit()).collect(), GeoReference::local(MapPoint::new(0.0, 0.0), 1.0, 1.0).unwrap());
-        let world = World::new(dem.unwrap(), Hopper { clearance_m: 0.05, ..Hopper::with_speeds(2.6, 2.8) }, friction(1.2), 1.62);
+        let world = World::new(
+            dem.unwrap(),
+            Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(2.6, 2.8) }).unwrap(),
+            friction(1.2),
+            1.62,
+        );
         let start = Post { row: 2, col: 1 };
         let posts = world.posts(1);
         let hops = world.plain_map(start, 1, Journey::Outbound);
@@ -408,8 +409,7 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
                 expected[to] = least;
             }
         }
-        let ground = |profile| world.chain(profile);
-        let post_hops = PostHops::new(world.request(1), &ground).unwrap();
+        let post_hops = PostHops::new(world.ground(), 1).unwrap();
         let map =
             search(&post_hops, start, Search { journey: Journey::Outbound, effort: Some((effort, choice)) }, &mut |_| {}).unwrap();
         assert_eq!(map.hops, hops);
@@ -420,10 +420,10 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
             let flown = path_hops(&post_hops, &path, choice).unwrap();
             assert_eq!(flown.len(), usize::try_from(hops[index]).unwrap());
             for hop in &flown {
-                let geometry = hop.chain.geometry();
+                let geometry = hop.test.chain().geometry();
                 let (first, last) = geometry.extent_m();
                 let ends = (geometry.station(first).unwrap(), geometry.station(last).unwrap());
-                assert!(execute(&hop.chain, &world.hopper, 1.62, &hop.path, Some(ends)).passes());
+                assert!(execute(hop.test.chain(), &hop.path, Some(ends)).passes());
             }
             let path = joined(&post_hops, &flown);
             let total = match effort {
@@ -450,10 +450,9 @@ fn raising_a_speed_limit_never_makes_a_post_unreachable_nor_farther() {
         }
         let mut before: Option<Vec<i16>> = None;
         for speed in [1.8, 2.2, 2.7, 3.5] {
-            let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(speed, speed) };
+            let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(speed, speed) }).unwrap();
             let world = World::new(dem.clone(), hopper, friction(0.9), 1.62);
-            let ground = |profile| world.chain(profile);
-            let hops = PostHops::new(world.request(1), &ground).unwrap();
+            let hops = PostHops::new(world.ground(), 1).unwrap();
             let map = search(&hops, start, Search::default(), &mut |_| {}).unwrap();
             for (&faster, &slower) in map.hops.iter().zip(before.iter().flatten()) {
                 assert!(slower < 0 || (0..=slower).contains(&faster), "{slower} hops became {faster} at {speed} m/s");
@@ -475,10 +474,9 @@ fn planes_have_the_analytic_shape() {
     };
     let (speed, gravity, mu) = (3.3, 1.62, 0.6f64);
     let map = |slope: f64| {
-        let surface = Surface { rest: RestSlope::Unlimited, ..friction(mu) };
-        let world = World::new(plane(slope), Hopper::with_speeds(speed, speed), surface, gravity);
-        let ground = |profile| world.chain(profile);
-        let hops = PostHops::new(world.request(1), &ground).unwrap();
+        let surface = SurfaceProperties { rest: RestSlope::Unlimited, ..friction(mu) };
+        let world = World::new(plane(slope), Hopper::with_speeds(speed, speed).unwrap(), surface, gravity);
+        let hops = PostHops::new(world.ground(), 1).unwrap();
         search(&hops, Post { row: 20, col: 20 }, Search::default(), &mut |_| {}).unwrap().hops
     };
     // The cone keeps hops at atan(1 / mu) or steeper.
@@ -498,9 +496,8 @@ fn planes_have_the_analytic_shape() {
         speed * speed / gravity,
     );
     let counted = |most: f64| disc.clone().filter(|&distance| distance > 0.0 && distance <= most).count() as f64;
-    let world = World::new(plane(0.0), Hopper::with_speeds(speed, speed), friction(mu), gravity);
-    let ground = |profile| world.chain(profile);
-    let mobile = mobility(&PostHops::new(world.request(1), &ground).unwrap(), &|_, _| ()).unwrap();
+    let world = World::new(plane(0.0), Hopper::with_speeds(speed, speed).unwrap(), friction(mu), gravity);
+    let mobile = mobility(&PostHops::new(world.ground(), 1).unwrap(), &|_, _| ()).unwrap();
     assert!((mobile.disc_radius_m - within).abs() < 1e-6);
     assert!((f64::from(mobile.share[20 * 41 + 20]) - counted(reach) / counted(within)).abs() < 1e-6);
     assert_eq!(mobile.directions[20 * 41 + 20], f32::from(SECTORS));
@@ -539,9 +536,8 @@ fn a_cone_too_steep_to_rest_on_is_an_island() {
         })
         .collect();
     let dem = Dem::new(side, side, heights, GeoReference::local(MapPoint::new(0.0, 0.0), 1.0, 1.0).unwrap()).unwrap();
-    let world = World::new(dem, Hopper::with_speeds(3.0, 3.0), friction(0.6), 1.62);
-    let ground = |profile| world.chain(profile);
-    let hops = PostHops::new(world.request(1), &ground).unwrap();
+    let world = World::new(dem, Hopper::with_speeds(3.0, 3.0).unwrap(), friction(0.6), 1.62);
+    let hops = PostHops::new(world.ground(), 1).unwrap();
     let map = search(&hops, Post { row: 1, col: 1 }, Search::default(), &mut |_| {}).unwrap();
     for (index, &hops) in map.hops.iter().enumerate() {
         let (row, col) = (f64::from(u32::try_from(index / side).unwrap()), f64::from(u32::try_from(index % side).unwrap()));

@@ -245,3 +245,56 @@ fn the_prj_text_and_the_keys_that_we_write_mean_the_same_to_gdal() {
         agree(&srs, &projection, read.trim(), at, reach_m);
     }
 }
+
+/// A code, GDAL's PROJ string of it and three dialects of GDAL's well-known text are one map, and GDAL computes the same points on it.
+#[test]
+fn a_map_by_code_by_proj_string_and_by_every_well_known_text_is_the_map_of_gdal() {
+    if !has_gdal() {
+        return;
+    }
+    let codes = ["EPSG:32633", "EPSG:26913", "EPSG:3031", "EPSG:3413", "EPSG:5041", "EPSG:3035"].map(str::to_owned);
+    let iau = ["30110", "30120", "30130", "30135", "30160", "30165", "30175", "30180", "49910", "49935", "19935", "29935"];
+    for code in codes.into_iter().chain(iau.map(|number| format!("IAU_2015:{number}"))) {
+        let by_code = MapProjection::from_code(&code).unwrap();
+        for form in ["proj4", "wkt1", "wkt_esri", "wkt2_2015", "wkt2_2019"] {
+            let text = run("gdalsrsinfo", &["-o", form, &code], "");
+            // ESRI's dialect has its orthographic map under another name.
+            if form == "wkt_esri" && text.contains("PROJECTION[\"Local\"]") {
+                continue;
+            }
+            same_map(&format!("{code} as {form}"), &text, &by_code);
+        }
+    }
+    for (srs, (x, y), reach_m) in systems() {
+        let by_proj: MapProjection = srs.parse().unwrap();
+        agree(&srs, &by_proj, &srs, (x, y), reach_m);
+        for form in ["wkt1", "wkt_esri", "wkt2_2015", "wkt2_2019"] {
+            let text = run("gdalsrsinfo", &["-o", form, &srs], "");
+            // GDAL rounds the scale of a Mercator map to a parallel there, and drops the latitude of an equirectangular one.
+            let lossy = ["\"Local\"", "\"Mercator\""].iter().any(|name| text.contains(name))
+                || srs.starts_with("+proj=eqc +lat_ts=20 +lat_0=3");
+            if form == "wkt_esri" && lossy {
+                continue;
+            }
+            let by_wkt: MapProjection = text.parse().unwrap_or_else(|error| panic!("{srs} as {form}: {error}\n{text}"));
+            for at in [MapPoint::new(x, y), MapPoint::new(x - 0.4 * reach_m, y + 0.3 * reach_m)] {
+                let place = by_proj.lon_lat(at).unwrap();
+                let found = by_wkt.map_point(place).unwrap();
+                assert!((found - at).norm() < 1e-6, "{srs} as {form}: {found} {at}");
+            }
+        }
+    }
+}
+
+/// Two roads to the numbers of a projection: equal but for the rounding of a text.
+fn same_map(what: &str, text: &str, expected: &MapProjection) {
+    let found: MapProjection = text.parse().unwrap_or_else(|error| panic!("{what}: {error}\n{text}"));
+    let (a, b) = (found.definition(), expected.definition());
+    assert_eq!((a.method, a.scale), (b.method, b.scale), "{what}");
+    for place in [(10.0, 60.0), (-40.0, 75.0), (170.0, -80.0), (14.0, 35.0)].map(|(lon_deg, lat_deg)| LonLat { lon_deg, lat_deg }) {
+        match (found.map_point(place), expected.map_point(place)) {
+            (Some(found), Some(expected)) => assert!((found - expected).norm() < 1e-6, "{what}: {found} {expected}"),
+            (found, expected) => assert_eq!(found, expected, "{what}"),
+        }
+    }
+}

@@ -132,7 +132,7 @@ fn no_spoiled_assignment_makes_it_panic() {
         let bytes = spoiled(&mut rng, assignments[i % assignments.len()].as_bytes());
         let assignment = String::from_utf8_lossy(&bytes);
         let mut entries = Entries::from_toml(TOML);
-        entries.set(&assignment);
+        entries.set("test", &assignment);
         accepted += usize::from(is_accepted(entries, TOML));
     }
     assert_both_kinds(accepted, 10_000);

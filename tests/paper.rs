@@ -3,12 +3,12 @@
 
 use chta::{
     ballistics::{Arc, LineOfSight, TakeoffChoice, least_takeoff_speed_m_s},
-    chain::{ConstrainedChain, ContactRule, Ground, GroundForm, GroundRefusal, LineConstraints, PolygonalChain},
+    chain::{ConstrainedChain, ContactRule, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentGround},
     graph::{Answer, Effort, HopGraph, NodeSet, Outcome, PointSpacing, SearchOptions, search},
     hop::{HopTest, Split},
     path::generate,
     quantity::{Angle, AngleInterval, ChainPoint, SegmentId, VertexId},
-    world::{Contact, Direction, Grip, Hopper, Limit, RestSlope, Surface},
+    world::{Contact, Direction, Gravity, Grip, Hopper, Limit, RestSlope, SurfaceProperties},
 };
 
 const NO_REST: RestSlope = RestSlope::Unlimited;
@@ -20,7 +20,13 @@ fn the_76_m_case(landing_from_slope_deg: (f64, f64)) -> ConstrainedChain {
         takeoff: AngleInterval::from_degrees(60.0, 90.0),
         landing: AngleInterval::from_degrees(landing_from_slope_deg.0, landing_from_slope_deg.1),
     };
-    ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0), &Surface { grip: Some(grip), rest: NO_REST }).unwrap()
+    ConstrainedChain::new(
+        chain,
+        &Hopper::with_speeds(10.0, 10.0).unwrap(),
+        Gravity::new(3.711).unwrap(),
+        &SurfaceProperties { grip: Some(grip), rest: NO_REST },
+    )
+    .unwrap()
 }
 
 fn with_points(points_per_segment: u32) -> SearchOptions {
@@ -28,7 +34,7 @@ fn with_points(points_per_segment: u32) -> SearchOptions {
 }
 
 /// A search between two vertices, counted from 0.
-fn between(test: &HopTest<'_>, from: usize, to: usize, options: &SearchOptions) -> Answer {
+fn between(test: &HopTest, from: usize, to: usize, options: &SearchOptions) -> Answer {
     let at = |i| test.chain().geometry().vertex_station(VertexId(i));
     search(test, at(from), at(to), options, &mut |_| {}).unwrap()
 }
@@ -36,7 +42,7 @@ fn between(test: &HopTest<'_>, from: usize, to: usize, options: &SearchOptions) 
 #[test]
 fn the_76_m_case_has_the_papers_reach_and_four_hops() {
     let chain = the_76_m_case((-90.0, -60.0));
-    let test = HopTest::new(&chain, &Hopper::with_speeds(10.0, 10.0), 3.711);
+    let test = HopTest::new(chain.with_hopper(&Hopper::with_speeds(10.0, 10.0).unwrap(), Gravity::new(3.711).unwrap()).unwrap());
     let reach = test.segment_reach(SegmentId(0), Direction::Forward).unwrap();
     // R_t = 20.913 m along the line of sight, 20.874 m horizontally, 60 degrees over the slope (model section 7).
     assert!((reach.reach_line_of_sight_m() - 20.913).abs() < 5e-4, "{}", reach.reach_line_of_sight_m());
@@ -63,7 +69,7 @@ fn the_76_m_case_lands_slower_than_it_starts_so_the_landing_reaches_farther() {
     let slope = (59.24 - 54.61) / 76.0;
     let line = LineConstraints::from_offsets(slope, takeoff, landing, 1e3, 10.0);
     let chain = explicit(&[(0.0, 54.61), (76.0, 59.24)], &[line]);
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 3.711);
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(3.711).unwrap()).unwrap());
     let reach = test.segment_reach(SegmentId(0), Direction::Forward).unwrap();
     assert!((reach.reach_line_of_sight_m() - 23.093).abs() < 5e-4, "{}", reach.reach_line_of_sight_m());
     assert_eq!(reach.limit(), Limit::LandingSpeed);
@@ -88,10 +94,11 @@ fn shipped(csv: &str) -> ConstrainedChain {
     let grounds = rows[..rows.len() - 1]
         .iter()
         .map(|row| GroundForm::Explicit { forward: Some(line(row, "")), reverse: Some(line(row, "reverse_")) })
-        .map(|form| Ground { form, keep_out: false })
+        .map(|form| SegmentGround { form, keep_out: false })
         .collect();
     let chain = PolygonalChain::new(points, grounds, None).unwrap();
-    ConstrainedChain::new(chain, &Hopper::UNLIMITED, &Surface { grip: None, rest: NO_REST }).unwrap()
+    ConstrainedChain::new(chain, &Hopper::UNLIMITED, Gravity::new(9.81).unwrap(), &SurfaceProperties { grip: None, rest: NO_REST })
+        .unwrap()
 }
 
 fn simple() -> ConstrainedChain {
@@ -110,7 +117,7 @@ const GOAL: usize = 4;
 fn in_the_simple_scenario_one_hop_joins_nodes_2_and_5() {
     let chain = simple();
     assert!(chain.geometry().vertices().len() >= 5);
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 9.81);
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(9.81).unwrap()).unwrap());
     for k in 0..=4 {
         assert_eq!(between(&test, START, GOAL, &with_points(k)).hops(), Some(1), "k = {k}");
     }
@@ -134,7 +141,7 @@ fn the_reduced_scenario_is_the_simple_one_with_slower_segments_2_and_4() {
 #[test]
 fn in_the_reduced_scenario_speed_forbids_the_one_hop_and_segment_3_joins_no_points_forward() {
     let chain = simple_reduced();
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 9.81);
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(9.81).unwrap()).unwrap());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     let refused = test.lofts(&at(START), &at(GOAL)).unwrap_err();
     assert!(matches!(refused, Limit::TakeoffSpeed | Limit::LandingSpeed), "{refused}");
@@ -155,7 +162,7 @@ fn in_the_reduced_scenario_speed_forbids_the_one_hop_and_segment_3_joins_no_poin
 #[test]
 fn in_the_reduced_scenario_raising_k_finds_a_path_and_then_shorter_ones() {
     let chain = simple_reduced();
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 9.81);
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(9.81).unwrap()).unwrap());
     let hops: Vec<Option<u64>> = (0..=30).map(|k| between(&test, START, GOAL, &with_points(k)).hops()).collect();
     let mut expected = vec![None, None, Some(5), Some(4), Some(4), Some(4)];
     expected.resize(31, Some(3));
@@ -171,9 +178,10 @@ fn in_the_reduced_scenario_raising_k_finds_a_path_and_then_shorter_ones() {
 fn explicit(points: &[(f64, f64)], lines: &[LineConstraints]) -> ConstrainedChain {
     let points = points.iter().map(|&(x, z)| ChainPoint::new(x, z)).collect();
     let form = |line: &LineConstraints| GroundForm::Explicit { forward: Some(*line), reverse: None };
-    let grounds = lines.iter().map(|line| Ground { form: form(line), keep_out: false }).collect();
+    let grounds = lines.iter().map(|line| SegmentGround { form: form(line), keep_out: false }).collect();
     let chain = PolygonalChain::new(points, grounds, None).unwrap();
-    ConstrainedChain::new(chain, &Hopper::UNLIMITED, &Surface { grip: None, rest: NO_REST }).unwrap()
+    ConstrainedChain::new(chain, &Hopper::UNLIMITED, Gravity::new(9.81).unwrap(), &SurfaceProperties { grip: None, rest: NO_REST })
+        .unwrap()
 }
 
 /// Line constraints from degrees and m/s.
@@ -191,7 +199,7 @@ fn line(takeoff_deg: (f64, f64), takeoff_m_s: f64, landing_deg: (f64, f64), land
 fn erratum_summary_of_theta_prints_the_takeoff_limit_for_the_landing_speed() {
     let (g, run, v_t, v_l) = (9.81, 10.0, 20.0, 10.5);
     let chain = explicit(&[(0.0, 0.0), (run, 0.0)], &[line((-90.0, 90.0), v_t, (-90.0, 90.0), v_l)]);
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(g).unwrap()).unwrap());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     let set = test.takeoff_set(&at(0), &at(1)).unwrap();
     let lower_term = |v: f64| 0.5 * (run * g / (v * v)).asin();
@@ -211,7 +219,8 @@ fn erratum_summary_of_theta_prints_the_takeoff_limit_for_the_landing_speed() {
 fn erratum_landing_bounds_of_section_v_b_are_swapped() {
     let hops = |landing| {
         let chain = the_76_m_case(landing);
-        let test = HopTest::new(&chain, &Hopper::with_speeds(10.0, 10.0), 3.711);
+        let test =
+            HopTest::new(chain.with_hopper(&Hopper::with_speeds(10.0, 10.0).unwrap(), Gravity::new(3.711).unwrap()).unwrap());
         between(&test, 0, 1, &with_points(0)).hops()
     };
     assert_eq!(hops((-60.0, -90.0)), None);
@@ -230,7 +239,7 @@ fn erratum_landing_bounds_of_section_v_b_are_swapped() {
 fn erratum_reach_of_section_iv_c_is_that_of_another_angle() {
     let (g, v) = (3.711, 10.0);
     let chain = the_76_m_case((-90.0, -60.0));
-    let test = HopTest::new(&chain, &Hopper::with_speeds(v, v), g);
+    let test = HopTest::new(chain.with_hopper(&Hopper::with_speeds(v, v).unwrap(), Gravity::new(g).unwrap()).unwrap());
     let reach = test.segment_reach(SegmentId(0), Direction::Forward).unwrap();
     let b = reach.sight_slope();
     let beta = b.atan();
@@ -255,7 +264,7 @@ fn erratum_reach_of_section_iv_c_is_that_of_another_angle() {
 fn erratum_property_2_needs_the_effort_in_the_cost() {
     let wide = line((-90.0, 90.0), 10.0, (-90.0, 90.0), 10.0);
     let chain = explicit(&[(0.0, 0.0), (3.0, 0.0), (6.0, 0.0), (12.0, 0.0)], &[wide; 3]);
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 10.0);
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(10.0).unwrap()).unwrap());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     let nodes = NodeSet::new(&chain, at(0), at(3), PointSpacing::PerSegment(0)).unwrap();
     let cost_by = |middle: usize, effort| {
@@ -283,7 +292,7 @@ fn erratum_property_2_needs_the_effort_in_the_cost() {
 fn erratum_algorithm_2_loses_pairs_within_reach() {
     let (g, v, run) = (10.0, 10.0, 9.0);
     let chain = explicit(&[(0.0, 0.0), (run, 0.0)], &[line((75.0, 90.0), v, (-90.0, 0.0), v)]);
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(g).unwrap()).unwrap());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     let single = test.lofts(&at(0), &at(1));
     let many = test.segment_hops(&at(0), &at(1)).unwrap();

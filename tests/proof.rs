@@ -5,7 +5,7 @@ mod support;
 
 use chta::{
     ballistics::TakeoffChoice,
-    chain::{ConstrainedChain, ContactRule, Ground, GroundForm, PolygonalChain, Station},
+    chain::{ConstrainedChain, ContactRule, GroundForm, PolygonalChain, SegmentGround, Station},
     graph::{
         Outcome, PointSpacing, SearchOptions,
         proof::{Bounds, BoundsOptions, ProofVerdict, bounds},
@@ -14,7 +14,7 @@ use chta::{
     hop::{HopTest, Split},
     path::{execute, generate},
     quantity::{Angle, ChainPoint, VertexId},
-    world::{Contact, Direction, FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use support::{Draw, explicit, line};
 
@@ -41,28 +41,35 @@ impl Journey {
             line(takeoff, speed * fast, landing, speed * draw.uniform(0.7, 1.6))
         };
         let lines: Vec<_> = (0..segments).map(|_| (cone(draw), cone(draw))).collect();
-        let mut hopper = Hopper { clearance_m: if draw.chance(0.5) { 0.0 } else { 1e-2 * size }, ..Hopper::UNLIMITED };
+        let mut limits = HopperLimits { clearance_m: if draw.chance(0.5) { 0.0 } else { 1e-2 * size }, ..HopperLimits::UNLIMITED };
         if draw.chance(0.2) {
-            hopper.apex_height_max_m = Some(size * draw.uniform(0.05, 0.6));
+            limits.apex_height_max_m = Some(size * draw.uniform(0.05, 0.6));
         }
         if draw.chance(0.2) {
-            hopper.flight_time_max_s = Some((size / g).sqrt() * draw.uniform(0.5, 2.0));
+            limits.flight_time_max_s = Some((size / g).sqrt() * draw.uniform(0.5, 2.0));
         }
         if draw.chance(0.2) {
-            hopper.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(40.0, 89.0)));
+            limits.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(40.0, 89.0)));
         }
+        let hopper = Hopper::new(limits).unwrap();
         let bent = segments > 2 && draw.chance(0.2);
         let chain = if bent {
             let grounds = lines
                 .iter()
-                .map(|&(f, r)| Ground {
+                .map(|&(f, r)| SegmentGround {
                     form: GroundForm::Explicit { forward: Some(f), reverse: Some(r) },
                     keep_out: draw.chance(0.1),
                 })
                 .collect();
             let bend = VertexId(1 + draw.below(segments - 1));
             let geometry = PolygonalChain::new(points, grounds, None).unwrap().with_bends(vec![bend]).unwrap();
-            ConstrainedChain::new(geometry, &hopper, &Surface { grip: None, rest: RestSlope::Unlimited }).unwrap()
+            ConstrainedChain::new(
+                geometry,
+                &hopper,
+                Gravity::new(g).unwrap(),
+                &SurfaceProperties { grip: None, rest: RestSlope::Unlimited },
+            )
+            .unwrap()
         } else {
             explicit(&points, &lines, RestSlope::Unlimited)
         };
@@ -77,17 +84,27 @@ impl Journey {
             let run = draw.uniform(2.0, 10.0);
             points.push(ChainPoint::new(points[i].x_m + run, points[i].z_m + draw.uniform(-0.5, 0.5) * run));
         }
-        let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(draw.uniform(4.0, 9.0), draw.uniform(4.0, 9.0)) };
+        let hopper = Hopper::new(HopperLimits {
+            clearance_m: 0.1,
+            ..HopperLimits::with_speeds(draw.uniform(4.0, 9.0), draw.uniform(4.0, 9.0))
+        })
+        .unwrap();
         let grip = Some(Grip::Friction(FrictionCone::new(draw.uniform(0.5, 1.0)).unwrap()));
         let geometry = PolygonalChain::bare(points).unwrap();
-        let chain = ConstrainedChain::new(geometry, &hopper, &Surface { grip, rest: RestSlope::AsFrictionHolds }).unwrap();
+        let chain = ConstrainedChain::new(
+            geometry,
+            &hopper,
+            Gravity::new(3.711).unwrap(),
+            &SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds },
+        )
+        .unwrap();
         let (first, last) = chain.geometry().extent_m();
         let (start, goal) = (chain.geometry().station(first).unwrap(), chain.geometry().station(last).unwrap());
         Self { chain, hopper, g: 3.711, start, goal }
     }
 
-    fn test(&self) -> HopTest<'_> {
-        HopTest::new(&self.chain, &self.hopper, self.g)
+    fn test(&self) -> HopTest {
+        HopTest::new(self.chain.with_hopper(&self.hopper, Gravity::new(self.g).unwrap()).unwrap())
     }
 
     fn bounds(&self, budget_cells: usize) -> Bounds {
@@ -106,7 +123,7 @@ impl Journey {
         let Outcome::Path { legs, cost } = &found.answer.outcome else { return };
         let path = generate(&self.test(), legs, TakeoffChoice::LeastSpeed, Split::FullReach).unwrap();
         assert_eq!(path.hops.len() as u64, cost.hops());
-        let execution = execute(&self.chain, &self.hopper, self.g, &path, Some((self.start, self.goal)));
+        let execution = execute(self.test().chain(), &path, Some((self.start, self.goal)));
         assert!(execution.passes(), "{:?}", execution.violations);
     }
 }
@@ -168,7 +185,7 @@ fn flies(journey: &Journey, from: &Station, to: &Station, angles: u32) -> bool {
     }
     let (run, rise) = ((to.point.x_m - from.point.x_m).abs(), to.point.z_m - from.point.z_m);
     let (g, hopper) = (journey.g, &journey.hopper);
-    let steepest = hopper.takeoff_angle_max.map_or(90.0, Angle::degrees).min(89.999_999);
+    let steepest = hopper.limits().takeoff_angle_max.map_or(90.0, Angle::degrees).min(89.999_999);
     (0..=angles).any(|i| {
         // Between the line of sight and the vertical.
         let sight = (rise / run).atan().to_degrees();
@@ -195,14 +212,15 @@ fn flies(journey: &Journey, from: &Station, to: &Station, angles: u32) -> bool {
         };
         let clear = journey.chain.geometry().vertices().iter().all(|p| {
             let d = (p.x_m - from.point.x_m) * direction.sign();
-            !(d > 0.0 && d < run) || from.point.z_m + m * d - fall * (d / run) * (d / run) >= p.z_m + hopper.clearance_m / SLACK
+            !(d > 0.0 && d < run)
+                || from.point.z_m + m * d - fall * (d / run) * (d / run) >= p.z_m + hopper.limits().clearance_m / SLACK
         });
         v_t <= takeoff.speed_max_m_s() * SLACK
             && v_l <= landing.speed_max_m_s() * SLACK
             && within(m, &takeoff)
             && within(end_slope, &landing)
-            && hopper.flight_time_max_s.is_none_or(|t| time <= t * SLACK)
-            && hopper.apex_height_max_m.is_none_or(|h| top <= h * SLACK)
+            && hopper.limits().flight_time_max_s.is_none_or(|t| time <= t * SLACK)
+            && hopper.limits().apex_height_max_m.is_none_or(|h| top <= h * SLACK)
             && clear
     })
 }

@@ -19,7 +19,7 @@ use chta::{
     path::{execute, generate},
     quantity::MapPoint,
     terrain::{Dem, read_dem, slice},
-    world::{Body, Contact, FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Body, Contact, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use support::Draw;
 
@@ -38,7 +38,7 @@ fn real(name: &str) -> Option<Dem> {
 }
 
 /// A slice of at most so many segments between two places drawn from a seed, and the hopper to cross it.
-fn drawn_chain(dem: &Dem, seed: u64, most_segments: usize) -> (ConstrainedChain, Hopper) {
+fn drawn_chain(dem: &Dem, gravity: Gravity, seed: u64, most_segments: usize) -> ConstrainedChain {
     let draw = &mut Draw::seeded(seed);
     let area = dem.georeference().bounds(dem.rows(), dem.cols());
     let mut point = || MapPoint::new(draw.uniform(area.min.x, area.max.x), draw.uniform(area.min.y, area.max.y));
@@ -49,11 +49,11 @@ fn drawn_chain(dem: &Dem, seed: u64, most_segments: usize) -> (ConstrainedChain,
         profile = slice(dem, from, to).unwrap();
     }
     let speed_m_s = draw.uniform(4.0, 12.0);
-    let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(speed_m_s, speed_m_s) };
+    let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(speed_m_s, speed_m_s) }).unwrap();
     let friction = FrictionCone::new(draw.uniform(0.5, 1.0)).unwrap();
-    let surface = Surface { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
+    let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
     let chain = PolygonalChain::from_profile(&profile, Some(friction)).unwrap();
-    (ConstrainedChain::new(chain, &hopper, &surface).unwrap(), hopper)
+    ConstrainedChain::new(chain, &hopper, gravity, &surface).unwrap()
 }
 
 /// The first and the last place of a chain, among the middles of its segments, that allows a contact: the journey is to be long, and not
@@ -73,9 +73,8 @@ fn left_open(slices: u64) -> usize {
         let Some(dem) = real(name) else { continue };
         let (mut found_none, mut slowest) = (0, 0.0f64);
         for seed in 0..slices {
-            let (chain, hopper) = drawn_chain(&dem, seed, 200);
-            let g = Body::named(body).unwrap().gravity_m_s2;
-            let test = HopTest::new(&chain, &hopper, g);
+            let chain = drawn_chain(&dem, Body::named(body).unwrap().gravity, seed, 200);
+            let test = HopTest::new(chain.clone());
             let Some((start, goal)) = usable_ends(&chain) else { continue };
             let began = Instant::now();
             let found = bounds(&test, start, goal, &BoundsOptions::default(), &mut |_| {}).unwrap();
@@ -84,7 +83,7 @@ fn left_open(slices: u64) -> usize {
             assert!(found.summary.cells <= DEFAULT_BUDGET_CELLS, "{name} seed {seed}: {:?}", found.summary);
             if let Outcome::Path { legs, .. } = &found.answer.outcome {
                 let path = generate(&test, legs, TakeoffChoice::LeastSpeed, Split::FullReach).unwrap();
-                let execution = execute(&chain, &hopper, g, &path, Some((start, goal)));
+                let execution = execute(&chain, &path, Some((start, goal)));
                 assert!(execution.passes(), "{name} seed {seed}: {:?}", execution.violations);
             }
             if found.verdict() == ProofVerdict::Untraversable {

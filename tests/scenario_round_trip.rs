@@ -140,7 +140,7 @@ fn every_key_reaches_the_document() {
     };
     for key in &CATALOGUE {
         let mut entries = Entries::from_toml("body.gravity_m_s2 = 1\n");
-        let mut with = |table: &str, name: &str, value: &str| entries.set(&format!("{table}.{name}={value}"));
+        let mut with = |table: &str, name: &str, value: &str| entries.set("test", &format!("{table}.{name}={value}"));
         match (key.table, key.name) {
             ("surface", "takeoff_from_slope_deg") => with("surface", "landing_from_slope_deg", "[1, 2]"),
             ("surface", "landing_from_slope_deg") => with("surface", "takeoff_from_slope_deg", "[1, 2]"),

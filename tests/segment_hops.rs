@@ -10,7 +10,7 @@ use chta::{
     hop::{HopTest, SegmentHops, Split},
     path::generate,
     quantity::{Angle, ChainPoint, SegmentId, VertexId},
-    world::{Direction, Hopper, Limit, SPEED_TOLERANCE},
+    world::{Direction, Gravity, Hopper, HopperLimits, Limit, SPEED_TOLERANCE},
 };
 use support::{Draw, line, uniform};
 
@@ -38,17 +38,18 @@ impl Slope {
         let slope = if draw.chance(0.2) { 0.0 } else { draw.uniform(-1.5, 1.5) };
         let speed = (g * run / draw.log_uniform(0.5, 30.0)).sqrt();
         let line = draw.line(speed);
-        let mut hopper = Hopper::UNLIMITED;
+        let mut limits = HopperLimits::UNLIMITED;
         if machine {
-            hopper.takeoff_angle_max = draw.chance(0.5).then(|| Angle::from_degrees(draw.uniform(20.0, 85.0)));
-            hopper.apex_height_max_m = draw.chance(0.5).then(|| speed * speed / g * draw.log_uniform(1e-2, 1.0));
-            hopper.flight_time_max_s = draw.chance(0.5).then(|| speed / g * draw.log_uniform(1e-1, 3.0));
+            limits.takeoff_angle_max = draw.chance(0.5).then(|| Angle::from_degrees(draw.uniform(20.0, 85.0)));
+            limits.apex_height_max_m = draw.chance(0.5).then(|| speed * speed / g * draw.log_uniform(1e-2, 1.0));
+            limits.flight_time_max_s = draw.chance(0.5).then(|| speed / g * draw.log_uniform(1e-1, 3.0));
         }
+        let hopper = Hopper::new(limits).unwrap();
         Self::new(run, slope, line, hopper, g, Direction::BOTH[draw.below(2)])
     }
 
-    fn test(&self) -> HopTest<'_> {
-        HopTest::new(&self.chain, &self.hopper, self.g)
+    fn test(&self) -> HopTest {
+        HopTest::new(self.chain.with_hopper(&self.hopper, Gravity::new(self.g).unwrap()).unwrap())
     }
 
     /// Take-off and landing of the whole segment.
@@ -78,9 +79,9 @@ impl Slope {
             && within(down, self.line.landing)
             && v <= self.line.takeoff.speed_max_m_s() * more
             && landing_speed <= self.line.landing.speed_max_m_s() * more
-            && self.hopper.takeoff_angle_max.is_none_or(|max| theta <= max.radians() + hair)
-            && self.hopper.apex_height_max_m.is_none_or(|max| highest <= max * (1.0 + hair))
-            && self.hopper.flight_time_max_s.is_none_or(|max| end <= max * (1.0 + hair))
+            && self.hopper.limits().takeoff_angle_max.is_none_or(|max| theta <= max.radians() + hair)
+            && self.hopper.limits().apex_height_max_m.is_none_or(|max| highest <= max * (1.0 + hair))
+            && self.hopper.limits().flight_time_max_s.is_none_or(|max| end <= max * (1.0 + hair))
     }
 
     /// The longest flight at an angle, by bisection on flights.
@@ -176,9 +177,9 @@ fn every_hop_of_both_splits_and_all_choices_flies_and_they_add_up_to_the_run() {
         for (split, choice) in Split::ALL.into_iter().flat_map(|s| TakeoffChoice::ALL.map(|c| (s, c))) {
             let hops = flown(&slope, along, choice, split);
             assert_eq!(hops.len() as u64, along.hops());
-            assert_eq!((hops[0].takeoff, hops[hops.len() - 1].landing), (takeoff, landing));
+            assert_eq!((hops[0].takeoff.station, hops[hops.len() - 1].landing.station), (Some(takeoff), Some(landing)));
             for hop in &hops {
-                let length = (hop.landing.point.x_m - hop.takeoff.point.x_m).abs();
+                let length = hop.run_m();
                 assert!(
                     slope.flies(length, hop.takeoff_angle.radians(), 1e-7),
                     "{} of {length} m at {} deg, {}, {}",
@@ -258,7 +259,7 @@ fn pairs_that_the_papers_pseudo_code_loses_are_hopped() {
         let Some(along) = test.segment_hops(&takeoff, &landing) else { continue };
         assert!(along.hops() >= 2);
         for hop in flown(&slope, along, TakeoffChoice::LeastSpeed, Split::FullReach) {
-            let length = (hop.landing.point.x_m - hop.takeoff.point.x_m).abs();
+            let length = hop.run_m();
             assert!(slope.flies(length, hop.takeoff_angle.radians(), 1e-7));
         }
         lost += 1;
@@ -280,13 +281,13 @@ fn machine_limits_end_the_reach_where_hand_calculation_says() {
     };
     near(reach(Hopper::UNLIMITED), 10.0, 45.0, &[Limit::TakeoffSpeed]);
     // 1 s in the air: 10 sin(theta) / 5 = 1, 30 degrees, 10 sin(60).
-    let timed = Hopper { flight_time_max_s: Some(1.0), ..Hopper::UNLIMITED };
+    let timed = Hopper::new(HopperLimits { flight_time_max_s: Some(1.0), ..HopperLimits::UNLIMITED }).unwrap();
     near(reach(timed), 75f64.sqrt(), 30.0, &[Limit::FlightTime, Limit::TakeoffSpeed]);
     // Half a metre high: 5 sin^2 = 0.5, 20 sin cos = 6.
-    let low = Hopper { apex_height_max_m: Some(0.5), ..Hopper::UNLIMITED };
+    let low = Hopper::new(HopperLimits { apex_height_max_m: Some(0.5), ..HopperLimits::UNLIMITED }).unwrap();
     near(reach(low), 6.0, 0.1f64.sqrt().asin().to_degrees(), &[Limit::ApexHeight, Limit::TakeoffSpeed]);
     // No steeper than 15 degrees: 10 sin(30).
-    let flat = Hopper { takeoff_angle_max: Some(Angle::from_degrees(15.0)), ..Hopper::UNLIMITED };
+    let flat = Hopper::new(HopperLimits { takeoff_angle_max: Some(Angle::from_degrees(15.0)), ..HopperLimits::UNLIMITED }).unwrap();
     near(reach(flat), 5.0, 15.0, &[Limit::TakeoffSpeed]);
 }
 
@@ -304,7 +305,11 @@ fn mid_range_hops_fly_the_middle_of_their_own_set_and_are_no_more() {
         }
         for hop in flown(&slope, along, TakeoffChoice::MidRange, Split::Equal) {
             // At full reach the set is one point, and rounding may leave the explained set empty.
-            let Some(set) = test.takeoff_set(&hop.takeoff, &hop.landing).and_then(|set| set.angles()) else { continue };
+            let Some(set) =
+                test.takeoff_set(&hop.takeoff.station.unwrap(), &hop.landing.station.unwrap()).and_then(|set| set.angles())
+            else {
+                continue;
+            };
             let middle = 0.5 * (set.min.radians().max(slope.b.atan()) + set.max.radians());
             assert!((hop.takeoff_angle.radians() - middle).abs() < 1e-9, "{} against {middle}", hop.takeoff_angle.radians());
             middles += 1;
@@ -326,7 +331,7 @@ fn hops_of_full_reach_lie_in_their_own_set_whatever_limit_ends_the_reach() {
             continue;
         }
         for hop in flown(&slope, along, TakeoffChoice::LeastSpeed, Split::FullReach) {
-            let set = test.takeoff_set(&hop.takeoff, &hop.landing).unwrap();
+            let set = test.takeoff_set(&hop.takeoff.station.unwrap(), &hop.landing.station.unwrap()).unwrap();
             let angles = set.angles().unwrap_or_else(|| panic!("{}: {}", along.reach().limit(), set.conflict().unwrap()));
             let angle = hop.takeoff_angle.radians();
             assert!(angles.min.radians() <= angle && angle <= angles.max.radians());

@@ -3,12 +3,14 @@
 
 mod support;
 
+use std::sync::Arc;
+
 use chta::{
     chain::{ConstrainedChain, LineConstraints, PolygonalChain, Station},
     hop::{HopTest, LandingTable, Sweep},
     quantity::{Angle, ChainPoint, MapPoint, VertexId},
     terrain::slice,
-    world::{Direction, FrictionCone, Grip, Hopper, Limit, RestSlope, Surface},
+    world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
 use support::{Draw, explicit, line, uniform};
 
@@ -46,9 +48,9 @@ fn stations(chain: &ConstrainedChain, inside: u32) -> Vec<Station> {
 }
 
 /// Sweeps from every station (or some of many) both ways and asks the hop test for each pair as well.
-fn compare(test: &HopTest<'_>, stations: &[Station], most_takeoffs: usize, compared: &mut Compared) {
-    let table = LandingTable::new(test, stations);
-    let mut sweep = Sweep::new(&table);
+fn compare(test: &HopTest, stations: &[Station], most_takeoffs: usize, compared: &mut Compared) {
+    let table = Arc::new(LandingTable::new(test, stations));
+    let mut sweep = Sweep::new(Arc::clone(&table));
     let stride = stations.len().div_ceil(most_takeoffs);
     for (from, takeoff) in stations.iter().enumerate().step_by(stride) {
         for direction in Direction::BOTH {
@@ -67,7 +69,7 @@ fn compare(test: &HopTest<'_>, stations: &[Station], most_takeoffs: usize, compa
 }
 
 fn compare_pair(
-    test: &HopTest<'_>,
+    test: &HopTest,
     takeoff: &Station,
     landing: &Station,
     swept: Result<chta::quantity::SlopeInterval, Limit>,
@@ -95,14 +97,15 @@ fn compare_pair(
 
 fn some_hopper(draw: &mut Draw, size_m: f64, g: f64) -> Hopper {
     let reach_s = (size_m / g).sqrt();
-    Hopper {
+    Hopper::new(HopperLimits {
         clearance_m: if draw.chance(0.5) { 0.0 } else { size_m * draw.log_uniform(1e-4, 1e-1) },
         takeoff_angle_min: draw.chance(0.2).then(|| Angle::from_degrees(draw.uniform(-20.0, 50.0))),
         takeoff_angle_max: draw.chance(0.2).then(|| Angle::from_degrees(draw.uniform(50.0, 89.0))),
         apex_height_max_m: draw.chance(0.2).then(|| size_m * draw.log_uniform(0.1, 10.0)),
         flight_time_max_s: draw.chance(0.2).then(|| reach_s * draw.log_uniform(0.3, 10.0)),
-        ..Hopper::UNLIMITED
-    }
+        ..HopperLimits::UNLIMITED
+    })
+    .unwrap()
 }
 
 #[test]
@@ -118,9 +121,9 @@ fn random_chains_bends_and_points_inside_segments() {
         let straight = explicit(&points, &lines, RestSlope::Unlimited);
         let bends = (1..segments).filter(|_| draw.chance(0.01)).map(VertexId).collect();
         let bent = straight.geometry().clone().with_bends(bends).unwrap();
-        let chain = ConstrainedChain::new(bent, &Hopper::UNLIMITED, &support::NO_SURFACE).unwrap();
+        let chain = ConstrainedChain::new(bent, &Hopper::UNLIMITED, Gravity::new(g).unwrap(), &support::NO_SURFACE).unwrap();
         let hopper = some_hopper(draw, size_m, g);
-        let test = HopTest::new(&chain, &hopper, g);
+        let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
         let inside = u32::try_from(draw.below(4)).unwrap();
         compare(&test, &stations(&chain, inside), 12, &mut compared);
     }
@@ -175,8 +178,8 @@ fn adversarial_ground() {
                 let kinds: [LineConstraints; 2] = [open(speed), steep(speed)];
                 for kind in kinds {
                     let chain = uniform(&points, kind);
-                    let hopper = Hopper { clearance_m, ..Hopper::UNLIMITED };
-                    let test = HopTest::new(&chain, &hopper, g);
+                    let hopper = Hopper::new(HopperLimits { clearance_m, ..HopperLimits::UNLIMITED }).unwrap();
+                    let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
                     compare(&test, &stations(&chain, 0), 6, &mut compared);
                     compare(&test, &stations(&chain, 3), 2, &mut compared);
                 }
@@ -196,17 +199,17 @@ fn touching_limits_are_evaluated_as_pair_by_pair() {
         let (g, size_m) = (draw.gravity(), draw.log_uniform(1e-1, 1e2));
         let points = draw.profile(20, size_m);
         let fast = uniform(&points, line((-90.0, 90.0), (1e4 * g * size_m).sqrt(), (-90.0, 90.0), (1e6 * g * size_m).sqrt()));
-        let hopper = Hopper { clearance_m: 1e-3 * size_m, ..Hopper::UNLIMITED };
+        let hopper = Hopper::new(HopperLimits { clearance_m: 1e-3 * size_m, ..HopperLimits::UNLIMITED }).unwrap();
         let at = |chain: &ConstrainedChain, i| chain.geometry().vertex_station(VertexId(i));
         let (from, to) = (draw.below(5), 10 + draw.below(11));
-        let roomy = HopTest::new(&fast, &hopper, g);
+        let roomy = HopTest::new(fast.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
         let Ok(lofts) = roomy.lofts(&at(&fast, from), &at(&fast, to)) else { continue };
         let slope = roomy.line_of_sight(&at(&fast, from), &at(&fast, to)).unwrap().slope() + lofts.lower;
         for nudge in -2..=2 {
             // A machine whose greatest angle is the least that clears the ground, give or take rounding.
             let steepest = Angle::from_radians(Angle::from_slope(slope).radians() * (1.0 + f64::from(nudge) * 2.0 * f64::EPSILON));
-            let exact = Hopper { takeoff_angle_max: Some(steepest), ..hopper };
-            let test = HopTest::new(&fast, &exact, g);
+            let exact = Hopper::new(HopperLimits { takeoff_angle_max: Some(steepest), ..*hopper.limits() }).unwrap();
+            let test = HopTest::new(fast.with_hopper(&exact, Gravity::new(g).unwrap()).unwrap());
             compare(&test, &stations(&fast, 0), 21, &mut compared);
             touching += u32::from(test.lofts(&at(&fast, from), &at(&fast, to)).is_ok());
         }
@@ -240,11 +243,18 @@ fn real_ground() {
             let chain = PolygonalChain::from_profile(&profile, None).unwrap();
             for (friction, clearance_m) in [(0.6, 0.1), (20.0, 0.0), (20.0, 0.3)] {
                 let speed = f64::sqrt(g * reach_m);
-                let hopper = Hopper { clearance_m, ..Hopper::with_speeds(speed, 1.5 * speed) };
-                let surface =
-                    Surface { grip: Some(Grip::Friction(FrictionCone::new(friction).unwrap())), rest: RestSlope::AsFrictionHolds };
-                let chain = ConstrainedChain::new(chain.clone(), &hopper, &surface).unwrap();
-                compare(&HopTest::new(&chain, &hopper, g), &stations(&chain, 1), 12, &mut compared);
+                let hopper = Hopper::new(HopperLimits { clearance_m, ..HopperLimits::with_speeds(speed, 1.5 * speed) }).unwrap();
+                let surface = SurfaceProperties {
+                    grip: Some(Grip::Friction(FrictionCone::new(friction).unwrap())),
+                    rest: RestSlope::AsFrictionHolds,
+                };
+                let chain = ConstrainedChain::new(chain.clone(), &hopper, Gravity::new(g).unwrap(), &surface).unwrap();
+                compare(
+                    &HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap()),
+                    &stations(&chain, 1),
+                    12,
+                    &mut compared,
+                );
             }
         }
     }
@@ -269,9 +279,9 @@ fn nothing_feasible_lies_beyond_reach() {
         let speed = (g * size_m * draw.log_uniform(0.5, 20.0)).sqrt();
         let lines: Vec<_> = (0..segments).map(|_| (draw.line(speed), draw.line(0.6 * speed))).collect();
         let chain = explicit(&points, &lines, RestSlope::Unlimited);
-        let test = HopTest::new(&chain, &Hopper::UNLIMITED, g);
+        let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(g).unwrap()).unwrap());
         let stations = stations(&chain, 1);
-        let table = LandingTable::new(&test, &stations);
+        let table = Arc::new(LandingTable::new(&test, stations.as_slice()));
         for takeoff in &stations {
             for direction in Direction::BOTH {
                 let reach_m = test.landing_reach_m(takeoff, direction);
@@ -309,9 +319,33 @@ fn reach_does_not_grow_with_the_chain() {
     let points: Vec<ChainPoint> =
         (0..=4000).map(|i| ChainPoint::new(f64::from(i), 300.0 * f64::from(i / 100 % 7) + draw.unit())).collect();
     let chain = uniform(&points, line((-90.0, 90.0), 10.0, (-90.0, 90.0), 8.0));
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 2.0);
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(2.0).unwrap()).unwrap());
     assert!((test.greatest_reach_m() - 40.0).abs() < 1e-6, "{} m", test.greatest_reach_m());
     // On flat ground the slower end decides: 64 / 2 m and a little for the roughness of 1 m.
     let flat = test.reach_bound_m(&chain.geometry().vertex_station(VertexId(50)));
     assert!((32.0..34.0).contains(&flat), "{flat} m");
+}
+
+/// What another language may keep as a value and hand to its threads.
+const fn shareable<T: Clone + Send + Sync + 'static>() {}
+
+const _: () = {
+    shareable::<ConstrainedChain>();
+    shareable::<HopTest>();
+    shareable::<LandingTable>();
+    shareable::<Sweep>();
+};
+
+#[test]
+fn a_clone_answers_alike_from_the_same_chain_after_the_first_is_gone() {
+    let points: Vec<_> = (0..40).map(|i| ChainPoint::new(f64::from(i), f64::from(i % 3))).collect();
+    let chain = support::uniform(&points, support::line((-90.0, 90.0), 4.0, (-90.0, 90.0), 4.0));
+    let first = HopTest::new(chain.clone());
+    let second = first.clone();
+    assert!(std::ptr::eq(first.chain(), second.chain()), "a clone shares its chain");
+    let takeoff = chain.geometry().station(7.5).unwrap();
+    let reach_m = first.reach_bound_m(&takeoff);
+    drop(first);
+    let sweep = std::thread::spawn(move || (second.reach_bound_m(&takeoff), HopTest::new(chain).reach_bound_m(&takeoff)));
+    assert_eq!(sweep.join().unwrap(), (reach_m, reach_m));
 }

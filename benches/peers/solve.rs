@@ -32,8 +32,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     for round in 0..=repeats {
         let geometry = geometry.clone();
         let began = Instant::now();
-        let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface)?;
-        let test = HopTest::new(&chain, &scenario.hopper, scenario.body.gravity_m_s2);
+        let chain = ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)?;
+        let test = HopTest::new(chain.clone());
         let (first_m, last_m) = chain.geometry().extent_m();
         let (start, goal) = (chain.geometry().station(first_m)?, chain.geometry().station(last_m)?);
         hops = black_box(search(&test, start, goal, &options, &mut |_| {})?).hops();

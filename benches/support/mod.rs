@@ -8,7 +8,7 @@ use chta::{
     chain::{ConstrainedChain, PolygonalChain},
     quantity::{ChainPoint, MapPoint},
     terrain::{FractalGround, SyntheticTerrain, slice, synthesise},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
@@ -17,7 +17,7 @@ pub(crate) const MARS_M_S2: f64 = 3.711;
 
 /// Rough Martian ground along a row of posts: as many one-metre segments, a hopper of 10 m/s with 5 cm of clearance, friction 0.6.
 pub(crate) fn fractal_chain(segments: usize) -> (ConstrainedChain, Hopper) {
-    let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(10.0, 10.0) };
+    let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(10.0, 10.0) }).expect("a valid hopper");
     let terrain = SyntheticTerrain {
         rows: 3,
         cols: segments + 1,
@@ -74,5 +74,11 @@ pub(crate) fn constrained(geometry: PolygonalChain, hopper: &Hopper) -> Constrai
 /// With the same friction all over.
 pub(crate) fn constrained_by(geometry: PolygonalChain, hopper: &Hopper, friction: f64) -> ConstrainedChain {
     let grip = Some(Grip::Friction(FrictionCone::new(friction).expect("a friction coefficient")));
-    ConstrainedChain::new(geometry, hopper, &Surface { grip, rest: RestSlope::AsFrictionHolds }).expect("sound constraints")
+    ConstrainedChain::new(
+        geometry,
+        hopper,
+        Gravity::new(MARS_M_S2).expect("a gravity"),
+        &SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds },
+    )
+    .expect("sound constraints")
 }

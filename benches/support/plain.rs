@@ -14,7 +14,7 @@ use chta::{
 /// The bound of a vertex is written with one division, `n >= (h - b d) X / (d (X - d))` for a vertex `h` (with the clearance) above the
 /// take-off at distance `d`, and its maximum without regard to NaN: about as quick as this loop gets.
 #[inline]
-pub(crate) fn lofts(test: &HopTest<'_>, takeoff: &Station, landing: &Station) -> Option<SlopeInterval> {
+pub(crate) fn lofts(test: &HopTest, takeoff: &Station, landing: &Station) -> Option<SlopeInterval> {
     let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
     let chain = test.chain();
     let from = chain.ruling(takeoff, Contact::Takeoff, direction)?.allowed(Contact::Takeoff, direction)?;
@@ -27,7 +27,7 @@ pub(crate) fn lofts(test: &HopTest<'_>, takeoff: &Station, landing: &Station) ->
     if cheap.is_empty() || cheap.upper <= 0.0 {
         return None;
     }
-    let (b, clearance_m) = (sight.slope(), test.hopper().clearance_m);
+    let (b, clearance_m) = (sight.slope(), test.hopper().limits().clearance_m);
     let mut lower = cheap.lower;
     for vertex in between(chain.geometry().vertices(), takeoff, landing) {
         let d = (vertex.x_m - takeoff.point.x_m).abs();

@@ -7,15 +7,21 @@ use chta::{
     hop::HopTest,
     quantity::VertexId,
     terrain::{Dem, slice},
-    world::{Grip, Hopper, Surface},
+    world::{Gravity, Grip, Hopper, SurfaceProperties},
 };
 
 /// Fewest hops from a post (row, column) to every other; -1 where there are none. Every post has an elevation.
-pub(crate) fn plain_map(dem: &Dem, start: (usize, usize), hopper: &Hopper, surface: &Surface, gravity_m_s2: f64) -> Vec<i16> {
+pub(crate) fn plain_map(
+    dem: &Dem,
+    start: (usize, usize),
+    hopper: &Hopper,
+    surface: &SurfaceProperties,
+    gravity_m_s2: f64,
+) -> Vec<i16> {
     let (rows, cols, map) = (dem.rows(), dem.cols(), dem.georeference());
     let heights: Vec<f64> = dem.elevations().map(|z_m| z_m.unwrap_or(f64::NAN)).collect();
     let (low_m, high_m) = dem.elevation_range_m();
-    let speeds = [hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s].map(|v| v * (1.0 + 1e-6));
+    let speeds = [hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s].map(|v| v * (1.0 + 1e-6));
     let reach_m = speeds.map(|v| safety_range_m(high_m - low_m, v, gravity_m_s2)).into_iter().fold(f64::INFINITY, f64::min);
     let mut hops = vec![-1i16; rows * cols];
     let mut layer = vec![start];
@@ -51,7 +57,14 @@ pub(crate) fn plain_map(dem: &Dem, start: (usize, usize), hopper: &Hopper, surfa
 }
 
 /// One hop by the slice and the hop test.
-fn joins(dem: &Dem, from: (usize, usize), to: (usize, usize), hopper: &Hopper, surface: &Surface, gravity_m_s2: f64) -> bool {
+fn joins(
+    dem: &Dem,
+    from: (usize, usize),
+    to: (usize, usize),
+    hopper: &Hopper,
+    surface: &SurfaceProperties,
+    gravity_m_s2: f64,
+) -> bool {
     let map = dem.georeference();
     let friction = match surface.grip {
         Some(Grip::Friction(cone)) => Some(cone),
@@ -60,10 +73,10 @@ fn joins(dem: &Dem, from: (usize, usize), to: (usize, usize), hopper: &Hopper, s
     let chain = slice(dem, map.post(from.0, from.1), map.post(to.0, to.1))
         .ok()
         .and_then(|profile| PolygonalChain::from_profile(&profile, friction).ok())
-        .and_then(|geometry| ConstrainedChain::new(geometry, hopper, surface).ok());
+        .and_then(|geometry| ConstrainedChain::new(geometry, hopper, Gravity::new(gravity_m_s2).expect("a gravity"), surface).ok());
     chain.is_some_and(|chain| {
         let geometry = chain.geometry();
         let ends = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
-        HopTest::new(&chain, hopper, gravity_m_s2).lofts(&ends.0, &ends.1).is_ok()
+        HopTest::new(chain.clone()).lofts(&ends.0, &ends.1).is_ok()
     })
 }

@@ -28,7 +28,7 @@ fn validate(entries: Entries, source: &str) {
 fuzz_target!(|source: &str| {
     validate(Entries::from_toml(source), source);
     let mut entries = Entries::from_toml("body.gravity_m_s2 = 1");
-    entries.set(source);
+    entries.set("fuzz", source);
     validate(entries, "body.gravity_m_s2 = 1");
     if let Ok(scenario) = serde_json::from_str(source) {
         validate(Entries::from_json(&scenario), "");

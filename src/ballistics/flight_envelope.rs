@@ -3,7 +3,7 @@
 use super::{LineOfSight, limits};
 use crate::{
     quantity::{Angle, SlopeInterval},
-    world::Hopper,
+    world::{Gravity, Hopper},
 };
 
 /// The flight envelope of a hopper under a given gravity: the hops that its limits and the contacts allow over ground without
@@ -11,7 +11,7 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightEnvelope {
     hopper: Hopper,
-    gravity_m_s2: f64,
+    gravity: Gravity,
     /// The take-off slopes that the mechanism allows.
     mechanical: SlopeInterval,
 }
@@ -27,13 +27,13 @@ pub struct ContactLimits {
 }
 
 impl FlightEnvelope {
-    /// The envelope of a hopper under a gravity above 0 in m/s^2.
-    pub fn new(hopper: &Hopper, gravity_m_s2: f64) -> Self {
+    /// For a hopper and a gravity.
+    pub fn new(hopper: &Hopper, gravity: Gravity) -> Self {
         let mechanical = SlopeInterval {
-            lower: hopper.takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
-            upper: hopper.takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
+            lower: hopper.limits().takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
+            upper: hopper.limits().takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
         };
-        Self { hopper: *hopper, gravity_m_s2, mechanical }
+        Self { hopper: *hopper, gravity, mechanical }
     }
 
     /// The hopper.
@@ -41,9 +41,14 @@ impl FlightEnvelope {
         &self.hopper
     }
 
+    /// The gravity.
+    pub const fn gravity(&self) -> Gravity {
+        self.gravity
+    }
+
     /// Gravity, m/s^2.
     pub const fn gravity_m_s2(&self) -> f64 {
-        self.gravity_m_s2
+        self.gravity.m_s2()
     }
 
     /// The take-off slopes that the mechanism allows.
@@ -63,8 +68,8 @@ impl FlightEnvelope {
     ///
     /// # Examples
     /// ```
-    /// use chta::{ballistics::{ContactLimits, LineOfSight, FlightEnvelope}, quantity::SlopeInterval, world::Hopper};
-    /// let envelope = FlightEnvelope::new(&Hopper::with_speeds(10.0, 10.0), 10.0);
+    /// use chta::{ballistics::{ContactLimits, LineOfSight, FlightEnvelope}, quantity::SlopeInterval, world::{Gravity, Hopper}};
+    /// let envelope = FlightEnvelope::new(&Hopper::with_speeds(10.0, 10.0).unwrap(), Gravity::new(10.0).unwrap());
     /// let free = ContactLimits { slopes: SlopeInterval::ALL, speed_max_m_s: 10.0 };
     /// // Flat, q = 1.25: n^2 - 2.5 n + 1 = (n - 0.5)(n - 2); a take-off of 45 degrees or more leaves 1 to 2.
     /// let steep = ContactLimits { slopes: SlopeInterval { lower: 1.0, upper: f64::INFINITY }, ..free };
@@ -73,7 +78,7 @@ impl FlightEnvelope {
     /// ```
     #[inline]
     pub fn lofts(&self, sight: LineOfSight, takeoff: ContactLimits, landing: ContactLimits) -> SlopeInterval {
-        limits::speeds(sight, takeoff.speed_max_m_s, landing.speed_max_m_s, self.gravity_m_s2)
+        limits::speeds(sight, takeoff.speed_max_m_s, landing.speed_max_m_s, self.gravity.m_s2())
             .intersect(limits::takeoff_cone(sight, takeoff.slopes.intersect(self.mechanical)))
             .intersect(limits::landing_cone(sight, landing.slopes))
             .intersect(self.machine(sight))
@@ -82,9 +87,10 @@ impl FlightEnvelope {
     /// The lofts that the hopper's greatest apex height and longest flight time allow; all lofts if it has neither limit.
     #[inline]
     pub fn machine(&self, sight: LineOfSight) -> SlopeInterval {
-        let apex = self.hopper.apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
-        match self.hopper.flight_time_max_s {
-            Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity_m_s2)),
+        let apex =
+            self.hopper.limits().apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
+        match self.hopper.limits().flight_time_max_s {
+            Some(time_s) => apex.intersect(limits::flight_time(sight, time_s, self.gravity.m_s2())),
             None => apex,
         }
     }

@@ -1,22 +1,25 @@
 //! The chain with the constraints of every segment resolved: the input of all analyses.
 
-use super::{Ground, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, Station};
+use super::{GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station};
 use crate::{
     quantity::{Angle, SegmentId},
-    world::{Contact, Direction, FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, InvalidSurface, RestSlope, SurfaceProperties},
 };
 
-/// A chain with resolved constraints for every segment.
+/// A chain with the resolved constraints of every segment, for one hopper and one gravity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstrainedChain {
     geometry: PolygonalChain,
+    hopper: Hopper,
+    gravity: Gravity,
+    surface: SurfaceProperties,
     segments: Vec<SegmentConstraints>,
     /// Greatest take-off and landing speed over all segments, m/s; they bound the reach of any hop.
     speed_bounds_m_s: (f64, f64),
 }
 
 /// Why a chain cannot be analysed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConstraintProblem {
     /// Neither the chain nor the scenario states constraints for this segment.
@@ -32,10 +35,13 @@ pub enum ConstraintProblem {
         .0.index() + 1
     )]
     NoSpeed(SegmentId),
+    /// A property of the surface that has no meaning.
+    #[error(transparent)]
+    Surface(#[from] InvalidSurface),
 }
 
 /// All reasons why a chain cannot be analysed: the first segment with each problem, and how many more segments have it.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", .0.iter().map(|(problem, others)| if *others == 0 { problem.to_string() } else { format!("{problem} (and {others} more segments)") }).collect::<Vec<_>>().join("; "))]
 pub struct ConstraintProblems(pub Vec<(ConstraintProblem, usize)>);
 
@@ -47,19 +53,25 @@ impl ConstrainedChain {
     /// `n_z = cos chi cos alpha`; a rest slope left to friction is the friction angle of the segment's own coefficient.
     ///
     /// # Errors
-    /// [`ConstraintProblems`] if some segment has no constraints.
+    /// [`ConstraintProblems`] where a segment is left without constraints, or the surface has a property without meaning.
     ///
     /// # Examples
     /// ```
     /// use chta::{chain::*, quantity::ChainPoint, world::*};
     /// let chain = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 1.0)]).unwrap();
-    /// let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.6).unwrap())), rest: RestSlope::AsFrictionHolds };
-    /// let chain = ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0), &surface).unwrap();
+    /// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.6).unwrap())), rest: RestSlope::AsFrictionHolds };
+    /// let chain = ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0).unwrap(), Gravity::new(3.711).unwrap(), &surface).unwrap();
     /// // 45 degrees is steeper than atan 0.6 = 31 degrees, so nothing rests there.
     /// let refusal = chain.segments()[0].check_contact(Contact::Landing, Direction::Forward).unwrap_err();
     /// assert!((refusal.excess_deg().unwrap() - (45.0 - 30.963_756_532_073_52)).abs() < 1e-9);
     /// ```
-    pub fn new(geometry: PolygonalChain, hopper: &Hopper, surface: &Surface) -> Result<Self, ConstraintProblems> {
+    pub fn new(
+        geometry: PolygonalChain,
+        hopper: &Hopper,
+        gravity: Gravity,
+        surface: &SurfaceProperties,
+    ) -> Result<Self, ConstraintProblems> {
+        surface.check().map_err(|problem| ConstraintProblems(vec![(problem.into(), 0)]))?;
         let mut problems: Vec<(ConstraintProblem, usize)> = Vec::new();
         let mut segments = Vec::with_capacity(geometry.segment_count());
         for (i, (&slope, ground)) in geometry.slopes().iter().zip(geometry.grounds()).enumerate() {
@@ -83,7 +95,32 @@ impl ConstrainedChain {
             rules.map(super::ContactRule::speed_max_m_s).fold(0.0, f64::max)
         };
         let speed_bounds_m_s = (bound(Contact::Takeoff), bound(Contact::Landing));
-        Ok(Self { geometry, segments, speed_bounds_m_s })
+        Ok(Self { geometry, hopper: *hopper, gravity, surface: *surface, segments, speed_bounds_m_s })
+    }
+
+    /// The same geometry and surface for another hopper and gravity.
+    ///
+    /// # Errors
+    /// [`ConstraintProblems`], as [`new`](Self::new).
+    pub fn with_hopper(&self, hopper: &Hopper, gravity: Gravity) -> Result<Self, ConstraintProblems> {
+        Self::new(self.geometry.clone(), hopper, gravity, &self.surface)
+    }
+
+    /// The hopper whose limits the constraints hold.
+    #[inline]
+    pub const fn hopper(&self) -> &Hopper {
+        &self.hopper
+    }
+
+    /// The gravity it hops under.
+    #[inline]
+    pub const fn gravity(&self) -> Gravity {
+        self.gravity
+    }
+
+    /// What holds where the chain itself says nothing of its ground.
+    pub const fn surface(&self) -> &SurfaceProperties {
+        &self.surface
     }
 
     /// The chain's geometry.
@@ -127,11 +164,11 @@ impl ConstrainedChain {
 pub(crate) fn resolve_constraints(
     id: SegmentId,
     slope: f64,
-    ground: &Ground,
+    ground: &SegmentGround,
     hopper: &Hopper,
-    surface: &Surface,
+    surface: &SurfaceProperties,
 ) -> Result<SegmentConstraints, ConstraintProblem> {
-    let (takeoff_speed, landing_speed) = (hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s);
+    let (takeoff_speed, landing_speed) = (hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s);
     let (forward, reverse, friction, cross_slope) = match ground.form {
         GroundForm::Explicit { forward, reverse } => {
             let capped =
@@ -186,18 +223,28 @@ mod tests {
 
     fn one_segment(rise: f64, form: GroundForm) -> PolygonalChain {
         let vertices = vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(10.0, rise)];
-        PolygonalChain::new(vertices, vec![Ground { form, keep_out: false }], None).unwrap()
+        PolygonalChain::new(vertices, vec![SegmentGround { form, keep_out: false }], None).unwrap()
     }
 
-    fn friction(mu: f64) -> Surface {
-        Surface { grip: Some(Grip::Friction(FrictionCone::new(mu).unwrap())), rest: RestSlope::AsFrictionHolds }
+    fn friction(mu: f64) -> SurfaceProperties {
+        SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(mu).unwrap())), rest: RestSlope::AsFrictionHolds }
     }
 
-    const TEN: Hopper = Hopper::with_speeds(10.0, 10.0);
+    fn constrained(
+        geometry: PolygonalChain,
+        hopper: &Hopper,
+        surface: &SurfaceProperties,
+    ) -> Result<ConstrainedChain, ConstraintProblems> {
+        ConstrainedChain::new(geometry, hopper, Gravity::new(3.711).unwrap(), surface)
+    }
+
+    fn ten() -> Hopper {
+        Hopper::with_speeds(10.0, 10.0).unwrap()
+    }
 
     #[test]
     fn a_slope_of_exactly_the_friction_angle_still_rests() {
-        let chain = |rise| ConstrainedChain::new(one_segment(rise, Ground::BARE.form), &TEN, &friction(0.6)).unwrap();
+        let chain = |rise| constrained(one_segment(rise, SegmentGround::BARE.form), &ten(), &friction(0.6)).unwrap();
         assert!(chain(6.0).segments()[0].check_contact(Contact::Landing, Direction::Forward).is_ok(), "tan = 0.6 touches 0.6");
         assert!(chain(6.0f64.next_up().next_up()).segments()[0].check_contact(Contact::Landing, Direction::Forward).is_err());
     }
@@ -207,8 +254,8 @@ mod tests {
         // mu = 0.6 allows no cross-slope above 31 degrees (model section 1).
         for (chi_deg, allowed) in [(30.9, true), (31.0, false)] {
             let form = GroundForm::Surface { friction: None, cross_slope: Angle::from_degrees(chi_deg) };
-            let surface = Surface { rest: RestSlope::Unlimited, ..friction(0.6) };
-            let chain = ConstrainedChain::new(one_segment(0.0, form), &TEN, &surface).unwrap();
+            let surface = SurfaceProperties { rest: RestSlope::Unlimited, ..friction(0.6) };
+            let chain = constrained(one_segment(0.0, form), &ten(), &surface).unwrap();
             let checked = chain.segments()[0].check_contact(Contact::Takeoff, Direction::Forward);
             assert_eq!(checked.is_ok(), allowed, "cross-slope {chi_deg} deg");
         }
@@ -231,7 +278,7 @@ mod tests {
     fn the_smaller_speed_counts_and_missing_ones_are_named() {
         let line = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 6.0, 50.0);
         let form = GroundForm::Explicit { forward: Some(line), reverse: None };
-        let chain = ConstrainedChain::new(one_segment(0.0, form), &TEN, &friction(0.6)).unwrap();
+        let chain = constrained(one_segment(0.0, form), &ten(), &friction(0.6)).unwrap();
         let rule = |contact| chain.segments()[0].check_contact(contact, Direction::Forward).unwrap();
         assert_eq!(rule(Contact::Takeoff).speed_max_m_s(), 6.0);
         assert_eq!(rule(Contact::Landing).speed_max_m_s(), 10.0);
@@ -240,24 +287,24 @@ mod tests {
             GroundRefusal::NoGround,
             "no reverse columns, no reverse hop"
         );
-        let bare = Surface { grip: None, rest: RestSlope::AsFrictionHolds };
-        let ConstraintProblems(problems) = ConstrainedChain::new(one_segment(0.0, Ground::BARE.form), &TEN, &bare).unwrap_err();
+        let bare = SurfaceProperties { grip: None, rest: RestSlope::AsFrictionHolds };
+        let ConstraintProblems(problems) = constrained(one_segment(0.0, SegmentGround::BARE.form), &ten(), &bare).unwrap_err();
         assert_eq!(problems, [(ConstraintProblem::NoGrip(SegmentId(0)), 0)]);
         let ConstraintProblems(problems) =
-            ConstrainedChain::new(one_segment(0.0, Ground::BARE.form), &Hopper::UNLIMITED, &friction(0.6)).unwrap_err();
+            constrained(one_segment(0.0, SegmentGround::BARE.form), &Hopper::UNLIMITED, &friction(0.6)).unwrap_err();
         assert_eq!(problems, [(ConstraintProblem::NoSpeed(SegmentId(0)), 0)]);
     }
 
     #[test]
     fn reverse_sees_the_mirrored_slope() {
-        let surface = Surface {
+        let surface = SurfaceProperties {
             grip: Some(Grip::FromSlope {
                 takeoff: AngleInterval::from_degrees(60.0, 90.0),
                 landing: AngleInterval::from_degrees(-90.0, -60.0),
             }),
             rest: RestSlope::AsFrictionHolds,
         };
-        let chain = ConstrainedChain::new(one_segment(10.0, Ground::BARE.form), &TEN, &surface).unwrap();
+        let chain = constrained(one_segment(10.0, SegmentGround::BARE.form), &ten(), &surface).unwrap();
         let angles = |d| chain.segments()[0].stated(d).unwrap().takeoff.angles();
         assert!((angles(Direction::Forward).min.degrees() - 105.0).abs() < 1e-9);
         assert!((angles(Direction::Reverse).min.degrees() - 15.0).abs() < 1e-9);
@@ -271,7 +318,7 @@ mod tests {
     fn speed_zero_is_refused_before_any_formula() {
         let line = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 0.0, 5.0);
         let form = GroundForm::Explicit { forward: Some(line), reverse: Some(line) };
-        let chain = ConstrainedChain::new(one_segment(0.0, form), &TEN, &friction(0.6)).unwrap();
+        let chain = constrained(one_segment(0.0, form), &ten(), &friction(0.6)).unwrap();
         assert_eq!(chain.segments()[0].check_contact(Contact::Takeoff, Direction::Forward), Err(GroundRefusal::SpeedZero));
         assert!(chain.segments()[0].check_contact(Contact::Landing, Direction::Forward).is_ok(), "landing keeps its own limit");
     }

@@ -3,6 +3,7 @@
 use std::fmt;
 
 use crate::{
+    ballistics::ContactLimits,
     quantity::{Angle, AngleInterval, SlopeInterval},
     world::{Contact, Direction, FrictionCone, Limit},
 };
@@ -36,6 +37,12 @@ impl ContactRule {
     #[inline]
     pub const fn speed_max_m_s(&self) -> f64 {
         self.speed_max_m_s
+    }
+
+    /// The slopes and the speed, without the angles as stated.
+    #[inline]
+    pub const fn contact_limits(&self) -> ContactLimits {
+        ContactLimits { slopes: self.slopes, speed_max_m_s: self.speed_max_m_s }
     }
 
     /// The same angles with the smaller of two speed limits.

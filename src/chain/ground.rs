@@ -5,7 +5,7 @@ use crate::{quantity::Angle, world::FrictionCone};
 
 /// What the chain states of one segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ground {
+pub struct SegmentGround {
     /// How the constraints are stated.
     pub form: GroundForm,
     /// Whether take-off and landing are forbidden; flying over is allowed.
@@ -31,8 +31,30 @@ pub enum GroundForm {
     },
 }
 
-impl Ground {
+impl SegmentGround {
     /// Level across, everything else from the scenario: the ground of a chain with only `x_m,z_m`.
     pub const BARE: Self =
         Self { form: GroundForm::Surface { friction: None, cross_slope: Angle::from_radians(0.0) }, keep_out: false };
+
+    /// A stated limit that is not a number, or a cross-slope beyond the vertical: what it is, and its value.
+    pub(super) fn not_a_limit(&self) -> Option<(&'static str, f64)> {
+        match self.form {
+            GroundForm::Surface { cross_slope, .. } => {
+                let within = cross_slope.radians().abs() <= std::f64::consts::FRAC_PI_2;
+                (!within).then(|| ("cross-slope in degrees", cross_slope.degrees()))
+            }
+            GroundForm::Explicit { forward, reverse } => {
+                let rules = [forward, reverse].into_iter().flatten().flat_map(|line| [line.takeoff, line.landing]);
+                let mut stated = rules.flat_map(|rule| {
+                    let (min, max) = (rule.angles().min, rule.angles().max);
+                    [
+                        ("least angle in degrees", min.degrees()),
+                        ("greatest angle in degrees", max.degrees()),
+                        ("greatest speed in m/s", rule.speed_max_m_s()),
+                    ]
+                });
+                stated.find(|(_, number)| number.is_nan())
+            }
+        }
+    }
 }

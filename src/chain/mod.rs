@@ -19,7 +19,7 @@ mod station;
 pub(crate) use constrained::resolve_constraints;
 pub use constrained::{ConstrainedChain, ConstraintProblem, ConstraintProblems};
 pub use constraints::{ContactRule, GroundRefusal, LineConstraints, SegmentConstraints};
-pub use ground::{Ground, GroundForm};
+pub use ground::{GroundForm, SegmentGround};
 pub use polygonal::{ChainProblem, InvalidChain, PolygonalChain};
 pub use quick_cones::{QuickCone, QuickGrip, Turn};
 pub use station::{OffChain, Site, Station};

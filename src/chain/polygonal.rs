@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Ground, GroundForm, OffChain, Site, Station};
+use super::{GroundForm, OffChain, SegmentGround, Site, Station};
 use crate::{
     quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
     terrain::{Profile, ProfilePoint},
@@ -15,7 +15,7 @@ pub struct PolygonalChain {
     vertices: Vec<ChainPoint>,
     /// Slope dz/dx of each segment.
     slopes: Vec<f64>,
-    grounds: Vec<Ground>,
+    grounds: Vec<SegmentGround>,
     map: Option<Vec<MapPoint>>,
     /// Vertices where the plane of travel turns, in ascending order.
     bends: Vec<VertexId>,
@@ -54,6 +54,15 @@ pub enum ChainProblem {
         /// The vertex.
         vertex: VertexId,
     },
+    /// A stated limit of a segment that is not a number, or a cross-slope beyond the vertical.
+    NotALimit {
+        /// Which segment.
+        segment: SegmentId,
+        /// Of what, with its unit.
+        what: &'static str,
+        /// What was found.
+        found: f64,
+    },
     /// The numbers of grounds and segments, or of map points and vertices, differ.
     CountMismatch {
         /// What was counted.
@@ -83,6 +92,13 @@ impl fmt::Display for ChainProblem {
                     vertex.index() + 1
                 )
             }
+            Self::NotALimit { segment, what, found } => {
+                write!(
+                    f,
+                    "segment {} has a {what} of {found}, expected a number, no cross-slope beyond 90 degrees",
+                    segment.index() + 1
+                )
+            }
             Self::CountMismatch { what, found, expected } => write!(f, "{found} {what}, expected {expected}"),
         }
     }
@@ -98,7 +114,7 @@ impl PolygonalChain {
     ///
     /// # Errors
     /// [`InvalidChain`] with every problem.
-    pub fn new(vertices: Vec<ChainPoint>, grounds: Vec<Ground>, map: Option<Vec<MapPoint>>) -> Result<Self, InvalidChain> {
+    pub fn new(vertices: Vec<ChainPoint>, grounds: Vec<SegmentGround>, map: Option<Vec<MapPoint>>) -> Result<Self, InvalidChain> {
         let mut problems = Vec::new();
         if vertices.len() < 2 {
             problems.push(ChainProblem::TooFewVertices { count: vertices.len() });
@@ -121,6 +137,11 @@ impl PolygonalChain {
         }
         if grounds.len() != slopes.len() {
             problems.push(ChainProblem::CountMismatch { what: "grounds", found: grounds.len(), expected: slopes.len() });
+        }
+        for (i, ground) in grounds.iter().enumerate() {
+            if let Some((what, found)) = ground.not_a_limit() {
+                problems.push(ChainProblem::NotALimit { segment: SegmentId(i), what, found });
+            }
         }
         if let Some(points) = &map {
             if points.len() != vertices.len() {
@@ -151,7 +172,7 @@ impl PolygonalChain {
     /// assert_eq!(chain.slopes(), [0.5]);
     /// ```
     pub fn bare(vertices: Vec<ChainPoint>) -> Result<Self, InvalidChain> {
-        let grounds = vec![Ground::BARE; vertices.len().saturating_sub(1)];
+        let grounds = vec![SegmentGround::BARE; vertices.len().saturating_sub(1)];
         Self::new(vertices, grounds, None)
     }
 
@@ -165,7 +186,7 @@ impl PolygonalChain {
         let grounds = profile
             .facets
             .iter()
-            .map(|facet| Ground {
+            .map(|facet| SegmentGround {
                 form: GroundForm::Surface { friction: facet.friction.or(friction), cross_slope: facet.cross_slope },
                 keep_out: facet.keep_out,
             })
@@ -252,7 +273,7 @@ impl PolygonalChain {
     }
 
     /// The ground of each segment.
-    pub fn grounds(&self) -> &[Ground] {
+    pub fn grounds(&self) -> &[SegmentGround] {
         &self.grounds
     }
 

@@ -1,6 +1,7 @@
 //! Bad input and failures, told on standard error with the place underlined.
 
 use std::{
+    error::Error,
     fmt,
     io::{self, IsTerminal, Write},
     ops::Range,
@@ -15,6 +16,8 @@ use miette::{
     Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, NamedSource, SourceCode,
     SourceSpan, SpanContents,
 };
+
+use super::hints;
 
 /// Why a command ends with status 2.
 #[derive(Debug)]
@@ -33,10 +36,15 @@ impl Failure {
         Self::Message(sentence.into())
     }
 
-    /// One sentence about a file, which begins with its name unless it has it already.
-    pub(crate) fn about(file: &Path, sentence: &str) -> Self {
-        let known = file.file_name().is_some_and(|name| sentence.contains(&*name.to_string_lossy()));
-        Self::Message(if known { sentence.to_owned() } else { format!("{}: {sentence}", file.display()) })
+    /// The sentence of an error of the library, with the options that mend it.
+    pub(crate) fn of(error: &(dyn Error + 'static)) -> Self {
+        Self::Message(hints::sentence(error))
+    }
+
+    /// The same about a file, with whose name it begins unless the error names it itself.
+    pub(crate) fn about(file: &Path, error: &(dyn Error + 'static)) -> Self {
+        let sentence = hints::sentence(error);
+        Self::Message(if hints::names(error, file) { sentence } else { format!("{}: {sentence}", file.display()) })
     }
 
     /// Tells it on standard error: one sentence a problem, with the line and the field underlined where there is one.
@@ -74,7 +82,7 @@ impl From<PipelineError> for Failure {
     fn from(error: PipelineError) -> Self {
         match error {
             PipelineError::Csv(error) => Self::Csv(error),
-            other => Self::Message(other.to_string()),
+            other => Self::of(&other),
         }
     }
 }
@@ -158,7 +166,7 @@ impl fmt::Display for Pointed {
     }
 }
 
-impl std::error::Error for Pointed {}
+impl Error for Pointed {}
 
 impl Diagnostic for Pointed {
     fn source_code(&self) -> Option<&dyn SourceCode> {

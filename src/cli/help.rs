@@ -1,6 +1,6 @@
 //! Help that is made from the program's own lists, so that it cannot fall behind them.
 
-use std::fmt::Write;
+use std::{fmt::Write, sync::OnceLock};
 
 use chta::{
     chain::csv::{CHAIN_COLUMNS, CsvColumn, PAIRS_COLUMNS},
@@ -10,6 +10,20 @@ use chta::{
 use clap::{CommandFactory, FromArgMatches};
 
 use super::args::Args;
+
+/// The name of the command that was called.
+static CALLED: OnceLock<String> = OnceLock::new();
+
+/// Whether a command has an option of this long name, written without its dashes.
+pub(super) fn offers(command: &str, option: &str) -> bool {
+    let command = Args::command().find_subcommand(command).cloned();
+    command.is_some_and(|command| command.get_arguments().any(|argument| argument.get_long() == Some(option)))
+}
+
+/// Whether the command that was called has an option of this long name.
+pub(super) fn takes(option: &str) -> bool {
+    CALLED.get().is_none_or(|command| offers(command, option))
+}
 
 /// The command line, parsed with those lists in its long help.
 pub(super) fn parsed() -> Args {
@@ -28,6 +42,10 @@ pub(super) fn parsed() -> Args {
         });
     }
     let matches = command.get_matches();
+    if let Some(name) = matches.subcommand_name() {
+        // Parsed once, so it is not set before.
+        let _ = CALLED.set(name.to_owned());
+    }
     Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
 }
 

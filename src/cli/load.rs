@@ -4,6 +4,7 @@ use std::{
     fs,
     io::Read,
     path::{Component, Path, PathBuf},
+    sync::Arc,
 };
 
 use chta::{
@@ -11,15 +12,15 @@ use chta::{
     hop::HopTest,
     report::InputFile,
     scenario::{
-        Entries, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem, ScenarioProblems, Survey, SweptKey,
-        TerrainSource, Trade, prepare, scenario_document, sha256_of,
+        Entries, JourneyEnd as End, LackingKey, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem,
+        ScenarioProblems, Survey, SweptKey, TerrainSource, Trade, prepare, scenario_document, sha256_of,
     },
 };
 
 use super::{
     Failure,
     args::{CommonArgs, SearchArgs},
-    claims, output,
+    claims, hints, output,
 };
 
 /// A scenario with its chain, and what a result has to say of both.
@@ -83,26 +84,10 @@ impl EndOptions {
     }
 }
 
-/// One end of a journey.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum End {
-    Start = 0,
-    Goal = 1,
-}
-
-impl End {
-    const fn name(self) -> &'static str {
-        match self {
-            Self::Start => "start",
-            Self::Goal => "goal",
-        }
-    }
-}
-
 impl Loaded {
     /// The hop test over the chain.
-    pub(crate) fn hop_test(&self) -> HopTest<'_> {
-        HopTest::new(&self.prepared.chain, &self.scenario.hopper, self.scenario.body.gravity_m_s2)
+    pub(crate) fn hop_test(&self) -> HopTest {
+        HopTest::new(Arc::clone(&self.prepared.chain))
     }
 
     /// Start and goal, or what is missing.
@@ -176,7 +161,7 @@ pub(crate) fn load_to_vary(
 ) -> Result<ToVary, Failure> {
     let mut source = typed(target, common, Some(search), ends)?;
     let (entries, base) = (source.entries.clone(), source.base.clone());
-    source.entries = Trade::first_cell(&entries, swept).map_err(|error| Failure::message(format!("--vary: {error}")))?;
+    source.entries = Trade::first_cell(&entries, swept, "--vary").map_err(|error| Failure::message(format!("--vary: {error}")))?;
     let mut kept = None;
     let first = validate_and_prepare(target, source, common.quiet, ends, &mut |scenario, terrain, base| {
         kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
@@ -266,11 +251,8 @@ fn validate_and_prepare(
 fn unprepared(error: PipelineError, file: &Path, ends: EndOptions) -> Failure {
     match error {
         PipelineError::Csv(error) => Failure::Csv(error),
-        PipelineError::OffChain { which, problem } => {
-            let end = if which == "start" { End::Start } else { End::Goal };
-            Failure::message(format!("{}: {problem}", ends.place(end)))
-        }
-        other => Failure::about(file, &other.to_string()),
+        PipelineError::OffChain { which, problem } => Failure::message(format!("{}: {problem}", ends.place(which))),
+        other => Failure::about(file, &other),
     }
 }
 
@@ -301,12 +283,29 @@ pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs) ->
     apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
     forget_terrain(&mut source.entries);
     let scenario = validated(source.entries, &source.name, &source.text)?;
-    if let Some(lacking) = scenario.lacks_on_a_dem() {
+    let lacking = scenario.lacks_on_a_dem();
+    if !lacking.is_empty() {
         let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
-        return Err(Failure::message(name + &lacking));
+        return Err(Failure::message(name + &lacking_on_a_dem(&lacking)));
     }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
     Ok(Bare { scenario, base: source.base, document })
+}
+
+/// The keys that hops over a DEM need, and how to give them.
+fn lacking_on_a_dem(keys: &[LackingKey]) -> String {
+    let name = |LackingKey { key, instead, .. }: &LackingKey| match instead {
+        [] => (*key).to_owned(),
+        instead => format!("{key} (or {})", instead.join(" and ")),
+    };
+    let names: Vec<_> = keys.iter().map(name).collect();
+    let sets: Vec<_> = keys.iter().map(|LackingKey { key, example, .. }| format!("--set {key}={example}")).collect();
+    format!(
+        "found no {}, expected in the scenario, since a DEM has no columns that say it: add it to the file of --scenario, or give, for \
+         example, {}",
+        names.join(", no "),
+        sets.join(" ")
+    )
 }
 
 /// A file that was read, for a result.
@@ -392,7 +391,7 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
         entries.forget("search", "points_per_segment");
     }
     for assignment in set {
-        entries.set(assignment);
+        entries.set(&format!("--set {assignment}"), assignment);
     }
     if let Some(name) = body {
         entries.set_by_option("--body", "body", "name", name.clone().into());
@@ -426,7 +425,10 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
 
 /// Validates keys, with the file they came from in every problem.
 fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failure> {
-    Scenario::new(entries).map_err(|problems: Vec<ScenarioProblem>| {
+    Scenario::new(entries).map_err(|mut problems: Vec<ScenarioProblem>| {
+        for problem in &mut problems {
+            problem.help.push_str(hints::of_problem(problem));
+        }
         let in_file = problems.iter().any(|problem| !matches!(problem.place, Place::Option(_)));
         let (name, source) = if in_file { (name.to_owned(), text.to_owned()) } else { (String::new(), String::new()) };
         Failure::Scenario(ScenarioProblems { name, source, problems })

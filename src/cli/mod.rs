@@ -5,6 +5,7 @@ mod claims;
 mod commands;
 mod failure;
 mod help;
+mod hints;
 mod load;
 mod output;
 mod progress;

@@ -6,7 +6,7 @@
 //! compared by cost, then by the index of the predecessor (the smaller one wins, the start before all). This is a total
 //! order, so the result does not depend on the order of evaluation.
 
-use std::{collections::BTreeMap, ops::Range};
+use std::{collections::BTreeMap, ops::Range, sync::Arc};
 
 use rayon::prelude::*;
 
@@ -129,7 +129,7 @@ pub(super) enum Aim {
 #[derive(Debug)]
 pub(super) struct BatchedSearch<'g> {
     graph: &'g HopGraph<'g>,
-    table: &'g LandingTable<'g>,
+    table: &'g Arc<LandingTable>,
     reach: &'g LocalReach,
     aim: Aim,
     labels: Vec<Label>,
@@ -137,7 +137,7 @@ pub(super) struct BatchedSearch<'g> {
     known: Vec<u32>,
     /// Open nodes, by the least number of hops of any path through them to a goal, then by their own hops.
     due: BTreeMap<(u64, u64), Vec<u32>>,
-    sweep: Sweep<'g>,
+    sweep: Sweep,
     tally: Tally,
     /// The least work of a batch, in pairs, that is divided among threads: below it, waking them takes longer.
     shared_from_pairs: usize,
@@ -153,7 +153,7 @@ impl<'g> BatchedSearch<'g> {
     const PIECES_PER_THREAD: usize = 4;
 
     /// A search that has not run yet.
-    pub(super) fn new(graph: &'g HopGraph<'g>, table: &'g LandingTable<'g>, reach: &'g LocalReach, aim: Aim) -> Self {
+    pub(super) fn new(graph: &'g HopGraph<'g>, table: &'g Arc<LandingTable>, reach: &'g LocalReach, aim: Aim) -> Self {
         Self {
             graph,
             table,
@@ -162,7 +162,7 @@ impl<'g> BatchedSearch<'g> {
             labels: vec![Label::UNKNOWN; graph.nodes().stations().len()],
             known: Vec::new(),
             due: BTreeMap::new(),
-            sweep: Sweep::new(table),
+            sweep: Sweep::new(Arc::clone(table)),
             tally: Tally::default(),
             shared_from_pairs: Self::SHARED_FROM_PAIRS,
             #[cfg(test)]
@@ -292,7 +292,7 @@ impl<'g> BatchedSearch<'g> {
             vec![stretch.offers(&mut self.sweep, batch)]
         } else {
             let pieces = batch.par_chunks(batch.len().div_ceil(threads * Self::PIECES_PER_THREAD));
-            pieces.map_init(|| Sweep::new(self.table), |sweep, piece| stretch.offers(sweep, piece)).collect()
+            pieces.map_init(|| Sweep::new(Arc::clone(self.table)), |sweep, piece| stretch.offers(sweep, piece)).collect()
         };
         for (offers, tally) in found {
             self.tally += tally;
@@ -336,7 +336,7 @@ struct Stretch<'s> {
 
 impl Stretch<'_> {
     /// The best labels that a set of take-offs can offer.
-    fn offers(&self, sweep: &mut Sweep<'_>, takeoffs: &[Takeoff]) -> (Vec<Label>, Tally) {
+    fn offers(&self, sweep: &mut Sweep, takeoffs: &[Takeoff]) -> (Vec<Label>, Tally) {
         let mut labels = self.labels.to_vec();
         let mut tally = Tally::default();
         for takeoff in takeoffs {
@@ -391,15 +391,21 @@ mod tests {
         graph::{Effort, NodeSet, PointSpacing},
         hop::{HopTest, Split},
         quantity::{ChainPoint, VertexId},
-        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+        world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
     };
 
     /// Level ground with a few needles, where many hops cost the same to the last bit.
     fn chain() -> ConstrainedChain {
         let height = |i: u8| if i % 7 == 3 { 0.5 } else { 0.0 };
         let points = (0..60).map(|i| ChainPoint::new(f64::from(i), height(i))).collect();
-        let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.8).unwrap())), rest: RestSlope::Unlimited };
-        ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &Hopper::with_speeds(5.0, 5.0), &surface).unwrap()
+        let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.8).unwrap())), rest: RestSlope::Unlimited };
+        ConstrainedChain::new(
+            PolygonalChain::bare(points).unwrap(),
+            &Hopper::with_speeds(5.0, 5.0).unwrap(),
+            Gravity::new(3.711).unwrap(),
+            &surface,
+        )
+        .unwrap()
     }
 
     /// Unchanged, reversed, and shuffled like cards.
@@ -418,9 +424,9 @@ mod tests {
     #[test]
     fn neither_the_order_nor_the_threads_change_a_label() {
         let chain = chain();
-        let test = HopTest::new(&chain, &Hopper::with_speeds(5.0, 5.0), 3.711);
+        let test = HopTest::new(chain.clone());
         let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(2)).unwrap();
-        let (table, reach) = (LandingTable::new(&test, nodes.stations()), LocalReach::of(&test));
+        let (table, reach) = (Arc::new(LandingTable::new(&test, nodes.stations())), LocalReach::of(&test));
         let at = |i| chain.geometry().vertex_station(VertexId(i));
         for effort in Effort::ALL {
             let graph = HopGraph::new(&test, &nodes, effort, TakeoffChoice::LeastSpeed, Split::FullReach);
@@ -454,10 +460,10 @@ mod tests {
     #[test]
     fn a_run_does_not_affect_the_next_one() {
         let chain = chain();
-        let test = HopTest::new(&chain, &Hopper::with_speeds(5.0, 5.0), 3.711);
+        let test = HopTest::new(chain.clone());
         let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(1)).unwrap();
         let graph = HopGraph::new(&test, &nodes, Effort::Time, TakeoffChoice::MidRange, Split::Equal);
-        let (table, reach) = (LandingTable::new(&test, nodes.stations()), LocalReach::of(&test));
+        let (table, reach) = (Arc::new(LandingTable::new(&test, nodes.stations())), LocalReach::of(&test));
         let at = |i| chain.geometry().vertex_station(VertexId(i));
         let mut one = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
         for start in [0, 30, 59, 12] {

@@ -36,7 +36,7 @@ impl CostToGo {
     /// # Complexity
     /// With V nodes, W of them in reach of each and S vertices flown over: O(V W S + V W log V) time, O(V W) heap entries at
     /// worst.
-    pub fn of(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions) -> Self {
+    pub fn of(test: &HopTest, nodes: NodeSet, options: &SearchOptions) -> Self {
         let costs = costs_to_go(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split));
         let mut in_order: Vec<NodeId> = (0..costs.len()).map(NodeId).filter(|node| costs[node.index()].is_some()).collect();
         in_order.sort_by_key(|node| (costs[node.index()], *node));
@@ -48,7 +48,7 @@ impl CostToGo {
     ///
     /// # Complexity
     /// That of [`of`](Self::of), plus a risk estimate for every edge on some path within the hop budget.
-    pub fn with_reliability(test: &HopTest<'_>, nodes: NodeSet, options: &SearchOptions, reliability: &ReliabilityOptions) -> Self {
+    pub fn with_reliability(test: &HopTest, nodes: NodeSet, options: &SearchOptions, reliability: &ReliabilityOptions) -> Self {
         let costs = Self::of(test, nodes, options);
         let policy = ReliabilityPolicy::of(&costs.graph(test), &costs.costs, options, reliability);
         Self { policy: Some(policy), ..costs }
@@ -77,7 +77,7 @@ impl CostToGo {
     }
 
     /// The graph that defines the costs.
-    fn graph<'g>(&'g self, test: &'g HopTest<'g>) -> HopGraph<'g> {
+    fn graph<'g>(&'g self, test: &'g HopTest) -> HopGraph<'g> {
         HopGraph::new(test, &self.nodes, self.options.effort, self.options.takeoff, self.options.split)
     }
 
@@ -122,7 +122,7 @@ impl CostToGo {
     /// With a reliability policy: the most reliable successor of the nearest node that is feasible from the station itself
     /// (between a node and positions near it the risk changes little, but feasibility may change). Without a policy, and if
     /// no such successor is feasible: the [cheapest leg](Self::cheapest_leg).
-    pub fn best_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<Leg> {
+    pub fn best_leg(&self, test: &HopTest, from: &Station) -> Option<Leg> {
         let graph = self.graph(test);
         let leg_to = |node: &NodeId| {
             let landing = *self.nodes.station(*node);
@@ -140,7 +140,7 @@ impl CostToGo {
     ///
     /// # Complexity
     /// A hop test for each node in reach that could still improve on the best leg.
-    pub fn cheapest_leg(&self, test: &HopTest<'_>, from: &Station) -> Option<(Leg, Cost)> {
+    pub fn cheapest_leg(&self, test: &HopTest, from: &Station) -> Option<(Leg, Cost)> {
         let graph = self.graph(test);
         let stations = self.nodes.stations();
         let reach = OneHop::of(test);
@@ -180,7 +180,7 @@ struct OneHop {
 }
 
 impl OneHop {
-    fn of(test: &HopTest<'_>) -> Self {
+    fn of(test: &HopTest) -> Self {
         // Relatively 1e-9 more than the tolerance allows: rounding must not exclude a hop exactly on the limit.
         let squared = |speed_m_s: f64| tolerant_speed_m_s(tolerant_speed_m_s(speed_m_s)) * tolerant_speed_m_s(speed_m_s);
         let (takeoff_m_s, landing_m_s) = test.chain().speed_bounds_m_s();
@@ -233,21 +233,21 @@ mod tests {
         chain::{ConstrainedChain, PolygonalChain},
         graph::{Outcome, PointSpacing, search},
         quantity::ChainPoint,
-        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+        world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
     };
 
-    fn rough_chain() -> (ConstrainedChain, Hopper) {
+    fn rough_chain() -> ConstrainedChain {
         let points = (0..60).map(|i| ChainPoint::new(f64::from(i), 0.5 * f64::from(i * i % 7) - 0.02 * f64::from(i))).collect();
-        let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(6.0, 6.0) };
+        let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(6.0, 6.0) }).unwrap();
         let grip = Some(Grip::Friction(FrictionCone::new(1.1).unwrap()));
-        let surface = Surface { grip, rest: RestSlope::Unlimited };
-        (ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, &surface).unwrap(), hopper)
+        let surface = SurfaceProperties { grip, rest: RestSlope::Unlimited };
+        ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, Gravity::new(1.6).unwrap(), &surface).unwrap()
     }
 
     #[test]
     fn the_cost_to_go_of_every_node_equals_the_cost_of_a_search_from_it() {
-        let (chain, hopper) = rough_chain();
-        let test = HopTest::new(&chain, &hopper, 1.6);
+        let chain = rough_chain();
+        let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         for effort in Effort::ALL {
             let spacing = PointSpacing::PerSegment(1);
@@ -276,8 +276,8 @@ mod tests {
 
     #[test]
     fn the_cheapest_leg_is_the_cheapest_of_all_legs() {
-        let (chain, hopper) = rough_chain();
-        let test = HopTest::new(&chain, &hopper, 1.6);
+        let chain = rough_chain();
+        let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         let spacing = PointSpacing::PerSegment(1);
         for effort in Effort::ALL {

@@ -38,7 +38,7 @@ impl Edge {
 /// compare with petgraph's.
 #[derive(Debug)]
 pub struct HopGraph<'a> {
-    test: &'a HopTest<'a>,
+    test: &'a HopTest,
     nodes: &'a NodeSet,
     effort: Effort,
     choice: TakeoffChoice,
@@ -47,7 +47,7 @@ pub struct HopGraph<'a> {
 
 impl<'a> HopGraph<'a> {
     /// A graph over nodes; effort, choice of take-off angle and split define its costs.
-    pub const fn new(test: &'a HopTest<'a>, nodes: &'a NodeSet, effort: Effort, choice: TakeoffChoice, split: Split) -> Self {
+    pub const fn new(test: &'a HopTest, nodes: &'a NodeSet, effort: Effort, choice: TakeoffChoice, split: Split) -> Self {
         Self { test, nodes, effort, choice, split }
     }
 
@@ -57,7 +57,7 @@ impl<'a> HopGraph<'a> {
     }
 
     /// The hop test that evaluates the edges.
-    pub const fn test(&self) -> &'a HopTest<'a> {
+    pub const fn test(&self) -> &'a HopTest {
         self.test
     }
 

@@ -33,7 +33,7 @@ impl LocalReach {
     ///
     /// # Complexity
     /// Linear in the vertices.
-    pub(super) fn of(test: &HopTest<'_>) -> Self {
+    pub(super) fn of(test: &HopTest) -> Self {
         let vertices = test.chain().geometry().vertices();
         let mut within_m = test.greatest_reach_m();
         let mut reach_m = vec![within_m; vertices.len() - 1];
@@ -166,7 +166,7 @@ mod tests {
         chain::{ConstrainedChain, PolygonalChain},
         graph::{Effort, HopGraph, NodeSet, PointSpacing},
         hop::Split,
-        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+        world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
     };
 
     /// A plain, a canyon and a hill, with short and long segments; landings may be fast, so that the relief bounds a hop.
@@ -178,15 +178,15 @@ mod tests {
             _ => 0.2 * f64::from(i % 3),
         };
         let points = (0..60).map(|i| ChainPoint::new(f64::from(i) * if i > 50 { 2.0 } else { 1.0 }, height(i))).collect();
-        let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.9).unwrap())), rest: RestSlope::Unlimited };
-        ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), hopper, &surface).unwrap()
+        let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.9).unwrap())), rest: RestSlope::Unlimited };
+        ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), hopper, Gravity::new(3.711).unwrap(), &surface).unwrap()
     }
 
     #[test]
     fn no_edge_exceeds_the_bound_along_it_or_the_potential_of_its_hops() {
-        let hopper = Hopper::with_speeds(5.0, 25.0);
+        let hopper = Hopper::with_speeds(5.0, 25.0).unwrap();
         let chain = chain(&hopper);
-        let test = HopTest::new(&chain, &hopper, 3.711);
+        let test = HopTest::new(chain.clone());
         let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(2)).unwrap();
         let graph = HopGraph::new(&test, &nodes, Effort::Time, TakeoffChoice::LeastSpeed, Split::FullReach);
         let reach = LocalReach::of(&test);

@@ -166,5 +166,6 @@ pub(super) fn around(stations: &[Station], station: &Station, distance_m: f64) -
 /// The number of points inside a stretch that keeps neighbours at most the spacing apart.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is refused above MAX_NODES")]
 fn points_needed(length_m: f64, spacing_m: f64) -> u64 {
-    ((length_m / spacing_m).ceil() - 1.0).max(0.0) as u64
+    // Written so that a spacing that is not a number, like one of 0 or less, asks for more points than there may be.
+    if spacing_m > 0.0 { ((length_m / spacing_m).ceil() - 1.0).max(0.0) as u64 } else { u64::MAX }
 }

@@ -1,6 +1,6 @@
 //! Questions (pairs of start and goal) and their answers, in rounds of denser nodes.
 
-use std::collections::HashMap;
+use std::{collections::HashMap, sync::Arc};
 
 use super::{
     Answer, Cost, EndpointRefusal, Frontier, HopGraph, Leg, NodeSet, Outcome, PointSpacing, SearchOptions, TooManyNodes,
@@ -22,7 +22,7 @@ const SHARED_FROM_NODES: usize = 4096;
 /// The settings of one round of searches.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round<'a> {
-    pub(super) test: &'a HopTest<'a>,
+    pub(super) test: &'a HopTest,
     pub(super) reach: &'a LocalReach,
     /// The nodes that all questions share.
     pub(super) nodes: &'a NodeSet,
@@ -114,7 +114,7 @@ impl Questions {
     /// [`TooManyNodes`] if adding the ends of a question without a path exceeds the limit.
     pub(super) fn ask(&mut self, round: &Round<'_>) -> Result<(), TooManyNodes> {
         let graph = round.graph(round.nodes);
-        let table = LandingTable::new(round.test, round.nodes.stations());
+        let table = Arc::new(LandingTable::new(round.test, round.nodes.stations()));
         let mut batched = BatchedSearch::new(&graph, &table, round.reach, Aim::HopsThenEffort);
         for of_start in &self.by_start {
             let open: Vec<usize> = of_start.iter().copied().filter(|&i| self.questions[i].answer.is_none()).collect();
@@ -144,7 +144,7 @@ impl Questions {
 }
 
 /// The refusals of start and goal for every hop. A journey without hops needs neither.
-fn refusing_endpoints(test: &HopTest<'_>, (start, goal): &(Station, Station)) -> Vec<EndpointRefusal> {
+fn refusing_endpoints(test: &HopTest, (start, goal): &(Station, Station)) -> Vec<EndpointRefusal> {
     let Some(towards) = Direction::between(start.point.x_m, goal.point.x_m) else { return Vec::new() };
     [(start, Contact::Takeoff), (goal, Contact::Landing)]
         .into_iter()

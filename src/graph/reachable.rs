@@ -1,5 +1,7 @@
 //! The positions that a start reaches in either direction along the chain.
 
+use std::sync::Arc;
+
 use super::{
     Effort, HopGraph, NodeSet, PointSpacing, TooManyNodes,
     batched_search::{Aim, BatchedSearch},
@@ -31,10 +33,10 @@ pub struct Reachable {
 ///
 /// # Complexity
 /// That of [`search`](super::search()), for the nodes that are reached.
-pub fn reachable(test: &HopTest<'_>, start: Station, spacing: PointSpacing) -> Result<Reachable, TooManyNodes> {
+pub fn reachable(test: &HopTest, start: Station, spacing: PointSpacing) -> Result<Reachable, TooManyNodes> {
     let set = NodeSet::new(test.chain(), start, start, spacing)?;
     let graph = HopGraph::new(test, &set, Effort::default(), TakeoffChoice::default(), Split::default());
-    let table = LandingTable::new(test, set.stations());
+    let table = Arc::new(LandingTable::new(test, set.stations()));
     let reach = LocalReach::of(test);
     let mut batched = BatchedSearch::new(&graph, &table, &reach, Aim::Hops);
     batched.run(&start, &mut Goals::new(&[]));

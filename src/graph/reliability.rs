@@ -70,7 +70,7 @@ pub struct ReliablePath {
 /// # Complexity
 /// With E edges within reach of the budget: E hop tests and E risk estimates, `E (1 + extra)` additions; 12 bytes for each edge.
 pub fn most_reliable_paths(
-    test: &HopTest<'_>,
+    test: &HopTest,
     nodes: &NodeSet,
     options: &SearchOptions,
     reliability: &ReliabilityOptions,
@@ -93,7 +93,7 @@ pub fn most_reliable_paths(
 /// # Errors
 /// [`TooManyNodes`].
 pub fn search_most_reliable(
-    test: &HopTest<'_>,
+    test: &HopTest,
     start: Station,
     goal: Station,
     options: &SearchOptions,
@@ -290,7 +290,7 @@ pub(super) fn edge_weight(
 /// other ground; the hops between have the weight of the last of these.
 #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
 fn along_weight(
-    test: &HopTest<'_>,
+    test: &HopTest,
     (takeoff, landing): (Station, Station),
     along: &SegmentHops,
     (choice, split): (TakeoffChoice, Split),

@@ -161,17 +161,17 @@ mod tests {
         graph::{CostToGo, NodeSet, PointSpacing, most_reliable_paths},
         hop::{HopDeviations, HopTest, RiskModel},
         quantity::{Angle, ChainPoint},
-        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+        world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
     };
 
     const SPACING: PointSpacing = PointSpacing::PerSegment(1);
 
-    fn rough_chain() -> (ConstrainedChain, Hopper) {
+    fn rough_chain() -> ConstrainedChain {
         let points = (0..40).map(|i| ChainPoint::new(f64::from(i), 0.3 * f64::from(i * i % 7) - 0.02 * f64::from(i))).collect();
-        let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(5.0, 5.0) };
+        let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(5.0, 5.0) }).unwrap();
         let grip = Some(Grip::Friction(FrictionCone::new(1.1).unwrap()));
-        let surface = Surface { grip, rest: RestSlope::Unlimited };
-        (ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, &surface).unwrap(), hopper)
+        let surface = SurfaceProperties { grip, rest: RestSlope::Unlimited };
+        ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, Gravity::new(1.6).unwrap(), &surface).unwrap()
     }
 
     fn models() -> [RiskModel; 2] {
@@ -184,8 +184,8 @@ mod tests {
     /// Compares with the most reliable path from each start, found by forward search.
     #[test]
     fn the_policy_weighs_every_node_as_the_most_reliable_path_from_it() {
-        let (chain, hopper) = rough_chain();
-        let test = HopTest::new(&chain, &hopper, 1.6);
+        let chain = rough_chain();
+        let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         let (mut compared, mut bought) = (0, 0);
         for model in models() {
@@ -217,8 +217,8 @@ mod tests {
 
     #[test]
     fn the_first_successors_lead_from_every_node_to_the_goal() {
-        let (chain, hopper) = rough_chain();
-        let test = HopTest::new(&chain, &hopper, 1.6);
+        let chain = rough_chain();
+        let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         for model in models() {
             for extra_hops_max in [0, 2] {
@@ -248,8 +248,8 @@ mod tests {
 
     #[test]
     fn the_nearest_node_is_the_nearest_of_all() {
-        let (chain, hopper) = rough_chain();
-        let test = HopTest::new(&chain, &hopper, 1.6);
+        let chain = rough_chain();
+        let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         let nodes = NodeSet::new(&chain, station(2.3), station(34.0), SPACING).unwrap();
         let to_go = CostToGo::of(&test, nodes, &SearchOptions::default());

@@ -98,7 +98,7 @@ impl Answer {
 /// With V nodes, W of them in reach of each ahead of the nodes with equal hops, and S vertices flown over: about O(V W) time,
 /// as [`Sweep`](crate::hop::Sweep) evaluates one take-off; some 150 bytes of memory per node, and no stored edges.
 pub fn search(
-    test: &HopTest<'_>,
+    test: &HopTest,
     start: Station,
     goal: Station,
     options: &SearchOptions,
@@ -117,7 +117,7 @@ pub fn search(
 /// # Errors
 /// [`TooManyNodes`].
 pub fn search_pairs(
-    test: &HopTest<'_>,
+    test: &HopTest,
     pairs: &[(Station, Station)],
     options: &SearchOptions,
     progress: &mut dyn FnMut(PointSpacing),

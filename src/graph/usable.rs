@@ -70,15 +70,17 @@ mod tests {
     use crate::{
         chain::PolygonalChain,
         quantity::ChainPoint,
-        world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+        world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
     };
 
     #[test]
     fn a_start_on_a_wall_reports_its_slope_and_the_nearest_flat_point() {
         let points = [(0.0, 0.0), (10.0, 0.0), (20.0, 20.0), (21.0, 40.0), (30.0, 40.0)];
         let chain = PolygonalChain::bare(points.map(|(x, z)| ChainPoint::new(x, z)).to_vec()).unwrap();
-        let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.6).unwrap())), rest: RestSlope::AsFrictionHolds };
-        let chain = ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0), &surface).unwrap();
+        let surface =
+            SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.6).unwrap())), rest: RestSlope::AsFrictionHolds };
+        let chain = ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0).unwrap(), Gravity::new(3.711).unwrap(), &surface)
+            .unwrap();
         let start = chain.geometry().station(18.0).unwrap();
         let refusal = endpoint_refusal(&chain, &start, Contact::Takeoff, Direction::Forward).unwrap();
         assert!(matches!(refusal.refusal, GroundRefusal::TooSteep { .. }));

@@ -1,41 +1,55 @@
 //! The hop test: whether a single hop can join two stations, and with which take-off slopes.
 
+use std::sync::{Arc, OnceLock};
+
 use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief};
 use crate::{
-    ballistics::{ContactLimits, FlightEnvelope, LineOfSight, limits},
+    ballistics::{FlightEnvelope, LineOfSight, limits},
     chain::{ConstrainedChain, ContactRule, Station},
     quantity::{SegmentId, SlopeInterval},
     world::{Contact, Direction, Hopper, Limit},
 };
 
-/// The hop test over a chain, for a hopper and a gravity.
+/// The hop test of a chain with its hopper and gravity: it answers for any pair of stations.
+///
+/// It shares its chain, and its tables are made when they are first needed: to make or to clone one costs next to nothing, and it may
+/// be kept and sent to other threads.
 ///
 /// The kernel, [`lofts`](Self::lofts), uses no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains
 /// the result.
 #[derive(Clone, Debug)]
-pub struct HopTest<'a> {
-    chain: &'a ConstrainedChain,
+pub struct HopTest {
+    chain: Arc<ConstrainedChain>,
     envelope: FlightEnvelope,
-    /// Bounds of height and speed over any part of the chain.
-    relief: Relief,
-    /// The reach of one hop along each segment, by direction.
-    reaches: Vec<[Option<SegmentReach>; 2]>,
+    tables: Arc<Tables>,
 }
 
-impl<'a> HopTest<'a> {
-    /// The test for a chain, a hopper and a gravity above 0 in m/s^2.
-    pub fn new(chain: &'a ConstrainedChain, hopper: &Hopper, gravity_m_s2: f64) -> Self {
-        let mut test =
-            Self { chain, envelope: FlightEnvelope::new(hopper, gravity_m_s2), relief: Relief::of(chain), reaches: Vec::new() };
-        test.reaches = (0..chain.segments().len())
-            .map(|i| Direction::BOTH.map(|direction| SegmentReach::on(&test, SegmentId(i), direction)))
-            .collect();
-        test
+/// What searches ask of a chain again and again, each made when it is first needed.
+#[derive(Debug, Default)]
+struct Tables {
+    /// Bounds of height and speed over any part of the chain.
+    relief: OnceLock<Relief>,
+    /// The reach of one hop along each segment, by direction.
+    reaches: OnceLock<Vec<[Option<SegmentReach>; 2]>>,
+}
+
+impl HopTest {
+    /// The test for a chain, with its hopper and gravity.
+    pub fn new(chain: impl Into<Arc<ConstrainedChain>>) -> Self {
+        let chain = chain.into();
+        let envelope = FlightEnvelope::new(chain.hopper(), chain.gravity());
+        Self { chain, envelope, tables: Arc::default() }
     }
 
     /// The chain.
-    pub const fn chain(&self) -> &'a ConstrainedChain {
-        self.chain
+    #[inline]
+    pub fn chain(&self) -> &ConstrainedChain {
+        &self.chain
+    }
+
+    /// The chain, as a shared pointer.
+    pub fn shared_chain(&self) -> Arc<ConstrainedChain> {
+        Arc::clone(&self.chain)
     }
 
     /// The hopper.
@@ -49,8 +63,17 @@ impl<'a> HopTest<'a> {
     }
 
     /// Bounds of height and speed over any part of the chain.
-    pub(super) const fn relief(&self) -> &Relief {
-        &self.relief
+    pub(super) fn relief(&self) -> &Relief {
+        self.tables.relief.get_or_init(|| Relief::of(&self.chain))
+    }
+
+    /// The reach of one hop along each segment, by direction.
+    fn reaches(&self) -> &[[Option<SegmentReach>; 2]] {
+        self.tables.reaches.get_or_init(|| {
+            (0..self.chain.segments().len())
+                .map(|i| Direction::BOTH.map(|direction| SegmentReach::on(self, SegmentId(i), direction)))
+                .collect()
+        })
     }
 
     /// The take-off slopes that the mechanism allows.
@@ -95,7 +118,8 @@ impl<'a> HopTest<'a> {
         let vertices = self.chain.geometry().vertices();
         let mut lower = in_envelope.lower;
         for point in &vertices[flown_past(takeoff, landing)] {
-            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.envelope.hopper().clearance_m));
+            lower =
+                lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.envelope.hopper().limits().clearance_m));
             if lower > in_envelope.upper {
                 return Err(Limit::Terrain);
             }
@@ -105,7 +129,7 @@ impl<'a> HopTest<'a> {
 
     /// The rule of a contact, or the limit by which the ground refuses it.
     #[inline]
-    pub(super) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&'a ContactRule, Limit> {
+    pub(super) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&ContactRule, Limit> {
         let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
         segment.allowed(contact, direction).ok_or_else(|| match segment.check_contact(contact, direction) {
             Err(refusal) => refusal.limit(contact),
@@ -124,8 +148,7 @@ impl<'a> HopTest<'a> {
         from: &ContactRule,
         to: &ContactRule,
     ) -> Result<SlopeInterval, Limit> {
-        let limits_of = |rule: &ContactRule| ContactLimits { slopes: rule.slopes(), speed_max_m_s: rule.speed_max_m_s() };
-        let lofts = self.envelope.lofts(sight, limits_of(from), limits_of(to));
+        let lofts = self.envelope.lofts(sight, from.contact_limits(), to.contact_limits());
         if lofts.is_empty() || lofts.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(lofts) }
     }
 
@@ -138,7 +161,7 @@ impl<'a> HopTest<'a> {
     /// Whether the hopper has a greatest apex height or a longest flight time.
     #[inline]
     pub(super) const fn has_machine_limits(&self) -> bool {
-        self.envelope.hopper().apex_height_max_m.is_some() || self.envelope.hopper().flight_time_max_s.is_some()
+        self.envelope.hopper().limits().apex_height_max_m.is_some() || self.envelope.hopper().limits().flight_time_max_s.is_some()
     }
 
     /// The limit that leaves no arc when the limits are applied in order.
@@ -169,7 +192,7 @@ impl<'a> HopTest<'a> {
             (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical())),
             (
                 Limit::ApexHeight,
-                self.envelope.hopper().apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h)),
+                self.envelope.hopper().limits().apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h)),
             ),
         ];
         let mut left = speeds;
@@ -203,6 +226,6 @@ impl<'a> HopTest<'a> {
 
     /// The reach of one hop along a segment; `None` if its ground allows no hop along it.
     pub fn segment_reach(&self, segment: SegmentId, direction: Direction) -> Option<SegmentReach> {
-        self.reaches.get(segment.index()).and_then(|both| both[direction as usize])
+        self.reaches().get(segment.index()).and_then(|both| both[direction as usize])
     }
 }

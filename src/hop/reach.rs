@@ -120,7 +120,7 @@ fn safe_m(speed_m_s: f64, height_m: f64, gravity_m_s2: f64) -> f64 {
     speed_m_s / gravity_m_s2 * (speed_m_s * speed_m_s + 2.0 * gravity_m_s2 * height_m.max(0.0)).sqrt()
 }
 
-impl HopTest<'_> {
+impl HopTest {
     /// A horizontal distance beyond which no hop from this station lands, in either direction, m.
     ///
     /// The greater [`landing_reach_m`](Self::landing_reach_m) of both directions.

@@ -66,7 +66,7 @@ pub struct SegmentHops {
 
 impl SegmentReach {
     /// The reach along a segment; `None` if its ground or its cones allow no arc along it.
-    pub(super) fn on(test: &HopTest<'_>, segment: SegmentId, direction: Direction) -> Option<Self> {
+    pub(super) fn on(test: &HopTest, segment: SegmentId, direction: Direction) -> Option<Self> {
         let constraints = test.chain().segments().get(segment.index())?;
         let from = constraints.allowed(Contact::Takeoff, direction)?;
         let to = constraints.allowed(Contact::Landing, direction)?;
@@ -162,13 +162,13 @@ impl SegmentHops {
     ///
     /// With the mid-range choice each hop takes the middle of its own set, between the line of sight and the vertical (model
     /// section 3); a hop of full reach has only one arc.
-    pub fn arc(&self, test: &HopTest<'_>, length_m: f64, choice: TakeoffChoice) -> Arc {
+    pub fn arc(&self, test: &HopTest, length_m: f64, choice: TakeoffChoice) -> Arc {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
         Arc::new(sight, choice.loft(sight, self.lofts(test, length_m)), test.gravity_m_s2())
     }
 
     /// The feasible lofts of a hop of this length along the segment; at least a single loft.
-    pub fn lofts(&self, test: &HopTest<'_>, length_m: f64) -> SlopeInterval {
+    pub fn lofts(&self, test: &HopTest, length_m: f64) -> SlopeInterval {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
         // At full reach the set is a single loft, which rounding may lose.
         let only = SlopeInterval { lower: self.reach.loft, upper: self.reach.loft };
@@ -177,14 +177,14 @@ impl SegmentHops {
 }
 
 /// The reach of a hop along one segment as a function of its loft.
-struct Ends<'a, 'b> {
+struct Ends<'a> {
     b: f64,
     takeoff_m_s: f64,
     landing_m_s: f64,
-    test: &'a HopTest<'b>,
+    test: &'a HopTest,
 }
 
-impl Ends<'_, '_> {
+impl Ends<'_> {
     /// The distance that the speed limits allow, `min(X_t, X_l)` of [`SegmentReach`], and the limit that ends it.
     fn by_speed_m(&self, n: f64) -> (f64, Limit) {
         let covered = |speed: f64, slope: f64| 2.0 * speed * speed / self.test.gravity_m_s2() * (n / (1.0 + slope * slope));
@@ -200,8 +200,8 @@ impl Ends<'_, '_> {
     fn by_machine_m(&self, n: f64) -> (f64, Limit) {
         let hopper = self.test.hopper();
         let g = self.test.gravity_m_s2();
-        let time = hopper.flight_time_max_s.map_or(f64::INFINITY, |t| g * t * (t / (2.0 * n)));
-        let apex = hopper.apex_height_max_m.map_or(f64::INFINITY, |h| {
+        let time = hopper.limits().flight_time_max_s.map_or(f64::INFINITY, |t| g * t * (t / (2.0 * n)));
+        let apex = hopper.limits().apex_height_max_m.map_or(f64::INFINITY, |h| {
             let m = self.b + n;
             if m <= 0.0 {
                 f64::INFINITY

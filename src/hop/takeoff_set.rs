@@ -48,7 +48,7 @@ enum Verdict {
 
 impl TakeoffSet {
     /// Evaluates each limit of a pair; `None` if both stations have the same x.
-    pub(super) fn of(test: &HopTest<'_>, takeoff: &Station, landing: &Station) -> Option<Self> {
+    pub(super) fn of(test: &HopTest, takeoff: &Station, landing: &Station) -> Option<Self> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let sight = test.line_of_sight(takeoff, landing)?;
         let limits = all_limits(test, takeoff, landing, direction, sight);
@@ -121,7 +121,7 @@ const ABOVE_SIGHT: LimitInterval = LimitInterval {
 
 /// Every limit that applies to a pair, in the order of [`Limit::ALL`].
 fn all_limits(
-    test: &HopTest<'_>,
+    test: &HopTest,
     takeoff: &Station,
     landing: &Station,
     direction: Direction,
@@ -162,7 +162,7 @@ fn all_limits(
         add(Limit::LandingSpeed, lofts, None, shortfall);
     }
     add(Limit::LineOfSight, ABOVE_SIGHT.lofts, None, None);
-    let (lofts, vertex) = terrain_limit(test.chain().geometry(), takeoff, landing, test.hopper().clearance_m);
+    let (lofts, vertex) = terrain_limit(test.chain().geometry(), takeoff, landing, test.hopper().limits().clearance_m);
     add(Limit::Terrain, lofts, vertex, None);
     machine_limits(test, sight, &mut add);
     found.sort_by_key(|limit| limit.limit);
@@ -171,20 +171,20 @@ fn all_limits(
 
 /// The limits of the machine that this hopper has.
 fn machine_limits(
-    test: &HopTest<'_>,
+    test: &HopTest,
     sight: LineOfSight,
     add: &mut impl FnMut(Limit, SlopeInterval, Option<VertexId>, Option<Shortfall>),
 ) {
     let hopper = test.hopper();
-    if hopper.takeoff_angle_min.is_some() || hopper.takeoff_angle_max.is_some() {
+    if hopper.limits().takeoff_angle_min.is_some() || hopper.limits().takeoff_angle_max.is_some() {
         add(Limit::MechanicalAngle, limits::takeoff_cone(sight, test.mechanical()), None, None);
     }
-    if let Some(height_m) = hopper.apex_height_max_m {
+    if let Some(height_m) = hopper.limits().apex_height_max_m {
         let lofts = limits::apex_height(sight, height_m);
         let shortfall = lofts.is_empty().then(|| Shortfall::Height { needed_m: sight.rise_m(), limit_m: height_m });
         add(Limit::ApexHeight, lofts, None, shortfall);
     }
-    if let Some(time_s) = hopper.flight_time_max_s {
+    if let Some(time_s) = hopper.limits().flight_time_max_s {
         add(Limit::FlightTime, limits::flight_time(sight, time_s, test.gravity_m_s2()), None, None);
     }
 }

@@ -1,10 +1,11 @@
 //! From the search's legs to the hops that fly them (P Algorithm 4).
 
-use super::{Hop, HopPath, MapEnds, Totals};
+use super::{Hop, HopPath, Totals, heading_deg};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
     chain::Station,
     graph::{Edge, Leg},
+    ground::Surface,
     hop::{HopTest, SegmentHops, Split, TakeoffSet},
     quantity::SlopeInterval,
     world::{Contact, Direction, Hopper, Limit},
@@ -12,10 +13,7 @@ use crate::{
 
 /// A path longer than this program lists hop by hop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "the path has {hops} hops, expected at most {} to list: raise the speed limits, or ask `chta check` for the count alone",
-    TooManyHops::MOST
-)]
+#[error("the path has {hops} hops, expected at most {} to list: raise the speed limits", TooManyHops::MOST)]
 pub struct TooManyHops {
     /// How many hops the path has.
     pub hops: u64,
@@ -30,7 +28,7 @@ impl TooManyHops {
 ///
 /// # Errors
 /// [`TooManyHops`].
-pub fn generate(test: &HopTest<'_>, legs: &[Leg], choice: TakeoffChoice, split: Split) -> Result<HopPath, TooManyHops> {
+pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Split) -> Result<HopPath, TooManyHops> {
     let count = |leg: &Leg| match leg.edge {
         Edge::Hop(_) => 1,
         Edge::Along(along) => along.hops(),
@@ -58,14 +56,14 @@ impl HopPath {
 }
 
 /// The hop of a leg that takes one.
-fn single(test: &HopTest<'_>, leg: &Leg, lofts: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
+fn single(test: &HopTest, leg: &Leg, lofts: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
     let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
     let arc = Arc::new(sight, choice.loft(sight, lofts), test.gravity_m_s2());
     Some(hop(test, leg.takeoff, leg.landing, &arc, lofts, Limit::TakeoffSpeed))
 }
 
 /// The hops of a leg that runs along one segment.
-fn along_segment(test: &HopTest<'_>, leg: &Leg, along: &SegmentHops, choice: TakeoffChoice, split: Split) -> Vec<Hop> {
+fn along_segment(test: &HopTest, leg: &Leg, along: &SegmentHops, choice: TakeoffChoice, split: Split) -> Vec<Hop> {
     let Some(direction) = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m) else { return Vec::new() };
     let landings = full_reach_m(leg, along, direction, split).unwrap_or_else(|| equal_m(leg, along, direction));
     let mut hops = Vec::with_capacity(landings.len() + 1);
@@ -113,9 +111,8 @@ fn equal_m(leg: &Leg, along: &SegmentHops, direction: Direction) -> Vec<f64> {
 /// A hop with all that is said of it.
 ///
 /// `otherwise` is the limit named where the set is one point that rounding loses.
-fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, lofts: SlopeInterval, otherwise: Limit) -> Hop {
+fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc, lofts: SlopeInterval, otherwise: Limit) -> Hop {
     let direction = if landing.point.x_m < takeoff.point.x_m { Direction::Reverse } else { Direction::Forward };
-    let geometry = test.chain().geometry();
     let limit = |contact, station: &Station| {
         test.chain().check_contact(station, contact, direction).map_or(0.0, |rule| rule.speed_max_m_s())
     };
@@ -123,11 +120,12 @@ fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, lofts:
     let takeoff_speed_m_s = arc.takeoff_speed_m_s();
     let landing_speed_m_s = arc.landing_speed_m_s();
     let angle = |loft: f64| crate::quantity::Angle::from_slope(arc.line_of_sight().slope() + loft);
+    let (from, to) = (test.chain().contact_point(&takeoff), test.chain().contact_point(&landing));
     Hop {
         direction,
-        takeoff,
-        landing,
-        map: geometry.map_point(&takeoff).zip(geometry.map_point(&landing)).map(|(from, to)| map_ends(from, to)),
+        takeoff: from,
+        landing: to,
+        heading_deg: heading_deg(from.point_m.xy(), to.point_m.xy()),
         takeoff_angle: arc.takeoff_angle(),
         takeoff_speed_m_s,
         landing_angle: arc.landing_angle(),
@@ -143,13 +141,6 @@ fn hop(test: &HopTest<'_>, takeoff: Station, landing: Station, arc: &Arc, lofts:
     }
 }
 
-/// The two ends on the map and the heading between them.
-fn map_ends(takeoff: crate::quantity::MapPoint, landing: crate::quantity::MapPoint) -> MapEnds {
-    let along = landing - takeoff;
-    let degrees = libm::atan2(along.x, along.y).to_degrees();
-    MapEnds { takeoff, landing, heading_deg: if degrees < 0.0 { degrees + 360.0 } else { degrees } }
-}
-
 /// What hops add up to.
 fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
     let sum = |of: fn(&Hop) -> f64| hops.iter().map(of).sum::<f64>();
@@ -161,8 +152,8 @@ fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
         flight_time_s,
         energy_j_kg,
         peak_takeoff_speed_m_s: hops.iter().map(|h| h.takeoff_speed_m_s).fold(0.0, f64::max),
-        ground_distance_m: sum(|h| (h.landing.point.x_m - h.takeoff.point.x_m).abs()),
-        energy_j: hopper.mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
-        mission_time_s: hopper.rest_time_s.map(|rest_time_s| flight_time_s + rest_time_s * rests),
+        ground_distance_m: sum(Hop::run_m),
+        energy_j: hopper.limits().mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
+        mission_time_s: hopper.limits().rest_time_s.map(|rest_time_s| flight_time_s + rest_time_s * rests),
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::{
     ballistics::{Arc, LineOfSight},
-    chain::Station,
+    ground::ContactPoint,
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
     world::{Direction, Limit},
 };
@@ -10,14 +10,15 @@ use crate::{
 /// One hop, with everything an operator needs to command and check it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hop {
-    /// Direction of travel along the chain.
+    /// Direction of travel along the chain; forward where there is no chain.
     pub direction: Direction,
     /// Where it takes off.
-    pub takeoff: Station,
+    pub takeoff: ContactPoint,
     /// Where it lands.
-    pub landing: Station,
-    /// Where both ends lie on the map, for a chain that lies on one.
-    pub map: Option<MapEnds>,
+    pub landing: ContactPoint,
+    /// Direction of flight on the map, clockwise from grid north, 0 to 360 degrees; of a chain that lies on no map, from its y axis: 90
+    /// forward, 270 in reverse.
+    pub heading_deg: f64,
     /// Take-off angle above the horizontal, in the direction of travel.
     pub takeoff_angle: Angle,
     /// Take-off speed, m/s.
@@ -28,21 +29,31 @@ pub struct Hop {
     pub landing_speed_m_s: f64,
     /// Flight time, s.
     pub flight_time_s: f64,
-    /// Height of the highest point of the flight, m, in the chain's own heights.
+    /// Height of the highest point of the flight, m, in the ground's own heights.
     pub apex_z_m: f64,
-    /// All feasible take-off angles between these two stations.
+    /// All feasible take-off angles between the two contacts.
     pub takeoff_angles: AngleInterval,
     /// The smaller of the two margins that take-off and landing speed leave to their limits, m/s.
     pub speed_margin_m_s: f64,
     /// Which limit sets the least feasible take-off angle.
     pub lower_limit: Limit,
-    /// The vertex that decides, where that limit is the terrain.
+    /// The vertex of the profile that decides, where that limit is the terrain.
     pub lower_vertex: Option<VertexId>,
     /// Which limit sets the greatest feasible take-off angle.
     pub upper_limit: Limit,
 }
 
 impl Hop {
+    /// Take-off and landing on the map; `None` for a hop along a chain that lies on no map.
+    pub fn map_ends(&self) -> Option<(MapPoint, MapPoint)> {
+        self.takeoff.map().zip(self.landing.map())
+    }
+
+    /// Horizontal distance from take-off to landing along the profile, m.
+    pub fn run_m(&self) -> f64 {
+        (self.landing.along_m - self.takeoff.along_m).abs()
+    }
+
     /// Horizontal speed, constant over the flight, m/s: `v cos(theta) = v / sqrt(1 + m^2)`.
     pub fn horizontal_speed_m_s(&self) -> f64 {
         self.takeoff_speed_m_s / libm::hypot(1.0, self.takeoff_angle.slope())
@@ -52,7 +63,7 @@ impl Hop {
     ///
     /// At least two points.
     pub fn flight_points(&self, gravity_m_s2: f64, count: u32) -> Vec<(f64, ChainPoint)> {
-        let (from, to) = (self.takeoff.point, self.landing.point);
+        let (from, to) = (self.takeoff.in_profile(), self.landing.in_profile());
         let sight = LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m);
         let arc = Arc::new(sight, self.takeoff_angle.slope() - sight.slope(), gravity_m_s2);
         let last = count.max(2) - 1;
@@ -66,15 +77,17 @@ impl Hop {
     }
 }
 
-/// A hop on the map.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct MapEnds {
-    /// Where it takes off.
-    pub takeoff: MapPoint,
-    /// Where it lands.
-    pub landing: MapPoint,
-    /// Direction of flight, clockwise from grid north, 0 to 360 degrees.
-    pub heading_deg: f64,
+/// The direction from one horizontal point to another, clockwise from the second axis (grid north on a map), 0 to 360 degrees.
+///
+/// # Examples
+/// ```
+/// use chta::{path::heading_deg, quantity::MapPoint};
+/// assert_eq!(heading_deg(MapPoint::new(0.0, 0.0), MapPoint::new(-3.0, 0.0)), 270.0);
+/// ```
+pub fn heading_deg(from: MapPoint, to: MapPoint) -> f64 {
+    let along = to - from;
+    let degrees = libm::atan2(along.x, along.y).to_degrees();
+    if degrees < 0.0 { degrees + 360.0 } else { degrees }
 }
 
 /// A path of hops from start to goal.

@@ -8,6 +8,7 @@ mod angle;
 mod format;
 mod ids;
 mod interval;
+mod normal;
 mod points;
 mod quadratic;
 mod slope;
@@ -18,6 +19,7 @@ pub use ids::{NodeId, SegmentId, VertexId};
 #[cfg(test)]
 pub(crate) use interval::Inwards;
 pub use interval::{Interval, Outwards, Rounding};
+pub use normal::standard_normals;
 pub use points::{ChainPoint, MapPoint};
 pub use quadratic::{MonicQuadratic, Roots};
 pub use slope::SlopeInterval;

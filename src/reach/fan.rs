@@ -1,34 +1,28 @@
 //! Slices in all directions from one point, each analysed.
 
-use std::error::Error;
-
 use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use crate::{
-    chain::ConstrainedChain,
     graph::{PointSpacing, TooManyNodes, reachable},
+    ground::{DemGround, SliceProblem},
     hop::HopTest,
     quantity::MapPoint,
-    terrain::{Dem, Profile, TerrainError, slice},
-    world::{Hopper, Limit},
+    terrain::{Profile, TerrainError, slice},
+    world::Limit,
 };
 
 /// What a fan is made of.
 #[derive(Clone, Copy, Debug)]
 pub struct FanRequest<'a> {
-    /// The terrain.
-    pub dem: &'a Dem,
+    /// The terrain, its overlays, the hopper and gravity.
+    pub ground: &'a DemGround,
     /// Where all slices begin.
     pub from: MapPoint,
     /// How many there are, equally spaced clockwise from grid north.
     pub headings: u32,
     /// How long they are, m, where the map lets them.
     pub length_m: f64,
-    /// The robot.
-    pub hopper: &'a Hopper,
-    /// Gravity, m/s^2.
-    pub gravity_m_s2: f64,
     /// How densely the slices are filled with nodes.
     pub spacing: PointSpacing,
 }
@@ -107,7 +101,7 @@ pub enum FanError {
         /// Which slice.
         heading_deg: f64,
         /// Why not.
-        reason: Box<dyn Error + Send + Sync>,
+        reason: Box<SliceProblem>,
     },
     /// More nodes than fit.
     #[error("heading {heading_deg} deg: {problem}")]
@@ -118,13 +112,13 @@ pub enum FanError {
         problem: TooManyNodes,
     },
     /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer with --threads")]
+    #[error("the threads cannot be started ({0}): ask for fewer")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
 /// Analyses slices in all directions from one point, in parallel; the same for any number of threads.
 ///
-/// A slice that leaves the map or meets no-data ends there. `ground` makes a chain of a slice: it knows friction, zones and hopper.
+/// A slice that leaves the map or meets no-data ends there.
 ///
 /// # Arguments
 /// `threads`: how many; 0: one for each core.
@@ -134,10 +128,7 @@ pub enum FanError {
 ///
 /// # Errors
 /// [`FanError`]; of several, that of the least heading.
-pub fn fan<G>(request: &FanRequest<'_>, threads: usize, ground: &G) -> Result<Vec<FanRay>, FanError>
-where
-    G: Fn(Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> + Sync,
-{
+pub fn fan(request: &FanRequest<'_>, threads: usize) -> Result<Vec<FanRay>, FanError> {
     let FanRequest { headings, length_m, .. } = *request;
     let refused = |what, found: String, expected| Err(FanError::Request { what, found, expected });
     if headings == 0 || headings > 36_000 {
@@ -146,14 +137,14 @@ where
     if !(length_m.is_finite() && length_m > 0.0) {
         return refused("length", format!("{length_m} m"), "a finite length above 0 m");
     }
-    let bounds = request.dem.bounds();
+    let bounds = request.ground.terrain().dem().bounds();
     let inside = |value: f64, low: f64, high: f64| low <= value && value <= high;
     if !(inside(request.from.x, bounds.min.x, bounds.max.x) && inside(request.from.y, bounds.min.y, bounds.max.y)) {
         return Err(TerrainError::OffTheMap { which: "from", at: request.from, bounds }.into());
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
     let rays: Vec<Result<FanRay, FanError>> =
-        pool.install(|| (0..headings).into_par_iter().map(|number| ray(request, number, ground)).collect());
+        pool.install(|| (0..headings).into_par_iter().map(|number| ray(request, number)).collect());
     let rays: Vec<FanRay> = rays.into_iter().collect::<Result<_, _>>()?;
     // No direction has ground: the start itself has none.
     if rays.iter().all(|ray| ray.length_m == 0.0 && ray.end == Some(SliceEnd::NoData)) {
@@ -174,10 +165,7 @@ pub fn heading_vector(number: u32, of: u32) -> Vector2<f64> {
 }
 
 /// One direction.
-fn ray<G>(request: &FanRequest<'_>, number: u32, ground: &G) -> Result<FanRay, FanError>
-where
-    G: Fn(Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> + Sync,
-{
+fn ray(request: &FanRequest<'_>, number: u32) -> Result<FanRay, FanError> {
     let heading_deg = 360.0 * f64::from(number) / f64::from(request.headings);
     let (profile, end) = slice_ray(request, heading_vector(number, request.headings))?;
     let Some(profile) = profile else {
@@ -193,16 +181,16 @@ where
             bands,
         });
     };
-    let chain = ground(profile).map_err(|reason| FanError::Ground { heading_deg, reason })?;
-    let test = HopTest::new(&chain, request.hopper, request.gravity_m_s2);
-    let start = chain.geometry().vertex_station(crate::quantity::VertexId(0));
+    let chain = request.ground.chain_of(profile).map_err(|reason| FanError::Ground { heading_deg, reason: Box::new(reason) })?;
+    let test = HopTest::new(chain);
+    let start = test.chain().geometry().vertex_station(crate::quantity::VertexId(0));
     let found = reachable(&test, start, request.spacing).map_err(|problem| FanError::TooManyNodes { heading_deg, problem })?;
     let farthest = found.nodes.iter().rev().find_map(|(station, hops)| Some((station.point.x_m, (*hops)?)));
     let (farthest_m, hops_to_farthest) = farthest.unwrap_or((0.0, 0));
     let nodes: Vec<(f64, Option<u64>)> = found.nodes.iter().map(|(station, hops)| (station.point.x_m, *hops)).collect();
     Ok(FanRay {
         heading_deg,
-        length_m: chain.geometry().extent_m().1,
+        length_m: test.chain().geometry().extent_m().1,
         end,
         farthest_m,
         hops_to_farthest,
@@ -234,7 +222,7 @@ fn bands(nodes: &[(f64, Option<u64>)]) -> Vec<HopBand> {
 
 /// The slice in a direction, as far as there is ground, and what ended it; no slice where there is none at all.
 fn slice_ray(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<Profile>, Option<SliceEnd>), TerrainError> {
-    let (dem, from) = (request.dem, request.from);
+    let (dem, from) = (request.ground.terrain().dem(), request.from);
     let bounds = dem.bounds();
     let room = |at: f64, step: f64, low: f64, high: f64| {
         if step > 0.0 {

@@ -114,7 +114,7 @@ pub struct MissRecord {
 
 impl CheckAnswer {
     /// From the search's answer between two places.
-    pub fn new(test: &HopTest<'_>, start_x_m: f64, goal_x_m: f64, answer: &Answer, effort: Effort) -> Self {
+    pub fn new(test: &HopTest, start_x_m: f64, goal_x_m: f64, answer: &Answer, effort: Effort) -> Self {
         let (endpoint_refusals, frontier) = match &answer.outcome {
             Outcome::Path { .. } => (Vec::new(), None),
             Outcome::EndpointsRefuse(refusals) => (refusals.iter().map(EndpointRecord::new).collect(), None),
@@ -183,7 +183,7 @@ impl EndpointRecord {
 }
 
 impl FrontierRecord {
-    fn new(test: &HopTest<'_>, frontier: &Frontier) -> Self {
+    fn new(test: &HopTest, frontier: &Frontier) -> Self {
         Self {
             reached_x_m: frontier.nearest_to_goal.point.x_m,
             reached_nodes: frontier.reached.len(),

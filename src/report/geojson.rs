@@ -7,7 +7,7 @@ use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, P
 
 use super::path_record::{HopRecord, tenth_digit};
 use crate::{
-    path::{Hop, HopPath, MapEnds},
+    path::{Hop, HopPath},
     quantity::MapPoint,
     terrain::{MapProjection, Profile},
 };
@@ -44,14 +44,17 @@ fn path_features(
     let rows = HopRecord::rows(path, projection);
     let mut features = Vec::new();
     for (hop, row) in path.hops.iter().zip(&rows) {
-        let map = hop.map?;
+        let (takeoff, landing) = hop.map_ends()?;
         let serde_json::Value::Object(mut properties) = serde_json::to_value(row).ok()? else { return None };
         properties.insert("kind".to_owned(), "hop".into());
-        features.push(feature(GeometryValue::LineString { coordinates: arc_positions(hop, &map, gravity_m_s2) }, properties));
+        features.push(feature(
+            GeometryValue::LineString { coordinates: arc_positions(hop, (takeoff, landing), gravity_m_s2) },
+            properties,
+        ));
         if row.hop == 1 {
-            features.push(contact(0, map.takeoff, hop.takeoff.point.z_m, projection));
+            features.push(contact(0, takeoff, hop.takeoff.point_m.z, projection));
         }
-        features.push(contact(row.hop, map.landing, hop.landing.point.z_m, projection));
+        features.push(contact(row.hop, landing, hop.landing.point_m.z, projection));
     }
     if let Some(goal) = goal {
         for properties in features.iter_mut().filter_map(|feature| feature.properties.as_mut()) {
@@ -114,12 +117,12 @@ fn feature(geometry: GeometryValue, properties: JsonObject) -> Feature {
 }
 
 /// The arc of a hop, in three dimensions.
-fn arc_positions(hop: &Hop, map: &MapEnds, gravity_m_s2: f64) -> Vec<Position> {
-    let along = map.landing - map.takeoff;
+fn arc_positions(hop: &Hop, (takeoff, landing): (MapPoint, MapPoint), gravity_m_s2: f64) -> Vec<Position> {
+    let along = landing - takeoff;
     hop.flight_points(gravity_m_s2, POINTS_PER_ARC + 1)
         .into_iter()
         .map(|(fraction, point)| {
-            let place = map.takeoff + along * fraction;
+            let place = takeoff + along * fraction;
             Position::from([place.x, place.y, point.z_m])
         })
         .collect()

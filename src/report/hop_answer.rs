@@ -139,7 +139,7 @@ pub struct SegmentHopsRecord {
 
 impl HopAnswer {
     /// The answer for two stations; `None` where they share the same x.
-    pub fn new(test: &HopTest<'_>, takeoff: &Station, landing: &Station, choice: TakeoffChoice) -> Option<Self> {
+    pub fn new(test: &HopTest, takeoff: &Station, landing: &Station, choice: TakeoffChoice) -> Option<Self> {
         let set = test.takeoff_set(takeoff, landing)?;
         let angles = set.angles();
         let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice));
@@ -162,7 +162,7 @@ impl HopAnswer {
 }
 
 impl LimitRecord {
-    fn new(test: &HopTest<'_>, set: &TakeoffSet, limit: &LimitInterval) -> Self {
+    fn new(test: &HopTest, set: &TakeoffSet, limit: &LimitInterval) -> Self {
         let angles = set.angles_of(limit.lofts);
         Self {
             name: limit.limit.name(),
@@ -175,14 +175,14 @@ impl LimitRecord {
 }
 
 impl VertexRecord {
-    fn new(test: &HopTest<'_>, vertex: VertexId) -> Self {
+    fn new(test: &HopTest, vertex: VertexId) -> Self {
         let point = test.chain().geometry().vertices()[vertex.index()];
         Self { number: vertex.index() + 1, x_m: point.x_m, z_m: point.z_m }
     }
 }
 
 impl BindingRecord {
-    fn new(test: &HopTest<'_>, set: &TakeoffSet) -> Self {
+    fn new(test: &HopTest, set: &TakeoffSet) -> Self {
         if let Some(binding) = set.binding() {
             return Self::Ends {
                 lower: binding.lower.limit.name(),
@@ -197,7 +197,7 @@ impl BindingRecord {
     }
 
     /// What conflicts.
-    pub fn of_conflict(test: &HopTest<'_>, conflict: &Conflict) -> Self {
+    pub fn of_conflict(test: &HopTest, conflict: &Conflict) -> Self {
         let sentence = conflict.to_string();
         match conflict {
             Conflict::Alone(alone) => {
@@ -235,7 +235,7 @@ impl BestRecord {
 }
 
 impl SegmentHopsRecord {
-    fn new(test: &HopTest<'_>, takeoff: &Station, landing: &Station) -> Option<Self> {
+    fn new(test: &HopTest, takeoff: &Station, landing: &Station) -> Option<Self> {
         let hops = test.segment_hops(takeoff, landing)?;
         let reach = hops.reach();
         let takeoff_angle_deg = Angle::from_slope(reach.takeoff_slope()).degrees();

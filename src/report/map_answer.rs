@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::{HopRecord, TotalsRecord};
+use super::{HopRecord, SimulationRecord, TotalsRecord};
 use crate::{
     graph::Effort,
     quantity::MapPoint,
@@ -110,6 +110,11 @@ pub struct GoalRecord {
     pub path: Vec<HopRecord>,
     /// What they add up to; null: not reachable.
     pub totals: Option<TotalsRecord>,
+    /// Whether the path was flown again over the DEM by the independent checker and broke no limit; null: not reachable.
+    pub verified: Option<bool>,
+    /// How reliably the path is flown, where trials were asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub simulation: Option<SimulationRecord>,
 }
 
 /// What a map is summed up from.
@@ -251,6 +256,11 @@ impl MapAnswer {
         }
         for (hops, posts) in self.hops_histogram.iter().enumerate() {
             let _ = writeln!(text, "{hops:>6}{posts:>12}");
+        }
+        for goal in &self.goals {
+            if let Some(simulation) = &goal.simulation {
+                let _ = write!(text, "\ngoal ({:.3}, {:.3}) m\n{}", goal.x_m, goal.y_m, simulation.text());
+            }
         }
         text
     }

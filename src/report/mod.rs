@@ -33,6 +33,6 @@ pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord
 pub use reliability_record::{ReliablePathRecord, reliable_paths_text};
 pub use require_answer::{RequireAnswer, RequireTry};
 pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulationRecord};
-pub use text::{check_text, hop_text, path_text, require_text};
+pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow};
 pub use whole_file::{WholeFile, abandon_unfinished, write_whole};

@@ -5,7 +5,8 @@ use std::io::{self, Write};
 use serde::Serialize;
 
 use crate::{
-    path::{Hop, HopPath, MapEnds, Totals},
+    path::{Hop, HopPath, Totals},
+    quantity::MapPoint,
     terrain::MapProjection,
 };
 
@@ -81,8 +82,8 @@ pub struct LonLatRecord {
 }
 
 impl LonLatRecord {
-    fn new(map: &MapEnds, projection: &MapProjection) -> Option<Self> {
-        let [takeoff, landing] = [map.takeoff, map.landing].map(|at| projection.lon_lat(at));
+    fn new((takeoff, landing): (MapPoint, MapPoint), projection: &MapProjection) -> Option<Self> {
+        let [takeoff, landing] = [takeoff, landing].map(|at| projection.lon_lat(at));
         let (takeoff, landing) = (takeoff?, landing?);
         Some(Self {
             takeoff_lon_deg: tenth_digit(takeoff.lon_deg),
@@ -127,10 +128,10 @@ impl HopRecord {
         Self {
             hop: number,
             direction: hop.direction.name(),
-            takeoff_x_m: hop.takeoff.point.x_m,
-            takeoff_z_m: hop.takeoff.point.z_m,
-            landing_x_m: hop.landing.point.x_m,
-            landing_z_m: hop.landing.point.z_m,
+            takeoff_x_m: hop.takeoff.along_m,
+            takeoff_z_m: hop.takeoff.point_m.z,
+            landing_x_m: hop.landing.along_m,
+            landing_z_m: hop.landing.point_m.z,
             takeoff_angle_deg: hop.takeoff_angle.degrees(),
             takeoff_speed_m_s: hop.takeoff_speed_m_s,
             landing_angle_deg: hop.landing_angle.degrees(),
@@ -141,13 +142,13 @@ impl HopRecord {
             takeoff_angle_max_deg: hop.takeoff_angles.max.degrees(),
             speed_margin_m_s: hop.speed_margin_m_s,
             binding: format!("{}/{}", hop.lower_limit, hop.upper_limit),
-            map: hop.map.map(|map| MapRecord {
-                heading_deg: map.heading_deg,
-                takeoff_map_x_m: map.takeoff.x,
-                takeoff_map_y_m: map.takeoff.y,
-                landing_map_x_m: map.landing.x,
-                landing_map_y_m: map.landing.y,
-                lon_lat: projection.and_then(|projection| LonLatRecord::new(&map, projection)),
+            map: hop.map_ends().map(|ends @ (takeoff, landing)| MapRecord {
+                heading_deg: hop.heading_deg,
+                takeoff_map_x_m: takeoff.x,
+                takeoff_map_y_m: takeoff.y,
+                landing_map_x_m: landing.x,
+                landing_map_y_m: landing.y,
+                lon_lat: projection.and_then(|projection| LonLatRecord::new(ends, projection)),
             }),
         }
     }

@@ -140,16 +140,17 @@ fn gap_lines(sheet: &mut Sheet, gap: &GapRecord) {
 }
 
 /// What is proved, in a few lines.
-fn proof_lines(sheet: &mut Sheet, proof: &ProofRecord) {
+fn proof_lines(sheet: &mut Sheet, proof: &ProofRecord, means: FurtherMeans<'_>) {
     match (proof.lower_bound, proof.upper_bound) {
         (None, _) => sheet.line(format_args!("proved: no path exists, at any resolution")),
         (Some(lower), Some(_)) if proof.proved => {
             sheet.line(format_args!("proved: no path has fewer than {lower} hop{}, at any resolution", plural(lower)));
         }
         (Some(lower), upper) => sheet.line(format_args!(
-            "open: no path has fewer than {lower} hop{}, {}; a larger --budget may tell more",
+            "open: no path has fewer than {lower} hop{}, {}; a larger {} may tell more",
             plural(lower),
-            upper.map_or_else(|| "and none was found".to_owned(), |upper| format!("the best one found has {upper}"))
+            upper.map_or_else(|| "and none was found".to_owned(), |upper| format!("the best one found has {upper}")),
+            means.budget
         )),
     }
     let summary = proof.proof;
@@ -167,8 +168,24 @@ const fn plural(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
+/// The names of what can tell more than an answer does, as its reader can ask for them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FurtherMeans<'a> {
+    /// How many cells a proof may use.
+    pub budget: &'a str,
+    /// A proof that there is no path.
+    pub proof: &'a str,
+}
+
+impl Default for FurtherMeans<'_> {
+    /// As the library names them.
+    fn default() -> Self {
+        Self { budget: "budget of cells", proof: "a proof by bounds" }
+    }
+}
+
 /// What `chta check` prints for one pair.
-pub fn check_text(answer: &CheckAnswer) -> String {
+pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     let mut sheet = Sheet::default();
     let hops = answer.hops.map_or(String::new(), |hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" }));
     sheet.line(format_args!(
@@ -181,7 +198,7 @@ pub fn check_text(answer: &CheckAnswer) -> String {
         sheet.line(format_args!("{}: {:.4} {}", effort.total, effort.value, effort.unit));
     }
     if let Some(proof) = &answer.proof {
-        proof_lines(&mut sheet, proof);
+        proof_lines(&mut sheet, proof, means);
     }
     sheet.line(format_args!(
         "{} nodes (up to {} inside a segment), pairs of them tested: {}",
@@ -223,7 +240,8 @@ pub fn check_text(answer: &CheckAnswer) -> String {
         }
         if answer.proof.is_none() {
             sheet.line(format_args!(
-                "more points per segment may find a path: this is no proof that there is none; --prove looks for one"
+                "more points per segment may find a path: this is no proof that there is none; {} looks for one",
+                means.proof
             ));
         }
     }

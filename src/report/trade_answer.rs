@@ -124,10 +124,11 @@ impl TradeAnswer {
         for (name, line) in heads.iter().zip(&lines) {
             let _ = writeln!(text, "{}", row(name, line));
         }
-        if lines.iter().flatten().any(|sign| sign == "-") {
+        let without_path = |closed| self.rows.iter().any(|row| row.hops.is_none() && row.is_closed() == closed);
+        if without_path(false) {
             text.push_str("\n-: no path found\n");
         }
-        if lines.iter().flatten().any(|sign| sign == "x") {
+        if without_path(true) {
             text.push_str("\nx: proved, there is no path\n");
         }
         text

@@ -67,7 +67,7 @@ impl WholeFile {
         };
         // Listed before anything else can happen to it: an interrupt waits here.
         let mut names = unfinished();
-        let temporary = builder().tempfile_in(folder).map_err(|error| without_temporary_name(&error))?;
+        let temporary = temporary_in(folder)?;
         names.insert(temporary.path().to_path_buf());
         let listed = Listed(temporary.path().to_path_buf());
         Ok(Self(Place::Beside { temporary, target, listed }))
@@ -81,8 +81,10 @@ impl WholeFile {
         match &mut self.0 {
             Place::Direct(file) => file.write_all(bytes),
             Place::Beside { temporary, .. } => {
-                temporary.write_all(bytes).map_err(|error| without_temporary_name(&error))?;
-                temporary.as_file().sync_all()
+                // The file itself: its errors do not name it, which would tell the user nothing and differ every time.
+                let file = temporary.as_file_mut();
+                file.write_all(bytes)?;
+                file.sync_all()
             }
         }
     }
@@ -126,29 +128,16 @@ pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     file.keep()
 }
 
-/// The system's own error, without the name of a temporary file, which tells the user nothing and differs every time.
-fn without_temporary_name(error: &io::Error) -> io::Error {
-    let text = error.to_string();
-    let system = text.split_once(" at path ").map_or(text.as_str(), |(system, _)| system);
-    io::Error::new(error.kind(), system)
-}
-
-/// Temporary files with the permissions that any new file would get.
-#[cfg(unix)]
-fn builder() -> tempfile::Builder<'static, 'static> {
-    use std::os::unix::fs::PermissionsExt;
-
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".chta-").permissions(fs::Permissions::from_mode(0o666));
-    builder
-}
-
-/// Temporary files as the platform makes them.
-#[cfg(not(unix))]
-fn builder() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    builder.prefix(".chta-");
-    builder
+/// A temporary file with the permissions that any new file would get. Where there is none, the system's own error, without its name.
+fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut of_the_system = None;
+    let open = |path: &Path| {
+        let opened = fs::OpenOptions::new().read(true).write(true).create_new(true).open(path);
+        of_the_system = opened.as_ref().err().and_then(io::Error::raw_os_error);
+        opened
+    };
+    let made = tempfile::Builder::new().prefix(".chta-").make_in(folder, open);
+    made.map_err(|error| of_the_system.map_or_else(|| io::Error::from(error.kind()), io::Error::from_raw_os_error))
 }
 
 #[cfg(test)]

@@ -1,22 +1,22 @@
 //! Whether a key's value matters.
 
 use super::{Prepared, Scenario};
-use crate::world::Hopper;
+use crate::world::{Hopper, HopperLimits};
 
 /// Whether two scenarios ask the same of every hop between the same ends over the same points: of the ground, the machine and gravity.
 ///
 /// Greatest speeds count as the segments allow them, so one beyond the chain's own limits changes nothing; mass and rest time weigh
 /// nothing.
 pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &Prepared)) -> bool {
-    let machine = |hopper: &Hopper| Hopper {
+    let machine = |hopper: &Hopper| HopperLimits {
         takeoff_speed_max_m_s: 0.0,
         landing_speed_max_m_s: 0.0,
         mass_kg: None,
         rest_time_s: None,
-        ..*hopper
+        ..*hopper.limits()
     };
     machine(&a.hopper) == machine(&b.hopper)
-        && a.body.gravity_m_s2 == b.body.gravity_m_s2
+        && a.body.gravity == b.body.gravity
         && a.search.spacing == b.search.spacing
         && (on_a.start, on_a.goal) == (on_b.start, on_b.goal)
         && on_a.chain.segments() == on_b.chain.segments()

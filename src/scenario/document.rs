@@ -47,7 +47,7 @@ fn body(scenario: &Scenario) -> Value {
     let body = &scenario.body;
     object([
         ("name", body.name.clone().map(Value::from)),
-        ("gravity_m_s2", Some(body.gravity_m_s2.into())),
+        ("gravity_m_s2", Some(body.gravity.m_s2().into())),
         ("radius_m", body.radius_m.map(Value::from)),
     ])
 }
@@ -55,15 +55,15 @@ fn body(scenario: &Scenario) -> Value {
 fn hopper(scenario: &Scenario) -> Value {
     let hopper = &scenario.hopper;
     object([
-        ("takeoff_speed_max_m_s", finite(hopper.takeoff_speed_max_m_s)),
-        ("landing_speed_max_m_s", finite(hopper.landing_speed_max_m_s)),
-        ("clearance_m", Some(hopper.clearance_m.into())),
-        ("takeoff_angle_min_deg", hopper.takeoff_angle_min.map(|angle| degrees(angle).into())),
-        ("takeoff_angle_max_deg", hopper.takeoff_angle_max.map(|angle| degrees(angle).into())),
-        ("apex_height_max_m", hopper.apex_height_max_m.map(Value::from)),
-        ("flight_time_max_s", hopper.flight_time_max_s.map(Value::from)),
-        ("mass_kg", hopper.mass_kg.map(Value::from)),
-        ("rest_time_s", hopper.rest_time_s.map(Value::from)),
+        ("takeoff_speed_max_m_s", finite(hopper.limits().takeoff_speed_max_m_s)),
+        ("landing_speed_max_m_s", finite(hopper.limits().landing_speed_max_m_s)),
+        ("clearance_m", Some(hopper.limits().clearance_m.into())),
+        ("takeoff_angle_min_deg", hopper.limits().takeoff_angle_min.map(|angle| degrees(angle).into())),
+        ("takeoff_angle_max_deg", hopper.limits().takeoff_angle_max.map(|angle| degrees(angle).into())),
+        ("apex_height_max_m", hopper.limits().apex_height_max_m.map(Value::from)),
+        ("flight_time_max_s", hopper.limits().flight_time_max_s.map(Value::from)),
+        ("mass_kg", hopper.limits().mass_kg.map(Value::from)),
+        ("rest_time_s", hopper.limits().rest_time_s.map(Value::from)),
     ])
 }
 

@@ -4,14 +4,14 @@ use std::{collections::BTreeMap, ops::Range};
 
 use toml::de::{DeTable, DeValue};
 
-use super::{CATALOGUE, Key, Kind, ScenarioProblem};
+use super::{CATALOGUE, Key, KeyPath, Kind, ProblemKind, ScenarioProblem};
 
 /// Where a value was given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// These bytes of the scenario file.
     File(Range<usize>),
-    /// This option of the command line.
+    /// Beside the file, under this name: an option, say.
     Option(String),
     /// Nowhere in particular.
     Nowhere,
@@ -41,6 +41,8 @@ impl Entries {
             Ok(document) => document,
             Err(error) => {
                 entries.problems.push(ScenarioProblem {
+                    key: KeyPath::default(),
+                    kind: ProblemKind::Syntax,
                     place: error.span().map_or(Place::Nowhere, Place::File),
                     message: format!("this is not TOML: {}", error.message().replace('\n', ", ")),
                     help: "see the example in README.md; texts stand in quotes, tables in [brackets]".to_owned(),
@@ -80,7 +82,7 @@ impl Entries {
         let mut entries = Self::default();
         let Some(tables) = scenario.as_object() else {
             let message = format!("scenario is {}, expected an object of tables", shortened(&scenario.to_string()));
-            entries.problem(Place::Nowhere, message, "give a result.json that chta wrote");
+            entries.problem(("", ""), ProblemKind::Syntax, message, "give a result.json that chta wrote");
             entries.unreadable = true;
             return entries;
         };
@@ -102,9 +104,10 @@ impl Entries {
         entries
     }
 
-    /// Sets `table.key=value` as the command line says it. A value that is no TOML value counts as a text.
-    pub fn set(&mut self, assignment: &str) {
-        let option = Place::Option(format!("--set {assignment}"));
+    /// Sets `table.key=value`; problems with it begin with the place, which is the caller's name for it, such as an option. A value
+    /// that is no TOML value counts as a text.
+    pub fn set(&mut self, place: &str, assignment: &str) {
+        let option = Place::Option(place.to_owned());
         let parsed = assignment.split_once('=').and_then(|(path, value)| Some((path.trim().split_once('.')?, value.trim())));
         match parsed {
             Some(((table, name), value)) => {
@@ -116,11 +119,13 @@ impl Entries {
                 let value = if takes_text && !typed.is_str() { text() } else { typed };
                 self.add(table, name, value, option.clone(), option);
             }
-            None => self.problems.push(ScenarioProblem {
-                place: option,
-                message: "found no table.key=value".to_owned(),
-                help: "write it as --set hopper.takeoff_speed_max_m_s=8".to_owned(),
-            }),
+            None => self.problem_at(
+                option,
+                ("", ""),
+                ProblemKind::Syntax,
+                "found no table.key=value".to_owned(),
+                "write it as hopper.takeoff_speed_max_m_s=8",
+            ),
         }
     }
 
@@ -157,9 +162,32 @@ impl Entries {
         &self.problems
     }
 
-    /// Adds a problem.
-    pub(super) fn problem(&mut self, place: Place, message: String, help: impl Into<String>) {
-        self.problems.push(ScenarioProblem { place, message, help: help.into() });
+    /// Adds a problem of a key, at the place where that key was given, if it was.
+    pub(super) fn problem(&mut self, key: (&str, &str), kind: ProblemKind, message: String, help: impl Into<String>) {
+        let place = self.place(key.0, key.1).unwrap_or(Place::Nowhere);
+        self.problem_at(place, key, kind, message, help);
+    }
+
+    /// Adds a problem of a key at another place.
+    pub(super) fn problem_at(
+        &mut self,
+        place: Place,
+        (table, name): (&str, &str),
+        kind: ProblemKind,
+        message: String,
+        help: impl Into<String>,
+    ) {
+        self.problems.push(ScenarioProblem { key: KeyPath::new(table, name), kind, place, message, help: help.into() });
+    }
+
+    /// Whether one of these keys was given with a value that it does not take.
+    pub(super) fn has_refused(&self, table: &str, names: &[&str]) -> bool {
+        self.problems.iter().any(|problem| problem.kind == ProblemKind::Value && problem.key.is_one_of(table, names))
+    }
+
+    /// Whether a table has a key that is not known, so that any key that is missing may be meant by it.
+    pub(super) fn has_unknown(&self, table: &str) -> bool {
+        self.problems.iter().any(|problem| problem.kind == ProblemKind::Unknown && problem.key.table == table)
     }
 
     /// Where a key was given; `None` where it was not.
@@ -220,14 +248,14 @@ impl Entries {
     /// Tells that a value is none that its key takes.
     fn misfit(&mut self, key: &Key, value: &str, place: Place) {
         let message = format!("{} is {}, expected {}", key.path(), shortened(value), key.kind.expected());
-        self.problem(place, message, format!("it means: {}", key.help));
+        self.problem_at(place, (key.table, key.name), ProblemKind::Value, message, format!("it means: {}", key.help));
     }
 
     /// Names an unknown key or table and the nearest known one.
     fn unknown(&mut self, table: &str, name: &str, place: Place) {
         if table.is_empty() && tables().any(|known| known == name) {
             let help = format!("write [{name}] on a line of its own and its keys below");
-            return self.problem(place, format!("{name} is a value, expected a table"), help);
+            return self.problem_at(place, (name, ""), ProblemKind::Value, format!("{name} is a value, expected a table"), help);
         }
         let near_table = tables().find(|known| strsim::damerau_levenshtein(table, known) <= 2);
         let (given, help) = match (table, name, near_table) {
@@ -238,7 +266,7 @@ impl Entries {
             ("", name, _) => (format!("key {}", shortened(name)), nearest_key("", name)),
             (table, name, _) => (format!("key {}", shortened(&format!("{table}.{name}"))), nearest_key(table, name)),
         };
-        self.problem(place, format!("unknown {given}"), help);
+        self.problem_at(place, (table, name), ProblemKind::Unknown, format!("unknown {given}"), help);
     }
 }
 

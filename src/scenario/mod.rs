@@ -15,9 +15,10 @@ pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
 pub use pipeline::{
-    Extremes, Overlays, PipelineError, Prepared, Survey, Transect, constant_gravity_warnings, friction, prepare, sha256_of,
+    Extremes, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, constant_gravity_warnings, friction, prepare,
+    sha256_of,
 };
-pub use problem::{ScenarioProblem, ScenarioProblems};
-pub use read::{BodyChoice, Scenario, TerrainSource};
+pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
+pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};
 pub use trade::{SweptKey, Trade, TradeError, Varied, verdict};
 pub use trials::UncertaintyKeys;

@@ -5,6 +5,7 @@ use std::{
     fs::File,
     io::{self, Read},
     path::{Path, PathBuf},
+    sync::Arc,
 };
 
 use sha2::{Digest, Sha256};
@@ -12,11 +13,12 @@ use sha2::{Digest, Sha256};
 use super::{BodyChoice, Scenario, TerrainSource};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
+    ground::DemGround,
     path::Hop,
     quantity::MapPoint,
     terrain::{
-        CoordinateSystem, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection, Profile, TerrainError, check_scale,
-        open_dem, read_friction_raster, read_keep_out, read_mesh, slice_legs, slice_mesh,
+        self, CoordinateSystem, Dem, MapBounds, MapPlace, MapProjection, OverlaidDem, OverlayEffect, Profile, TerrainError,
+        check_scale, open_dem, read_friction_raster, read_keep_out, read_mesh, slice_legs, slice_mesh,
     },
     world::{Body, FrictionCone, Grip},
 };
@@ -25,7 +27,7 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The chain with its constraints.
-    pub chain: ConstrainedChain,
+    pub chain: Arc<ConstrainedChain>,
     /// Where the journey begins.
     pub start: Option<Station>,
     /// Where it ends.
@@ -34,6 +36,25 @@ pub struct Prepared {
     pub projection: Option<MapProjection>,
     /// What the reader of the terrain noticed.
     pub warnings: Vec<String>,
+}
+
+/// One end of a journey.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JourneyEnd {
+    /// Where it begins.
+    Start,
+    /// Where it ends.
+    Goal,
+}
+
+impl JourneyEnd {
+    /// `start` or `goal`, with which the names of its keys begin.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Goal => "goal",
+        }
+    }
 }
 
 /// Why a scenario's terrain gives no chain to analyse.
@@ -53,10 +74,10 @@ pub enum PipelineError {
     #[error(transparent)]
     Constraints(#[from] ConstraintProblems),
     /// A start or goal off the chain.
-    #[error("{which}: {problem}")]
+    #[error("{}: {problem}", which.name())]
     OffChain {
-        /// `start` or `goal`.
-        which: &'static str,
+        /// Which of the two.
+        which: JourneyEnd,
         /// Where, and where the chain is.
         problem: OffChain,
     },
@@ -164,12 +185,12 @@ fn resolved(
     projection: Option<MapProjection>,
     warnings: Vec<String>,
 ) -> Result<Prepared, PipelineError> {
-    let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface)?;
+    let chain = Arc::new(ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)?);
     let station = |which, x_m: Option<f64>| {
         x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
     };
-    let start = station("start", scenario.start_x_m.or(ends.0))?;
-    let goal = station("goal", scenario.goal_x_m.or(ends.1))?;
+    let start = station(JourneyEnd::Start, scenario.start_x_m.or(ends.0))?;
+    let goal = station(JourneyEnd::Goal, scenario.goal_x_m.or(ends.1))?;
     Ok(Prepared { chain, start, goal, projection, warnings })
 }
 
@@ -231,12 +252,11 @@ impl Transect {
     }
 }
 
-/// The overlays of a scenario on its terrain: friction, and keep-out zones.
+/// The overlays of a scenario on its terrain, read once, with the friction where no raster gives any.
 #[derive(Clone, Debug)]
 pub struct Overlays {
     constant: Option<FrictionCone>,
-    raster: Option<FrictionRaster>,
-    keep_out: Option<KeepOut>,
+    overlays: Arc<terrain::Overlays>,
 }
 
 impl Overlays {
@@ -254,17 +274,14 @@ impl Overlays {
     ) -> Result<Self, TerrainError> {
         let raster = scenario.friction_raster.as_deref().map(|path| read_friction_raster(&base.join(path), coordinates));
         let keep_out = scenario.keep_out.as_deref().map(|path| read_keep_out(&base.join(path), coordinates, bounds));
-        Ok(Self { constant: friction(scenario), raster: raster.transpose()?, keep_out: keep_out.transpose()? })
+        let overlays = terrain::Overlays::new(raster.transpose()?, keep_out.transpose()?);
+        Ok(Self { constant: friction(scenario), overlays: Arc::new(overlays) })
     }
 
-    /// Friction from a raster, where the scenario names one.
-    pub const fn friction_raster(&self) -> Option<&FrictionRaster> {
-        self.raster.as_ref()
-    }
-
-    /// Zones, where the scenario names some.
-    pub const fn keep_out(&self) -> Option<&KeepOut> {
-        self.keep_out.as_ref()
+    /// The ground of a whole DEM under these overlays, for a scenario's hopper, gravity and surface.
+    pub fn ground(&self, dem: Dem, scenario: &Scenario) -> DemGround {
+        let terrain = OverlaidDem::new(dem, Arc::clone(&self.overlays));
+        DemGround::new(terrain, &scenario.hopper, scenario.body.gravity, &scenario.surface)
     }
 
     /// The files of a scenario that are read, from its folder.
@@ -274,41 +291,31 @@ impl Overlays {
 
     /// A sentence for each overlay without effect on a DEM of these bounds.
     pub fn without_effect_on_dem(&self, bounds: MapBounds) -> Vec<String> {
-        let raster = self.raster.as_ref().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
-        let keep_out =
-            self.keep_out.as_ref().filter(|keep_out| !keep_out.meets(bounds)).map(|keep_out| keep_out.without_effect("the DEM"));
+        let raster =
+            self.overlays.friction().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
+        let keep_out = self.overlays.keep_out().filter(|zones| !zones.meets(bounds)).map(|zones| zones.without_effect("the DEM"));
         raster.into_iter().chain(keep_out).collect()
     }
 
-    /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones.
+    /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones, and a sentence for each overlay without
+    /// effect on it.
     ///
     /// # Errors
     /// [`TerrainError::Overlay`] where a raster ends before the slice does.
-    pub fn chain(&self, legs: Vec<Profile>) -> Result<PolygonalChain, PipelineError> {
-        self.chain_with_warnings(legs).map(|(chain, _)| chain)
-    }
-
-    /// The same, with a sentence for each overlay without effect on it.
-    ///
-    /// # Errors
-    /// As [`Overlays::chain`].
     pub fn chain_with_warnings(&self, legs: Vec<Profile>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
         self.laid(legs, self.constant)
     }
 
     /// The same with this friction where no raster says it.
     fn laid(&self, mut legs: Vec<Profile>, constant: Option<FrictionCone>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
-        let (mut says_friction, mut keeps_out) = (false, false);
+        let mut effect = OverlayEffect::default();
         for leg in &mut legs {
-            if let Some(raster) = &self.raster {
-                says_friction |= raster.lay(leg, constant)?;
-            }
-            if let Some(keep_out) = &self.keep_out {
-                keeps_out |= keep_out.mark(leg)?;
-            }
+            let of_leg = self.overlays.lay(leg, constant)?;
+            effect.friction |= of_leg.friction;
+            effect.keep_out |= of_leg.keep_out;
         }
-        let raster = self.raster.as_ref().filter(|_| !says_friction).map(|raster| raster.without_effect("the transect"));
-        let keep_out = self.keep_out.as_ref().filter(|_| !keeps_out).map(|keep_out| keep_out.without_effect("the transect"));
+        let raster = self.overlays.friction().filter(|_| !effect.friction).map(|raster| raster.without_effect("the transect"));
+        let keep_out = self.overlays.keep_out().filter(|_| !effect.keep_out).map(|zones| zones.without_effect("the transect"));
         Ok((PolygonalChain::from_legs(&legs, constant)?, raster.into_iter().chain(keep_out).collect()))
     }
 }
@@ -360,8 +367,8 @@ impl Extremes {
     pub fn of(hops: &[Hop]) -> Self {
         let largest = |of: fn(&Hop) -> f64| hops.iter().map(of).fold(0.0, f64::max);
         Self {
-            range_m: largest(|h| (h.landing.point.x_m - h.takeoff.point.x_m).abs()),
-            height_m: largest(|h| h.apex_z_m - h.takeoff.point.z_m),
+            range_m: largest(Hop::run_m),
+            height_m: largest(|h| h.apex_z_m - h.takeoff.point_m.z),
             speed_m_s: largest(|h| h.takeoff_speed_m_s.max(h.landing_speed_m_s)),
         }
     }
@@ -374,7 +381,7 @@ impl Extremes {
 pub fn constant_gravity_warnings(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
     let Some(radius_m) = body.radius_m else { return Vec::new() };
     let name = body.name.as_deref().unwrap_or("the body");
-    let escape_m_s = Body { name: "", gravity_m_s2: body.gravity_m_s2, radius_m, source: "" }.escape_speed_m_s();
+    let escape_m_s = Body { name: "", gravity: body.gravity, radius_m, source: "" }.escape_speed_m_s();
     let Extremes { range_m, height_m, speed_m_s } = extremes;
     let lengths = [("range", range_m), ("highest point above its take-off", height_m)];
     let mut warnings: Vec<String> = lengths

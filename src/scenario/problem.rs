@@ -4,10 +4,53 @@ use std::{fmt, ops::Range};
 
 use super::Place;
 
+/// The key that a problem is about, as it was given, known or not.
+#[derive(Clone, Debug, PartialEq, Eq, Default)]
+pub struct KeyPath {
+    /// The table; empty where the key stands in none, and where the problem is about the whole text.
+    pub table: String,
+    /// The name in that table; empty where the problem is about the whole table.
+    pub name: String,
+}
+
+impl KeyPath {
+    /// The key of this name in this table.
+    pub fn new(table: &str, name: &str) -> Self {
+        Self { table: table.to_owned(), name: name.to_owned() }
+    }
+
+    /// Whether it is one of these keys of a table.
+    pub fn is_one_of(&self, table: &str, names: &[&str]) -> bool {
+        self.table == table && names.contains(&self.name.as_str())
+    }
+}
+
+/// What kind of problem a key has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ProblemKind {
+    /// The text is no scenario, or an assignment does not read as `table.key=value`.
+    Syntax,
+    /// There is no such key or table.
+    Unknown,
+    /// The key does not take this value.
+    Value,
+    /// The key is absent and needed.
+    Missing,
+    /// The key excludes another one that was given.
+    Conflict,
+    /// The key has no meaning beside the others that were given.
+    Misplaced,
+}
+
 /// One thing that is wrong with a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioProblem {
-    /// Where: in the file, on the command line, or nowhere in particular (something missing).
+    /// The key that it is about. Decisions are made on it and on [`kind`](Self::kind), never on the message.
+    pub key: KeyPath,
+    /// What kind of problem that key has.
+    pub kind: ProblemKind,
+    /// Where: in the file, in what was set beside it, or nowhere in particular (something missing).
     pub place: Place,
     /// What was found and what was expected, in one sentence without a full stop.
     pub message: String,

@@ -2,14 +2,14 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Entries, Place, ScenarioProblem, UncertaintyKeys};
+use super::{Entries, Place, ProblemKind, ScenarioProblem, UncertaintyKeys};
 use crate::{
     ballistics::TakeoffChoice,
     graph::{Effort, PointSpacing, ReliabilityUse, SearchOptions},
     hop::Split,
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace},
-    world::{Body, FrictionCone, Grip, Hopper, KNOWN_BODIES, RestSlope, Surface},
+    world::{Body, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES, RestSlope, SurfaceProperties},
 };
 
 /// Gravity, and the body it belongs to where that is known.
@@ -17,8 +17,8 @@ use crate::{
 pub struct BodyChoice {
     /// The known body's name.
     pub name: Option<String>,
-    /// Gravity, m/s^2.
-    pub gravity_m_s2: f64,
+    /// Gravity.
+    pub gravity: Gravity,
     /// Mean radius, m, where known.
     pub radius_m: Option<f64>,
 }
@@ -79,7 +79,7 @@ pub struct Scenario {
     /// The robot.
     pub hopper: Hopper,
     /// The ground's grip.
-    pub surface: Surface,
+    pub surface: SurfaceProperties,
     /// Raster of friction coefficients, from the scenario's folder.
     pub friction_raster: Option<PathBuf>,
     /// Keep-out zones, from the scenario's folder.
@@ -154,32 +154,35 @@ impl Scenario {
 }
 
 impl Scenario {
-    /// What is missing for hops over a DEM, which has no chain whose columns could say it, and how to give it; `None` where nothing is.
-    pub fn lacks_on_a_dem(&self) -> Option<String> {
+    /// The keys that are missing for hops over a DEM, which has no chain whose columns could give them.
+    pub fn lacks_on_a_dem(&self) -> Vec<LackingKey> {
         let no_grip = self.surface.grip.is_none() && self.friction_raster.is_none();
-        let from_slope = " (or surface.takeoff_from_slope_deg and surface.landing_from_slope_deg)";
+        let from_slope: &[_] = &["surface.takeoff_from_slope_deg", "surface.landing_from_slope_deg"];
         let keys = [
-            (self.hopper.takeoff_speed_max_m_s.is_infinite(), "hopper.takeoff_speed_max_m_s", "8", ""),
-            (self.hopper.landing_speed_max_m_s.is_infinite(), "hopper.landing_speed_max_m_s", "8", ""),
-            (no_grip, "surface.friction_coefficient", "0.6", from_slope),
+            (self.hopper.limits().takeoff_speed_max_m_s.is_infinite(), "hopper.takeoff_speed_max_m_s", 8.0, &[][..]),
+            (self.hopper.limits().landing_speed_max_m_s.is_infinite(), "hopper.landing_speed_max_m_s", 8.0, &[]),
+            (no_grip, "surface.friction_coefficient", 0.6, from_slope),
         ];
-        let missing = || keys.iter().filter(|(missing, ..)| *missing);
-        let names: Vec<_> = missing().map(|(_, key, _, instead)| format!("{key}{instead}")).collect();
-        let sets: Vec<_> = missing().map(|(_, key, value, _)| format!("--set {key}={value}")).collect();
-        (!names.is_empty()).then(|| {
-            format!(
-                "found no {}, expected in the scenario, since a DEM has no columns that say it: add it to the file of --scenario, or give, \
-                 for example, {}",
-                names.join(", no "),
-                sets.join(" ")
-            )
-        })
+        let missing = keys.into_iter().filter(|(missing, ..)| *missing);
+        missing.map(|(_, key, example, instead)| LackingKey { key, instead, example }).collect()
     }
+}
+
+/// A key that is absent and needed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LackingKey {
+    /// The key, `table.name`.
+    pub key: &'static str,
+    /// Keys that together do in its place.
+    pub instead: &'static [&'static str],
+    /// A value that it may have.
+    pub example: f64,
 }
 
 /// Gravity and radius: from a known body, from numbers, or from both.
 fn body(entries: &mut Entries) -> Option<BodyChoice> {
-    let gravity = entries.number("body", "gravity_m_s2");
+    // The catalogue's range lies within that of `Gravity`.
+    let gravity = entries.number("body", "gravity_m_s2").and_then(|m_s2| Gravity::new(m_s2).ok());
     let radius = entries.number("body", "radius_m");
     let name = entries.text("body", "name").map(str::to_owned);
     match (&name, gravity) {
@@ -190,16 +193,16 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
             };
             Some(BodyChoice {
                 name: Some(known.name.to_owned()),
-                gravity_m_s2: gravity.unwrap_or(known.gravity_m_s2),
+                gravity: gravity.unwrap_or(known.gravity),
                 radius_m: Some(radius.unwrap_or(known.radius_m)),
             })
         }
-        (None, Some(gravity_m_s2)) => Some(BodyChoice { name: None, gravity_m_s2, radius_m: radius }),
+        (None, Some(gravity)) => Some(BodyChoice { name: None, gravity, radius_m: radius }),
         (None, None) => {
-            // A gravity that was given but refused has told its own problem.
-            if !entries.problems().iter().any(|problem| problem.message.contains("body.")) {
-                let help = "add [body] with name = \"mars\" or gravity_m_s2 = 3.711, or use --body or --gravity-m-s2";
-                entries.problem(Place::Nowhere, "found no gravity".to_owned(), help);
+            // A gravity or a body that was given but refused, or misspelt, is a problem of its own already.
+            if !entries.has_unknown("body") && !entries.has_refused("body", &["name", "gravity_m_s2"]) {
+                let help = "add [body] with name = \"mars\" or gravity_m_s2 = 3.711";
+                entries.problem(("body", "gravity_m_s2"), ProblemKind::Missing, "found no gravity".to_owned(), help);
             }
             None
         }
@@ -209,18 +212,17 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
 /// Tells that no known body has this name, and which comes nearest.
 fn unknown_body(entries: &mut Entries, name: &str) {
     let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
-    let place = entries.place("body", "name").unwrap_or(Place::Nowhere);
     let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
     let lower_case = name.to_lowercase();
     let near = names.iter().min_by_key(|known| strsim::damerau_levenshtein(&lower_case, known)).copied().unwrap_or_default();
     let help = format!("the nearest known name is {near}; for any other body give gravity_m_s2 instead of a name");
-    entries.problem(place, message, help);
+    entries.problem(("body", "name"), ProblemKind::Value, message, help);
 }
 
 /// The robot; what is absent does not limit.
 fn hopper(entries: &mut Entries) -> Hopper {
     let number = |name| entries.number("hopper", name);
-    let hopper = Hopper {
+    let limits = HopperLimits {
         takeoff_speed_max_m_s: number("takeoff_speed_max_m_s").unwrap_or(f64::INFINITY),
         landing_speed_max_m_s: number("landing_speed_max_m_s").unwrap_or(f64::INFINITY),
         clearance_m: number("clearance_m").unwrap_or(0.0),
@@ -231,42 +233,50 @@ fn hopper(entries: &mut Entries) -> Hopper {
         mass_kg: number("mass_kg"),
         rest_time_s: number("rest_time_s"),
     };
-    if let (Some(min), Some(max)) = (hopper.takeoff_angle_min, hopper.takeoff_angle_max)
+    if let (Some(min), Some(max)) = (limits.takeoff_angle_min, limits.takeoff_angle_max)
         && min > max
     {
-        let place = entries.place("hopper", "takeoff_angle_min_deg").unwrap_or(Place::Nowhere);
         let message = format!(
             "hopper.takeoff_angle_min_deg is {}, expected no more than the takeoff_angle_max_deg of {}",
             min.degrees(),
             max.degrees()
         );
-        entries.problem(place, message, "swap the two or widen the range");
+        let help = "swap the two or widen the range";
+        entries.problem(("hopper", "takeoff_angle_min_deg"), ProblemKind::Conflict, message, help);
+        return Hopper::UNLIMITED;
     }
-    hopper
+    // The catalogue's ranges lie within those of a hopper; should they ever not, the hopper's own words are the problem.
+    Hopper::new(limits).unwrap_or_else(|InvalidHopper(problems)| {
+        for problem in problems {
+            entries.problem(("hopper", problem.key), ProblemKind::Value, problem.to_string(), "give a value in that range");
+        }
+        Hopper::UNLIMITED
+    })
 }
 
 /// Friction or angles from the slope, and the rest slope.
-fn surface(entries: &mut Entries) -> Surface {
+fn surface(entries: &mut Entries) -> SurfaceProperties {
     let friction = entries.number("surface", "friction_coefficient");
     let offsets = |entries: &Entries, name| entries.pair("surface", name).map(|[min, max]| AngleInterval::from_degrees(min, max));
     let takeoff = offsets(entries, "takeoff_from_slope_deg");
     let landing = offsets(entries, "landing_from_slope_deg");
-    let place = |entries: &Entries, name| entries.place("surface", name).unwrap_or(Place::Nowhere);
     let grip = match (friction, takeoff, landing) {
         (Some(mu), None, None) => FrictionCone::new(mu).ok().map(Grip::Friction),
         (None, Some(takeoff), Some(landing)) => Some(Grip::FromSlope { takeoff, landing }),
         (None, None, None) => None,
         (Some(_), _, _) => {
-            let place = place(entries, "friction_coefficient");
             let message = "surface has both friction_coefficient and angles from the slope, expected one of the two".to_owned();
-            entries.problem(place, message, "remove friction_coefficient, or takeoff_from_slope_deg and landing_from_slope_deg");
+            let help = "remove friction_coefficient, or takeoff_from_slope_deg and landing_from_slope_deg";
+            entries.problem(("surface", "friction_coefficient"), ProblemKind::Conflict, message, help);
             None
         }
         (None, _, _) => {
             let (given, missing) = if takeoff.is_some() { ("takeoff", "landing") } else { ("landing", "takeoff") };
-            let place = place(entries, if takeoff.is_some() { "takeoff_from_slope_deg" } else { "landing_from_slope_deg" });
-            let message = format!("surface has {given}_from_slope_deg without {missing}_from_slope_deg");
-            entries.problem(place, message, format!("add {missing}_from_slope_deg = [min, max]"));
+            let (given, missing) = (format!("{given}_from_slope_deg"), format!("{missing}_from_slope_deg"));
+            let place = entries.place("surface", &given).unwrap_or(Place::Nowhere);
+            let message = format!("surface has {given} without {missing}");
+            let help = format!("add {missing} = [min, max]");
+            entries.problem_at(place, ("surface", &missing), ProblemKind::Missing, message, help);
             None
         }
     };
@@ -277,23 +287,25 @@ fn surface(entries: &mut Entries) -> Surface {
             _ => RestSlope::Unlimited,
         },
     };
-    Surface { grip, rest }
+    SurfaceProperties { grip, rest }
 }
 
 /// The files of the overlays on the terrain: friction raster and keep-out zones.
-fn overlays(entries: &mut Entries, surface: &Surface, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 2] {
+fn overlays(entries: &mut Entries, surface: &SurfaceProperties, terrain: Option<&TerrainSource>) -> [Option<PathBuf>; 2] {
     let own_columns = [("friction_raster", "friction_coefficient"), ("keep_out", "keep_out")];
     if matches!(terrain, Some(TerrainSource::Chain { .. })) {
         for (name, column) in own_columns {
-            if let Some(place) = entries.place("surface", name) {
-                let help = format!("give the chain a column {column} instead, as chta slice --scenario does");
-                entries.problem(place, format!("surface.{name} is laid over a dem, but terrain has a chain"), help);
+            if entries.value("surface", name).is_some() {
+                let help = format!("give the chain a column {column} instead");
+                let message = format!("surface.{name} is laid over a dem, but terrain has a chain");
+                entries.problem(("surface", name), ProblemKind::Misplaced, message, help);
             }
         }
     }
-    if let (Some(Grip::FromSlope { .. }), Some(place)) = (surface.grip, entries.place("surface", "friction_raster")) {
+    if let (Some(Grip::FromSlope { .. }), Some(_)) = (surface.grip, entries.value("surface", "friction_raster")) {
         let message = "surface has both friction_raster and angles from the slope, expected one of the two".to_owned();
-        entries.problem(place, message, "remove friction_raster, or takeoff_from_slope_deg and landing_from_slope_deg");
+        let help = "remove friction_raster, or takeoff_from_slope_deg and landing_from_slope_deg";
+        entries.problem(("surface", "friction_raster"), ProblemKind::Conflict, message, help);
     }
     own_columns.map(|(name, _)| entries.text("surface", name).map(PathBuf::from))
 }
@@ -305,13 +317,13 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
         kinds.iter().filter_map(|&kind| Some((kind, PathBuf::from(entries.text("terrain", kind)?)))).collect();
     let scale = entries.number("terrain", "mesh_scale");
     if scale.is_some() && !given.iter().any(|(kind, _)| *kind == "mesh") {
-        let place = entries.place("terrain", "mesh_scale").unwrap_or(Place::Nowhere);
-        entries.problem(place, "terrain.mesh_scale without a mesh".to_owned(), "add mesh = \"file.obj\", or remove it");
+        let (message, help) = ("terrain.mesh_scale without a mesh".to_owned(), "add mesh = \"file.obj\", or remove it");
+        entries.problem(("terrain", "mesh_scale"), ProblemKind::Misplaced, message, help);
     }
     match given.as_slice() {
         [] => {
-            // Where a key of the terrain has told its own problem, dem, mesh or chain may be what was meant by it.
-            if entries.problems().iter().any(|problem| problem.message.contains("terrain.")) {
+            // The file was given but refused, or may be what an unknown key of the terrain means: that is a problem of its own already.
+            if entries.has_unknown("terrain") || entries.has_refused("terrain", &kinds) {
                 return None;
             }
             let on_map = ["start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg"]
@@ -319,9 +331,11 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
                 .find_map(|name| Some((name, entries.place("terrain", name)?)));
             let along = ["start_x_m", "goal_x_m"].into_iter().find_map(|name| Some((name, entries.place("terrain", name)?)));
             if let Some((name, place)) = on_map {
-                entries.problem(place, format!("terrain.{name} without a dem"), "add dem = \"file.tif\", or mesh = \"file.obj\"");
+                let (message, help) = (format!("terrain.{name} without a dem"), "add dem = \"file.tif\", or mesh = \"file.obj\"");
+                entries.problem_at(place, ("terrain", "dem"), ProblemKind::Missing, message, help);
             } else if let Some((name, place @ Place::File(_))) = along {
-                entries.problem(place, format!("terrain.{name} without a chain"), "add chain = \"file.csv\"");
+                let (message, help) = (format!("terrain.{name} without a chain"), "add chain = \"file.csv\"");
+                entries.problem_at(place, ("terrain", "chain"), ProblemKind::Missing, message, help);
             }
             None
         }
@@ -341,13 +355,12 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
             })
         }
         [(first, _), .., (last, _)] => {
-            let place = entries.place("terrain", last).unwrap_or(Place::Nowhere);
             let (message, help) = if given.len() == 2 {
                 (format!("terrain has both {first} and {last}, expected one of the two"), "remove one of them")
             } else {
                 ("terrain has all of dem, mesh and chain, expected one of the three".to_owned(), "remove two of them")
             };
-            entries.problem(place, message, help);
+            entries.problem(("terrain", last), ProblemKind::Conflict, message, help);
             None
         }
     }
@@ -366,13 +379,13 @@ fn via(entries: &mut Entries, terrain: Option<&TerrainSource>) -> Vec<MapPlace> 
     let degrees = entries.points("terrain", "via_lonlat_deg");
     let degrees = degrees.into_iter().map(|[lon_deg, lat_deg]| MapPlace::LonLat(LonLat { lon_deg, lat_deg }));
     let (metres, degrees): (Vec<_>, Vec<_>) = (metres.collect(), degrees.collect());
-    let at = entries.place("terrain", "via_lonlat_deg").unwrap_or(Place::Nowhere);
+    let key = ("terrain", "via_lonlat_deg");
     if !metres.is_empty() && !degrees.is_empty() {
         let message = "terrain has both via_m and via_lonlat_deg, expected one of the two".to_owned();
-        entries.problem(at, message, "remove one of them");
+        entries.problem(key, ProblemKind::Conflict, message, "remove one of them");
     } else if !degrees.is_empty() && matches!(terrain, Some(TerrainSource::Mesh { .. })) {
         let message = "terrain has longitude and latitude beside a mesh, which has no projection".to_owned();
-        entries.problem(at, message, "give via_m = [[x, y], ...], in the mesh's own metres");
+        entries.problem(key, ProblemKind::Conflict, message, "give via_m = [[x, y], ...], in the mesh's own metres");
     }
     if metres.is_empty() { degrees } else { metres }
 }
@@ -382,24 +395,26 @@ fn on_mesh(entries: &mut Entries, ends: [MapPlace; 2]) -> Option<[MapPoint; 2]> 
     if let [MapPlace::Metres(start), MapPlace::Metres(goal)] = ends {
         return Some([start, goal]);
     }
-    let given = ["start_lonlat_deg", "goal_lonlat_deg"].into_iter().find_map(|name| entries.place("terrain", name));
+    let given = ["start_lonlat_deg", "goal_lonlat_deg"].into_iter().find(|name| entries.value("terrain", name).is_some());
     let message = "terrain has longitude and latitude beside a mesh, which has no projection".to_owned();
-    entries.problem(given.unwrap_or(Place::Nowhere), message, "give start_m and goal_m = [x, y], in the mesh's own metres");
+    let help = "give start_m and goal_m = [x, y], in the mesh's own metres";
+    entries.problem(("terrain", given.unwrap_or_default()), ProblemKind::Conflict, message, help);
     None
 }
 
 /// Map points beside a chain.
 fn refuse_map_points(entries: &mut Entries) {
     for name in ["start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg"] {
-        if let Some(place) = entries.place("terrain", name) {
+        if entries.value("terrain", name).is_some() {
             let help = format!("for a chain give {}_x_m instead", name.split('_').next().unwrap_or(name));
-            entries.problem(place, format!("terrain.{name} is a map point, which a chain does not take"), help);
+            let message = format!("terrain.{name} is a map point, which a chain does not take");
+            entries.problem(("terrain", name), ProblemKind::Misplaced, message, help);
         }
     }
     for name in ["via_m", "via_lonlat_deg"] {
-        if let Some(place) = entries.place("terrain", name) {
+        if entries.value("terrain", name).is_some() {
             let message = format!("terrain.{name} is of a slice, but terrain has a chain");
-            entries.problem(place, message, "give the chain a column bend instead, as chta slice --via does");
+            entries.problem(("terrain", name), ProblemKind::Misplaced, message, "give the chain a column bend instead");
         }
     }
 }
@@ -413,18 +428,17 @@ fn map_place(entries: &mut Entries, end: &str, kind: &str) -> Option<MapPlace> {
         (Some(point), None) => Some(MapPlace::Metres(point)),
         (None, Some(place)) => Some(MapPlace::LonLat(place)),
         (Some(_), Some(_)) => {
-            let at = entries.place("terrain", &degrees).unwrap_or(Place::Nowhere);
-            entries.problem(at, format!("terrain has both {metres} and {degrees}, expected one of the two"), "remove one of them");
+            let message = format!("terrain has both {metres} and {degrees}, expected one of the two");
+            entries.problem(("terrain", &degrees), ProblemKind::Conflict, message, "remove one of them");
             None
         }
         (None, None) => {
-            let told =
-                entries.problems().iter().any(|problem| problem.message.contains(&metres) || problem.message.contains(&degrees));
-            if !told {
+            if !entries.has_refused("terrain", &[&metres, &degrees]) {
                 let at = entries.place("terrain", kind).unwrap_or(Place::Nowhere);
                 let instead = if kind == "dem" { format!(", or {degrees} = [longitude, latitude]") } else { String::new() };
                 let help = format!("add {metres} = [x, y], in map metres{instead}");
-                entries.problem(at, format!("terrain has a {kind} but no {metres}"), help);
+                let message = format!("terrain has a {kind} but no {metres}");
+                entries.problem_at(at, ("terrain", &metres), ProblemKind::Missing, message, help);
             }
             None
         }
@@ -436,9 +450,8 @@ fn search(entries: &mut Entries) -> SearchOptions {
     let points = entries.value("search", "points_per_segment").cloned();
     let spacing_m = entries.number("search", "node_spacing_max_m");
     if let (Some(_), Some(_)) = (&points, spacing_m) {
-        let place = entries.place("search", "node_spacing_max_m").unwrap_or(Place::Nowhere);
         let message = "search has both points_per_segment and node_spacing_max_m, expected one of the two".to_owned();
-        entries.problem(place, message, "remove one of them");
+        entries.problem(("search", "node_spacing_max_m"), ProblemKind::Conflict, message, "remove one of them");
     }
     let count = points.as_ref().and_then(toml::Value::as_integer).and_then(|k| u32::try_from(k).ok());
     let word = |name| entries.text("search", name);

@@ -122,7 +122,7 @@ pub enum TradeError {
         problem: String,
     },
     /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer with --threads")]
+    #[error("the threads cannot be started ({0}): ask for fewer")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
@@ -235,7 +235,7 @@ pub struct Varied {
 /// # Errors
 /// [`TooManyNodes`].
 pub fn verdict(
-    test: &HopTest<'_>,
+    test: &HopTest,
     (start, goal): (Station, Station),
     options: &SearchOptions,
     proof_budget_cells: Option<usize>,
@@ -324,7 +324,8 @@ impl<'a> Trade<'a> {
 
     /// The scenario of a cell.
     fn scenario(&self, values: &[f64]) -> Result<Scenario, TradeError> {
-        Scenario::new(varied(self.entries, self.swept, values)).map_err(|problems| self.refused(values, &sentences(&problems)))
+        Scenario::new(varied(self.entries, self.swept, values, "varied"))
+            .map_err(|problems| self.refused(values, &sentences(&problems)))
     }
 
     /// The scenario of a cell and its chain.
@@ -343,9 +344,9 @@ impl<'a> Trade<'a> {
     fn row(&self, values: &[f64], proof_budget_cells: Option<usize>) -> Result<TradeRow, TradeError> {
         let (scenario, Prepared { chain, start, goal, .. }) = self.prepared(values)?;
         let Some(ends) = start.zip(goal) else {
-            return Err(self.refused(values, "found no start or no goal: give --start X and --goal X along the chain"));
+            return Err(self.refused(values, "found no start or no goal, expected terrain.start_x_m and terrain.goal_x_m"));
         };
-        let test = HopTest::new(&chain, &scenario.hopper, scenario.body.gravity_m_s2);
+        let test = HopTest::new(chain);
         let answer =
             verdict(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
         let keys = self.swept.iter().map(|v| v.key.path());
@@ -388,14 +389,15 @@ impl<'a> Trade<'a> {
 }
 
 impl Trade<'_> {
-    /// The keys as typed with those of the first cell in place, for the terrain to be read by.
+    /// The keys as typed with those of the first cell in place, for the terrain to be read by. Problems with them begin with `given_by`,
+    /// the caller's name for what varies them, and the key.
     ///
     /// # Errors
     /// As [`Trade::new`].
-    pub fn first_cell(entries: &Entries, swept: &[SweptKey]) -> Result<Entries, TradeError> {
+    pub fn first_cell(entries: &Entries, swept: &[SweptKey], given_by: &str) -> Result<Entries, TradeError> {
         checked(swept)?;
         let first: Vec<f64> = swept.iter().filter_map(|v| v.values.first().copied()).collect();
-        Ok(varied(entries, swept, &first))
+        Ok(varied(entries, swept, &first, given_by))
     }
 }
 
@@ -417,10 +419,10 @@ fn cells(swept: &[SweptKey]) -> usize {
 }
 
 /// The keys with values in place.
-fn varied(entries: &Entries, swept: &[SweptKey], values: &[f64]) -> Entries {
+fn varied(entries: &Entries, swept: &[SweptKey], values: &[f64], given_by: &str) -> Entries {
     let mut entries = entries.clone();
     for (SweptKey { key, .. }, &value) in swept.iter().zip(values) {
-        entries.set_by_option(&format!("--vary {}", key.path()), key.table, key.name, typed(key, value));
+        entries.set_by_option(&format!("{given_by} {}", key.path()), key.table, key.name, typed(key, value));
     }
     entries
 }

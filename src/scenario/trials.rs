@@ -1,11 +1,11 @@
 //! `[uncertainty]`: what goes otherwise than planned, and how often it is tried.
 
-use super::{Entries, Place, Scenario, TerrainSource};
+use super::{Entries, ProblemKind, Scenario, TerrainSource};
 use crate::{
     graph::{ReliabilityOptions, ReliabilityUse},
     hop::{HopDeviations, RiskModel},
     quantity::Angle,
-    uncertainty::{Policy, TrialOptions, Uncertainty, UncertaintyProblem},
+    uncertainty::{Policy, TrialOptions, Uncertainty},
     world::Grip,
 };
 
@@ -100,16 +100,8 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
     };
     let on_a_map = matches!(terrain, None | Some(TerrainSource::Dem { .. }));
     if let Err(problem) = keys.errors.check(on_a_map) {
-        let key = match problem {
-            UncertaintyProblem::CorrelationWithoutHeight { .. } => "height_correlation_m",
-            UncertaintyProblem::HeadingOnChain { .. } => "heading_sigma_deg",
-            _ => "height_sigma_m",
-        };
-        let place = entries.place("uncertainty", key).unwrap_or(Place::Nowhere);
-        // What was found and how to mend it, as the engine says it.
-        let sentence = problem.to_string();
-        let (found, help) = sentence.split_once(": ").unwrap_or((&sentence, "leave it out"));
-        entries.problem(place, format!("uncertainty.{found}"), help);
+        let message = format!("uncertainty.{}", problem.found());
+        entries.problem(("uncertainty", problem.key()), ProblemKind::Misplaced, message, problem.help());
     }
     Some(keys)
 }
@@ -120,11 +112,14 @@ pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, u32) {
     const EXTRA_HOPS: u32 = 3;
     let risk = super::read::named(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
-    if let (Some(_), Some(place)) =
-        (extra.filter(|_| risk != ReliabilityUse::Traded), entries.place("search", "risk_extra_hops_max"))
-    {
+    if extra.is_some() && risk != ReliabilityUse::Traded {
         let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which takes no hop more", risk.name());
-        entries.problem(place, message, "set risk = \"traded\", or remove risk_extra_hops_max");
+        entries.problem(
+            ("search", "risk_extra_hops_max"),
+            ProblemKind::Misplaced,
+            message,
+            "set risk = \"traded\", or remove risk_extra_hops_max",
+        );
     }
     (risk, extra.unwrap_or(EXTRA_HOPS))
 }

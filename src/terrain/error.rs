@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use super::{LonLat, MapBounds, NoProjection};
+use super::{LonLat, MapBounds, NoProjection, ScaleMend};
 use crate::quantity::{MapPoint, format_number};
 
 /// Why a DEM or mesh could not be read, written, sliced or generated.
@@ -62,6 +62,14 @@ pub enum TerrainError {
         /// A command that makes a usable file.
         mend: String,
     },
+    /// A map whose coordinates are no lengths: degrees, or places in space.
+    #[error("{found}, expected a projected map in metres; mend it with: {mend}")]
+    NotProjected {
+        /// What the file holds.
+        found: String,
+        /// A command that makes a usable file.
+        mend: String,
+    },
     /// Every problem found in the text of an ASCII or XYZ grid.
     #[error("{}", list_problems(problems, *further))]
     AsciiGrid {
@@ -73,6 +81,9 @@ pub enum TerrainError {
     /// The numbers do not form a raster.
     #[error("{0}")]
     InvalidDem(String),
+    /// Numbers that make no profile.
+    #[error("{0}")]
+    InvalidProfile(String),
     /// A transect without a direction.
     #[error("the transect starts and ends at the same point ({} m, {} m), expected two different points", format_number(at.x), format_number(at.y))]
     SamePoint {
@@ -113,14 +124,12 @@ pub enum TerrainError {
         bounds: MapBounds,
     },
     /// A map whose scale along the transect is not 1.
-    #[error(
-        "{found}, expected 1 within 1 %; mend it with: {mend}; or take it as it is with --accept-map-scale (terrain.accept_map_scale = true)"
-    )]
+    #[error("{found}, expected 1 within 1 %; mend it with: {mend}; or take it as it is with terrain.accept_map_scale = true")]
     MapScale {
         /// The scale factor and its position.
         found: String,
-        /// A command that makes a map that is true to scale along the transect.
-        mend: String,
+        /// What makes a map that is true along the transect.
+        mend: ScaleMend,
     },
     /// A line that leaves the part of the map that shows the body.
     #[error(

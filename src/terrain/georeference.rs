@@ -113,7 +113,37 @@ impl GeoReference {
         })
     }
 
-    /// The map projection, from the file's description of it.
+    /// The same place on a map of this projection, for a raster that is built in memory. What was said of the map before is replaced.
+    ///
+    /// The projection states how map coordinates become longitude and latitude; posts stay where they are. Map coordinates are metres.
+    ///
+    /// # Examples
+    /// A DEM in memory, cut between two places given by longitude and latitude:
+    /// ```
+    /// use chta::quantity::MapPoint;
+    /// use chta::terrain::{Dem, GeoReference, LonLat, MapPlace, MapProjection, slice};
+    ///
+    /// // 101 x 101 posts, 5 m apart, around the south pole of the Moon; the ground rises by 0.1 m for every metre eastward.
+    /// let crs: MapProjection = "IAU_2015:30135".parse()?;
+    /// let map = GeoReference::local(MapPoint::new(-250.0, 250.0), 5.0, 5.0)?.with_projection(&crs);
+    /// let elevations_m: Vec<f32> = (0..101 * 101_u16).map(|post| 0.5 * f32::from(post % 101)).collect();
+    /// let dem = Dem::from_single(101, 101, elevations_m, map)?;
+    ///
+    /// let projection = dem.georeference().projection();
+    /// let place = |which, lon_deg, lat_deg| {
+    ///     MapPlace::LonLat(LonLat { lon_deg, lat_deg }).on_map(which, projection.as_ref(), dem.bounds())
+    /// };
+    /// // A thousandth of a degree of latitude is 30.3 m on the Moon.
+    /// let profile = slice(&dem, place("from", 90.0, -89.999)?, place("to", 90.0, -89.993)?)?;
+    /// assert!((profile.length_m() - 0.006_f64.to_radians() * 1_737_400.0).abs() < 1e-3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    #[must_use]
+    pub fn with_projection(self, projection: &MapProjection) -> Self {
+        Self { coordinate_system: projection.coordinate_system(), transform_tags: TransformTags::default(), ..self }
+    }
+
+    /// The map projection, from what the file or the caller said of it.
     ///
     /// # Errors
     /// [`NoProjection`] if the file gives none, or an unsupported one.
@@ -183,28 +213,24 @@ pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
     let (low_m, high_m) = dem.elevation_range_m();
     let relief_m = high_m - low_m;
     if relief_m > RELIEF_TO_WIDTH_OF_DEGREES * width {
-        return Err(TerrainError::Unsuitable {
+        return Err(TerrainError::NotProjected {
             found: format!(
                 "the map spans {} by {} units but the elevations {relief_m} m, so its coordinates look like degrees",
                 max.x - min.x,
                 max.y - min.y
             ),
-            expected: EXPECTED_METRES,
             mend: mend_degrees(&dem.georeference().coordinate_system),
         });
     }
     Ok(())
 }
 
-/// The requirement on every map.
-pub(super) const EXPECTED_METRES: &str = "a projected map in metres";
-
 /// How to convert a map in degrees to metres: a stereographic map centred on the transect, which is true to scale around it.
 pub(super) fn mend_degrees(system: &CoordinateSystem) -> String {
     let figure = stated_ellipsoid(system).map_or_else(|| "+R=RADIUS_M".to_owned(), |ellipsoid| ellipsoid.proj());
     format!(
         "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {figure} +units=m +no_defs' in.tif out.tif, where \
-         LATITUDE and LONGITUDE are the middle of the journey; then give its places as longitude and latitude (slice: --from-lonlat and \
-         --to-lonlat; fan: --from-lonlat; map: --start-lonlat and --goal-lonlat; scenario: start_lonlat_deg and goal_lonlat_deg)"
+         LATITUDE and LONGITUDE are the middle of the journey; then give its places as longitude and latitude (scenario: \
+         start_lonlat_deg and goal_lonlat_deg)"
     )
 }

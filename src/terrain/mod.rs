@@ -28,6 +28,7 @@ mod georeference;
 mod geotiff;
 mod lattice;
 mod mesh;
+mod overlaid;
 mod pds3;
 mod profile;
 mod projection;
@@ -49,11 +50,12 @@ pub use mesh::{
     Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
     slice_mesh,
 };
+pub use overlaid::{OverlaidDem, OverlayEffect, Overlays};
 pub use pds3::read_pds3_bytes;
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
 pub use projection::{
-    Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, TransectScale, check_map_scale,
-    check_scale,
+    CrsError, Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, ScaleMend, TransectScale,
+    check_map_scale, check_scale,
 };
 pub use slice::{slice, slice_file, slice_legs};
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};

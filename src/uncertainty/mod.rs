@@ -8,7 +8,7 @@
 //!   trial n -> draws (seed, n) -> [ command + errors -> take-off checked -> first contact -> landing checked -> bounce and roll ] -> next hop
 //! ```
 //!
-//! Along a chain flights stay in its vertical plane; over a DEM ([`MapGround`]) they go wherever their heading takes them.
+//! Along a chain flights stay in its vertical plane; over a DEM ([`DemGround`](crate::ground::DemGround)) they go wherever their heading takes them.
 //!
 //! # What is checked, and what is not
 //! The real direction of a take-off against the cone of the ground it leaves; direction and speed of a landing, and the rest slope,
@@ -19,45 +19,44 @@
 //! # Examples
 //! ```
 //! use chta::{chain::*, graph::*, hop::{HopTest, Split}, path::generate, quantity::*, uncertainty::*, world::*};
-//! let hopper = Hopper::with_speeds(9.0, 9.0);
-//! let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(1.5)?)), rest: RestSlope::AsFrictionHolds };
+//! let hopper = Hopper::with_speeds(9.0, 9.0).unwrap();
+//! let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(1.5)?)), rest: RestSlope::AsFrictionHolds };
 //! let chain = PolygonalChain::bare(vec![ChainPoint::new(-50.0, 0.0), ChainPoint::new(99.0, 0.0)])?;
-//! let chain = ConstrainedChain::new(chain, &hopper, &surface)?;
-//! let test = HopTest::new(&chain, &hopper, 1.6);
+//! let chain = ConstrainedChain::new(chain, &hopper, Gravity::new(1.6)?, &surface)?;
+//! let test = HopTest::new(chain.clone());
 //! let (start, goal) = (chain.geometry().station(0.0)?, chain.geometry().station(40.0)?);
 //! let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {})?;
 //! let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path") };
 //! let path = generate(&test, &legs, Default::default(), Split::FullReach)?;
 //!
-//! let mission = Mission { test: &test, surface: &surface, path: &path, start, goal, map: None, to_go: None };
+//! let mission = Mission::along_chain(test, path, start, goal);
 //! // One hop of 40 m at v = sqrt(g X) = 8 m/s: 1 % of speed is 2 % of range, 0.8 m. 1.6 m are two deviations: 95 % get there.
 //! let errors = Uncertainty { takeoff_speed_sigma_fraction: 0.01, ..Uncertainty::NONE };
 //! let options = TrialOptions { trials: 5000, goal_tolerance_m: 1.6, ..TrialOptions::default() };
-//! let summary = Simulation::new(mission, errors)?.run(&options, &mut ())?;
+//! let summary = Simulation::new(&mission, errors)?.run(&options, &mut ())?;
 //! assert!(summary.success.low < 0.954 && 0.954 < summary.success.high, "{:?}", summary.success);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod deviations;
-mod draws;
 pub mod experiments;
-mod field;
-mod ground;
-mod on_chain;
-mod on_map;
+mod mission;
 mod options;
 mod outcome;
 mod quantiles;
 mod record;
+mod replan;
 mod simulation;
 mod summary;
 mod tally;
 mod trial;
 mod wilson;
 
-pub use deviations::{Uncertainty, UncertaintyProblem};
-pub use ground::LiftoffVelocity;
-pub use options::{MapGround, Mission, Observer, Progress, SimulationError, TrialOptions};
+pub use crate::{
+    flight::{Uncertainty, UncertaintyProblem},
+    ground::LiftoffVelocity,
+};
+pub use mission::Mission;
+pub use options::{Observer, Progress, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
 pub use quantiles::QuantileSketch;
 pub use record::{HopRecord, Trajectory, TrialRecord};

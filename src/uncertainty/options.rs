@@ -3,50 +3,6 @@
 use std::ops::ControlFlow;
 
 use super::{HopRecord, OutcomeCounts, Policy, TrialRecord, UncertaintyProblem, Wilson};
-use crate::{
-    chain::Station,
-    graph::CostToGo,
-    hop::HopTest,
-    path::HopPath,
-    terrain::{Dem, FrictionRaster, KeepOut},
-    world::Surface,
-};
-
-/// A planned journey and the ground it is to be flown over.
-///
-/// # Who else may use it
-/// Nothing here asks how the path was found: any planner whose result is a [`HopPath`] can be simulated, and [`Simulation::fly`]
-/// flies a single command for whoever has only that.
-///
-/// [`Simulation::fly`]: super::Simulation::fly
-#[derive(Clone, Copy, Debug)]
-pub struct Mission<'a> {
-    /// The chain planned on, the robot and gravity.
-    pub test: &'a HopTest<'a>,
-    /// Grip and rest slope where the chain or the map says nothing: for grounds that errors change, and for all places of a map.
-    pub surface: &'a Surface,
-    /// The planned path.
-    pub path: &'a HopPath,
-    /// Where the journey begins.
-    pub start: Station,
-    /// Where it should end.
-    pub goal: Station,
-    /// The terrain all round, for flights in three dimensions; `None`: along the chain, in two.
-    pub map: Option<MapGround<'a>>,
-    /// What every node has still to go, for [`Policy::Replan`].
-    pub to_go: Option<&'a CostToGo>,
-}
-
-/// A DEM and what lies over it.
-#[derive(Clone, Copy, Debug)]
-pub struct MapGround<'a> {
-    /// The elevations. The chain must be a slice of it.
-    pub dem: &'a Dem,
-    /// Friction by place; where it has no data, the surface's own.
-    pub friction: Option<&'a FrictionRaster>,
-    /// Where nothing may land.
-    pub keep_out: Option<&'a KeepOut>,
-}
 
 /// How many trials, and how they are flown and checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,7 +56,7 @@ pub enum SimulationError {
     #[error(transparent)]
     Uncertainty(#[from] UncertaintyProblem),
     /// No trials.
-    #[error("0 trials, expected at least 1: give --trials a number above 0")]
+    #[error("trials is 0, expected at least 1")]
     NoTrials,
     /// A hop limit below 1.
     #[error("hop_limit is 0, expected at least 1: leave it out for twice the planned hops and ten more")]
@@ -126,6 +82,12 @@ pub enum SimulationError {
         /// Which hop, from 1.
         hop: usize,
     },
+    /// A path along a chain that is given without its stations.
+    #[error("hop {hop} of the path has no station, but the simulation is to fly along a chain: plan the path on that chain")]
+    NotOnChain {
+        /// Which hop, from 1; 0: the start.
+        hop: usize,
+    },
     /// A map of which nobody says how it grips.
     #[error(
         "nothing says how the ground of the DEM grips: give the surface a friction coefficient or angles from the slope, or the map a \
@@ -143,7 +105,7 @@ pub enum SimulationError {
         y_m: f64,
     },
     /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer with --threads")]
+    #[error("the threads cannot be started ({0}): ask for fewer")]
     Threads(#[from] rayon::ThreadPoolBuildError),
     /// The observer asked to stop.
     #[error("the simulation was stopped after {trials} trials")]

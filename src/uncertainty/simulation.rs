@@ -6,20 +6,18 @@ use nalgebra::{Point2, Point3, Vector2};
 use rayon::prelude::*;
 
 use super::{
-    LiftoffVelocity, MapGround, Mission, Observer, Policy, Progress, SimulationError, Summary, Trajectory, TrialOptions,
-    Uncertainty,
-    draws::TrialDraws,
-    ground::{Command, Ground},
-    on_chain::{ChainGround, ChainPosition},
-    on_map::{DemGround, MapPosition},
+    Mission, Observer, Policy, Progress, SimulationError, Summary, Trajectory, TrialOptions,
+    mission::{MissionGround, Replanning},
+    replan::{ChainReplan, MapReplan},
     tally::Tally,
     trial::{Flown, Plan, PlannedHop, Rules, fly},
 };
 use crate::{
-    chain::Station,
-    graph::CostToGo,
-    path::{Hop, HopPath},
-    terrain::Triangles,
+    flight::{Command, Errors, TrialDraws, Uncertainty},
+    ground::{
+        ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, Surface, heading_of,
+    },
+    path::Hop,
 };
 
 /// After so many trials the rate is looked at.
@@ -30,17 +28,16 @@ const STRETCH: u64 = 50;
 
 /// A mission made ready to be flown again and again.
 #[derive(Debug)]
-pub struct Simulation<'a> {
-    mission: Mission<'a>,
+pub struct Simulation {
     uncertainty: Uncertainty,
-    course: Course<'a>,
+    course: Course,
 }
 
 /// The mission's plan over the ground that it is flown on.
 #[derive(Debug)]
-enum Course<'a> {
-    Chain(ChainGround<'a>, Plan<ChainPosition>),
-    Map(DemGround<'a>, Plan<MapPosition>),
+enum Course {
+    Chain(ChainGround, Plan<ChainPosition>),
+    Map(DemGround, Plan<MapPosition>),
 }
 
 /// Where a flight ends.
@@ -54,25 +51,23 @@ pub struct FlightEnd {
     pub time_s: f64,
 }
 
-impl<'a> Simulation<'a> {
+impl Simulation {
     /// A mission under these errors.
     ///
     /// # Errors
     /// [`SimulationError`] where the deviations make no sense, or path and map do not belong together.
-    pub fn new(mission: Mission<'a>, uncertainty: Uncertainty) -> Result<Self, SimulationError> {
-        uncertainty.check(mission.map.is_some())?;
-        let Mission { test, surface, to_go, .. } = mission;
-        let course = match mission.map {
-            None => Course::Chain(ChainGround::new(test, surface, to_go), chain_plan(&mission)),
-            Some(map) => {
-                if surface.grip.is_none() && map.friction.is_none() {
+    pub fn new(mission: &Mission, uncertainty: Uncertainty) -> Result<Self, SimulationError> {
+        uncertainty.check(matches!(mission.ground, MissionGround::Map(_)))?;
+        let course = match &mission.ground {
+            MissionGround::Chain(ground) => Course::Chain(ground.clone(), chain_plan(mission)?),
+            MissionGround::Map(ground) => {
+                if ground.surface().grip.is_none() && ground.terrain().overlays().friction().is_none() {
                     return Err(SimulationError::NoGrip);
                 }
-                let nodes = map_nodes(&mission, map)?;
-                Course::Map(DemGround::new(test, surface, map, to_go, nodes), map_plan(&mission, map)?)
+                Course::Map(ground.clone(), map_plan(mission, ground)?)
             }
         };
-        Ok(Self { mission, uncertainty, course })
+        Ok(Self { uncertainty, course })
     }
 
     /// Flies the trials.
@@ -107,10 +102,10 @@ impl<'a> Simulation<'a> {
     pub fn fly(&self, from: Point2<f64>, liftoff: LiftoffVelocity) -> Option<FlightEnd> {
         match &self.course {
             Course::Chain(ground, _) => {
-                let station = self.mission.test.chain().geometry().station(from.x).ok()?;
+                let station = ground.test().chain().geometry().station(from.x).ok()?;
                 Some(flown(ground, &ChainPosition { station, left_m: from.y }, &liftoff))
             }
-            Course::Map(ground, _) => Some(flown(ground, &ground.nominal(from)?, &liftoff)),
+            Course::Map(ground, _) => Some(flown(ground, &ground.position(from)?, &liftoff)),
         }
     }
 
@@ -129,26 +124,28 @@ impl<'a> Simulation<'a> {
         if let Some(found) = until_half_width.filter(|width| !(*width > 0.0 && *width < 0.5)) {
             return Err(SimulationError::HalfWidth { found });
         }
-        if policy == Policy::Replan && self.mission.to_go.is_none() {
+        let replans = match &self.course {
+            Course::Chain(_, plan) => plan.replan.is_some(),
+            Course::Map(_, plan) => plan.replan.is_some(),
+        };
+        if policy == Policy::Replan && !replans {
             return Err(SimulationError::NoCostsToGo);
         }
         Ok(())
     }
 
-    fn fly_all<G: Ground>(
+    fn fly_all<G: FirstContact>(
         &self,
         ground: &G,
-        plan: &Plan<G::Position>,
+        plan: &Plan<G::Contact>,
         options: &TrialOptions,
         observer: &mut dyn Observer,
     ) -> Result<Summary, SimulationError> {
         let rules = Rules {
-            uncertainty: self.uncertainty,
-            wanted: Rules::wanted(&self.uncertainty, options.policy),
+            errors: Errors::new(self.uncertainty, options.policy == Policy::Replan),
             policy: options.policy,
             hop_limit: options.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(plan.hops.len())),
             goal_tolerance_m: options.goal_tolerance_m,
-            gravity_m_s2: self.mission.test.gravity_m_s2(),
         };
         let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
         let keep_records = observer.wants_records();
@@ -225,60 +222,60 @@ fn tell(flown: &Flown, observer: &mut dyn Observer) {
 }
 
 /// A flight that aims at nothing.
-fn flown<G: Ground>(ground: &G, from: &G::Position, liftoff: &LiftoffVelocity) -> FlightEnd {
-    let flight = ground.fly(from, liftoff, from);
+fn flown<G: FirstContact>(ground: &G, from: &G::Contact, liftoff: &LiftoffVelocity) -> FlightEnd {
+    let flight = ground.first_contact(from, liftoff, from);
     FlightEnd { at_m: ground.point(&flight.end), landed: flight.support_facet.is_some(), time_s: flight.time_s }
 }
 
 /// The command of a planned hop along a heading.
-fn command<S>(hop: &Hop, heading: Vector2<f64>, aim: S) -> Command<S> {
+fn command<C>(hop: &Hop, heading: Vector2<f64>, aim: C) -> Command<C> {
     let (sine, cosine) = libm::sincos(hop.takeoff_angle.radians());
     let speed_m_s = hop.takeoff_speed_m_s;
     let liftoff = LiftoffVelocity { heading, horizontal_m_s: speed_m_s * cosine, vertical_m_s: speed_m_s * sine };
     Command { liftoff, speed_m_s, aim }
 }
 
-/// The plan along the chain.
-fn chain_plan(mission: &Mission<'_>) -> Plan<ChainPosition> {
-    let position = ChainPosition::on_chain;
-    let hops = mission.path.hops.iter().map(|hop| PlannedHop {
-        from: position(hop.takeoff),
-        command: command(hop, Vector2::new(hop.direction.sign(), 0.0), position(hop.landing)),
+/// The plan along a chain.
+fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError> {
+    let position =
+        |point: &ContactPoint, hop: usize| point.station.map(ChainPosition::on_chain).ok_or(SimulationError::NotOnChain { hop });
+    let planned = mission.path.hops.iter().enumerate().map(|(i, hop)| {
+        let (from, aim) = (position(&hop.takeoff, i + 1)?, position(&hop.landing, i + 1)?);
+        Ok(PlannedHop { from, command: command(hop, heading_of(hop.direction), aim) })
     });
-    Plan { start: position(mission.start), goal: Point2::new(mission.goal.point.x_m, 0.0), hops: hops.collect() }
+    let hops = planned.collect::<Result<_, SimulationError>>()?;
+    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go }| {
+        let replan = ChainReplan { test: test.clone(), to_go: Arc::clone(to_go) };
+        Box::new(replan) as _
+    });
+    let goal = Point2::new(mission.goal.along_m, 0.0);
+    Ok(Plan { start: position(&mission.start, 0)?, goal, hops, replan })
 }
 
-/// The plan on the map.
-fn map_plan(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Plan<MapPosition>, SimulationError> {
-    let HopPath { hops, .. } = mission.path;
-    let planned = hops.iter().enumerate().map(|(i, hop)| {
-        let ends = hop.map.ok_or(SimulationError::NotOnMap { hop: i + 1 })?;
-        let away = ends.landing - ends.takeoff;
-        let aim = MapPosition { at: ends.landing, z_m: hop.landing.point.z_m };
-        let from = MapPosition { at: ends.takeoff, z_m: hop.takeoff.point.z_m };
+/// The plan on a map.
+fn map_plan(mission: &Mission, ground: &DemGround) -> Result<Plan<MapPosition>, SimulationError> {
+    let position = |point: &ContactPoint, hop: usize| {
+        let at = point.map().ok_or(SimulationError::NotOnMap { hop })?;
+        Ok::<_, SimulationError>(MapPosition { at, z_m: point.point_m.z })
+    };
+    let planned = mission.path.hops.iter().enumerate().map(|(i, hop)| {
+        let (from, aim) = (position(&hop.takeoff, i + 1)?, position(&hop.landing, i + 1)?);
+        let away = aim.at - from.at;
         Ok(PlannedHop { from, command: command(hop, away / away.norm(), aim) })
     });
     let hops = planned.collect::<Result<_, SimulationError>>()?;
-    let (start, goal) = (on_map(mission, map, &mission.start, "start")?, on_map(mission, map, &mission.goal, "goal")?);
-    Ok(Plan { start, goal: goal.at, hops })
-}
-
-/// The nodes of the costs-to-go on the map.
-fn map_nodes(mission: &Mission<'_>, map: MapGround<'_>) -> Result<Arc<[MapPosition]>, SimulationError> {
-    let stations = mission.to_go.map(CostToGo::nodes).map_or(&[][..], |nodes| nodes.stations());
-    stations.iter().map(|station| on_map(mission, map, station, "node")).collect()
-}
-
-/// A station of the chain on the map, which must have ground there.
-fn on_map(
-    mission: &Mission<'_>,
-    map: MapGround<'_>,
-    station: &Station,
-    which: &'static str,
-) -> Result<MapPosition, SimulationError> {
-    let at = mission.test.chain().geometry().map_point(station).ok_or(SimulationError::NotOnMap { hop: 1 })?;
-    if !Triangles::of(map.dem).covers(at) {
-        return Err(SimulationError::NoGround { which, x_m: at.x, y_m: at.y });
-    }
-    Ok(MapPosition { at, z_m: station.point.z_m })
+    let on_ground = |point: &ContactPoint, which: &'static str| {
+        let position = position(point, 1)?;
+        if !ground.covers(position.at) {
+            return Err(SimulationError::NoGround { which, x_m: position.at.x, y_m: position.at.y });
+        }
+        Ok(position)
+    };
+    let (start, goal) = (on_ground(&mission.start, "start")?, on_ground(&mission.goal, "goal")?);
+    let replan = mission.replanning.as_ref().map(|Replanning { test, to_go }| {
+        let stations = to_go.nodes().stations().iter();
+        let nodes = stations.map(|station| on_ground(&test.chain().contact_point(station), "node")).collect::<Result<_, _>>()?;
+        Ok::<_, SimulationError>(Box::new(MapReplan { ground: ground.clone(), to_go: Arc::clone(to_go), nodes }) as _)
+    });
+    Ok(Plan { start, goal: goal.at, hops, replan: replan.transpose()? })
 }

@@ -1,12 +1,14 @@
 //! Known bodies, with gravity, radius and the source of both.
 
+use super::Gravity;
+
 /// A body to hop on, with constant surface gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Lower-case name.
     pub name: &'static str,
-    /// Surface gravity, m/s^2.
-    pub gravity_m_s2: f64,
+    /// Surface gravity.
+    pub gravity: Gravity,
     /// Mean radius, m.
     pub radius_m: f64,
     /// The sources of gravity and radius.
@@ -18,7 +20,7 @@ impl Body {
     ///
     /// ```
     /// use chta::world::Body;
-    /// assert_eq!(Body::named("Mars").unwrap().gravity_m_s2, 3.711);
+    /// assert_eq!(Body::named("Mars").unwrap().gravity.m_s2(), 3.711);
     /// assert!(Body::named("Krypton").is_none());
     /// ```
     pub fn named(name: &str) -> Option<&'static Self> {
@@ -33,17 +35,17 @@ impl Body {
     /// assert!((Body::named("moon").unwrap().escape_speed_m_s() - 2376.0).abs() < 1.0);
     /// ```
     pub fn escape_speed_m_s(&self) -> f64 {
-        (2.0 * self.gravity_m_s2 * self.radius_m).sqrt()
+        (2.0 * self.gravity.m_s2() * self.radius_m).sqrt()
     }
 
     /// A body whose gravity follows from the gravitational parameter and the mean radius, `g = GM / R^2`.
     const fn from_gm(name: &'static str, gm_m3_s2: f64, radius_m: f64, source: &'static str) -> Self {
-        Self { name, gravity_m_s2: gm_m3_s2 / (radius_m * radius_m), radius_m, source }
+        Self { name, gravity: Gravity::known(gm_m3_s2 / (radius_m * radius_m)), radius_m, source }
     }
 
     /// A body whose gravity is taken as published.
     const fn published(name: &'static str, gravity_m_s2: f64, radius_m: f64, source: &'static str) -> Self {
-        Self { name, gravity_m_s2, radius_m, source }
+        Self { name, gravity: Gravity::known(gravity_m_s2), radius_m, source }
     }
 }
 
@@ -98,7 +100,7 @@ mod tests {
         assert_eq!(printed.len(), KNOWN_BODIES.len(), "every body needs a printed figure");
         for (name, gravity) in printed {
             let body = Body::named(name).unwrap();
-            assert!((body.gravity_m_s2 / gravity - 1.0).abs() < 0.02, "{name}: {} against {gravity}", body.gravity_m_s2);
+            assert!((body.gravity.m_s2() / gravity - 1.0).abs() < 0.02, "{name}: {} against {gravity}", body.gravity.m_s2());
         }
     }
 
@@ -106,6 +108,7 @@ mod tests {
     fn every_body_names_its_source() {
         for body in &KNOWN_BODIES {
             assert!(body.source.contains("radius"), "{}: no source for the radius", body.name);
+            assert!(Gravity::new(body.gravity.m_s2()).is_ok(), "{}", body.name);
             assert!(body.radius_m > 100.0 && body.escape_speed_m_s() > 0.0, "{}", body.name);
         }
     }

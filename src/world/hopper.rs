@@ -1,12 +1,14 @@
 //! The robot: the limits of its actuator and its body.
 
+use std::fmt;
+
 use crate::quantity::Angle;
 
-/// A ballistic hopper, a point mass with limits.
+/// The limits of a ballistic hopper as stated, not yet checked: [`Hopper::new`] does that.
 ///
 /// The two speeds are infinite if only the chain's explicit constraints limit them.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Hopper {
+pub struct HopperLimits {
     /// Greatest take-off speed, m/s.
     pub takeoff_speed_max_m_s: f64,
     /// Greatest landing speed, m/s.
@@ -27,8 +29,8 @@ pub struct Hopper {
     pub rest_time_s: Option<f64>,
 }
 
-impl Hopper {
-    /// A hopper without limits of its own: all limits come from the chain.
+impl HopperLimits {
+    /// No limits of the hopper: all limits come from the chain.
     pub const UNLIMITED: Self = Self {
         takeoff_speed_max_m_s: f64::INFINITY,
         landing_speed_max_m_s: f64::INFINITY,
@@ -41,8 +43,182 @@ impl Hopper {
         rest_time_s: None,
     };
 
-    /// A hopper with the two speed limits that every analysis needs, and no other limit.
+    /// The two speed limits that every analysis needs, and no other limit.
     pub const fn with_speeds(takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Self {
         Self { takeoff_speed_max_m_s, landing_speed_max_m_s, ..Self::UNLIMITED }
+    }
+}
+
+impl Default for HopperLimits {
+    fn default() -> Self {
+        Self::UNLIMITED
+    }
+}
+
+/// A ballistic hopper: a point mass with limits that are valid.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hopper {
+    limits: HopperLimits,
+}
+
+/// One limit of a hopper that has no meaning.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HopperProblem {
+    /// The limit, by its key in a scenario's table `hopper`.
+    pub key: &'static str,
+    /// What was found, in the unit that the key names.
+    pub found: f64,
+    /// What is expected.
+    pub expected: &'static str,
+}
+
+/// All that is wrong with the limits of a hopper.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+pub struct InvalidHopper(pub Vec<HopperProblem>);
+
+impl fmt::Display for HopperProblem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "hopper.{} is {}, expected {}", self.key, self.found, self.expected)
+    }
+}
+
+impl Hopper {
+    /// A hopper without limits of its own: all limits come from the chain.
+    pub const UNLIMITED: Self = Self { limits: HopperLimits::UNLIMITED };
+
+    /// A hopper with these limits.
+    ///
+    /// # Errors
+    /// [`InvalidHopper`] with every limit that has no meaning.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::world::{Hopper, HopperLimits};
+    /// let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(8.0, 8.0) }).unwrap();
+    /// assert_eq!(hopper.limits().clearance_m, 0.1);
+    /// let wrong = HopperLimits { clearance_m: -5.0, apex_height_max_m: Some(f64::NAN), ..HopperLimits::default() };
+    /// assert_eq!(
+    ///     Hopper::new(wrong).unwrap_err().to_string(),
+    ///     "hopper.clearance_m is -5, expected a finite number of at least 0; \
+    ///      hopper.apex_height_max_m is NaN, expected a finite number of at least 0"
+    /// );
+    /// ```
+    pub fn new(limits: HopperLimits) -> Result<Self, InvalidHopper> {
+        const NOT_NEGATIVE: &str = "a finite number of at least 0";
+        const POSITIVE: &str = "a finite number above 0";
+        const ELEVATION: &str = "an angle from -90 to 90 degrees";
+        // No destructuring with `..`: a limit that is added is checked too.
+        let HopperLimits {
+            takeoff_speed_max_m_s,
+            landing_speed_max_m_s,
+            clearance_m,
+            takeoff_angle_min,
+            takeoff_angle_max,
+            apex_height_max_m,
+            flight_time_max_s,
+            mass_kg,
+            rest_time_s,
+        } = limits;
+        let not_negative = |number: f64| number.is_finite() && number >= 0.0;
+        let positive = |number: f64| number.is_finite() && number > 0.0;
+        let speed = |number: f64| number > 0.0;
+        // Not 90 in degrees, which may round: a right angle in radians is the bound.
+        let elevation = |angle: Angle| angle.radians().abs() <= std::f64::consts::FRAC_PI_2;
+        let angle = |key, angle: Option<Angle>| (key, angle.is_none_or(elevation), angle.map_or(0.0, Angle::degrees), ELEVATION);
+        let number = |key, number: Option<f64>, holds: fn(f64) -> bool, expected| {
+            (key, number.is_none_or(holds), number.unwrap_or(0.0), expected)
+        };
+        let in_order = match (takeoff_angle_min, takeoff_angle_max) {
+            (Some(min), Some(max)) => !(elevation(min) && elevation(max) && min > max),
+            _ => true,
+        };
+        let checked = [
+            number("takeoff_speed_max_m_s", Some(takeoff_speed_max_m_s), speed, "a number above 0"),
+            number("landing_speed_max_m_s", Some(landing_speed_max_m_s), speed, "a number above 0"),
+            number("clearance_m", Some(clearance_m), not_negative, NOT_NEGATIVE),
+            angle("takeoff_angle_min_deg", takeoff_angle_min),
+            angle("takeoff_angle_max_deg", takeoff_angle_max),
+            (
+                "takeoff_angle_min_deg",
+                in_order,
+                takeoff_angle_min.map_or(0.0, Angle::degrees),
+                "no more than takeoff_angle_max_deg",
+            ),
+            number("apex_height_max_m", apex_height_max_m, not_negative, NOT_NEGATIVE),
+            number("flight_time_max_s", flight_time_max_s, positive, POSITIVE),
+            number("mass_kg", mass_kg, positive, POSITIVE),
+            number("rest_time_s", rest_time_s, not_negative, NOT_NEGATIVE),
+        ];
+        let problems: Vec<_> = checked
+            .into_iter()
+            .filter(|(_, holds, ..)| !holds)
+            .map(|(key, _, found, expected)| HopperProblem { key, found, expected })
+            .collect();
+        if problems.is_empty() { Ok(Self { limits }) } else { Err(InvalidHopper(problems)) }
+    }
+
+    /// A hopper with the two speed limits that every analysis needs, and no other limit.
+    ///
+    /// # Errors
+    /// [`InvalidHopper`] where a speed is not above 0.
+    pub fn with_speeds(takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Result<Self, InvalidHopper> {
+        Self::new(HopperLimits::with_speeds(takeoff_speed_max_m_s, landing_speed_max_m_s))
+    }
+
+    /// Its limits.
+    #[inline]
+    pub const fn limits(&self) -> &HopperLimits {
+        &self.limits
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The keys that a change of the limits of a good hopper gives problems for.
+    fn refused(change: impl FnOnce(&mut HopperLimits)) -> Vec<&'static str> {
+        let mut limits = HopperLimits::with_speeds(8.0, 8.0);
+        change(&mut limits);
+        Hopper::new(limits).map_or_else(|InvalidHopper(problems)| problems.iter().map(|p| p.key).collect(), |_| Vec::new())
+    }
+
+    #[test]
+    fn what_is_not_a_limit_is_refused_by_its_key() {
+        let degrees = Angle::from_degrees;
+        for bad in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+            assert_eq!(refused(|l| l.takeoff_speed_max_m_s = bad), ["takeoff_speed_max_m_s"], "{bad}");
+            assert_eq!(refused(|l| l.landing_speed_max_m_s = bad), ["landing_speed_max_m_s"], "{bad}");
+        }
+        for bad in [f64::NAN, -1.0, f64::INFINITY, f64::NEG_INFINITY] {
+            assert_eq!(refused(|l| l.clearance_m = bad), ["clearance_m"], "{bad}");
+            assert_eq!(refused(|l| l.apex_height_max_m = Some(bad)), ["apex_height_max_m"], "{bad}");
+            assert_eq!(refused(|l| l.flight_time_max_s = Some(bad)), ["flight_time_max_s"], "{bad}");
+            assert_eq!(refused(|l| l.mass_kg = Some(bad)), ["mass_kg"], "{bad}");
+            assert_eq!(refused(|l| l.rest_time_s = Some(bad)), ["rest_time_s"], "{bad}");
+        }
+        for bad in [f64::NAN, 90.1, -91.0, f64::INFINITY] {
+            assert_eq!(refused(|l| l.takeoff_angle_min = Some(degrees(bad))), ["takeoff_angle_min_deg"], "{bad}");
+            assert_eq!(refused(|l| l.takeoff_angle_max = Some(degrees(bad))), ["takeoff_angle_max_deg"], "{bad}");
+        }
+        let reversed = |l: &mut HopperLimits| {
+            l.takeoff_angle_min = Some(degrees(60.0));
+            l.takeoff_angle_max = Some(degrees(30.0));
+        };
+        assert_eq!(refused(reversed), ["takeoff_angle_min_deg"]);
+    }
+
+    #[test]
+    fn the_ends_of_the_ranges_are_accepted() {
+        let right = Angle::from_degrees(90.0);
+        let limits = HopperLimits {
+            takeoff_angle_min: Some(-right),
+            takeoff_angle_max: Some(right),
+            apex_height_max_m: Some(0.0),
+            rest_time_s: Some(0.0),
+            ..HopperLimits::UNLIMITED
+        };
+        assert_eq!(Hopper::new(limits).map(|hopper| *hopper.limits()), Ok(limits));
     }
 }

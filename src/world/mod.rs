@@ -2,6 +2,7 @@
 
 mod body;
 mod friction_cone;
+mod gravity;
 mod hopper;
 mod limit;
 mod surface;
@@ -9,7 +10,8 @@ mod travel;
 
 pub use body::{Body, KNOWN_BODIES};
 pub use friction_cone::{FrictionCone, InvalidFriction};
-pub use hopper::Hopper;
+pub use gravity::{Gravity, InvalidGravity};
+pub use hopper::{Hopper, HopperLimits, HopperProblem, InvalidHopper};
 pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
-pub use surface::{Grip, RestSlope, Surface};
+pub use surface::{Grip, InvalidSurface, RestSlope, SurfaceProperties};
 pub use travel::{Contact, Direction};

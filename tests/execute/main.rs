@@ -10,10 +10,11 @@ mod world;
 use chta::{
     ballistics::{Arc, LineOfSight},
     chain::{ConstrainedChain, PolygonalChain},
+    ground::Surface,
     hop::HopTest,
     path::{Flight, Hop, HopPath, StatedValue, Totals, ViolatedLimit, Violation, execute},
     quantity::{Angle, AngleInterval, ChainPoint, VertexId},
-    world::{Direction, Grip, Hopper, Limit, RestSlope, Surface},
+    world::{Direction, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
 use world::{Dice, World};
 
@@ -44,9 +45,9 @@ fn thousands_of_random_paths_pass_unspoiled() {
     for world_number in 0..20_000 {
         let world = World::random(&mut dice);
         let Some(chain) = world.chain() else { continue };
-        let test = HopTest::new(&chain, &world.hopper, world.gravity_m_s2);
+        let test = HopTest::new(chain.clone());
         let Some(path) = world.plan(&test) else { continue };
-        let execution = execute(&chain, &world.hopper, world.gravity_m_s2, &path, Some(world.ends(&chain)));
+        let execution = execute(&chain, &path, Some(world.ends(&chain)));
         let said: Vec<String> = execution.violations.iter().map(ToString::to_string).collect();
         let ends: Vec<_> = path.hops.iter().map(|h| (h.lower_limit, h.upper_limit)).collect();
         assert!(execution.passes(), "world {world_number}: {said:#?}\n{ends:?}\n{world:?}");
@@ -56,7 +57,7 @@ fn thousands_of_random_paths_pass_unspoiled() {
         several += usize::from(path.hops.len() > 1);
         hops += path.hops.len();
         for (hop, flight) in path.hops.iter().zip(&execution.flights) {
-            let run_m = (hop.landing.point.x_m - hop.takeoff.point.x_m).abs();
+            let run_m = hop.run_m();
             runs_m = (runs_m.0.min(run_m), runs_m.1.max(run_m));
             steps += flight.as_ref().unwrap().steps;
         }
@@ -76,7 +77,7 @@ fn a_changed_number_is_named() {
     for _ in 0..400 {
         let world = World::random(&mut dice);
         let Some(chain) = world.chain() else { continue };
-        let test = HopTest::new(&chain, &world.hopper, world.gravity_m_s2);
+        let test = HopTest::new(chain.clone());
         let Some(path) = world.plan(&test) else { continue };
         let Some(last) = path.hops.len().checked_sub(1) else { continue };
         let changes: [(StatedValue, Change); 8] = [
@@ -85,23 +86,19 @@ fn a_changed_number_is_named() {
                 h.landing_angle = Angle::from_radians(h.landing_angle.radians() + 0.01);
             }),
             (StatedValue::FlightTime, |h| h.flight_time_s *= 0.99),
-            (StatedValue::Apex, |h| h.apex_z_m += 0.01 * (h.landing.point.x_m - h.takeoff.point.x_m).abs()),
+            (StatedValue::Apex, |h| h.apex_z_m += 0.01 * h.run_m()),
             (StatedValue::SpeedMargin, |h| h.speed_margin_m_s += 0.01 * h.takeoff_speed_m_s),
             (StatedValue::TakeoffSpeed, |h| h.takeoff_speed_m_s = f64::NAN),
-            (StatedValue::LandingStation, |h| h.landing.point.z_m += 0.01 * (h.landing.point.x_m - h.takeoff.point.x_m).abs()),
-            (StatedValue::Heading, |h| {
-                if let Some(map) = &mut h.map {
-                    map.heading_deg = (map.heading_deg + 1.0) % 360.0;
-                }
-            }),
+            (StatedValue::LandingStation, |h| h.landing.point_m.z += 0.01 * h.run_m()),
+            (StatedValue::Heading, |h| h.heading_deg = (h.heading_deg + 1.0) % 360.0),
         ];
         for (i, (value, change)) in changes.into_iter().enumerate() {
             let mut other = path.clone();
             change(&mut other.hops[last]);
-            if value == StatedValue::Heading && path.hops[last].map.is_none() {
+            if value == StatedValue::Heading && path.hops[last].map_ends().is_none() {
                 continue;
             }
-            let execution = execute(&chain, &world.hopper, world.gravity_m_s2, &other, None);
+            let execution = execute(&chain, &other, None);
             let named = execution.violations.iter().any(|v| v.hop == last + 1 && v.limit == ViolatedLimit::StatedValue(value));
             assert!(named, "{} changed, but found {:?}", value.name(), execution.violations);
             changed[i] += 1;
@@ -117,11 +114,11 @@ fn a_path_must_join_its_ends_without_a_gap() {
     while checked < 20 {
         let world = World::random(&mut dice);
         let Some(chain) = world.chain() else { continue };
-        let test = HopTest::new(&chain, &world.hopper, world.gravity_m_s2);
+        let test = HopTest::new(chain.clone());
         let Some(path) = world.plan(&test).filter(|path| path.hops.len() > 2) else { continue };
         let (start, goal) = world.ends(&chain);
         let gaps = |path: &_, ends| {
-            let execution = execute(&chain, &world.hopper, world.gravity_m_s2, path, ends);
+            let execution = execute(&chain, path, ends);
             execution.violations.iter().filter(|v| v.limit == ViolatedLimit::Continuity).map(|v| v.hop).collect::<Vec<_>>()
         };
         assert!(gaps(&path, Some((start, goal))).is_empty());
@@ -137,24 +134,30 @@ fn a_path_must_join_its_ends_without_a_gap() {
 }
 
 /// A needle of 1 m at (2, 0), on flat ground from 0 to 6 m.
-fn over_a_needle(clearance_m: f64) -> (ConstrainedChain, Hopper) {
+fn over_a_needle(clearance_m: f64) -> ConstrainedChain {
     let points = [(0.0, 0.0), (1.9, 0.0), (2.0, 1.0), (2.1, 0.0), (6.0, 0.0)];
     let grip =
         Grip::FromSlope { takeoff: AngleInterval::from_degrees(10.0, 80.0), landing: AngleInterval::from_degrees(-80.0, -10.0) };
-    let hopper = Hopper { clearance_m, ..Hopper::with_speeds(20.0, 20.0) };
+    let hopper = Hopper::new(HopperLimits { clearance_m, ..HopperLimits::with_speeds(20.0, 20.0) }).unwrap();
     let chain = PolygonalChain::bare(points.map(|(x, z)| ChainPoint::new(x, z)).to_vec()).unwrap();
-    (ConstrainedChain::new(chain, &hopper, &Surface { grip: Some(grip), rest: RestSlope::Unlimited }).unwrap(), hopper)
+    ConstrainedChain::new(
+        chain,
+        &hopper,
+        Gravity::new(10.0).unwrap(),
+        &SurfaceProperties { grip: Some(grip), rest: RestSlope::Unlimited },
+    )
+    .unwrap()
 }
 
 /// A hop from 0 to 4 m with a take-off slope `m`, flown at g = 10: `z = m d (1 - d / 4)`.
 fn flown_over_the_needle(m: f64, clearance_m: f64, change: Change) -> (Option<Flight>, Vec<Violation>) {
-    let (chain, hopper) = over_a_needle(clearance_m);
+    let chain = over_a_needle(clearance_m);
     let arc = Arc::new(LineOfSight::new(4.0, 0.0), m, 10.0);
     let mut hop = Hop {
         direction: Direction::Forward,
-        takeoff: chain.geometry().station(0.0).unwrap(),
-        landing: chain.geometry().station(4.0).unwrap(),
-        map: None,
+        takeoff: chain.contact_point(&chain.geometry().station(0.0).unwrap()),
+        landing: chain.contact_point(&chain.geometry().station(4.0).unwrap()),
+        heading_deg: 90.0,
         takeoff_angle: arc.takeoff_angle(),
         takeoff_speed_m_s: arc.takeoff_speed_m_s(),
         landing_angle: arc.landing_angle(),
@@ -168,7 +171,7 @@ fn flown_over_the_needle(m: f64, clearance_m: f64, change: Change) -> (Option<Fl
         upper_limit: Limit::TakeoffCone,
     };
     change(&mut hop);
-    let execution = execute(&chain, &hopper, 10.0, &HopPath { hops: vec![hop], totals: Totals::default() }, None);
+    let execution = execute(&chain, &HopPath { hops: vec![hop], totals: Totals::default() }, None);
     (execution.flights[0].clone(), execution.violations)
 }
 
@@ -183,7 +186,7 @@ fn a_flight_over_a_needle_is_measured() {
     assert!(violations.is_empty(), "{violations:?}");
     let flight = flight.unwrap();
     let least = flight.least_clearance.unwrap();
-    assert_eq!(least.vertex, VertexId(2));
+    assert_eq!(least.vertex, Some(VertexId(2)));
     assert!((least.height_m - 0.5).abs() < 1e-12, "{least:?}");
     assert!((flight.apex_z_m - 1.5).abs() < 1e-12 && (flight.landing_speed_m_s - (130f64 / 3.0).sqrt()).abs() < 1e-12);
     assert!((flight.landing_angle.radians() + 1.5f64.atan()).abs() < 1e-12 && (flight.flight_time_s - 1.2f64.sqrt()).abs() < 1e-12);

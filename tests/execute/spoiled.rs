@@ -2,7 +2,8 @@
 
 use chta::{
     ballistics::{Arc, LineOfSight},
-    chain::{ConstrainedChain, Ground, GroundForm},
+    chain::{ConstrainedChain, GroundForm, SegmentGround, Station},
+    ground::Surface,
     hop::HopTest,
     path::{Execution, Hop, HopPath, ViolatedLimit, execute},
     quantity::{Angle, VertexId},
@@ -26,7 +27,7 @@ struct Tally {
 struct Case<'a> {
     world: &'a World,
     chain: &'a ConstrainedChain,
-    test: &'a HopTest<'a>,
+    test: &'a HopTest,
     path: &'a HopPath,
     hop: &'a Hop,
 }
@@ -35,15 +36,21 @@ impl Case<'_> {
     /// Flies one hop alone over a chain.
     fn flown_over(&self, chain: &ConstrainedChain, hop: Hop) -> Execution {
         let path = HopPath { hops: vec![hop], totals: self.path.totals };
-        execute(chain, &self.world.hopper, self.world.gravity_m_s2, &path, None)
+        execute(chain, &path, None)
     }
 
     fn flown(&self, hop: Hop) -> Execution {
         self.flown_over(self.chain, hop)
     }
 
+    /// The stations of both ends.
+    fn stations(&self) -> (Station, Station) {
+        (self.hop.takeoff.station.unwrap(), self.hop.landing.station.unwrap())
+    }
+
     fn sight(&self) -> LineOfSight {
-        self.test.line_of_sight(&self.hop.takeoff, &self.hop.landing).unwrap()
+        let (takeoff, landing) = self.stations();
+        self.test.line_of_sight(&takeoff, &landing).unwrap()
     }
 
     fn run_m(&self) -> f64 {
@@ -65,7 +72,7 @@ fn with_arc(hop: &Hop, arc: &Arc) -> Hop {
         landing_angle: arc.landing_angle(),
         landing_speed_m_s: arc.landing_speed_m_s(),
         flight_time_s: arc.flight_time_s(),
-        apex_z_m: hop.takeoff.point.z_m + arc.apex_height_m(),
+        apex_z_m: hop.takeoff.point_m.z + arc.apex_height_m(),
         ..*hop
     }
 }
@@ -127,7 +134,7 @@ fn spoil_speed(case: &Case<'_>, tally: &mut Tally) {
         assert!(misses(&execution), "{factor} of the speed hits: {:?}\n{:?}\n{:?}", execution, case.hop, case.world);
         tally.speeds += 1;
         // A take-off speed with nothing to spare is named besides.
-        let rule = case.chain.check_contact(&case.hop.takeoff, Contact::Takeoff, case.hop.direction).unwrap();
+        let rule = case.chain.check_contact(&case.stations().0, Contact::Takeoff, case.hop.direction).unwrap();
         if case.hop.takeoff_speed_m_s * factor > rule.speed_max_m_s() * 1.000_001 {
             assert!(names(&execution, Limit::TakeoffSpeed), "{:?}", execution.violations);
         }
@@ -137,9 +144,10 @@ fn spoil_speed(case: &Case<'_>, tally: &mut Tally) {
 /// A landing claimed 1 % of the run farther and nearer.
 fn spoil_landing(case: &Case<'_>, tally: &mut Tally) {
     for share in [0.99, 1.01] {
-        let x_m = case.hop.takeoff.point.x_m + share * (case.hop.landing.point.x_m - case.hop.takeoff.point.x_m);
+        let (from_m, to_m) = (case.hop.takeoff.along_m, case.hop.landing.along_m);
+        let x_m = from_m + share * (to_m - from_m);
         let Ok(landing) = case.chain.geometry().station(x_m) else { continue };
-        let execution = case.flown(Hop { landing, ..*case.hop });
+        let execution = case.flown(Hop { landing: case.chain.contact_point(&landing), ..*case.hop });
         assert!(misses(&execution), "{share} of the run hits: {:?}\n{:?}\n{:?}", execution, case.hop, case.world);
         tally.landing_points += 1;
     }
@@ -147,16 +155,17 @@ fn spoil_landing(case: &Case<'_>, tally: &mut Tally) {
 
 /// A hop 1 % longer than the reach along its segment.
 fn spoil_reach(case: &Case<'_>, tally: &mut Tally) {
-    let Some(segment) = case.hop.takeoff.shared_segment(&case.hop.landing) else { return };
+    let (takeoff, planned) = case.stations();
+    let Some(segment) = takeoff.shared_segment(&planned) else { return };
     let Some(reach) = case.test.segment_reach(segment, case.hop.direction) else { return };
-    let x_m = case.hop.takeoff.point.x_m + case.hop.direction.sign() * 1.01 * reach.reach_m();
+    let x_m = takeoff.point.x_m + case.hop.direction.sign() * 1.01 * reach.reach_m();
     let Ok(landing) = case.chain.geometry().station(x_m) else { return };
-    if case.hop.takeoff.shared_segment(&landing) != Some(segment) {
+    if takeoff.shared_segment(&landing) != Some(segment) {
         return;
     }
-    let sight = case.test.line_of_sight(&case.hop.takeoff, &landing).unwrap();
+    let sight = case.test.line_of_sight(&takeoff, &landing).unwrap();
     let arc = Arc::new(sight, reach.loft(), case.world.gravity_m_s2);
-    let execution = case.flown(Hop { landing, ..with_arc(case.hop, &arc) });
+    let execution = case.flown(Hop { landing: case.chain.contact_point(&landing), ..with_arc(case.hop, &arc) });
     assert!(names(&execution, reach.limit()), "{} of the reach: {:?}\n{:?}", reach.limit(), execution.violations, case.world);
     tally.by_limit[reach.limit().index()] += 1;
     tally.reaches += 1;
@@ -164,7 +173,8 @@ fn spoil_reach(case: &Case<'_>, tally: &mut Tally) {
 
 /// The same hop where the ground under an end is kept out of, closed for the direction, or 1 % too steep.
 fn spoil_ground(case: &Case<'_>, contact: Contact, tally: &mut Tally) {
-    let station = if contact == Contact::Takeoff { case.hop.takeoff } else { case.hop.landing };
+    let (takeoff, landing) = case.stations();
+    let station = if contact == Contact::Takeoff { takeoff } else { landing };
     let segment = station.ruling_segment(contact, case.hop.direction, case.world.grounds.len()).unwrap().index();
     let mut kept_out = case.world.clone();
     kept_out.grounds[segment].keep_out = true;
@@ -174,7 +184,7 @@ fn spoil_ground(case: &Case<'_>, contact: Contact, tally: &mut Tally) {
         Direction::Forward => GroundForm::Explicit { forward: None, reverse: line },
         Direction::Reverse => GroundForm::Explicit { forward: line, reverse: None },
     };
-    closed.grounds[segment] = Ground { form, keep_out: false };
+    closed.grounds[segment] = SegmentGround { form, keep_out: false };
     let mut steep = case.world.clone();
     let tilt_rad = tilt_rad(case, segment);
     steep.surface.rest = RestSlope::AtMost(Angle::from_radians(0.99 * tilt_rad));
@@ -208,14 +218,14 @@ fn every_spoiled_hop_is_refused_under_its_limits_name() {
     for _ in 0..20_000 {
         let world = World::random(&mut dice);
         let Some(chain) = world.chain() else { continue };
-        let test = HopTest::new(&chain, &world.hopper, world.gravity_m_s2);
+        let test = HopTest::new(chain.clone());
         let Some(path) = world.plan(&test) else { continue };
         for hop in path.hops.iter().take(8) {
             let case = Case { world: &world, chain: &chain, test: &test, path: &path, hop };
             // An arc that hugs its line of sight, or a hop of few of its coordinates' last digits, is no place to tell 1 %.
             let loft = hop.takeoff_angle.slope() - case.sight().slope();
             let digits =
-                [hop.takeoff.point, hop.landing.point].iter().map(|p| p.x_m.abs() + p.z_m.abs()).fold(0.0, f64::max) * f64::EPSILON;
+                [hop.takeoff, hop.landing].iter().map(|p| p.along_m.abs() + p.point_m.z.abs()).fold(0.0, f64::max) * f64::EPSILON;
             if loft < 1e-6 || digits > 1e-7 * loft.min(1.0) * case.run_m() {
                 tally.too_fine += 1;
                 continue;

@@ -2,12 +2,12 @@
 
 use chta::{
     ballistics::TakeoffChoice,
-    chain::{ConstrainedChain, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain, Station},
+    chain::{ConstrainedChain, ContactRule, GroundForm, LineConstraints, PolygonalChain, SegmentGround, Station},
     graph::{Effort, Outcome, PointSpacing, SearchOptions, search},
     hop::{HopTest, Split},
     path::{HopPath, generate},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 use super::support::Draw;
@@ -43,10 +43,10 @@ impl Dice {
 #[derive(Clone, Debug)]
 pub(crate) struct World {
     pub(crate) vertices: Vec<ChainPoint>,
-    pub(crate) grounds: Vec<Ground>,
+    pub(crate) grounds: Vec<SegmentGround>,
     pub(crate) map: Option<Vec<MapPoint>>,
     pub(crate) hopper: Hopper,
-    pub(crate) surface: Surface,
+    pub(crate) surface: SurfaceProperties,
     pub(crate) gravity_m_s2: f64,
     pub(crate) start_x_m: f64,
     pub(crate) goal_x_m: f64,
@@ -86,7 +86,7 @@ impl World {
     /// The chain with its constraints; `None` where this world makes none.
     pub(crate) fn chain(&self) -> Option<ConstrainedChain> {
         let geometry = PolygonalChain::new(self.vertices.clone(), self.grounds.clone(), self.map.clone()).ok()?;
-        ConstrainedChain::new(geometry, &self.hopper, &self.surface).ok()
+        ConstrainedChain::new(geometry, &self.hopper, Gravity::new(self.gravity_m_s2).unwrap(), &self.surface).ok()
     }
 
     /// Start and goal.
@@ -95,7 +95,7 @@ impl World {
     }
 
     /// The planned path; `None` where there is none, or one of so many hops that it would take the whole test.
-    pub(crate) fn plan(&self, test: &HopTest<'_>) -> Option<HopPath> {
+    pub(crate) fn plan(&self, test: &HopTest) -> Option<HopPath> {
         let (start, goal) = self.ends(test.chain());
         match search(test, start, goal, &self.options, &mut |_| {}).unwrap().outcome {
             Outcome::Path { legs, cost } if cost.hops() <= 60 => {
@@ -156,7 +156,7 @@ fn hopper(dice: &mut Dice, size_m: f64, speed_m_s: f64, gravity_m_s2: f64) -> Ho
     let some = |dice: &mut Dice, low: f64, high: f64| dice.chance(0.25).then(|| dice.between(low, high));
     let angle = |degrees: Option<f64>| degrees.map(Angle::from_degrees);
     let scale_m = speed_m_s * speed_m_s / gravity_m_s2;
-    Hopper {
+    let mut limits = HopperLimits {
         takeoff_speed_max_m_s: speed_m_s * dice.between(0.7, 1.5),
         landing_speed_max_m_s: speed_m_s * dice.between(0.7, 1.5),
         clearance_m: if dice.chance(0.5) { 0.0 } else { size_m * dice.decades(-5.0, -1.5) },
@@ -166,7 +166,11 @@ fn hopper(dice: &mut Dice, size_m: f64, speed_m_s: f64, gravity_m_s2: f64) -> Ho
         flight_time_max_s: some(dice, 0.3, 1.8).map(|share| share * speed_m_s / gravity_m_s2),
         mass_kg: None,
         rest_time_s: None,
+    };
+    if limits.takeoff_angle_min > limits.takeoff_angle_max && limits.takeoff_angle_max.is_some() {
+        std::mem::swap(&mut limits.takeoff_angle_min, &mut limits.takeoff_angle_max);
     }
+    Hopper::new(limits).unwrap()
 }
 
 fn offsets(dice: &mut Dice) -> (AngleInterval, AngleInterval) {
@@ -175,7 +179,7 @@ fn offsets(dice: &mut Dice) -> (AngleInterval, AngleInterval) {
     (AngleInterval::from_degrees(takeoff, high), AngleInterval::from_degrees(low, landing))
 }
 
-fn surface(dice: &mut Dice) -> Surface {
+fn surface(dice: &mut Dice) -> SurfaceProperties {
     let grip = if dice.chance(0.6) {
         Grip::Friction(FrictionCone::new(dice.one_of(&[0.3, 0.6, 0.9, 1.5, 5.0])).unwrap())
     } else {
@@ -188,10 +192,10 @@ fn surface(dice: &mut Dice) -> Surface {
         RestSlope::AsFrictionHolds,
         RestSlope::AtMost(Angle::from_degrees(50.0)),
     ]);
-    Surface { grip: Some(grip), rest }
+    SurfaceProperties { grip: Some(grip), rest }
 }
 
-fn ground(dice: &mut Dice, explicit: bool, speed_m_s: f64) -> Ground {
+fn ground(dice: &mut Dice, explicit: bool, speed_m_s: f64) -> SegmentGround {
     if explicit {
         let mut line = || {
             dice.chance(0.95).then(|| {
@@ -201,11 +205,11 @@ fn ground(dice: &mut Dice, explicit: bool, speed_m_s: f64) -> Ground {
             })
         };
         let form = GroundForm::Explicit { forward: line(), reverse: line() };
-        return Ground { form, keep_out: false };
+        return SegmentGround { form, keep_out: false };
     }
     let friction = dice.chance(0.3).then(|| FrictionCone::new(dice.between(0.4, 1.5)).unwrap());
     let cross_slope = Angle::from_degrees(if dice.chance(0.3) { dice.between(0.0, 18.0) } else { 0.0 });
-    Ground { form: GroundForm::Surface { friction, cross_slope }, keep_out: dice.chance(0.03) }
+    SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out: dice.chance(0.03) }
 }
 
 fn on_a_map(dice: &mut Dice, vertices: &[ChainPoint]) -> Vec<MapPoint> {

@@ -2,9 +2,10 @@
 
 use chta::{
     chain::ConstrainedChain,
+    ground::{DemGround, Surface},
     path::{HopPath, Totals, execute},
     quantity::{Angle, MapPoint},
-    terrain::{Dem, FractalGround, SyntheticTerrain, synthesise},
+    terrain::{Dem, FractalGround, OverlaidDem, Overlays, SyntheticTerrain, synthesise},
     uncertainty::{FlightEnd, LiftoffVelocity, Mission, Policy, Simulation, TrialOptions, Uncertainty},
     world::Hopper,
 };
@@ -75,11 +76,10 @@ fn contact_with_random_chains_is_the_first_a_dense_look_finds() {
         let points: Vec<(f64, f64)> = draw.profile(25, 4.0).iter().map(|p| (p.x_m, p.z_m)).collect();
         let scene = Scene::of_chain(&points, 10.0, friction(5.0));
         let chain = &scene.chain;
-        let test = chta::hop::HopTest::new(chain, &scene.hopper, scene.gravity_m_s2);
+        let test = chta::hop::HopTest::new(chain.clone());
         let start = chain.geometry().station(scene.ends_m.0).unwrap();
         let path = no_path();
-        let mission = Mission { test: &test, surface: &scene.surface, path: &path, start, goal: start, map: None, to_go: None };
-        let simulation = Simulation::new(mission, Uncertainty::NONE).unwrap();
+        let simulation = Simulation::new(&Mission::along_chain(test, path, start, start), Uncertainty::NONE).unwrap();
         for i in 0..20 {
             // Some from vertices, some from inside.
             let x_m = if i % 4 == 0 { points[draw.below(points.len())].0 } else { draw.uniform(scene.ends_m.0, scene.ends_m.1) };
@@ -121,14 +121,15 @@ fn rough_map() -> Dem {
 #[test]
 fn contact_with_a_map_is_the_first_a_dense_look_finds() {
     let mut draw = Draw::seeded(7);
-    let scene = Scene::of_dem(rough_map(), [(2.0, 20.0), (47.0, 21.0)], Hopper::with_speeds(10.0, 10.0), friction(5.0), 1.6);
+    let scene =
+        Scene::of_dem(rough_map(), [(2.0, 20.0), (47.0, 21.0)], Hopper::with_speeds(10.0, 10.0).unwrap(), friction(5.0), 1.6);
     let dem = scene.dem.as_ref().unwrap();
-    let test = chta::hop::HopTest::new(&scene.chain, &scene.hopper, scene.gravity_m_s2);
     let start = scene.chain.geometry().station(0.0).unwrap();
     let path = no_path();
-    let map = Some(chta::uncertainty::MapGround { dem, friction: None, keep_out: None });
-    let mission = Mission { test: &test, surface: &scene.surface, path: &path, start, goal: start, map, to_go: None };
-    let simulation = Simulation::new(mission, Uncertainty::NONE).unwrap();
+    let terrain = OverlaidDem::new(dem.clone(), Overlays::default());
+    let ground = DemGround::new(terrain, &scene.hopper, scene.chain.gravity(), &scene.surface);
+    let start = scene.chain.contact_point(&start);
+    let simulation = Simulation::new(&Mission::over_dem(ground, path, start, start), Uncertainty::NONE).unwrap();
     let (mut landed, mut lost, mut stayed) = (0, 0, 0);
     for i in 0..1000 {
         let mut from = MapPoint::new(draw.uniform(0.0, 49.0), draw.uniform(0.0, 39.0));
@@ -169,8 +170,8 @@ fn contact_agrees_with_the_checker() {
                 horizontal_m_s: spoiled.hops[i].takeoff_speed_m_s * angle.cos(),
                 vertical_m_s: spoiled.hops[i].takeoff_speed_m_s * angle.sin(),
             };
-            let end = simulation.fly(Point2::new(hop.takeoff.point.x_m, 0.0), liftoff).unwrap();
-            let execution = execute(&scene.chain, &scene.hopper, scene.gravity_m_s2, &spoiled, None);
+            let end = simulation.fly(Point2::new(hop.takeoff.along_m, 0.0), liftoff).unwrap();
+            let execution = execute(&scene.chain, &spoiled, None);
             match execution.flights[i].as_ref().unwrap().contact {
                 Some(contact) => {
                     let miss_m = (contact.x_m - end.at_m.x).abs();
@@ -196,7 +197,7 @@ fn landings_on_flat_ground_follow_their_analytic_distribution() {
         let mut listener = Listener::default();
         let options = TrialOptions { trials: 10_000, seed: 4, ..TrialOptions::default() };
         let summary = planned.simulation(uncertainty).run(&options, &mut listener).unwrap();
-        let planned_m = hop.landing.point.x_m - hop.takeoff.point.x_m;
+        let planned_m = hop.run_m();
         let sigma_m_s = absolute + fraction * hop.takeoff_speed_m_s;
         let below = |range_m: f64| {
             let speed_m_s = hop.takeoff_speed_m_s * (range_m / planned_m).sqrt();
@@ -230,7 +231,7 @@ fn landings_on_flat_ground_follow_their_analytic_distribution() {
 fn along_a_slice_the_chain_and_the_map_agree() {
     let scene = Scene::craters();
     let planned = scene.planned();
-    let on_chain = Mission { map: None, ..planned.mission() };
+    let on_chain = planned.chain_mission();
     let errors = Uncertainty {
         takeoff_speed_sigma_fraction: 0.01,
         takeoff_angle_sigma: Angle::from_degrees(0.7),
@@ -241,10 +242,10 @@ fn along_a_slice_the_chain_and_the_map_agree() {
     let options = TrialOptions { trials: 1500, policy: Policy::OpenLoop, goal_tolerance_m: 4.0, ..TrialOptions::default() };
     let mut listeners = [Listener::default(), Listener::default()];
     for (mission, listener) in [on_chain, planned.mission()].into_iter().zip(&mut listeners) {
-        Simulation::new(mission, errors).unwrap().run(&options, listener).unwrap();
+        Simulation::new(&mission, errors).unwrap().run(&options, listener).unwrap();
     }
     let [chain, map] = listeners;
-    let start = planned.path.hops[0].map.unwrap().takeoff;
+    let start = planned.path.hops[0].takeoff.map().unwrap();
     let (mut compared, mut different) = (0, 0);
     for (a, b) in chain.trials.iter().zip(&map.trials) {
         different += u32::from(a.outcome != b.outcome || a.hops != b.hops);
@@ -269,11 +270,11 @@ fn along_a_slice_chain_and_map_replan_the_same_hops() {
     let errors = Uncertainty { drift_along_sigma_m: 0.4, ..Uncertainty::NONE };
     let options = TrialOptions { trials: 150, policy: Policy::Replan, goal_tolerance_m: 1.0, ..TrialOptions::default() };
     let mut listeners = [Listener::default(), Listener::default()];
-    for (mission, listener) in [Mission { map: None, ..planned.mission() }, planned.mission()].into_iter().zip(&mut listeners) {
-        Simulation::new(mission, errors).unwrap().run(&options, listener).unwrap();
+    for (mission, listener) in [planned.chain_mission(), planned.mission()].into_iter().zip(&mut listeners) {
+        Simulation::new(&mission, errors).unwrap().run(&options, listener).unwrap();
     }
     let [chain, map] = listeners;
-    let start = planned.path.hops[0].map.unwrap().takeoff;
+    let start = planned.path.hops[0].takeoff.map().unwrap();
     let (mut same, mut different, mut off_plan) = (0, 0, 0);
     for trial in 0..150 {
         let of = |listener: &Listener| listener.hops.iter().filter(|hop| hop.trial == trial).copied().collect::<Vec<_>>();

@@ -5,11 +5,9 @@ use std::ops::ControlFlow;
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
-    terrain::{Dem, GeoReference, KeepOut, read_keep_out},
-    uncertainty::{
-        MapGround, Mission, Observer, Policy, Progress, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty,
-    },
-    world::{Grip, Hopper, RestSlope, Surface},
+    terrain::{Dem, GeoReference, KeepOut, Overlays, read_keep_out},
+    uncertainty::{Mission, Observer, Policy, Progress, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty},
+    world::{Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 use super::{
@@ -40,8 +38,14 @@ const REPLAN: TrialOptions = TrialOptions { policy: Policy::Replan, ..HUNDRED };
 fn ravine() -> Scene {
     let mut scene =
         Scene::of_chain(&[(0.0, 0.0), (20.0, 0.0), (20.1, -30.0), (31.9, -30.0), (32.0, 0.0), (60.0, 0.0)], 8.0, friction(0.9));
-    scene.hopper.landing_speed_max_m_s = 60.0;
-    scene.chain = ConstrainedChain::new(scene.chain.geometry().clone(), &scene.hopper, &scene.surface).unwrap();
+    scene.hopper = Hopper::new(HopperLimits { landing_speed_max_m_s: 60.0, ..*scene.hopper.limits() }).unwrap();
+    scene.chain = ConstrainedChain::new(
+        scene.chain.geometry().clone(),
+        &scene.hopper,
+        Gravity::new(scene.gravity_m_s2).unwrap(),
+        &scene.surface,
+    )
+    .unwrap();
     scene.ends_m = (19.0, 34.0);
     scene
 }
@@ -60,7 +64,8 @@ fn every_outcome_occurs_where_it_is_planted() {
     // Cones of 2 degrees about the planned directions.
     let mut narrow = Scene::flat();
     let about = |deg: f64| AngleInterval::from_degrees(deg - 1.0, deg + 1.0);
-    let of_cones = |takeoff, landing| Surface { grip: Some(Grip::FromSlope { takeoff, landing }), rest: RestSlope::Unlimited };
+    let of_cones =
+        |takeoff, landing| SurfaceProperties { grip: Some(Grip::FromSlope { takeoff, landing }), rest: RestSlope::Unlimited };
     let open = AngleInterval::from_degrees(0.0, 180.0);
     let turned = Uncertainty { takeoff_angle_sigma: Angle::from_degrees(3.0), ..none };
     for (surface, outcome) in [
@@ -68,14 +73,26 @@ fn every_outcome_occurs_where_it_is_planted() {
         (of_cones(open, about(-45.0)), TrialOutcome::SlidAtLanding),
     ] {
         narrow.surface = surface;
-        narrow.chain = ConstrainedChain::new(narrow.chain.geometry().clone(), &narrow.hopper, &surface).unwrap();
+        narrow.chain = ConstrainedChain::new(
+            narrow.chain.geometry().clone(),
+            &narrow.hopper,
+            Gravity::new(narrow.gravity_m_s2).unwrap(),
+            &surface,
+        )
+        .unwrap();
         assert!(count(&narrow, turned, &HUNDRED, outcome) > 50);
     }
     // Landing 1 % over the speed of the planned landing is too much.
     let mut brittle = Scene::flat();
     let planned_m_s = brittle.planned().path.hops[0].landing_speed_m_s;
-    brittle.hopper.landing_speed_max_m_s = planned_m_s * 1.01;
-    brittle.chain = ConstrainedChain::new(brittle.chain.geometry().clone(), &brittle.hopper, &brittle.surface).unwrap();
+    brittle.hopper = Hopper::new(HopperLimits { landing_speed_max_m_s: planned_m_s * 1.01, ..*brittle.hopper.limits() }).unwrap();
+    brittle.chain = ConstrainedChain::new(
+        brittle.chain.geometry().clone(),
+        &brittle.hopper,
+        Gravity::new(brittle.gravity_m_s2).unwrap(),
+        &brittle.surface,
+    )
+    .unwrap();
     assert!(count(&brittle, speed, &HUNDRED, TrialOutcome::Damaged) > 20);
     // A robot that falls into the ravine does not come out again.
     let slow = Uncertainty { takeoff_speed_sigma_fraction: 0.2, ..none };
@@ -89,7 +106,7 @@ fn every_outcome_occurs_where_it_is_planted() {
 fn plain() -> Scene {
     let map = GeoReference::local(MapPoint::new(0.0, 100.0), 10.0, 10.0).unwrap();
     let dem = Dem::new(11, 11, vec![5.0; 121], map).unwrap();
-    Scene::of_dem(dem, [(15.0, 47.0), (93.0, 47.0)], Hopper::with_speeds(12.0, 12.0), friction(1.5), 3.711)
+    Scene::of_dem(dem, [(15.0, 47.0), (93.0, 47.0)], Hopper::with_speeds(12.0, 12.0).unwrap(), friction(1.5), 3.711)
 }
 
 #[test]
@@ -104,14 +121,15 @@ fn zones_gaps_and_borders_lose_the_robot() {
     std::fs::write(&file, text).unwrap();
     let zones: KeepOut = read_keep_out(&file, None, scene.dem.as_ref().unwrap().bounds()).unwrap();
     let aside = Uncertainty { heading_sigma: Angle::from_degrees(3.0), ..Uncertainty::NONE };
-    let lost = |mission: Mission<'_>, uncertainty| {
+    let lost = |mission: Mission, uncertainty| {
         let options = TrialOptions { trials: 200, goal_tolerance_m: 8.0, ..HUNDRED };
         let mut listener = Listener::default();
-        let summary = Simulation::new(mission, uncertainty).unwrap().run(&options, &mut listener).unwrap();
+        let summary = Simulation::new(&mission, uncertainty).unwrap().run(&options, &mut listener).unwrap();
         (summary.outcomes.of(TrialOutcome::Lost), listener)
     };
-    let map = MapGround { keep_out: Some(&zones), ..planned.mission().map.unwrap() };
-    let (in_zones, listener) = lost(Mission { map: Some(map), ..planned.mission() }, aside);
+    let robot = (&scene.hopper, &scene.surface);
+    let dem = scene.dem.clone().unwrap();
+    let (in_zones, listener) = lost(planned.over_dem(dem, Overlays::new(None, Some(zones)), planned.path.clone(), robot), aside);
     assert!(in_zones > 50, "{in_zones} in the zones");
     for hop in listener.hops.iter().filter(|hop| hop.outcome == Some(TrialOutcome::Lost)) {
         assert!(hop.landed && (hop.contact_m.y >= 47.5 || hop.contact_m.y <= 46.5), "{hop:?}");
@@ -119,16 +137,16 @@ fn zones_gaps_and_borders_lose_the_robot() {
     assert_eq!(lost(planned.mission(), aside).0, 0, "without zones all stay on the map");
     // Twice as fast, it flies over the border 7 m behind the goal.
     let fast = Uncertainty { takeoff_speed_sigma_fraction: 0.3, ..Uncertainty::NONE };
-    let strong = Hopper::with_speeds(50.0, 50.0);
+    let strong = Hopper::with_speeds(50.0, 50.0).unwrap();
     let chain = PolygonalChain::new(
         scene.chain.geometry().vertices().to_vec(),
         scene.chain.geometry().grounds().to_vec(),
         scene.chain.geometry().map_points().map(<[_]>::to_vec),
     )
     .unwrap();
-    let chain = ConstrainedChain::new(chain, &strong, &scene.surface).unwrap();
-    let test = chta::hop::HopTest::new(&chain, &strong, scene.gravity_m_s2);
-    let (off, listener) = lost(Mission { test: &test, ..planned.mission() }, fast);
+    let chain = ConstrainedChain::new(chain, &strong, Gravity::new(scene.gravity_m_s2).unwrap(), &scene.surface).unwrap();
+    let test = chta::hop::HopTest::new(chain.with_hopper(&strong, Gravity::new(scene.gravity_m_s2).unwrap()).unwrap());
+    let (off, listener) = lost(planned.without_replanning(test, planned.path.clone()), fast);
     assert!(off > 20, "{off} off the map");
     let beyond = listener.hops.iter().find(|hop| hop.outcome == Some(TrialOutcome::Lost)).unwrap();
     assert!(!beyond.landed && (beyond.contact_m.x - 100.0).abs() < 1e-9 && beyond.contact_m.z > 5.0, "{beyond:?}");
@@ -139,7 +157,7 @@ fn a_bend_loses_those_that_fly_over_it() {
     let points = [0.0, 100.0, 140.0, 400.0].map(|x| ChainPoint::new(x, 2.0)).to_vec();
     let mut scene = Scene::flat();
     let bent = PolygonalChain::bare(points).unwrap().with_bends(vec![chta::quantity::VertexId(2)]).unwrap();
-    scene.chain = ConstrainedChain::new(bent, &scene.hopper, &scene.surface).unwrap();
+    scene.chain = ConstrainedChain::new(bent, &scene.hopper, Gravity::new(scene.gravity_m_s2).unwrap(), &scene.surface).unwrap();
     let speed = Uncertainty { takeoff_speed_sigma_m_s: 0.3, ..Uncertainty::NONE };
     let lost = count(&scene, speed, &HUNDRED, TrialOutcome::Lost);
     assert!((30..70).contains(&lost), "about half overshoot: {lost}");
@@ -163,17 +181,21 @@ fn a_rate_known_well_enough_ends_the_run_after_whole_thousands() {
 fn a_map_needs_grip_and_the_path_must_lie_on_it() {
     let scene = plain();
     let planned = scene.planned();
-    let bare = Surface { grip: None, rest: RestSlope::Unlimited };
-    let error = Simulation::new(Mission { surface: &bare, ..planned.mission() }, Uncertainty::NONE).unwrap_err();
+    let bare = SurfaceProperties { grip: None, rest: RestSlope::Unlimited };
+    let over = |dem: &Dem, path: &chta::path::HopPath, surface: &SurfaceProperties| {
+        let mission = planned.over_dem(dem.clone(), Overlays::default(), path.clone(), (&scene.hopper, surface));
+        Simulation::new(&mission, Uncertainty::NONE).unwrap_err()
+    };
+    let dem = scene.dem.as_ref().unwrap();
+    let error = over(dem, &planned.path, &bare);
     assert!(matches!(error, SimulationError::NoGrip), "{error}");
     let map = GeoReference::local(MapPoint::new(0.0, 100.0), 10.0, 10.0).unwrap();
     let small = Dem::new(11, 6, vec![5.0; 66], map).unwrap();
-    let map = Some(MapGround { dem: &small, friction: None, keep_out: None });
-    let error = Simulation::new(Mission { map, to_go: None, ..planned.mission() }, Uncertainty::NONE).unwrap_err().to_string();
+    let error = over(&small, &planned.path, &scene.surface).to_string();
     assert!(error.contains("the goal lies at (93 m, 47 m)"), "{error}");
     let mut path = planned.path.clone();
-    path.hops[0].map = None;
-    let error = Simulation::new(Mission { path: &path, ..planned.mission() }, Uncertainty::NONE).unwrap_err();
+    path.hops[0].takeoff.frame = chta::ground::Frame::Chain;
+    let error = over(dem, &path, &scene.surface);
     assert!(matches!(error, SimulationError::NotOnMap { hop: 1 }), "{error}");
 }
 
@@ -193,14 +215,14 @@ fn what_makes_no_sense_is_refused_by_name() {
     let planned = scene.planned();
     let simulation = planned.simulation(Uncertainty::NONE);
     let refused = |options: TrialOptions| simulation.run(&options, &mut ()).unwrap_err().to_string();
-    assert!(refused(TrialOptions { trials: 0, ..HUNDRED }).contains("0 trials"));
+    assert!(refused(TrialOptions { trials: 0, ..HUNDRED }).contains("trials is 0"));
     assert!(refused(TrialOptions { hop_limit: Some(0), ..HUNDRED }).contains("hop_limit"));
     assert!(refused(TrialOptions { goal_tolerance_m: f64::NAN, ..HUNDRED }).contains("goal_tolerance_m"));
     assert!(refused(TrialOptions { until_half_width: Some(0.5), ..HUNDRED }).contains("0.5"));
-    let without = Mission { to_go: None, ..planned.mission() };
-    let error = Simulation::new(without, Uncertainty::NONE).unwrap().run(&REPLAN, &mut ()).unwrap_err();
+    let without = planned.without_replanning(planned.test.clone(), planned.path.clone());
+    let error = Simulation::new(&without, Uncertainty::NONE).unwrap().run(&REPLAN, &mut ()).unwrap_err();
     assert!(matches!(error, SimulationError::NoCostsToGo));
-    let refused = |uncertainty: Uncertainty| Simulation::new(planned.mission(), uncertainty).unwrap_err().to_string();
+    let refused = |uncertainty: Uncertainty| Simulation::new(&planned.mission(), uncertainty).unwrap_err().to_string();
     let none = Uncertainty::NONE;
     for (key, _, _) in none.by_key() {
         assert!(!key.is_empty());

@@ -35,11 +35,11 @@ pub(crate) fn exactly_planned(planned: &Planned<'_>, policy: Policy) {
     assert_eq!(listener.hops.len(), 3 * hops);
     for (i, flown) in listener.hops.iter().enumerate() {
         let plan = &planned.path.hops[i % hops];
-        let place = match plan.map {
-            Some(map) if planned.scene.dem.is_some() => (map.landing.x, map.landing.y),
-            _ => (plan.landing.point.x_m, 0.0),
+        let place = match plan.landing.map() {
+            Some(map) if planned.scene.dem.is_some() => (map.x, map.y),
+            _ => (plan.landing.along_m, 0.0),
         };
-        assert_eq!((flown.contact_m.x, flown.contact_m.y, flown.contact_m.z), (place.0, place.1, plan.landing.point.z_m));
+        assert_eq!((flown.contact_m.x, flown.contact_m.y, flown.contact_m.z), (place.0, place.1, plan.landing.point_m.z));
         assert_eq!((flown.error_m, flown.rest_m), (0.0, flown.contact_m));
         assert!((flown.takeoff_speed_m_s() - plan.takeoff_speed_m_s).abs() <= 1e-12 * plan.takeoff_speed_m_s);
         assert!((flown.landing_speed_m_s() - plan.landing_speed_m_s).abs() < 1e-9);

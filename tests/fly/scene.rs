@@ -1,22 +1,25 @@
 //! Journeys to simulate: on a flat chain, on a rough one, on the shipped DEM.
 
+use std::sync::Arc;
+
 use chta::{
     ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain, Station},
     graph::{CostToGo, NodeSet, Outcome, PointSpacing, SearchOptions, search},
+    ground::{DemGround, Surface},
     hop::{HopTest, Split},
     path::{HopPath, generate},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
-    terrain::{Dem, slice},
-    uncertainty::{MapGround, Mission, Simulation, Summary, TrialOptions, Uncertainty},
-    world::{FrictionCone, Grip, Hopper, RestSlope, Surface},
+    terrain::{Dem, OverlaidDem, Overlays, slice},
+    uncertainty::{Mission, Simulation, Summary, TrialOptions, Uncertainty},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 /// A journey and the ground it is planned on.
 pub(crate) struct Scene {
     pub(crate) chain: ConstrainedChain,
     pub(crate) hopper: Hopper,
-    pub(crate) surface: Surface,
+    pub(crate) surface: SurfaceProperties,
     pub(crate) gravity_m_s2: f64,
     pub(crate) dem: Option<Dem>,
     pub(crate) options: SearchOptions,
@@ -26,16 +29,16 @@ pub(crate) struct Scene {
 /// A scene with its plan.
 pub(crate) struct Planned<'a> {
     pub(crate) scene: &'a Scene,
-    pub(crate) test: HopTest<'a>,
+    pub(crate) test: HopTest,
     pub(crate) path: HopPath,
-    pub(crate) to_go: CostToGo,
+    pub(crate) to_go: Arc<CostToGo>,
     pub(crate) start: Station,
     pub(crate) goal: Station,
 }
 
-pub(crate) fn friction(coefficient: f64) -> Surface {
+pub(crate) fn friction(coefficient: f64) -> SurfaceProperties {
     let cone = FrictionCone::new(coefficient).unwrap();
-    Surface { grip: Some(Grip::Friction(cone)), rest: RestSlope::AsFrictionHolds }
+    SurfaceProperties { grip: Some(Grip::Friction(cone)), rest: RestSlope::AsFrictionHolds }
 }
 
 /// The middle of the feasible angles leaves room for errors both ways.
@@ -44,10 +47,11 @@ pub(crate) fn mid_range(spacing: PointSpacing) -> SearchOptions {
 }
 
 impl Scene {
-    pub(crate) fn of_chain(points: &[(f64, f64)], speed_m_s: f64, surface: Surface) -> Self {
+    pub(crate) fn of_chain(points: &[(f64, f64)], speed_m_s: f64, surface: SurfaceProperties) -> Self {
         let vertices = points.iter().map(|&(x, z)| ChainPoint::new(x, z)).collect();
-        let hopper = Hopper { clearance_m: 0.05, ..Hopper::with_speeds(speed_m_s, speed_m_s) };
-        let chain = ConstrainedChain::new(PolygonalChain::bare(vertices).unwrap(), &hopper, &surface).unwrap();
+        let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(speed_m_s, speed_m_s) }).unwrap();
+        let chain = ConstrainedChain::new(PolygonalChain::bare(vertices).unwrap(), &hopper, Gravity::new(3.711).unwrap(), &surface)
+            .unwrap();
         let ends_m = chain.geometry().extent_m();
         let options = mid_range(PointSpacing::PerSegment(3));
         Self { chain, hopper, surface, gravity_m_s2: 3.711, dem: None, options, ends_m }
@@ -55,7 +59,7 @@ impl Scene {
 
     /// One hop over flat ground of 400 m, from 100 to 140 m, cones wide open.
     pub(crate) fn flat() -> Self {
-        let open = Surface {
+        let open = SurfaceProperties {
             grip: Some(Grip::FromSlope {
                 takeoff: AngleInterval::from_degrees(0.0, 180.0),
                 landing: AngleInterval::from_degrees(-180.0, 0.0),
@@ -79,12 +83,12 @@ impl Scene {
     }
 
     /// A slice of a DEM between two map points.
-    pub(crate) fn of_dem(dem: Dem, ends: [(f64, f64); 2], hopper: Hopper, surface: Surface, gravity_m_s2: f64) -> Self {
+    pub(crate) fn of_dem(dem: Dem, ends: [(f64, f64); 2], hopper: Hopper, surface: SurfaceProperties, gravity_m_s2: f64) -> Self {
         let [from, to] = ends.map(|(x, y)| MapPoint::new(x, y));
         let profile = slice(&dem, from, to).unwrap();
         let Some(Grip::Friction(cone)) = surface.grip else { panic!("a slice needs friction") };
         let chain = PolygonalChain::from_profile(&profile, Some(cone)).unwrap();
-        let chain = ConstrainedChain::new(chain, &hopper, &surface).unwrap();
+        let chain = ConstrainedChain::new(chain, &hopper, Gravity::new(gravity_m_s2).unwrap(), &surface).unwrap();
         let ends_m = chain.geometry().extent_m();
         Self { chain, hopper, surface, gravity_m_s2, dem: Some(dem), options: mid_range(PointSpacing::AtMostM(1.0)), ends_m }
     }
@@ -93,40 +97,63 @@ impl Scene {
     pub(crate) fn craters() -> Self {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/data/terrain/mars_crater_field.tif");
         let dem = chta::terrain::read_dem(file.as_ref()).unwrap();
-        let hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(10.0, 10.0) };
+        let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(10.0, 10.0) }).unwrap();
         // The slice goes on behind the goal, so that the chain has ground for those that fly too far.
         let scene = Self::of_dem(dem, [(12.0, 84.0), (114.0, 50.0)], hopper, friction(0.9), 3.711);
         Self { ends_m: (0.0, 82.0), ..scene }
     }
 
     pub(crate) fn planned(&self) -> Planned<'_> {
-        let test = HopTest::new(&self.chain, &self.hopper, self.gravity_m_s2);
+        let test = HopTest::new(self.chain.clone());
         let station = |x_m| self.chain.geometry().station(x_m).unwrap();
         let (start, goal) = (station(self.ends_m.0), station(self.ends_m.1));
         let answer = search(&test, start, goal, &self.options, &mut |_| {}).unwrap();
         let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path: {:?}", answer.outcome) };
         let path = generate(&test, &legs, self.options.takeoff, Split::FullReach).unwrap();
         let nodes = NodeSet::new(&self.chain, start, goal, answer.spacing).unwrap();
-        let to_go = CostToGo::of(&test, nodes, &self.options);
+        let to_go = Arc::new(CostToGo::of(&test, nodes, &self.options));
         Planned { scene: self, test, path, to_go, start, goal }
     }
 }
 
 impl Planned<'_> {
-    pub(crate) fn mission(&self) -> Mission<'_> {
-        Mission {
-            test: &self.test,
-            surface: &self.scene.surface,
-            path: &self.path,
-            start: self.start,
-            goal: self.goal,
-            map: self.scene.dem.as_ref().map(|dem| MapGround { dem, friction: None, keep_out: None }),
-            to_go: Some(&self.to_go),
+    /// The mission over the DEM where the scene has one, else along the chain; with replanning.
+    pub(crate) fn mission(&self) -> Mission {
+        self.without_replanning(self.test.clone(), self.path.clone()).with_replanning(self.test.clone(), Arc::clone(&self.to_go))
+    }
+
+    /// The mission along the chain, also where the scene has a DEM.
+    pub(crate) fn chain_mission(&self) -> Mission {
+        Mission::along_chain(self.test.clone(), self.path.clone(), self.start, self.goal)
+            .with_replanning(self.test.clone(), Arc::clone(&self.to_go))
+    }
+
+    /// The mission of another path, or with the hopper of another hop test.
+    pub(crate) fn without_replanning(&self, test: HopTest, path: HopPath) -> Mission {
+        match &self.scene.dem {
+            None => Mission::along_chain(test, path, self.start, self.goal),
+            Some(dem) => {
+                let chain = test.chain();
+                self.over_dem(dem.clone(), Overlays::default(), path, (chain.hopper(), chain.surface()))
+            }
         }
     }
 
-    pub(crate) fn simulation(&self, uncertainty: Uncertainty) -> Simulation<'_> {
-        Simulation::new(self.mission(), uncertainty).unwrap()
+    /// The mission over any DEM with overlays.
+    pub(crate) fn over_dem(
+        &self,
+        dem: Dem,
+        overlays: Overlays,
+        path: HopPath,
+        (hopper, surface): (&Hopper, &SurfaceProperties),
+    ) -> Mission {
+        let ground = DemGround::new(OverlaidDem::new(dem, overlays), hopper, self.test.chain().gravity(), surface);
+        let [start, goal] = [self.start, self.goal].map(|station| self.test.chain().contact_point(&station));
+        Mission::over_dem(ground, path, start, goal)
+    }
+
+    pub(crate) fn simulation(&self, uncertainty: Uncertainty) -> Simulation {
+        Simulation::new(&self.mission(), uncertainty).unwrap()
     }
 
     pub(crate) fn run(&self, uncertainty: Uncertainty, options: &TrialOptions) -> Summary {

@@ -7,7 +7,7 @@ use chta::{
     graph::{PointSpacing, SearchOptions},
     terrain::read_dem,
     uncertainty::{Policy, TrialOptions, TrialOutcome, Uncertainty},
-    world::{Body, Hopper},
+    world::{Body, Hopper, HopperLimits},
 };
 
 use super::{
@@ -15,11 +15,13 @@ use super::{
     scene::{Scene, friction},
 };
 
-const HOPPER: Hopper = Hopper { clearance_m: 0.1, ..Hopper::with_speeds(10.0, 10.0) };
+fn hopper() -> Hopper {
+    Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(10.0, 10.0) }).unwrap()
+}
 
 fn scene(file: &Path, body: &str, ends: [(f64, f64); 2], spacing_m: f64, takeoff: TakeoffChoice) -> Scene {
-    let gravity_m_s2 = Body::named(body).unwrap().gravity_m_s2;
-    let mut scene = Scene::of_dem(read_dem(file).unwrap(), ends, HOPPER, friction(0.6), gravity_m_s2);
+    let gravity_m_s2 = Body::named(body).unwrap().gravity.m_s2();
+    let mut scene = Scene::of_dem(read_dem(file).unwrap(), ends, hopper(), friction(0.6), gravity_m_s2);
     scene.options = SearchOptions { spacing: Some(PointSpacing::AtMostM(spacing_m)), takeoff, ..SearchOptions::default() };
     scene
 }
@@ -32,10 +34,9 @@ fn holds(file: &Path, body: &str, ends: [(f64, f64); 2], spacing_m: f64) {
         for policy in Policy::ALL {
             exactly_planned(&planned, policy);
         }
-        let along = planned.mission();
-        let chain_alone = chta::uncertainty::Mission { map: None, ..along };
+        let chain_alone = planned.chain_mission();
         let options = TrialOptions { trials: 1, goal_tolerance_m: 0.0, ..TrialOptions::default() };
-        let summary = chta::uncertainty::Simulation::new(chain_alone, Uncertainty::NONE).unwrap().run(&options, &mut ()).unwrap();
+        let summary = chta::uncertainty::Simulation::new(&chain_alone, Uncertainty::NONE).unwrap().run(&options, &mut ()).unwrap();
         assert_eq!(summary.outcomes.of(TrialOutcome::Reached), 1, "{takeoff:?} along the chain: {:?}", summary.outcomes);
     }
 }

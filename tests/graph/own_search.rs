@@ -12,11 +12,11 @@ use super::*;
 fn bent(draw: &mut Draw, world: &World) -> ConstrainedChain {
     let geometry = world.chain().geometry().clone();
     let bends = (1..geometry.segment_count()).filter(|_| draw.chance(0.15)).map(VertexId).collect();
-    let surface = Surface { grip: None, rest: RestSlope::Unlimited };
-    ConstrainedChain::new(geometry.with_bends(bends).unwrap(), &Hopper::UNLIMITED, &surface).unwrap()
+    let surface = SurfaceProperties { grip: None, rest: RestSlope::Unlimited };
+    ConstrainedChain::new(geometry.with_bends(bends).unwrap(), &Hopper::UNLIMITED, Gravity::new(1.0).unwrap(), &surface).unwrap()
 }
 
-fn graph<'a>(test: &'a HopTest<'a>, nodes: &'a NodeSet, options: &SearchOptions) -> HopGraph<'a> {
+fn graph<'a>(test: &'a HopTest, nodes: &'a NodeSet, options: &SearchOptions) -> HopGraph<'a> {
     HopGraph::new(test, nodes, options.effort, options.takeoff, options.split)
 }
 
@@ -28,7 +28,7 @@ fn petgraph_finds_the_same_costs() {
         let segments = 2 + draw.below(9);
         let world = World::draw(draw, segments);
         let chain = bent(draw, &world);
-        let test = HopTest::new(&chain, &world.hopper, world.g);
+        let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
         let points = u32::try_from(draw.below(5)).unwrap();
         let options = options(draw, points);
@@ -73,7 +73,7 @@ fn petgraph_reaches_the_same_nodes_in_as_many_hops() {
         let segments = 2 + draw.below(9);
         let world = World::draw(draw, segments);
         let chain = bent(draw, &world);
-        let test = HopTest::new(&chain, &world.hopper, world.g);
+        let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let start = place(draw, &chain);
         let points = u32::try_from(draw.below(4)).unwrap();
         let options = options(draw, points);
@@ -99,7 +99,7 @@ fn long(draw: &mut Draw, segments: u16) -> (ConstrainedChain, Hopper) {
         ChainPoint::new(f64::from(i), z_m)
     };
     let points: Vec<ChainPoint> = (0..=segments).map(point).collect();
-    let hopper = Hopper { clearance_m: 0.05, ..Hopper::UNLIMITED };
+    let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::UNLIMITED }).unwrap();
     (support::uniform(&points, line((30.0, 90.0), 12.0, (-90.0, -20.0), 12.0)), hopper)
 }
 
@@ -108,7 +108,7 @@ fn any_number_of_threads_gives_the_same_answer() {
     let draw = &mut Draw::seeded(42);
     for (k, effort) in [(0, Effort::Energy), (3, Effort::TakeoffSpeed), (4, Effort::PeakSpeed)] {
         let (chain, hopper) = long(draw, 400);
-        let test = HopTest::new(&chain, &hopper, 3.711);
+        let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(3.711).unwrap()).unwrap());
         let station = |x_m: f64| chain.geometry().station(x_m).unwrap();
         let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(k)), effort, ..SearchOptions::default() };
         let pairs = [(station(150.0), station(399.5)), (station(150.0), station(0.25)), (station(3.0), station(380.0))];
@@ -135,7 +135,7 @@ fn many_questions_have_the_answers_of_one_by_one() {
         let segments = 2 + draw.below(5);
         let world = World::draw(draw, segments);
         let chain = bent(draw, &world);
-        let test = HopTest::new(&chain, &world.hopper, world.g);
+        let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let places: Vec<Station> = (0..4).map(|_| place(draw, &chain)).collect();
         let pairs: Vec<(Station, Station)> = (0..7).map(|_| (places[draw.below(3)], places[draw.below(4)])).collect();
         let points = u32::try_from(draw.below(4)).unwrap();
@@ -165,7 +165,7 @@ fn many_questions_have_the_answers_of_one_by_one() {
 #[test]
 fn questions_of_one_start_share_their_work() {
     let (chain, hopper) = long(&mut Draw::seeded(44), 300);
-    let test = HopTest::new(&chain, &hopper, 3.711);
+    let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(3.711).unwrap()).unwrap());
     let station = |x_m: f64| chain.geometry().station(x_m).unwrap();
     let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(1)), ..SearchOptions::default() };
     let goals = [290.0, 270.5, 250.0, 280.0];

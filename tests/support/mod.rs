@@ -3,9 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "test helpers: a chain that cannot be built fails its test")]
 
 use chta::{
-    chain::{ConstrainedChain, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
+    chain::{ConstrainedChain, ContactRule, GroundForm, LineConstraints, PolygonalChain, SegmentGround},
     quantity::{AngleInterval, ChainPoint},
-    world::{Hopper, RestSlope, Surface},
+    world::{Gravity, Hopper, RestSlope, SurfaceProperties},
 };
 
 mod draw;
@@ -60,19 +60,19 @@ pub(crate) fn line(takeoff_deg: (f64, f64), takeoff_m_s: f64, landing_deg: (f64,
 }
 
 /// A surface that adds nothing to explicit constraints.
-pub(crate) const NO_SURFACE: Surface = Surface { grip: None, rest: RestSlope::Unlimited };
+pub(crate) const NO_SURFACE: SurfaceProperties = SurfaceProperties { grip: None, rest: RestSlope::Unlimited };
 
 /// A chain with explicit constraints per segment, (forward, reverse).
 pub(crate) fn explicit(points: &[ChainPoint], lines: &[(LineConstraints, LineConstraints)], rest: RestSlope) -> ConstrainedChain {
     let grounds = lines
         .iter()
-        .map(|&(forward, reverse)| Ground {
+        .map(|&(forward, reverse)| SegmentGround {
             form: GroundForm::Explicit { forward: Some(forward), reverse: Some(reverse) },
             keep_out: false,
         })
         .collect();
     let chain = PolygonalChain::new(points.to_vec(), grounds, None).unwrap();
-    ConstrainedChain::new(chain, &Hopper::UNLIMITED, &Surface { rest, ..NO_SURFACE }).unwrap()
+    ConstrainedChain::new(chain, &Hopper::UNLIMITED, Gravity::new(1.0).unwrap(), &SurfaceProperties { rest, ..NO_SURFACE }).unwrap()
 }
 
 /// A chain with the same explicit constraints everywhere and in both directions.

@@ -9,7 +9,7 @@ use super::{
     table::{Cell, Table},
 };
 use crate::{
-    chain::{ChainProblem, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
+    chain::{ChainProblem, ContactRule, GroundForm, LineConstraints, PolygonalChain, SegmentGround},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
     terrain::MapProjection,
     world::{Direction, FrictionCone},
@@ -314,7 +314,7 @@ impl<'a> Reading<'a> {
     }
 
     /// The ground that a row states for the segment that begins there.
-    fn ground(&self, row: usize) -> Ground {
+    fn ground(&self, row: usize) -> SegmentGround {
         let explicit = self.fills(FORWARD) || self.fills(REVERSE);
         let form = if explicit {
             GroundForm::Explicit { forward: self.limits(row, Direction::Forward), reverse: self.limits(row, Direction::Reverse) }
@@ -324,7 +324,7 @@ impl<'a> Reading<'a> {
                 cross_slope: self.table.value(row, CROSS_SLOPE).map(Angle::from_radians).unwrap_or_default(),
             }
         };
-        Ground { form, keep_out: self.table.value(row, KEEP_OUT) == Some(1.0) }
+        SegmentGround { form, keep_out: self.table.value(row, KEEP_OUT) == Some(1.0) }
     }
 
     /// The limits that a row states for a direction.

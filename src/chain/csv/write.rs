@@ -8,7 +8,7 @@ use super::{
     degrees::degrees_text,
 };
 use crate::{
-    chain::{ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
+    chain::{ContactRule, GroundForm, LineConstraints, PolygonalChain, SegmentGround},
     quantity::{Angle, AngleInterval, SegmentId, VertexId},
 };
 
@@ -161,7 +161,7 @@ impl Layout {
     }
 
     /// The fields of one segment, in the order of [`Self::segment_columns`].
-    fn write_ground(&self, segment: SegmentId, ground: &Ground, fields: &mut Vec<String>) -> Result<(), ChainWriteError> {
+    fn write_ground(&self, segment: SegmentId, ground: &SegmentGround, fields: &mut Vec<String>) -> Result<(), ChainWriteError> {
         let keep_out = self.keep_out.then(|| if ground.keep_out { "1" } else { "0" }.to_owned());
         match ground.form {
             GroundForm::Surface { friction, cross_slope } => {

@@ -136,6 +136,9 @@ pub(crate) struct MapArgs {
     /// one hop reaches, and in how many of 16 directions
     #[arg(long, value_name = "FILE")]
     pub(crate) mobility: Option<PathBuf>,
+    /// Also fly the path to every goal many times under the errors of `[uncertainty]`, in three dimensions, open loop
+    #[arg(long, requires = "goals")]
+    pub(crate) simulate: bool,
     /// Hops to every goal (CSV) to write
     #[arg(long, value_name = "FILE", requires = "goals")]
     pub(crate) paths: Option<PathBuf>,

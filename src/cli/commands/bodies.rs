@@ -11,7 +11,7 @@ pub(crate) fn run() -> Result<Answer, Failure> {
     let mut table = format!("{:<10} {:>13} {:>10}  source\n", "name", "gravity m/s^2", "radius m");
     for body in &KNOWN_BODIES {
         // Writing to a String cannot fail.
-        let _ = writeln!(table, "{:<10} {:>13} {:>10}  {}", body.name, figures(body.gravity_m_s2), body.radius_m, body.source);
+        let _ = writeln!(table, "{:<10} {:>13} {:>10}  {}", body.name, figures(body.gravity.m_s2()), body.radius_m, body.source);
     }
     output::to_stdout(table.as_bytes())?;
     Ok(Answer::Yes)

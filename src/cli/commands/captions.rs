@@ -18,8 +18,8 @@ impl SpeedLimit {
     /// Of take-off and of landing.
     pub(super) const fn of(hopper: &Hopper) -> [Self; 2] {
         [
-            Self { key: "hopper.takeoff_speed_max_m_s", contact: "take-off", most_m_s: hopper.takeoff_speed_max_m_s },
-            Self { key: "hopper.landing_speed_max_m_s", contact: "landing", most_m_s: hopper.landing_speed_max_m_s },
+            Self { key: "hopper.takeoff_speed_max_m_s", contact: "take-off", most_m_s: hopper.limits().takeoff_speed_max_m_s },
+            Self { key: "hopper.landing_speed_max_m_s", contact: "landing", most_m_s: hopper.limits().landing_speed_max_m_s },
         ]
     }
 
@@ -38,8 +38,8 @@ impl fmt::Display for SpeedLimit {
 /// All that an answer over a map assumes: body, gravity, the hopper's limits and the ground, as the pictures of plans say it.
 pub(super) fn conditions(scenario: &Scenario) -> String {
     let (hopper, body) = (&scenario.hopper, &scenario.body);
-    let bounds_m_s = (hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s);
-    figure::conditions(body.name.as_deref().unwrap_or_default(), body.gravity_m_s2, hopper, bounds_m_s, &format_ground(scenario))
+    let bounds_m_s = (hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s);
+    figure::conditions(body.name.as_deref().unwrap_or_default(), body.gravity.m_s2(), hopper, bounds_m_s, &format_ground(scenario))
 }
 
 /// What a picture shows, and of which scenario where that has a name.

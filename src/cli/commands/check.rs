@@ -24,6 +24,7 @@ use super::{
 use crate::cli::{
     Answer, Failure,
     args::{CheckArgs, Format},
+    hints::further_means,
     load::{EndOptions, Loaded, load},
     output,
 };
@@ -125,7 +126,7 @@ fn picture(
 /// The answers as text or as one document.
 fn written(args: &CheckArgs, loaded: Loaded, mut answers: Vec<CheckAnswer>, warnings: Vec<String>) -> Result<String, Failure> {
     if args.answer.format == Format::Text {
-        return Ok(answers.iter().map(check_text).collect::<Vec<_>>().join("\n"));
+        return Ok(answers.iter().map(|answer| check_text(answer, further_means())).collect::<Vec<_>>().join("\n"));
     }
     let warnings = loaded.warnings_with(warnings);
     let Loaded { document, inputs, prepared, .. } = loaded;

@@ -81,7 +81,7 @@ impl Compared {
         let check = searched.answer(&test, ends, options.effort);
         let path = match &searched.found.outcome {
             chta::graph::Outcome::Path { legs, .. } => {
-                Some(generate(&test, legs, options.takeoff, options.split).map_err(|e| Failure::message(e.to_string()))?)
+                Some(generate(&test, legs, options.takeoff, options.split).map_err(|e| Failure::of(&e))?)
             }
             _ => None,
         };

@@ -1,7 +1,6 @@
 //! `chta fan`: slices in all directions from one point.
 
 use chta::{
-    chain::ConstrainedChain,
     graph::PointSpacing,
     quantity::Angle,
     reach::{FanRequest, fan},
@@ -36,7 +35,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         search,
         common,
     } = args;
-    let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let Bare { scenario, base, document } = load_bare(file, common, search)?;
     let dem = read_dem(file).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
@@ -44,23 +43,16 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
-    let request = FanRequest {
-        dem: &dem,
-        from,
-        headings: *headings,
-        length_m: *length,
-        hopper: &scenario.hopper,
-        gravity_m_s2: scenario.body.gravity_m_s2,
-        spacing,
-    };
-    let ground = |profile| Ok(ConstrainedChain::new(overlays.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?);
-    let rays = fan(&request, *threads, &ground).map_err(|e| failed(&e))?;
+    let ground = overlays.ground(dem, &scenario);
+    let dem = ground.terrain().dem();
+    let request = FanRequest { ground: &ground, from, headings: *headings, length_m: *length, spacing };
+    let rays = fan(&request, *threads).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     let mut warnings = overlays.without_effect_on_dem(dem.bounds());
     for ray in &rays {
         let heading = Angle::from_degrees(ray.heading_deg).radians();
         let end = from + Vector2::new(libm::sin(heading), libm::cos(heading)) * ray.length_m;
-        let scale = check_scale(&dem, projection.as_ref(), [from, end], accepted, file).map_err(|e| failed(&e))?;
+        let scale = check_scale(dem, projection.as_ref(), [from, end], accepted, file).map_err(|e| failed(&e))?;
         warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
     }
     for warning in &warnings {

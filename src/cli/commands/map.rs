@@ -3,27 +3,27 @@
 use std::path::Path;
 
 use chta::{
-    chain::ConstrainedChain,
     graph::Effort,
-    path::HopPath,
+    ground::DemGround,
+    path::{Execution, HopPath},
     quantity::MapPoint,
     reach::map::{
-        GroundOf, HopMap, Journey, LayerProgress, MapError, MapHop, MapRequest, Mobility, NO_GROUND, NodeLattice, Post, PostHops,
-        Search, joined, mobility, path_hops, search,
+        HopMap, Journey, LayerProgress, MapError, MapHop, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, joined,
+        mobility, path_hops, search, verify,
     },
     report::{
-        Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, TotalsRecord,
+        Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, SimulationRecord, TotalsRecord,
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Extremes, Overlays, Scenario, constant_gravity_warnings},
+    scenario::{Extremes, Overlays, Scenario, UncertaintyKeys, constant_gravity_warnings},
     terrain::{
-        Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, Profile, ResultBands, check_map_scale, read_dem,
-        result_geotiff_bytes,
+        Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
+    uncertainty::{Mission, Policy, Simulation, SimulationError, TrialOptions},
 };
 
-use super::{captions::conditions, map_profiles, slice::place};
+use super::{captions::conditions, map_profiles, plan::passed, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
@@ -34,14 +34,19 @@ use crate::cli::{
 
 /// The terrain of a map and what is known of it.
 struct Ground {
-    dem: Dem,
+    ground: DemGround,
     projection: Result<MapProjection, NoProjection>,
     scenario: Scenario,
-    overlays: Overlays,
     lattice: NodeLattice,
     document: serde_json::Value,
     inputs: Vec<InputFile>,
     warnings: Vec<String>,
+}
+
+impl Ground {
+    fn dem(&self) -> &Dem {
+        self.ground.terrain().dem()
+    }
 }
 
 /// A place asked for, and the post nearest to it.
@@ -60,6 +65,8 @@ struct Maps {
     /// Of each goal, where it is reachable.
     goal_hops: Vec<Option<Vec<MapHop>>>,
     paths: Vec<Option<HopPath>>,
+    /// Of each goal, where it is reachable and trials were asked for.
+    trials: Vec<Option<SimulationRecord>>,
     /// Of start and goals.
     warnings: Vec<String>,
 }
@@ -69,10 +76,14 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let (ground, start, goals) = prepared(args)?;
     check_extensions(args)?;
     let begun = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;
-    let maps = mapped(args, &ground, start, &goals)?;
+    let keys = args.simulate.then(|| trial_keys(&ground.scenario)).transpose()?;
+    let mut maps = mapped(args, &ground, start, &goals)?;
+    if let Some(keys) = &keys {
+        maps.trials = simulated(args, &ground, &maps, keys)?;
+    }
     let effort = args.effort.is_some().then_some(ground.scenario.search.effort);
     let mut answer = MapAnswer::new(&MapSummary {
-        dem: &ground.dem,
+        dem: ground.dem(),
         lattice: ground.lattice,
         start: (start.asked, start.post),
         out: &maps.out,
@@ -82,6 +93,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     });
     answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&ground, &maps, goal, index)).collect();
     let mut warnings = ground.warnings.clone();
+    warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
     warnings.extend(maps.warnings.iter().cloned());
     let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
     warnings.extend(constant_gravity_warnings(&ground.scenario.body, Extremes::of(&hops)));
@@ -103,13 +115,13 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
 /// Reads terrain and scenario and finds the posts of start and goals.
 fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     let MapArgs { dem: file, start, start_lonlat, goal, goal_lonlat, stride, effort, common, .. } = args;
-    let failed = |error: &dyn std::error::Error| Failure::about(file, &error.to_string());
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     if *stride == 0 {
         return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
     }
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
     let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
-    let dem = read_dem(file).map_err(|e| Failure::message(e.to_string()))?;
+    let dem = read_dem(file).map_err(|e| Failure::of(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
@@ -144,11 +156,12 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
     warnings.extend(scale.warning());
+    let ground = overlays.ground(dem, &scenario);
     let mut inputs = vec![input_file(file)?];
     for overlay in Overlays::files(&scenario) {
         inputs.push(input_file(&base.join(overlay))?);
     }
-    Ok((Ground { dem, projection, scenario, overlays, lattice, document, inputs, warnings }, start, goals))
+    Ok((Ground { ground, projection, scenario, lattice, document, inputs, warnings }, start, goals))
 }
 
 /// Checks that positions at different posts map to different nodes: with a stride that merges them one answer would stand for both.
@@ -172,7 +185,7 @@ fn named(start: Spot, goals: &[Spot]) -> impl Iterator<Item = (&'static str, Spo
 }
 
 /// What to say of start and goals whose ground takes no hop and gives none.
-fn refusals(hops: &PostHops<'_>, start: Spot, goals: &[Spot]) -> Vec<String> {
+fn refusals(hops: &PostHops, start: Spot, goals: &[Spot]) -> Vec<String> {
     named(start, goals)
         .filter_map(|(which, spot)| {
             let refusal = hops.refusal(spot.post)?;
@@ -180,7 +193,7 @@ fn refusals(hops: &PostHops<'_>, start: Spot, goals: &[Spot]) -> Vec<String> {
                 || "no post of the DEM is usable".to_owned(),
                 |node| {
                     let post = hops.lattice().post(node);
-                    let at = hops.request().dem.georeference().post(post.row, post.col);
+                    let at = hops.ground().terrain().dem().georeference().post(post.row, post.col);
                     format!("the nearest usable one is ({:.3}, {:.3}) m", at.x, at.y)
                 },
             );
@@ -194,26 +207,13 @@ fn refusals(hops: &PostHops<'_>, start: Spot, goals: &[Spot]) -> Vec<String> {
 
 /// Searches, with progress on a terminal.
 fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
-    let Ground { dem, scenario, overlays, lattice, .. } = ground;
-    let failed = |error: &MapError| Failure::about(&args.dem, &error.to_string());
+    let Ground { scenario, lattice, .. } = ground;
+    let failed = |error: &MapError| Failure::about(&args.dem, error);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(args.answer.threads).build().map_err(|e| failed(&e.into()))?;
-    let chain = |profile: Profile| -> Result<ConstrainedChain, Box<dyn std::error::Error + Send + Sync>> {
-        Ok(ConstrainedChain::new(overlays.chain(vec![profile])?, &scenario.hopper, &scenario.surface)?)
-    };
-    let ground_of: &GroundOf<'_> = &chain;
-    let request = MapRequest {
-        dem,
-        stride: lattice.stride,
-        hopper: &scenario.hopper,
-        surface: &scenario.surface,
-        gravity_m_s2: scenario.body.gravity_m_s2,
-        friction: overlays.friction_raster(),
-        keep_out: overlays.keep_out(),
-    };
     let progress = Progress::new(args.common.quiet);
     let began = std::time::Instant::now();
-    let maps = pool.install(|| -> Result<Maps, MapError> {
-        let hops = PostHops::new(request, ground_of)?;
+    let maps = pool.install(|| -> Result<(Maps, Vec<Option<Execution>>), MapError> {
+        let hops = PostHops::new(ground.ground.clone(), lattice.stride)?;
         let tell = |what: &str, found: LayerProgress| progress.say(format_layer(what, found, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
         let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &mut |found| tell("there", found))?;
@@ -230,11 +230,48 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
             nodes.map(|nodes| path_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
         };
         let goal_hops = goals.iter().map(hops_to).collect::<Result<Vec<_>, _>>()?;
-        let paths = goal_hops.iter().map(|found| found.as_ref().map(|found| joined(&hops, found))).collect();
+        let paths: Vec<_> = goal_hops.iter().map(|found| found.as_ref().map(|found| joined(&hops, found))).collect();
+        let checks = paths.iter().zip(goals).map(|(path, goal)| Some(verify(&hops, path.as_ref()?, start.post, goal.post)));
+        let checks = checks.collect::<Vec<_>>();
         let warnings = refusals(&hops, start, goals);
-        Ok(Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, goal_hops, paths, warnings })
+        let trials = vec![None; goals.len()];
+        let maps = Maps { out, back: back.transpose()?, mobility: mobile.transpose()?, goal_hops, paths, trials, warnings };
+        Ok((maps, checks))
     });
-    maps.map_err(|error| failed(&error))
+    let (maps, checks) = maps.map_err(|error| failed(&error))?;
+    for check in checks.iter().flatten() {
+        passed(check)?;
+    }
+    Ok(maps)
+}
+
+/// The errors and trials that `--simulate` asks for.
+fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
+    let keys = scenario.uncertainty.unwrap_or_default();
+    if keys.policy == Policy::Replan {
+        let message = "--simulate: the trials of a map fly open loop, but uncertainty.policy is \"replan\"; give it as \"open-loop\", or \
+                       simulate a transect, whose nodes replanning needs: chta simulate";
+        return Err(Failure::message(message));
+    }
+    Ok(keys)
+}
+
+/// Flies the path to every reachable goal many times.
+fn simulated(
+    args: &MapArgs,
+    ground: &Ground,
+    maps: &Maps,
+    keys: &UncertaintyKeys,
+) -> Result<Vec<Option<SimulationRecord>>, Failure> {
+    let failed = |error: SimulationError| Failure::about(&args.dem, &error);
+    let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
+    let fly = |path: &HopPath| {
+        let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
+        let mission = Mission::over_dem(ground.ground.clone(), path.clone(), first.takeoff, last.landing);
+        let summary = Simulation::new(&mission, keys.errors).map_err(failed)?.run(&options, &mut ()).map_err(failed)?;
+        Ok(Some(SimulationRecord::new(&summary, path.hops.len())))
+    };
+    maps.paths.iter().map(|path| path.as_ref().map_or(Ok(None), fly)).collect()
 }
 
 /// What is being done, how far it is, and how long it may still take.
@@ -288,6 +325,9 @@ fn goal_record(ground: &Ground, maps: &Maps, goal: &Spot, index: usize) -> GoalR
         return_hops: maps.back.as_ref().map(reached),
         path: path.map(|path| HopRecord::rows(path, ground.projection.as_ref().ok())).unwrap_or_default(),
         totals: path.map(|path| TotalsRecord::from(&path.totals)),
+        // A path that does not pass never gets here.
+        verified: path.map(|_| true),
+        simulation: maps.trials[index].clone(),
     }
 }
 
@@ -300,9 +340,9 @@ fn write_files<'a>(
     answer: &MapAnswer,
     ends: (Spot, &[Spot]),
 ) -> Result<(), Failure> {
-    let failed = |error: &dyn std::error::Error| Failure::message(error.to_string());
-    let Ground { dem, lattice, scenario, projection, .. } = ground;
-    let map = dem.georeference().every(lattice.stride);
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
+    let Ground { lattice, scenario, projection, .. } = ground;
+    let map = ground.dem().georeference().every(lattice.stride);
     let raster = |bands: &ResultBands<'_>| result_geotiff_bytes(lattice.rows, lattice.cols, &map, bands).map_err(|e| failed(&e));
     let whole = |name, hops| raster(&ResultBands::Int16(vec![Band { name, samples: hops }], NO_GROUND));
     let mut files: Vec<(&Path, Vec<u8>)> = Vec::new();
@@ -333,7 +373,7 @@ fn write_files<'a>(
     let paths: Vec<&HopPath> = maps.paths.iter().map(|path| path.as_ref().unwrap_or(&none)).collect();
     let prj_path = args.geojson.as_ref().map(|path| path.with_extension("prj"));
     if let Some(file) = &args.geojson {
-        let geojson = paths_geojson(&paths, scenario.body.gravity_m_s2, projection.as_ref().ok()).unwrap_or_default();
+        let geojson = paths_geojson(&paths, scenario.body.gravity.m_s2(), projection.as_ref().ok()).unwrap_or_default();
         files.push((file, geojson.into_bytes()));
         files.extend(prj_path.as_deref().zip(output::prj(projection.as_ref().ok())));
     }
@@ -372,14 +412,14 @@ fn picture(
 ) -> Result<Vec<u8>, Failure> {
     let name = name_of(args);
     let can_return: Option<Vec<bool>> = maps.back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
-    let kept_out = ground.overlays.keep_out().map(|zones| kept_out(ground, zones));
+    let kept_out = ground.ground.terrain().overlays().keep_out().map(|zones| kept_out(ground, zones));
     let places = |path: &HopPath| {
-        let landings = path.hops.iter().filter_map(|hop| hop.map.map(|map| map.landing));
+        let landings = path.hops.iter().filter_map(|hop| hop.landing.map());
         std::iter::once(start.at).chain(landings).collect()
     };
     let figure = HopMapFigure {
         caption: Caption { title: format!("Where in how few hops: {name}"), lines: subtitle(answer, &ground.scenario) },
-        posts: MapPosts { dem: &ground.dem, stride: ground.lattice.stride },
+        posts: MapPosts { dem: ground.dem(), stride: ground.lattice.stride },
         hops: &maps.out.hops,
         can_return: can_return.as_deref(),
         kept_out: kept_out.as_deref(),
@@ -397,7 +437,7 @@ fn picture(
 /// Which posts of the lattice lie in a keep-out zone.
 fn kept_out(ground: &Ground, zones: &KeepOut) -> Vec<bool> {
     let NodeLattice { rows, cols, stride, .. } = ground.lattice;
-    let nodes = ground.dem.georeference().every(stride);
+    let nodes = ground.dem().georeference().every(stride);
     (0..rows * cols).map(|index| zones.keeps_out(nodes.post(index / cols, index % cols))).collect()
 }
 

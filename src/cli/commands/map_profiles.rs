@@ -19,26 +19,26 @@ pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<Map
         let hops = hops.as_deref().unwrap_or_default();
         for (number, hop) in hops.iter().enumerate() {
             let name = format!("goal {}, hop {} of {}", goal + 1, number + 1, hops.len());
-            profiles.extend(profile(scenario, hop, name));
+            profiles.extend(profile(hop, name));
         }
     }
-    let told = match profiles.len() {
+    let count = match profiles.len() {
         0 => "no goal is reached by a hop".to_owned(),
         1 => "1 hop".to_owned(),
         many => format!("{many} hops, row by row"),
     };
-    let caption = Caption { title: format!("Hop by hop: {name}"), lines: vec![conditions(scenario), told] };
-    let figure = HopProfilesFigure { caption, clearance_m: scenario.hopper.clearance_m, hops: profiles };
+    let caption = Caption { title: format!("Hop by hop: {name}"), lines: vec![conditions(scenario), count] };
+    let figure = HopProfilesFigure { caption, clearance_m: scenario.hopper.limits().clearance_m, hops: profiles };
     output::encoded(draw_hop_profiles(&figure), file)
 }
 
 /// One hop over its slice, flown again for the place where it passes lowest.
-fn profile(scenario: &Scenario, hop: &MapHop, name: String) -> Option<HopProfile> {
-    let flown = execute(&hop.chain, &scenario.hopper, scenario.body.gravity_m_s2, &hop.path, None);
+fn profile(hop: &MapHop, name: String) -> Option<HopProfile> {
+    let flown = execute(hop.test.chain(), &hop.path, None);
     let least = flown.flights.first().and_then(|flight| flight.as_ref()?.least_clearance);
     Some(HopProfile {
         name,
-        ground: hop.chain.geometry().vertices().to_vec(),
+        ground: hop.test.chain().geometry().vertices().to_vec(),
         hop: *hop.path.hops.first()?,
         least_clearance_m: least.map(|clearance| (clearance.x_m, clearance.height_m)),
     })

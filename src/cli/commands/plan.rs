@@ -6,7 +6,7 @@ use chta::{
     chain::Station,
     graph::{self, Outcome},
     hop::HopTest,
-    path::{HopPath, execute, generate},
+    path::{Execution, HopPath, execute, generate},
     quantity::AngleInterval,
     report::{
         CheckAnswer, Document, HopRecord, MapKnowledge, ReliablePathRecord, TotalsRecord, check_text,
@@ -22,6 +22,7 @@ use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs, ProveArgs},
+    hints::further_means,
     load::{EndOptions, Loaded, load},
     output::{self, Pending},
 };
@@ -54,7 +55,7 @@ impl Planned {
     /// Searches (and proves where asked), generates the path, and flies it again where asked.
     pub(super) fn new(
         loaded: &Loaded,
-        test: &HopTest<'_>,
+        test: &HopTest,
         prove: Option<ProveArgs>,
         verify: bool,
         quiet: bool,
@@ -63,9 +64,7 @@ impl Planned {
         let options = &loaded.scenario.search;
         let searched = Searched::new(test, ends, &loaded.scenario, prove, quiet)?;
         let path = match &searched.found.outcome {
-            Outcome::Path { legs, .. } => {
-                Some(generate(test, legs, options.takeoff, options.split).map_err(|e| Failure::message(e.to_string()))?)
-            }
+            Outcome::Path { legs, .. } => Some(generate(test, legs, options.takeoff, options.split).map_err(|e| Failure::of(&e))?),
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
         if let Some(path) = path.as_ref().filter(|_| verify) {
@@ -99,7 +98,7 @@ impl Planned {
 
     /// The answer for reading.
     pub(super) fn text(&self) -> String {
-        let mut text = check_text(&self.answer.check);
+        let mut text = check_text(&self.answer.check, further_means());
         if let Some(totals) = &self.answer.totals {
             text.push('\n');
             text.push_str(&path_text(&self.answer.path, totals));
@@ -126,7 +125,7 @@ impl Planned {
     /// The path over the map; `None` without a path or a map.
     pub(super) fn geojson(&self, loaded: &Loaded) -> Option<String> {
         loaded.prepared.chain.geometry().map_points()?;
-        path_geojson(self.path.as_ref()?, loaded.scenario.body.gravity_m_s2, loaded.prepared.projection.as_ref())
+        path_geojson(self.path.as_ref()?, loaded.scenario.body.gravity.m_s2(), loaded.prepared.projection.as_ref())
     }
 
     /// The result as one document of a kind.
@@ -137,12 +136,7 @@ impl Planned {
     }
 
     /// The picture.
-    pub(super) fn picture(
-        &self,
-        loaded: &Loaded,
-        test: &HopTest<'_>,
-        (start, goal): (Station, Station),
-    ) -> Result<String, Failure> {
+    pub(super) fn picture(&self, loaded: &Loaded, test: &HopTest, (start, goal): (Station, Station)) -> Result<String, Failure> {
         let scenario = &loaded.scenario;
         draw(&FigureInput {
             test,
@@ -156,7 +150,7 @@ impl Planned {
                 ground: format_ground(scenario),
             },
         })
-        .map_err(|e| Failure::message(e.to_string()))
+        .map_err(|e| Failure::of(&e))
     }
 }
 
@@ -189,18 +183,21 @@ pub(super) fn format_ground(scenario: &Scenario) -> String {
     parts.join("; ")
 }
 
-/// Flies a path again; a broken limit is a failure of the program, told as such.
+/// Flies a path along its chain again.
 fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result<(), Failure> {
-    let scenario = &loaded.scenario;
-    let execution = execute(&loaded.prepared.chain, &scenario.hopper, scenario.body.gravity_m_s2, path, Some(ends));
+    passed(&execute(loaded.prepared.chain.as_ref(), path, Some(ends)))
+}
+
+/// A path that breaks a limit when it is flown again is a failure of the program, and reported as such.
+pub(super) fn passed(execution: &Execution) -> Result<(), Failure> {
     if execution.passes() {
         return Ok(());
     }
-    let told: Vec<_> = execution.violations.iter().take(10).map(ToString::to_string).collect();
+    let violations: Vec<_> = execution.violations.iter().take(10).map(ToString::to_string).collect();
     Err(Failure::message(format!(
         "the planned path does not pass its own check ({} violations): {}; this is a defect of chta, please report it with the scenario",
         execution.violations.len(),
-        told.join("; ")
+        violations.join("; ")
     )))
 }
 

@@ -65,9 +65,9 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     let (from, to) = (weakest.min(strongest), weakest.max(strongest));
     let range = CapabilityRange { weakest, strongest, resolution: args.resolution };
     let ends = first.ends()?;
-    if capability.path == "body.gravity_m_s2" && first.scenario.hopper.flight_time_max_s.is_some() {
+    if capability.path == "body.gravity_m_s2" && first.scenario.hopper.limits().flight_time_max_s.is_some() {
         return Err(Failure::message(
-            "--vary body.gravity_m_s2: less gravity makes hops longer, but hopper.flight_time_max_s then forbids more of them: \
+            "--vary body.gravity_m_s2: less gravity makes hops longer, but hopper.limits().flight_time_max_s then forbids more of them: \
              leave that limit away",
         ));
     }
@@ -186,8 +186,8 @@ fn asked(args: &RequireArgs) -> Result<(Capability, [f64; 2]), Failure> {
 fn other_angle_deg(capability: Capability, loaded: &Loaded) -> Option<f64> {
     let hopper = &loaded.scenario.hopper;
     let other = match capability.path {
-        "hopper.takeoff_angle_min_deg" => hopper.takeoff_angle_max,
-        "hopper.takeoff_angle_max_deg" => hopper.takeoff_angle_min,
+        "hopper.takeoff_angle_min_deg" => hopper.limits().takeoff_angle_max,
+        "hopper.takeoff_angle_max_deg" => hopper.limits().takeoff_angle_min,
         _ => None,
     };
     other.map(|angle| angle.shortest_degrees().unwrap_or_else(|| angle.degrees()))

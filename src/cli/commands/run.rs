@@ -39,7 +39,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let mut comments =
         vec![format!("chta {} run of {}", env!("CARGO_PKG_VERSION"), loaded.scenario.title.as_deref().unwrap_or("a scenario"))];
     comments.extend(projection.map(|projection| CrsRecord::from(projection).comments()).unwrap_or_default());
-    write_chain_csv(loaded.prepared.chain.geometry(), &mut chain_csv, &comments).map_err(|e| Failure::message(e.to_string()))?;
+    write_chain_csv(loaded.prepared.chain.geometry(), &mut chain_csv, &comments).map_err(|e| Failure::of(&e))?;
     let mut files = vec![
         ("chain.csv", chain_csv),
         ("path.csv", planned.csv(&loaded)?),

@@ -26,7 +26,7 @@ pub(super) struct Searched {
 impl Searched {
     /// Searches, and proves where that is asked for.
     pub(super) fn new(
-        test: &HopTest<'_>,
+        test: &HopTest,
         ends: (Station, Station),
         scenario: &Scenario,
         prove: Option<ProveArgs>,
@@ -53,7 +53,7 @@ impl Searched {
 
     /// The same for many pairs: one search from each start, or a proof for each pair.
     pub(super) fn all(
-        test: &HopTest<'_>,
+        test: &HopTest,
         pairs: &[(Station, Station)],
         scenario: &Scenario,
         prove: ProveArgs,
@@ -72,7 +72,7 @@ impl Searched {
     }
 
     /// The answer as plain data.
-    pub(super) fn answer(&self, test: &HopTest<'_>, (start, goal): (Station, Station), effort: graph::Effort) -> CheckAnswer {
+    pub(super) fn answer(&self, test: &HopTest, (start, goal): (Station, Station), effort: graph::Effort) -> CheckAnswer {
         let answer = CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &self.found, effort);
         match &self.proof {
             None => answer,
@@ -95,7 +95,7 @@ pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
 
 /// Searches for one pair, for the most reliable path where the scenario asks for it, and shows what is being tried on a terminal.
 pub(super) fn search(
-    test: &HopTest<'_>,
+    test: &HopTest,
     (start, goal): (Station, Station),
     scenario: &Scenario,
     quiet: bool,
@@ -105,12 +105,12 @@ pub(super) fn search(
         None => graph::search(test, start, goal, options, &mut progress_printer(quiet)).map(|answer| (answer, Vec::new())),
         Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &mut progress_printer(quiet)),
     };
-    found.map_err(|error| Failure::message(error.to_string()))
+    found.map_err(|error| Failure::of(&error))
 }
 
 /// Searches for many pairs, once from each start; pair by pair where the most reliable paths are asked for.
 fn search_pairs(
-    test: &HopTest<'_>,
+    test: &HopTest,
     pairs: &[(Station, Station)],
     scenario: &Scenario,
     quiet: bool,
@@ -118,8 +118,7 @@ fn search_pairs(
     if scenario.reliability().is_some() {
         return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
     }
-    graph::search_pairs(test, pairs, &scenario.search, &mut progress_printer(quiet))
-        .map_err(|error| Failure::message(error.to_string()))
+    graph::search_pairs(test, pairs, &scenario.search, &mut progress_printer(quiet)).map_err(|error| Failure::of(&error))
 }
 
 /// Prints on a terminal what is being tried.
@@ -135,12 +134,12 @@ fn progress_printer(quiet: bool) -> impl FnMut(PointSpacing) {
 
 /// Bounds the fewest hops, and shows how far the proof is on a terminal.
 pub(super) fn proved(
-    test: &HopTest<'_>,
+    test: &HopTest,
     (start, goal): (Station, Station),
     options: &BoundsOptions,
     quiet: bool,
 ) -> Result<Bounds, Failure> {
     let progress = Progress::new(quiet);
     let mut tell = |summary: ProofSummary| progress.say(format!("proving with {} cells, round {}", summary.cells, summary.rounds));
-    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::message(error.to_string()))
+    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::of(&error))
 }

@@ -23,7 +23,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
         let reason = "has no friction_coefficient, so none goes into the chain: give the scenario again where the chain is used";
         output::warn(*quiet, &format!("--scenario {name} {reason}"));
     }
-    let failed = |error: &dyn std::error::Error| Failure::about(terrain, &error.to_string());
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(terrain, error);
     let accepted = args.accept_map_scale || given.as_ref().is_some_and(|(scenario, _)| scenario.accept_map_scale);
     let transect = read_transect(args, accepted)?;
     claims::reads(terrain);
@@ -77,7 +77,7 @@ fn read_transect(args: &SliceArgs, accept_map_scale: bool) -> Result<Transect, F
     let SliceArgs { terrain, via, via_lonlat, mesh_scale, .. } = args;
     let from = place("from", args.from, args.from_lonlat)?;
     let to = place("to", args.to, args.to_lonlat)?;
-    let failed = |error: TerrainError| Failure::about(terrain, &error.to_string());
+    let failed = |error: TerrainError| Failure::about(terrain, &error);
     let of_mesh = || match (&from, &to) {
         (MapPlace::Metres(from), MapPlace::Metres(to)) if via_lonlat.is_empty() => {
             Transect::of_mesh(terrain, mesh_scale.unwrap_or(1.0), [*from, *to], via).map_err(failed)

@@ -23,7 +23,7 @@ pub(crate) fn run(args: &SynthArgs) -> Result<Answer, Failure> {
             )));
         }
     };
-    let failed = |error: chta::terrain::TerrainError| Failure::message(error.to_string());
+    let failed = |error: chta::terrain::TerrainError| Failure::of(&error);
     let dem = synthesise(&options(args)).map_err(failed)?;
     let bytes = if ascii {
         let mut text = Vec::new();

@@ -17,6 +17,7 @@ use super::captions::{SpeedLimit, title};
 use crate::cli::{
     Answer, Failure,
     args::{Format, TradeArgs},
+    hints,
     load::{EndOptions, Loaded, ToVary, load_to_vary},
     output::{self, Pending, TableFormat},
     progress::Progress,
@@ -25,7 +26,7 @@ use crate::cli::{
 /// What is wrong with a swept key.
 #[expect(clippy::needless_pass_by_value, reason = "as map_err gives it")]
 fn refused(error: TradeError) -> Failure {
-    Failure::message(format!("--vary: {error}"))
+    Failure::message(format!("--vary: {}", hints::sentence(&error)))
 }
 
 /// Answers every cell.

@@ -133,12 +133,12 @@ impl Bounds {
 /// # Examples
 /// ```
 /// use chta::{chain::*, graph::proof::*, hop::HopTest, quantity::*, world::*};
-/// let hopper = Hopper::with_speeds(5.0, 5.0);
+/// let hopper = Hopper::with_speeds(5.0, 5.0).unwrap();
 /// let grip = Some(Grip::Friction(FrictionCone::new(1.0).unwrap()));
 /// let points = [(0.0, 0.0), (60.0, 0.0), (60.5, 50.0), (80.0, 50.0)].map(|(x, z)| ChainPoint::new(x, z));
 /// let chain = PolygonalChain::bare(points.to_vec()).unwrap();
-/// let chain = ConstrainedChain::new(chain, &hopper, &Surface { grip, rest: RestSlope::AsFrictionHolds }).unwrap();
-/// let test = HopTest::new(&chain, &hopper, 1.0);
+/// let chain = ConstrainedChain::new(chain, &hopper, Gravity::new(1.0).unwrap(), &SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds }).unwrap();
+/// let test = HopTest::new(chain.clone());
 /// let at = |x| chain.geometry().station(x).unwrap();
 /// // A hop at 45 degrees covers v^2 / g = 25 m: 60 m take three, and no path takes two.
 /// let there = bounds(&test, at(0.0), at(60.0), &BoundsOptions::default(), &mut |_| {}).unwrap();
@@ -148,7 +148,7 @@ impl Bounds {
 /// assert_eq!(up.verdict(), ProofVerdict::Untraversable);
 /// ```
 pub fn bounds(
-    test: &HopTest<'_>,
+    test: &HopTest,
     start: Station,
     goal: Station,
     options: &BoundsOptions,
@@ -159,7 +159,7 @@ pub fn bounds(
 
 /// The same with faults that a test selects.
 pub(super) fn bounds_with<F: Faults>(
-    test: &HopTest<'_>,
+    test: &HopTest,
     start: Station,
     goal: Station,
     options: &BoundsOptions,
@@ -188,7 +188,7 @@ pub(super) fn bounds_with<F: Faults>(
 }
 
 /// The first path, over the points requested, or over the first spacings of "auto" while they are few.
-fn first_path(test: &HopTest<'_>, start: Station, goal: Station, options: &SearchOptions) -> Result<Answer, TooManyNodes> {
+fn first_path(test: &HopTest, start: Station, goal: Station, options: &SearchOptions) -> Result<Answer, TooManyNodes> {
     let spacing = options.spacing.unwrap_or(PointSpacing::PerSegment(AUTO_POINTS_PER_SEGMENT[0]));
     search(test, start, goal, &SearchOptions { spacing: Some(spacing), ..options.clone() }, &mut |_| {})
 }

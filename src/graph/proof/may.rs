@@ -37,7 +37,7 @@ type Contacts<R> = [Result<Rule<R>, Limit>; 2];
 /// A chain, a hopper and a gravity as intervals, to exclude hops.
 #[derive(Debug)]
 pub(super) struct Prover<'a, F: Faults> {
-    test: &'a HopTest<'a>,
+    test: &'a HopTest,
     /// By segment and direction.
     rules: Vec<[Contacts<F::Rounding>; 2]>,
     slopes: Vec<Interval<F::Rounding>>,
@@ -54,7 +54,7 @@ pub(super) struct Prover<'a, F: Faults> {
 
 impl<'a, F: Faults> Prover<'a, F> {
     /// From a hop test, with every limit relaxed.
-    pub(super) fn new(test: &'a HopTest<'a>) -> Self {
+    pub(super) fn new(test: &'a HopTest) -> Self {
         let chain = test.chain();
         let rules: Vec<_> = chain.segments().iter().map(|segment| Direction::BOTH.map(|d| contacts::<F>(segment, d))).collect();
         let fastest = |contact: usize| {
@@ -77,16 +77,16 @@ impl<'a, F: Faults> Prover<'a, F> {
             speeds_squared: [fastest(0), fastest(1)],
             rules,
             mechanical: relaxed::<F>(test.mechanical()),
-            clearance_m: hopper.clearance_m * (1.0 - RELAXATION * F::SLACK),
-            apex_height_max_m: hopper.apex_height_max_m.map(|height_m| height_m * (1.0 + RELAXATION * F::SLACK)),
-            flight_time_max_s: hopper.flight_time_max_s.map(|time_s| time_s * (1.0 + RELAXATION * F::SLACK)),
+            clearance_m: hopper.limits().clearance_m * (1.0 - RELAXATION * F::SLACK),
+            apex_height_max_m: hopper.limits().apex_height_max_m.map(|height_m| height_m * (1.0 + RELAXATION * F::SLACK)),
+            flight_time_max_s: hopper.limits().flight_time_max_s.map(|time_s| time_s * (1.0 + RELAXATION * F::SLACK)),
             bends_before,
             heights_m: (heights.clone().fold(f64::INFINITY, f64::min), heights.fold(f64::NEG_INFINITY, f64::max)),
         }
     }
 
     /// The hop test.
-    pub(super) const fn test(&self) -> &'a HopTest<'a> {
+    pub(super) const fn test(&self) -> &'a HopTest {
         self.test
     }
 

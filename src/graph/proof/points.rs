@@ -152,7 +152,7 @@ impl Tried {
     }
 
     /// The nearest point of an ascending frontier from which one hop leads to a point.
-    fn first_hop(&self, test: &HopTest<'_>, reach_m: f64, frontier: &[usize], to: usize) -> Option<(usize, SlopeInterval)> {
+    fn first_hop(&self, test: &HopTest, reach_m: f64, frontier: &[usize], to: usize) -> Option<(usize, SlopeInterval)> {
         let x_m = |i: usize| self.candidates[i].station.point.x_m;
         let around = frontier.partition_point(|&i| i < to);
         let mut nearest = nearest_first(frontier, around..around, |i| (x_m(i) - x_m(to)).abs(), reach_m);
@@ -162,7 +162,7 @@ impl Tried {
     }
 
     /// The path to the goal with its cost, if the goal was reached.
-    pub(super) fn path(&self, test: &HopTest<'_>, options: &SearchOptions) -> Option<(Cost, Vec<Leg>)> {
+    pub(super) fn path(&self, test: &HopTest, options: &SearchOptions) -> Option<(Cost, Vec<Leg>)> {
         let (mut cost, mut legs) = (Cost::default(), Vec::new());
         let mut here = self.goal;
         while let Some((from, lofts)) = self.reached[here]?.by {

@@ -2,12 +2,12 @@
 
 use super::{bounds::bounds_with, *};
 use crate::{
-    chain::{ConstrainedChain, ContactRule, Ground, GroundForm, LineConstraints, PolygonalChain},
+    chain::{ConstrainedChain, ContactRule, GroundForm, LineConstraints, PolygonalChain, SegmentGround},
     draw::Draw,
     graph::{PointSpacing, SearchOptions, search},
     hop::HopTest,
     quantity::{AngleInterval, ChainPoint, Inwards, VertexId},
-    world::{Hopper, RestSlope, Surface},
+    world::{Gravity, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 /// Ends are rounded inwards, without the tolerance, which would hide the fault.
@@ -45,7 +45,7 @@ impl Faults for ForgetsReverse {
 }
 
 /// A random chain of several segments with separate constraints for both directions, its hopper and its gravity.
-pub(super) fn drawn_chain(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
+pub(super) fn drawn_chain(draw: &mut Draw) -> ConstrainedChain {
     let g = draw.uniform(0.5, 10.0);
     let mut points = vec![ChainPoint::new(draw.uniform(-5.0, 5.0), draw.uniform(-5.0, 5.0))];
     let segments = 3 + draw.below(4);
@@ -66,17 +66,18 @@ pub(super) fn drawn_chain(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
     };
     let mut line = || LineConstraints { takeoff: rule(1.0), landing: rule(-1.0) };
     let grounds = (0..segments)
-        .map(|_| Ground { form: GroundForm::Explicit { forward: Some(line()), reverse: Some(line()) }, keep_out: false })
+        .map(|_| SegmentGround { form: GroundForm::Explicit { forward: Some(line()), reverse: Some(line()) }, keep_out: false })
         .collect();
-    let hopper = Hopper {
+    let hopper = Hopper::new(HopperLimits {
         clearance_m: if draw.below(2) == 0 { 0.0 } else { 0.1 },
         flight_time_max_s: (draw.below(4) == 0).then(|| draw.uniform(0.5, 3.0)),
         apex_height_max_m: (draw.below(4) == 0).then(|| draw.uniform(0.5, 3.0)),
-        ..Hopper::UNLIMITED
-    };
+        ..HopperLimits::UNLIMITED
+    })
+    .unwrap();
     let geometry = PolygonalChain::new(points, grounds, None).unwrap();
-    let surface = Surface { grip: None, rest: RestSlope::Unlimited };
-    (ConstrainedChain::new(geometry, &hopper, &surface).unwrap(), hopper, g)
+    let surface = SurfaceProperties { grip: None, rest: RestSlope::Unlimited };
+    ConstrainedChain::new(geometry, &hopper, Gravity::new(g).unwrap(), &surface).unwrap()
 }
 
 /// The number of journeys for which the search finds a path with fewer hops than the lower bound, or a path where none should
@@ -86,8 +87,8 @@ fn contradictions<F: Faults>(journeys: usize) -> usize {
     let options = BoundsOptions { budget_cells: 60, ..BoundsOptions::default() };
     let mut contradicted = 0;
     for _ in 0..journeys {
-        let (chain, hopper, g) = drawn_chain(draw);
-        let test = HopTest::new(&chain, &hopper, g);
+        let chain = drawn_chain(draw);
+        let test = HopTest::new(chain.clone());
         let mut end = || chain.geometry().vertex_station(VertexId(draw.below(chain.segments().len() + 1)));
         let (start, goal) = (end(), end());
         let lower = bounds_with::<F>(&test, start, goal, &options, &mut |_| {}).unwrap().lower;
@@ -123,10 +124,10 @@ fn bound_over_flat_ground<F: Faults>(run_m: f64) -> Option<u64> {
     let line = LineConstraints::from_cone(0.0, crate::quantity::Angle::from_degrees(60.0), 5.0, 5.0);
     let form = GroundForm::Explicit { forward: Some(line), reverse: Some(line) };
     let points = vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(run_m, 0.0)];
-    let geometry = PolygonalChain::new(points, vec![Ground { form, keep_out: false }], None).unwrap();
-    let surface = Surface { grip: None, rest: RestSlope::Unlimited };
-    let chain = ConstrainedChain::new(geometry, &Hopper::UNLIMITED, &surface).unwrap();
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 1.0);
+    let geometry = PolygonalChain::new(points, vec![SegmentGround { form, keep_out: false }], None).unwrap();
+    let surface = SurfaceProperties { grip: None, rest: RestSlope::Unlimited };
+    let chain = ConstrainedChain::new(geometry, &Hopper::UNLIMITED, Gravity::new(1.0).unwrap(), &surface).unwrap();
+    let test = HopTest::new(chain.clone());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     bounds_with::<F>(&test, at(0), at(1), &BoundsOptions::default(), &mut |_| {}).unwrap().lower
 }

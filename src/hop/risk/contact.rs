@@ -33,7 +33,7 @@ const DEVIATIONS: f64 = 6.0;
 
 /// The probability that a contact succeeds, over all ground within [`DEVIATIONS`] and the tolerance.
 pub(super) fn contact_success(
-    test: &HopTest<'_>,
+    test: &HopTest,
     planned: &Station,
     direction: Direction,
     friction_sigma: f64,

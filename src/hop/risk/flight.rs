@@ -52,7 +52,7 @@ pub(super) struct Ground {
 }
 
 impl Ground {
-    pub(super) fn of(test: &HopTest<'_>, hop: &PlannedHop, direction: Direction) -> Self {
+    pub(super) fn of(test: &HopTest, hop: &PlannedHop, direction: Direction) -> Self {
         let slopes = test.chain().geometry().slopes();
         let slope = |station: &Station, contact| {
             let segment = station.ruling_segment(contact, direction, slopes.len());
@@ -93,7 +93,7 @@ impl Flight {
     /// `dz/dv = 2 c d^2 / v` and `dz/dtheta = (1 + m^2) d - 2 m c d^2`, each divided by the closing slope `s - z'(d)`.
     pub(super) fn new(
         deviations: &HopDeviations,
-        test: &HopTest<'_>,
+        test: &HopTest,
         hop: &PlannedHop,
         ground: &Ground,
         [speed, angle]: [Cell; 2],
@@ -149,13 +149,7 @@ impl Flight {
     /// such vertices.
     ///
     /// Vertices within four standard deviations of either end belong to the ground of that contact, which is checked there.
-    pub(super) fn strike_probability(
-        &self,
-        deviations: &HopDeviations,
-        test: &HopTest<'_>,
-        hop: &PlannedHop,
-        ground: &Ground,
-    ) -> f64 {
+    pub(super) fn strike_probability(&self, deviations: &HopDeviations, test: &HopTest, hop: &PlannedHop, ground: &Ground) -> f64 {
         let vertices = test.chain().geometry().vertices();
         let mut least = f64::INFINITY;
         for vertex in &vertices[flown_past(&hop.takeoff, &hop.landing)] {

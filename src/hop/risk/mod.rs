@@ -82,7 +82,7 @@ impl RiskModel {
     ///
     /// # Returns
     /// From 0 to 1; 0 for a feasible hop without deviations.
-    pub fn failure_probability(&self, test: &HopTest<'_>, hop: &PlannedHop) -> f64 {
+    pub fn failure_probability(&self, test: &HopTest, hop: &PlannedHop) -> f64 {
         let success = match self {
             Self::Deviations(deviations) => deviations.success(test, hop),
             Self::Slack => slack_success(hop),
@@ -92,7 +92,7 @@ impl RiskModel {
 
     /// The weight of a hop in a search, `-ln(1 - p)`: its sum over hops is `-ln` of the product of their success
     /// probabilities. At most some 28.
-    pub fn weight(&self, test: &HopTest<'_>, hop: &PlannedHop) -> f64 {
+    pub fn weight(&self, test: &HopTest, hop: &PlannedHop) -> f64 {
         // A certain failure has a finite weight, so that paths with fewer of them are better.
         const LEAST_SUCCESS: f64 = 1e-12;
         -libm::log((1.0 - self.failure_probability(test, hop)).max(LEAST_SUCCESS))
@@ -105,7 +105,7 @@ impl HopDeviations {
         libm::hypot(self.takeoff_speed_m_s, self.takeoff_speed_fraction * speed_m_s)
     }
 
-    fn success(&self, test: &HopTest<'_>, hop: &PlannedHop) -> f64 {
+    fn success(&self, test: &HopTest, hop: &PlannedHop) -> f64 {
         let Some(direction) = Direction::between(hop.takeoff.point.x_m, hop.landing.point.x_m) else { return 1.0 };
         let ground = Ground::of(test, hop, direction);
         let speed_sigma_m_s = self.speed_sigma_m_s(hop.arc.takeoff_speed_m_s());

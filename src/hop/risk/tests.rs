@@ -9,19 +9,20 @@ use crate::{
     ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain},
     quantity::ChainPoint,
-    world::{Contact, FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Contact, FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
 
 const G: f64 = 3.711;
 
-fn chain(points: &[(f64, f64)], friction: f64, landing_speed_max_m_s: f64) -> (ConstrainedChain, Hopper) {
+fn chain(points: &[(f64, f64)], friction: f64, landing_speed_max_m_s: f64) -> ConstrainedChain {
     let geometry = PolygonalChain::bare(points.iter().map(|&(x, z)| ChainPoint::new(x, z)).collect()).unwrap();
-    let hopper = Hopper::with_speeds(10.0, landing_speed_max_m_s);
-    let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(friction).unwrap())), rest: RestSlope::AsFrictionHolds };
-    (ConstrainedChain::new(geometry, &hopper, &surface).unwrap(), hopper)
+    let hopper = Hopper::with_speeds(10.0, landing_speed_max_m_s).unwrap();
+    let surface =
+        SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(friction).unwrap())), rest: RestSlope::AsFrictionHolds };
+    ConstrainedChain::new(geometry, &hopper, Gravity::new(3.711).unwrap(), &surface).unwrap()
 }
 
-fn planned(test: &HopTest<'_>, from_m: f64, to_m: f64, choice: TakeoffChoice) -> PlannedHop {
+fn planned(test: &HopTest, from_m: f64, to_m: f64, choice: TakeoffChoice) -> PlannedHop {
     let station = |x_m| test.chain().geometry().station(x_m).unwrap();
     let (takeoff, landing) = (station(from_m), station(to_m));
     let lofts = test.lofts(&takeoff, &landing).unwrap();
@@ -30,7 +31,7 @@ fn planned(test: &HopTest<'_>, from_m: f64, to_m: f64, choice: TakeoffChoice) ->
 }
 
 /// Counts hops towards +x that fail, flown by numerical integration of Newton's equations, without slopes or derivatives.
-fn counted(test: &HopTest<'_>, hop: &PlannedHop, deviations: &HopDeviations, flights: u32) -> f64 {
+fn counted(test: &HopTest, hop: &PlannedHop, deviations: &HopDeviations, flights: u32) -> f64 {
     let mut source = ChaCha8Rng::seed_from_u64(5);
     let mut normal = || {
         let radius = libm::sqrt(-2.0 * libm::log(1.0 - source.random::<f64>()));
@@ -83,8 +84,8 @@ fn the_estimate_agrees_with_counted_flights() {
         HopDeviations { takeoff_speed_fraction: 0.05, takeoff_angle: Angle::from_degrees(4.0), ..HopDeviations::default() };
     let mut differences = Vec::new();
     for (points, friction, landing_max) in [(&rough[..], 0.9, 10.0), (&rough[..], 0.7, 7.5), (&flat[..], 0.8, 8.0)] {
-        let (chain, hopper) = chain(points, friction, landing_max);
-        let test = HopTest::new(&chain, &hopper, G);
+        let chain = chain(points, friction, landing_max);
+        let test = HopTest::new(chain.clone());
         for (from_m, to_m) in [(3.0, 11.0), (5.0, 15.5), (12.0, 20.0), (2.0, 8.0), (20.0, 30.0)] {
             let station = |x_m| chain.geometry().station(x_m).unwrap();
             if test.lofts(&station(from_m), &station(to_m)).is_err() {
@@ -111,8 +112,8 @@ fn the_estimate_agrees_with_counted_flights() {
 
 #[test]
 fn risk_is_zero_without_deviations_and_grows_with_them() {
-    let (chain, hopper) = chain(&[(0.0, 0.0), (20.0, 1.0), (40.0, 0.0)], 0.8, 10.0);
-    let test = HopTest::new(&chain, &hopper, G);
+    let chain = chain(&[(0.0, 0.0), (20.0, 1.0), (40.0, 0.0)], 0.8, 10.0);
+    let test = HopTest::new(chain.clone());
     let hop = planned(&test, 3.0, 14.0, TakeoffChoice::MidRange);
     assert_eq!(RiskModel::Deviations(HopDeviations::default()).failure_probability(&test, &hop), 0.0);
     let at = |scale: f64| {
@@ -134,8 +135,8 @@ fn risk_is_zero_without_deviations_and_grows_with_them() {
 fn a_flat_hop_to_a_goal_misses_as_its_landing_spreads() {
     // 45 degrees over flat ground with open cones: X = v^2 / g, so dX = 2 X dv / v; a tolerance of one standard deviation
     // contains 68.27 %.
-    let (chain, hopper) = chain(&[(0.0, 0.0), (60.0, 0.0)], 50.0, 20.0);
-    let test = HopTest::new(&chain, &hopper, G);
+    let chain = chain(&[(0.0, 0.0), (60.0, 0.0)], 50.0, 20.0);
+    let test = HopTest::new(chain.clone());
     let hop = PlannedHop { tolerance_m: Some(2.0 * 20.0 * 0.01), ..planned(&test, 10.0, 30.0, TakeoffChoice::LeastSpeed) };
     let deviations = HopDeviations { takeoff_speed_fraction: 0.01, ..HopDeviations::default() };
     let failed = RiskModel::Deviations(deviations).failure_probability(&test, &hop);
@@ -163,8 +164,8 @@ fn the_cells_have_the_moments_of_the_normal_distribution() {
 
 #[test]
 fn a_margin_of_one_degree_on_either_side_is_one_standard_deviation() {
-    let (chain, hopper) = chain(&[(0.0, 0.0), (60.0, 0.0)], 50.0, 20.0);
-    let test = HopTest::new(&chain, &hopper, G);
+    let chain = chain(&[(0.0, 0.0), (60.0, 0.0)], 50.0, 20.0);
+    let test = HopTest::new(chain.clone());
     let hop = planned(&test, 10.0, 30.0, TakeoffChoice::LeastSpeed);
     let around = SlopeInterval { lower: Angle::from_degrees(44.0).slope(), upper: Angle::from_degrees(46.0).slope() };
     let failed = RiskModel::Slack.failure_probability(&test, &PlannedHop { lofts: around, ..hop });

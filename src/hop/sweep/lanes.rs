@@ -53,7 +53,7 @@ impl Lanes {
     /// Evaluates the landings `range` of the table, at most [`Self::COUNT`] of them, none on a segment of the take-off.
     pub(super) fn evaluate(
         &mut self,
-        test: &HopTest<'_>,
+        test: &HopTest,
         from: &Departure,
         (x_m, z_m): (&[f64], &[f64]),
         rules: &LandingRules,
@@ -111,14 +111,7 @@ impl Lanes {
     }
 
     /// The limit that leaves no arc in a lane, in the order of [`HopTest::lofts`].
-    pub(super) fn refusing(
-        &self,
-        test: &HopTest<'_>,
-        from: &Departure,
-        lane: usize,
-        run_m: f64,
-        landing_cone: SlopeInterval,
-    ) -> Limit {
+    pub(super) fn refusing(&self, test: &HopTest, from: &Departure, lane: usize, run_m: f64, landing_cone: SlopeInterval) -> Limit {
         for (excess, limit) in [(self.takeoff_excess[lane], Limit::TakeoffSpeed), (self.landing_excess[lane], Limit::LandingSpeed)]
         {
             if excess.is_nan() || excess < 0.0 {

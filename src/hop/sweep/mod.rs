@@ -9,7 +9,7 @@ mod lanes;
 mod table;
 mod terrain;
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use lanes::{Departure, Lanes};
 pub use table::LandingTable;
@@ -30,10 +30,10 @@ use crate::{
 /// ```
 /// use chta::{chain::*, hop::*, quantity::*, world::*};
 /// let points = (0..=20).map(|i| ChainPoint::new(f64::from(i), 0.0)).collect();
-/// let hopper = Hopper::with_speeds(4.0, 4.0);
-/// let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(1.0).unwrap())), rest: RestSlope::AsFrictionHolds };
-/// let chain = ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, &surface).unwrap();
-/// let test = HopTest::new(&chain, &hopper, 1.6);
+/// let hopper = Hopper::with_speeds(4.0, 4.0).unwrap();
+/// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(1.0).unwrap())), rest: RestSlope::AsFrictionHolds };
+/// let chain = ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, Gravity::new(1.6).unwrap(), &surface).unwrap();
+/// let test = HopTest::new(chain.clone());
 /// let stations: Vec<_> = (0..=20).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
 /// let table = LandingTable::new(&test, &stations);
 /// let mut farthest = 0;
@@ -47,21 +47,22 @@ use crate::{
 /// assert_eq!(farthest, 10);
 /// ```
 #[derive(Clone, Debug)]
-pub struct Sweep<'a> {
-    table: &'a LandingTable<'a>,
+pub struct Sweep {
+    table: Arc<LandingTable>,
     lanes: Lanes,
-    overflight: Overflight<'a>,
+    overflight: Overflight,
 }
 
 /// Two lofts closer than this fraction of their size are compared by [`HopTest::lofts`](super::HopTest::lofts): far more than
 /// rounding, far less than matters.
 const TOUCHING: f64 = 1e-11;
 
-impl<'a> Sweep<'a> {
+impl Sweep {
     /// For sweeps over a table of landings.
-    pub fn new(table: &'a LandingTable<'a>) -> Self {
-        let test = table.test();
-        Self { table, lanes: Lanes::new(), overflight: Overflight::new(test.chain().geometry(), test.hopper().clearance_m) }
+    pub fn new(table: impl Into<Arc<LandingTable>>) -> Self {
+        let table = table.into();
+        let overflight = Overflight::new(table.test().shared_chain());
+        Self { table, lanes: Lanes::new(), overflight }
     }
 
     /// Evaluates every landing of a range of the table's stations that lies in a direction from the take-off, nearest first.
@@ -81,7 +82,8 @@ impl<'a> Sweep<'a> {
         direction: Direction,
         mut visit: impl FnMut(usize, Result<SlopeInterval, Limit>),
     ) {
-        let table = self.table;
+        let Self { table, lanes, overflight } = self;
+        let table = &**table;
         let (test, stations, refusals) = (table.test(), table.stations(), &table.rules(direction).refusal);
         let among = table.part_ahead(takeoff, among, direction);
         let rule = match test.allowed(takeoff, Contact::Takeoff, direction) {
@@ -94,29 +96,38 @@ impl<'a> Sweep<'a> {
         let (in_plane, beyond_bend) = table.split_at_bend(takeoff, among, direction);
         let (on_segment, mut left) = table.split_at_segment(takeoff, in_plane, direction);
         outwards(on_segment, direction).for_each(|i| visit(i, test.lofts(takeoff, &stations[i])));
-        self.overflight.begin(takeoff, direction);
+        overflight.begin(takeoff, direction);
         while !left.is_empty() {
             let block = next_block(&mut left, direction);
             if let Some(limit) = table.out_of_reach(&from, &block, direction) {
                 outwards(block, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(limit))));
                 continue;
             }
-            self.lanes.evaluate(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
+            lanes.evaluate(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
             for i in outwards(block.clone(), direction) {
                 let verdict = match refusals[i] {
                     Some(limit) => Err(limit),
-                    None => self.verdict(&from, takeoff, direction, i, i - block.start),
+                    None => Landing { table, lanes, overflight }.verdict(&from, takeoff, direction, i, i - block.start),
                 };
                 visit(i, verdict);
             }
         }
         outwards(beyond_bend, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(Limit::Bend))));
     }
+}
 
+/// What a verdict on one landing looks at.
+struct Landing<'s> {
+    table: &'s LandingTable,
+    lanes: &'s Lanes,
+    overflight: &'s mut Overflight,
+}
+
+impl Landing<'_> {
     /// The result for a landing that its ground allows and whose lane of the block is evaluated.
     #[inline]
     fn verdict(
-        &mut self,
+        self,
         from: &Departure,
         takeoff: &Station,
         direction: Direction,

@@ -1,6 +1,6 @@
 //! The landings of a set of stations, stored for sweeps.
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use super::lanes::Departure;
 use crate::{
@@ -17,9 +17,9 @@ use crate::{
 /// # Memory
 /// 66 bytes per station.
 #[derive(Clone, Debug)]
-pub struct LandingTable<'a> {
-    test: &'a HopTest<'a>,
-    stations: &'a [Station],
+pub struct LandingTable {
+    test: HopTest,
+    stations: Arc<[Station]>,
     pub(super) x_m: Vec<f64>,
     pub(super) z_m: Vec<f64>,
     /// By direction of travel.
@@ -49,11 +49,12 @@ pub(super) struct LandingRules {
     pub(super) refusal: Vec<Option<Limit>>,
 }
 
-impl<'a> LandingTable<'a> {
+impl LandingTable {
     /// The landings on stations in ascending order of x, no two at the same x.
-    pub fn new(test: &'a HopTest<'a>, stations: &'a [Station]) -> Self {
+    pub fn new(test: &HopTest, stations: impl Into<Arc<[Station]>>) -> Self {
+        let stations = stations.into();
         let z_m: Vec<f64> = stations.iter().map(|station| station.point.z_m).collect();
-        let rules = Direction::BOTH.map(|direction| LandingRules::new(test, stations, direction));
+        let rules = Direction::BOTH.map(|direction| LandingRules::new(test, &stations, direction));
         let greatest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         let blocks = (0..stations.len())
             .step_by(Self::BLOCK)
@@ -64,7 +65,8 @@ impl<'a> LandingTable<'a> {
                 speed_squared: [0, 1].map(|direction: usize| greatest(&rules[direction].speed_squared[block.clone()])),
             })
             .collect();
-        Self { test, stations, x_m: stations.iter().map(|station| station.point.x_m).collect(), z_m, rules, blocks }
+        let x_m = stations.iter().map(|station| station.point.x_m).collect();
+        Self { test: test.clone(), stations, x_m, z_m, rules, blocks }
     }
 
     /// Number of stations that a sweep evaluates at once: those of one block of indices, so that the bounds of the block
@@ -95,13 +97,15 @@ impl<'a> LandingTable<'a> {
     }
 
     /// The hop test that gives the results.
-    pub const fn test(&self) -> &'a HopTest<'a> {
-        self.test
+    #[inline]
+    pub const fn test(&self) -> &HopTest {
+        &self.test
     }
 
     /// The stations.
-    pub const fn stations(&self) -> &'a [Station] {
-        self.stations
+    #[inline]
+    pub fn stations(&self) -> &[Station] {
+        &self.stations
     }
 
     /// The limits of the ground in one direction.
@@ -193,7 +197,7 @@ impl<'a> LandingTable<'a> {
 }
 
 impl LandingRules {
-    fn new(test: &HopTest<'_>, stations: &[Station], direction: Direction) -> Self {
+    fn new(test: &HopTest, stations: &[Station], direction: Direction) -> Self {
         let mut rules = Self::default();
         rules.speed_squared.reserve_exact(stations.len());
         rules.cone_lower.reserve_exact(stations.len());

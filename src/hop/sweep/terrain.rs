@@ -1,16 +1,18 @@
 //! The terrain limit of one take-off, for landings in the order of distance.
 
+use std::sync::Arc;
+
 use super::hull::Hull;
 use crate::{
-    chain::{PolygonalChain, Site, Station},
+    chain::{ConstrainedChain, PolygonalChain, Site, Station},
     quantity::ChainPoint,
     world::Direction,
 };
 
 /// The ground below hops from one take-off, extended as the landings move outwards.
 #[derive(Clone, Debug)]
-pub(super) struct Overflight<'a> {
-    chain: &'a PolygonalChain,
+pub(super) struct Overflight {
+    chain: Arc<ConstrainedChain>,
     clearance_m: f64,
     takeoff: ChainPoint,
     direction: Direction,
@@ -32,11 +34,11 @@ pub(super) struct Overflight<'a> {
 /// A relative margin larger than all rounding errors of the bound that avoids the hull.
 const SLACK: f64 = 1e-12;
 
-impl<'a> Overflight<'a> {
-    pub(super) fn new(chain: &'a PolygonalChain, clearance_m: f64) -> Self {
+impl Overflight {
+    pub(super) fn new(chain: Arc<ConstrainedChain>) -> Self {
         Self {
+            clearance_m: chain.hopper().limits().clearance_m,
             chain,
-            clearance_m,
             takeoff: ChainPoint::new(0.0, 0.0),
             direction: Direction::Forward,
             first: 0,
@@ -68,6 +70,11 @@ impl<'a> Overflight<'a> {
         self.hull.clear(0.0);
     }
 
+    #[inline]
+    fn geometry(&self) -> &PolygonalChain {
+        self.chain.geometry()
+    }
+
     /// The number of vertices strictly between the take-off and a landing.
     #[inline]
     fn flown_past(&self, landing: &Station) -> usize {
@@ -83,8 +90,8 @@ impl<'a> Overflight<'a> {
     #[inline]
     fn vertex(&self, count: usize) -> ChainPoint {
         match self.direction {
-            Direction::Forward => self.chain.vertices()[self.first + count],
-            Direction::Reverse => self.chain.vertices()[self.first - count],
+            Direction::Forward => self.geometry().vertices()[self.first + count],
+            Direction::Reverse => self.geometry().vertices()[self.first - count],
         }
     }
 
@@ -92,8 +99,8 @@ impl<'a> Overflight<'a> {
     #[inline]
     fn slope_before(&self, count: usize) -> f64 {
         match self.direction {
-            Direction::Forward => self.chain.slopes()[self.first + count - 1],
-            Direction::Reverse => -self.chain.slopes()[self.first - count],
+            Direction::Forward => self.geometry().slopes()[self.first + count - 1],
+            Direction::Reverse => -self.geometry().slopes()[self.first - count],
         }
     }
 

@@ -1,13 +1,16 @@
 //! Every limit of one hop, held against what was flown.
 
-use std::f64::consts::FRAC_PI_2;
+use std::{f64::consts::FRAC_PI_2, ops::ControlFlow};
+
+use nalgebra::{Vector2, Vector3};
 
 use super::{Flight, Measure, StatedValue, ViolatedLimit, Violation};
 use crate::{
-    chain::{ConstrainedChain, GroundRefusal, Station},
+    chain::{ContactRule, GroundRefusal},
+    ground::{ContactPoint, Facet, Frame, Hold, Side, Surface},
     path::Hop,
     quantity::{Angle, AngleInterval, MapPoint},
-    world::{Contact, Direction, Hopper, Limit, tolerant_speed_m_s},
+    world::{Contact, Direction, FrictionCone, Limit, tolerant_speed_m_s},
 };
 
 /// How far an angle may lie over its limit, rad: what the speeds' tolerance is in directions. A tangent and its arc tangent on the
@@ -24,14 +27,17 @@ const SPEED_ROUNDING: f64 = 1e-12;
 const MAP_TOLERANCE: f64 = 1e-12;
 
 /// Holds one hop against its limits and notes what it offends.
-pub(super) struct Checker<'a> {
+pub(super) struct Checker<'a, S: Surface> {
     pub(super) number: usize,
-    pub(super) chain: &'a ConstrainedChain,
-    pub(super) hopper: &'a Hopper,
+    pub(super) surface: &'a S,
+    /// The surface's own contacts at take-off and landing.
+    pub(super) contacts: [Option<S::Contact>; 2],
     pub(super) hop: &'a Hop,
     pub(super) direction: Direction,
-    pub(super) gravity_m_s2: f64,
-    pub(super) height_rounding_m: f64,
+    /// The horizontal direction of flight; `None` where the ends are not two positions of the ground.
+    pub(super) heading: Option<Vector2<f64>>,
+    /// Horizontal distance from take-off to landing, m.
+    pub(super) run_m: Option<f64>,
     pub(super) violations: &'a mut Vec<Violation>,
 }
 
@@ -45,7 +51,7 @@ struct Meeting {
     speed_rounding_m_s: f64,
 }
 
-impl Checker<'_> {
+impl<S: Surface> Checker<'_, S> {
     fn note(&mut self, limit: ViolatedLimit, measure: Option<Measure>, at_x_m: f64) {
         self.violations.push(Violation { hop: self.number, limit, measure, at_x_m, vertex: None });
     }
@@ -60,17 +66,17 @@ impl Checker<'_> {
         let agrees = (stated - flown).abs() <= tolerance;
         if !agrees {
             let measure = Measure { found: stated, allowed: flown, unit };
-            self.note(ViolatedLimit::StatedValue(value), Some(measure), self.hop.takeoff.point.x_m);
+            self.note(ViolatedLimit::StatedValue(value), Some(measure), self.hop.takeoff.along_m);
         }
     }
 
     /// What is wrong with a command that does not leave forwards at all: it lands nowhere.
     pub(super) fn no_flight(&mut self) {
-        let (takeoff, landing) = (self.hop.takeoff.point, self.hop.landing.point);
+        let (takeoff, landing) = (self.hop.takeoff.in_profile(), self.hop.landing.in_profile());
         self.takeoff(self.hop);
         self.mechanical_angle();
         let found = libm::hypot(landing.x_m - takeoff.x_m, landing.z_m - takeoff.z_m);
-        let measure = Measure { found, allowed: self.height_rounding_m, unit: "m" };
+        let measure = Measure { found, allowed: self.surface.height_rounding_m(), unit: "m" };
         self.note(ViolatedLimit::LandingPoint, Some(measure), takeoff.x_m);
     }
 
@@ -88,15 +94,21 @@ impl Checker<'_> {
 
     /// A flight stays in one vertical plane: every bend strictly under it is one too many.
     fn bends(&mut self) {
-        let ends_m = (self.hop.takeoff.point.x_m, self.hop.landing.point.x_m);
-        let geometry = self.chain.geometry();
-        for bend in geometry.bends() {
-            let x_m = geometry.vertices()[bend.index()].x_m;
-            if (x_m > ends_m.0 && x_m < ends_m.1) || (x_m < ends_m.0 && x_m > ends_m.1) {
-                let limit = ViolatedLimit::Limit(Limit::Bend);
-                self.violations.push(Violation { hop: self.number, limit, measure: None, at_x_m: x_m, vertex: Some(*bend) });
+        let ([Some(from), _], Some(heading), Some(run_m)) = (self.contacts, self.heading, self.run_m) else { return };
+        let (number, violations) = (self.number, &mut *self.violations);
+        let limit = ViolatedLimit::Limit(Limit::Bend);
+        let before = violations.len();
+        self.surface.walk(&from, heading, &mut |element| {
+            if element.to_m >= run_m {
+                return ControlFlow::Break(());
             }
-        }
+            if let Some(vertex) = element.vertex.filter(|_| element.bends) {
+                violations.push(Violation { hop: number, limit, measure: None, at_x_m: vertex.x_m, vertex: Some(vertex.id) });
+            }
+            ControlFlow::Continue(())
+        });
+        // In the order of the chain, whatever the direction of travel.
+        violations[before..].sort_by(|a, b| a.at_x_m.total_cmp(&b.at_x_m));
     }
 
     /// What holds at the take-off: commanded direction and speed are what is flown.
@@ -108,7 +120,7 @@ impl Checker<'_> {
             speed_m_s: hop.takeoff_speed_m_s,
             speed_rounding_m_s: 0.0,
         };
-        self.station(&hop.takeoff, StatedValue::TakeoffStation);
+        self.contact(&hop.takeoff, StatedValue::TakeoffStation, Contact::Takeoff);
         self.ground(&hop.takeoff, meeting);
     }
 
@@ -116,13 +128,13 @@ impl Checker<'_> {
     /// there, `g v_x / v^3`.
     fn landing_angle_tolerance_rad(&self, flight: &Flight) -> f64 {
         let v = flight.landing_speed_m_s;
-        ANGLE_TOLERANCE_RAD + flight.rounding_m * (self.gravity_m_s2 / v) * (flight.across_m_s / v) / v
+        ANGLE_TOLERANCE_RAD + flight.rounding_m * (self.surface.gravity_m_s2() / v) * (flight.across_m_s / v) / v
     }
 
     /// How uncertain the landing's speed is: it changes by `g v_z / v^2` per metre flown.
     fn landing_speed_rounding_m_s(&self, flight: &Flight) -> f64 {
         let v = flight.landing_speed_m_s;
-        flight.rounding_m * (self.gravity_m_s2 / v) * (flight.landing_climb_m_s.abs() / v)
+        flight.rounding_m * (self.surface.gravity_m_s2() / v) * (flight.landing_climb_m_s.abs() / v)
     }
 
     /// What holds at the landing.
@@ -134,51 +146,114 @@ impl Checker<'_> {
             speed_m_s: flight.landing_speed_m_s,
             speed_rounding_m_s: self.landing_speed_rounding_m_s(flight),
         };
-        self.station(&self.hop.landing, StatedValue::LandingStation);
+        self.contact(&self.hop.landing, StatedValue::LandingStation, Contact::Landing);
         self.ground(&self.hop.landing, meeting);
     }
 
-    /// A station must be the chain's own at its x.
-    fn station(&mut self, station: &Station, value: StatedValue) {
-        match self.chain.geometry().station(station.point.x_m) {
-            Ok(own) if own.site == station.site => {
-                let miss_m = (station.point.z_m - own.point.z_m).abs();
-                if miss_m > self.height_rounding_m {
-                    let measure = Measure { found: station.point.z_m, allowed: own.point.z_m, unit: "m" };
-                    self.note(ViolatedLimit::StatedValue(value), Some(measure), station.point.x_m);
+    /// The surface's own contact at one end of the hop.
+    fn own(&self, contact: Contact) -> Option<S::Contact> {
+        self.contacts[usize::from(contact == Contact::Landing)]
+    }
+
+    /// A contact must be the surface's own at its horizontal position.
+    fn contact(&mut self, stated: &ContactPoint, value: StatedValue, contact: Contact) {
+        let own = self.own(contact).map(|own| self.surface.contact_point(&own));
+        match own {
+            Some(own) if own.station.map(|s| s.site) == stated.station.map(|s| s.site) => {
+                let miss_m = (stated.point_m.z - own.point_m.z).abs();
+                if miss_m > self.surface.height_rounding_m() + self.surface.position_rounding_m() {
+                    let measure = Measure { found: stated.point_m.z, allowed: own.point_m.z, unit: "m" };
+                    self.note(ViolatedLimit::StatedValue(value), Some(measure), stated.along_m);
                 }
             }
-            Ok(_) | Err(_) => self.note(ViolatedLimit::StatedValue(value), None, station.point.x_m),
+            Some(_) | None => self.note(ViolatedLimit::StatedValue(value), None, stated.along_m),
         }
     }
 
-    /// The ground's own refusals, its cone and its speed limit.
-    fn ground(&mut self, station: &Station, meeting: Meeting) {
-        let x_m = station.point.x_m;
-        // The chain's own station at this x rules, not what the plan says of its site.
-        let own = self.chain.geometry().station(x_m).unwrap_or(*station);
-        let Some(segment) = self.chain.ruling(&own, meeting.contact, self.direction) else {
-            self.note(ViolatedLimit::Limit(Limit::Direction), None, x_m);
-            return;
+    /// The facets that rule a contact: those ahead of a take-off, those just flown over before a landing.
+    fn ruling(&self, contact: Contact) -> impl Iterator<Item = Facet> + use<S> {
+        let side = match contact {
+            Contact::Takeoff => Side::Ahead,
+            Contact::Landing => Side::Behind,
         };
+        let facets = match (self.own(contact), self.heading) {
+            (Some(own), Some(heading)) => self.surface.facets(&own, heading, side),
+            _ => [None, None],
+        };
+        facets.into_iter().flatten()
+    }
+
+    /// The ground's own refusals, its cone and its speed limit; of two facets beside an edge, both.
+    fn ground(&mut self, stated: &ContactPoint, meeting: Meeting) {
+        let x_m = stated.along_m;
+        let mut known = false;
+        for facet in self.ruling(meeting.contact) {
+            let before = self.violations.len();
+            self.facet(&facet, meeting, x_m);
+            known = true;
+            // What one facet already says is not said again of its neighbour.
+            if self.violations.len() > before {
+                return;
+            }
+        }
+        if !known {
+            self.note(ViolatedLimit::Limit(Limit::Direction), None, x_m);
+        }
+    }
+
+    /// One facet under a contact.
+    fn facet(&mut self, facet: &Facet, meeting: Meeting, x_m: f64) {
         let before = self.violations.len();
-        if let Some(refusal) = segment.refusal() {
+        if let Some(refusal) = facet.refusal.filter(|refusal| !only_rounding(*refusal)) {
             self.note(ViolatedLimit::Limit(refusal.limit(meeting.contact)), refusal_measure(refusal), x_m);
         }
-        if let Some(stated) = segment.stated(self.direction) {
-            let rule = stated.contact(meeting.contact);
-            self.cone(rule.angles(), meeting, x_m);
-            let allowed_m_s = tolerant_speed_m_s(rule.speed_max_m_s()) * (1.0 + SPEED_ROUNDING) + meeting.speed_rounding_m_s;
-            let within = meeting.speed_m_s <= allowed_m_s && rule.speed_max_m_s() > 0.0;
-            if !within {
-                let limit = if meeting.contact == Contact::Takeoff { Limit::TakeoffSpeed } else { Limit::LandingSpeed };
-                self.note_limit(limit, meeting.speed_m_s, rule.speed_max_m_s(), "m/s", x_m);
+        match facet.hold {
+            Hold::Friction { normal, cone } => {
+                self.friction(normal, cone, meeting, x_m);
+                let limits = self.surface.hopper().limits();
+                self.speed(
+                    meeting,
+                    speed_max_m_s(limits.takeoff_speed_max_m_s, limits.landing_speed_max_m_s, meeting.contact),
+                    x_m,
+                );
+            }
+            Hold::Stated { line, .. } => {
+                if let Some(line) = line {
+                    let rule = line.contact(meeting.contact);
+                    self.cone(rule.angles(), meeting, x_m);
+                    self.speed(meeting, rule.speed_max_m_s(), x_m);
+                }
             }
         }
         if self.violations.len() == before
-            && let Err(refusal) = segment.check_contact(meeting.contact, self.direction)
+            && let Some(Err(refusal)) = facet.hold.stated(meeting.contact)
         {
             self.note(ViolatedLimit::Limit(refusal.limit(meeting.contact)), refusal_measure(refusal), x_m);
+        }
+    }
+
+    /// The speed limit of a contact.
+    fn speed(&mut self, meeting: Meeting, speed_max_m_s: f64, x_m: f64) {
+        let allowed_m_s = tolerant_speed_m_s(speed_max_m_s) * (1.0 + SPEED_ROUNDING) + meeting.speed_rounding_m_s;
+        let within = meeting.speed_m_s <= allowed_m_s && speed_max_m_s > 0.0;
+        if !within {
+            let limit = if meeting.contact == Contact::Takeoff { Limit::TakeoffSpeed } else { Limit::LandingSpeed };
+            self.note_limit(limit, meeting.speed_m_s, speed_max_m_s, "m/s", x_m);
+        }
+    }
+
+    /// The friction cone itself: the force along the direction of flight must lie within `atan mu` of the facet's normal.
+    fn friction(&mut self, normal: Vector3<f64>, cone: FrictionCone, meeting: Meeting, x_m: f64) {
+        let Some(heading) = self.heading else { return };
+        let across = heading * libm::cos(meeting.angle_rad);
+        let flight = Vector3::new(across.x, across.y, libm::sin(meeting.angle_rad));
+        // The ground pushes along the flight at a take-off and against it at a landing.
+        let push = if meeting.contact == Contact::Takeoff { flight } else { -flight };
+        let off_rad = libm::atan2(normal.cross(&push).norm(), normal.dot(&push));
+        let held = off_rad <= cone.half_angle().radians() + meeting.angle_tolerance_rad;
+        if !held {
+            let limit = if meeting.contact == Contact::Takeoff { Limit::TakeoffCone } else { Limit::LandingCone };
+            self.note_limit(limit, off_rad.to_degrees(), cone.half_angle().degrees(), "deg", x_m);
         }
     }
 
@@ -203,10 +278,11 @@ impl Checker<'_> {
 
     /// The machine's own take-off angles.
     fn mechanical_angle(&mut self) {
-        let (min, max) = (self.hopper.takeoff_angle_min, self.hopper.takeoff_angle_max);
+        let limits = self.surface.hopper().limits();
+        let (min, max) = (limits.takeoff_angle_min, limits.takeoff_angle_max);
         if min.is_some() || max.is_some() {
             let ends = (min.map_or(-FRAC_PI_2, Angle::radians), max.map_or(FRAC_PI_2, Angle::radians));
-            let (angle_rad, x_m) = (self.hop.takeoff_angle.radians(), self.hop.takeoff.point.x_m);
+            let (angle_rad, x_m) = (self.hop.takeoff_angle.radians(), self.hop.takeoff.along_m);
             self.angle_between(Limit::MechanicalAngle, angle_rad, ends, ANGLE_TOLERANCE_RAD, x_m);
         }
     }
@@ -214,9 +290,13 @@ impl Checker<'_> {
     /// Clearance over the vertices, and the ground between them.
     fn terrain(&mut self, flight: &Flight) {
         let limit = ViolatedLimit::Limit(Limit::Terrain);
+        if let (Some(known_m), Some(run_m)) = (flight.unknown_from_m, self.run_m) {
+            let measure = Measure { found: known_m, allowed: run_m, unit: "m" };
+            self.note(ViolatedLimit::UnknownGround, Some(measure), self.hop.takeoff.along_m + known_m);
+        }
         for low in &flight.too_low {
-            let measure = Some(Measure { found: low.height_m, allowed: self.hopper.clearance_m, unit: "m" });
-            self.violations.push(Violation { hop: self.number, limit, measure, at_x_m: low.x_m, vertex: Some(low.vertex) });
+            let measure = Some(Measure { found: low.height_m, allowed: self.surface.hopper().limits().clearance_m, unit: "m" });
+            self.violations.push(Violation { hop: self.number, limit, measure, at_x_m: low.x_m, vertex: low.vertex });
         }
         if flight.too_low.is_empty()
             && let Some((x_m, depth_m)) = flight.underground
@@ -230,29 +310,40 @@ impl Checker<'_> {
         if flight.hits {
             return;
         }
-        let planned = self.hop.landing.point;
-        let (first_x_m, last_x_m) = self.chain.geometry().extent_m();
+        let planned = self.hop.landing.in_profile();
         let (found, at_x_m) = if let Some(contact) = flight.contact {
             (libm::hypot(contact.x_m - planned.x_m, contact.z_m - planned.z_m), contact.x_m)
         } else {
-            // It flies off the chain: by at least as much.
-            let end_x_m = if self.direction == Direction::Forward { last_x_m } else { first_x_m };
+            // It flies off the known ground: by at least as much.
+            let end_x_m = self.end_of_ground_m();
             ((end_x_m - planned.x_m).abs(), end_x_m)
         };
         let measure = Measure { found, allowed: flight.place_tolerance_m, unit: "m" };
         self.note(ViolatedLimit::LandingPoint, Some(measure), at_x_m);
     }
 
+    /// Where the known ground ends in the direction of flight, m along the profile.
+    fn end_of_ground_m(&self) -> f64 {
+        let begin_m = self.hop.takeoff.along_m;
+        let ([Some(from), _], Some(heading)) = (self.contacts, self.heading) else { return begin_m };
+        let mut end_m = begin_m;
+        self.surface.walk(&from, heading, &mut |element| {
+            end_m = element.vertex.map_or_else(|| begin_m + self.direction.sign() * element.to_m, |vertex| vertex.x_m);
+            ControlFlow::Continue(())
+        });
+        end_m
+    }
+
     /// Greatest height and longest flight.
     fn machine(&mut self, flight: &Flight) {
-        let x_m = self.hop.takeoff.point.x_m;
-        if let Some(height_m) = self.hopper.apex_height_max_m {
+        let x_m = self.hop.takeoff.along_m;
+        if let Some(height_m) = self.surface.hopper().limits().apex_height_max_m {
             let within = flight.apex_height_m <= height_m + flight.place_tolerance_m;
             if !within {
                 self.note_limit(Limit::ApexHeight, flight.apex_height_m, height_m, "m", x_m);
             }
         }
-        if let Some(time_s) = self.hopper.flight_time_max_s {
+        if let Some(time_s) = self.surface.hopper().limits().flight_time_max_s {
             let within = flight.flight_time_s <= time_s * (1.0 + TIME_TOLERANCE) + time_rounding_s(flight);
             if !within {
                 self.note_limit(Limit::FlightTime, flight.flight_time_s, time_s, "s", x_m);
@@ -283,33 +374,47 @@ impl Checker<'_> {
         self.map_ends();
     }
 
-    /// What the two speeds leave of their limits; `None` where the ground allows no contact.
+    /// What the two speeds leave of their limits; `None` where the ground refuses a contact.
     fn margin_m_s(&self, flight: &Flight) -> Option<f64> {
-        let limit =
-            |station, contact| self.chain.check_contact(station, contact, self.direction).ok().map(|rule| rule.speed_max_m_s());
-        let takeoff = limit(&self.hop.takeoff, Contact::Takeoff)? - self.hop.takeoff_speed_m_s;
-        let landing = limit(&self.hop.landing, Contact::Landing)? - flight.landing_speed_m_s;
+        let takeoff = self.speed_limit_m_s(Contact::Takeoff)? - self.hop.takeoff_speed_m_s;
+        let landing = self.speed_limit_m_s(Contact::Landing)? - flight.landing_speed_m_s;
         Some(takeoff.min(landing))
     }
 
-    /// The places on the map, where the chain lies on one.
+    /// The greatest speed that the ground allows a contact; `None` where it refuses the contact.
+    fn speed_limit_m_s(&self, contact: Contact) -> Option<f64> {
+        let limits = self.surface.hopper().limits();
+        let of = |facet: Facet| match facet.hold.stated(contact) {
+            Some(rule) => rule.ok().map(|rule: ContactRule| rule.speed_max_m_s()),
+            None => Some(speed_max_m_s(limits.takeoff_speed_max_m_s, limits.landing_speed_max_m_s, contact)),
+        };
+        self.ruling(contact).map(of).reduce(|a, b| Some(a?.min(b?)))?
+    }
+
+    /// The two ends on the map, where the ground lies on one, and the distance between them.
     fn map_ends(&mut self) {
-        let geometry = self.chain.geometry();
-        let own = geometry.map_point(&self.hop.takeoff).zip(geometry.map_point(&self.hop.landing));
-        let x_m = self.hop.takeoff.point.x_m;
-        match (own, self.hop.map) {
-            (None, None) => {}
-            (Some((takeoff, landing)), Some(map)) => {
-                let scale_m = [takeoff, landing].iter().flat_map(|p| [p.x.abs(), p.y.abs()]).fold(1.0, f64::max);
-                let miss_m = (map.takeoff - takeoff).norm().max((map.landing - landing).norm());
-                let agrees = miss_m <= MAP_TOLERANCE * scale_m;
-                if !agrees {
-                    let measure = Measure { found: miss_m, allowed: MAP_TOLERANCE * scale_m, unit: "m" };
-                    self.note(ViolatedLimit::StatedValue(StatedValue::MapEnds), Some(measure), x_m);
-                }
-                self.heading(map.heading_deg, takeoff, landing, MAP_TOLERANCE * scale_m);
+        let own = self.contacts.map(|own| own.map(|own| self.surface.contact_point(&own)));
+        let [Some(takeoff), Some(landing)] = own else { return };
+        let stated = [self.hop.takeoff, self.hop.landing];
+        let x_m = self.hop.takeoff.along_m;
+        if stated.iter().zip([takeoff, landing]).any(|(stated, own)| stated.frame != own.frame) {
+            self.note(ViolatedLimit::StatedValue(StatedValue::MapEnds), None, x_m);
+            return;
+        }
+        if takeoff.frame == Frame::Map {
+            let [takeoff, landing] = [takeoff, landing].map(|own| own.point_m.xy());
+            let scale_m = [takeoff, landing].iter().flat_map(|p| [p.x.abs(), p.y.abs()]).fold(1.0, f64::max);
+            let miss_m = (stated[0].point_m.xy() - takeoff).norm().max((stated[1].point_m.xy() - landing).norm());
+            let agrees = miss_m <= MAP_TOLERANCE * scale_m;
+            if !agrees {
+                let measure = Measure { found: miss_m, allowed: MAP_TOLERANCE * scale_m, unit: "m" };
+                self.note(ViolatedLimit::StatedValue(StatedValue::MapEnds), Some(measure), x_m);
             }
-            _ => self.note(ViolatedLimit::StatedValue(StatedValue::MapEnds), None, x_m),
+            self.heading(self.hop.heading_deg, takeoff, landing, MAP_TOLERANCE * scale_m);
+        }
+        if let Some(run_m) = self.run_m {
+            let tolerance_m = MAP_TOLERANCE * (stated[1].along_m.abs() + run_m) + self.surface.position_rounding_m();
+            self.stated(StatedValue::Distance, self.hop.run_m(), run_m, tolerance_m, "m");
         }
     }
 
@@ -323,9 +428,22 @@ impl Checker<'_> {
         if !agrees {
             let flown_deg = libm::atan2(along.x, along.y).to_degrees().rem_euclid(360.0);
             let measure = Measure { found: heading_deg, allowed: flown_deg, unit: "deg" };
-            self.note(ViolatedLimit::StatedValue(StatedValue::Heading), Some(measure), self.hop.takeoff.point.x_m);
+            self.note(ViolatedLimit::StatedValue(StatedValue::Heading), Some(measure), self.hop.takeoff.along_m);
         }
     }
+}
+
+/// The speed limit of a contact, m/s.
+const fn speed_max_m_s(takeoff_m_s: f64, landing_m_s: f64, contact: Contact) -> f64 {
+    match contact {
+        Contact::Takeoff => takeoff_m_s,
+        Contact::Landing => landing_m_s,
+    }
+}
+
+/// Whether a refusal goes no further than rounding: a facet exactly at the rest slope.
+fn only_rounding(refusal: GroundRefusal) -> bool {
+    matches!(refusal, GroundRefusal::TooSteep { tilt, max } if tilt.radians() - max.radians() <= ANGLE_TOLERANCE_RAD)
 }
 
 /// How uncertain the time of landing is: a place over the speed.

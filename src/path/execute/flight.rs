@@ -1,10 +1,13 @@
 //! One hop flown by Newton's equations in small exact steps.
 
+use std::ops::ControlFlow;
+
+use nalgebra::Vector2;
+
 use crate::{
-    chain::ConstrainedChain,
+    ground::{ElementVertex, Surface},
     path::Hop,
     quantity::{Angle, ChainPoint, VertexId},
-    world::Direction,
 };
 
 /// Steps that a flight takes at least, and those of each stretch between two vertices.
@@ -22,16 +25,12 @@ const STEPS_PER_STRETCH: f64 = 4.0;
 /// steps). Ten times more than that, and a ten-millionth of what 1 % of a hop is.
 const PLACE_TOLERANCE: f64 = 1e-12;
 
-/// How far from the straight ground a point of the chain may lie, in units in the last place of the chain's greatest height: two
-/// products, a quotient and a sum make a height inside a segment.
-const HEIGHT_ULPS: f64 = 4.0;
-
 /// The least height over a vertex flown past.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
-    /// Over which vertex.
-    pub vertex: VertexId,
-    /// Where that is, m.
+    /// Over which vertex of the chain; `None` over a ground that numbers none.
+    pub vertex: Option<VertexId>,
+    /// Where that is along the profile, m.
     pub x_m: f64,
     /// How high the flight passes over it, m; negative below.
     pub height_m: f64,
@@ -43,7 +42,7 @@ pub struct Clearance {
 /// so every limit of a hop is checked, not only the first that fails.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flight {
-    /// Where it first comes down; `None` where it leaves the chain in flight.
+    /// Where it first comes down, along the profile; `None` where it leaves the known ground in flight.
     pub contact: Option<ChainPoint>,
     /// Direction of flight at the landing.
     pub landing_angle: Angle,
@@ -51,7 +50,7 @@ pub struct Flight {
     pub landing_speed_m_s: f64,
     /// Time to the landing, s.
     pub flight_time_s: f64,
-    /// The highest point from take-off to landing, m, in the chain's own heights; the landing itself where it still rises there.
+    /// The highest point from take-off to landing, m, in the ground's own heights; the landing itself where it still rises there.
     pub apex_z_m: f64,
     /// The same above the take-off, m.
     pub apex_height_m: f64,
@@ -63,9 +62,11 @@ pub struct Flight {
     pub(super) too_low: Vec<Clearance>,
     /// Where the flight runs below straight ground between vertices first, and how deep it then gets, m.
     pub(super) underground: Option<(f64, f64)>,
+    /// Where the known ground ends before the landing, m from the take-off.
+    pub(super) unknown_from_m: Option<f64>,
     /// How uncertain a place of this flight is by rounding alone, m: [`PLACE_TOLERANCE`] of its size.
     pub(super) rounding_m: f64,
-    /// The same with the rounding of the chain's own heights, m.
+    /// The same with the rounding of the ground's own heights, m.
     pub(super) place_tolerance_m: f64,
     /// Whether the planned landing is where it comes down.
     pub(super) hits: bool,
@@ -113,8 +114,17 @@ impl State {
 struct Stretch {
     from: (f64, f64),
     to: (f64, f64),
-    /// The vertex that ends it; `None` at the landing.
-    vertex: Option<VertexId>,
+    /// What ends it.
+    end: StretchEnd,
+}
+
+/// What ends a stretch of straight ground.
+#[derive(Clone, Copy, Debug)]
+enum StretchEnd {
+    /// An edge of the ground, with its vertex where the ground is a chain.
+    Edge(Option<ElementVertex>),
+    /// The planned landing.
+    Landing,
 }
 
 impl Stretch {
@@ -146,72 +156,65 @@ impl Stretch {
     }
 }
 
-/// The ground under a hop and its gravity: what a flight is flown over.
-pub(super) struct Course<'a> {
-    chain: &'a ConstrainedChain,
-    hop: &'a Hop,
-    direction: Direction,
-    gravity_m_s2: f64,
-    clearance_m: f64,
-    height_rounding_m: f64,
+/// The ground under a hop: what a flight is flown over.
+pub(super) struct Course<'a, S: Surface> {
+    pub(super) surface: &'a S,
+    pub(super) hop: &'a Hop,
+    /// The surface's own contact at the take-off.
+    pub(super) from: S::Contact,
+    /// Horizontal distance to the landing, m.
+    pub(super) run_m: f64,
+    pub(super) heading: Vector2<f64>,
 }
 
-impl<'a> Course<'a> {
-    /// The course of a hop, flown in the direction that its two ends say.
-    pub(super) fn new(
-        chain: &'a ConstrainedChain,
-        hop: &'a Hop,
-        direction: Direction,
-        gravity_m_s2: f64,
-        clearance_m: f64,
-        height_rounding_m: f64,
-    ) -> Self {
-        Self { chain, hop, direction, gravity_m_s2, clearance_m, height_rounding_m }
+impl<S: Surface> Course<'_, S> {
+    /// Height of a point over the take-off, m. Close doubles subtract without error.
+    fn over_takeoff_m(&self, z_m: f64) -> f64 {
+        z_m - self.hop.takeoff.point_m.z
     }
 
-    /// Distance and height of a point, from the take-off along the direction of travel. Close doubles subtract without error.
-    fn seen(&self, point: ChainPoint) -> (f64, f64) {
-        let takeoff = self.hop.takeoff.point;
-        (self.direction.sign() * (point.x_m - takeoff.x_m), point.z_m - takeoff.z_m)
-    }
-
-    /// The vertices strictly beyond one x, in the direction of travel, up to (without) another.
-    fn vertices_between(&self, from_x_m: f64, to_x_m: f64) -> impl Iterator<Item = VertexId> + use<> {
-        let vertices = self.chain.geometry().vertices();
-        let (left, right) = (from_x_m.min(to_x_m), from_x_m.max(to_x_m));
-        let first = vertices.partition_point(|v| v.x_m <= left);
-        let end = vertices.partition_point(|v| v.x_m < right).max(first);
-        let forward = self.direction == Direction::Forward;
-        (first..end).map(move |i| VertexId(if forward { i } else { first + end - 1 - i }))
-    }
-
-    /// The stretches of ground from the take-off to the landing, or from the landing to the chain's end.
-    fn stretches(&self, beyond: bool) -> Vec<Stretch> {
-        let (start, end_x_m) = if beyond {
-            let (first, last) = self.chain.geometry().extent_m();
-            // One step outside, so that the chain's last vertex counts.
-            let end = if self.direction == Direction::Forward { last.next_up() } else { first.next_down() };
-            (self.hop.landing.point, end)
-        } else {
-            (self.hop.takeoff.point, self.hop.landing.point.x_m)
-        };
-        let mut from = self.seen(start);
+    /// The stretches of ground from the take-off to the landing, and where the known ground ends before it.
+    fn stretches(&self) -> (Vec<Stretch>, Option<f64>) {
         let mut stretches = Vec::new();
-        for vertex in self.vertices_between(start.x_m, end_x_m) {
-            let to = self.seen(self.chain.geometry().vertices()[vertex.index()]);
-            stretches.push(Stretch { from, to, vertex: Some(vertex) });
+        let mut from = (0.0, 0.0);
+        let mut known_m = 0.0;
+        let last_m = self.run_m - self.surface.resolution_m();
+        self.surface.walk(&self.from, self.heading, &mut |element| {
+            known_m = element.to_m;
+            if element.to_m >= last_m {
+                return ControlFlow::Break(());
+            }
+            let to = (element.to_m, self.over_takeoff_m(element.to_z_m));
+            stretches.push(Stretch { from, to, end: StretchEnd::Edge(element.vertex) });
             from = to;
-        }
-        if !beyond {
-            stretches.push(Stretch { from, to: self.seen(self.hop.landing.point), vertex: None });
-        }
+            ControlFlow::Continue(())
+        });
+        let to = (self.run_m, self.over_takeoff_m(self.hop.landing.point_m.z));
+        stretches.push(Stretch { from, to, end: StretchEnd::Landing });
+        (stretches, (known_m < last_m).then_some(known_m))
+    }
+
+    /// The stretches of ground from the landing to the end of the known ground.
+    fn stretches_beyond(&self) -> Vec<Stretch> {
+        let mut stretches = Vec::new();
+        let mut from = (self.run_m, self.over_takeoff_m(self.hop.landing.point_m.z));
+        let first_m = self.run_m + self.surface.resolution_m();
+        self.surface.walk(&self.from, self.heading, &mut |element| {
+            if element.to_m > first_m {
+                let to = (element.to_m, self.over_takeoff_m(element.to_z_m));
+                stretches.push(Stretch { from, to, end: StretchEnd::Edge(element.vertex) });
+                from = to;
+            }
+            ControlFlow::Continue(())
+        });
         stretches
     }
 
-    /// The point of the chain's plane at a distance and height from the take-off.
+    /// The point of the profile at a distance and height from the take-off.
     fn point(&self, distance_m: f64, height_m: f64) -> ChainPoint {
-        let takeoff = self.hop.takeoff.point;
-        ChainPoint::new(takeoff.x_m + self.direction.sign() * distance_m, takeoff.z_m + height_m)
+        let (takeoff, landing) = (&self.hop.takeoff, &self.hop.landing);
+        let sign = if landing.along_m < takeoff.along_m { -1.0 } else { 1.0 };
+        ChainPoint::new(takeoff.along_m + sign * distance_m, takeoff.point_m.z + height_m)
     }
 
     /// Flies the hop as commanded; `None` where it does not leave forwards at all.
@@ -230,23 +233,25 @@ impl<'a> Course<'a> {
         if !forwards {
             return None;
         }
-        let stretches = self.stretches(false);
+        let (stretches, unknown_from_m) = self.stretches();
         let (states, top_m) = self.stepped(takeoff, &stretches);
         let landing = states.last().and_then(|steps| steps.last()).copied()?;
         let (run_m, rise_m) = stretches.last()?.to;
-        let rounding_m = PLACE_TOLERANCE * libm::hypot(run_m, top_m.max(rise_m.abs()).max(landing.height_m.abs()));
-        let place_tolerance_m = rounding_m + self.height_rounding_m;
+        let size_m = libm::hypot(run_m, top_m.max(rise_m.abs()).max(landing.height_m.abs()));
+        let rounding_m = PLACE_TOLERANCE * size_m + self.surface.position_rounding_m();
+        let place_tolerance_m = rounding_m + self.surface.height_rounding_m();
         let mut flight = Flight {
             contact: None,
             landing_angle: Angle::from_slope(landing.climb_m_s / landing.across_m_s),
             landing_speed_m_s: libm::hypot(landing.across_m_s, landing.climb_m_s),
             flight_time_s: landing.time_s,
-            apex_z_m: self.hop.takeoff.point.z_m + top_m,
+            apex_z_m: self.hop.takeoff.point_m.z + top_m,
             apex_height_m: top_m,
             least_clearance: None,
             steps: states.iter().map(Vec::len).sum(),
             too_low: Vec::new(),
             underground: None,
+            unknown_from_m,
             rounding_m,
             place_tolerance_m,
             hits: false,
@@ -261,7 +266,7 @@ impl<'a> Course<'a> {
         flight.contact = match early {
             Some(contact) => Some(contact),
             None if over_m > place_tolerance_m => self.beyond(landing),
-            None => Some(self.hop.landing.point),
+            None => Some(self.hop.landing.in_profile()),
         };
         Some(flight)
     }
@@ -269,7 +274,7 @@ impl<'a> Course<'a> {
     /// All states, stretch by stretch, and the highest height on the way.
     fn stepped(&self, takeoff: State, stretches: &[Stretch]) -> (Vec<Vec<State>>, f64) {
         let run_m = stretches.last().map_or(0.0, |s| s.to.0);
-        let g = self.gravity_m_s2;
+        let g = self.surface.gravity_m_s2();
         let mut state = takeoff;
         let mut top_m = 0.0f64;
         let mut all = Vec::with_capacity(stretches.len());
@@ -298,14 +303,15 @@ impl<'a> Course<'a> {
     /// The clearance over every vertex flown past.
     fn look_at_vertices(&self, flight: &mut Flight, stretches: &[Stretch], states: &[Vec<State>]) {
         for (stretch, steps) in stretches.iter().zip(states) {
-            let (Some(vertex), Some(over)) = (stretch.vertex, steps.last()) else { continue };
+            let (StretchEnd::Edge(vertex), Some(over)) = (stretch.end, steps.last()) else { continue };
             let height_m = over.height_m - stretch.to.1;
-            let clearance = Clearance { vertex, x_m: self.chain.geometry().vertices()[vertex.index()].x_m, height_m };
+            let x_m = vertex.map_or_else(|| self.point(stretch.to.0, 0.0).x_m, |vertex| vertex.x_m);
+            let clearance = Clearance { vertex: vertex.map(|vertex| vertex.id), x_m, height_m };
             if flight.least_clearance.is_none_or(|least| height_m < least.height_m) {
                 flight.least_clearance = Some(clearance);
             }
             // A place uncertain across a steep arc is uncertain in height by so much more.
-            if height_m < self.clearance_m - flight.place_tolerance_m * over.stretch() {
+            if height_m < self.surface.hopper().limits().clearance_m - flight.place_tolerance_m * over.stretch() {
                 flight.too_low.push(clearance);
             }
         }
@@ -330,11 +336,11 @@ impl<'a> Course<'a> {
                 let over_m = state.height_m - ground_m;
                 if over_m < -slack_m {
                     if contact.is_none() {
-                        let met_m = stretch.contact_m(before, state, self.gravity_m_s2);
+                        let met_m = stretch.contact_m(before, state, self.surface.gravity_m_s2());
                         contact = Some(self.point(met_m, stretch.height_m(stretch.share(met_m))));
                     }
                     // On the last stretch, to come down early is to land early.
-                    if stretch.vertex.is_some() {
+                    if matches!(stretch.end, StretchEnd::Edge(_)) {
                         let x_m = self.point(state.distance_m, 0.0).x_m;
                         let known = flight.underground.unwrap_or((x_m, over_m));
                         flight.underground = Some((known.0, known.1.min(over_m)));
@@ -346,24 +352,19 @@ impl<'a> Course<'a> {
         contact
     }
 
-    /// Where a flight that passes over its landing comes down; `None` where the chain ends first.
+    /// Where a flight that passes over its landing comes down; `None` where the known ground ends first.
     ///
     /// The arc is concave, so it has met a straight stretch if and only if it is below that stretch's end.
     fn beyond(&self, landing: State) -> Option<ChainPoint> {
         let mut before = landing;
-        for stretch in self.stretches(true) {
-            let state = before.at(stretch.to.0, self.gravity_m_s2);
+        for stretch in self.stretches_beyond() {
+            let state = before.at(stretch.to.0, self.surface.gravity_m_s2());
             if state.height_m < stretch.to.1 {
-                let met_m = stretch.contact_m(before, state, self.gravity_m_s2);
+                let met_m = stretch.contact_m(before, state, self.surface.gravity_m_s2());
                 return Some(self.point(met_m, stretch.height_m(stretch.share(met_m))));
             }
             before = state;
         }
         None
     }
-}
-
-/// How much a height of the chain may be rounded, m: [`HEIGHT_ULPS`].
-pub(super) fn height_rounding_m(chain: &ConstrainedChain) -> f64 {
-    HEIGHT_ULPS * f64::EPSILON * chain.geometry().vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max)
 }

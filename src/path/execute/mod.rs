@@ -15,8 +15,8 @@ pub use violation::{Measure, StatedValue, ViolatedLimit, Violation};
 
 use super::{Hop, HopPath};
 use crate::{
-    chain::{ConstrainedChain, Station},
-    world::{Direction, Hopper},
+    ground::{ContactPoint, Surface},
+    world::Direction,
 };
 
 /// What came of flying a path.
@@ -73,48 +73,68 @@ impl Execution {
 /// let execution = execute(&chain, &hopper, 1.0, &path, None);
 /// assert!((execution.flights[0].as_ref().unwrap().contact.unwrap().x_m - 19.602).abs() < 1e-9);
 /// ```
-pub fn execute(
-    chain: &ConstrainedChain,
-    hopper: &Hopper,
-    gravity_m_s2: f64,
-    path: &HopPath,
-    ends: Option<(Station, Station)>,
-) -> Execution {
-    let height_rounding_m = flight::height_rounding_m(chain);
+pub fn execute<S: Surface>(surface: &S, path: &HopPath, ends: Option<(S::Contact, S::Contact)>) -> Execution {
     let mut violations = Vec::new();
     let mut flights = Vec::with_capacity(path.hops.len());
-    let mut place = ends.map(|(start, _)| start);
+    let ends = ends.map(|(start, goal)| (surface.contact_point(&start), surface.contact_point(&goal)));
+    let mut before: Option<ContactPoint> = None;
     for (i, hop) in path.hops.iter().enumerate() {
-        if let Some(place) = place {
-            continuous(i + 1, &place, &hop.takeoff, &mut violations);
+        match (before, ends) {
+            (Some(before), _) => continuous(i + 1, (&before, &hop.takeoff), before == hop.takeoff, &mut violations),
+            (None, Some((start, _))) => joins(i + 1, (&start, &hop.takeoff), &mut violations),
+            (None, None) => {}
         }
-        place = Some(hop.landing);
+        before = Some(hop.landing);
         let Some(direction) = flyable(i + 1, hop, &mut violations) else {
             flights.push(None);
             continue;
         };
-        let flown = Course::new(chain, hop, direction, gravity_m_s2, hopper.clearance_m, height_rounding_m).fly();
-        let mut checker =
-            Checker { number: i + 1, chain, hopper, hop, direction, gravity_m_s2, height_rounding_m, violations: &mut violations };
-        match &flown {
-            Some(flight) => checker.flight(flight),
-            None => checker.no_flight(),
-        }
-        flights.push(flown);
+        flights.push(checked(surface, i + 1, hop, direction, &mut violations));
     }
-    if let (Some(place), Some((_, goal))) = (place, ends) {
-        continuous(path.hops.len(), &place, &goal, &mut violations);
+    match (before, ends) {
+        (Some(before), Some((_, goal))) => joins(path.hops.len(), (&before, &goal), &mut violations),
+        (None, Some((start, goal))) => joins(0, (&start, &goal), &mut violations),
+        (_, None) => {}
     }
     Execution { flights, violations }
 }
 
-/// One place must be the other, to the last digit: both are the same number of the plan.
-fn continuous(hop: usize, is: &Station, should_be: &Station, violations: &mut Vec<Violation>) {
-    if is != should_be {
-        let (a, b) = (is.point, should_be.point);
-        let found = libm::hypot(a.x_m - b.x_m, a.z_m - b.z_m);
+/// Flies one hop over the surface and holds it against every limit.
+fn checked<S: Surface>(
+    surface: &S,
+    number: usize,
+    hop: &Hop,
+    direction: Direction,
+    violations: &mut Vec<Violation>,
+) -> Option<Flight> {
+    let contacts = [&hop.takeoff, &hop.landing].map(|stated| surface.contact_at(stated));
+    let course = match contacts {
+        [Some(from), Some(to)] => surface.course(&from, &to).map(|(run_m, heading)| Course { surface, hop, from, run_m, heading }),
+        _ => None,
+    };
+    let heading = course.as_ref().map(|course| course.heading);
+    let flown = course.as_ref().and_then(Course::fly);
+    let run_m = course.map(|course| course.run_m);
+    let mut checker = Checker { number, surface, contacts, hop, direction, heading, run_m, violations };
+    match &flown {
+        Some(flight) => checker.flight(flight),
+        None => checker.no_flight(),
+    }
+    flown
+}
+
+/// A path must begin at its start and end at its goal: the same points to the last digit, at any distance along the path.
+fn joins(hop: usize, ends: (&ContactPoint, &ContactPoint), violations: &mut Vec<Violation>) {
+    let (a, b) = ends;
+    continuous(hop, ends, (a.point_m, a.frame, a.station) == (b.point_m, b.frame, b.station), violations);
+}
+
+/// A hop must begin where the one before landed, to the last digit: both are the same numbers of the plan.
+fn continuous(hop: usize, (is, should_be): (&ContactPoint, &ContactPoint), same: bool, violations: &mut Vec<Violation>) {
+    if !same {
+        let found = (is.point_m - should_be.point_m).norm();
         let measure = Some(Measure { found, allowed: 0.0, unit: "m" });
-        violations.push(Violation { hop, limit: ViolatedLimit::Continuity, measure, at_x_m: b.x_m, vertex: None });
+        violations.push(Violation { hop, limit: ViolatedLimit::Continuity, measure, at_x_m: should_be.along_m, vertex: None });
     }
 }
 
@@ -123,11 +143,13 @@ fn flyable(number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> Option<
     let before = violations.len();
     let mut note = |value| {
         let limit = ViolatedLimit::StatedValue(value);
-        violations.push(Violation { hop: number, limit, measure: None, at_x_m: hop.takeoff.point.x_m, vertex: None });
+        violations.push(Violation { hop: number, limit, measure: None, at_x_m: hop.takeoff.along_m, vertex: None });
     };
+    // Finite only where every coordinate is.
+    let size = |point: &ContactPoint| point.along_m.abs() + point.point_m.coords.abs().sum();
     let numbers = [
-        (StatedValue::TakeoffStation, hop.takeoff.point.x_m + hop.takeoff.point.z_m),
-        (StatedValue::LandingStation, hop.landing.point.x_m + hop.landing.point.z_m),
+        (StatedValue::TakeoffStation, size(&hop.takeoff)),
+        (StatedValue::LandingStation, size(&hop.landing)),
         (StatedValue::TakeoffAngle, hop.takeoff_angle.radians()),
         (StatedValue::TakeoffSpeed, hop.takeoff_speed_m_s),
     ];
@@ -136,7 +158,7 @@ fn flyable(number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> Option<
             note(value);
         }
     }
-    let direction = Direction::between(hop.takeoff.point.x_m, hop.landing.point.x_m);
+    let direction = Direction::between(hop.takeoff.along_m, hop.landing.along_m);
     if direction != Some(hop.direction) {
         note(StatedValue::Direction);
     }

@@ -31,6 +31,8 @@ pub enum StatedValue {
     MapEnds,
     /// The heading on the map.
     Heading,
+    /// The distance along the path.
+    Distance,
 }
 
 impl StatedValue {
@@ -49,6 +51,7 @@ impl StatedValue {
             Self::SpeedMargin => "speed margin",
             Self::MapEnds => "map ends",
             Self::Heading => "heading",
+            Self::Distance => "distance",
         }
     }
 }
@@ -60,6 +63,8 @@ pub enum ViolatedLimit {
     Limit(Limit),
     /// The hop comes down elsewhere than planned.
     LandingPoint,
+    /// The hop flies over ground that is not known.
+    UnknownGround,
     /// The hop does not begin where the one before (or the journey) says, or the last does not end at the goal.
     Continuity,
     /// A number of the plan is not the one flown, or is none at all.
@@ -71,6 +76,7 @@ impl fmt::Display for ViolatedLimit {
         match self {
             Self::Limit(limit) => write!(f, "{limit}"),
             Self::LandingPoint => f.write_str("landing-point"),
+            Self::UnknownGround => f.write_str("unknown-ground"),
             Self::Continuity => f.write_str("continuity"),
             Self::StatedValue(value) => write!(f, "stated {}", value.name()),
         }
@@ -116,6 +122,7 @@ impl fmt::Display for Violation {
             ViolatedLimit::LandingPoint => {
                 write!(f, ": it misses its landing by {found} {unit}, expected at most {allowed} {unit}")
             }
+            ViolatedLimit::UnknownGround => write!(f, ": the ground is known for {found} {unit}, expected {allowed} {unit}"),
             ViolatedLimit::Continuity => write!(f, ": a gap of {found} {unit}, expected {allowed} {unit}"),
             ViolatedLimit::Limit(_) => {
                 let bound = if found < allowed { "least" } else { "most" };

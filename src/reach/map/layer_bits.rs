@@ -1,9 +1,7 @@
 //! The nodes of one BFS layer as a bitmap, so that a node far from all of them is skipped after a look at a few words.
 
-use super::{
-    lattice::{NodeLattice, Post},
-    offsets::Offset,
-};
+use super::{NodeLattice, Post};
+use crate::ground::Offset;
 
 /// Bits in a word.
 const WORD: usize = u64::BITS as usize;
@@ -103,8 +101,8 @@ impl Disc {
 mod tests {
     use super::*;
     use crate::{
+        ground::{OffsetTable, Spacing},
         quantity::MapPoint,
-        reach::map::offsets::{OffsetTable, Spacing},
         terrain::{Dem, GeoReference},
     };
 

@@ -2,8 +2,12 @@
 
 use rayon::prelude::*;
 
-use super::{MapError, PostHops, lattice::Post, offsets::Offset};
-use crate::{ballistics::safety_range_m, world::tolerant_speed_m_s};
+use super::{MapError, Post, PostHops};
+use crate::{
+    ballistics::safety_range_m,
+    ground::{Offset, Surface},
+    world::tolerant_speed_m_s,
+};
 
 /// Directions are counted in so many equal sectors, the first about grid north.
 pub const SECTORS: u8 = 16;
@@ -26,11 +30,11 @@ pub struct Mobility {
 ///
 /// # Errors
 /// [`MapError`]; of several, that of the first block.
-pub fn mobility(hops: &PostHops<'_>, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Mobility, MapError> {
+pub fn mobility(hops: &PostHops, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Mobility, MapError> {
     let lattice = hops.lattice();
-    let hopper = hops.request().hopper;
-    let range_m = |speed_m_s: f64| safety_range_m(0.0, tolerant_speed_m_s(speed_m_s), hops.request().gravity_m_s2);
-    let disc_radius_m = range_m(hopper.takeoff_speed_max_m_s.min(hopper.landing_speed_max_m_s));
+    let limits = hops.ground().hopper().limits();
+    let range_m = |speed_m_s: f64| safety_range_m(0.0, tolerant_speed_m_s(speed_m_s), hops.ground().gravity_m_s2());
+    let disc_radius_m = range_m(limits.takeoff_speed_max_m_s.min(limits.landing_speed_max_m_s));
     let disc: Vec<(usize, &Offset)> =
         hops.offsets().iter().enumerate().take_while(|(_, offset)| offset.run_m <= disc_radius_m).collect();
     let sectors: Vec<u16> = disc.iter().map(|(_, offset)| 1 << sector(offset)).collect();
@@ -64,7 +68,7 @@ pub fn mobility(hops: &PostHops<'_>, tell: &(dyn Fn(usize, usize) + Sync)) -> Re
 type OfNode = (usize, f32, f32);
 
 /// Share and directions of one node.
-fn from_node(hops: &PostHops<'_>, node: Post, disc: &[(usize, &Offset)], sectors: &[u16]) -> Result<(f32, f32), MapError> {
+fn from_node(hops: &PostHops, node: Post, disc: &[(usize, &Offset)], sectors: &[u16]) -> Result<(f32, f32), MapError> {
     let usable = hops.usable(node);
     let (mut there, mut reached, mut directions) = (0u32, 0u32, 0u16);
     for (&(number, offset), sector) in disc.iter().zip(sectors) {

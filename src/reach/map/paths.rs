@@ -1,20 +1,20 @@
 //! The hops of a path over the map, each on its own slice.
 
-use super::{MapError, PostHops, lattice::Post};
+use super::{MapError, Post, PostHops};
 use crate::{
     ballistics::TakeoffChoice,
-    chain::ConstrainedChain,
     graph::{Edge, Leg},
+    ground::{ContactPoint, Surface},
     hop::{HopTest, Split},
-    path::{Hop, HopPath, generate},
+    path::{Execution, Hop, HopPath, execute, generate},
     quantity::VertexId,
 };
 
 /// One hop of a path, on the slice between its two posts.
 #[derive(Clone, Debug)]
 pub struct MapHop {
-    /// The slice from take-off to landing, which [`slice`](crate::terrain::slice()) gives too.
-    pub chain: ConstrainedChain,
+    /// The hop test on the slice from take-off to landing, which [`slice`](crate::terrain::slice()) gives too.
+    pub test: HopTest,
     /// The hop along it.
     pub path: HopPath,
 }
@@ -23,37 +23,43 @@ pub struct MapHop {
 ///
 /// # Errors
 /// [`MapError`], as [`PostHops::lofts`].
-pub fn path_hops(hops: &PostHops<'_>, posts: &[Post], choice: TakeoffChoice) -> Result<Vec<MapHop>, MapError> {
-    let mut found = Vec::with_capacity(posts.len().saturating_sub(1));
-    for (from, to) in posts.iter().zip(posts.iter().skip(1)) {
+pub fn path_hops(hops: &PostHops, nodes: &[Post], choice: TakeoffChoice) -> Result<Vec<MapHop>, MapError> {
+    let mut found = Vec::with_capacity(nodes.len().saturating_sub(1));
+    for (from, to) in nodes.iter().zip(nodes.iter().skip(1)) {
         let Some(chain) = hops.chain(*from, *to)? else { continue };
-        let Some(path) = hop_along(hops, &chain, choice) else { continue };
-        found.push(MapHop { chain, path });
+        let test = HopTest::new(chain);
+        let Some(path) = hop_along(&test, choice) else { continue };
+        found.push(MapHop { test, path });
     }
     Ok(found)
 }
 
-/// The single hop over a slice.
-fn hop_along(hops: &PostHops<'_>, chain: &ConstrainedChain, choice: TakeoffChoice) -> Option<HopPath> {
-    let test = HopTest::new(chain, hops.request().hopper, hops.request().gravity_m_s2);
-    let geometry = chain.geometry();
+/// The single hop over a slice; `None` where nodes are given that no hop joins.
+fn hop_along(test: &HopTest, choice: TakeoffChoice) -> Option<HopPath> {
+    let geometry = test.chain().geometry();
     let (takeoff, landing) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
-    // Whoever gives a way that this map did not find gets the hops that there are.
     let lofts = test.lofts(&takeoff, &landing).ok()?;
-    generate(&test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts) }], choice, Split::default()).ok()
+    generate(test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts) }], choice, Split::default()).ok()
 }
 
-/// The hops of a path joined to one [`HopPath`], x counted along it from its beginning.
-pub fn joined(hops: &PostHops<'_>, path: &[MapHop]) -> HopPath {
+/// The hops of a path joined to one [`HopPath`] over the map, with distances along it from its beginning.
+pub fn joined(hops: &PostHops, path: &[MapHop]) -> HopPath {
     let mut begin_m = 0.0;
     let mut flown: Vec<Hop> = Vec::with_capacity(path.len());
     for hop in path.iter().flat_map(|hop| &hop.path.hops) {
-        let mut hop = *hop;
-        let run_m = hop.landing.point.x_m;
-        hop.takeoff.point.x_m = begin_m;
-        begin_m += run_m;
-        hop.landing.point.x_m = begin_m;
-        flown.push(hop);
+        let run_m = hop.landing.along_m;
+        let along = |point: &ContactPoint, along_m| ContactPoint { along_m, station: None, ..*point };
+        let end_m = begin_m + run_m;
+        flown.push(Hop { takeoff: along(&hop.takeoff, begin_m), landing: along(&hop.landing, end_m), ..*hop });
+        begin_m = end_m;
     }
-    HopPath::of_hops(flown, hops.request().hopper)
+    HopPath::of_hops(flown, hops.ground().hopper())
+}
+
+/// Flies a joined path again over the ground itself, from one node to another, by the independent checker.
+///
+/// The checker walks the triangles of the DEM, where the hops were found on slices and by a table of offsets.
+pub fn verify(hops: &PostHops, path: &HopPath, start: Post, goal: Post) -> Execution {
+    let [start, goal] = [start, goal].map(|node| hops.position(node));
+    execute(hops.ground(), path, start.zip(goal))
 }

@@ -7,8 +7,7 @@
 use rayon::prelude::*;
 
 use super::{
-    MapError, PostHops,
-    lattice::Post,
+    MapError, Post, PostHops,
     layer_bits::{Disc, LayerBits},
 };
 use crate::{
@@ -81,7 +80,7 @@ struct Found {
 ///
 /// # Errors
 /// [`MapError`]; of several, that of the first block.
-pub fn search(hops: &PostHops<'_>, start: Post, asked: Search, tell: &mut dyn FnMut(LayerProgress)) -> Result<HopMap, MapError> {
+pub fn search(hops: &PostHops, start: Post, asked: Search, tell: &mut dyn FnMut(LayerProgress)) -> Result<HopMap, MapError> {
     let mut state = State::new(hops, start, asked);
     let mut layer: i16 = 0;
     loop {
@@ -117,7 +116,7 @@ struct State {
 
 impl State {
     /// Only the start has its hops.
-    fn new(hops: &PostHops<'_>, start: Post, asked: Search) -> Self {
+    fn new(hops: &PostHops, start: Post, asked: Search) -> Self {
         let lattice = hops.lattice();
         let (nodes, (down, across)) = (lattice.count(), lattice.blocks());
         let ground = |index| if hops.has_ground(lattice.node(index)) { UNREACHED } else { NO_GROUND };
@@ -135,7 +134,7 @@ impl State {
     }
 
     /// Gives a node its hops.
-    fn settle(&mut self, hops: &PostHops<'_>, Found { node, offset, effort }: Found, count: i16) {
+    fn settle(&mut self, hops: &PostHops, Found { node, offset, effort }: Found, count: i16) {
         let lattice = hops.lattice();
         self.map.hops[node] = count;
         self.map.previous[node] = offset;
@@ -153,7 +152,7 @@ impl State {
 }
 
 /// The blocks with open nodes that a layer in other blocks may reach.
-fn blocks_near(hops: &PostHops<'_>, layer: &[bool], open: &[u32]) -> Vec<usize> {
+fn blocks_near(hops: &PostHops, layer: &[bool], open: &[u32]) -> Vec<usize> {
     let (down, across) = hops.lattice().blocks();
     (0..down * across)
         .into_par_iter()
@@ -173,7 +172,7 @@ fn blocks_near(hops: &PostHops<'_>, layer: &[bool], open: &[u32]) -> Vec<usize> 
 
 /// One round of the search: all unreached nodes against the last layer.
 struct Pull<'a> {
-    hops: &'a PostHops<'a>,
+    hops: &'a PostHops,
     map: &'a HopMap,
     asked: Search,
     layer: i16,
@@ -267,7 +266,7 @@ fn at_least(effort: Effort, sight: LineOfSight, lofts: SlopeInterval, gravity_m_
 
 impl HopMap {
     /// The node before this one on its path from the start (after it, on a return path); `None` for the start and for nodes without hops.
-    pub fn previous(&self, hops: &PostHops<'_>, node: Post) -> Option<Post> {
+    pub fn previous(&self, hops: &PostHops, node: Post) -> Option<Post> {
         let offset = self.previous[hops.lattice().index(node)];
         if offset == NONE {
             return None;
@@ -279,7 +278,7 @@ impl HopMap {
     }
 
     /// The nodes of a path of fewest hops between the start and a node, in the order of flight; `None` where there is none.
-    pub fn path(&self, hops: &PostHops<'_>, node: Post) -> Option<Vec<Post>> {
+    pub fn path(&self, hops: &PostHops, node: Post) -> Option<Vec<Post>> {
         if self.hops[hops.lattice().index(node)] < 0 {
             return None;
         }

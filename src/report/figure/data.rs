@@ -113,7 +113,7 @@ impl HopFigure {
     /// The point of the flight at a share of its horizontal distance, 0 to 1.
     pub fn point_at(&self, share: f64) -> ChainPoint {
         let distance_m = self.arc.line_of_sight().run_m() * share;
-        let from = self.hop.takeoff.point;
+        let from = self.hop.takeoff.in_profile();
         ChainPoint::new(from.x_m + self.hop.direction.sign() * distance_m, from.z_m + self.arc.height_at_m(distance_m))
     }
 }
@@ -187,14 +187,16 @@ fn path_subject(input: &FigureInput<'_>, path: &HopPath) -> Subject {
 /// One hop with its flight and its two cones.
 fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
     let test = input.test;
-    let from = hop.takeoff.point;
-    let to = hop.landing.point;
-    let sight = test
-        .line_of_sight(&hop.takeoff, &hop.landing)
+    let from = hop.takeoff.in_profile();
+    let to = hop.landing.in_profile();
+    let stations = hop.takeoff.station.zip(hop.landing.station);
+    let sight = stations
+        .and_then(|(takeoff, landing)| test.line_of_sight(&takeoff, &landing))
         .unwrap_or_else(|| crate::ballistics::LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m));
     let gravity_m_s2 = test.gravity_m_s2();
-    let cone = |station: &Station, contact| {
-        let rule = test.chain().check_contact(station, contact, hop.direction).ok()?;
+    let cone = |station: Option<Station>, contact| {
+        let station = station?;
+        let rule = test.chain().check_contact(&station, contact, hop.direction).ok()?;
         Some(Cone { apex: station.point, contact, direction: hop.direction, slopes: rule.slopes() })
     };
     HopFigure {
@@ -202,7 +204,7 @@ fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
         hop: *hop,
         // From the flight time, n = g T^2 / (2 X): tangents of steep angles lose digits.
         arc: Arc::new(sight, 0.5 * gravity_m_s2 * hop.flight_time_s * (hop.flight_time_s / sight.run_m()), gravity_m_s2),
-        cones: [cone(&hop.takeoff, Contact::Takeoff), cone(&hop.landing, Contact::Landing)],
+        cones: [cone(hop.takeoff.station, Contact::Takeoff), cone(hop.landing.station, Contact::Landing)],
     }
 }
 
@@ -238,7 +240,7 @@ fn runs(set: &[Station], nodes: &[Station]) -> Vec<(f64, f64)> {
 fn view(input: &FigureInput<'_>, chain_x_m: (f64, f64)) -> (f64, f64) {
     let mut seen = vec![input.start.point.x_m, input.goal.point.x_m];
     match &input.answer.outcome {
-        Outcome::Path { .. } => seen.extend(input.path.iter().flat_map(|path| &path.hops).map(|hop| hop.landing.point.x_m)),
+        Outcome::Path { .. } => seen.extend(input.path.iter().flat_map(|path| &path.hops).map(|hop| hop.landing.along_m)),
         Outcome::NoPath(frontier) => {
             let both = [&frontier.reached, &frontier.leads_to_goal];
             seen.extend(both.into_iter().flatten().map(|station| station.point.x_m));

@@ -43,7 +43,7 @@ pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
 /// # Examples
 /// ```
 /// use chta::{report::figure::conditions, world::Hopper};
-/// let words = conditions("Mars", 3.711, &Hopper::with_speeds(6.0, 6.0), (6.0, 6.0), "friction coefficient 0.6");
+/// let words = conditions("Mars", 3.711, &Hopper::with_speeds(6.0, 6.0).unwrap(), (6.0, 6.0), "friction coefficient 0.6");
 /// assert_eq!(words, "Mars, g = 3.711 m/s²; take-off speed ≤ 6 m/s; landing speed ≤ 6 m/s; clearance 0 m; friction coefficient 0.6");
 /// ```
 pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m_s: (f64, f64), ground: &str) -> String {
@@ -51,19 +51,21 @@ pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m
     let gravity = format!("g = {} m/s²", short(gravity_m_s2));
     parts.push(if body.is_empty() { gravity } else { format!("{body}, {gravity}") });
     for (name, limit, bound) in [
-        ("take-off speed", hopper.takeoff_speed_max_m_s, speed_bounds_m_s.0),
-        ("landing speed", hopper.landing_speed_max_m_s, speed_bounds_m_s.1),
+        ("take-off speed", hopper.limits().takeoff_speed_max_m_s, speed_bounds_m_s.0),
+        ("landing speed", hopper.limits().landing_speed_max_m_s, speed_bounds_m_s.1),
     ] {
         // Without a limit of the hopper's own the chain's explicit ones hold.
         let most = if limit.is_finite() { limit } else { bound };
         parts.push(format!("{name} ≤ {} m/s", short(most)));
     }
-    parts.push(format!("clearance {} m", short(hopper.clearance_m)));
-    for (name, angle) in [("take-off angle ≥", hopper.takeoff_angle_min), ("take-off angle ≤", hopper.takeoff_angle_max)] {
+    parts.push(format!("clearance {} m", short(hopper.limits().clearance_m)));
+    for (name, angle) in
+        [("take-off angle ≥", hopper.limits().takeoff_angle_min), ("take-off angle ≤", hopper.limits().takeoff_angle_max)]
+    {
         parts.extend(angle.map(|angle| format!("{name} {} deg", short(angle.degrees()))));
     }
-    parts.extend(hopper.apex_height_max_m.map(|height| format!("apex ≤ {} m", short(height))));
-    parts.extend(hopper.flight_time_max_s.map(|time| format!("flight ≤ {} s", short(time))));
+    parts.extend(hopper.limits().apex_height_max_m.map(|height| format!("apex ≤ {} m", short(height))));
+    parts.extend(hopper.limits().flight_time_max_s.map(|time| format!("flight ≤ {} s", short(time))));
     if !ground.is_empty() {
         parts.push(ground.to_owned());
     }

@@ -76,7 +76,7 @@ use sheet::Sheet;
 #[derive(Clone, Debug)]
 pub struct FigureInput<'a> {
     /// The chain, the hopper and the gravity.
-    pub test: &'a HopTest<'a>,
+    pub test: &'a HopTest,
     /// What the search answered.
     pub answer: &'a Answer,
     /// The hops, where the answer is a path.
@@ -151,11 +151,11 @@ pub enum FigureError {
 /// # Examples
 /// ```
 /// use chta::{ballistics::*, chain::*, graph::*, hop::*, path::generate, quantity::ChainPoint, report::figure::*, world::*};
-/// let hopper = Hopper::with_speeds(10.0, 10.0);
-/// let surface = Surface { grip: Some(Grip::Friction(FrictionCone::new(0.6)?)), rest: RestSlope::AsFrictionHolds };
+/// let hopper = Hopper::with_speeds(10.0, 10.0).unwrap();
+/// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.6)?)), rest: RestSlope::AsFrictionHolds };
 /// let ground = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(30.0, 2.0), ChainPoint::new(60.0, 0.0)])?;
-/// let chain = ConstrainedChain::new(ground, &hopper, &surface)?;
-/// let test = HopTest::new(&chain, &hopper, 3.711);
+/// let chain = ConstrainedChain::new(ground, &hopper, Gravity::new(3.711)?, &surface)?;
+/// let test = HopTest::new(chain.clone());
 /// let (start, goal) = (chain.geometry().station(0.0)?, chain.geometry().station(60.0)?);
 /// let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {})?;
 /// let Outcome::Path { legs, .. } = &answer.outcome else { panic!("no path") };

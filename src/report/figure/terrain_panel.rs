@@ -107,8 +107,8 @@ impl<'a> TerrainPanel<'a> {
             symbols::flight(sheet, flight(frame, hop), hop.hop.direction);
         }
         for hop in hops {
-            symbols::takeoff(sheet, frame.place(hop.hop.takeoff.point));
-            symbols::landing(sheet, frame.place(hop.hop.landing.point));
+            symbols::takeoff(sheet, frame.place(hop.hop.takeoff.in_profile()));
+            symbols::landing(sheet, frame.place(hop.hop.landing.in_profile()));
         }
         let widest = hops.last().map_or(0.0, |hop| text_width_mm(&hop.number.to_string(), SMALL_MM));
         let every = one_in((widest + 1.2) / lengths.get(lengths.len() / 2).copied().unwrap_or(1.0));

@@ -7,12 +7,12 @@ use super::{
 };
 use crate::{
     ballistics::TakeoffChoice,
-    chain::{ConstrainedChain, Ground, GroundForm, PolygonalChain},
+    chain::{ConstrainedChain, GroundForm, PolygonalChain, SegmentGround},
     graph::{Outcome, PointSpacing, SearchOptions, is_usable, search},
     hop::Split,
     path::generate,
     quantity::{Angle, AngleInterval, ChainPoint},
-    world::{Contact, Direction, FrictionCone, Grip, Hopper, RestSlope, Surface},
+    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 /// One journey, analysed.
@@ -20,8 +20,6 @@ struct Case {
     name: &'static str,
     ground: &'static str,
     chain: ConstrainedChain,
-    hopper: Hopper,
-    gravity_m_s2: f64,
     ends_m: (f64, f64),
     options: SearchOptions,
 }
@@ -31,16 +29,14 @@ impl Case {
         Self {
             name,
             ground: "friction coefficient 0.6",
-            chain: ConstrainedChain::new(chain, &hopper, &friction(0.6)).unwrap(),
-            hopper,
-            gravity_m_s2,
+            chain: ConstrainedChain::new(chain, &hopper, Gravity::new(gravity_m_s2).unwrap(), &friction(0.6)).unwrap(),
             ends_m,
             options: SearchOptions::default(),
         }
     }
 
     fn with<T>(&self, look: impl FnOnce(&FigureInput<'_>) -> T) -> T {
-        let test = HopTest::new(&self.chain, &self.hopper, self.gravity_m_s2);
+        let test = HopTest::new(self.chain.clone());
         let at = |x_m| self.chain.geometry().station(x_m).unwrap();
         let (start, goal) = (at(self.ends_m.0), at(self.ends_m.1));
         let answer = search(&test, start, goal, &self.options, &mut |_| {}).unwrap();
@@ -53,8 +49,8 @@ impl Case {
     }
 }
 
-fn friction(mu: f64) -> Surface {
-    Surface { grip: Some(Grip::Friction(FrictionCone::new(mu).unwrap())), rest: RestSlope::AsFrictionHolds }
+fn friction(mu: f64) -> SurfaceProperties {
+    SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(mu).unwrap())), rest: RestSlope::AsFrictionHolds }
 }
 
 fn bare(points: impl IntoIterator<Item = (f64, f64)>) -> PolygonalChain {
@@ -72,25 +68,18 @@ fn rough(segments: u32, length_m: f64, relief_m: f64, base_m: f64) -> PolygonalC
 }
 
 fn paper() -> Case {
-    let surface = Surface {
+    let surface = SurfaceProperties {
         grip: Some(Grip::FromSlope {
             takeoff: AngleInterval::from_degrees(60.0, 90.0),
             landing: AngleInterval::from_degrees(-90.0, -60.0),
         }),
         rest: RestSlope::AsFrictionHolds,
     };
-    let hopper = Hopper::with_speeds(10.0, 10.0);
-    let chain = ConstrainedChain::new(bare([(0.0, 54.61), (76.0, 59.24)]), &hopper, &surface).unwrap();
+    let hopper = Hopper::with_speeds(10.0, 10.0).unwrap();
+    let chain =
+        ConstrainedChain::new(bare([(0.0, 54.61), (76.0, 59.24)]), &hopper, Gravity::new(3.711).unwrap(), &surface).unwrap();
     let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(0)), ..SearchOptions::default() };
-    Case {
-        name: "The paper's 76 m case",
-        ground: "cones 60 to 90 deg over the slope",
-        chain,
-        hopper,
-        gravity_m_s2: 3.711,
-        ends_m: (0.0, 76.0),
-        options,
-    }
+    Case { name: "The paper's 76 m case", ground: "cones 60 to 90 deg over the slope", chain, ends_m: (0.0, 76.0), options }
 }
 
 /// Walls, a keep-out zone, a side-slope, a stretch without speed, a stretch without limits, one for landing only.
@@ -109,53 +98,70 @@ fn closed() -> Case {
         (100.0, 0.0),
         (110.0, 0.4),
     ];
-    let free = Ground::BARE;
-    let tilted = Ground { form: GroundForm::Surface { friction: None, cross_slope: Angle::from_degrees(35.0) }, keep_out: false };
-    let kept = Ground { keep_out: true, ..Ground::BARE };
+    let free = SegmentGround::BARE;
+    let tilted =
+        SegmentGround { form: GroundForm::Surface { friction: None, cross_slope: Angle::from_degrees(35.0) }, keep_out: false };
+    let kept = SegmentGround { keep_out: true, ..SegmentGround::BARE };
     let line = |takeoff, landing| {
         let c = crate::chain::LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), takeoff, landing);
-        Ground { form: GroundForm::Explicit { forward: Some(c), reverse: Some(c) }, keep_out: false }
+        SegmentGround { form: GroundForm::Explicit { forward: Some(c), reverse: Some(c) }, keep_out: false }
     };
-    let silent = Ground { form: GroundForm::Explicit { forward: None, reverse: None }, keep_out: false };
+    let silent = SegmentGround { form: GroundForm::Explicit { forward: None, reverse: None }, keep_out: false };
     let grounds = vec![free, free, free, kept, free, tilted, free, line(0.0, 0.0), silent, line(0.0, 9.0), free];
     let vertices = points.iter().map(|&(x, z)| ChainPoint::new(x, z)).collect();
     let chain = PolygonalChain::new(vertices, grounds, None).unwrap();
-    let hopper = Hopper::with_speeds(14.0, 16.0);
-    let surface = Surface { rest: RestSlope::AtMost(Angle::from_degrees(40.0)), ..friction(0.6) };
+    let hopper = Hopper::with_speeds(14.0, 16.0).unwrap();
+    let surface = SurfaceProperties { rest: RestSlope::AtMost(Angle::from_degrees(40.0)), ..friction(0.6) };
     Case {
-        chain: ConstrainedChain::new(chain.clone(), &hopper, &surface).unwrap(),
+        chain: ConstrainedChain::new(chain.clone(), &hopper, Gravity::new(3.711).unwrap(), &surface).unwrap(),
         ..Case::new("Closed stretches of every kind", chain, hopper, 3.711, (0.0, 110.0))
     }
 }
 
 fn impossible() -> Case {
     let points = [(0.0, 0.0), (15.0, 0.4), (30.0, 0.0), (36.0, -9.0), (64.0, -9.5), (70.0, 0.5), (85.0, 1.0), (100.0, 0.5)];
-    Case::new("A rille too wide", bare(points), Hopper::with_speeds(7.0, 8.0), 3.711, (2.0, 98.0))
+    Case::new("A rille too wide", bare(points), Hopper::with_speeds(7.0, 8.0).unwrap(), 3.711, (2.0, 98.0))
 }
 
 /// The cones ask for steep hops, and these fall a metre short.
 fn nearly() -> Case {
     let points = [(0.0, 0.0), (15.0, 0.4), (30.0, 0.0), (42.0, -22.0), (55.0, 0.1), (85.0, 1.0), (100.0, 0.5)];
-    Case::new("A rille a metre too wide", bare(points), Hopper::with_speeds(10.0, 10.0), 3.711, (90.0, 10.0))
+    Case::new("A rille a metre too wide", bare(points), Hopper::with_speeds(10.0, 10.0).unwrap(), 3.711, (90.0, 10.0))
 }
 
 fn refused() -> Case {
     let points = [(0.0, 0.0), (10.0, 0.0), (20.0, 20.0), (21.0, 40.0), (45.0, 40.0), (60.0, 40.0)];
-    Case::new("A start on a wall", bare(points), Hopper::with_speeds(10.0, 10.0), 3.711, (15.0, 50.0))
+    Case::new("A start on a wall", bare(points), Hopper::with_speeds(10.0, 10.0).unwrap(), 3.711, (15.0, 50.0))
 }
 
 fn cases() -> Vec<Case> {
-    let ten = Hopper::with_speeds(10.0, 10.0);
+    let ten = Hopper::with_speeds(10.0, 10.0).unwrap();
     let spaced = |case: Case, k| Case {
         options: SearchOptions { spacing: Some(PointSpacing::PerSegment(k)), ..SearchOptions::default() },
         ..case
     };
     let mut flat = Case::new("Sixty hops on a plain", bare([(0.0, 2.0), (1500.0, 5.0)]), ten, 3.711, (0.0, 1480.0));
     flat.options.takeoff = TakeoffChoice::MidRange;
-    let tall = Hopper { clearance_m: 0.2, flight_time_max_s: Some(60.0), mass_kg: Some(20.0), rest_time_s: Some(120.0), ..ten };
+    let tall = Hopper::new(HopperLimits {
+        clearance_m: 0.2,
+        flight_time_max_s: Some(60.0),
+        mass_kg: Some(20.0),
+        rest_time_s: Some(120.0),
+        ..*ten.limits()
+    })
+    .unwrap();
     vec![
         paper(),
-        spaced(Case::new("Rough ground", rough(80, 200.0, 7.0, 0.0), Hopper { clearance_m: 0.3, ..ten }, 3.711, (3.0, 190.0)), 2),
+        spaced(
+            Case::new(
+                "Rough ground",
+                rough(80, 200.0, 7.0, 0.0),
+                Hopper::new(HopperLimits { clearance_m: 0.3, ..*ten.limits() }).unwrap(),
+                3.711,
+                (3.0, 190.0),
+            ),
+            2,
+        ),
         spaced(Case::new("Rough ground in reverse", rough(80, 200.0, 7.0, 0.0), tall, 3.711, (190.0, 3.0)), 1),
         closed(),
         impossible(),
@@ -168,18 +174,18 @@ fn cases() -> Vec<Case> {
             Case::new(
                 "Kilometres with metres of relief",
                 rough(400, 4000.0, 6.0, 800.0),
-                Hopper::with_speeds(30.0, 30.0),
+                Hopper::with_speeds(30.0, 30.0).unwrap(),
                 1.624,
                 (0.0, 4000.0),
             ),
             1,
         ),
-        Case::new("One centimetre", rough(12, 0.01, 0.0006, 0.0), Hopper::with_speeds(0.05, 0.05), 3.711, (0.0, 0.01)),
+        Case::new("One centimetre", rough(12, 0.01, 0.0006, 0.0), Hopper::with_speeds(0.05, 0.05).unwrap(), 3.711, (0.0, 0.01)),
         Case::new("No hop at all", bare([(0.0, 812.0), (40.0, 812.3)]), ten, 3.711, (5.0, 5.0)),
         Case::new(
             "Up a cliff",
             bare([(0.0, 0.0), (4.0, 0.0), (4.5, 60.0), (9.0, 60.0)]),
-            Hopper::with_speeds(25.0, 25.0),
+            Hopper::with_speeds(25.0, 25.0).unwrap(),
             3.711,
             (1.0, 8.0),
         ),
@@ -209,7 +215,7 @@ fn flights_follow_the_commanded_speed_and_angle_from_point_to_point() {
     for case in cases() {
         let data = case.with(|input| FigureData::new(input).unwrap());
         for hop in hops(&data) {
-            let (from, to) = (hop.hop.takeoff.point, hop.hop.landing.point);
+            let (from, to) = (hop.hop.takeoff.in_profile(), hop.hop.landing.in_profile());
             let run_m = (to.x_m - from.x_m).abs();
             let tolerance_m = 1e-9 * (run_m + hop.hop.apex_z_m - from.z_m);
             // Newton's parabola from the commands alone.
@@ -217,7 +223,7 @@ fn flights_follow_the_commanded_speed_and_angle_from_point_to_point() {
             for share in [0.0, 0.1, 0.5, 0.77, 1.0] {
                 let point = hop.point_at(share);
                 let time_s = run_m * share / (v * angle.cos());
-                let height_m = from.z_m + v * angle.sin() * time_s - 0.5 * case.gravity_m_s2 * time_s * time_s;
+                let height_m = from.z_m + v * angle.sin() * time_s - 0.5 * case.chain.gravity().m_s2() * time_s * time_s;
                 assert!((point.z_m - height_m).abs() <= tolerance_m + 1e-12 * from.z_m.abs(), "{} hop {}", case.name, hop.number);
                 assert!((point.x_m - from.x_m - (to.x_m - from.x_m) * share).abs() <= tolerance_m + 1e-12 * from.x_m.abs());
             }
@@ -403,7 +409,7 @@ fn curves_are_finer_than_pixels() {
 
 #[test]
 fn long_paths_are_thinned_and_say_so() {
-    let hopper = Hopper::with_speeds(10.0, 10.0);
+    let hopper = Hopper::with_speeds(10.0, 10.0).unwrap();
     let case = Case::new("Far", bare([(0.0, 0.0), (100_000.0, 0.0)]), hopper, 3.711, (0.0, 100_000.0));
     let data = case.with(|input| FigureData::new(input).unwrap());
     let Subject::Path { hops, .. } = &data.subject else { panic!("no path") };

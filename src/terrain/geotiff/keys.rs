@@ -2,7 +2,7 @@
 
 use super::{key, tag};
 use crate::quantity::MapPoint;
-use crate::terrain::georeference::{EXPECTED_METRES, mend_degrees};
+use crate::terrain::georeference::mend_degrees;
 use crate::terrain::{CoordinateSystem, GeoReference, TerrainError, TransformTags};
 
 /// A rotation or shear below this fraction of the spacing is attributed to rounding in the file.
@@ -129,13 +129,14 @@ fn unsuitable(found: String, expected: &'static str, mend: &str) -> TerrainError
     TerrainError::Unsuitable { found, expected, mend: mend.to_owned() }
 }
 
+fn not_projected(found: &str, system: &CoordinateSystem) -> TerrainError {
+    TerrainError::NotProjected { found: found.to_owned(), mend: mend_degrees(system) }
+}
+
 fn check_units(system: &CoordinateSystem) -> Result<(), TerrainError> {
-    let degrees = "a map in degrees of longitude and latitude";
     match short_key(system, key::MODEL_TYPE) {
-        Some(key::GEOGRAPHIC) => return Err(unsuitable(degrees.to_owned(), EXPECTED_METRES, &mend_degrees(system))),
-        Some(key::GEOCENTRIC) => {
-            return Err(unsuitable("geocentric coordinates".to_owned(), EXPECTED_METRES, &mend_degrees(system)));
-        }
+        Some(key::GEOGRAPHIC) => return Err(not_projected("a map in degrees of longitude and latitude", system)),
+        Some(key::GEOCENTRIC) => return Err(not_projected("geocentric coordinates", system)),
         _ => {}
     }
     check_linear_units(system)?;
@@ -162,7 +163,11 @@ fn check_linear_units(system: &CoordinateSystem) -> Result<(), TerrainError> {
         None if system.description.as_deref().is_some_and(speaks_of_feet) => "map coordinates in feet".to_owned(),
         None => return Ok(()),
     };
-    Err(unsuitable(found, EXPECTED_METRES, "gdalwarp -r bilinear -t_srs 'THE SAME PROJECTION WITH +units=m' in.tif out.tif"))
+    Err(unsuitable(
+        found,
+        "a projected map in metres",
+        "gdalwarp -r bilinear -t_srs 'THE SAME PROJECTION WITH +units=m' in.tif out.tif",
+    ))
 }
 
 fn speaks_of_feet(description: &str) -> bool {

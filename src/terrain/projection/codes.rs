@@ -1,36 +1,78 @@
-//! Codes of authorities: the meaning of EPSG codes, and the IAU codes of projections.
+//! Codes of authorities: what a code of EPSG or of the IAU means, and which IAU code means a projection.
 
 use super::definition::{Definition, Ellipsoid, Method};
 
 /// Codes of `IAU_2015` bodies, and the radii of their spheres, m.
 const IAU_SPHERES: [(u32, f64); 4] = [(199, 2_440_530.0), (299, 6_051_800.0), (301, 1_737_400.0), (499, 3_396_190.0)];
 
+/// The last two digits of the codes of `IAU_2015` maps of spheres that are known here.
+const IAU_MAPS: [u32; 11] = [10, 15, 20, 25, 30, 35, 60, 65, 70, 75, 80];
+
+/// The codes that are known, for a sentence.
+pub(super) const KNOWN_CODES: &str = "EPSG:32601 to 32660 and 32701 to 32760 (UTM on WGS 84), 25828 to 25838, 26901 to 26923, 3031, 3413, 3976, 3995, \
+     5041, 5042, 32661, 32761, 3035, or the spherical maps IAU_2015:BB10, BB15, BB20, BB25, BB30, BB35, BB60, BB65, BB70, BB75, BB80 where BB is \
+     199 (Mercury), 299 (Venus), 301 (Moon) or 499 (Mars)";
+
+/// What a code of the IAU (2015) means: the maps on spheres, with latitudes that are planetocentric and planetographic at once.
+///
+/// The code is 100 times the body's NAIF number, plus the map's number (<https://github.com/USGS-Astrogeology/GDAL_scripts>, `IAU_2015` in
+/// PROJ since version 9.0).
+pub(super) fn iau(code: u32) -> Option<Definition> {
+    let (_, radius_m) = IAU_SPHERES.into_iter().find(|(body, _)| *body == code / 100)?;
+    let about =
+        |method, latitude_deg, longitude_deg| Definition::about(method, latitude_deg, longitude_deg, Ellipsoid::sphere(radius_m));
+    let number = code % 100;
+    let longitude_deg = if matches!(number, 15 | 25 | 70) { 180.0 } else { 0.0 };
+    Some(match number {
+        10 | 15 => Definition { parallels_deg: [Some(0.0), None], ..about(Method::Equirectangular, 0.0, longitude_deg) },
+        20 | 25 => about(Method::Sinusoidal, 0.0, longitude_deg),
+        30 => about(Method::PolarStereographic, 90.0, 0.0),
+        35 => about(Method::PolarStereographic, -90.0, 0.0),
+        60 => about(Method::TransverseMercator, 0.0, 0.0),
+        65 | 70 => about(Method::Orthographic, 0.0, longitude_deg),
+        75 => Definition { parallels_deg: [Some(20.0), Some(60.0)], ..about(Method::LambertConformalTwoParallels, 40.0, 0.0) },
+        80 => about(Method::LambertAzimuthalEqualArea, 40.0, 0.0),
+        _ => return None,
+    })
+}
+
 /// The code of the IAU (2015) for exactly this projection, such as `IAU_2015:30135`; spheres only.
 pub(super) fn iau_code(definition: &Definition) -> Option<String> {
-    let Definition { method, latitude_deg, longitude_deg, parallels_deg, scale, false_easting_m, false_northing_m, ellipsoid } =
-        *definition;
-    let (body, _) = IAU_SPHERES.into_iter().find(|(_, radius_m)| ellipsoid == Ellipsoid::sphere(*radius_m))?;
-    if scale != 1.0 || false_easting_m != 0.0 || false_northing_m != 0.0 {
-        return None;
+    let mut usual = *definition;
+    if usual.longitude_deg == -180.0 {
+        usual.longitude_deg = 180.0;
     }
-    let meridian = match longitude_deg {
-        0.0 => 0,
-        180.0 | -180.0 => 5,
+    match usual.method {
+        Method::Sinusoidal => usual.latitude_deg = 0.0,
+        Method::Equirectangular => usual.parallels_deg[0] = Some(usual.parallels_deg[0].unwrap_or(0.0)),
+        _ => {}
+    }
+    let (body, _) = IAU_SPHERES.into_iter().find(|(_, radius_m)| usual.ellipsoid == Ellipsoid::sphere(*radius_m))?;
+    let code = IAU_MAPS.into_iter().map(|map| body * 100 + map).find(|code| iau(*code) == Some(usual))?;
+    Some(format!("IAU_2015:{code}"))
+}
+
+/// What authority and code mean: `EPSG:32633`, `IAU_2015:30135`, or the same as a uniform resource name of the OGC.
+pub(super) fn by_code(text: &str) -> Option<(String, Definition)> {
+    let parts: Vec<&str> = text.split(':').collect();
+    let (authority, code) = match parts.as_slice() {
+        [authority, code] => (authority.to_ascii_uppercase(), *code),
+        [urn, ogc, def, crs, authority, version, code]
+            if [*urn, *ogc, *def, *crs]
+                .iter()
+                .zip(["urn", "ogc", "def", "crs"])
+                .all(|(found, word)| found.eq_ignore_ascii_case(word)) =>
+        {
+            let authority = authority.to_ascii_uppercase();
+            (if authority == "IAU" { format!("IAU_{version}") } else { authority }, *code)
+        }
         _ => return None,
     };
-    let plain = parallels_deg == [None; 2] || parallels_deg == [Some(0.0), None];
-    let code = match (method, latitude_deg) {
-        (Method::Equirectangular, 0.0) if plain => 10 + meridian,
-        (Method::Sinusoidal, _) => 20 + meridian,
-        (Method::PolarStereographic, 90.0) if meridian == 0 && parallels_deg[0].is_none() => 30,
-        (Method::PolarStereographic, -90.0) if meridian == 0 && parallels_deg[0].is_none() => 35,
-        (Method::TransverseMercator, 0.0) if meridian == 0 => 60,
-        (Method::Orthographic, 0.0) => 65 + meridian,
-        (Method::LambertConformalTwoParallels, 40.0) if meridian == 0 && parallels_deg == [Some(20.0), Some(60.0)] => 75,
-        (Method::LambertAzimuthalEqualArea, 40.0) if meridian == 0 => 80,
-        _ => return None,
-    };
-    Some(format!("IAU_2015:{}", body * 100 + code))
+    match authority.as_str() {
+        "EPSG" => code.parse().ok().and_then(|code| Some((format!("EPSG:{code}"), epsg(code)?))),
+        "IAU_2015" => code.parse().ok().and_then(|code| Some((format!("IAU_2015:{code}"), iau(code)?))),
+        _ => None,
+    }
 }
 
 /// The definition of an EPSG code of a projected map: UTM on WGS 84, ETRS89 and NAD83, the usual polar maps, and Europe's
@@ -73,6 +115,15 @@ pub(super) fn utm(zone: u16, south: bool, ellipsoid: Ellipsoid) -> Definition {
         false_easting_m: 500_000.0,
         false_northing_m: if south { 10_000_000.0 } else { 0.0 },
         ..Definition::about(Method::TransverseMercator, 0.0, f64::from(zone) * 6.0 - 183.0, ellipsoid)
+    }
+}
+
+/// The ellipsoid that PROJ means by the name of a datum or ellipsoid.
+pub(super) fn named_ellipsoid(name: &str) -> Option<Ellipsoid> {
+    match name {
+        "WGS84" => Some(Ellipsoid::WGS84),
+        "NAD83" | "GRS80" => Some(Ellipsoid::GRS80),
+        _ => None,
     }
 }
 

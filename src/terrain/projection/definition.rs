@@ -65,6 +65,13 @@ impl Method {
         }
     }
 
+    /// The names of all of them, for a sentence.
+    pub(super) fn names() -> String {
+        let mut names: Vec<&str> = Self::ALL.iter().map(|method| method.name()).collect();
+        names.dedup();
+        names.join(", ")
+    }
+
     /// The value of `+proj=`.
     pub(super) const fn proj(self) -> &'static str {
         match self {
@@ -240,6 +247,29 @@ impl Definition {
         if parallels_deg[0].is_some() && *scale != 1.0 {
             return Some(format!("a {} projection with both a standard parallel and a scale of {scale}", method.name()));
         }
-        None
+        self.misplaced()
+    }
+
+    /// A number that its method does not have, or one that it lacks: the map would not be what the numbers say.
+    fn misplaced(&self) -> Option<String> {
+        let Self { latitude_deg, parallels_deg, scale, method, .. } = self;
+        let name = method.name();
+        if !method.has_scale() && *scale != 1.0 {
+            return Some(format!("a scale of {scale}, which a {name} projection does not have"));
+        }
+        let allowed = method.parallels().len();
+        if parallels_deg.iter().skip(allowed).any(Option::is_some) {
+            return Some(format!("more standard parallels than a {name} projection has ({allowed})"));
+        }
+        match (method, parallels_deg) {
+            (Method::LambertConformalTwoParallels, [None, _] | [_, None]) => {
+                Some(format!("one of the two standard parallels of a {name} projection missing"))
+            }
+            (Method::PolarStereographic, _) if latitude_deg.abs() != 90.0 => Some(format!("a pole at latitude {latitude_deg}")),
+            (Method::PolarStereographic, [Some(parallel_deg), _]) if parallel_deg * latitude_deg <= 0.0 => Some(format!(
+                "a standard parallel at latitude {parallel_deg} on a map about the pole at {latitude_deg}, which must lie on the pole's side of the equator"
+            )),
+            _ => None,
+        }
     }
 }

@@ -245,28 +245,33 @@ pub(super) fn write(definition: &Definition, name: &str) -> CoordinateSystem {
         let parallels = [key::PARALLEL_1, key::PARALLEL_2].into_iter().zip(definition.parallels_deg);
         doubles.extend(parallels.filter_map(|(wanted, degrees)| Some((wanted, degrees?))));
     }
-    // A `|` ends a text in the ASCII parameters.
-    let name = name.replace(|letter: char| !letter.is_ascii() || letter.is_ascii_control() || letter == '|', "_");
-    directory(&doubles, method_number(definition.method), name)
+    let stated = [
+        (key::GEOGRAPHIC_CRS, key::USER_DEFINED),
+        (key::DATUM, key::USER_DEFINED),
+        (key::ANGULAR_UNITS, key::DEGREE),
+        (key::ELLIPSOID, key::USER_DEFINED),
+        (key::PROJECTED_CRS, key::USER_DEFINED),
+        (key::PROJECTION, key::USER_DEFINED),
+        (key::METHOD, method_number(definition.method)),
+    ];
+    directory(&stated, &doubles, name)
 }
 
-/// The directory with all entries in ascending order of their keys.
-fn directory(doubles: &[(u16, f64)], method: u16, name: String) -> CoordinateSystem {
+/// Writes the EPSG code of a projection as keys, in metres.
+pub(super) fn write_epsg(code: u16, name: &str) -> CoordinateSystem {
+    directory(&[(key::PROJECTED_CRS, code)], &[], name)
+}
+
+/// The directory of a projected map in metres with all entries in the order of their numbers.
+fn directory(stated: &[(u16, u16)], doubles: &[(u16, f64)], name: &str) -> CoordinateSystem {
     const DOUBLES: u16 = 34736;
     const TEXTS: u16 = 34737;
+    // A `|` ends a text among the keys.
+    let name = name.replace(|letter: char| !letter.is_ascii() || letter.is_ascii_control() || letter == '|', "_");
     let text_length = u16::try_from(name.len() + 1).unwrap_or(u16::MAX);
-    let mut entries = vec![
-        [key::MODEL_TYPE, 0, 1, 1],
-        [key::CITATION, TEXTS, text_length, 0],
-        [key::GEOGRAPHIC_CRS, 0, 1, key::USER_DEFINED],
-        [key::DATUM, 0, 1, key::USER_DEFINED],
-        [key::ANGULAR_UNITS, 0, 1, key::DEGREE],
-        [key::ELLIPSOID, 0, 1, key::USER_DEFINED],
-        [key::PROJECTED_CRS, 0, 1, key::USER_DEFINED],
-        [key::PROJECTION, 0, 1, key::USER_DEFINED],
-        [key::METHOD, 0, 1, method],
-        [key::LINEAR_UNITS, 0, 1, key::METRE],
-    ];
+    let mut entries =
+        vec![[key::MODEL_TYPE, 0, 1, 1], [key::CITATION, TEXTS, text_length, 0], [key::LINEAR_UNITS, 0, 1, key::METRE]];
+    entries.extend(stated.iter().map(|(wanted, value)| [*wanted, 0, 1, *value]));
     entries.extend(doubles.iter().zip(0..).map(|((wanted, _), offset)| [*wanted, DOUBLES, 1, offset]));
     entries.sort_by_key(|entry| entry[0]);
     let mut key_directory = vec![1, 1, 0, u16::try_from(entries.len()).unwrap_or(u16::MAX)];

@@ -11,20 +11,25 @@
 //! The difference is up to 0.34 degrees (20 km) on Mars, and 0.19 degrees on the Earth.
 
 mod codes;
+mod crs;
+mod crs_error;
 mod definition;
 mod geokeys;
 mod proj_text;
 mod scale;
 mod wkt;
+mod wkt_read;
+mod wkt_tree;
 
 use std::fmt;
 
 use nalgebra::Vector3;
 use proj4rs::{Proj, transform::transform};
 
+pub use self::crs_error::CrsError;
 pub use self::definition::{Definition, Ellipsoid, Method};
 use self::geokeys::Reading;
-pub use self::scale::{ScaleExtreme, TransectScale, check_map_scale, check_scale};
+pub use self::scale::{ScaleExtreme, ScaleMend, TransectScale, check_map_scale, check_scale};
 use super::{CoordinateSystem, MapBounds, TerrainError};
 use crate::quantity::MapPoint;
 
@@ -203,9 +208,20 @@ impl MapProjection {
         wkt::esri_wkt(&self.definition, &self.name)
     }
 
-    /// The user-defined `GeoKeys` of this projection, for rasters that this program writes.
+    /// The `GeoKeys` that state it: its EPSG code where it has one, else every number of it. [`MapProjection::of`] reads them back.
     pub fn coordinate_system(&self) -> CoordinateSystem {
-        geokeys::write(&self.definition, &self.name)
+        let epsg = self.code().and_then(|code| code.strip_prefix("EPSG:")?.parse().ok());
+        match epsg {
+            Some(code) => geokeys::write_epsg(code, &self.name),
+            None => geokeys::write(&self.definition, &self.name),
+        }
+    }
+
+    /// The same with an EPSG code, which is kept where it means just this projection: the code of another map is no code of this one.
+    fn with_epsg(mut self, code: Option<String>) -> Self {
+        let meaning = |code: &String| codes::epsg(code.strip_prefix("EPSG:")?.parse().ok()?);
+        self.code = code.filter(|code| meaning(code) == Some(self.definition)).or(self.code);
+        self
     }
 
     /// Longitude and latitude of a map point; `None` if it corresponds to no point of the body.

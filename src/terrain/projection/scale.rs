@@ -1,5 +1,7 @@
 //! The scale of a map along a transect.
 
+use std::fmt;
+
 use nalgebra::Vector2;
 
 use super::{Definition, LonLat, MapProjection, Method, NoProjection};
@@ -200,7 +202,7 @@ fn check_line(
     [from, to]: [MapPoint; 2],
     accepted: bool,
     line: &'static str,
-    mend: &dyn Fn() -> Option<String>,
+    mend: &dyn Fn() -> Option<ScaleMend>,
 ) -> Result<TransectScale, TerrainError> {
     // A line without direction, or off the map, is refused later by the slice.
     if from == to || ![from, to].iter().all(|end| dem.lattice().bounds().contains(*end)) {
@@ -217,8 +219,55 @@ fn check_line(
     }
 }
 
+/// What to do about a map whose scale along a line is off.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ScaleMend {
+    /// Make a map which is true to scale along the transect.
+    AlongTransect {
+        /// The command that makes it.
+        command: String,
+        /// Where the transect begins and ends.
+        ends: [LonLat; 2],
+    },
+    /// Make a map about the start.
+    AboutStart {
+        /// The command that makes it.
+        command: String,
+        /// The start.
+        start: LonLat,
+        /// How far to every side it holds true at most, m.
+        true_within_m: f64,
+    },
+    /// Take shorter transects.
+    Shorter {
+        /// The longest over which a map is true to scale, m.
+        longest_m: f64,
+    },
+}
+
+impl fmt::Display for ScaleMend {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::AlongTransect { command, ends: [from, to] } => write!(
+                formatter,
+                "{command}, then slice out.tif from longitude and latitude {:.9},{:.9} to {:.9},{:.9}",
+                from.lon_deg, from.lat_deg, to.lon_deg, to.lat_deg
+            ),
+            Self::AboutStart { command, start, true_within_m } => write!(
+                formatter,
+                "{command}, then start on out.tif at longitude and latitude {:.9},{:.9} (a map about the start, which holds true \
+                 {true_within_m} m to every side at most)",
+                start.lon_deg, start.lat_deg
+            ),
+            Self::Shorter { longest_m } => {
+                write!(formatter, "shorter transects, each of {longest_m:.0} m at most: no map is true to scale over a longer one")
+            }
+        }
+    }
+}
+
 /// The command for a map around a point that is true to scale everywhere, covering as much of this map as possible.
-fn mend_map(dem: &dyn DemFile, projection: &MapProjection, from: MapPoint, file: &std::path::Path) -> Option<String> {
+fn mend_map(dem: &dyn DemFile, projection: &MapProjection, from: MapPoint, file: &std::path::Path) -> Option<ScaleMend> {
     let local = projection.about(from)?;
     let start = projection.lon_lat(from)?;
     // The corners of such a map may be half as far away as the longest transect through its centre.
@@ -236,26 +285,24 @@ fn mend_map(dem: &dyn DemFile, projection: &MapProjection, from: MapPoint, file:
     let spacing_m =
         rounded_m(spacing(Vector2::new(1.0, 0.0), map.dx_m())?.min(spacing(Vector2::new(0.0, 1.0), map.dy_m())?)).max(1.0e-4);
     let Definition { latitude_deg, longitude_deg, ellipsoid, .. } = local.definition;
-    Some(format!(
+    let command = format!(
         "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0={latitude_deg} +lon_0={longitude_deg} {} +units=m +no_defs' \
-         -te {west} {south} {east} {north} -tr {spacing_m} {spacing_m} -ot Float64 -dstnodata nan {} out.tif, then map out.tif \
-         --start-lonlat {:.9},{:.9} (a map around the start, which is true to scale up to {most_m} m in every direction)",
+         -te {west} {south} {east} {north} -tr {spacing_m} {spacing_m} -ot Float64 -dstnodata nan {} out.tif",
         ellipsoid.proj(),
         shell_word(&file.display().to_string()),
-        start.lon_deg,
-        start.lat_deg
-    ))
+    );
+    Some(ScaleMend::AboutStart { command, start, true_within_m: most_m })
 }
 
 /// The command for a map that is true to scale along a transect, or another remedy.
-fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2], file: &std::path::Path) -> Option<String> {
+fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2], file: &std::path::Path) -> Option<ScaleMend> {
     let local = projection.about(nalgebra::center(&from, &to))?;
     let place = |at| projection.lon_lat(at);
     let (begin, end) = (place(from)?, place(to)?);
     let ends = [local.map_point(begin)?, local.map_point(end)?];
     if local.extreme_scale(ends[0], ends[1]).is_none_or(|extreme| extreme.is_off()) {
         let longest_m = LONGEST_LOCAL * projection.definition.ellipsoid.semi_major_m;
-        return Some(format!("shorter transects, each of {longest_m:.0} m at most: no map is true to scale over a longer one"));
+        return Some(ScaleMend::Shorter { longest_m });
     }
     let (ground_m, map_m) = ((ends[1] - ends[0]).norm(), (to - from).norm());
     let map = dem.lattice().georeference();
@@ -265,20 +312,17 @@ fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2]
     let low = |a: f64, b: f64| rounded_m(a.min(b) - margin_m);
     let high = |a: f64, b: f64| rounded_m(a.max(b) + margin_m);
     let Definition { latitude_deg, longitude_deg, ellipsoid, .. } = local.definition;
-    Some(format!(
+    let command = format!(
         "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0={latitude_deg} +lon_0={longitude_deg} {} +units=m +no_defs' -te {} {} {} {} \
-         -tr {spacing_m} {spacing_m} -ot Float64 -dstnodata nan {} out.tif, then slice out.tif --from-lonlat {:.9},{:.9} --to-lonlat {:.9},{:.9}",
+         -tr {spacing_m} {spacing_m} -ot Float64 -dstnodata nan {} out.tif",
         ellipsoid.proj(),
         low(ends[0].x, ends[1].x),
         low(ends[0].y, ends[1].y),
         high(ends[0].x, ends[1].x),
         high(ends[0].y, ends[1].y),
         shell_word(&file.display().to_string()),
-        begin.lon_deg,
-        begin.lat_deg,
-        end.lon_deg,
-        end.lat_deg
-    ))
+    );
+    Some(ScaleMend::AlongTransect { command, ends: [begin, end] })
 }
 
 /// Rounds to a ten-thousandth of a metre.

@@ -2,7 +2,7 @@
 
 use super::worst_drift::{DriftExperiment, DriftLanding, drift_with};
 use crate::{
-    chain::{ConstrainedChain, Ground, GroundForm, InvalidChain, LineConstraints, PolygonalChain},
+    chain::{ConstrainedChain, GroundForm, InvalidChain, LineConstraints, PolygonalChain, SegmentGround},
     path::Hop,
     quantity::{Angle, AngleInterval},
     world::{Contact, Direction},
@@ -40,7 +40,6 @@ impl DriftLaw {
 pub fn cone_width(
     chain: &ConstrainedChain,
     hops: &[Hop],
-    gravity_m_s2: f64,
     experiment: &DriftExperiment,
     (law, reference_m_s): (DriftLaw, f64),
 ) -> Vec<DriftLanding> {
@@ -52,7 +51,7 @@ pub fn cone_width(
         };
         sigmas_m.map(|sigma_m| sigma_m * share)
     };
-    drift_with(chain, hops, gravity_m_s2, experiment, &scatter)
+    drift_with(chain, hops, experiment, &scatter)
 }
 
 /// A chain with all its cones narrowed about the vertical: every bound keeps this share of its distance from straight up (take-off) or
@@ -74,7 +73,7 @@ pub fn narrowed(chain: &ConstrainedChain, share: f64) -> Result<PolygonalChain, 
                 segment.stated(direction).filter(|_| allowed).map(|line| narrowed_line(line, share))
             });
             let keep_out = segment.refusal().is_some() || (forward.is_none() && reverse.is_none());
-            Ground { form: GroundForm::Explicit { forward, reverse }, keep_out }
+            SegmentGround { form: GroundForm::Explicit { forward, reverse }, keep_out }
         })
         .collect();
     let map = geometry.map_points().map(<[_]>::to_vec);

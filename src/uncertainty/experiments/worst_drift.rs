@@ -4,7 +4,12 @@ use nalgebra::{Point3, Vector3};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 use super::ground::{FreeArc, comes_down};
-use crate::{chain::ConstrainedChain, path::Hop, quantity::ChainPoint, uncertainty::draws::normals, world::Direction};
+use crate::{
+    chain::ConstrainedChain,
+    path::Hop,
+    quantity::{ChainPoint, standard_normals},
+    world::Direction,
+};
 
 /// How the paper's sentence is read, which leaves two things open: at what rate the noise acts, and which landing is farthest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -97,25 +102,24 @@ const STEP_S: f64 = 0.1;
 ///
 /// # Returns
 /// One entry per hop; fewer where no flight of a hop came down.
-pub fn worst_drift(chain: &ConstrainedChain, hops: &[Hop], gravity_m_s2: f64, experiment: &DriftExperiment) -> Vec<DriftLanding> {
+pub fn worst_drift(chain: &ConstrainedChain, hops: &[Hop], experiment: &DriftExperiment) -> Vec<DriftLanding> {
     let scatter = |_: &Hop| experiment.takeoff_variances_m2.map(f64::sqrt);
-    drift_with(chain, hops, gravity_m_s2, experiment, &scatter)
+    drift_with(chain, hops, experiment, &scatter)
 }
 
 /// The same with take-offs that scatter as the hop before them landed.
 pub(super) fn drift_with(
     chain: &ConstrainedChain,
     hops: &[Hop],
-    gravity_m_s2: f64,
     experiment: &DriftExperiment,
     takeoff_sigmas_m: &dyn Fn(&Hop) -> [f64; 3],
 ) -> Vec<DriftLanding> {
-    let Some(goal) = hops.last().map(|hop| solid(hop.landing.point)) else { return Vec::new() };
+    let Some(goal) = hops.last().map(|hop| solid(hop.landing.in_profile())) else { return Vec::new() };
     let mut landings: Vec<DriftLanding> = Vec::new();
-    let mut centre = solid(hops[0].takeoff.point);
+    let mut centre = solid(hops[0].takeoff.in_profile());
     let mut sigmas_m = [0.0; 3];
     for (number, hop) in hops.iter().enumerate() {
-        let landing = hundred(chain, hop, gravity_m_s2, experiment, number as u64, (centre, sigmas_m), goal);
+        let landing = hundred(chain, hop, experiment, number as u64, (centre, sigmas_m), goal);
         if landing.errors_m.is_empty() {
             break;
         }
@@ -136,13 +140,12 @@ fn solid(point: ChainPoint) -> Point3<f64> {
 fn hundred(
     chain: &ConstrainedChain,
     hop: &Hop,
-    gravity_m_s2: f64,
     experiment: &DriftExperiment,
     number: u64,
     (centre, sigmas_m): (Point3<f64>, [f64; 3]),
     goal: Point3<f64>,
 ) -> DriftLanding {
-    let planned = solid(hop.landing.point);
+    let planned = solid(hop.landing.in_profile());
     let mut landing =
         DriftLanding { errors_m: Vec::new(), landings_m: Vec::new(), takeoffs_m: Vec::new(), lost: 0, farthest_m: centre };
     let mut farthest_m = f64::NEG_INFINITY;
@@ -152,7 +155,7 @@ fn hundred(
         draws.set_word_pos(0);
         let [along, across, up, _] = four(&mut draws);
         let from = Point3::new(centre.x + sigmas_m[0] * along, centre.y + sigmas_m[1] * across, centre.z + sigmas_m[2] * up);
-        let Some(contact) = flown(chain, hop, gravity_m_s2, from) else {
+        let Some(contact) = flown(chain, hop, from) else {
             landing.lost += 1;
             continue;
         };
@@ -183,17 +186,17 @@ fn noise_sigma_m(hop: &Hop, experiment: &DriftExperiment) -> f64 {
 }
 
 /// Where a hop flown as planned from elsewhere comes down.
-fn flown(chain: &ConstrainedChain, hop: &Hop, gravity_m_s2: f64, from: Point3<f64>) -> Option<Point3<f64>> {
+fn flown(chain: &ConstrainedChain, hop: &Hop, from: Point3<f64>) -> Option<Point3<f64>> {
     let (slope, horizontal_m_s) = (hop.takeoff_angle.slope(), hop.horizontal_speed_m_s());
     let sign = if hop.direction == Direction::Forward { 1.0 } else { -1.0 };
-    let bend_per_m = gravity_m_s2 / (2.0 * horizontal_m_s * horizontal_m_s);
+    let bend_per_m = chain.gravity().m_s2() / (2.0 * horizontal_m_s * horizontal_m_s);
     let (x_m, z_m) = comes_down(chain.geometry(), &FreeArc { x_m: from.x, z_m: from.z, sign, slope, bend_per_m })?;
     Some(Point3::new(x_m, from.y, z_m))
 }
 
 /// Four standard normals.
 fn four(draws: &mut ChaCha8Rng) -> [f64; 4] {
-    let mut two = || normals([draws.random::<f64>(), draws.random::<f64>()]);
+    let mut two = || standard_normals([draws.random::<f64>(), draws.random::<f64>()]);
     let ([a, b], [c, d]) = (two(), two());
     [a, b, c, d]
 }

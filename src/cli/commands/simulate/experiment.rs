@@ -23,6 +23,7 @@ use super::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
+    hints,
     load::Loaded,
     output,
 };
@@ -40,12 +41,11 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
         return super::no_path(args, loaded, &planned);
     };
     let seed = loaded.scenario.uncertainty.unwrap_or_default().seed;
-    let g = loaded.scenario.body.gravity_m_s2;
     let title = loaded.scenario.title.clone().unwrap_or_default();
     let (text, picture) = match experiment {
         Experiment::WorstDrift => {
             let numbers = DriftExperiment::of_the_paper(reading.unwrap_or_default(), seed);
-            let landings = worst_drift(test.chain(), &path.hops, g, &numbers);
+            let landings = worst_drift(test.chain(), &path.hops, &numbers);
             let answer = WorstDriftAnswer::new(&numbers, &landings);
             let picture = draw_landing_errors(&answer.figure(&title));
             (written(args, loaded, None, answer.text(), answer)?, Some(picture))
@@ -125,23 +125,25 @@ fn written<T: Serialize>(
 /// Plans and flies with ever narrower cones, on the same draws.
 fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) -> Result<ConeWidthAnswer, Failure> {
     let scenario = &loaded.scenario;
-    let g = scenario.body.gravity_m_s2;
     let numbers = DriftExperiment::of_the_paper(DriftReading::default(), seed);
     let reference_m_s = widest.first().map_or(1.0, Hop::horizontal_speed_m_s);
     let mut answer = ConeWidthAnswer::new(&numbers, reference_m_s);
     for share in CONE_SHARES {
-        let failed = |error: &dyn std::fmt::Display| Failure::message(format!("cones at {share} of their width: {error}"));
+        let failed = |error: &(dyn std::error::Error + 'static)| {
+            Failure::message(format!("cones at {share} of their width: {}", hints::sentence(error)))
+        };
         let geometry = narrowed(&loaded.prepared.chain, share).map_err(|error| failed(&error))?;
-        let chain = ConstrainedChain::new(geometry, &scenario.hopper, &scenario.surface).map_err(|error| failed(&error))?;
+        let chain = ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)
+            .map_err(|error| failed(&error))?;
         let width_deg = mean_takeoff_width_deg(&chain);
-        let test = chta::hop::HopTest::new(&chain, &scenario.hopper, g);
+        let test = chta::hop::HopTest::new(chain);
         let (found, _) = search(&test, loaded.ends()?, scenario, args.common.quiet)?;
         let Outcome::Path { legs, .. } = &found.outcome else {
             answer.add_none((share, width_deg));
             continue;
         };
         let path = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
-        let [fixed, with_speed] = DriftLaw::ALL.map(|law| cone_width(&chain, &path.hops, g, &numbers, (law, reference_m_s)));
+        let [fixed, with_speed] = DriftLaw::ALL.map(|law| cone_width(test.chain(), &path.hops, &numbers, (law, reference_m_s)));
         answer.add((share, width_deg), &path.hops, &fixed, &with_speed);
     }
     Ok(answer)
@@ -171,7 +173,7 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     }
     let test = loaded.hop_test();
     let (start, goal) = loaded.ends()?;
-    let failed = |error: &dyn std::fmt::Display| Failure::message(error.to_string());
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| failed(&error))?;
     let reliable_paths =
         most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max));

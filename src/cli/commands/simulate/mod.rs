@@ -19,6 +19,7 @@ use super::{plan::Planned, search::use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
+    hints::further_means,
     load::{EndOptions, Loaded, load_with},
     output,
 };
@@ -97,7 +98,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let asked = records.iter().find(|record| record.policy == keys.policy.name()).cloned();
     let text = match args.answer.format {
         Format::Text => {
-            let mut text = check_text(planned.check());
+            let mut text = check_text(planned.check(), further_means());
             for record in &records {
                 text.push('\n');
                 text.push_str(&record.text());
@@ -128,7 +129,7 @@ pub(super) const RUN_FILES: [&str; 3] = ["simulation.json", "trials.svg", "landi
 /// Flies and draws what the scenario's `[uncertainty]` asks for, beside the plan of a run.
 pub(super) fn of_run(
     loaded: &Loaded,
-    test: &HopTest<'_>,
+    test: &HopTest,
     planned: &Planned,
     threads: usize,
     quiet: bool,
@@ -155,7 +156,7 @@ pub(super) fn of_run(
 /// The answer where there is nothing to fly.
 fn no_path(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result<Answer, Failure> {
     let text = match args.answer.format {
-        Format::Text => check_text(planned.check()) + "nothing to simulate: there is no nominal path\n",
+        Format::Text => check_text(planned.check(), further_means()) + "nothing to simulate: there is no nominal path\n",
         Format::Json => {
             document(loaded, Vec::new(), SimulateAnswer { check: planned.check().clone(), simulation: None, compare: Vec::new() })?
         }

@@ -30,9 +30,9 @@ pub(super) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<V
 /// The landings on the map; `None` where there is no map.
 pub(super) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Option<Vec<u8>>, Failure> {
     let (Some(dem), Some(Flown { summary })) = (flyer.dem(), flown.first()) else { return Ok(None) };
-    let ends: Vec<_> = flyer.path.hops.iter().filter_map(|hop| hop.map).collect();
-    let path = ends.first().map(|first| first.takeoff).into_iter().chain(ends.iter().map(|hop| hop.landing)).collect();
-    let clouds = summary.landings.iter().zip(&ends).map(|(landing, hop)| cloud(landing, hop.landing, summary)).collect();
+    let ends: Vec<_> = flyer.path.hops.iter().filter_map(|hop| hop.map_ends()).collect();
+    let path = ends.first().map(|(takeoff, _)| *takeoff).into_iter().chain(ends.iter().map(|(_, landing)| *landing)).collect();
+    let clouds = summary.landings.iter().zip(&ends).map(|(landing, (_, planned))| cloud(landing, *planned, summary)).collect();
     let figure = LandingMapFigure { caption: caption(flyer.loaded, std::iter::once(summary)), dem, path, clouds };
     output::encoded(draw_landing_map(&figure), file).map(Some)
 }

@@ -1,12 +1,15 @@
 //! From a planned path to its trials.
 
+use std::sync::Arc;
+
 use chta::{
     graph::{self, CostToGo, NodeSet},
+    ground::{DemGround, Surface},
     hop::HopTest,
     path::HopPath,
     scenario::{Overlays, TerrainSource},
     terrain::{Dem, read_dem},
-    uncertainty::{MapGround, Mission, Policy, Simulation, Summary, TrialOptions},
+    uncertainty::{Mission, Policy, Simulation, Summary, TrialOptions},
 };
 
 use super::listen::{Listener, RowFile};
@@ -18,11 +21,11 @@ const KEPT_TRIALS: u64 = 300;
 /// A planned path, and all that its trials need.
 pub(super) struct Flyer<'a> {
     pub(super) loaded: &'a Loaded,
-    pub(super) test: &'a HopTest<'a>,
+    pub(super) test: &'a HopTest,
     pub(super) path: &'a HopPath,
     /// The whole raster with what lies over it, for flights in three dimensions.
-    terrain: Option<(Dem, Overlays)>,
-    to_go: Option<CostToGo>,
+    ground: Option<DemGround>,
+    to_go: Option<Arc<CostToGo>>,
 }
 
 /// What the trials of one policy came to.
@@ -39,53 +42,56 @@ impl<'a> Flyer<'a> {
     /// Reads the raster, and computes once what replanning needs.
     pub(super) fn new(
         loaded: &'a Loaded,
-        test: &'a HopTest<'a>,
+        test: &'a HopTest,
         path: &'a HopPath,
         found: &graph::Answer,
         policies: &[Policy],
         quiet: bool,
     ) -> Result<Self, Failure> {
-        let terrain = match &loaded.scenario.terrain {
+        let ground = match &loaded.scenario.terrain {
             Some(TerrainSource::Dem { path, .. }) => {
                 let file = loaded.base.join(path);
-                let dem = read_dem(&file).map_err(|error| Failure::about(&file, &error.to_string()))?;
+                let dem = read_dem(&file).map_err(|error| Failure::about(&file, &error))?;
                 let coordinates = &dem.georeference().coordinate_system;
                 let overlays = Overlays::read(&loaded.scenario, &loaded.base, Some(coordinates), dem.bounds())
-                    .map_err(|error| Failure::message(error.to_string()))?;
-                Some((dem, overlays))
+                    .map_err(|error| Failure::of(&error))?;
+                Some(overlays.ground(dem, &loaded.scenario))
             }
             Some(TerrainSource::Mesh { .. } | TerrainSource::Chain { .. }) | None => None,
         };
         let to_go = policies.contains(&Policy::Replan).then(|| -> Result<_, Failure> {
             let (start, goal) = loaded.ends()?;
-            let nodes =
-                NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::message(error.to_string()))?;
+            let nodes = NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::of(&error))?;
             let options = &loaded.scenario.search;
             let progress = Progress::new(quiet);
             progress.say("ranking the ways on from every node".to_owned());
-            Ok(match loaded.scenario.reliability() {
+            Ok(Arc::new(match loaded.scenario.reliability() {
                 Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability),
                 None => CostToGo::of(test, nodes, options),
-            })
+            }))
         });
-        Ok(Self { loaded, test, path, terrain, to_go: to_go.transpose()? })
+        Ok(Self { loaded, test, path, ground, to_go: to_go.transpose()? })
     }
 
     /// The raster, where there is one.
     pub(super) fn dem(&self) -> Option<&Dem> {
-        self.terrain.as_ref().map(|(dem, _)| dem)
+        self.ground.as_ref().map(|ground| ground.terrain().dem())
     }
 
     /// The mission along a path over this ground.
-    fn mission<'b>(&'b self, path: &'b HopPath) -> Result<Mission<'b>, Failure> {
+    fn mission(&self, path: &HopPath) -> Result<Mission, Failure> {
         let (start, goal) = self.loaded.ends()?;
-        let map = self.terrain.as_ref().map(|(dem, overlays)| MapGround {
-            dem,
-            friction: overlays.friction_raster(),
-            keep_out: overlays.keep_out(),
-        });
-        let surface = &self.loaded.scenario.surface;
-        Ok(Mission { test: self.test, surface, path, start, goal, map, to_go: self.to_go.as_ref() })
+        let mission = match &self.ground {
+            None => Mission::along_chain(self.test.clone(), path.clone(), start, goal),
+            Some(ground) => {
+                let chain = self.test.chain();
+                Mission::over_dem(ground.clone(), path.clone(), chain.contact_point(&start), chain.contact_point(&goal))
+            }
+        };
+        Ok(match &self.to_go {
+            Some(to_go) => mission.with_replanning(self.test.clone(), Arc::clone(to_go)),
+            None => mission,
+        })
     }
 
     /// Flies the trials of every policy, on the same draws, and writes their landings.
@@ -97,7 +103,7 @@ impl<'a> Flyer<'a> {
         quiet: bool,
     ) -> Result<Vec<Flown>, Failure> {
         let errors = self.loaded.scenario.uncertainty.unwrap_or_default().errors;
-        let simulation = Simulation::new(self.mission(self.path)?, errors).map_err(|error| Failure::message(error.to_string()))?;
+        let simulation = Simulation::new(&self.mission(self.path)?, errors).map_err(|error| Failure::of(&error))?;
         let mut listener = Listener::new(rows, policies.first().copied().unwrap_or_default(), quiet);
         let mut flown = Vec::new();
         for &policy in policies {
@@ -105,7 +111,7 @@ impl<'a> Flyer<'a> {
             let options = TrialOptions { policy, trajectories: KEPT_TRIALS, ..*options };
             match simulation.run(&options, &mut listener) {
                 Ok(summary) => flown.push(Flown { summary }),
-                Err(error) => return Err(listener.failure().unwrap_or_else(|| Failure::message(error.to_string()))),
+                Err(error) => return Err(listener.failure().unwrap_or_else(|| Failure::of(&error))),
             }
         }
         listener.finish()?;
@@ -115,7 +121,7 @@ impl<'a> Flyer<'a> {
     /// Flies the trials of another path over the same ground.
     pub(super) fn fly_along(&self, path: &HopPath, options: &TrialOptions) -> Result<Summary, Failure> {
         let errors = self.loaded.scenario.uncertainty.unwrap_or_default().errors;
-        let failed = |error: chta::uncertainty::SimulationError| Failure::message(error.to_string());
-        Simulation::new(self.mission(path)?, errors).map_err(failed)?.run(options, &mut ()).map_err(failed)
+        let failed = |error: chta::uncertainty::SimulationError| Failure::of(&error);
+        Simulation::new(&self.mission(path)?, errors).map_err(failed)?.run(options, &mut ()).map_err(failed)
     }
 }

@@ -13,7 +13,7 @@ use crate::{
         tests::drawn_chain,
     },
     quantity::Outwards,
-    world::Hopper,
+    world::{Gravity, Hopper, HopperLimits},
 };
 
 fn exact(number: f64) -> BigRational {
@@ -75,11 +75,11 @@ fn is_hop(chain: &ConstrainedChain, hopper: &Hopper, g: f64, takeoff: &Place, la
             cap(exact(slope) - if sign > 0 { b.clone() } else { -b.clone() });
         }
     }
-    if let Some(time_s) = hopper.flight_time_max_s {
+    if let Some(time_s) = hopper.limits().flight_time_max_s {
         cap(exact(g) * exact(time_s) * exact(time_s) / (&two * &run));
     }
     for vertex in chain.geometry().vertices() {
-        let (x, top) = (exact(vertex.x_m), exact(vertex.z_m) + exact(hopper.clearance_m));
+        let (x, top) = (exact(vertex.x_m), exact(vertex.z_m) + exact(hopper.limits().clearance_m));
         if (&x - &takeoff.x).is_positive() == forward
             && (&landing.x - &x).is_positive() == forward
             && x != takeoff.x
@@ -104,9 +104,9 @@ fn refusals(chains: usize) -> (usize, usize) {
     let draw = &mut Draw::seeded(71);
     let (mut refused, mut wrong) = (0, 0);
     for _ in 0..chains {
-        let (chain, hopper, g) = drawn_chain(draw);
-        let hopper = Hopper { apex_height_max_m: None, ..hopper };
-        let test = HopTest::new(&chain, &hopper, g);
+        let chain = drawn_chain(draw);
+        let hopper = Hopper::new(HopperLimits { apex_height_max_m: None, ..*chain.hopper().limits() }).unwrap();
+        let test = HopTest::new(chain.with_hopper(&hopper, chain.gravity()).unwrap());
         let prover = Prover::<Sound>::new(&test);
         let geometry = chain.geometry();
         let (first, last) =
@@ -141,7 +141,7 @@ fn refusals(chains: usize) -> (usize, usize) {
             let caught = (0..3).any(|_| {
                 let (from_m, to_m) = (point(draw, a), point(draw, b));
                 let (from, to) = (Place::at(geometry, a.site, from_m), Place::at(geometry, b.site, to_m));
-                from_m != to_m && is_hop(&chain, &hopper, g, &from, &to)
+                from_m != to_m && is_hop(&chain, &hopper, chain.gravity().m_s2(), &from, &to)
             });
             wrong += usize::from(caught);
         }
@@ -162,10 +162,11 @@ fn a_refused_pair_of_cells_stays_refused_after_splitting() {
     let line = crate::chain::LineConstraints::from_cone(0.0, crate::quantity::Angle::from_degrees(60.0), 5.0, 5.0);
     let form = crate::chain::GroundForm::Explicit { forward: Some(line), reverse: Some(line) };
     let points = [(0.0, 0.0), (25.0, 0.0), (25.000_025, 0.0), (60.0, 0.0)].map(|(x, z)| crate::quantity::ChainPoint::new(x, z));
-    let geometry = PolygonalChain::new(points.to_vec(), vec![crate::chain::Ground { form, keep_out: false }; 3], None).unwrap();
-    let surface = crate::world::Surface { grip: None, rest: crate::world::RestSlope::Unlimited };
-    let chain = ConstrainedChain::new(geometry, &Hopper::UNLIMITED, &surface).unwrap();
-    let test = HopTest::new(&chain, &Hopper::UNLIMITED, 1.0);
+    let geometry =
+        PolygonalChain::new(points.to_vec(), vec![crate::chain::SegmentGround { form, keep_out: false }; 3], None).unwrap();
+    let surface = crate::world::SurfaceProperties { grip: None, rest: crate::world::RestSlope::Unlimited };
+    let chain = ConstrainedChain::new(geometry, &Hopper::UNLIMITED, Gravity::new(1.0).unwrap(), &surface).unwrap();
+    let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(1.0).unwrap()).unwrap());
     let prover = Prover::<Sound>::new(&test);
     let at = |x_m| chain.geometry().station(x_m).unwrap();
     let cells = partition::<Sound>(chain.geometry(), prover.slopes(), [&at(0.0), &at(60.0)]);

@@ -120,12 +120,11 @@ fn entries(figure: &HopProfilesFigure) -> Vec<(Swatch, String)> {
 /// The numbers of a hop, a line each.
 fn words(profile: &HopProfile) -> Vec<String> {
     let hop = &profile.hop;
-    let run_m = short((hop.landing.point.x_m - hop.takeoff.point.x_m).abs());
+    let run_m = short(hop.run_m());
     let mut found = Vec::new();
-    if let Some(ends) = hop.map {
-        let (from, to) = (ends.takeoff, ends.landing);
+    if let Some((from, to)) = hop.map_ends() {
         found.push(format!("({:.1}, {:.1}) m to ({:.1}, {:.1}) m", from.x, from.y, to.x, to.y));
-        found.push(format!("run {run_m} m, heading {:.1} deg; flight {} s", ends.heading_deg, short(hop.flight_time_s)));
+        found.push(format!("run {run_m} m, heading {:.1} deg; flight {} s", hop.heading_deg, short(hop.flight_time_s)));
     } else {
         found.push(format!("run {run_m} m; flight {} s", short(hop.flight_time_s)));
     }

@@ -9,7 +9,7 @@ use crate::{
 
 impl From<&Hop> for Flight {
     fn from(hop: &Hop) -> Self {
-        Self { from: hop.takeoff.point, to: hop.landing.point, takeoff_slope: hop.takeoff_angle.slope() }
+        Self { from: hop.takeoff.in_profile(), to: hop.landing.in_profile(), takeoff_slope: hop.takeoff_angle.slope() }
     }
 }
 

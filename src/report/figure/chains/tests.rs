@@ -13,8 +13,9 @@ use super::{
 };
 use crate::{
     chain::PolygonalChain,
-    path::{Hop, MapEnds},
-    quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
+    ground::{ContactPoint, Frame},
+    path::Hop,
+    quantity::{Angle, AngleInterval, ChainPoint},
     report::figure::FigureError,
     world::{Direction, Limit},
 };
@@ -325,12 +326,17 @@ fn hop_profile(i: usize, hops: usize) -> HopProfile {
     let ground = vec![ChainPoint::new(0.0, 1700.0), ChainPoint::new(0.4 * run_m, 1699.0), end];
     let geometry = PolygonalChain::bare(ground.clone()).unwrap();
     let angles = AngleInterval { min: Angle::from_degrees(60.0), max: Angle::from_degrees(71.25) };
-    let map = MapEnds { takeoff: MapPoint::new(75897.5, 38702.5), landing: MapPoint::new(75900.0, 38710.0), heading_deg: 18.4 };
+    let at = |station: crate::chain::Station, (x, y): (f64, f64)| ContactPoint {
+        along_m: station.point.x_m,
+        point_m: nalgebra::Point3::new(x, y, station.point.z_m),
+        frame: if i == 1 { Frame::Chain } else { Frame::Map },
+        station: Some(station),
+    };
     let hop = Hop {
         direction: Direction::Forward,
-        takeoff: geometry.station(0.0).unwrap(),
-        landing: geometry.station(run_m).unwrap(),
-        map: (i != 1).then_some(map),
+        takeoff: at(geometry.station(0.0).unwrap(), (75897.5, 38702.5)),
+        landing: at(geometry.station(run_m).unwrap(), (75900.0, 38710.0)),
+        heading_deg: 18.4,
         takeoff_angle: Angle::from_degrees(60.0),
         takeoff_speed_m_s: 5.0,
         landing_angle: Angle::from_degrees(-55.5),

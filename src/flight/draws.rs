@@ -2,6 +2,8 @@
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
+use crate::quantity::standard_normals;
+
 /// Words of 32 bits in a block of the cipher: eight draws of 64 bits, all that a hop takes.
 const WORDS_PER_BLOCK: u128 = 16;
 
@@ -18,48 +20,48 @@ const WHOLE_TRIAL: u128 = 1 << 40;
 ///
 /// Every hop takes its whole block whether or not a deviation is zero and whatever the policy, so that runs with other deviations or
 /// policies compare on the same draws.
-pub(super) struct TrialDraws {
+pub(crate) struct TrialDraws {
     source: ChaCha8Rng,
 }
 
 /// Which pairs of normals are used; the others are left at zero and cost nothing.
 #[derive(Clone, Copy, Debug, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "one for each pair of draws, all independent")]
-pub(super) struct Wanted {
-    pub(super) speed: bool,
-    pub(super) direction: bool,
-    pub(super) drift: bool,
-    pub(super) position: bool,
+pub(crate) struct Wanted {
+    pub(crate) speed: bool,
+    pub(crate) direction: bool,
+    pub(crate) drift: bool,
+    pub(crate) position: bool,
 }
 
 /// Independent standard normals of one hop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct HopDraws {
+pub(crate) struct HopDraws {
     /// Of the absolute and of the relative error of speed.
-    pub(super) speed: [f64; 2],
+    pub(crate) speed: [f64; 2],
     /// Of elevation and heading.
-    pub(super) direction: [f64; 2],
+    pub(crate) direction: [f64; 2],
     /// Of the bounce-and-roll displacement along and across.
-    pub(super) drift: [f64; 2],
+    pub(crate) drift: [f64; 2],
     /// Of the believed position, along or east, and north.
-    pub(super) position: [f64; 2],
+    pub(crate) position: [f64; 2],
 }
 
 impl TrialDraws {
-    pub(super) fn seeded(seed: u64) -> Self {
+    pub(crate) fn seeded(seed: u64) -> Self {
         Self { source: ChaCha8Rng::seed_from_u64(seed) }
     }
 
     /// Goes to the first hop of a trial.
-    pub(super) fn begin(&mut self, trial: u64) {
+    pub(crate) fn begin(&mut self, trial: u64) {
         self.source.set_stream(trial);
     }
 
     /// The draws of the next hop.
-    pub(super) fn hop(&mut self, wanted: Wanted) -> HopDraws {
+    pub(crate) fn hop(&mut self, wanted: Wanted) -> HopDraws {
         let mut pair = |wanted: bool| {
             let uniforms = [self.uniform(), self.uniform()];
-            if wanted { normals(uniforms) } else { [0.0; 2] }
+            if wanted { standard_normals(uniforms) } else { [0.0; 2] }
         };
         HopDraws {
             speed: pair(wanted.speed),
@@ -70,14 +72,14 @@ impl TrialDraws {
     }
 
     /// The friction draw of a trial, a standard normal.
-    pub(super) fn friction(&mut self, trial: u64) -> f64 {
+    pub(crate) fn friction(&mut self, trial: u64) -> f64 {
         self.source.set_stream(trial);
         self.source.set_word_pos(WHOLE_TRIAL * WORDS_PER_BLOCK);
-        normals([self.uniform(), self.uniform()])[0]
+        standard_normals([self.uniform(), self.uniform()])[0]
     }
 
     /// Goes to the draws of a trial's height field: uniforms in [0, 1) follow.
-    pub(super) fn height_field(&mut self, trial: u64) -> impl FnMut() -> f64 + '_ {
+    pub(crate) fn height_field(&mut self, trial: u64) -> impl FnMut() -> f64 + '_ {
         self.source.set_stream(trial);
         self.source.set_word_pos((WHOLE_TRIAL + 4) * WORDS_PER_BLOCK);
         || self.uniform()
@@ -87,14 +89,6 @@ impl TrialDraws {
     fn uniform(&mut self) -> f64 {
         self.source.random::<f64>()
     }
-}
-
-/// Two independent standard normals from two uniforms in [0, 1) (Box and Muller 1958), through `libm`, so that no platform's own
-/// logarithm comes in. None is larger than 8.6.
-pub(super) fn normals([radius, turn]: [f64; 2]) -> [f64; 2] {
-    let radius = (-2.0 * libm::log(1.0 - radius)).sqrt();
-    let (sine, cosine) = libm::sincos(std::f64::consts::TAU * turn);
-    [radius * cosine, radius * sine]
 }
 
 #[cfg(test)]

@@ -1,28 +1,27 @@
-//! Flights in the chain's vertical plane.
+//! A chain with everything that a hop needs of it: windows in closed form, and the first contact of an arc in its vertical plane.
+
+use std::ops::ControlFlow;
 
 use nalgebra::{Point3, Vector2};
 
 use super::{
-    LiftoffVelocity, TrialOutcome,
-    ground::{Command, Flight, Ground, PLACE_TOLERANCE, Realization, TouchdownState, failure, holds},
+    ContactPoint, Element, Facet, FirstContact, Flight, LiftoffVelocity, Side, Surface, TakeoffWindows, TouchdownState, Windows,
+    chain::direction_of,
+    first_contact::{ContactFailure, PLACE_TOLERANCE, Realization, check_landing, holds},
 };
 use crate::{
-    ballistics::Arc,
-    chain::{Ground as SegmentGround, GroundForm, GroundRefusal, SegmentConstraints, Site, Station, resolve_constraints},
-    graph::{CostToGo, Edge},
+    chain::{ContactRule, GroundForm, GroundRefusal, SegmentConstraints, SegmentGround, Site, Station, resolve_constraints},
     hop::HopTest,
     quantity::{ChainPoint, SegmentId, VertexId},
-    world::{Contact, Direction, FrictionCone, Grip, Surface},
+    world::{Contact, Direction, FrictionCone, Grip, Hopper},
 };
 
 /// The chain as the ground of a trial.
 ///
 /// To the sides the ground is taken to go on as it is: displacement to the side moves the robot out of the plane and no more.
 #[derive(Clone, Debug)]
-pub(super) struct ChainGround<'a> {
-    test: &'a HopTest<'a>,
-    surface: &'a Surface,
-    to_go: Option<&'a CostToGo>,
+pub struct ChainGround {
+    test: HopTest,
     /// How much a height of the chain may be rounded, m.
     height_rounding_m: f64,
     friction: f64,
@@ -32,19 +31,19 @@ pub(super) struct ChainGround<'a> {
 
 /// A position: a station of the chain, and the distance to the left of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ChainPosition {
-    pub(super) station: Station,
-    pub(super) left_m: f64,
+pub struct ChainPosition {
+    /// The station.
+    pub station: Station,
+    /// How far to the left of the chain's plane, m.
+    pub left_m: f64,
 }
 
 impl ChainPosition {
-    pub(super) const fn on_chain(station: Station) -> Self {
+    /// The position of a station, in the plane of the chain.
+    pub const fn on_chain(station: Station) -> Self {
         Self { station, left_m: 0.0 }
     }
 }
-
-/// Units in the last place of the greatest height that a height inside a segment may be off, as in `path::execute`.
-const HEIGHT_ULPS: f64 = 4.0;
 
 /// An arc from its take-off, and how far rounding may carry it.
 #[derive(Clone, Copy)]
@@ -124,11 +123,16 @@ impl Ahead {
     }
 }
 
-impl<'a> ChainGround<'a> {
-    pub(super) fn new(test: &'a HopTest<'a>, surface: &'a Surface, to_go: Option<&'a CostToGo>) -> Self {
-        let highest_m = test.chain().geometry().vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max);
-        let height_rounding_m = HEIGHT_ULPS * f64::EPSILON * highest_m;
-        Self { test, surface, to_go, height_rounding_m, friction: 0.0, found: Vec::new() }
+impl ChainGround {
+    /// The nominal ground of a hop test's chain.
+    pub fn new(test: HopTest) -> Self {
+        let height_rounding_m = test.chain().height_rounding_m();
+        Self { test, height_rounding_m, friction: 0.0, found: Vec::new() }
+    }
+
+    /// The hop test that it answers with.
+    pub const fn test(&self) -> &HopTest {
+        &self.test
     }
 
     #[inline]
@@ -148,7 +152,7 @@ impl<'a> ChainGround<'a> {
         }
         let mut ground: SegmentGround = *chain.geometry().grounds().get(segment)?;
         if let GroundForm::Surface { friction, .. } = &mut ground.form
-            && let Some(cone) = friction.or(match self.surface.grip {
+            && let Some(cone) = friction.or(match chain.surface().grip {
                 Some(Grip::Friction(cone)) => Some(cone),
                 Some(Grip::FromSlope { .. }) | None => None,
             })
@@ -157,7 +161,7 @@ impl<'a> ChainGround<'a> {
         }
         let (a, b) = (self.vertices()[segment], self.vertices()[segment + 1]);
         let slope = (b.z_m - a.z_m) / (b.x_m - a.x_m);
-        resolve_constraints(SegmentId(segment), slope, &ground, self.test.hopper(), self.surface).ok()
+        resolve_constraints(SegmentId(segment), slope, &ground, self.test.hopper(), chain.surface()).ok()
     }
 
     /// What refuses any contact on a segment.
@@ -174,7 +178,7 @@ impl<'a> ChainGround<'a> {
         segment: Option<SegmentId>,
         contact: Contact,
         direction: Direction,
-    ) -> Result<crate::chain::ContactRule, GroundRefusal> {
+    ) -> Result<ContactRule, GroundRefusal> {
         let segment = segment.ok_or(GroundRefusal::NoGround)?.index();
         if self.is_nominal()
             && let Some(rule) = self.test.chain().segments().get(segment).and_then(|s| s.allowed(contact, direction))
@@ -243,8 +247,59 @@ impl<'a> ChainGround<'a> {
     }
 }
 
-impl Ground for ChainGround<'_> {
-    type Position = ChainPosition;
+impl Surface for ChainGround {
+    type Contact = ChainPosition;
+
+    fn hopper(&self) -> &Hopper {
+        self.test.hopper()
+    }
+
+    fn gravity_m_s2(&self) -> f64 {
+        self.test.gravity_m_s2()
+    }
+
+    fn contact_point(&self, position: &ChainPosition) -> ContactPoint {
+        self.test.chain().contact_point(&position.station)
+    }
+
+    fn contact_at(&self, stated: &ContactPoint) -> Option<ChainPosition> {
+        self.test.chain().contact_at(stated).map(ChainPosition::on_chain)
+    }
+
+    fn course(&self, from: &ChainPosition, to: &ChainPosition) -> Option<(f64, Vector2<f64>)> {
+        self.test.chain().course(&from.station, &to.station)
+    }
+
+    fn walk(&self, from: &ChainPosition, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
+        self.test.chain().walk(&from.station, heading, visit);
+    }
+
+    fn facets(&self, at: &ChainPosition, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2] {
+        self.test.chain().facets(&at.station, heading, side)
+    }
+
+    fn height_rounding_m(&self) -> f64 {
+        self.height_rounding_m
+    }
+
+    fn position_rounding_m(&self) -> f64 {
+        0.0
+    }
+
+    fn resolution_m(&self) -> f64 {
+        0.0
+    }
+}
+
+impl Windows for ChainGround {
+    /// As [`HopTest::lofts`]: one window at most.
+    fn windows(&self, takeoff: &ChainPosition, landing: &ChainPosition) -> Option<TakeoffWindows> {
+        let sight = self.test.line_of_sight(&takeoff.station, &landing.station)?;
+        Some(TakeoffWindows { sight, lofts: self.test.lofts(&takeoff.station, &landing.station).into_iter().collect() })
+    }
+}
+
+impl FirstContact for ChainGround {
     type SupportFacet = SegmentId;
 
     fn realize(&mut self, realization: Realization) {
@@ -257,7 +312,7 @@ impl Ground for ChainGround<'_> {
         }
     }
 
-    fn real(&self, planned: ChainPosition) -> ChainPosition {
+    fn realized(&self, planned: ChainPosition) -> ChainPosition {
         if self.found.is_empty() {
             return planned;
         }
@@ -273,13 +328,18 @@ impl Ground for ChainGround<'_> {
     }
 
     fn holds_takeoff(&self, from: &ChainPosition, liftoff: &LiftoffVelocity) -> bool {
-        let direction = towards(liftoff.heading);
+        let direction = direction_of(liftoff.heading);
         let segment = from.station.ruling_segment(Contact::Takeoff, direction, self.test.chain().segments().len());
         holds(self.check_contact(segment, Contact::Takeoff, direction), liftoff)
     }
 
-    fn fly(&self, from: &ChainPosition, liftoff: &LiftoffVelocity, aim: &ChainPosition) -> Flight<ChainPosition, SegmentId> {
-        let direction = towards(liftoff.heading);
+    fn first_contact(
+        &self,
+        from: &ChainPosition,
+        liftoff: &LiftoffVelocity,
+        aim: &ChainPosition,
+    ) -> Flight<ChainPosition, SegmentId> {
+        let direction = direction_of(liftoff.heading);
         let g = self.test.gravity_m_s2();
         let segment_under = from.station.ruling_segment(Contact::Takeoff, direction, self.test.chain().segments().len());
         let across = liftoff.horizontal_m_s;
@@ -334,9 +394,14 @@ impl Ground for ChainGround<'_> {
         }
     }
 
-    fn landing_failure(&self, _end: &ChainPosition, support_facet: &SegmentId, touchdown: &TouchdownState) -> Option<TrialOutcome> {
-        let rule = self.check_contact(Some(*support_facet), Contact::Landing, towards(touchdown.heading));
-        failure(rule, self.test.hopper().landing_speed_max_m_s, touchdown)
+    fn check_landing(
+        &self,
+        _end: &ChainPosition,
+        support_facet: &SegmentId,
+        touchdown: &TouchdownState,
+    ) -> Result<(), ContactFailure> {
+        let rule = self.check_contact(Some(*support_facet), Contact::Landing, direction_of(touchdown.heading));
+        check_landing(rule, self.test.hopper().limits().landing_speed_max_m_s, touchdown)
     }
 
     fn displaced(
@@ -345,20 +410,20 @@ impl Ground for ChainGround<'_> {
         heading: Vector2<f64>,
         along_m: f64,
         left_m: f64,
-    ) -> Result<ChainPosition, TrialOutcome> {
+    ) -> Result<ChainPosition, ContactFailure> {
         if along_m == 0.0 && left_m == 0.0 {
             return Ok(*from);
         }
-        let sign = towards(heading).sign();
+        let sign = direction_of(heading).sign();
         let x_m = from.station.point.x_m + sign * along_m;
         let geometry = self.test.chain().geometry();
-        let nominal = geometry.station(x_m).map_err(|_| TrialOutcome::Lost)?;
-        let position = self.real(ChainPosition { station: nominal, left_m: from.left_m + sign * left_m });
-        let under = position.station.ruling_segment(Contact::Landing, towards(heading), geometry.segment_count());
+        let nominal = geometry.station(x_m).map_err(|_| ContactFailure::OffLimits)?;
+        let position = self.realized(ChainPosition { station: nominal, left_m: from.left_m + sign * left_m });
+        let under = position.station.ruling_segment(Contact::Landing, direction_of(heading), geometry.segment_count());
         match under.and_then(|segment| self.refusal(segment.index())) {
             None => Ok(position),
-            Some(GroundRefusal::KeepOut) => Err(TrialOutcome::Lost),
-            Some(_) => Err(TrialOutcome::SlidAtLanding),
+            Some(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
+            Some(_) => Err(ContactFailure::Slides),
         }
     }
 
@@ -367,42 +432,13 @@ impl Ground for ChainGround<'_> {
         let x_m = (position.station.point.x_m + along_m).clamp(first_m, last_m);
         self.test.chain().geometry().station(x_m).ok().map(ChainPosition::on_chain)
     }
-
-    fn replanned(&self, believed: &ChainPosition) -> Option<Command<ChainPosition>> {
-        let to_go = self.to_go?;
-        let leg = to_go.best_leg(self.test, &believed.station)?;
-        let direction = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m)?;
-        let (arc, landing) = match leg.edge {
-            Edge::Hop(lofts) => {
-                let sight = self.test.line_of_sight(&leg.takeoff, &leg.landing)?;
-                (Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), self.test.gravity_m_s2()), leg.landing)
-            }
-            Edge::Along(along) => {
-                let (each_m, last_m) = along.lengths_m(to_go.options().split);
-                let length_m = if along.hops() > 1 { each_m } else { last_m };
-                let x_m = leg.takeoff.point.x_m + direction.sign() * length_m;
-                let landing = self.test.chain().geometry().station(x_m).unwrap_or(leg.landing);
-                (along.arc(self.test, length_m, to_go.options().takeoff), landing)
-            }
-        };
-        let across = arc.horizontal_speed_m_s();
-        let heading = Vector2::new(direction.sign(), 0.0);
-        let liftoff = LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() };
-        Some(Command::new(liftoff, ChainPosition::on_chain(landing)))
-    }
 }
 
-impl ChainGround<'_> {
+impl ChainGround {
     /// The slope of the segment ahead as the traveller sees it: its own, which keeps more digits than two close heights.
     fn slope_ahead(&self, ahead: Ahead) -> f64 {
         let segment = ahead.segment();
         let (a, b) = (self.vertices()[segment], self.vertices()[segment + 1]);
         ahead.direction.sign() * ((b.z_m - a.z_m) / (b.x_m - a.x_m))
     }
-}
-
-/// The direction of travel of a heading along the chain.
-#[inline]
-fn towards(heading: Vector2<f64>) -> Direction {
-    if heading.x < 0.0 { Direction::Reverse } else { Direction::Forward }
 }

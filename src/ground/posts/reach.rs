@@ -1,13 +1,13 @@
 //! Which offsets there are, and which of them matter where.
 
-use super::PostHops;
+use super::{
+    MapError, PostHops,
+    lattice::BLOCK,
+    offsets::{OffsetTable, Spacing},
+};
 use crate::{
     ballistics::{safety_ceiling_m, safety_range_m},
-    reach::map::{
-        MapError,
-        lattice::BLOCK,
-        offsets::{OffsetTable, Spacing},
-    },
+    ground::Surface,
     world::tolerant_speed_m_s,
 };
 
@@ -17,12 +17,12 @@ const WIDER: f64 = 1.0 + 1.0e-6;
 /// The largest table of crossings, 256 MiB: a reach of some 150 posts.
 const MOST_CROSSINGS: usize = 1 << 23;
 
-impl PostHops<'_> {
+impl PostHops {
     /// Makes the table of offsets, and finds how far hops reach from each block.
     pub(super) fn set_reach(&mut self) -> Result<(), MapError> {
-        let hopper = self.envelope.hopper();
+        let hopper = self.ground.hopper().limits();
         let speeds = [hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s].map(|v| tolerant_speed_m_s(v) * WIDER);
-        let gravity = self.envelope.gravity_m_s2();
+        let gravity = self.ground.gravity_m_s2();
         // The longest hop that falls or climbs no further than a height.
         let range_m =
             |height_m: f64| safety_range_m(height_m, speeds[0], gravity).min(safety_range_m(height_m, speeds[1], gravity)) * WIDER;
@@ -54,7 +54,7 @@ impl PostHops<'_> {
         let size = OffsetTable::size(spacing, longest_m, bounds);
         if size.crossings > MOST_CROSSINGS {
             let posts = longest_m / spacing.dx_m.min(spacing.dy_m);
-            let dem = self.request.dem;
+            let dem = self.ground.terrain().dem();
             let fits = |stride: &usize| {
                 let bounds = ((dem.rows() - 1) / stride + 1, (dem.cols() - 1) / stride + 1);
                 OffsetTable::size(Spacing { stride: *stride, ..spacing }, longest_m, bounds).crossings <= MOST_CROSSINGS
@@ -75,22 +75,23 @@ impl PostHops<'_> {
     }
 
     fn spacing(&self) -> Spacing {
-        let map = self.request.dem.georeference();
+        let map = self.ground.terrain().dem().georeference();
         Spacing {
             dx_m: map.dx_m(),
             dy_m: map.dy_m(),
             stride: self.lattice.stride,
             node_cols: self.lattice.cols,
-            post_cols: self.heights.cols,
+            post_cols: self.ground.terrain().dem().cols(),
         }
     }
 
     /// Lowest and highest node of each block; infinities the wrong way round where it has none.
     fn block_heights(&self) -> Vec<(f64, f64)> {
         let (down, across) = self.lattice.blocks();
+        let posts = self.heights();
         (0..down * across)
             .map(|block| {
-                let heights = self.lattice.nodes_of(block).map(|node| self.heights.at(self.lattice.post_index(node)));
+                let heights = self.lattice.nodes_of(block).map(|node| posts.at(self.lattice.post_index(node)));
                 // The minimum and maximum of a number and NaN are the number.
                 heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)))
             })
@@ -98,7 +99,7 @@ impl PostHops<'_> {
     }
 
     /// How many blocks away a range may reach, down and across.
-    pub(in super::super) fn blocks_within(&self, range_m: f64) -> (usize, usize) {
+    pub(crate) fn blocks_within(&self, range_m: f64) -> (usize, usize) {
         let spacing = self.spacing();
         #[expect(clippy::cast_precision_loss, reason = "strides and blocks are small")]
         let side = (BLOCK * spacing.stride) as f64;

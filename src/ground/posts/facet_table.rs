@@ -12,7 +12,7 @@ const NEAR: f64 = 1.0e-6;
 
 /// The facets around every post, one bit each.
 #[derive(Clone, Debug)]
-pub(super) struct GroundTable {
+pub(super) struct FacetTable {
     exists: Vec<u8>,
     steep: Vec<u8>,
     doubtful: Vec<u8>,
@@ -31,7 +31,7 @@ pub(super) enum Footing {
     Sound,
 }
 
-impl GroundTable {
+impl FacetTable {
     /// Of a raster, where `rest` gives the tangent of the steepest slope to rest on at a post.
     pub(super) fn new(heights: Heights<'_>, rest: &(dyn Fn(usize) -> Option<f64> + Sync)) -> Self {
         let (rows, cols) = (heights.rows(), heights.cols);

@@ -4,34 +4,23 @@
 //! theirs by rounding only, says yes or no where the limits leave a margin far above rounding; what is nearer than that is given to
 //! the slice and the hop test themselves. So is every hop near a border of a zone or of friction, where the slice has more vertices.
 
-mod exact;
-mod reach;
-mod refusal;
-
-use std::error::Error;
-
 use super::{
-    MapError, MapRequest,
+    MapError, Post, exact,
+    facet_table::{FacetTable, Footing},
     facets::Facets,
-    ground::{Footing, GroundTable},
-    lattice::{NodeLattice, Post},
+    lattice::NodeLattice,
     offsets::{Offset, OffsetTable},
     overlays::OverlayTable,
-    samples::{Heights, Walk},
+    refusal::rest_tangent,
+    samples::{HeightScale, Heights, Walk},
 };
 use crate::{
     ballistics::{ContactLimits, FlightEnvelope, LineOfSight},
-    chain::{ConstrainedChain, QuickCone, QuickGrip},
+    chain::{QuickCone, QuickGrip},
+    ground::{DemGround, MapPosition, Surface},
     quantity::SlopeInterval,
-    terrain::Profile,
     world::Grip,
 };
-
-pub use refusal::PostRefusal;
-use refusal::{constant_friction, rest_tangent};
-
-/// Makes a chain of a slice: knows friction, zones and hopper.
-pub type GroundOf<'a> = dyn Fn(Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> + Sync + 'a;
 
 /// Lofts closer than this, as a share of one plus their size, are left to the exact code. The quick ones are off by some 1e-8 of
 /// themselves next to the end of a cone (see [`QuickGrip`]) and by 1e-13 elsewhere. Larger only asks the exact code more often.
@@ -42,23 +31,21 @@ const NEAR: f64 = 1.0e-5;
 const FINE: f64 = 1.0e-9;
 
 /// All single hops between the nodes of a DEM.
-pub struct PostHops<'a> {
-    request: MapRequest<'a>,
-    ground_of: &'a GroundOf<'a>,
-    heights: Heights<'a>,
-    lattice: NodeLattice,
-    table: OffsetTable,
-    ground: GroundTable,
-    overlays: Option<OverlayTable>,
+pub struct PostHops {
+    pub(super) ground: DemGround,
+    scale: HeightScale,
+    pub(super) lattice: NodeLattice,
+    pub(super) table: OffsetTable,
+    pub(super) facets: FacetTable,
+    pub(super) overlays: Option<OverlayTable>,
     grip: Option<QuickGrip>,
-    envelope: FlightEnvelope,
     /// How many of the nearest offsets are within reach of each block's nodes.
-    within_reach: Vec<usize>,
+    pub(super) within_reach: Vec<usize>,
     /// Whether map coordinates are too coarse for quick arithmetic.
     coarse: bool,
 }
 
-impl std::fmt::Debug for PostHops<'_> {
+impl std::fmt::Debug for PostHops {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter
             .debug_struct("PostHops")
@@ -79,43 +66,32 @@ enum Verdict {
 /// The lofts of a hop over a line of sight.
 pub type Lofts = (LineOfSight, SlopeInterval);
 
-impl<'a> PostHops<'a> {
-    /// Prepares all that pairs share.
+impl PostHops {
+    /// Prepares all that pairs share; every `stride`-th post is a node (0 counts as 1), the terrain in between is always the full DEM.
     ///
     /// # Errors
     /// [`MapError`]: a reach of too many posts, constraints that are missing, overlays that end before the terrain does.
-    pub fn new(request: MapRequest<'a>, ground_of: &'a GroundOf<'a>) -> Result<Self, MapError> {
-        let (dem, hopper) = (request.dem, request.hopper);
-        let lattice = NodeLattice::new(dem, request.stride);
-        exact::probe(&request, ground_of)?;
-        let heights = Heights::of(dem);
-        let overlays = OverlayTable::new(dem, request.friction, request.keep_out, constant_friction(&request))?;
-        let ground = GroundTable::new(heights, &|post| rest_tangent(&request, overlays.as_ref(), post));
-        let grip = match request.surface.grip {
+    pub fn new(ground: DemGround, stride: usize) -> Result<Self, MapError> {
+        let dem = ground.terrain().dem();
+        let lattice = NodeLattice::new(dem, stride);
+        exact::probe(&ground)?;
+        let scale = HeightScale::of(dem);
+        let heights = Heights::of(dem, &scale);
+        let overlays = OverlayTable::new(ground.terrain(), ground.constant_friction())?;
+        let facets = FacetTable::new(heights, &|post| rest_tangent(&ground, overlays.as_ref(), post));
+        let grip = match ground.surface().grip {
             Some(Grip::Friction(cone)) => Some(QuickGrip::friction(cone)),
             Some(Grip::FromSlope { takeoff, landing }) => Some(QuickGrip::from_slope(takeoff, landing)),
             None => None,
         };
-        let envelope = FlightEnvelope::new(hopper, request.gravity_m_s2);
         let bounds = dem.bounds();
         let step_m = dem.georeference().dx_m().min(dem.georeference().dy_m());
         let (low_m, high_m) = dem.elevation_range_m();
         let largest_m =
             [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y, low_m, high_m].map(f64::abs).into_iter().fold(0.0, f64::max);
         let coarse = f64::EPSILON * largest_m > FINE * step_m;
-        let mut hops = Self {
-            request,
-            ground_of,
-            heights,
-            lattice,
-            table: OffsetTable::default(),
-            ground,
-            overlays,
-            grip,
-            envelope,
-            within_reach: Vec::new(),
-            coarse,
-        };
+        let table = OffsetTable::default();
+        let mut hops = Self { scale, lattice, table, facets, overlays, grip, within_reach: Vec::new(), coarse, ground };
         hops.set_reach()?;
         Ok(hops)
     }
@@ -125,39 +101,53 @@ impl<'a> PostHops<'a> {
         self.lattice
     }
 
-    /// What was asked for.
-    pub const fn request(&self) -> &MapRequest<'a> {
-        &self.request
+    /// The ground that they lie on.
+    pub const fn ground(&self) -> &DemGround {
+        &self.ground
     }
 
     /// The hopper under its gravity.
-    pub(super) const fn envelope(&self) -> &FlightEnvelope {
-        &self.envelope
+    pub(crate) const fn envelope(&self) -> &FlightEnvelope {
+        self.ground.envelope()
+    }
+
+    /// The elevations.
+    #[inline]
+    pub(super) fn heights(&self) -> Heights<'_> {
+        Heights::of(self.ground.terrain().dem(), &self.scale)
     }
 
     /// All offsets, nearest first.
-    pub(super) fn offsets(&self) -> &[Offset] {
+    pub(crate) fn offsets(&self) -> &[Offset] {
         &self.table.offsets
     }
 
     /// The steps among the nodes of all offsets.
-    pub(super) fn node_steps(&self) -> &[isize] {
+    pub(crate) fn node_steps(&self) -> &[isize] {
         &self.table.node_steps
     }
 
     /// How many of the nearest offsets matter to the nodes of a block.
-    pub(super) fn within_reach(&self, block: usize) -> usize {
+    pub(crate) fn within_reach(&self, block: usize) -> usize {
         self.within_reach[block]
     }
 
+    /// The position of a node; `None` where it has no elevation.
+    pub fn position(&self, node: Post) -> Option<MapPosition> {
+        let post = self.lattice.post(node);
+        let dem = self.ground.terrain().dem();
+        let z_m = dem.elevation(post.row, post.col)?;
+        Some(MapPosition { at: dem.georeference().post(post.row, post.col), z_m })
+    }
+
     /// Whether a node has an elevation.
-    pub(super) fn has_ground(&self, node: Post) -> bool {
-        !self.heights.at(self.lattice.post_index(node)).is_nan()
+    pub(crate) fn has_ground(&self, node: Post) -> bool {
+        !self.heights().at(self.lattice.post_index(node)).is_nan()
     }
 
     /// Whether a hop may begin or end at a node at all.
-    pub(super) fn usable(&self, node: Post) -> bool {
-        self.ground.usable(self.lattice.post_index(node))
+    pub(crate) fn usable(&self, node: Post) -> bool {
+        self.facets.usable(self.lattice.post_index(node))
     }
 
     /// How many offsets lead from a node to another one: `0..offset_count()` are their numbers, nearest first.
@@ -173,12 +163,12 @@ impl<'a> PostHops<'a> {
 
     /// The node from which an offset leads to this one; `None` off the map.
     #[inline]
-    pub(super) fn takeoff(&self, to: Post, offset: usize) -> Option<Post> {
+    pub(crate) fn takeoff(&self, to: Post, offset: usize) -> Option<Post> {
         self.moved(to, -self.table.offsets[offset].rows, -self.table.offsets[offset].cols)
     }
 
     #[inline]
-    fn moved(&self, from: Post, rows: i32, cols: i32) -> Option<Post> {
+    pub(super) fn moved(&self, from: Post, rows: i32, cols: i32) -> Option<Post> {
         let row = from.row.wrapping_add_signed(rows as isize);
         let col = from.col.wrapping_add_signed(cols as isize);
         (row < self.lattice.rows && col < self.lattice.cols).then_some(Post { row, col })
@@ -196,7 +186,7 @@ impl<'a> PostHops<'a> {
     ///
     /// The lofts told to `worth` hold the feasible ones.
     #[inline]
-    pub(super) fn lofts_where(
+    pub(crate) fn lofts_where(
         &self,
         from: Post,
         offset: &Offset,
@@ -214,8 +204,9 @@ impl<'a> PostHops<'a> {
     fn evaluate(&self, from: Post, offset: &Offset, worth: impl FnOnce(LineOfSight, SlopeInterval) -> bool) -> Verdict {
         let takeoff = self.lattice.post_index(from);
         let landing = takeoff.wrapping_add_signed(offset.post_step);
-        let takeoff_m = self.heights.at(takeoff);
-        let rise_m = self.heights.at(landing) - takeoff_m;
+        let heights = self.heights();
+        let takeoff_m = heights.at(takeoff);
+        let rise_m = heights.at(landing) - takeoff_m;
         // A gap on either end makes this no number.
         let in_reach = offset.rises_m.0 <= rise_m && rise_m <= offset.rises_m.1;
         if !in_reach {
@@ -227,20 +218,20 @@ impl<'a> PostHops<'a> {
         }
         let Some((slopes, mut sure)) = self.cones(takeoff, landing, offset, overlay) else { return Verdict::No };
         sure &= overlay != Overlay::Mixed && !self.coarse;
-        let hopper = self.envelope.hopper();
+        let limits = self.ground.hopper().limits();
         let sight = LineOfSight::new(offset.run_m, rise_m);
-        let lofts = self.envelope.lofts(
+        let lofts = self.envelope().lofts(
             sight,
-            ContactLimits { slopes: slopes[0], speed_max_m_s: hopper.takeoff_speed_max_m_s },
-            ContactLimits { slopes: slopes[1], speed_max_m_s: hopper.landing_speed_max_m_s },
+            ContactLimits { slopes: slopes[0], speed_max_m_s: limits.takeoff_speed_max_m_s },
+            ContactLimits { slopes: slopes[1], speed_max_m_s: limits.landing_speed_max_m_s },
         );
         let most = lofts.upper + near(lofts.upper);
         if lofts.lower - near(lofts.lower) > most || most <= 0.0 || !worth(sight, lofts) {
             return Verdict::No;
         }
-        let walk = Walk { from: takeoff, turn: offset.turn, base_m: takeoff_m - hopper.clearance_m, rise_m, most };
-        let Some(terrain) = self.heights.clearing_loft(walk, self.table.crossings_of(offset)) else { return Verdict::No };
-        if self.ground.gaps && offset.departure.along_edge() && !self.has_facets_along(takeoff, offset) {
+        let walk = Walk { from: takeoff, turn: offset.turn, base_m: takeoff_m - limits.clearance_m, rise_m, most };
+        let Some(terrain) = heights.clearing_loft(walk, self.table.crossings_of(offset)) else { return Verdict::No };
+        if self.facets.gaps && offset.departure.along_edge() && !self.has_facets_along(takeoff, offset) {
             return Verdict::No;
         }
         let lower = lofts.lower.max(terrain);
@@ -287,7 +278,7 @@ impl<'a> PostHops<'a> {
         let Some(grip) = friction.map(|mu| QuickGrip::Friction { squared: mu * mu }).or(self.grip) else {
             return Some(everything);
         };
-        let footings = [self.ground.footing(takeoff, offset.departure), self.ground.footing(landing, offset.arrival)];
+        let footings = [self.facets.footing(takeoff, offset.departure), self.facets.footing(landing, offset.arrival)];
         if footings.contains(&Footing::Refused) {
             return None;
         }
@@ -310,14 +301,15 @@ impl<'a> PostHops<'a> {
     /// Slope along the heading and square of the gradient of the facet under an end; along an edge of the steeper one.
     #[inline]
     fn facet(&self, post: usize, facets: Facets, offset: &Offset) -> (f64, f64) {
+        let heights = self.heights();
         let of = |number| {
-            let (east, north) = self.heights.gradient(post, number);
+            let (east, north) = heights.gradient(post, number);
             (east * offset.heading.x + north * offset.heading.y, east * east + north * north)
         };
         if !facets.along_edge() {
             return of(facets.first());
         }
-        let there = facets.numbers().filter(|&number| self.ground.has(post, number)).map(of);
+        let there = facets.numbers().filter(|&number| self.facets.has(post, number)).map(of);
         there.fold((0.0, f64::NEG_INFINITY), |steepest, facet| if facet.1 > steepest.1 { facet } else { steepest })
     }
 
@@ -326,7 +318,7 @@ impl<'a> PostHops<'a> {
         let posts = self.table.crossings_of(offset).iter();
         posts
             .map(|crossing| takeoff.wrapping_add_signed(offset.turn * crossing.first as isize))
-            .all(|post| self.ground.has_any(post, offset.departure))
+            .all(|post| self.facets.has_any(post, offset.departure))
     }
 }
 

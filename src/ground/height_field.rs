@@ -1,6 +1,6 @@
 //! A random field of height errors.
 
-use super::draws::{TrialDraws, normals};
+use crate::quantity::standard_normals;
 
 /// How many waves make a field. Variance and correlation are right for any number; more waves make the heights of several places
 /// together more nearly Gaussian. 32 leave their fourth moments right to some per cent, and cost half a microsecond a place.
@@ -17,7 +17,7 @@ const WAVES: usize = 32;
 /// deviation sigma, and the correlation is exact. The field is smooth, so that its slopes have the deviation sigma/d0 however densely
 /// the ground is divided; an exponential correlation would make the slopes of short segments grow without bound.
 #[derive(Clone, Debug)]
-pub(super) struct HeightField {
+pub struct HeightField {
     waves: [Wave; WAVES],
 }
 
@@ -31,13 +31,12 @@ struct Wave {
 }
 
 impl HeightField {
-    /// The field of a trial.
+    /// A field of this deviation and correlation length, m, from uniforms in [0, 1).
     #[expect(clippy::cast_precision_loss, reason = "32 waves")]
-    pub(super) fn of(draws: &mut TrialDraws, trial: u64, sigma_m: f64, correlation_m: f64) -> Self {
-        let mut uniform = draws.height_field(trial);
+    pub fn drawn(mut uniform: impl FnMut() -> f64, sigma_m: f64, correlation_m: f64) -> Self {
         let scale_m = sigma_m / (WAVES as f64).sqrt();
         let waves = [(); WAVES].map(|()| {
-            let [east, north] = normals([uniform(), uniform()]).map(|normal| normal / correlation_m);
+            let [east, north] = standard_normals([uniform(), uniform()]).map(|normal| normal / correlation_m);
             let amplitude_m = scale_m * (-2.0 * libm::log(1.0 - uniform())).sqrt();
             Wave { east, north, amplitude_m, phase: std::f64::consts::TAU * uniform() }
         });
@@ -45,7 +44,7 @@ impl HeightField {
     }
 
     /// The height error at a place, m from any fixed origin.
-    pub(super) fn at(&self, east_m: f64, north_m: f64) -> f64 {
+    pub fn at(&self, east_m: f64, north_m: f64) -> f64 {
         self.waves.iter().map(|w| w.amplitude_m * libm::cos(w.east * east_m + w.north * north_m + w.phase)).sum()
     }
 }
@@ -54,18 +53,19 @@ impl HeightField {
 #[expect(clippy::cast_precision_loss, reason = "small counts")]
 mod tests {
     use super::*;
+    use crate::draw::Draw;
 
     /// Moments over many realisations, at one place and between two, along both axes and across.
     #[test]
     fn variance_and_correlation_are_as_stated() {
         let (sigma_m, length_m) = (0.7, 5.0);
-        let mut draws = TrialDraws::seeded(3);
+        let mut draw = Draw::seeded(3);
         let count = 8000;
         let places = [(0.0, 0.0), (5.0, 0.0), (0.0, 2.5), (3.0, -4.0), (30.0, 40.0)];
         let mut sums = [0.0; 5];
         let mut fourth = 0.0;
-        for trial in 0..count {
-            let field = HeightField::of(&mut draws, trial, sigma_m, length_m);
+        for _ in 0..count {
+            let field = HeightField::drawn(|| draw.unit(), sigma_m, length_m);
             let here = field.at(0.0, 0.0) / sigma_m;
             fourth += here.powi(4) / count as f64;
             for (sum, (x, y)) in sums.iter_mut().zip(places) {
@@ -83,11 +83,11 @@ mod tests {
 
     #[test]
     fn slopes_stay_within_what_the_correlation_length_allows() {
-        let mut draws = TrialDraws::seeded(4);
+        let mut draw = Draw::seeded(4);
         let step_m = 1e-4;
         let mean_square: f64 = (0..4000)
-            .map(|trial| {
-                let field = HeightField::of(&mut draws, trial, 2.0, 10.0);
+            .map(|_| {
+                let field = HeightField::drawn(|| draw.unit(), 2.0, 10.0);
                 ((field.at(7.0 + step_m, 1.0) - field.at(7.0, 1.0)) / step_m).powi(2) / 4000.0
             })
             .sum();

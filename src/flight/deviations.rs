@@ -43,10 +43,10 @@ pub struct Uncertainty {
 
 /// Why deviations make no sense.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("{}: {}", self.found(), self.help())]
 #[non_exhaustive]
 pub enum UncertaintyProblem {
     /// A deviation below zero, infinite or no number.
-    #[error("{what} is {found} {unit}, expected a finite number of at least 0: leave it out where there is no such error")]
     Negative {
         /// Which one, by its scenario key.
         what: &'static str,
@@ -56,29 +56,55 @@ pub enum UncertaintyProblem {
         unit: &'static str,
     },
     /// A correlation of nothing.
-    #[error(
-        "height_correlation_m is {found} m but height_sigma_m is 0: give height_sigma_m the deviation of the terrain's heights, \
-         or leave both out"
-    )]
     CorrelationWithoutHeight {
         /// The correlation length, m.
         found: f64,
     },
     /// Height errors that change from point to point without any likeness.
-    #[error(
-        "height_sigma_m is {sigma_m} m but height_correlation_m is 0: give height_correlation_m the distance in m over which the \
-         error stays alike"
-    )]
     HeightWithoutCorrelation {
         /// The deviation, m.
         sigma_m: f64,
     },
     /// A heading error where there is no heading.
-    #[error("heading_sigma_deg is {found_deg} deg on a chain, which has one plane of travel: simulate on a DEM, or leave it out")]
     HeadingOnChain {
         /// The deviation, degrees.
         found_deg: f64,
     },
+}
+
+impl UncertaintyProblem {
+    /// The key that it is about, in the table `uncertainty`.
+    pub const fn key(&self) -> &'static str {
+        match self {
+            Self::Negative { what, .. } => what,
+            Self::CorrelationWithoutHeight { .. } => "height_correlation_m",
+            Self::HeightWithoutCorrelation { .. } => "height_sigma_m",
+            Self::HeadingOnChain { .. } => "heading_sigma_deg",
+        }
+    }
+
+    /// What was found, in a sentence that begins with the key.
+    pub fn found(&self) -> String {
+        let key = self.key();
+        match self {
+            Self::Negative { found, unit, .. } => format!("{key} is {found} {unit}, expected a finite number of at least 0"),
+            Self::CorrelationWithoutHeight { found } => format!("{key} is {found} m but height_sigma_m is 0"),
+            Self::HeightWithoutCorrelation { sigma_m } => format!("{key} is {sigma_m} m but height_correlation_m is 0"),
+            Self::HeadingOnChain { found_deg } => format!("{key} is {found_deg} deg on a chain, which has one plane of travel"),
+        }
+    }
+
+    /// How to mend it.
+    pub const fn help(&self) -> &'static str {
+        match self {
+            Self::Negative { .. } => "leave it out where there is no such error",
+            Self::CorrelationWithoutHeight { .. } => {
+                "give height_sigma_m the deviation of the terrain's heights, or leave both out"
+            }
+            Self::HeightWithoutCorrelation { .. } => "give height_correlation_m the distance in m over which the error stays alike",
+            Self::HeadingOnChain { .. } => "simulate on a DEM, or leave it out",
+        }
+    }
 }
 
 impl Uncertainty {

@@ -75,17 +75,17 @@ impl NodeLattice {
     }
 
     /// How many blocks there are, down and across.
-    pub(super) fn blocks(&self) -> (usize, usize) {
+    pub(crate) fn blocks(&self) -> (usize, usize) {
         (self.rows.div_ceil(BLOCK), self.cols.div_ceil(BLOCK))
     }
 
     /// The block of a node, row after row.
-    pub(super) fn block_of(&self, node: Post) -> usize {
+    pub(crate) fn block_of(&self, node: Post) -> usize {
         (node.row / BLOCK) * self.blocks().1 + node.col / BLOCK
     }
 
     /// The nodes of a block, row after row.
-    pub(super) fn nodes_of(&self, block: usize) -> impl Iterator<Item = Post> + use<> {
+    pub(crate) fn nodes_of(&self, block: usize) -> impl Iterator<Item = Post> + use<> {
         let across = self.blocks().1;
         let (row, col) = (block / across * BLOCK, block % across * BLOCK);
         let cols = col..(col + BLOCK).min(self.cols);

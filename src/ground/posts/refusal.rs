@@ -2,11 +2,11 @@
 
 use std::fmt;
 
-use super::{OverlayTable, PostHops};
+use super::{Post, PostHops, overlays::OverlayTable};
 use crate::{
+    ground::DemGround,
     quantity::Angle,
-    reach::map::{MapRequest, lattice::Post},
-    world::{FrictionCone, Grip, RestSlope},
+    world::{FrictionCone, RestSlope},
 };
 
 /// Why no hop begins or ends at a post.
@@ -42,42 +42,35 @@ impl fmt::Display for PostRefusal {
 }
 
 /// The tangent of the steepest slope to rest on at a post; `None` where every slope holds.
-pub(super) fn rest_tangent(request: &MapRequest<'_>, overlays: Option<&OverlayTable>, post: usize) -> Option<f64> {
-    match request.surface.rest {
+pub(super) fn rest_tangent(ground: &DemGround, overlays: Option<&OverlayTable>, post: usize) -> Option<f64> {
+    match ground.surface().rest {
         RestSlope::AsFrictionHolds => {
-            overlays.and_then(|overlays| overlays.friction(post)).or(constant_friction(request).map(FrictionCone::coefficient))
+            overlays.and_then(|overlays| overlays.friction(post)).or(ground.constant_friction().map(FrictionCone::coefficient))
         }
         RestSlope::AtMost(angle) => Some(angle.slope()),
         RestSlope::Unlimited => None,
     }
 }
 
-/// Friction where no raster gives it.
-pub(super) fn constant_friction(request: &MapRequest<'_>) -> Option<FrictionCone> {
-    match request.surface.grip {
-        Some(Grip::Friction(cone)) => Some(cone),
-        Some(Grip::FromSlope { .. }) | None => None,
-    }
-}
-
-impl PostHops<'_> {
+impl PostHops {
     /// Why no hop begins or ends at a node in any direction; `None` where ground and zones allow some.
     pub fn refusal(&self, node: Post) -> Option<PostRefusal> {
         let post = self.lattice.post(node);
-        let place = self.request.dem.georeference().post(post.row, post.col);
-        if self.request.keep_out.is_some_and(|zones| zones.keeps_out(place)) {
+        let place = self.ground.terrain().dem().georeference().post(post.row, post.col);
+        if self.ground.terrain().overlays().keeps_out(place) {
             return Some(PostRefusal::KeptOut);
         }
         if self.usable(node) {
             return None;
         }
         let index = self.lattice.post_index(node);
+        let heights = self.heights();
         let mildest = (0..6)
-            .filter(|&facet| self.ground.has(index, facet))
-            .map(|facet| self.heights.gradient(index, facet))
+            .filter(|&facet| self.facets.has(index, facet))
+            .map(|facet| heights.gradient(index, facet))
             .map(|(east, north)| libm::hypot(east, north))
             .fold(f64::INFINITY, f64::min);
-        let rest = rest_tangent(&self.request, self.overlays.as_ref(), index);
+        let rest = rest_tangent(&self.ground, self.overlays.as_ref(), index);
         Some(match rest.filter(|_| mildest.is_finite()) {
             Some(rest) => PostRefusal::TooSteep { slope: Angle::from_slope(mildest), rest_slope: Angle::from_slope(rest) },
             None => PostRefusal::NoGround,
@@ -88,7 +81,7 @@ impl PostHops<'_> {
     pub fn nearest_usable(&self, node: Post) -> Option<Post> {
         let place = |node: Post| {
             let Post { row, col } = self.lattice.post(node);
-            self.request.dem.georeference().post(row, col)
+            self.ground.terrain().dem().georeference().post(row, col)
         };
         let away2 = |other: &Post| (place(*other) - place(node)).norm_squared();
         let usable = (0..self.lattice.count()).map(|index| self.lattice.node(index)).filter(|&other| self.usable(other));

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use super::lattice::Post;
 use crate::{
-    terrain::{Dem, FrictionRaster, KeepOut, MapBounds, Profile, ProfileFacet, ProfilePoint, TerrainError},
+    terrain::{Dem, MapBounds, OverlaidDem, Profile, ProfileFacet, ProfilePoint, TerrainError},
     world::FrictionCone,
 };
 
@@ -31,12 +31,9 @@ impl OverlayTable {
     ///
     /// # Errors
     /// [`TerrainError::Overlay`] where a mask ends before the terrain does, or there is neither friction nor a constant for it.
-    pub(super) fn new(
-        dem: &Dem,
-        friction: Option<&FrictionRaster>,
-        keep_out: Option<&KeepOut>,
-        constant: Option<FrictionCone>,
-    ) -> Result<Option<Self>, TerrainError> {
+    pub(super) fn new(terrain: &OverlaidDem, constant: Option<FrictionCone>) -> Result<Option<Self>, TerrainError> {
+        let (dem, overlays) = (terrain.dem(), terrain.overlays());
+        let (friction, keep_out) = (overlays.friction(), overlays.keep_out());
         if friction.is_none() && keep_out.is_none() {
             return Ok(None);
         }
@@ -45,12 +42,7 @@ impl OverlayTable {
             .into_par_iter()
             .map(|row| {
                 let mut line = level_row(dem, row);
-                if let Some(raster) = friction {
-                    raster.lay(&mut line, constant)?;
-                }
-                if let Some(zones) = keep_out {
-                    zones.mark(&mut line)?;
-                }
+                overlays.lay(&mut line, constant)?;
                 Ok(line)
             })
             .collect();

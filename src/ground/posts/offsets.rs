@@ -33,15 +33,15 @@ pub(super) struct Crossing {
 
 /// The offset from a node to another.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Offset {
+pub(crate) struct Offset {
     /// To the east and to the south, nodes.
-    pub(super) cols: i32,
-    pub(super) rows: i32,
+    pub(crate) cols: i32,
+    pub(crate) rows: i32,
     /// Steps among the DEM's elevations.
     pub(super) post_step: isize,
-    pub(super) run_m: f64,
+    pub(crate) run_m: f64,
     /// East and north, of length 1.
-    pub(super) heading: Vector2<f64>,
+    pub(crate) heading: Vector2<f64>,
     /// Its part of the table of crossings, which it shares with the opposite offset: that one meets the same places turned about the take-off.
     crossings: Range<usize>,
     /// 1 where steps lead as the table has them, -1 where they are turned.
@@ -55,15 +55,15 @@ pub(super) struct Offset {
 
 /// A lattice on which offsets are taken.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Spacing {
+pub(crate) struct Spacing {
     /// Posts, m.
-    pub(super) dx_m: f64,
-    pub(super) dy_m: f64,
+    pub(crate) dx_m: f64,
+    pub(crate) dy_m: f64,
     /// Posts from node to node.
-    pub(super) stride: usize,
+    pub(crate) stride: usize,
     /// Columns of nodes and of posts.
-    pub(super) node_cols: usize,
-    pub(super) post_cols: usize,
+    pub(crate) node_cols: usize,
+    pub(crate) post_cols: usize,
 }
 
 /// The vertices of the slice over `(columns, rows)` posts, without its ends, in the order of travel.
@@ -108,8 +108,8 @@ fn crossing(cols: i64, rows: i64, (number, count): (i64, i64), run_m: f64, post_
 
 /// Every offset within a range, nearest first, and the table of their crossings.
 #[derive(Clone, Debug, Default)]
-pub(super) struct OffsetTable {
-    pub(super) offsets: Vec<Offset>,
+pub(crate) struct OffsetTable {
+    pub(crate) offsets: Vec<Offset>,
     /// The steps among the nodes of all offsets, by themselves: a search runs down them far more often than it tests a pair.
     pub(super) node_steps: Vec<isize>,
     pub(super) crossings: Vec<Crossing>,
@@ -150,7 +150,7 @@ impl OffsetTable {
     }
 
     /// The table, where `rises_m` says which rises a distance allows (none: the offset is left out).
-    pub(super) fn new(spacing: Spacing, range_m: f64, bounds: (usize, usize), rises_m: impl Fn(f64) -> (f64, f64)) -> Self {
+    pub(crate) fn new(spacing: Spacing, range_m: f64, bounds: (usize, usize), rises_m: impl Fn(f64) -> (f64, f64)) -> Self {
         let mut found: Vec<(f64, i32, i32)> =
             Self::within(spacing, range_m, bounds).map(|(cols, rows)| (spacing.metres(cols, rows).norm(), rows, cols)).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));

@@ -8,6 +8,12 @@ use crate::terrain::{Dem, Samples};
 pub(super) struct Heights<'a> {
     samples: Samples<'a>,
     pub(super) cols: usize,
+    scale: &'a HeightScale,
+}
+
+/// What the heights of a DEM share: the spacing of its posts, and where the neighbours of a post stand among them.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HeightScale {
     /// One over the posts' spacing, 1/m: a quotient's last bit is worth less than a division.
     per_dx: f64,
     per_dy: f64,
@@ -30,12 +36,19 @@ pub(super) struct Walk {
     pub(super) most: f64,
 }
 
-impl<'a> Heights<'a> {
-    pub(super) fn of(dem: &'a Dem) -> Self {
+impl HeightScale {
+    pub(super) fn of(dem: &Dem) -> Self {
         let map = dem.georeference();
         let width = dem.cols().cast_signed();
         let corners = CORNERS.map(|facet| facet.map(|(east, south)| south as isize * width + east as isize));
-        Self { samples: dem.samples(), cols: dem.cols(), per_dx: 1.0 / map.dx_m(), per_dy: 1.0 / map.dy_m(), corners }
+        Self { per_dx: 1.0 / map.dx_m(), per_dy: 1.0 / map.dy_m(), corners }
+    }
+}
+
+impl<'a> Heights<'a> {
+    #[inline]
+    pub(super) fn of(dem: &'a Dem, scale: &'a HeightScale) -> Self {
+        Self { samples: dem.samples(), cols: dem.cols(), scale }
     }
 
     pub(super) fn rows(&self) -> usize {
@@ -66,8 +79,9 @@ impl<'a> Heights<'a> {
 
     #[inline]
     fn gradient_of<T: Copy + Into<f64>>(&self, heights: &[T], post: usize, facet: usize) -> (f64, f64) {
-        let [east, west, north, south] = self.corners[facet].map(|step| -> f64 { heights[post.wrapping_add_signed(step)].into() });
-        ((east - west) * self.per_dx, (north - south) * self.per_dy)
+        let [east, west, north, south] =
+            self.scale.corners[facet].map(|step| -> f64 { heights[post.wrapping_add_signed(step)].into() });
+        ((east - west) * self.scale.per_dx, (north - south) * self.scale.per_dy)
     }
 
     /// The least loft that clears all vertices on the way; `None` where that is more than the most allowed, or an elevation is missing.

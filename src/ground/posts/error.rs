@@ -1,31 +1,6 @@
-//! What a map is asked, and why there is none.
+//! Why the hops of a map cannot be computed.
 
-use std::error::Error;
-
-use crate::{
-    quantity::MapPoint,
-    terrain::{Dem, FrictionRaster, KeepOut, TerrainError},
-    world::{Hopper, Surface},
-};
-
-/// What a map is made of.
-#[derive(Clone, Copy, Debug)]
-pub struct MapRequest<'a> {
-    /// The terrain.
-    pub dem: &'a Dem,
-    /// Every so many posts is a node; at least 1. The terrain in the way is always the full DEM.
-    pub stride: usize,
-    /// The robot.
-    pub hopper: &'a Hopper,
-    /// What the ground allows.
-    pub surface: &'a Surface,
-    /// Gravity, m/s^2.
-    pub gravity_m_s2: f64,
-    /// Friction from a raster.
-    pub friction: Option<&'a FrictionRaster>,
-    /// Where nothing takes off and nothing lands.
-    pub keep_out: Option<&'a KeepOut>,
-}
+use crate::{ground::SliceProblem, quantity::MapPoint, terrain::TerrainError};
 
 /// Why there is no map.
 #[derive(Debug, thiserror::Error)]
@@ -50,12 +25,12 @@ pub enum MapError {
         /// Where it begins.
         at: MapPoint,
         /// Why not.
-        reason: Box<dyn Error + Send + Sync>,
+        reason: Box<SliceProblem>,
     },
     /// A hop that spans too many posts.
     #[error(
         "one hop reaches {range_m:.1} m, {posts:.0} posts, which makes {offsets} landings from every post, more than fit a table of 256 MiB \
-         (some 150 posts): give --stride {stride}, a coarser raster (gdalwarp -tr), or lower speed limits"
+         (some 150 posts): take a stride of {stride}, a coarser raster (gdalwarp -tr), or lower speed limits"
     )]
     TooFar {
         /// How far, m.
@@ -68,12 +43,12 @@ pub enum MapError {
         stride: usize,
     },
     /// More hops than the map's numbers hold.
-    #[error("a post is more than {most} hops away, expected fewer: give a greater --stride or higher speed limits")]
+    #[error("a post is more than {most} hops away, expected fewer: take a greater stride or higher speed limits")]
     TooManyHops {
         /// The most there are.
         most: i16,
     },
     /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer with --threads")]
+    #[error("the threads cannot be started ({0}): ask for fewer")]
     Threads(#[from] rayon::ThreadPoolBuildError),
 }

@@ -1,0 +1,229 @@
+//! The options that mend what the library reports: its sentences name keys and facts, and the command adds the options here.
+
+use std::{error::Error, path::Path};
+
+use chta::{
+    path::TooManyHops,
+    reach::{FanError, map::MapError},
+    report::FurtherMeans,
+    scenario::{PipelineError, ProblemKind, ScenarioProblem, TradeError},
+    terrain::{LonLat, ScaleMend, TerrainError},
+    uncertainty::SimulationError,
+};
+
+use super::help::takes;
+
+/// The sentence of an error, with the options that mend it.
+pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
+    match of_terrain(error) {
+        Some(TerrainError::MapScale { found, mend }) => map_scale(found, mend),
+        _ => format!("{error}{}", hint(error)),
+    }
+}
+
+/// Whether an error names this file by itself.
+pub(crate) fn names(error: &(dyn Error + 'static), file: &Path) -> bool {
+    let same = |path: &Path| path.file_name() == file.file_name();
+    match (of_terrain(error), error.downcast_ref()) {
+        (Some(TerrainError::InFile { path, .. } | TerrainError::Overlay { path, .. }), _)
+        | (_, Some(PipelineError::Read { path, .. })) => same(path),
+        // Their commands do.
+        (Some(TerrainError::MapScale { mend, .. }), _) => !matches!(mend, ScaleMend::Shorter { .. }),
+        _ => false,
+    }
+}
+
+/// What to add to the help of a scenario's problem.
+pub(crate) fn of_problem(problem: &ScenarioProblem) -> &'static str {
+    let ScenarioProblem { key, kind, .. } = problem;
+    match kind {
+        ProblemKind::Missing if key.is_one_of("body", &["gravity_m_s2"]) && takes("body") && takes("gravity-m-s2") => {
+            ", or use --body or --gravity-m-s2"
+        }
+        ProblemKind::Misplaced if key.is_one_of("surface", &["friction_raster", "keep_out"]) => ", as chta slice --scenario does",
+        ProblemKind::Misplaced if key.is_one_of("terrain", &["via_m", "via_lonlat_deg"]) => ", as chta slice --via does",
+        _ => "",
+    }
+}
+
+/// What can tell more than an answer does, by the options of the command that was called or else of another one.
+pub(crate) fn further_means() -> FurtherMeans<'static> {
+    FurtherMeans { budget: "--budget", proof: if takes("prove") { "--prove" } else { "chta check --prove" } }
+}
+
+/// The error of the terrain that another one passes on, or that it is.
+fn of_terrain<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a TerrainError> {
+    let of_map = || match error.downcast_ref() {
+        Some(MapError::Terrain(terrain)) => Some(terrain),
+        _ => None,
+    };
+    let of_fan = || match error.downcast_ref() {
+        Some(FanError::Terrain(terrain)) => Some(terrain),
+        _ => None,
+    };
+    match error.downcast_ref() {
+        Some(PipelineError::Terrain(terrain)) => Some(terrain),
+        _ => error.downcast_ref().or_else(of_map).or_else(of_fan),
+    }
+}
+
+/// What to add to the sentence of an error.
+fn hint(error: &(dyn Error + 'static)) -> String {
+    const THREADS: &str = " with --threads";
+    if let Some(mut terrain) = of_terrain(error) {
+        while let TerrainError::InFile { problem, .. } = terrain {
+            terrain = problem;
+        }
+        return match terrain {
+            TerrainError::NotProjected { .. } => {
+                "; the options for that: slice --from-lonlat and --to-lonlat, fan --from-lonlat, map --start-lonlat and --goal-lonlat"
+                    .to_owned()
+            }
+            _ => String::new(),
+        };
+    }
+    if error.is::<TooManyHops>() {
+        return ", or ask `chta check` for the count alone".to_owned();
+    }
+    match error.downcast_ref() {
+        Some(MapError::TooFar { stride, .. }) => return format!("; for that stride give --stride {stride}"),
+        Some(MapError::TooManyHops { .. }) => return "; a greater stride is given with --stride".to_owned(),
+        Some(MapError::Threads(_)) => return THREADS.to_owned(),
+        _ => {}
+    }
+    let threads = matches!(error.downcast_ref(), Some(FanError::Threads(_)))
+        || matches!(error.downcast_ref(), Some(TradeError::Threads(_)))
+        || matches!(error.downcast_ref(), Some(SimulationError::Threads(_)));
+    if threads { THREADS.to_owned() } else { String::new() }
+}
+
+/// What to do about a map whose scale is off.
+fn map_scale(found: &str, mend: &ScaleMend) -> String {
+    let place = |place: &LonLat| format!("{:.9},{:.9}", place.lon_deg, place.lat_deg);
+    let mend = match mend {
+        ScaleMend::AlongTransect { command, ends: [from, to] } => {
+            format!("{command}, then slice out.tif --from-lonlat {} --to-lonlat {}", place(from), place(to))
+        }
+        ScaleMend::AboutStart { command, start, true_within_m } => format!(
+            "{command}, then map out.tif --start-lonlat {} (a map about the start, which holds true {true_within_m} m to every side at \
+             most)",
+            place(start)
+        ),
+        ScaleMend::Shorter { .. } => mend.to_string(),
+    };
+    let accept = "terrain.accept_map_scale = true";
+    let accept = if takes("accept-map-scale") { format!("--accept-map-scale ({accept})") } else { accept.to_owned() };
+    format!("{found}, expected 1 within 1 %; mend it with: {mend}; or take it as it is with {accept}")
+}
+
+#[cfg(test)]
+mod tests {
+    use chta::scenario::{Entries, Scenario};
+    use clap::CommandFactory;
+
+    use super::*;
+    use crate::cli::{args::Args, help::offers};
+
+    /// Each option that a sentence names, with the command that it is of: the last one named before it, or the one that says it.
+    fn options<'a>(sentence: &'a str, saying: &'a str) -> Vec<(&'a str, &'a str)> {
+        let commands: Vec<String> = Args::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
+        let (mut command, mut found) = (saying, Vec::new());
+        for word in sentence.split(|c: char| !(c.is_ascii_alphanumeric() || c == '-')) {
+            if commands.iter().any(|name| name == word) {
+                command = word;
+            }
+            found.extend(word.strip_prefix("--").map(|option| (command, option)));
+        }
+        found
+    }
+
+    fn place() -> LonLat {
+        LonLat { lon_deg: 12.5, lat_deg: -3.25 }
+    }
+
+    fn problems(source: &str) -> Vec<ScenarioProblem> {
+        Scenario::new(Entries::from_toml(source)).unwrap_err()
+    }
+
+    #[test]
+    fn every_option_of_a_hint_exists() {
+        let no_threads = || {
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(2)
+                .spawn_handler(|_| Err(std::io::ErrorKind::Other.into()))
+                .build()
+                .unwrap_err()
+        };
+        let command = || "gdalwarp in.tif out.tif".to_owned();
+        let scale = |mend| TerrainError::MapScale { found: "the scale is 1.3".to_owned(), mend };
+        let not_projected = TerrainError::NotProjected { found: "degrees".to_owned(), mend: command() };
+        let in_file = TerrainError::InFile { path: "a.tif".into(), problem: Box::new(not_projected) };
+        let errors: [(&str, Box<dyn Error>, &str); 10] = [
+            ("map", Box::new(MapError::TooFar { range_m: 9.0, posts: 9.0, offsets: 9, stride: 4 }), "--stride 4"),
+            ("map", Box::new(MapError::TooManyHops { most: 9 }), "--stride"),
+            ("map", Box::new(MapError::from(no_threads())), "): ask for fewer with --threads"),
+            ("fan", Box::new(FanError::from(no_threads())), "): ask for fewer with --threads"),
+            ("trade", Box::new(TradeError::from(no_threads())), "): ask for fewer with --threads"),
+            ("simulate", Box::new(SimulationError::from(no_threads())), "): ask for fewer with --threads"),
+            ("plan", Box::new(TooManyHops { hops: 9 }), "`chta check`"),
+            ("plan", Box::new(PipelineError::from(in_file)), "map --start-lonlat"),
+            (
+                "slice",
+                Box::new(scale(ScaleMend::AlongTransect { command: command(), ends: [place(), place()] })),
+                "then slice out.tif --from-lonlat 12.500000000,-3.250000000 --to-lonlat 12.500000000,-3.250000000; or take it as it is \
+                 with --accept-map-scale (terrain.accept_map_scale = true)",
+            ),
+            (
+                "map",
+                Box::new(MapError::from(scale(ScaleMend::AboutStart { command: command(), start: place(), true_within_m: 9.0 }))),
+                "then map out.tif --start-lonlat 12.500000000,-3.250000000 (",
+            ),
+        ];
+        for (saying, error, part) in &errors {
+            let sentence = sentence(&**error);
+            assert!(sentence.contains(part), "{part:?} is not in {sentence}");
+            assert!(options(&error.to_string(), saying).is_empty(), "the library names options: {error}");
+            for (command, option) in options(&sentence, saying) {
+                // The name of a command may be a plain word of the sentence, such as hop.
+                assert!(offers(command, option) || offers(saying, option), "{command} has no --{option}: {sentence}");
+            }
+        }
+        assert!(!offers("slice", "body") && offers("slice", "via"), "the lookup tells options apart");
+    }
+
+    #[test]
+    fn problems_of_a_scenario_are_mended_by_options_that_exist() {
+        let on_chain =
+            "[body]\nname = \"mars\"\n[terrain]\nchain = \"a.csv\"\nvia_m = [[1, 2]]\n[surface]\nkeep_out = \"a.json\"\n";
+        let on_mesh =
+            "[body]\nname = \"mars\"\n[terrain]\nmesh = \"a.obj\"\nstart_m = [0, 0]\ngoal_m = [1, 1]\nvia_lonlat_deg = [[1, 2]]\n";
+        for (source, expected) in [
+            ("", vec![", or use --body or --gravity-m-s2"]),
+            (on_chain, vec![", as chta slice --via does", ", as chta slice --scenario does"]),
+            (on_mesh, vec![""]),
+        ] {
+            let hints: Vec<_> = problems(source).iter().map(of_problem).collect();
+            assert_eq!(hints, expected, "{source}");
+            for (command, option) in hints.iter().flat_map(|hint| options(hint, "plan")) {
+                assert!(offers(command, option), "{command} has no --{option}");
+            }
+        }
+        let FurtherMeans { budget, proof } = further_means();
+        for (command, option) in [budget, proof].into_iter().flat_map(|words| options(words, "check")) {
+            assert!(offers(command, option), "{command} has no --{option}");
+        }
+    }
+
+    #[test]
+    fn a_file_is_named_once() {
+        let file = Path::new("folder/a.tif");
+        let wrong = || Box::new(TerrainError::InvalidDem("one row".to_owned()));
+        let in_file = TerrainError::InFile { path: file.to_path_buf(), problem: wrong() };
+        assert!(names(&PipelineError::from(in_file), file));
+        assert!(!names(&*wrong(), file));
+        let cover = TerrainError::Overlay { what: "friction raster", path: "b.tif".into(), problem: "wrong".to_owned() };
+        assert!(!names(&cover, file));
+        let shorter = TerrainError::MapScale { found: "1.3".to_owned(), mend: ScaleMend::Shorter { longest_m: 9.0 } };
+        assert!(!names(&shorter, file) && sentence(&shorter).contains("shorter transects"));
+    }
+}

@@ -1,0 +1,132 @@
+//! A commanded hop as it is really flown.
+
+use nalgebra::Vector2;
+
+use super::{
+    Uncertainty,
+    draws::{HopDraws, TrialDraws, Wanted},
+};
+use crate::ground::{ContactFailure, FirstContact, HeightField, LiftoffVelocity, Realization, TouchdownState};
+
+/// A command, and the landing that it aims at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Command<C> {
+    pub(crate) liftoff: LiftoffVelocity,
+    pub(crate) speed_m_s: f64,
+    pub(crate) aim: C,
+}
+
+impl<C> Command<C> {
+    pub(crate) fn new(liftoff: LiftoffVelocity, aim: C) -> Self {
+        Self { liftoff, speed_m_s: libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s), aim }
+    }
+}
+
+/// The errors of a run, and which draws they use.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Errors {
+    uncertainty: Uncertainty,
+    wanted: Wanted,
+}
+
+/// What became of one hop.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FlownHop<C> {
+    /// The first contact, or the last position over known ground.
+    pub(crate) end: C,
+    /// Where the hopper rests; the end itself where a contact did not hold.
+    pub(crate) rest: C,
+    pub(crate) time_s: f64,
+    pub(crate) touchdown: TouchdownState,
+    /// Whether it met the ground.
+    pub(crate) landed: bool,
+    /// Why the hopper does not rest safely.
+    pub(crate) failure: Option<ContactFailure>,
+}
+
+impl Errors {
+    /// The errors of a run; `asks_position`: whether its policy asks the hopper where it believes to be.
+    pub(crate) fn new(uncertainty: Uncertainty, asks_position: bool) -> Self {
+        let u = &uncertainty;
+        let wanted = Wanted {
+            speed: u.takeoff_speed_sigma_m_s > 0.0 || u.takeoff_speed_sigma_fraction > 0.0,
+            direction: u.takeoff_angle_sigma.radians() > 0.0 || u.heading_sigma.radians() > 0.0,
+            drift: u.drift_along_sigma_m > 0.0 || u.drift_across_sigma_m > 0.0,
+            position: u.position_sigma_m > 0.0 && asks_position,
+        };
+        Self { uncertainty, wanted }
+    }
+
+    /// The draws of the next hop.
+    pub(crate) fn draw(&self, draws: &mut TrialDraws) -> HopDraws {
+        draws.hop(self.wanted)
+    }
+
+    /// The errors of the believed position, m: along and across, or east and north.
+    pub(crate) fn position_m(&self, draws: &HopDraws) -> [f64; 2] {
+        draws.position.map(|normal| self.uncertainty.position_sigma_m * normal)
+    }
+
+    /// The ground of a trial; `None` where every trial has the nominal one.
+    pub(crate) fn realization(&self, draws: &mut TrialDraws, trial: u64) -> Option<Realization> {
+        let u = &self.uncertainty;
+        let friction = if u.friction_sigma > 0.0 { u.friction_sigma * draws.friction(trial) } else { 0.0 };
+        let heights = (u.height_sigma_m > 0.0)
+            .then(|| Box::new(HeightField::drawn(draws.height_field(trial), u.height_sigma_m, u.height_correlation_m)));
+        (u.friction_sigma > 0.0 || heights.is_some()).then_some(Realization { friction, heights })
+    }
+
+    /// A commanded velocity with its errors: of speed first, then of elevation, then of heading.
+    pub(crate) fn liftoff(&self, liftoff: &LiftoffVelocity, speed_m_s: f64, draws: &HopDraws) -> LiftoffVelocity {
+        let u = &self.uncertainty;
+        let real_m_s =
+            speed_m_s * (1.0 + u.takeoff_speed_sigma_fraction * draws.speed[1]) + u.takeoff_speed_sigma_m_s * draws.speed[0];
+        let scale = if self.wanted.speed { real_m_s.max(0.0) / speed_m_s } else { 1.0 };
+        let (across, up) = (liftoff.horizontal_m_s * scale, liftoff.vertical_m_s * scale);
+        if !self.wanted.direction {
+            return LiftoffVelocity { heading: liftoff.heading, horizontal_m_s: across, vertical_m_s: up };
+        }
+        let (sine, cosine) = libm::sincos(u.takeoff_angle_sigma.radians() * draws.direction[0]);
+        let (across, up) = (across * cosine - up * sine, across * sine + up * cosine);
+        let mut heading = liftoff.heading;
+        if u.heading_sigma.radians() > 0.0 {
+            let (sine, cosine) = libm::sincos(u.heading_sigma.radians() * draws.direction[1]);
+            heading = Vector2::new(heading.x * cosine + heading.y * sine, heading.y * cosine - heading.x * sine);
+        }
+        // Beyond the vertical it flies the other way.
+        if across < 0.0 {
+            return LiftoffVelocity { heading: -heading, horizontal_m_s: -across, vertical_m_s: up };
+        }
+        LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: up }
+    }
+
+    /// Follows an arc to its first contact, checks the landing, and displaces the hopper by bounce and roll.
+    pub(crate) fn fly<G: FirstContact>(
+        &self,
+        ground: &G,
+        from: &G::Contact,
+        liftoff: &LiftoffVelocity,
+        aim: &G::Contact,
+        draws: &HopDraws,
+    ) -> FlownHop<G::Contact> {
+        let flight = ground.first_contact(from, liftoff, aim);
+        let touchdown = TouchdownState::after(liftoff, flight.time_s, ground.gravity_m_s2());
+        let u = &self.uncertainty;
+        let displacement_m = [u.drift_along_sigma_m * draws.drift[0], u.drift_across_sigma_m * draws.drift[1]];
+        let held = match &flight.support_facet {
+            // Nothing happens to a hopper that does not move.
+            _ if liftoff.stays() => Ok(()),
+            None => Err(ContactFailure::OffLimits),
+            Some(support_facet) => ground.check_landing(&flight.end, support_facet, &touchdown),
+        };
+        let rest = held.and_then(|()| ground.displaced(&flight.end, liftoff.heading, displacement_m[0], displacement_m[1]));
+        FlownHop {
+            end: flight.end,
+            rest: rest.unwrap_or(flight.end),
+            time_s: flight.time_s,
+            touchdown,
+            landed: flight.support_facet.is_some() || liftoff.stays(),
+            failure: rest.err(),
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! A chain as a ground: travel forward or in reverse along its one vertical plane.
+
+use std::ops::ControlFlow;
+
+use nalgebra::{Point3, Vector2};
+
+use super::{ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface};
+use crate::{
+    chain::{ConstrainedChain, SegmentConstraints, Site, Station},
+    quantity::VertexId,
+    world::{Contact, Direction, Hopper},
+};
+
+/// How far from the straight ground a point of a chain may lie, in units in the last place of its greatest height: two products, a
+/// quotient and a sum make a height inside a segment.
+const HEIGHT_ULPS: f64 = 4.0;
+
+/// The direction of travel of a heading along a chain.
+#[inline]
+pub(crate) fn direction_of(heading: Vector2<f64>) -> Direction {
+    if heading.x < 0.0 { Direction::Reverse } else { Direction::Forward }
+}
+
+/// The heading of a direction of travel along a chain.
+#[inline]
+pub(crate) fn heading_of(direction: Direction) -> Vector2<f64> {
+    Vector2::new(direction.sign(), 0.0)
+}
+
+/// The next vertex in a direction of travel; `None` at the chain's end.
+fn next_vertex(site: Site, direction: Direction, last: usize) -> Option<usize> {
+    match (site, direction) {
+        (Site::Vertex(v), Direction::Forward) => (v.index() < last).then(|| v.index() + 1),
+        (Site::Inside(s), Direction::Forward) => Some(s.index() + 1),
+        (Site::Vertex(v), Direction::Reverse) => v.index().checked_sub(1),
+        (Site::Inside(s), Direction::Reverse) => Some(s.index()),
+    }
+}
+
+/// What a segment is to a traveller.
+fn facet(segment: &SegmentConstraints, direction: Direction) -> Facet {
+    let contact = |contact| segment.check_contact(contact, direction);
+    let hold =
+        Hold::Stated { line: segment.stated(direction), takeoff: contact(Contact::Takeoff), landing: contact(Contact::Landing) };
+    Facet { refusal: segment.refusal(), hold }
+}
+
+impl Surface for ConstrainedChain {
+    type Contact = Station;
+
+    fn hopper(&self) -> &Hopper {
+        Self::hopper(self)
+    }
+
+    fn gravity_m_s2(&self) -> f64 {
+        self.gravity().m_s2()
+    }
+
+    fn contact_point(&self, station: &Station) -> ContactPoint {
+        let point = station.point;
+        let (at, frame) = match self.geometry().map_point(station) {
+            Some(map) => (Point3::new(map.x, map.y, point.z_m), Frame::Map),
+            None => (Point3::new(point.x_m, 0.0, point.z_m), Frame::Chain),
+        };
+        ContactPoint { along_m: point.x_m, point_m: at, frame, station: Some(*station) }
+    }
+
+    fn contact_at(&self, stated: &ContactPoint) -> Option<Station> {
+        self.geometry().station(stated.along_m).ok()
+    }
+
+    fn course(&self, from: &Station, to: &Station) -> Option<(f64, Vector2<f64>)> {
+        let direction = Direction::between(from.point.x_m, to.point.x_m)?;
+        Some(((to.point.x_m - from.point.x_m).abs(), heading_of(direction)))
+    }
+
+    fn walk(&self, from: &Station, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
+        let direction = direction_of(heading);
+        let (geometry, last) = (self.geometry(), self.geometry().segment_count());
+        // Close doubles subtract without error.
+        let distance_m = |x_m: f64| direction.sign() * (x_m - from.point.x_m);
+        let mut from_m = 0.0;
+        let mut from_z_m = from.point.z_m;
+        let mut next = next_vertex(from.site, direction, last);
+        while let Some(vertex) = next {
+            let point = geometry.vertices()[vertex];
+            let vertex = VertexId(vertex);
+            let element = Element {
+                from_m,
+                to_m: distance_m(point.x_m),
+                from_z_m,
+                to_z_m: point.z_m,
+                vertex: Some(ElementVertex { id: vertex, x_m: point.x_m }),
+                bends: geometry.bends().binary_search(&vertex).is_ok(),
+            };
+            if visit(&element).is_break() {
+                return;
+            }
+            (from_m, from_z_m) = (element.to_m, element.to_z_m);
+            next = next_vertex(Site::Vertex(vertex), direction, last);
+        }
+    }
+
+    fn facets(&self, at: &Station, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2] {
+        let direction = direction_of(heading);
+        // The segment ahead of a station is that of a take-off there, the one behind that of a landing.
+        let contact = match side {
+            Side::Ahead => Contact::Takeoff,
+            Side::Behind => Contact::Landing,
+        };
+        [self.ruling(at, contact, direction).map(|segment| facet(segment, direction)), None]
+    }
+
+    fn height_rounding_m(&self) -> f64 {
+        HEIGHT_ULPS * f64::EPSILON * self.geometry().vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max)
+    }
+
+    /// Stations are exact.
+    fn position_rounding_m(&self) -> f64 {
+        0.0
+    }
+
+    /// A station is at a vertex where its x is the same double; nothing snaps.
+    fn resolution_m(&self) -> f64 {
+        0.0
+    }
+}

@@ -1,0 +1,326 @@
+//! A DEM with its overlays as a ground: hops in any direction.
+
+use std::ops::ControlFlow;
+
+use nalgebra::{Vector2, Vector3};
+
+use super::{ContactPoint, Element, Facet, Frame, Hold, Realization, Side, Surface, TakeoffWindows, Windows};
+use crate::{
+    ballistics::{FlightEnvelope, LineOfSight, limits},
+    chain::{
+        ConstrainedChain, ConstraintProblem, ConstraintProblems, ContactRule, GroundForm, InvalidChain, PolygonalChain,
+        SegmentConstraints, SegmentGround, resolve_constraints,
+    },
+    hop::HopTest,
+    quantity::{ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
+    terrain::{OverlaidDem, Profile, ProfileFacet, TerrainError, Triangles},
+    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
+};
+
+/// How far before a landing, or beyond a take-off, friction and keep-out zones are looked up, m: a landing obeys the ground just flown
+/// over and a take-off the ground ahead, also where a border runs through the very position.
+pub(super) const BESIDE_M: f64 = 1e-6;
+
+/// Units in the last place that a height or a coordinate may be off.
+const ULPS: f64 = 4.0;
+
+/// Within so many post spacings a position is on a line of the lattice, as in [`slice`](crate::terrain::slice()).
+const ON_THE_LINE: f64 = 1.0e-9;
+
+/// A DEM with its overlays, the hopper, gravity, and what holds where the map says nothing: all that a hop between two map points
+/// depends on. A clone shares the terrain.
+#[derive(Clone, Debug)]
+pub struct DemGround {
+    terrain: OverlaidDem,
+    envelope: FlightEnvelope,
+    surface: SurfaceProperties,
+    height_rounding_m: f64,
+    position_rounding_m: f64,
+    resolution_m: f64,
+    /// How this ground differs from the map in one trial; default: not at all.
+    pub(super) realization: Realization,
+}
+
+/// A position on a map, and its height.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapPosition {
+    /// Easting and northing, m.
+    pub at: MapPoint,
+    /// Height, m.
+    pub z_m: f64,
+}
+
+/// The gradient of a facet: its slope towards east and north.
+pub(super) type Gradient = Vector2<f64>;
+
+/// Why a slice of a DEM makes no chain.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SliceProblem {
+    /// The terrain, or what lies over it.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    /// A slice that makes no chain.
+    #[error("the slice makes no chain: {0}")]
+    Chain(#[from] InvalidChain),
+    /// Segments without constraints.
+    #[error(transparent)]
+    Constraints(#[from] ConstraintProblems),
+}
+
+impl DemGround {
+    /// The ground of a DEM for a hopper under a gravity.
+    ///
+    /// `surface` holds where the friction raster gives nothing.
+    pub fn new(terrain: OverlaidDem, hopper: &Hopper, gravity: Gravity, surface: &SurfaceProperties) -> Self {
+        let dem = terrain.dem();
+        let (low_m, high_m) = dem.elevation_range_m();
+        let (bounds, map) = (dem.bounds(), dem.georeference());
+        let farthest_m = [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y].into_iter().map(f64::abs).fold(0.0, f64::max);
+        let position_rounding_m = ULPS * f64::EPSILON * farthest_m;
+        Self {
+            height_rounding_m: ULPS * f64::EPSILON * low_m.abs().max(high_m.abs()),
+            position_rounding_m,
+            resolution_m: 4.0 * (ON_THE_LINE * map.dx_m().min(map.dy_m())).max(position_rounding_m),
+            envelope: FlightEnvelope::new(hopper, gravity),
+            surface: *surface,
+            realization: Realization::default(),
+            terrain,
+        }
+    }
+
+    /// The terrain and what lies over it.
+    pub const fn terrain(&self) -> &OverlaidDem {
+        &self.terrain
+    }
+
+    /// The hopper under its gravity.
+    pub const fn envelope(&self) -> &FlightEnvelope {
+        &self.envelope
+    }
+
+    /// What holds where the map says nothing.
+    pub const fn surface(&self) -> &SurfaceProperties {
+        &self.surface
+    }
+
+    /// The friction where no raster gives it; `None` where the ground holds by angles from the slope, or not at all.
+    pub const fn constant_friction(&self) -> Option<FrictionCone> {
+        match self.surface.grip {
+            Some(Grip::Friction(cone)) => Some(cone),
+            Some(Grip::FromSlope { .. }) | None => None,
+        }
+    }
+
+    /// The slice from one map point to another, with the overlays and the constraints of every segment.
+    ///
+    /// # Errors
+    /// [`SliceProblem`].
+    pub fn chain(&self, from: MapPoint, to: MapPoint) -> Result<ConstrainedChain, SliceProblem> {
+        let constant = self.constant_friction();
+        self.constrained(&self.terrain.slice(from, to, constant)?)
+    }
+
+    /// The chain of a bare slice of this terrain: overlays laid over it, the constraints of every segment resolved.
+    ///
+    /// # Errors
+    /// [`SliceProblem`].
+    pub fn chain_of(&self, mut profile: Profile) -> Result<ConstrainedChain, SliceProblem> {
+        self.terrain.overlays().lay(&mut profile, self.constant_friction())?;
+        self.constrained(&profile)
+    }
+
+    fn constrained(&self, profile: &Profile) -> Result<ConstrainedChain, SliceProblem> {
+        let chain = PolygonalChain::from_profile(profile, self.constant_friction())?;
+        Ok(ConstrainedChain::new(chain, self.hopper(), self.envelope.gravity(), &self.surface)?)
+    }
+
+    pub(super) fn triangles(&self) -> Triangles<'_> {
+        Triangles::of(self.terrain.dem())
+    }
+
+    /// The position of the nominal ground at a map point; `None` where there is no ground.
+    pub fn position(&self, at: MapPoint) -> Option<MapPosition> {
+        let triangles = self.triangles();
+        triangles.at(at, triangles.nominal()).map(|(z_m, _)| MapPosition { at, z_m })
+    }
+
+    /// Whether a map point lies on the map, its border included.
+    pub fn covers(&self, at: MapPoint) -> bool {
+        self.triangles().covers(at)
+    }
+
+    /// The friction of the nominal ground; `None` where angles are stated instead.
+    pub(super) fn nominal_friction(&self, at: MapPoint) -> Option<FrictionCone> {
+        self.terrain.overlays().friction_at(at).or(self.constant_friction())
+    }
+
+    /// What the nominal ground allows on a facet met along a heading, as a slice along that heading has it.
+    fn constraints(
+        &self,
+        gradient: Gradient,
+        heading: Vector2<f64>,
+        beside: MapPoint,
+    ) -> Result<SegmentConstraints, ConstraintProblem> {
+        let friction = self.nominal_friction(beside);
+        let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
+        let keep_out = self.terrain.overlays().keeps_out(beside);
+        let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out };
+        resolve_constraints(SegmentId(0), gradient.dot(&heading), &ground, self.hopper(), &self.surface)
+    }
+
+    /// The rule of a contact on a facet met along a heading; `None` where the nominal ground refuses it.
+    fn allowed(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint, contact: Contact) -> Option<ContactRule> {
+        self.constraints(gradient, heading, beside).ok()?.allowed(contact, Direction::Forward).copied()
+    }
+
+    /// The feasible lofts of one hop by a walk over the triangles, without a slice: what replanning asks many times. `None` where there
+    /// are none.
+    ///
+    /// Equal to [`windows`](Windows::windows) but for rounding, and for a line along the edge of two facets, where it takes one of them.
+    pub(crate) fn lofts_by_walk(
+        &self,
+        from: &MapPosition,
+        to: &MapPosition,
+        sight: LineOfSight,
+        heading: Vector2<f64>,
+    ) -> Option<SlopeInterval> {
+        let triangles = self.triangles();
+        let nominal = triangles.nominal();
+        let (ahead, before) = (from.at + heading * BESIDE_M, to.at - heading * BESIDE_M);
+        let takeoff = self.allowed(triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
+        let landing = self.allowed(triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
+        let mut lofts = self.envelope.lofts(sight, takeoff.contact_limits(), landing.contact_limits());
+        if lofts.is_empty() || lofts.upper <= 0.0 {
+            return None;
+        }
+        let end_m = sight.run_m() - self.position_rounding_m - BESIDE_M;
+        let clearance_m = self.hopper().limits().clearance_m;
+        let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(sight.run_m(), to.z_m));
+        let mut reached_m = 0.0;
+        for span in triangles.walk(from.at, heading, nominal) {
+            reached_m = span.to_m;
+            if reached_m >= end_m {
+                break;
+            }
+            if reached_m > BESIDE_M {
+                let crossing = ChainPoint::new(span.to_m, span.to_z_m);
+                lofts.lower = lofts.lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance_m));
+                if lofts.is_empty() {
+                    return None;
+                }
+            }
+        }
+        // A walk that ends before has met no-data.
+        (reached_m >= end_m).then_some(lofts)
+    }
+
+    /// The facet of a gradient as the checker sees it along a heading.
+    fn facet(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint) -> Option<Facet> {
+        let constraints = self.constraints(gradient, heading, beside).ok()?;
+        let hold = match self.nominal_friction(beside) {
+            Some(cone) => Hold::Friction { normal: Vector3::new(-gradient.x, -gradient.y, 1.0).normalize(), cone },
+            None => Hold::Stated {
+                line: constraints.stated(Direction::Forward),
+                takeoff: constraints.check_contact(Contact::Takeoff, Direction::Forward),
+                landing: constraints.check_contact(Contact::Landing, Direction::Forward),
+            },
+        };
+        Some(Facet { refusal: constraints.refusal(), hold })
+    }
+}
+
+impl Surface for DemGround {
+    type Contact = MapPosition;
+
+    fn hopper(&self) -> &Hopper {
+        self.envelope.hopper()
+    }
+
+    fn gravity_m_s2(&self) -> f64 {
+        self.envelope.gravity_m_s2()
+    }
+
+    /// A map point has no distance along a journey: that is 0.
+    fn contact_point(&self, position: &MapPosition) -> ContactPoint {
+        ContactPoint::on_map(0.0, position.at, position.z_m)
+    }
+
+    fn contact_at(&self, stated: &ContactPoint) -> Option<MapPosition> {
+        match stated.frame {
+            Frame::Map => self.position(stated.point_m.xy()),
+            Frame::Chain => None,
+        }
+    }
+
+    fn course(&self, from: &MapPosition, to: &MapPosition) -> Option<(f64, Vector2<f64>)> {
+        let away = to.at - from.at;
+        let run_m = libm::hypot(away.x, away.y);
+        (run_m > self.position_rounding_m).then(|| (run_m, away / run_m))
+    }
+
+    fn walk(&self, from: &MapPosition, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
+        let triangles = self.triangles();
+        let mut begin: Option<(f64, f64)> = Some((0.0, from.z_m));
+        for span in triangles.walk(from.at, heading, triangles.nominal()) {
+            let (from_m, from_z_m) = begin.unwrap_or((span.from_m, span.from_z_m));
+            // A sliver next to a line of the lattice is part of the element after it.
+            if span.to_m - from_m <= self.resolution_m {
+                begin = Some((from_m, from_z_m));
+                continue;
+            }
+            begin = None;
+            let (to_m, to_z_m) = (span.to_m, span.to_z_m);
+            if visit(&Element { from_m, to_m, from_z_m, to_z_m, vertex: None, bends: false }).is_break() {
+                return;
+            }
+        }
+    }
+
+    fn facets(&self, at: &MapPosition, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2] {
+        let triangles = self.triangles();
+        let beside = match side {
+            Side::Ahead => at.at + heading * BESIDE_M,
+            Side::Behind => at.at - heading * BESIDE_M,
+        };
+        // On both sides of the line, farther off it than the lattice's own tolerance.
+        let across = Vector2::new(-heading.y, heading.x) * self.resolution_m;
+        let gradients = [beside + across, beside - across].map(|point| triangles.at(point, triangles.nominal()).map(|(_, g)| g));
+        let [left, right] = gradients;
+        let right = right.filter(|right| left != Some(*right));
+        [left, right].map(|gradient| gradient.and_then(|gradient| self.facet(gradient, heading, beside)))
+    }
+
+    fn height_rounding_m(&self) -> f64 {
+        self.height_rounding_m
+    }
+
+    fn position_rounding_m(&self) -> f64 {
+        self.position_rounding_m
+    }
+
+    fn resolution_m(&self) -> f64 {
+        self.resolution_m
+    }
+}
+
+impl Windows for DemGround {
+    /// By the slice between the two positions and the hop test on it: one window at most.
+    fn windows(&self, takeoff: &MapPosition, landing: &MapPosition) -> Option<TakeoffWindows> {
+        let test = HopTest::new(self.chain(takeoff.at, landing.at).ok()?);
+        let geometry = test.chain().geometry();
+        let (start, end) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
+        let sight = test.line_of_sight(&start, &end)?;
+        Some(TakeoffWindows { sight, lofts: test.lofts(&start, &end).into_iter().collect() })
+    }
+}
+
+/// Whether a facet of a gradient holds the hopper at rest, up to rounding; `friction` is its coefficient, where it has one.
+pub(super) fn rests(rest: RestSlope, gradient: Gradient, friction: Option<f64>, tolerance_rad: f64) -> bool {
+    let max = match rest {
+        RestSlope::AsFrictionHolds => friction,
+        RestSlope::AtMost(angle) => Some(angle.slope()),
+        RestSlope::Unlimited => None,
+    };
+    max.is_none_or(|max| gradient.norm() <= max + tolerance_rad * (1.0 + max * max))
+}

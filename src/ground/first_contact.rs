@@ -1,0 +1,189 @@
+//! Where an arc first meets the ground, and whether the ground holds the hopper there.
+
+use nalgebra::{Point3, Vector2};
+
+use super::{HeightField, Surface};
+use crate::{
+    chain::{ContactRule, GroundRefusal},
+    world::tolerant_speed_m_s,
+};
+
+/// The velocity at which a hop really leaves the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LiftoffVelocity {
+    /// Direction on the map (east, north), of length 1; on a chain (1, 0) or (-1, 0).
+    pub heading: Vector2<f64>,
+    /// Horizontal speed, not negative, m/s.
+    pub horizontal_m_s: f64,
+    /// Vertical speed, m/s.
+    pub vertical_m_s: f64,
+}
+
+impl LiftoffVelocity {
+    /// Whether the speed is zero: the hopper stays where it is.
+    pub fn stays(&self) -> bool {
+        self.horizontal_m_s == 0.0 && self.vertical_m_s == 0.0
+    }
+}
+
+/// How one flight ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Flight<C, F> {
+    /// The first contact, or the last position over known ground.
+    pub end: C,
+    /// The facet met there; `None` where the flight leaves the known ground.
+    pub support_facet: Option<F>,
+    /// Time of flight, s.
+    pub time_s: f64,
+}
+
+/// The realization of the uncertain ground in one trial: how it differs from the map.
+#[derive(Clone, Debug, Default)]
+pub struct Realization {
+    /// Added to every friction coefficient.
+    pub friction: f64,
+    /// Added to every height.
+    pub heights: Option<Box<HeightField>>,
+}
+
+/// Why a contact does not hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactFailure {
+    /// The direction lies outside the cone, or the surface is too steep to rest on.
+    Slides,
+    /// The landing is faster than its limit.
+    TooFast,
+    /// The contact lies in a keep-out zone, or where no ground is known.
+    OffLimits,
+}
+
+/// Ground over which an arc can be followed to its first contact: the nominal ground, or a realization of it.
+pub trait FirstContact: Surface + Clone + Send + Sync {
+    /// The facet that supports a landing.
+    type SupportFacet: Copy;
+
+    /// Makes it the ground of another trial.
+    fn realize(&mut self, realization: Realization);
+
+    /// A position of the plan on the realized ground.
+    fn realized(&self, planned: Self::Contact) -> Self::Contact;
+
+    /// The coordinates of a position of this ground: x along a chain, y to its left, z up; easting, northing and z on a map.
+    fn point(&self, position: &Self::Contact) -> Point3<f64>;
+
+    /// Whether the ground holds a take-off with this velocity.
+    fn holds_takeoff(&self, from: &Self::Contact, liftoff: &LiftoffVelocity) -> bool;
+
+    /// The first contact of an arc. An arc that passes its aim as closely as rounding allows lands on it.
+    fn first_contact(
+        &self,
+        from: &Self::Contact,
+        liftoff: &LiftoffVelocity,
+        aim: &Self::Contact,
+    ) -> Flight<Self::Contact, Self::SupportFacet>;
+
+    /// Whether the ground holds a landing.
+    fn check_landing(
+        &self,
+        end: &Self::Contact,
+        support_facet: &Self::SupportFacet,
+        touchdown: &TouchdownState,
+    ) -> Result<(), ContactFailure>;
+
+    /// Where the hopper comes to rest after a bounce-and-roll displacement along and to the left of its heading.
+    fn displaced(
+        &self,
+        from: &Self::Contact,
+        heading: Vector2<f64>,
+        along_m: f64,
+        left_m: f64,
+    ) -> Result<Self::Contact, ContactFailure>;
+
+    /// The position of the nominal ground that the hopper believes to be at, for these errors of position; `None` where there is no
+    /// ground.
+    fn believed(&self, position: &Self::Contact, along_m: f64, across_m: f64) -> Option<Self::Contact>;
+}
+
+/// How far rounding may carry a flight from its place, as a share of its size: the tolerance of `path::execute`, for the same reasons.
+pub(super) const PLACE_TOLERANCE: f64 = 1e-12;
+
+/// How far a direction may lie over its limit, rad, as in `path::execute`: a tangent and its arc tangent on the way from a limit to a
+/// command leave some 1e-15.
+pub(super) const ANGLE_TOLERANCE_RAD: f64 = 1e-9;
+
+/// What may be lost of a speed by the formulas that gave it, as a share.
+const SPEED_ROUNDING: f64 = 1e-12;
+
+/// The state of the robot at touchdown.
+#[derive(Clone, Copy, Debug)]
+pub struct TouchdownState {
+    /// Direction on the map (east, north), of length 1; on a chain (1, 0) or (-1, 0).
+    pub heading: Vector2<f64>,
+    /// Horizontal speed, m/s.
+    pub horizontal_m_s: f64,
+    /// Vertical speed, negative on the way down, m/s.
+    pub vertical_m_s: f64,
+    /// Speed, m/s.
+    pub speed_m_s: f64,
+    /// How uncertain rounding leaves the direction, rad.
+    pub angle_tolerance_rad: f64,
+    speed_tolerance_m_s: f64,
+}
+
+impl TouchdownState {
+    /// After so much time of flight under gravity.
+    pub fn after(liftoff: &LiftoffVelocity, time_s: f64, gravity_m_s2: f64) -> Self {
+        let vertical_m_s = liftoff.vertical_m_s - gravity_m_s2 * time_s;
+        let (across, up) = (liftoff.horizontal_m_s, vertical_m_s);
+        let speed_m_s = (across * across + up * up).sqrt();
+        // A place uncertain by e turns the direction by e g v_x / v^3 and changes the speed by e g v_z / v^2.
+        let size_m = across * time_s + liftoff.vertical_m_s.abs() * time_s;
+        let along_s = PLACE_TOLERANCE * size_m * gravity_m_s2 / (speed_m_s * speed_m_s);
+        let uncertain = if along_s.is_finite() { along_s } else { 0.0 };
+        Self {
+            heading: liftoff.heading,
+            horizontal_m_s: across,
+            vertical_m_s,
+            speed_m_s,
+            angle_tolerance_rad: ANGLE_TOLERANCE_RAD + if speed_m_s > 0.0 { uncertain * across / speed_m_s } else { 0.0 },
+            speed_tolerance_m_s: SPEED_ROUNDING * speed_m_s + uncertain * up.abs(),
+        }
+    }
+
+    /// Whether it is faster than a limit allows.
+    pub fn is_over(&self, speed_max_m_s: f64) -> bool {
+        self.speed_m_s > tolerant_speed_m_s(speed_max_m_s) + self.speed_tolerance_m_s
+    }
+}
+
+/// Whether a direction lies within the slopes of a rule; straight up or down is infinite.
+pub(super) fn within(rule: &ContactRule, horizontal_m_s: f64, vertical_m_s: f64, tolerance_rad: f64) -> bool {
+    let slope = vertical_m_s / horizontal_m_s;
+    if !slope.is_finite() {
+        return rule.slopes().contains(if vertical_m_s > 0.0 { f64::INFINITY } else { f64::NEG_INFINITY });
+    }
+    let tolerance = tolerance_rad * (1.0 + slope * slope);
+    rule.slopes().lower - tolerance <= slope && slope <= rule.slopes().upper + tolerance
+}
+
+/// Whether a rule, or what the ground says instead, holds a take-off.
+pub(super) fn holds(rule: Result<ContactRule, GroundRefusal>, liftoff: &LiftoffVelocity) -> bool {
+    rule.is_ok_and(|rule| within(&rule, liftoff.horizontal_m_s, liftoff.vertical_m_s, ANGLE_TOLERANCE_RAD))
+}
+
+/// Whether a landing holds under a rule, or what the ground says instead.
+pub(super) fn check_landing(
+    rule: Result<ContactRule, GroundRefusal>,
+    landing_speed_max_m_s: f64,
+    touchdown: &TouchdownState,
+) -> Result<(), ContactFailure> {
+    match rule {
+        Err(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
+        Err(GroundRefusal::SpeedZero) => Err(ContactFailure::TooFast),
+        Err(_) if touchdown.is_over(landing_speed_max_m_s) => Err(ContactFailure::TooFast),
+        Err(_) => Err(ContactFailure::Slides),
+        Ok(rule) if touchdown.is_over(rule.speed_max_m_s()) => Err(ContactFailure::TooFast),
+        Ok(rule) if within(&rule, touchdown.horizontal_m_s, touchdown.vertical_m_s, touchdown.angle_tolerance_rad) => Ok(()),
+        Ok(_) => Err(ContactFailure::Slides),
+    }
+}

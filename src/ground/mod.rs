@@ -1,0 +1,30 @@
+//! The ground under a hop: chains, and DEMs with their overlays, under the same three traits.
+//!
+//! ```text
+//!   Surface        raw facts: contacts, elements under a line of travel, facets, normals, friction, zones
+//!   Windows        feasible take-off windows between two contacts, in closed form
+//!   FirstContact   where an arc comes down, and whether the ground holds the hopper there
+//! ```
+//!
+//! The independent checker uses [`Surface`] alone; planners ask [`Windows`], or a fast form of it that gives the same answer; trials
+//! follow arcs with [`FirstContact`].
+
+mod chain;
+mod chain_flight;
+mod dem;
+mod dem_flight;
+mod first_contact;
+mod height_field;
+mod posts;
+mod surface;
+
+pub(crate) use chain::heading_of;
+pub use chain_flight::{ChainGround, ChainPosition};
+pub use dem::{DemGround, MapPosition, SliceProblem};
+pub use first_contact::{ContactFailure, FirstContact, Flight, LiftoffVelocity, Realization, TouchdownState};
+pub use height_field::HeightField;
+pub(crate) use posts::Offset;
+pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostRefusal};
+#[cfg(test)]
+pub(crate) use posts::{OffsetTable, Spacing};
+pub use surface::{ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Windows};

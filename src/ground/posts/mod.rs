@@ -1,0 +1,21 @@
+//! All single hops between the posts of a DEM, fast: the answer is that of [`Windows`](super::Windows) on the same two posts.
+
+mod error;
+mod exact;
+mod facet_table;
+mod facets;
+mod lattice;
+mod offsets;
+mod overlays;
+mod post_hops;
+mod reach;
+mod refusal;
+mod samples;
+
+pub use error::MapError;
+pub use lattice::{NodeLattice, Post};
+pub(crate) use offsets::Offset;
+#[cfg(test)]
+pub(crate) use offsets::{OffsetTable, Spacing};
+pub use post_hops::{Lofts, PostHops};
+pub use refusal::PostRefusal;

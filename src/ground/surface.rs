@@ -1,0 +1,196 @@
+//! The raw facts of a ground, whatever its kind.
+
+use std::{fmt, ops::ControlFlow};
+
+use nalgebra::{Point3, Vector2, Vector3};
+
+use crate::{
+    chain::{ContactRule, GroundRefusal, LineConstraints, Station},
+    quantity::{ChainPoint, MapPoint, VertexId},
+    world::{Contact, FrictionCone, Hopper},
+};
+
+/// The coordinates that a [`ContactPoint`] is given in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Frame {
+    /// The plane of a chain that lies on no map: x along the chain, y = 0, z up.
+    Chain,
+    /// A map: easting, northing, z up.
+    Map,
+}
+
+/// Where a hop takes off or lands: a point in three dimensions, its distance along the journey, and its station where there is a chain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// Distance along the journey's profile, m: the chain's own x, or from the start along the unrolled path.
+    pub along_m: f64,
+    /// The point, m.
+    pub point_m: Point3<f64>,
+    /// The coordinates of `point_m`.
+    pub frame: Frame,
+    /// The station of a chain.
+    pub station: Option<Station>,
+}
+
+impl ContactPoint {
+    /// A point of a map, at a distance along the journey.
+    pub fn on_map(along_m: f64, at: MapPoint, z_m: f64) -> Self {
+        Self { along_m, point_m: Point3::new(at.x, at.y, z_m), frame: Frame::Map, station: None }
+    }
+
+    /// The point in the journey's profile: distance along it, and height.
+    pub fn in_profile(&self) -> ChainPoint {
+        ChainPoint::new(self.along_m, self.point_m.z)
+    }
+
+    /// The point on the map; `None` where the chain lies on no map.
+    pub fn map(&self) -> Option<MapPoint> {
+        match self.frame {
+            Frame::Map => Some(self.point_m.xy()),
+            Frame::Chain => None,
+        }
+    }
+}
+
+/// A side of a contact along a line of travel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Side {
+    /// The ground just beyond it.
+    Ahead,
+    /// The ground just before it.
+    Behind,
+}
+
+/// How a facet keeps a hopper from sliding.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Hold {
+    /// Coulomb friction on a facet of this upward normal of length 1: a force within the cone about the normal does not slide.
+    Friction {
+        /// The normal.
+        normal: Vector3<f64>,
+        /// The cone.
+        cone: FrictionCone,
+    },
+    /// Elevations stated for the direction of travel.
+    Stated {
+        /// The line constraints as stated; `None` where the ground states none for this direction.
+        line: Option<LineConstraints>,
+        /// The rule of a take-off, or why the ground refuses it whatever the hop.
+        takeoff: Result<ContactRule, GroundRefusal>,
+        /// The same for a landing.
+        landing: Result<ContactRule, GroundRefusal>,
+    },
+}
+
+impl Hold {
+    /// What is stated of one of the two contacts; `Ok(None)` under friction.
+    pub(crate) fn stated(&self, contact: Contact) -> Option<Result<ContactRule, GroundRefusal>> {
+        match (self, contact) {
+            (Self::Friction { .. }, _) => None,
+            (Self::Stated { takeoff, .. }, Contact::Takeoff) => Some(*takeoff),
+            (Self::Stated { landing, .. }, Contact::Landing) => Some(*landing),
+        }
+    }
+}
+
+/// One facet under a line of travel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet {
+    /// Why nothing takes off or lands here, whatever the hop: a keep-out zone, or too steep to rest on.
+    pub refusal: Option<GroundRefusal>,
+    /// How it holds the hopper.
+    pub hold: Hold,
+}
+
+/// Straight ground under a part of a line of travel.
+///
+/// ```text
+///   z                 to
+///   |            . - '            from_m, to_m: horizontal distances from the take-off, along the line
+///   |   from . '
+///   +------------------> distance
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element {
+    /// Where it begins, m from the take-off.
+    pub from_m: f64,
+    /// Where it ends, m from the take-off.
+    pub to_m: f64,
+    /// Height of the ground where it begins, m.
+    pub from_z_m: f64,
+    /// Height of the ground where it ends, m.
+    pub to_z_m: f64,
+    /// The chain's vertex at its end.
+    pub vertex: Option<ElementVertex>,
+    /// Whether the vertical plane of travel turns at its end.
+    pub bends: bool,
+}
+
+/// A vertex of a chain at the end of an element.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ElementVertex {
+    /// Which one.
+    pub id: VertexId,
+    /// Its x, m.
+    pub x_m: f64,
+}
+
+/// A ground: where contacts are, and what lies under a straight line of travel from one of them.
+///
+/// These are facts without any equation of motion, so that the independent checker ([`crate::path::execute()`]) may use them.
+/// [`ConstrainedChain`](crate::chain::ConstrainedChain) and [`DemGround`](super::DemGround) implement it; a further kind of ground (a
+/// mesh, stances of legs) is one more implementation.
+pub trait Surface {
+    /// A contact with this ground: a station of a chain, a point of a map.
+    type Contact: Copy + PartialEq + fmt::Debug + Send + Sync;
+
+    /// The hopper that the question is asked for.
+    fn hopper(&self) -> &Hopper;
+
+    /// Gravity, m/s^2.
+    fn gravity_m_s2(&self) -> f64;
+
+    /// Where a contact is.
+    fn contact_point(&self, contact: &Self::Contact) -> ContactPoint;
+
+    /// This ground's own contact at the horizontal position of a stated point; `None` where there is no ground.
+    fn contact_at(&self, stated: &ContactPoint) -> Option<Self::Contact>;
+
+    /// Horizontal distance from one contact to another, m, and the unit direction of travel (east and north on a map; (1, 0) or (-1, 0)
+    /// along a chain); `None` where one lies above the other.
+    fn course(&self, from: &Self::Contact, to: &Self::Contact) -> Option<(f64, Vector2<f64>)>;
+
+    /// Visits the ground under a line of travel from a contact, element by element, until the visitor breaks or the known ground ends.
+    ///
+    /// The elements touch; the first begins at the contact.
+    fn walk(&self, from: &Self::Contact, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>);
+
+    /// The facets under a line of travel next to a contact: the one that the line meets, or both where it runs along their common edge.
+    fn facets(&self, at: &Self::Contact, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2];
+
+    /// How far a height of this ground may be off by rounding, m.
+    fn height_rounding_m(&self) -> f64;
+
+    /// How far a horizontal position may be off by rounding, m.
+    fn position_rounding_m(&self) -> f64;
+
+    /// Positions closer than this are one position, m: shorter elements carry no information.
+    fn resolution_m(&self) -> f64;
+}
+
+/// The feasible take-off windows between two contacts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TakeoffWindows {
+    /// The line of sight that they are stated over.
+    pub sight: crate::ballistics::LineOfSight,
+    /// Intervals of the loft `n = m - b`, ascending and disjoint; empty where no arc is feasible. Over a ground without overhangs
+    /// there is at most one.
+    pub lofts: Vec<crate::quantity::SlopeInterval>,
+}
+
+/// Ground that knows every feasible arc between two contacts, in closed form.
+pub trait Windows: Surface {
+    /// The feasible take-off windows of one hop; `None` where no arc joins the two contacts at all: one above the other, or no ground in
+    /// between.
+    fn windows(&self, takeoff: &Self::Contact, landing: &Self::Contact) -> Option<TakeoffWindows>;
+}

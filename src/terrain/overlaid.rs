@@ -1,0 +1,110 @@
+//! A DEM together with its overlays: friction by place, and zones where nothing takes off or lands.
+
+use std::sync::Arc;
+
+use super::{Dem, FrictionRaster, KeepOut, Profile, TerrainError, slice};
+use crate::{quantity::MapPoint, world::FrictionCone};
+
+/// What lies over a terrain: a friction raster and keep-out zones, either or both absent.
+#[derive(Clone, Debug, Default)]
+pub struct Overlays {
+    friction: Option<FrictionRaster>,
+    keep_out: Option<KeepOut>,
+}
+
+/// Which overlays have an effect on a profile.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OverlayEffect {
+    /// The raster gives the friction of a part of it.
+    pub friction: bool,
+    /// A part of it lies in a zone.
+    pub keep_out: bool,
+}
+
+impl Overlays {
+    /// From a friction raster and keep-out zones.
+    pub const fn new(friction: Option<FrictionRaster>, keep_out: Option<KeepOut>) -> Self {
+        Self { friction, keep_out }
+    }
+
+    /// The friction raster.
+    pub const fn friction(&self) -> Option<&FrictionRaster> {
+        self.friction.as_ref()
+    }
+
+    /// The keep-out zones.
+    pub const fn keep_out(&self) -> Option<&KeepOut> {
+        self.keep_out.as_ref()
+    }
+
+    /// Lays both over a profile: friction and zones of its facets, with further points where their borders cross it.
+    ///
+    /// `constant` is the friction where the raster has no data.
+    ///
+    /// # Errors
+    /// [`TerrainError::Overlay`] where a mask ends before the profile does, or a part of the profile is left without friction.
+    pub fn lay(&self, profile: &mut Profile, constant: Option<FrictionCone>) -> Result<OverlayEffect, TerrainError> {
+        let mut effect = OverlayEffect::default();
+        if let Some(raster) = &self.friction {
+            effect.friction = raster.lay(profile, constant)?;
+        }
+        if let Some(zones) = &self.keep_out {
+            effect.keep_out = zones.mark(profile)?;
+        }
+        Ok(effect)
+    }
+
+    /// The friction that the raster gives a place; `None` without a raster and where it has no data.
+    pub fn friction_at(&self, at: MapPoint) -> Option<FrictionCone> {
+        self.friction.as_ref().and_then(|raster| raster.at(at))
+    }
+
+    /// Whether a place lies in a keep-out zone.
+    pub fn keeps_out(&self, at: MapPoint) -> bool {
+        self.keep_out.as_ref().is_some_and(|zones| zones.keeps_out(at))
+    }
+}
+
+/// A DEM and its overlays as one value. A clone shares both.
+///
+/// # Examples
+/// ```
+/// use chta::{quantity::MapPoint, terrain::{Dem, GeoReference, OverlaidDem, Overlays}};
+/// let plain = Dem::new(2, 2, vec![5.0; 4], GeoReference::local(MapPoint::new(0.0, 1.0), 1.0, 1.0)?)?;
+/// let terrain = OverlaidDem::new(plain, Overlays::default());
+/// let profile = terrain.slice(MapPoint::new(0.0, 0.0), MapPoint::new(1.0, 0.0), None)?;
+/// assert_eq!(profile.length_m(), 1.0);
+/// # Ok::<(), chta::terrain::TerrainError>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct OverlaidDem {
+    dem: Arc<Dem>,
+    overlays: Arc<Overlays>,
+}
+
+impl OverlaidDem {
+    /// A DEM with what lies over it.
+    pub fn new(dem: impl Into<Arc<Dem>>, overlays: impl Into<Arc<Overlays>>) -> Self {
+        Self { dem: dem.into(), overlays: overlays.into() }
+    }
+
+    /// The elevations.
+    pub fn dem(&self) -> &Dem {
+        &self.dem
+    }
+
+    /// What lies over them.
+    pub fn overlays(&self) -> &Overlays {
+        &self.overlays
+    }
+
+    /// The slice from one map point to another with the overlays laid over it; `constant` is the friction where no raster gives any.
+    ///
+    /// # Errors
+    /// As [`slice`](super::slice()) and [`Overlays::lay`].
+    pub fn slice(&self, from: MapPoint, to: MapPoint, constant: Option<FrictionCone>) -> Result<Profile, TerrainError> {
+        let mut profile = slice(&self.dem, from, to)?;
+        self.overlays.lay(&mut profile, constant)?;
+        Ok(profile)
+    }
+}

@@ -1,0 +1,56 @@
+//! A planned journey and the ground that it is flown over.
+
+use std::sync::Arc;
+
+use crate::{
+    chain::Station,
+    graph::CostToGo,
+    ground::{ChainGround, ContactPoint, DemGround, Surface},
+    hop::HopTest,
+    path::HopPath,
+};
+
+/// A planned journey and the ground that it is flown over. It owns or shares all that it needs.
+///
+/// Nothing here asks how the path was found: any planner whose result is a [`HopPath`] can be simulated.
+#[derive(Clone, Debug)]
+pub struct Mission {
+    pub(super) ground: MissionGround,
+    pub(super) path: HopPath,
+    pub(super) start: ContactPoint,
+    pub(super) goal: ContactPoint,
+    pub(super) replanning: Option<Replanning>,
+}
+
+/// What trials fly over.
+#[derive(Clone, Debug)]
+pub(super) enum MissionGround {
+    Chain(ChainGround),
+    Map(DemGround),
+}
+
+/// What replanning needs: the chain of the nodes, and what each node has still to go.
+#[derive(Clone, Debug)]
+pub(super) struct Replanning {
+    pub(super) test: HopTest,
+    pub(super) to_go: Arc<CostToGo>,
+}
+
+impl Mission {
+    /// A path along a chain: flights stay in its vertical plane.
+    pub fn along_chain(test: HopTest, path: HopPath, start: Station, goal: Station) -> Self {
+        let [start, goal] = [start, goal].map(|station| test.chain().contact_point(&station));
+        Self { ground: MissionGround::Chain(ChainGround::new(test)), path, start, goal, replanning: None }
+    }
+
+    /// A path over a DEM, in any direction: flights go where their heading takes them.
+    pub const fn over_dem(ground: DemGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
+        Self { ground: MissionGround::Map(ground), path, start, goal, replanning: None }
+    }
+
+    /// The same mission, whose trials may also be replanned over nodes of this chain.
+    #[must_use]
+    pub fn with_replanning(self, test: HopTest, to_go: Arc<CostToGo>) -> Self {
+        Self { replanning: Some(Replanning { test, to_go }), ..self }
+    }
+}

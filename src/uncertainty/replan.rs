@@ -1,0 +1,127 @@
+//! The next command from wherever the hopper believes to be, for [`Policy::Replan`](super::Policy::Replan).
+
+use std::sync::Arc;
+
+use nalgebra::Vector2;
+
+use crate::{
+    ballistics::{self, LineOfSight},
+    flight::Command,
+    graph::{Cost, CostToGo, Edge},
+    ground::{ChainPosition, DemGround, LiftoffVelocity, MapPosition, Surface, heading_of},
+    hop::HopTest,
+    quantity::NodeId,
+    world::{Direction, SPEED_TOLERANCE, tolerant_speed_m_s},
+};
+
+/// Chooses the next hop from a position of the nominal ground.
+pub(super) trait Replan<C>: Send + Sync + std::fmt::Debug {
+    /// The best next hop; `None` where no hop leads to the goal.
+    fn next(&self, believed: &C) -> Option<Command<C>>;
+}
+
+/// The velocity of an arc's take-off along a heading.
+fn liftoff(arc: &ballistics::Arc, heading: Vector2<f64>) -> LiftoffVelocity {
+    let across = arc.horizontal_speed_m_s();
+    LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() }
+}
+
+/// Along a chain, over the costs-to-go of its nodes.
+#[derive(Debug)]
+pub(super) struct ChainReplan {
+    pub(super) test: HopTest,
+    pub(super) to_go: Arc<CostToGo>,
+}
+
+impl Replan<ChainPosition> for ChainReplan {
+    fn next(&self, believed: &ChainPosition) -> Option<Command<ChainPosition>> {
+        let Self { test, to_go } = self;
+        let leg = to_go.best_leg(test, &believed.station)?;
+        let direction = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m)?;
+        let (arc, landing) = match leg.edge {
+            Edge::Hop(lofts) => {
+                let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
+                (ballistics::Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), test.gravity_m_s2()), leg.landing)
+            }
+            Edge::Along(along) => {
+                let (each_m, last_m) = along.lengths_m(to_go.options().split);
+                let length_m = if along.hops() > 1 { each_m } else { last_m };
+                let x_m = leg.takeoff.point.x_m + direction.sign() * length_m;
+                let landing = test.chain().geometry().station(x_m).unwrap_or(leg.landing);
+                (along.arc(test, length_m, to_go.options().takeoff), landing)
+            }
+        };
+        Some(Command::new(liftoff(&arc, heading_of(direction)), ChainPosition::on_chain(landing)))
+    }
+}
+
+/// Over a DEM, towards the nodes of a transect.
+#[derive(Debug)]
+pub(super) struct MapReplan {
+    pub(super) ground: DemGround,
+    pub(super) to_go: Arc<CostToGo>,
+    /// The nodes of the costs-to-go on the map.
+    pub(super) nodes: Vec<MapPosition>,
+}
+
+impl MapReplan {
+    /// The best hop to a node and what the journey then costs, where it could be better than the best known.
+    fn hop_to(&self, from: &MapPosition, node: usize, best: Option<Cost>) -> Option<(Command<MapPosition>, Cost)> {
+        let Self { ground, to_go, nodes } = self;
+        let target = nodes[node];
+        let rest = to_go.of_node(NodeId(node))?;
+        let away = target.at - from.at;
+        let run_m = away.norm();
+        let (limits, g) = (ground.hopper().limits(), ground.gravity_m_s2());
+        if run_m <= ground.position_rounding_m() {
+            return None;
+        }
+        let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
+        let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
+        let too_far = g * run_m * sight.min_speed_ratio() > squared(limits.takeoff_speed_max_m_s)
+            || g * run_m * sight.min_speed_ratio_reversed() > squared(limits.landing_speed_max_m_s);
+        if too_far || best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
+            return None;
+        }
+        let heading = away / run_m;
+        let lofts = ground.lofts_by_walk(from, &target, sight, heading)?;
+        let arc = ballistics::Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), g);
+        let cost = to_go.options().effort.cost(&arc, 1) + rest;
+        if best.is_some_and(|best| cost >= best) {
+            return None;
+        }
+        Some((Command::new(liftoff(&arc, heading), target), cost))
+    }
+
+    /// Where reliability counts: the most reliable successor of the node nearest to a position that one hop from there reaches.
+    fn reliable_successor(&self, from: &MapPosition) -> Option<Command<MapPosition>> {
+        if !self.to_go.weighs_reliability() {
+            return None;
+        }
+        let away2 = |node: &MapPosition| (node.at - from.at).norm_squared();
+        let nearest = (0..self.nodes.len()).min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
+        let mut successors = self.to_go.reliable_successors(NodeId(nearest)).iter();
+        successors.find_map(|node| self.hop_to(from, node.index(), None)).map(|(command, _)| command)
+    }
+}
+
+impl Replan<MapPosition> for MapReplan {
+    fn next(&self, believed: &MapPosition) -> Option<Command<MapPosition>> {
+        if let Some(reliable) = self.reliable_successor(believed) {
+            return Some(reliable);
+        }
+        let mut best: Option<(Command<MapPosition>, Cost)> = None;
+        for node in self.to_go.in_order() {
+            let known = best.as_ref().map(|(_, cost)| *cost);
+            let rest = self.to_go.of_node(*node)?;
+            if known.is_some_and(|known| Cost::of_hops(1) + rest >= known) {
+                // The nodes that follow have no less to go.
+                break;
+            }
+            if let Some(better) = self.hop_to(believed, node.index(), known) {
+                best = Some(better);
+            }
+        }
+        best.map(|(command, _)| command)
+    }
+}
