@@ -219,7 +219,7 @@ fn synth_and_slice_refuse_what_makes_no_terrain() {
         &["--from", "found `1`, expected two finite numbers in metres, X,Y"],
     );
     desk.refused(&["slice", "ground.tif", "--from", "1,nan", "--to", "2,2"], &["found `1,nan`"]);
-    desk.refused(&["slice", "chain.csv", "--from", "1,1", "--to", "2,2"], &["chain.csv", "no known elevation format"]);
+    desk.refused(&["slice", "chain.csv", "--from", "1,1", "--to", "2,2"], &["chain.csv", "not a known elevation format"]);
 }
 
 #[test]

@@ -100,7 +100,7 @@ fn values_out_of_their_range() {
         &format!("x_m,z_m,{SIX}\n0,0,60,900,-5,-271,-60,inf\n1,0,,,,,,\n"),
         &[
             (2, Some(8), "900", Some("takeoff_max_deg"), &["-270 to 270 degrees", "angles are degrees"]),
-            (2, Some(12), "-5", Some("takeoff_speed_max_m_s"), &["at least 0 m/s", "no sign"]),
+            (2, Some(12), "-5", Some("takeoff_speed_max_m_s"), &["at least 0 m/s", "without sign"]),
             (2, Some(15), "-271", Some("landing_min_deg"), &["-270 to 270 degrees"]),
             (2, Some(24), "inf", Some("landing_speed_max_m_s"), &["a finite speed", "never reached"]),
         ],
@@ -121,7 +121,7 @@ fn vertices_out_of_order() {
         "x_m,z_m\n0,0\n1e-300,1e20\n1,0\n",
         &[(3, Some(1), "1e-300", Some("x_m"), &["too near the x_m of line 2", "a slope", "apart"])],
     );
-    // A z that is no number says nothing of slopes, and hides no wrong x.
+    // An invalid z gives no slope, and does not hide an invalid x.
     assert_problems(
         "x_m,z_m\n0,0\n1e-300,?\n0,1e20\n",
         &[(3, Some(8), "?", Some("z_m"), &["found `?`"]), (4, Some(1), "0", Some("x_m"), &["more than 1e-300"])],
@@ -283,7 +283,7 @@ fn columns_nobody_knows_are_warned_of() {
             "line 1: unknown column `note` is ignored",
             "line 1: unknown column `friction` is ignored (the nearest known column is friction_coefficient)",
             "line 1: column 5 without a name is ignored",
-            "column keep_out is empty in every row, as if it were not there",
+            "column keep_out is empty in every row and is ignored",
         ]
     );
     let many = format!("x_m,z_m{}\n0,0{}\n1,1{}\n", ",note".repeat(25), ",".repeat(25), ",".repeat(25));

@@ -348,5 +348,5 @@ fn two_hundred_megabytes_of_one_line_are_refused() {
     let junk = directory.path().join("junk.tif");
     content.fill(b'J');
     std::fs::write(&junk, &content).unwrap();
-    assert!(read_dem(&junk).unwrap_err().to_string().contains("no known elevation format"));
+    assert!(read_dem(&junk).unwrap_err().to_string().contains("not a known elevation format"));
 }

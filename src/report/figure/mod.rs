@@ -151,12 +151,11 @@ pub enum FigureError {
 /// # Examples
 /// ```
 /// use chta::{ballistics::*, chain::*, graph::*, hop::*, path::generate, quantity::ChainPoint, report::figure::*, world::*};
-/// let hopper = Hopper::with_speeds(10.0, 10.0)?;
+/// let hopper = Hopper::with_speeds(10.0, 10.0).unwrap();
 /// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.6)?)), rest: RestSlope::AsFrictionHolds };
 /// let ground = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(30.0, 2.0), ChainPoint::new(60.0, 0.0)])?;
 /// let chain = ConstrainedChain::new(ground, &hopper, Gravity::new(3.711)?, &surface)?;
-/// let test = HopTest::new(chain);
-/// let chain = test.chain();
+/// let test = HopTest::new(chain.clone());
 /// let (start, goal) = (chain.geometry().station(0.0)?, chain.geometry().station(60.0)?);
 /// let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {})?;
 /// let Outcome::Path { legs, .. } = &answer.outcome else { panic!("no path") };
