@@ -21,6 +21,11 @@ use crate::{
 /// over and a take-off the ground ahead, also where a border runs through the very position.
 pub(super) const BESIDE_M: f64 = 1e-6;
 
+/// How far along a line its facets are looked up, in units of the step aside: a line at a smaller angle than one over this to an edge
+/// counts as running along it. Lines between posts up to some 500 apart are not that close to any edge but their own. Larger would look
+/// into the next facet of a line that does not start at a post.
+const FACET_LOOK: f64 = 4096.0;
+
 /// Units in the last place that a height or a coordinate may be off.
 const ULPS: f64 = 4.0;
 
@@ -309,13 +314,16 @@ impl Surface for DemGround {
 
     fn facets(&self, at: &MapPosition, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2] {
         let triangles = self.triangles();
-        let beside = match side {
-            Side::Ahead => at.at + heading * BESIDE_M,
-            Side::Behind => at.at - heading * BESIDE_M,
+        let towards = match side {
+            Side::Ahead => heading,
+            Side::Behind => -heading,
         };
-        // On both sides of the line, farther off it than the lattice's own tolerance.
+        let beside = at.at + towards * BESIDE_M;
+        // On both sides of the line, farther off it than the lattice's own tolerance, and so far along it that a line which only starts
+        // next to an edge has left it.
+        let along = at.at + towards * BESIDE_M.max(FACET_LOOK * self.resolution_m);
         let across = Vector2::new(-heading.y, heading.x) * self.resolution_m;
-        let gradients = [beside + across, beside - across].map(|point| triangles.at(point, triangles.nominal()).map(|(_, g)| g));
+        let gradients = [along + across, along - across].map(|point| triangles.at(point, triangles.nominal()).map(|(_, g)| g));
         let [left, right] = gradients;
         let right = right.filter(|right| left != Some(*right));
         [left, right].map(|gradient| gradient.and_then(|gradient| self.facet(gradient, heading, beside)))
