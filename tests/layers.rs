@@ -6,7 +6,8 @@
 use std::{fs, path::Path};
 
 /// The rungs, from the top. The last two share no rung with the library: the binary's own side comes after everything.
-const LADDER: [&str; 13] = [
+const LADDER: [&str; 14] = [
+    "progress",
     "quantity",
     "world",
     "ballistics",

@@ -1,6 +1,7 @@
 //! The least capability that makes a journey possible, between a value that is proved not to and one that does.
 
 use super::ProofVerdict;
+use crate::progress::{Cancelled, Detail, Meter, Progress, Stage};
 
 /// What is known of the least capability.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,23 +47,36 @@ impl CapabilityRange {
 /// A more capable value never makes a journey impossible, so what is proved or found at one value holds on its side of it. Where a value
 /// in between is left open, either side is narrowed by itself.
 ///
+/// Reports before the first value and after every value.
+///
 /// # Errors
-/// What the answer at a value gives.
+/// What the answer at a value gives, or [`Cancelled`].
 ///
 /// # Examples
 /// ```
-/// use chta::graph::proof::{CapabilityRange, ProofVerdict, least_capability};
+/// use chta::{graph::proof::{CapabilityRange, ProofVerdict, least_capability}, progress::Cancelled};
 /// // Possible from 3 on; between 2.9 and 3.1 nothing is told.
-/// let mut told = |value: f64| Ok::<_, ()>(match value {
+/// let mut told = |value: f64| Ok::<_, Cancelled>(match value {
 ///     v if v < 2.9 => ProofVerdict::Untraversable,
 ///     v if v > 3.1 => ProofVerdict::Traversable,
 ///     _ => ProofVerdict::Open,
 /// });
 /// let range = CapabilityRange { weakest: 0.1, strongest: 100.0, resolution: 1e-3 };
-/// let found = least_capability(range, &mut told).unwrap();
+/// let found = least_capability(range, &mut told, &()).unwrap();
 /// assert!((found.unreachable_at.unwrap() - 2.9).abs() < 0.01 && (found.reachable_at.unwrap() - 3.1).abs() < 0.01);
 /// ```
-pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> Result<ProofVerdict, E>) -> Result<Threshold, E> {
+pub fn least_capability<E: From<Cancelled>>(
+    range: CapabilityRange,
+    told: &mut dyn FnMut(f64) -> Result<ProofVerdict, E>,
+    progress: &dyn Progress,
+) -> Result<Threshold, E> {
+    let meter = Meter::new(progress, Stage::Requirement);
+    meter.report(Detail::None)?;
+    let mut told = |value: f64| {
+        let verdict = told(value)?;
+        meter.complete_one()?;
+        Ok::<_, E>(verdict)
+    };
     let strongest = told(range.strongest)?;
     if strongest == ProofVerdict::Untraversable {
         return Ok(Threshold { unreachable_at: Some(range.strongest), reachable_at: None });
@@ -118,13 +132,13 @@ mod tests {
         let rising = range.weakest < range.strongest;
         let mut told = |value: f64| {
             asked += 1;
-            Ok::<_, ()>(match value {
+            Ok::<_, Cancelled>(match value {
                 v if (v <= proved_to) == rising && v != proved_to || v == proved_to => ProofVerdict::Untraversable,
                 v if (v >= found_from) == rising && v != found_from || v == found_from => ProofVerdict::Traversable,
                 _ => ProofVerdict::Open,
             })
         };
-        (least_capability(range, &mut told).unwrap(), asked)
+        (least_capability(range, &mut told, &()).unwrap(), asked)
     }
 
     #[test]

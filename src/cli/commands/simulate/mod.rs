@@ -131,7 +131,6 @@ pub(super) fn of_run(
     loaded: &Loaded,
     test: &HopTest,
     planned: &Planned,
-    threads: usize,
     quiet: bool,
 ) -> Result<RunTrials, Failure> {
     let mut trials = RunTrials { text: String::new(), files: Vec::new() };
@@ -142,7 +141,7 @@ pub(super) fn of_run(
     }
     let policies = std::slice::from_ref(&keys.policy);
     let flyer = Flyer::new(loaded, test, path, &planned.found, policies, quiet)?;
-    let flown = flyer.fly(policies, &TrialOptions { threads, ..keys.options() }, None, quiet)?;
+    let flown = flyer.fly(policies, &keys.options(), None, quiet)?;
     let [answer, sheet_name, map_name] = RUN_FILES;
     let Some(record) = flown.first().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())) else { return Ok(trials) };
     trials.text = format!("\n{}", record.text());
@@ -183,5 +182,5 @@ fn trial_options(args: &SimulateArgs) -> Vec<(&'static str, &'static str, &'stat
 
 /// The trials that scenario and options ask for.
 fn trials_asked(args: &SimulateArgs, keys: &UncertaintyKeys) -> TrialOptions {
-    TrialOptions { until_half_width: args.until_half_width, threads: args.answer.threads, ..keys.options() }
+    TrialOptions { until_half_width: args.until_half_width, ..keys.options() }
 }
