@@ -410,8 +410,7 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
             }
         }
         let post_hops = PostHops::new(world.ground(), 1).unwrap();
-        let map =
-            search(&post_hops, start, Search { journey: Journey::Outbound, effort: Some((effort, choice)) }, &()).unwrap();
+        let map = search(&post_hops, start, Search { journey: Journey::Outbound, effort: Some((effort, choice)) }, &()).unwrap();
         assert_eq!(map.hops, hops);
         for (index, (&found, &expected)) in map.effort.iter().zip(&expected).enumerate() {
             assert_eq!(found.is_nan(), expected.is_nan());

@@ -203,7 +203,7 @@ fn proofs_and_required_values() {
     let test = HopTest::new(chain());
     let (start, goal) = ends(&test);
     let options = BoundsOptions { budget_cells: 4000, explain: true, ..BoundsOptions::default() };
-    holds(&[Stage::Proof], 20, |progress| bounds(&test, start, goal, &options, progress));
+    holds(&[Stage::Proof], 10, |progress| bounds(&test, start, goal, &options, progress));
     let range = CapabilityRange { weakest: 0.5, strongest: 8.0, resolution: 0.2 };
     holds(&[Stage::Requirement, Stage::Proof], 20, |progress| {
         let mut verdict = |speed_m_s: f64| {

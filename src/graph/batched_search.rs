@@ -258,13 +258,7 @@ impl<'g> BatchedSearch<'g> {
     ///
     /// # Errors
     /// [`Cancelled`].
-    fn settle(
-        &mut self,
-        batch: &mut [Takeoff],
-        goals: &mut Goals,
-        left: HopsLeft<'_>,
-        meter: &Meter<'_>,
-    ) -> Result<(), Cancelled> {
+    fn settle(&mut self, batch: &mut [Takeoff], goals: &mut Goals, left: HopsLeft<'_>, meter: &Meter<'_>) -> Result<(), Cancelled> {
         self.tally += goals.land_from(self.graph, batch, meter)?;
         // A path through a landing of this batch takes at least two hops more.
         let Some(takeoff) = batch.first() else { return Ok(()) };

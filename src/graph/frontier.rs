@@ -48,12 +48,7 @@ impl Frontier {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub(super) fn of(
-        graph: &HopGraph<'_>,
-        reach: &LocalReach,
-        reached: &[bool],
-        meter: &Meter<'_>,
-    ) -> Result<Self, Cancelled> {
+    pub(super) fn of(graph: &HopGraph<'_>, reach: &LocalReach, reached: &[bool], meter: &Meter<'_>) -> Result<Self, Cancelled> {
         let nodes = graph.nodes();
         let leads = leading_to_goal(graph, reach, meter)?;
         let of = |flags: &[bool]| -> Vec<Station> {

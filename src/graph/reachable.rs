@@ -34,12 +34,7 @@ pub struct Reachable {
 ///
 /// # Complexity
 /// As [`search`](super::search()), for the nodes that are reached.
-pub fn reachable(
-    test: &HopTest,
-    start: Station,
-    spacing: PointSpacing,
-    progress: &dyn Progress,
-) -> Result<Reachable, SearchError> {
+pub fn reachable(test: &HopTest, start: Station, spacing: PointSpacing, progress: &dyn Progress) -> Result<Reachable, SearchError> {
     let meter = Meter::new(progress, Stage::Reachability);
     meter.report(Detail::None)?;
     reachable_nodes(test, start, spacing, &meter)

@@ -9,8 +9,8 @@ use chta::{
     progress::{Detail, Step},
     quantity::MapPoint,
     reach::map::{
-        HopMap, Journey, MapError, MapHop, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, joined,
-        mobility, path_hops, search, verify,
+        HopMap, Journey, MapError, MapHop, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, joined, mobility, path_hops,
+        search, verify,
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, SimulationRecord, TotalsRecord,
@@ -216,14 +216,10 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
     // From inside the pool, whose threads hear of each other sooner than of one outside.
     let maps = rayon::scope(|_| -> Result<(Maps, Vec<Option<Execution>>), MapError> {
         let hops = PostHops::new(ground.ground.clone(), lattice.stride)?;
-        let layers = |what: &'static str| {
-            progress.with_lines(move |step| format_layer(what, step, began.elapsed().as_secs_f64()))
-        };
+        let layers = |what: &'static str| progress.with_lines(move |step| format_layer(what, step, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
         let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &layers("there"))?;
-        let back = args.back.then(|| {
-            search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &layers("back"))
-        });
+        let back = args.back.then(|| search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &layers("back")));
         let begun = std::time::Instant::now();
         let mobile = args
             .mobility

@@ -199,12 +199,7 @@ pub(super) fn bounds_with<F: Faults>(
 }
 
 /// The first path, over the points asked for, or the first of "auto" while they are few.
-fn first_path(
-    test: &HopTest,
-    ends: (Station, Station),
-    options: &SearchOptions,
-    meter: &Meter<'_>,
-) -> Result<Answer, SearchError> {
+fn first_path(test: &HopTest, ends: (Station, Station), options: &SearchOptions, meter: &Meter<'_>) -> Result<Answer, SearchError> {
     let spacing = options.spacing.unwrap_or(PointSpacing::PerSegment(AUTO_POINTS_PER_SEGMENT[0]));
     search_one(test, ends, &SearchOptions { spacing: Some(spacing), ..options.clone() }, meter)
 }

@@ -27,8 +27,8 @@ mod points;
 mod refine;
 mod require;
 
-pub use bounds::{Bounds, BoundsOptions, DEFAULT_BUDGET_CELLS, ProofSummary, ProofVerdict, Until, bounds};
 pub(crate) use bounds::bounds_of;
+pub use bounds::{Bounds, BoundsOptions, DEFAULT_BUDGET_CELLS, ProofSummary, ProofVerdict, Until, bounds};
 pub use gap::{Gap, Stretch, StretchClass};
 use may::Prover;
 pub use require::{CapabilityRange, Threshold, least_capability};

@@ -61,11 +61,7 @@ pub(super) enum Scope {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub(super) fn try_points<F: Faults>(
-    refinement: &Refinement<'_, F>,
-    scope: Scope,
-    meter: &Meter<'_>,
-) -> Result<Tried, Cancelled> {
+pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope, meter: &Meter<'_>) -> Result<Tried, Cancelled> {
     let test = refinement.prover.test();
     let mut tried = Tried::over(refinement, scope);
     let at_most = if let Scope::Paths(at_most) = scope { at_most } else { CUT_OFF };

@@ -47,17 +47,19 @@ pub fn mobility(hops: &PostHops, progress: &dyn Progress) -> Result<Mobility, Ma
         .map_init(
             || meter.counter(),
             |counter, block| {
-            meter.check()?;
-            let found = lattice
-                .nodes_of(block)
-                .filter(|&node| hops.has_ground(node))
-                .map(|node| {
-                    from_node(hops, node, (&disc, &sectors), counter).map(|(share, directions)| (lattice.index(node), share, directions))
-                })
-                .collect::<Result<Vec<OfNode>, MapError>>()?;
-            meter.complete_one()?;
-            Ok(found)
-        })
+                meter.check()?;
+                let found = lattice
+                    .nodes_of(block)
+                    .filter(|&node| hops.has_ground(node))
+                    .map(|node| {
+                        from_node(hops, node, (&disc, &sectors), counter)
+                            .map(|(share, directions)| (lattice.index(node), share, directions))
+                    })
+                    .collect::<Result<Vec<OfNode>, MapError>>()?;
+                meter.complete_one()?;
+                Ok(found)
+            },
+        )
         .collect();
     meter.check()?;
     let mut map = Mobility { disc_radius_m, share: vec![f32::NAN; lattice.count()], directions: vec![f32::NAN; lattice.count()] };

@@ -83,7 +83,7 @@ pub fn search(hops: &PostHops, start: Post, asked: Search, progress: &dyn Progre
         meter.report(Detail::Layer { hops: layer })?;
         let pull = Pull { hops, map: &state.map, asked, layer, nodes: &state.layer };
         let near = blocks_near(hops, &state.layer_blocks, &state.open);
-        let found: Vec<Result<Vec<Found>, MapError>> = 
+        let found: Vec<Result<Vec<Found>, MapError>> =
             near.par_iter().map_init(|| meter.counter(), |counter, &block| pull.block(block, counter)).collect();
         meter.check()?;
         let found = found.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
@@ -210,13 +210,7 @@ impl Pull<'_> {
     }
 
     /// The hop that joins a node to the layer: the shortest, or the one of least effort in all.
-    fn pulled(
-        &self,
-        node: Post,
-        steps: &[isize],
-        inside: bool,
-        counter: &mut PairCounter<'_>,
-    ) -> Result<Option<Found>, MapError> {
+    fn pulled(&self, node: Post, steps: &[isize], inside: bool, counter: &mut PairCounter<'_>) -> Result<Option<Found>, MapError> {
         let lattice = self.hops.lattice();
         let index = lattice.index(node);
         let mut best: Option<Found> = None;

@@ -127,12 +127,7 @@ pub(super) struct RunTrials {
 pub(super) const RUN_FILES: [&str; 3] = ["simulation.json", "trials.svg", "landings.svg"];
 
 /// Flies and draws what the scenario's `[uncertainty]` asks for, beside the plan of a run.
-pub(super) fn of_run(
-    loaded: &Loaded,
-    test: &HopTest,
-    planned: &Planned,
-    quiet: bool,
-) -> Result<RunTrials, Failure> {
+pub(super) fn of_run(loaded: &Loaded, test: &HopTest, planned: &Planned, quiet: bool) -> Result<RunTrials, Failure> {
     let mut trials = RunTrials { text: String::new(), files: Vec::new() };
     let (Some(keys), Some(path)) = (loaded.scenario.uncertainty, &planned.path) else { return Ok(trials) };
     let warnings: Vec<String> = keys.warning().map(str::to_owned).into_iter().collect();
