@@ -147,7 +147,7 @@ pub(crate) struct SimulateArgs {
 
 /// The least capability with which the goal can be reached, between a value proved too little and one with a path
 #[derive(Debug, ClapArgs)]
-#[command(after_help = "Example:\n  chta require data/scenarios/simple_reduced.toml --vary hopper.limits().takeoff_speed_max_m_s")]
+#[command(after_help = "Example:\n  chta require data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s")]
 pub(crate) struct RequireArgs {
     #[command(flatten)]
     pub(crate) journey: JourneyArgs,

@@ -68,7 +68,7 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     let ends = first.ends()?;
     if capability.path == "body.gravity_m_s2" && first.scenario.hopper.limits().flight_time_max_s.is_some() {
         return Err(Failure::message(
-            "--vary body.gravity_m_s2: less gravity makes hops longer, but hopper.limits().flight_time_max_s then forbids more of them: \
+            "--vary body.gravity_m_s2: less gravity makes hops longer, but hopper.flight_time_max_s then forbids more of them: \
              leave that limit away",
         ));
     }
