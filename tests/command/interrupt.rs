@@ -47,12 +47,12 @@ fn send(signal: &str, process: &Child) {
     assert!(Command::new("sh").args(["-c", &format!("kill {signal} {}", process.id())]).status().unwrap().success());
 }
 
-/// A command that waits for a chain from a pipe to which nobody writes: it reports nothing.
-fn waiting_for_a_pipe(desk: &Desk) -> Child {
-    assert!(Command::new("mkfifo").arg("pipe.csv").current_dir(desk.path()).status().unwrap().success());
+/// A command that waits for a reader of the pipe that it writes to: it reports nothing.
+fn waiting_for_a_reader(desk: &Desk) -> Child {
+    assert!(Command::new("mkfifo").arg("pipe.asc").current_dir(desk.path()).status().unwrap().success());
     let waiting = Command::new(env!("CARGO_BIN_EXE_chta"))
         .current_dir(desk.path())
-        .args(["synth", "--rows", "9", "--cols", "9", "-o", "pipe.csv"])
+        .args(["synth", "--rows", "9", "--cols", "9", "-o", "pipe.asc"])
         .stdout(Stdio::null())
         .stderr(Stdio::null())
         .spawn()
@@ -64,7 +64,7 @@ fn waiting_for_a_pipe(desk: &Desk) -> Child {
 #[test]
 fn an_interrupt_ends_work_that_reports_nothing() {
     let desk = Desk::new();
-    let mut waiting = waiting_for_a_pipe(&desk);
+    let mut waiting = waiting_for_a_reader(&desk);
     assert_eq!(waiting.try_wait().unwrap(), None, "nothing to wait for");
     send("-INT", &waiting);
     let begun = Instant::now();
@@ -75,7 +75,7 @@ fn an_interrupt_ends_work_that_reports_nothing() {
 #[test]
 fn a_second_interrupt_ends_the_program_at_once() {
     let desk = Desk::new();
-    let mut waiting = waiting_for_a_pipe(&desk);
+    let mut waiting = waiting_for_a_reader(&desk);
     send("-INT", &waiting);
     thread::sleep(Duration::from_millis(50));
     // It may have ended of the first one where the machine is busy.
@@ -95,8 +95,8 @@ fn an_interrupted_command_prints_no_answer() {
          friction_coefficient = 0.6\n[terrain]\nchain = \"chain.csv\"\nstart_x_m = 1.0\ngoal_x_m = 3990.0\n[uncertainty]\n\
          takeoff_speed_sigma_fraction = 0.001\ntrials = 100000000\ngoal_tolerance_m = 5.0\n",
     );
-    let rows: String = (0..=4000).map(|i| format!("{i},{}\n", f64::from(i * i % 7) * 0.05)).collect();
-    desk.write("chain.csv", &format!("x_m,z_m\n{rows}"));
+    let rows: Vec<_> = (0..=4000).map(|i| format!("{i},{}", f64::from(i * i % 7) * 0.05)).collect();
+    desk.write("chain.csv", format!("x_m,z_m\n{}\n", rows.join("\n")));
     let commands: [&[&str]; 3] = [
         &["simulate", "long.toml", "--format", "json"],
         &["check", "long.toml", "--set", "search.points_per_segment=31", "--set", "hopper.takeoff_speed_max_m_s=60"],
