@@ -176,7 +176,7 @@ pub enum Detail {
     },
 }
 
-/// A stage was told to stop, and did; it has no answer.
+/// A stage was cancelled: it has no answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the {stage} was cancelled after {done} {}", stage.unit())]
 pub struct Cancelled {

@@ -64,7 +64,7 @@ impl CapabilityRange {
 ///     _ => ProofVerdict::Open,
 /// });
 /// let range = CapabilityRange { weakest: 0.1, strongest: 100.0, resolution: 1e-3 };
-/// let found = least_capability(range, &mut verdict_at).unwrap();
+/// let found = least_capability(range, &mut verdict_at, &()).unwrap();
 /// assert!((found.unreachable_at.unwrap() - 2.9).abs() < 0.01 && (found.reachable_at.unwrap() - 3.1).abs() < 0.01);
 /// ```
 pub fn least_capability<E: From<Cancelled>>(
