@@ -4,7 +4,7 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{ContactPoint, Element, Facet, Frame, Hold, Realization, Side, Surface, TakeoffWindows, Windows};
+use super::{ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Realization, Side, Surface, TakeoffWindows, Windows};
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, limits},
     chain::{
@@ -140,9 +140,23 @@ impl DemGround {
     }
 
     /// The position of the nominal ground at a map point; `None` where there is no ground.
+    ///
+    /// A point on an edge or at a post belongs to every triangle that meets there: it has ground where one of them has.
     pub fn position(&self, at: MapPoint) -> Option<MapPosition> {
         let triangles = self.triangles();
-        triangles.at(at, triangles.nominal()).map(|(z_m, _)| MapPosition { at, z_m })
+        if let Some((z_m, _)) = triangles.at(at, triangles.nominal()) {
+            return Some(MapPosition { at, z_m });
+        }
+        let dem = self.terrain.dem();
+        let (post, around) = (NodeLattice::new(dem, 1).nearest(dem.georeference(), at), [-1.0, 0.0, 1.0]);
+        if (dem.georeference().post(post.row, post.col) - at).amax() <= self.resolution_m {
+            return dem.elevation(post.row, post.col).map(|z_m| MapPosition { at, z_m });
+        }
+        let mut beside = around.iter().flat_map(|x| around.iter().map(|y| Vector2::new(*x, *y) * self.resolution_m));
+        beside.find_map(|beside| {
+            let (z_m, gradient) = triangles.at(at + beside, triangles.nominal())?;
+            Some(MapPosition { at, z_m: z_m - gradient.dot(&beside) })
+        })
     }
 
     /// Whether a map point lies on the map, its border included.
@@ -261,19 +275,35 @@ impl Surface for DemGround {
 
     fn walk(&self, from: &MapPosition, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
         let triangles = self.triangles();
-        let mut begin: Option<(f64, f64)> = Some((0.0, from.z_m));
-        for span in triangles.walk(from.at, heading, triangles.nominal()) {
-            let (from_m, from_z_m) = begin.unwrap_or((span.from_m, span.from_z_m));
-            // A sliver next to a line of the lattice is part of the element after it.
-            if span.to_m - from_m <= self.resolution_m {
-                begin = Some((from_m, from_z_m));
-                continue;
+        let mut at = (0.0, from.z_m);
+        // A sliver next to a line of the lattice belongs to the element after it.
+        let mut element = |to_m: f64, to_z_m: f64| {
+            let (from_m, from_z_m) = at;
+            if to_m - from_m <= self.resolution_m {
+                return ControlFlow::Continue(());
             }
-            begin = None;
-            let (to_m, to_z_m) = (span.to_m, span.to_z_m);
-            if visit(&Element { from_m, to_m, from_z_m, to_z_m, vertex: None, bends: false }).is_break() {
+            at = (to_m, to_z_m);
+            visit(&Element { from_m, to_m, from_z_m, to_z_m, vertex: None, bends: false })
+        };
+        let Some(posts) = triangles.posts_ahead(from.at, heading) else {
+            for span in triangles.walk(from.at, heading, triangles.nominal()) {
+                if element(span.to_m, span.to_z_m).is_break() {
+                    return;
+                }
+            }
+            return;
+        };
+        // Along an edge there is ground where either of its two triangles has it.
+        let across = Vector2::new(-heading.y, heading.x) * self.resolution_m;
+        let mut before_m = 0.0;
+        for (row, col, to_m) in posts {
+            let middle = from.at + heading * (0.5 * (before_m + to_m));
+            let known = [across, -across].iter().any(|aside| triangles.at(middle + aside, triangles.nominal()).is_some());
+            let Some(z_m) = self.terrain.dem().elevation(row, col).filter(|_| known) else { return };
+            if element(to_m, z_m).is_break() {
                 return;
             }
+            before_m = to_m;
         }
     }
 

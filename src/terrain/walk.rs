@@ -165,6 +165,54 @@ impl<'a> Triangles<'a> {
         }
     }
 
+    /// The posts ahead on a straight line that runs along edges of triangles, which is along a row, a column or a diagonal of posts: row,
+    /// column and distance of each, up to the map's border. `None` for any other line, and off the map.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{quantity::MapPoint, terrain::{Dem, GeoReference, Triangles}};
+    /// use nalgebra::Vector2;
+    /// let dem = Dem::new(3, 3, vec![0.0; 9], GeoReference::local(MapPoint::new(0.0, 2.0), 1.0, 1.0)?)?;
+    /// let ground = Triangles::of(&dem);
+    /// let row = ground.posts_ahead(MapPoint::new(0.5, 1.0), Vector2::new(1.0, 0.0)).unwrap();
+    /// assert_eq!(row.collect::<Vec<_>>(), [(1, 1, 0.5), (1, 2, 1.5)]);
+    /// assert!(ground.posts_ahead(MapPoint::new(0.5, 1.0), Vector2::new(0.6, 0.8)).is_none());
+    /// # Ok::<(), chta::terrain::TerrainError>(())
+    /// ```
+    pub fn posts_ahead(&self, from: MapPoint, heading: Vector2<f64>) -> Option<impl Iterator<Item = (usize, usize, f64)> + use<>> {
+        let (u, v) = self.lattice(from)?;
+        let step = Vector2::new(heading.x / self.spacing_m.x, -heading.y / self.spacing_m.y);
+        let level = |rate: f64| rate.abs() <= ON_THE_LINE * step.amax();
+        let whole = |value: f64| value == value.round();
+        let (along_row, along_col) = (level(step.y) && whole(v), level(step.x) && whole(u));
+        let diagonal = level(step.x - step.y) && whole(self.nearly_whole(u - v));
+        if !(along_row || along_col || diagonal) {
+            return None;
+        }
+        // Columns, or rows where there are none, from one post to the next: 1 or -1.
+        let (at, rate) = if along_col { (v, step.y) } else { (u, step.x) };
+        let sign = if rate < 0.0 { -1.0 } else { 1.0 };
+        let first = if rate < 0.0 { at.ceil() - 1.0 } else { at.floor() + 1.0 };
+        let each_m = match (along_row, along_col) {
+            (true, _) => self.spacing_m.x,
+            (_, true) => self.spacing_m.y,
+            _ => libm::hypot(self.spacing_m.x, self.spacing_m.y),
+        };
+        let (last_col, last_row) = (self.last_col + 1, self.last_row + 1);
+        let posts = (0u32..).map(move |number| {
+            let post = first + sign * f64::from(number);
+            let moved = post - at;
+            let (col, row) = match (along_row, along_col) {
+                (true, _) => (post, v),
+                (_, true) => (u, post),
+                _ => (post, (v + moved).round()),
+            };
+            (floor(col), floor(row), moved.abs() * each_m)
+        });
+        let inside = move |at: isize, last: isize| usize::try_from(at).ok().filter(|_| at <= last);
+        Some(posts.map_while(move |(col, row, distance_m)| Some((inside(row, last_row)?, inside(col, last_col)?, distance_m))))
+    }
+
     /// Columns east and rows south of the north-west post, rounded if nearly integers; `None` off the map.
     #[inline]
     fn lattice(&self, place: MapPoint) -> Option<(f64, f64)> {
@@ -323,7 +371,8 @@ impl<H: Fn(usize, usize) -> f64> Iterator for FacetWalk<'_, H> {
             self.next = triangle.beyond(side, &self.ground, &self.heights);
             self.from_m = to_m;
             if from_z_m.is_nan() || to_z_m.is_nan() {
-                if to_m > from_m {
+                // A line through a post may touch a triangle there, for a length that is rounding alone.
+                if to_m > from_m + self.ground.tolerance * self.ground.spacing_m.amin() {
                     self.next = None;
                     return None;
                 }

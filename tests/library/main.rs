@@ -21,6 +21,8 @@ mod graph;
 mod layers;
 mod map_equality;
 mod map_projection;
+mod map_verified;
+mod map_world;
 mod mesh_slices;
 mod mutations_chain_csv;
 mod mutations_mesh;

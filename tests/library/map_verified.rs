@@ -1,0 +1,333 @@
+//! Paths of hop maps, flown again over the triangles of the DEM by the independent checker: every path holds, and what is spoiled is refused
+//! under the name of the limit that it breaks.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its terrain should stop")]
+#![allow(clippy::print_stderr, reason = "skipped tests say why")]
+
+use std::path::Path;
+
+use crate::{
+    map_world::{World, friction, random_dem, random_hopper, random_surface},
+    support::Draw,
+};
+use chta::{
+    ballistics::{Arc, LineOfSight, TakeoffChoice},
+    ground::{DemGround, MapPosition, Surface, Windows},
+    path::{Hop, HopPath, StatedValue, ViolatedLimit, Violation, execute},
+    quantity::MapPoint,
+    reach::map::{HopMap, Post, PostHops, Search, joined, path_hops, search, verify},
+    terrain::{Dem, GeoReference, OverlaidDem, Overlays, read_dem, read_friction_raster, read_keep_out},
+    world::{Gravity, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
+};
+
+const CHOICES: [TakeoffChoice; 3] = TakeoffChoice::ALL;
+
+fn map_from(hops: &PostHops, start: Post) -> HopMap {
+    search(hops, start, Search::default(), &mut |_| {}).unwrap()
+}
+
+fn path_to(hops: &PostHops, map: &HopMap, goal: Post, choice: TakeoffChoice) -> Option<HopPath> {
+    let nodes = map.path(hops, goal)?;
+    let flown = path_hops(hops, &nodes, choice).unwrap();
+    assert_eq!(flown.len(), nodes.len() - 1, "every step of a map is a hop");
+    Some(joined(hops, &flown))
+}
+
+/// Flies the paths to every `step`-th post again; how many hops that were.
+fn all_hold(ground: DemGround, start: Post, stride: usize, step: usize, what: &str) -> usize {
+    let hops = PostHops::new(ground, stride).unwrap();
+    let start = hops.nearest_usable(start).unwrap_or(start);
+    let map = map_from(&hops, start);
+    let mut flown = 0;
+    for (number, index) in (0..hops.lattice().count()).step_by(step).enumerate() {
+        let goal = hops.lattice().node(index);
+        let Some(path) = path_to(&hops, &map, goal, CHOICES[number % 3]) else { continue };
+        let execution = verify(&hops, &path, start, goal);
+        let said: Vec<String> = execution.violations.iter().map(ToString::to_string).collect();
+        assert!(execution.passes(), "{what}, {start:?} to {goal:?}: {said:#?}\n{:#?}", path.hops.first());
+        flown += path.hops.len();
+    }
+    flown
+}
+
+#[test]
+fn paths_over_random_grids_hold_when_flown_again() {
+    let mut draw = Draw::seeded(303);
+    let mut flown = 0;
+    for number in 0..150 {
+        let dem = random_dem(&mut draw, 14);
+        let (hopper, gravity) = random_hopper(&mut draw);
+        // Weak and strong gravity: the same geometry with all speeds scaled.
+        let scale: f64 = [1.0, 1e-4, 25.0][number % 3];
+        let limits = hopper.limits();
+        let limits = HopperLimits {
+            takeoff_speed_max_m_s: limits.takeoff_speed_max_m_s * scale.sqrt(),
+            landing_speed_max_m_s: limits.landing_speed_max_m_s * scale.sqrt(),
+            flight_time_max_s: limits.flight_time_max_s.map(|time_s| time_s / scale.sqrt()),
+            ..*limits
+        };
+        let world = World::new(dem, Hopper::new(limits).unwrap(), random_surface(&mut draw), gravity * scale);
+        let start = Post { row: draw.below(14), col: draw.below(14) };
+        if world.dem.elevation(start.row, start.col).is_some() {
+            flown += all_hold(world.ground(), start, 1, 1, &format!("grid {number}"));
+        }
+    }
+    assert!(flown > 10_000, "only {flown} hops");
+}
+
+#[test]
+fn paths_under_zones_and_friction_hold_when_flown_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let mut draw = Draw::seeded(12);
+    let mut flown = 0;
+    for number in 0..24 {
+        let heights = (0..144).map(|_| draw.unit() * 0.8).collect();
+        let dem = Dem::new(12, 12, heights, GeoReference::local(MapPoint::new(0.0, 11.0), 1.0, 1.0).unwrap()).unwrap();
+        let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(4.0, 4.0) }).unwrap();
+        let mut world = World::new(dem, hopper, friction(0.8), 2.0);
+        let corner = [2.0, 2.5, 3.3][number % 3];
+        let polygon = format!(
+            r#"{{"type": "Polygon", "coordinates": [[[{corner}, 1], [7, 1], [7, {corner}], [{corner}, 6], [{corner}, 1]]]}}"#
+        );
+        let zones = folder.path().join(format!("zones_{number}.geojson"));
+        std::fs::write(&zones, polygon).unwrap();
+        world.keep_out = Some(read_keep_out(&zones, None, world.dem.bounds()).unwrap());
+        if number % 2 == 0 {
+            let values: Vec<String> = (0..36).map(|_| [0.7, 0.7, 1.1, -9.0][draw.below(4)].to_string()).collect();
+            let rows: Vec<String> = values.chunks(6).map(|row| row.join(" ")).collect();
+            let header = "ncols 6\nnrows 6\nxllcorner -0.5\nyllcorner -0.5\ncellsize 2\nNODATA_value -9\n";
+            let raster = folder.path().join(format!("friction_{number}.asc"));
+            std::fs::write(&raster, format!("{header}{}\n", rows.join("\n"))).unwrap();
+            world.friction = Some(read_friction_raster(&raster, None).unwrap());
+        }
+        let start = Post { row: 5, col: 0 };
+        flown += all_hold(world.ground(), start, 1 + number % 2, 1, &format!("overlays {number}"));
+    }
+    assert!(flown > 1000, "only {flown} hops");
+}
+
+/// A real DEM; `None` with a reason where it is absent.
+fn real(file: &str) -> Option<Dem> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(file);
+    if !path.is_file() {
+        eprintln!("skipped: {} is absent", path.display());
+        return None;
+    }
+    Some(read_dem(&path).unwrap())
+}
+
+fn ground(dem: Dem, limits: HopperLimits, surface: &SurfaceProperties, gravity_m_s2: f64) -> DemGround {
+    let terrain = OverlaidDem::new(dem, Overlays::default());
+    DemGround::new(terrain, &Hopper::new(limits).unwrap(), Gravity::new(gravity_m_s2).unwrap(), surface)
+}
+
+#[test]
+fn paths_over_mars_hold_when_flown_again() {
+    let Some(dem) = real("hirise_DTEEC_010228_1490_crop_120x70.tif") else { return };
+    let limits = HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(6.0, 6.0) };
+    let flown = all_hold(ground(dem, limits, &friction(0.6), 3.711), Post { row: 60, col: 35 }, 1, 7, "Mars");
+    assert!(flown > 5000, "only {flown} hops");
+}
+
+#[test]
+fn paths_over_the_moon_hold_when_flown_again() {
+    let Some(dem) = real("lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif") else { return };
+    let limits = HopperLimits { clearance_m: 0.5, ..HopperLimits::with_speeds(8.0, 8.0) };
+    let flown = all_hold(ground(dem, limits, &friction(0.6), 1.624), Post { row: 128, col: 128 }, 1, 131, "Moon");
+    assert!(flown > 4000, "only {flown} hops");
+}
+
+fn names(violations: &[Violation], limit: ViolatedLimit) -> bool {
+    violations.iter().any(|violation| violation.limit == limit)
+}
+
+/// The hop with another take-off slope and the speed that still meets the landing.
+fn with_slope(hop: &Hop, slope: f64, gravity_m_s2: f64) -> Hop {
+    let sight = LineOfSight::new(hop.run_m(), hop.landing.point_m.z - hop.takeoff.point_m.z);
+    let arc = Arc::new(sight, slope - sight.slope(), gravity_m_s2);
+    Hop {
+        takeoff_angle: arc.takeoff_angle(),
+        takeoff_speed_m_s: arc.takeoff_speed_m_s(),
+        landing_angle: arc.landing_angle(),
+        landing_speed_m_s: arc.landing_speed_m_s(),
+        flight_time_s: arc.flight_time_s(),
+        apex_z_m: hop.takeoff.point_m.z + arc.apex_height_m(),
+        ..*hop
+    }
+}
+
+/// Hops of random maps, each with its ground.
+fn some_hops(seed: u64, mut of: impl FnMut(&PostHops, &World, &Hop)) {
+    let mut draw = Draw::seeded(seed);
+    for _ in 0..60 {
+        let dem = random_dem(&mut draw, 12);
+        let (hopper, gravity) = random_hopper(&mut draw);
+        let world = World::new(dem, hopper, random_surface(&mut draw), gravity);
+        let start = Post { row: 6, col: 6 };
+        if world.dem.elevation(6, 6).is_none() {
+            continue;
+        }
+        let hops = PostHops::new(world.ground(), 1).unwrap();
+        let map = map_from(&hops, start);
+        for index in (0..hops.lattice().count()).step_by(5) {
+            let path = path_to(&hops, &map, hops.lattice().node(index), TakeoffChoice::LeastSpeed);
+            if let Some(hop) = path.as_ref().and_then(|path| path.hops.last()) {
+                of(&hops, &world, hop);
+            }
+        }
+    }
+}
+
+fn alone(hops: &PostHops, hop: Hop) -> Vec<Violation> {
+    execute(hops.ground(), &HopPath::of_hops(vec![hop], hops.ground().hopper()), None).violations
+}
+
+#[test]
+fn a_hop_spoiled_by_one_percent_is_refused_under_its_limits_name() {
+    let mut by_limit = [0usize; Limit::ALL.len()];
+    let (mut missed, mut turned) = (0, 0);
+    some_hops(77, |hops, world, hop| {
+        for factor in [0.99, 1.01] {
+            let violations = alone(hops, Hop { takeoff_speed_m_s: hop.takeoff_speed_m_s * factor, ..*hop });
+            assert!(names(&violations, ViolatedLimit::LandingPoint), "{factor} of the speed: {violations:?}");
+            missed += 1;
+        }
+        let violations = alone(hops, Hop { heading_deg: (hop.heading_deg + 3.6) % 360.0, ..*hop });
+        assert!(names(&violations, ViolatedLimit::StatedValue(StatedValue::Heading)), "{violations:?}");
+        turned += 1;
+        let (min, max) = (hop.takeoff_angles.min.radians(), hop.takeoff_angles.max.radians());
+        let sight_rad = ((hop.landing.point_m.z - hop.takeoff.point_m.z) / hop.run_m()).atan();
+        // 1 % of the angle, or of the room to the line of sight and to the vertical where that is less.
+        let lower = (0.01 * min.abs()).max(1e-3).min(0.5 * (min - sight_rad));
+        let upper = (0.01 * max.abs()).max(1e-3).min(0.5 * (std::f64::consts::FRAC_PI_2 - max));
+        for (radians, room, limit) in [(min - lower, lower, hop.lower_limit), (max + upper, upper, hop.upper_limit)] {
+            if room < 1e-4 || limit == Limit::LineOfSight {
+                continue;
+            }
+            let violations = alone(hops, with_slope(hop, radians.tan(), world.gravity_m_s2));
+            assert!(names(&violations, ViolatedLimit::Limit(limit)), "{limit} at {radians}: {violations:#?}\n{hop:#?}");
+            by_limit[limit.index()] += 1;
+        }
+    });
+    assert!(missed > 1000 && turned > 500, "{missed} and {turned} hops");
+    for limit in [
+        Limit::TakeoffCone,
+        Limit::LandingCone,
+        Limit::TakeoffSpeed,
+        Limit::LandingSpeed,
+        Limit::Terrain,
+        Limit::MechanicalAngle,
+        Limit::ApexHeight,
+        Limit::FlightTime,
+    ] {
+        assert!(by_limit[limit.index()] >= 8, "{limit} was spoiled {} times only", by_limit[limit.index()]);
+    }
+}
+
+/// The same path over a map with one post altered: under the arc, at the landing, or missing.
+#[test]
+fn a_map_with_one_altered_post_fails() {
+    let limits = HopperLimits { clearance_m: 0.2, ..HopperLimits::with_speeds(6.0, 6.0) };
+    let level = |change: Option<(usize, f64)>| {
+        let mut heights = vec![3.0; 21 * 21];
+        if let Some((index, z_m)) = change {
+            heights[index] = z_m;
+        }
+        let dem = Dem::new(21, 21, heights, GeoReference::local(MapPoint::new(500.0, 900.0), 1.0, 1.0).unwrap()).unwrap();
+        ground(dem, limits, &friction(1.2), 3.0)
+    };
+    let hops = PostHops::new(level(None), 1).unwrap();
+    let (start, goal) = (Post { row: 10, col: 2 }, Post { row: 10, col: 10 });
+    let map = map_from(&hops, start);
+    let path = path_to(&hops, &map, goal, TakeoffChoice::LeastSpeed).unwrap();
+    assert_eq!(path.hops.len(), 1);
+    assert!(verify(&hops, &path, start, goal).passes());
+    let [hop] = path.hops[..] else { unreachable!() };
+    let flown_over = |change| {
+        let altered = level(Some(change));
+        let ends = [&hop.takeoff, &hop.landing].map(|point| altered.contact_at(point));
+        execute(&altered, &path, ends[0].zip(ends[1])).violations
+    };
+    let index = |row: usize, col: usize| row * 21 + col;
+    // A needle up to 0.1 m below the arc: less than the clearance. 45 degrees over 8 m: 2 m at the middle.
+    assert!(names(&flown_over((index(10, 6), 3.0 + 1.9)), ViolatedLimit::Limit(Limit::Terrain)));
+    assert!(!names(&flown_over((index(10, 6), 3.0 + 1.7)), ViolatedLimit::Limit(Limit::Terrain)), "it clears that by 0.3 m");
+    let blocked = flown_over((index(10, 6), 3.0 + 2.5));
+    assert!(names(&blocked, ViolatedLimit::Limit(Limit::Terrain)) && names(&blocked, ViolatedLimit::LandingPoint), "{blocked:?}");
+    let raised = flown_over((index(10, 10), 3.01));
+    assert!(names(&raised, ViolatedLimit::StatedValue(StatedValue::LandingStation)), "{raised:?}");
+    let gap = flown_over((index(10, 6), f64::NAN));
+    assert!(names(&gap, ViolatedLimit::UnknownGround), "{gap:?}");
+    // A neighbour that makes the landing's own facet too steep to rest on.
+    let steep = flown_over((index(10, 9), 3.0 - 1.5));
+    assert!(names(&steep, ViolatedLimit::Limit(Limit::RestSlope)), "{steep:?}");
+    // Beside the path nothing changes.
+    assert_eq!(flown_over((index(3, 3), 90.0)), []);
+}
+
+#[test]
+fn a_path_of_a_map_must_join_its_ends() {
+    let world = World::new(
+        Dem::new(9, 30, vec![0.0; 270], GeoReference::local(MapPoint::new(0.0, 0.0), 1.0, 1.0).unwrap()).unwrap(),
+        Hopper::with_speeds(4.0, 4.0).unwrap(),
+        SurfaceProperties { rest: RestSlope::Unlimited, ..friction(1.5) },
+        2.0,
+    );
+    let hops = PostHops::new(world.ground(), 1).unwrap();
+    let (start, goal) = (Post { row: 4, col: 0 }, Post { row: 4, col: 29 });
+    let map = map_from(&hops, start);
+    let mut path = path_to(&hops, &map, goal, TakeoffChoice::MidRange).unwrap();
+    assert!(path.hops.len() > 2 && verify(&hops, &path, start, goal).passes());
+    let gaps = |path: &HopPath, goal| {
+        let violations = verify(&hops, path, start, goal).violations;
+        violations.iter().filter(|v| v.limit == ViolatedLimit::Continuity).map(|v| v.hop).collect::<Vec<_>>()
+    };
+    assert_eq!(gaps(&path, Post { row: 4, col: 28 }), [path.hops.len()]);
+    path.hops.remove(1);
+    assert_eq!(gaps(&path, goal), [2]);
+}
+
+/// The three forms of the same question: slice and hop test, the table of offsets, and the walk over the triangles that replanning asks.
+#[test]
+fn a_pair_has_the_same_windows_whichever_way_it_is_asked() {
+    let mut compared = 0;
+    some_hops(5, |hops, _, hop| {
+        let ground = hops.ground();
+        let [from, to]: [MapPosition; 2] = [&hop.takeoff, &hop.landing].map(|point| ground.contact_at(point).unwrap());
+        let windows = ground.windows(&from, &to).unwrap();
+        let [lofts] = windows.lofts[..] else { panic!("no window for a hop: {hop:?}") };
+        let slope = |angle: chta::quantity::Angle| angle.slope() - windows.sight.slope();
+        let near = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-6 * (1.0 + a.abs().max(b.abs()));
+        let (min, max) = (slope(hop.takeoff_angles.min), slope(hop.takeoff_angles.max));
+        let vertical = hop.takeoff_angles.max.degrees() > 89.999;
+        assert!(near(lofts.lower, min) && (vertical || near(lofts.upper, max)), "{lofts:?} against {min} to {max}");
+        compared += 1;
+    });
+    assert!(compared > 500, "only {compared} pairs");
+}
+
+/// A chain that is a slice and the DEM itself give the checker the same answer for the same hop.
+#[test]
+fn the_checker_agrees_on_the_slice_and_on_the_dem() {
+    let mut compared = 0;
+    some_hops(9, |hops, world, hop| {
+        let ends = hop.map_ends().unwrap();
+        let chain = hops.ground().chain(ends.0, ends.1).unwrap();
+        let geometry = chain.geometry();
+        let (first, last) = geometry.extent_m();
+        let [from, to] = [first, last].map(|x_m| chain.contact_point(&geometry.station(x_m).unwrap()));
+        for factor in [1.0, 1.01] {
+            let speed = hop.takeoff_speed_m_s * factor;
+            let along = Hop { takeoff: from, landing: to, takeoff_speed_m_s: speed, ..*hop };
+            let over = Hop { takeoff_speed_m_s: speed, ..*hop };
+            let path = |hop| HopPath::of_hops(vec![hop], &world.hopper);
+            let [a, b] = [execute(&chain, &path(along), None), execute(hops.ground(), &path(over), None)];
+            assert_eq!(a.passes(), b.passes(), "{:?} against {:?}", a.violations, b.violations);
+            let [a, b] = [&a.flights[0], &b.flights[0]].map(|flight| flight.as_ref().unwrap());
+            assert!((a.flight_time_s - b.flight_time_s).abs() <= 1e-9 * a.flight_time_s);
+            assert!((a.landing_speed_m_s - b.landing_speed_m_s).abs() <= 1e-9 * a.landing_speed_m_s);
+        }
+        compared += 1;
+    });
+    assert!(compared > 500, "only {compared} hops");
+}
