@@ -31,7 +31,7 @@
 //!
 //! // Graph and search: fewest hops, then least effort.
 //! let options = SearchOptions { spacing: Some(PointSpacing::AtMostM(1.0)), ..SearchOptions::default() };
-//! let answer = search(&test, start, goal, &options, &mut |_| {})?;
+//! let answer = search(&test, start, goal, &options, &())?;
 //! let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path over these nodes") };
 //!
 //! // Path: the command of every hop; and an independent checker that flies it again.
@@ -46,6 +46,7 @@
 //! A module uses only those above it; `tests/library/layers.rs` reads the sources and holds it so.
 //!
 //! ```text
+//! progress     how far long work is, and whether it goes on
 //! quantity     angles, slopes, points, ids, sign-safe roots
 //! world        bodies, the hopper, friction cones, directions of travel
 //! ballistics   the equations of one arc: every limit as an interval of its take-off slope
@@ -80,6 +81,7 @@ pub mod graph;
 pub mod ground;
 pub mod hop;
 pub mod path;
+pub mod progress;
 pub mod quantity;
 pub mod reach;
 pub mod report;

@@ -10,6 +10,7 @@ use std::{
 
 use chta::{
     chain::csv::{CsvFileError, CsvProblem},
+    progress::Cancelled,
     scenario::{PipelineError, ScenarioProblem, ScenarioProblems},
 };
 use miette::{
@@ -90,6 +91,12 @@ impl From<PipelineError> for Failure {
 impl From<serde_json::Error> for Failure {
     fn from(error: serde_json::Error) -> Self {
         Self::Message(format!("the result cannot be written as JSON ({error})"))
+    }
+}
+
+impl From<Cancelled> for Failure {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::of(&cancelled)
     }
 }
 

@@ -6,9 +6,8 @@ use chta::{
     path::TooManyHops,
     reach::{FanError, map::MapError},
     report::FurtherMeans,
-    scenario::{PipelineError, ProblemKind, ScenarioProblem, TradeError},
+    scenario::{PipelineError, ProblemKind, ScenarioProblem},
     terrain::{LonLat, ScaleMend, TerrainError},
-    uncertainty::SimulationError,
 };
 
 use super::help::takes;
@@ -69,7 +68,6 @@ fn of_terrain<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a TerrainError> 
 
 /// What to add to the sentence of an error.
 fn hint(error: &(dyn Error + 'static)) -> String {
-    const THREADS: &str = " with --threads";
     if let Some(mut terrain) = of_terrain(error) {
         while let TerrainError::InFile { problem, .. } = terrain {
             terrain = problem;
@@ -88,13 +86,9 @@ fn hint(error: &(dyn Error + 'static)) -> String {
     match error.downcast_ref() {
         Some(MapError::TooFar { stride, .. }) => return format!("; for that stride give --stride {stride}"),
         Some(MapError::TooManyHops { .. }) => return "; a greater stride is given with --stride".to_owned(),
-        Some(MapError::Threads(_)) => return THREADS.to_owned(),
         _ => {}
     }
-    let threads = matches!(error.downcast_ref(), Some(FanError::Threads(_)))
-        || matches!(error.downcast_ref(), Some(TradeError::Threads(_)))
-        || matches!(error.downcast_ref(), Some(SimulationError::Threads(_)));
-    if threads { THREADS.to_owned() } else { String::new() }
+    String::new()
 }
 
 /// What to do about a map whose scale is off.
@@ -147,24 +141,13 @@ mod tests {
 
     #[test]
     fn every_option_of_a_hint_exists() {
-        let no_threads = || {
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(2)
-                .spawn_handler(|_| Err(std::io::ErrorKind::Other.into()))
-                .build()
-                .unwrap_err()
-        };
         let command = || "gdalwarp in.tif out.tif".to_owned();
         let scale = |mend| TerrainError::MapScale { found: "the scale is 1.3".to_owned(), mend };
         let not_projected = TerrainError::NotProjected { found: "degrees".to_owned(), mend: command() };
         let in_file = TerrainError::InFile { path: "a.tif".into(), problem: Box::new(not_projected) };
-        let errors: [(&str, Box<dyn Error>, &str); 10] = [
+        let errors: [(&str, Box<dyn Error>, &str); 6] = [
             ("map", Box::new(MapError::TooFar { range_m: 9.0, posts: 9.0, offsets: 9, stride: 4 }), "--stride 4"),
             ("map", Box::new(MapError::TooManyHops { most: 9 }), "--stride"),
-            ("map", Box::new(MapError::from(no_threads())), "): ask for fewer with --threads"),
-            ("fan", Box::new(FanError::from(no_threads())), "): ask for fewer with --threads"),
-            ("trade", Box::new(TradeError::from(no_threads())), "): ask for fewer with --threads"),
-            ("simulate", Box::new(SimulationError::from(no_threads())), "): ask for fewer with --threads"),
             ("plan", Box::new(TooManyHops { hops: 9 }), "`chta check`"),
             ("plan", Box::new(PipelineError::from(in_file)), "map --start-lonlat"),
             (

@@ -14,10 +14,11 @@ use chta::{
     terrain::MapProjection,
 };
 
-use super::{Failure, claims};
+use super::{Failure, claims, interrupt};
 
 /// Writes data to standard output. A reader who closed the pipe is no error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
+    interrupt::check()?;
     let mut out = io::stdout().lock();
     match out.write_all(data).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::message(format!(
@@ -54,6 +55,7 @@ impl<'a> Pending<'a> {
 
     /// Puts what was streamed in its place.
     pub(crate) fn keep(self) -> Result<(), Failure> {
+        interrupt::check()?;
         self.file.keep().map_err(|error| unwritable(self.path, &error))
     }
 }
@@ -93,6 +95,7 @@ impl TableFormat {
 
 /// Writes files all or none: every one beside its place first, then all into their places.
 pub(crate) fn finish(mut files: Vec<(Pending<'_>, Vec<u8>)>) -> Result<(), Failure> {
+    interrupt::check()?;
     for (pending, bytes) in &mut files {
         pending.file.write(bytes).map_err(|error| unwritable(pending.path, &error))?;
     }

@@ -11,11 +11,12 @@ use super::{
 use crate::{
     chain::Station,
     graph::{
-        SearchOptions, TooManyNodes,
-        proof::{BoundsOptions, ProofVerdict, bounds},
-        search,
+        SearchError, SearchOptions,
+        proof::{BoundsOptions, ProofVerdict, bounds_of},
+        search_one,
     },
     hop::HopTest,
+    progress::{Cancelled, Detail, Meter, Progress, Stage},
     report::{SweptKeyRecord, TradeAnswer, TradeRow},
 };
 
@@ -121,9 +122,9 @@ pub enum TradeError {
         /// Why it is refused.
         problem: String,
     },
-    /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// It was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl SweptKey {
@@ -233,20 +234,33 @@ pub struct Varied {
 /// The verdict over one chain, with a proof within a budget of cells where one is asked for.
 ///
 /// # Errors
-/// [`TooManyNodes`].
+/// [`SearchError`].
 pub fn verdict(
     test: &HopTest,
-    (start, goal): (Station, Station),
+    ends: (Station, Station),
     options: &SearchOptions,
     proof_budget_cells: Option<usize>,
-) -> Result<Varied, TooManyNodes> {
+    progress: &dyn Progress,
+) -> Result<Varied, SearchError> {
+    let stage = if proof_budget_cells.is_some() { Stage::Proof } else { Stage::Search };
+    verdict_of(test, ends, options, proof_budget_cells, &Meter::new(progress, stage))
+}
+
+/// The same as a part of another stage.
+fn verdict_of(
+    test: &HopTest,
+    ends: (Station, Station),
+    options: &SearchOptions,
+    proof_budget_cells: Option<usize>,
+    meter: &Meter<'_>,
+) -> Result<Varied, SearchError> {
     let Some(budget_cells) = proof_budget_cells else {
-        let hops = search(test, start, goal, options, &mut |_| {})?.hops();
+        let hops = search_one(test, ends, options, meter)?.hops();
         let verdict = if hops.is_some() { ProofVerdict::Traversable } else { ProofVerdict::Open };
         return Ok(Varied { verdict, hops, lower_bound: None });
     };
     let options = BoundsOptions { budget_cells, search: options.clone(), ..BoundsOptions::default() };
-    let bounds = bounds(test, start, goal, &options, &mut |_| {})?;
+    let bounds = bounds_of(test, ends, &options, meter)?;
     Ok(Varied { verdict: bounds.verdict(), hops: bounds.upper(), lower_bound: Some(bounds.lower) })
 }
 
@@ -279,33 +293,24 @@ impl<'a> Trade<'a> {
 
     /// The answer in every cell, in parallel; the same for any number of threads.
     ///
-    /// The last key changes fastest. `progress` is told after each cell.
-    ///
-    /// # Arguments
-    /// `threads`: how many; 0: one for each core.
+    /// The last key changes fastest. Reports every cell.
     ///
     /// # Errors
     /// [`TradeError`]: a key on which nothing depends, or the first cell whose scenario is refused.
-    pub fn run(
-        &self,
-        proof_budget_cells: Option<usize>,
-        threads: usize,
-        progress: &(dyn Fn() + Sync),
-    ) -> Result<TradeAnswer, TradeError> {
+    pub fn run(&self, proof_budget_cells: Option<usize>, progress: &dyn Progress) -> Result<TradeAnswer, TradeError> {
+        let meter = Meter::with_total(progress, Stage::Trade, self.cells() as u64);
+        meter.report(Detail::None)?;
         for axis in 0..self.swept.len() {
-            self.check_effect(axis)?;
+            self.check_effect(axis, &meter)?;
         }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        let rows: Vec<_> = pool.install(|| {
-            (0..self.cells())
-                .into_par_iter()
-                .map(|cell| {
-                    let row = self.row(&self.at(cell), proof_budget_cells);
-                    progress();
-                    row
-                })
-                .collect()
-        });
+        let row = |cell| -> Result<TradeRow, TradeError> {
+            meter.check()?;
+            let row = self.row(&self.at(cell), proof_budget_cells, &meter)?;
+            meter.complete_one()?;
+            Ok(row)
+        };
+        let rows: Vec<_> = (0..self.cells()).into_par_iter().map(row).collect();
+        meter.check()?;
         let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key.path(), values: v.values.clone() }).collect();
         Ok(TradeAnswer { vary, proved: proof_budget_cells.is_some(), rows: rows.into_iter().collect::<Result<_, _>>()? })
     }
@@ -341,14 +346,16 @@ impl<'a> Trade<'a> {
     }
 
     /// One cell.
-    fn row(&self, values: &[f64], proof_budget_cells: Option<usize>) -> Result<TradeRow, TradeError> {
+    fn row(&self, values: &[f64], proof_budget_cells: Option<usize>, meter: &Meter<'_>) -> Result<TradeRow, TradeError> {
         let (scenario, Prepared { chain, start, goal, .. }) = self.prepared(values)?;
         let Some(ends) = start.zip(goal) else {
             return Err(self.refused(values, "found no start or no goal, expected terrain.start_x_m and terrain.goal_x_m"));
         };
         let test = HopTest::new(chain);
-        let answer =
-            verdict(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
+        let answer = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter).map_err(|error| match error {
+            SearchError::Cancelled(cancelled) => TradeError::Cancelled(cancelled),
+            SearchError::TooManyNodes(problem) => self.refused(values, &problem.to_string()),
+        })?;
         let keys = self.swept.iter().map(|v| v.key.path());
         Ok(TradeRow {
             values: keys.zip(values.iter().copied()).collect(),
@@ -359,7 +366,7 @@ impl<'a> Trade<'a> {
     }
 
     /// Whether anything depends on a key: cells next to each other along it are compared until two differ.
-    fn check_effect(&self, axis: usize) -> Result<(), TradeError> {
+    fn check_effect(&self, axis: usize, meter: &Meter<'_>) -> Result<(), TradeError> {
         let own = &self.swept[axis];
         let across: &[f64] = self.swept.iter().enumerate().find(|(i, _)| *i != axis).map_or(&[0.0], |(_, v)| &v.values);
         for &other in across {
@@ -370,6 +377,7 @@ impl<'a> Trade<'a> {
                     (_, 0) => vec![value, other],
                     _ => vec![other, value],
                 };
+                meter.report(Detail::None)?;
                 let (scenario, prepared) = self.prepared(&values)?;
                 if before.as_ref().is_some_and(|(s, p)| !ask_the_same((s, p), (&scenario, &prepared))) {
                     return Ok(());

@@ -1,8 +1,7 @@
-//! What to simulate, how often, and who listens.
+//! What to simulate, how often, and who is given the records.
 
-use std::ops::ControlFlow;
-
-use super::{HopRecord, OutcomeCounts, Policy, TrialRecord, UncertaintyProblem, Wilson};
+use super::{HopRecord, Policy, TrialRecord, UncertaintyProblem};
+use crate::progress::Cancelled;
 
 /// How many trials, and how they are flown and checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +18,6 @@ pub struct TrialOptions {
     pub goal_tolerance_m: f64,
     /// Stop once half the width of the success rate's 95 % interval is at most this; tested after every 1 000 trials.
     pub until_half_width: Option<f64>,
-    /// How many threads; 0: one for each core. The results are the same for any number.
-    pub threads: usize,
     /// How many trials, from the first, to keep with all their hops.
     pub trajectories: u64,
 }
@@ -35,7 +32,6 @@ impl Default for TrialOptions {
             hop_limit: None,
             goal_tolerance_m: 1.0,
             until_half_width: None,
-            threads: 0,
             trajectories: 0,
         }
     }
@@ -104,28 +100,9 @@ pub enum SimulationError {
         /// North, m.
         y_m: f64,
     },
-    /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-    /// The observer asked to stop.
-    #[error("the simulation was stopped after {trials} trials")]
-    Stopped {
-        /// How many were done.
-        trials: u64,
-    },
-}
-
-/// How far a simulation is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Trials done.
-    pub done: u64,
-    /// Trials asked for.
-    pub of: u64,
-    /// How those done ended.
-    pub outcomes: OutcomeCounts,
-    /// The success rate so far.
-    pub success: Wilson,
+    /// It was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Who listens to a simulation. All calls come from one thread, in the order of trials and hops, whatever the number of threads.
@@ -140,11 +117,6 @@ pub trait Observer {
 
     /// A trial ended, all of its hops told.
     fn trial(&mut self, _trial: &TrialRecord) {}
-
-    /// After each batch of 1 000 trials. A break ends the simulation with [`SimulationError::Stopped`].
-    fn progress(&mut self, _progress: &Progress) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
 }
 
 /// Nobody listens.

@@ -6,7 +6,8 @@
 use std::{fs, path::Path};
 
 /// The rungs, from the top. The last two share no rung with the library: the binary's own side comes after everything.
-const LADDER: [&str; 15] = [
+const LADDER: [&str; 16] = [
+    "progress",
     "quantity",
     "world",
     "ballistics",

@@ -23,7 +23,7 @@ use chta::{
 const CHOICES: [TakeoffChoice; 3] = TakeoffChoice::ALL;
 
 fn map_from(hops: &PostHops, start: Post) -> HopMap {
-    search(hops, start, Search::default(), &mut |_| {}).unwrap()
+    search(hops, start, Search::default(), &()).unwrap()
 }
 
 fn path_to(hops: &PostHops, map: &HopMap, goal: Post, choice: TakeoffChoice) -> Option<HopPath> {

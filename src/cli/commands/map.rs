@@ -6,10 +6,11 @@ use chta::{
     graph::Effort,
     ground::DemGround,
     path::{Execution, HopPath},
+    progress::{Detail, Step},
     quantity::MapPoint,
     reach::map::{
-        HopMap, Journey, LayerProgress, MapError, MapHop, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, joined,
-        mobility, path_hops, search, verify,
+        HopMap, Journey, MapError, MapHop, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, joined, mobility, path_hops,
+        search, verify,
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, SimulationRecord, TotalsRecord,
@@ -20,10 +21,10 @@ use chta::{
     terrain::{
         Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
-    uncertainty::{Mission, Policy, Simulation, SimulationError, TrialOptions},
+    uncertainty::{Mission, Policy, Simulation, SimulationError},
 };
 
-use super::{captions::conditions, map_profiles, plan::passed, slice::place};
+use super::{captions::conditions, map_profiles, plan::passed, search::use_threads, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
@@ -73,6 +74,7 @@ struct Maps {
 
 /// Makes the map.
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
+    use_threads(args.answer.threads)?;
     let (ground, start, goals) = prepared(args)?;
     check_extensions(args)?;
     let begun = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;
@@ -209,22 +211,20 @@ fn refusals(hops: &PostHops, start: Spot, goals: &[Spot]) -> Vec<String> {
 fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
     let Ground { scenario, lattice, .. } = ground;
     let failed = |error: &MapError| Failure::about(&args.dem, error);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.answer.threads).build().map_err(|e| failed(&e.into()))?;
     let progress = Progress::new(args.common.quiet);
     let began = std::time::Instant::now();
-    let maps = pool.install(|| -> Result<(Maps, Vec<Option<Execution>>), MapError> {
+    // From inside the pool, whose threads hear of each other sooner than of one outside.
+    let maps = rayon::scope(|_| -> Result<(Maps, Vec<Option<Execution>>), MapError> {
         let hops = PostHops::new(ground.ground.clone(), lattice.stride)?;
-        let tell = |what: &str, found: LayerProgress| progress.say(format_layer(what, found, began.elapsed().as_secs_f64()));
+        let layers = |what: &'static str| progress.with_lines(move |step| format_layer(what, step, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
-        let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &mut |found| tell("there", found))?;
-        let back = args.back.then(|| {
-            search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &mut |found| tell("back", found))
-        });
+        let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &layers("there"))?;
+        let back = args.back.then(|| search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &layers("back")));
         let begun = std::time::Instant::now();
         let mobile = args
             .mobility
             .as_ref()
-            .map(|_| mobility(&hops, &|done, of| progress.say(format_share("mobility", done, of, begun.elapsed().as_secs_f64()))));
+            .map(|_| mobility(&hops, &progress.with_lines(|step| format_share("mobility", step, begun.elapsed().as_secs_f64()))));
         let hops_to = |goal: &Spot| {
             let nodes = out.path(&hops, goal.post);
             nodes.map(|nodes| path_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
@@ -264,27 +264,28 @@ fn simulated(
     keys: &UncertaintyKeys,
 ) -> Result<Vec<Option<SimulationRecord>>, Failure> {
     let failed = |error: SimulationError| Failure::about(&args.dem, &error);
-    let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
+    let options = keys.options();
+    let progress = Progress::new(true);
     let fly = |path: &HopPath| {
         let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
         let mission = Mission::over_dem(ground.ground.clone(), path.clone(), first.takeoff, last.landing);
-        let summary = Simulation::new(&mission, keys.errors).map_err(failed)?.run(&options, &mut ()).map_err(failed)?;
+        let summary = Simulation::new(&mission, keys.errors).map_err(failed)?.run(&options, &mut (), &progress).map_err(failed)?;
         Ok(Some(SimulationRecord::new(&summary, path.hops.len())))
     };
     maps.paths.iter().map(|path| path.as_ref().map_or(Ok(None), fly)).collect()
 }
 
 /// What is being done, how far it is, and how long it may still take.
-fn format_layer(what: &str, found: LayerProgress, elapsed_s: f64) -> String {
-    let all = found.reached + found.open;
-    format!("hops {what}, front {}: {}", found.layer, format_share("posts", found.reached, all, elapsed_s))
+fn format_layer(what: &str, step: &Step, elapsed_s: f64) -> Option<String> {
+    let Detail::Layer { hops } = step.detail else { return None };
+    Some(format!("hops {what}, front {hops}: {}", format_share("posts", step, elapsed_s)?))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a share for reading")]
-fn format_share(what: &str, done: usize, all: usize, elapsed_s: f64) -> String {
-    let share = done as f64 / all.max(1) as f64;
+fn format_share(what: &str, step: &Step, elapsed_s: f64) -> Option<String> {
+    let share = step.done as f64 / step.of?.max(1) as f64;
     let left_s = elapsed_s * (1.0 - share) / share.max(1.0e-3);
-    format!("{what} {:.0} % done, at most {left_s:.0} s left", 100.0 * share)
+    Some(format!("{what} {:.0} % done, at most {left_s:.0} s left", 100.0 * share))
 }
 
 /// Checks that each output has an extension that its readers recognise.

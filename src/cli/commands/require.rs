@@ -16,6 +16,7 @@ use crate::cli::{
     args::{Format, RequireArgs},
     load::{EndOptions, Loaded, load},
     output,
+    progress::Progress,
 };
 
 /// A scenario key that makes a hopper more or less capable, with the range of values that is tried unless another is asked for.
@@ -80,7 +81,7 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
         )));
     }
     let mut tries: Vec<Tried> = Vec::new();
-    let threshold = least_capability(range, &mut |value| -> Result<_, Failure> {
+    let mut tried = |value| -> Result<_, Failure> {
         let loaded = with_value(args, value, true)?;
         let options = BoundsOptions {
             budget_cells: args.budget,
@@ -92,7 +93,9 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
         let verdict = bounds.verdict();
         tries.push(Tried { value, loaded, bounds });
         Ok(verdict)
-    })?;
+    };
+    // Each proof shows its own.
+    let threshold = least_capability(range, &mut tried, &Progress::new(true))?;
     let at = |value: Option<f64>| tries.iter().find(|tried| Some(tried.value) == value);
     let mut answer = RequireAnswer {
         start_x_m: ends.0.point.x_m,

@@ -50,7 +50,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         files.push(("path.geojson", geojson.into_bytes()));
         files.extend(output::prj(projection).map(|text| ("path.prj", text)));
     }
-    let simulate::RunTrials { text: trials_text, files: of_trials } = simulate::of_run(&loaded, &test, &planned, *threads, *quiet)?;
+    let simulate::RunTrials { text: trials_text, files: of_trials } = simulate::of_run(&loaded, &test, &planned, *quiet)?;
     files.extend(of_trials);
     fs::create_dir_all(folder).map_err(|error| {
         Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))

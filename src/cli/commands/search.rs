@@ -3,8 +3,8 @@
 use chta::{
     chain::Station,
     graph::{
-        self, PointSpacing, ReliablePath,
-        proof::{Bounds, BoundsOptions, ProofSummary, bounds},
+        self, ReliablePath,
+        proof::{Bounds, BoundsOptions, bounds},
         search_most_reliable,
     },
     hop::HopTest,
@@ -101,9 +101,10 @@ pub(super) fn search(
     quiet: bool,
 ) -> Result<(graph::Answer, Vec<ReliablePath>), Failure> {
     let options = &scenario.search;
+    let progress = Progress::new(quiet);
     let found = match scenario.reliability() {
-        None => graph::search(test, start, goal, options, &mut progress_printer(quiet)).map(|answer| (answer, Vec::new())),
-        Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &mut progress_printer(quiet)),
+        None => graph::search(test, start, goal, options, &progress).map(|answer| (answer, Vec::new())),
+        Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &progress),
     };
     found.map_err(|error| Failure::of(&error))
 }
@@ -118,18 +119,7 @@ fn search_pairs(
     if scenario.reliability().is_some() {
         return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
     }
-    graph::search_pairs(test, pairs, &scenario.search, &mut progress_printer(quiet)).map_err(|error| Failure::of(&error))
-}
-
-/// Prints on a terminal what is being tried.
-fn progress_printer(quiet: bool) -> impl FnMut(PointSpacing) {
-    let progress = Progress::new(quiet);
-    move |spacing| {
-        progress.say(match spacing {
-            PointSpacing::PerSegment(points) => format!("searching with {points} points inside each segment"),
-            PointSpacing::AtMostM(spacing_m) => format!("searching with nodes at most {spacing_m} m apart"),
-        });
-    }
+    graph::search_pairs(test, pairs, &scenario.search, &Progress::new(quiet)).map_err(|error| Failure::of(&error))
 }
 
 /// Bounds the fewest hops, and shows how far the proof is on a terminal.
@@ -139,7 +129,5 @@ pub(super) fn proved(
     options: &BoundsOptions,
     quiet: bool,
 ) -> Result<Bounds, Failure> {
-    let progress = Progress::new(quiet);
-    let mut tell = |summary: ProofSummary| progress.say(format!("proving with {} cells, round {}", summary.cells, summary.rounds));
-    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::of(&error))
+    bounds(test, start, goal, options, &Progress::new(quiet)).map_err(|error| Failure::of(&error))
 }

@@ -1,9 +1,6 @@
 //! `chta trade`: one or two keys of the scenario varied.
 
-use std::{
-    path::Path,
-    sync::atomic::{AtomicUsize, Ordering},
-};
+use std::path::Path;
 
 use chta::{
     report::{
@@ -13,7 +10,10 @@ use chta::{
     scenario::{SweptKey, Trade, TradeError},
 };
 
-use super::captions::{SpeedLimit, title};
+use super::{
+    captions::{SpeedLimit, title},
+    search::use_threads,
+};
 use crate::cli::{
     Answer, Failure,
     args::{Format, TradeArgs},
@@ -31,6 +31,7 @@ fn refused(error: TradeError) -> Failure {
 
 /// Answers every cell.
 pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
+    use_threads(args.answer.threads)?;
     let swept: Vec<_> = args.vary.iter().map(|text| SweptKey::parse(text)).collect::<Result<_, _>>().map_err(refused)?;
     let table = args.output.as_deref().map(TableFormat::of).transpose()?;
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
@@ -41,11 +42,8 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     let ToVary { first, survey, entries, base } = load_to_vary(&args.journey.chain, &args.common, &args.search, ends, &swept)?;
     first.ends()?;
     let trade = Trade::new(&entries, &base, &survey, &swept).map_err(refused)?;
-    let progress = Progress::new(args.common.quiet);
-    let (cells, done) = (trade.cells(), AtomicUsize::new(0));
-    let tell = || progress.say(format!("{} of {cells} fields", done.fetch_add(1, Ordering::Relaxed) + 1));
-    let answer = trade.run(args.prove.prove.then_some(args.prove.budget), args.answer.threads, &tell).map_err(refused)?;
-    drop(progress);
+    let budget = args.prove.prove.then_some(args.prove.budget);
+    let answer = trade.run(budget, &Progress::new(args.common.quiet)).map_err(refused)?;
     let mut files = Vec::new();
     if let Some(file) = rows {
         let bytes = if table == Some(TableFormat::Json) { document(&first, &answer)?.into_bytes() } else { csv(&answer)? };

@@ -1,6 +1,6 @@
 //! Why the hops of a map cannot be computed.
 
-use crate::{ground::SliceProblem, quantity::MapPoint, terrain::TerrainError};
+use crate::{ground::SliceProblem, progress::Cancelled, quantity::MapPoint, terrain::TerrainError};
 
 /// Why there is no map.
 #[derive(Debug, thiserror::Error)]
@@ -48,7 +48,7 @@ pub enum MapError {
         /// The most there are.
         most: i16,
     },
-    /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// It was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }

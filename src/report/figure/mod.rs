@@ -157,7 +157,7 @@ pub enum FigureError {
 /// let chain = ConstrainedChain::new(ground, &hopper, Gravity::new(3.711)?, &surface)?;
 /// let test = HopTest::new(chain.clone());
 /// let (start, goal) = (chain.geometry().station(0.0)?, chain.geometry().station(60.0)?);
-/// let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {})?;
+/// let answer = search(&test, start, goal, &SearchOptions::default(), &())?;
 /// let Outcome::Path { legs, .. } = &answer.outcome else { panic!("no path") };
 /// let path = generate(&test, legs, TakeoffChoice::LeastSpeed, Split::FullReach)?;
 /// let title = FigureTitle { body: "Mars".into(), ..FigureTitle::default() };

@@ -39,7 +39,7 @@ impl Case {
         let test = HopTest::new(self.chain.clone());
         let at = |x_m| self.chain.geometry().station(x_m).unwrap();
         let (start, goal) = (at(self.ends_m.0), at(self.ends_m.1));
-        let answer = search(&test, start, goal, &self.options, &mut |_| {}).unwrap();
+        let answer = search(&test, start, goal, &self.options, &()).unwrap();
         let path = match &answer.outcome {
             Outcome::Path { legs, .. } => Some(generate(&test, legs, self.options.takeoff, Split::FullReach).unwrap()),
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,

@@ -97,7 +97,7 @@ impl World {
     /// The planned path; `None` where there is none, or one of so many hops that it would take the whole test.
     pub(crate) fn plan(&self, test: &HopTest) -> Option<HopPath> {
         let (start, goal) = self.ends(test.chain());
-        match search(test, start, goal, &self.options, &mut |_| {}).unwrap().outcome {
+        match search(test, start, goal, &self.options, &()).unwrap().outcome {
             Outcome::Path { legs, cost } if cost.hops() <= 60 => {
                 Some(generate(test, &legs, self.options.takeoff, self.options.split).unwrap())
             }

@@ -9,7 +9,7 @@ use chta::{
         figure::{draw_cone_width, draw_landing_errors},
     },
     uncertainty::{
-        Policy, TrialOptions,
+        Policy,
         experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
     },
     world::Direction,
@@ -26,6 +26,7 @@ use crate::cli::{
     hints,
     load::Loaded,
     output,
+    progress::Progress,
 };
 
 /// Runs an experiment by its name.
@@ -175,17 +176,18 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let (start, goal) = loaded.ends()?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| failed(&error))?;
+    let progress = Progress::new(args.common.quiet);
     let reliable_paths =
-        most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max));
+        most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max), &progress)?;
     // What would be planned without regard to risk, over the same nodes.
     let without_risk = SearchOptions { spacing: Some(planned.found.spacing), ..scenario.search.clone() };
-    let found = graph::search(&test, start, goal, &without_risk, &mut |_| {}).map_err(|error| failed(&error))?;
+    let found = graph::search(&test, start, goal, &without_risk, &progress).map_err(|error| failed(&error))?;
     let Outcome::Path { legs, .. } = &found.outcome else {
         return Err(Failure::message("there is no nominal path to compare with"));
     };
     let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
     let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy), args.common.quiet)?;
-    let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
+    let options = keys.options();
     let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
     for candidate in &reliable_paths {
         let path =

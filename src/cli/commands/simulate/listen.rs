@@ -2,14 +2,14 @@
 
 use std::{
     io::{self, BufWriter},
-    ops::ControlFlow,
     path::Path,
     time::Instant,
 };
 
 use chta::{
+    progress::{Detail, Step},
     report::landings::{CsvLandings, LandingRow, LandingWriter},
-    uncertainty::{HopRecord, Observer, Policy, Progress as Done},
+    uncertainty::{HopRecord, Observer, Policy},
 };
 
 use super::trials::on_dem;
@@ -93,23 +93,22 @@ fn parquet<'a>(path: &'a Path, _loaded: &Loaded, _on_a_map: bool) -> Result<(Pen
     )))
 }
 
-/// Writes landings and shows how far the trials are.
+/// Writes landings as they come.
 pub(super) struct Listener<'a> {
     rows: Option<RowFile<'a>>,
     policy: Policy,
     failed: Option<io::Error>,
-    progress: Progress,
-    begun: Instant,
+    progress: &'a Progress,
 }
 
 impl<'a> Listener<'a> {
-    pub(super) fn new(rows: Option<RowFile<'a>>, policy: Policy, quiet: bool) -> Self {
-        Self { rows, policy, failed: None, progress: Progress::new(quiet), begun: Instant::now() }
+    pub(super) fn new(rows: Option<RowFile<'a>>, policy: Policy, progress: &'a Progress) -> Self {
+        Self { rows, policy, failed: None, progress }
     }
 
     /// The trials of another policy follow.
-    pub(super) fn begin(&mut self, policy: Policy) {
-        (self.policy, self.begun) = (policy, Instant::now());
+    pub(super) const fn begin(&mut self, policy: Policy) {
+        self.policy = policy;
     }
 
     /// What kept it from writing, in place of the simulation's own word that it was stopped.
@@ -142,44 +141,43 @@ impl Observer for Listener<'_> {
                 self.rows = None;
             } else {
                 self.failed = Some(error);
+                self.progress.stop();
             }
         }
     }
+}
 
-    fn progress(&mut self, done: &Done) -> ControlFlow<()> {
-        if self.failed.is_some() {
-            return ControlFlow::Break(());
+/// The lines of the trials of a policy, which begin now.
+pub(super) fn trials_line(policy: Policy) -> impl Fn(&Step) -> Option<String> + Sync {
+    let begun = Instant::now();
+    move |step| match (step.detail, step.of) {
+        (Detail::Trials { reached_goal }, Some(of)) => {
+            Some(progress_text(policy, (step.done, of), reached_goal, begun.elapsed().as_secs_f64()))
         }
-        self.progress.say(progress_text(self.policy, done, self.begun.elapsed().as_secs_f64()));
-        ControlFlow::Continue(())
+        _ => None,
     }
 }
 
 /// The line of progress: how far the trials are, how fast they go, and how long they take still.
 #[expect(clippy::cast_precision_loss, reason = "for reading")]
-fn progress_text(policy: Policy, done: &Done, elapsed_s: f64) -> String {
-    let rate = done.done as f64 / elapsed_s.max(1e-9);
-    let left_s = (done.of - done.done.min(done.of)) as f64 / rate.max(1e-9);
+fn progress_text(policy: Policy, (done, of): (u64, u64), reached_goal: u64, elapsed_s: f64) -> String {
+    let rate = done as f64 / elapsed_s.max(1e-9);
+    let left_s = (of - done.min(of)) as f64 / rate.max(1e-9);
     format!(
-        "{}: {} of {} trials, {rate:.0} a second, {left_s:.0} s left at most, {:.4} reach the goal",
+        "{}: {done} of {of} trials, {rate:.0} a second, {left_s:.0} s left at most, {:.4} reach the goal",
         policy.name(),
-        done.done,
-        done.of,
-        done.success.rate
+        reached_goal as f64 / done.max(1) as f64
     )
 }
 
 #[cfg(test)]
 mod tests {
-    use chta::uncertainty::{OutcomeCounts, Wilson};
-
     use super::*;
 
     #[test]
     fn progress_has_rate_and_time_left() {
-        let done = Done { done: 3000, of: 9000, outcomes: OutcomeCounts::default(), success: Wilson::of(1500, 3000) };
         assert_eq!(
-            progress_text(Policy::Replan, &done, 2.0),
+            progress_text(Policy::Replan, (3000, 9000), 1500, 2.0),
             "replan: 3000 of 9000 trials, 1500 a second, 4 s left at most, 0.5000 reach the goal"
         );
     }

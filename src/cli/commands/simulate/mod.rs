@@ -127,13 +127,7 @@ pub(super) struct RunTrials {
 pub(super) const RUN_FILES: [&str; 3] = ["simulation.json", "trials.svg", "landings.svg"];
 
 /// Flies and draws what the scenario's `[uncertainty]` asks for, beside the plan of a run.
-pub(super) fn of_run(
-    loaded: &Loaded,
-    test: &HopTest,
-    planned: &Planned,
-    threads: usize,
-    quiet: bool,
-) -> Result<RunTrials, Failure> {
+pub(super) fn of_run(loaded: &Loaded, test: &HopTest, planned: &Planned, quiet: bool) -> Result<RunTrials, Failure> {
     let mut trials = RunTrials { text: String::new(), files: Vec::new() };
     let (Some(keys), Some(path)) = (loaded.scenario.uncertainty, &planned.path) else { return Ok(trials) };
     let warnings: Vec<String> = keys.warning().map(str::to_owned).into_iter().collect();
@@ -142,7 +136,7 @@ pub(super) fn of_run(
     }
     let policies = std::slice::from_ref(&keys.policy);
     let flyer = Flyer::new(loaded, test, path, &planned.found, policies, quiet)?;
-    let flown = flyer.fly(policies, &TrialOptions { threads, ..keys.options() }, None, quiet)?;
+    let flown = flyer.fly(policies, &keys.options(), None, quiet)?;
     let [answer, sheet_name, map_name] = RUN_FILES;
     let Some(record) = flown.first().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())) else { return Ok(trials) };
     trials.text = format!("\n{}", record.text());
@@ -183,5 +177,5 @@ fn trial_options(args: &SimulateArgs) -> Vec<(&'static str, &'static str, &'stat
 
 /// The trials that scenario and options ask for.
 fn trials_asked(args: &SimulateArgs, keys: &UncertaintyKeys) -> TrialOptions {
-    TrialOptions { until_half_width: args.until_half_width, threads: args.answer.threads, ..keys.options() }
+    TrialOptions { until_half_width: args.until_half_width, ..keys.options() }
 }

@@ -12,7 +12,7 @@ use chta::{
     uncertainty::{Mission, Policy, Simulation, Summary, TrialOptions},
 };
 
-use super::listen::{Listener, RowFile};
+use super::listen::{Listener, RowFile, trials_line};
 use crate::cli::{Failure, load::Loaded, progress::Progress};
 
 /// How many trials are kept with all their hops, for the pictures.
@@ -65,10 +65,11 @@ impl<'a> Flyer<'a> {
             let options = &loaded.scenario.search;
             let progress = Progress::new(quiet);
             progress.say("ranking the ways on from every node".to_owned());
-            Ok(Arc::new(match loaded.scenario.reliability() {
-                Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability),
-                None => CostToGo::of(test, nodes, options),
-            }))
+            let to_go = match loaded.scenario.reliability() {
+                Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability, &progress),
+                None => CostToGo::of(test, nodes, options, &progress),
+            };
+            Ok(Arc::new(to_go?))
         });
         Ok(Self { loaded, test, path, ground, to_go: to_go.transpose()? })
     }
@@ -104,12 +105,13 @@ impl<'a> Flyer<'a> {
     ) -> Result<Vec<Flown>, Failure> {
         let errors = self.loaded.scenario.uncertainty.unwrap_or_default().errors;
         let simulation = Simulation::new(&self.mission(self.path)?, errors).map_err(|error| Failure::of(&error))?;
-        let mut listener = Listener::new(rows, policies.first().copied().unwrap_or_default(), quiet);
+        let progress = Progress::new(quiet);
+        let mut listener = Listener::new(rows, policies.first().copied().unwrap_or_default(), &progress);
         let mut flown = Vec::new();
         for &policy in policies {
             listener.begin(policy);
             let options = TrialOptions { policy, trajectories: KEPT_TRIALS, ..*options };
-            match simulation.run(&options, &mut listener) {
+            match simulation.run(&options, &mut listener, &progress.with_lines(trials_line(policy))) {
                 Ok(summary) => flown.push(Flown { summary }),
                 Err(error) => return Err(listener.failure().unwrap_or_else(|| Failure::of(&error))),
             }
@@ -122,6 +124,6 @@ impl<'a> Flyer<'a> {
     pub(super) fn fly_along(&self, path: &HopPath, options: &TrialOptions) -> Result<Summary, Failure> {
         let errors = self.loaded.scenario.uncertainty.unwrap_or_default().errors;
         let failed = |error: chta::uncertainty::SimulationError| Failure::of(&error);
-        Simulation::new(&self.mission(path)?, errors).map_err(failed)?.run(options, &mut ()).map_err(failed)
+        Simulation::new(&self.mission(path)?, errors).map_err(failed)?.run(options, &mut (), &Progress::new(true)).map_err(failed)
     }
 }
