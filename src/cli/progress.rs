@@ -1,4 +1,4 @@
-//! Progress of work longer than a second, on a terminal and nowhere else.
+//! Progress of computations longer than a second, shown only on a terminal.
 
 use std::{
     io::{self, IsTerminal},
@@ -12,7 +12,7 @@ use std::{
 
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Shows what is being done, from the first second on, until it is dropped.
+/// Shows the current stage from the first second on, until it is dropped.
 #[derive(Debug)]
 pub(crate) struct Progress {
     doing: Arc<Mutex<String>>,
@@ -47,7 +47,7 @@ impl Progress {
         Self { doing, shown }
     }
 
-    /// Says what is being done now.
+    /// Sets the current stage.
     pub(crate) fn say(&self, doing: String) {
         if let Ok(mut said) = self.doing.lock() {
             *said = doing;
