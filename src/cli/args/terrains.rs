@@ -91,8 +91,8 @@ pub(crate) struct FanArgs {
 
 /// Fewest hops from one post of a DEM to every other, in any direction
 ///
-/// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it. The terrain keys of --scenario
-/// (dem, mesh or chain, start, goal, intermediate points) are ignored: DEM, --start and --goal replace them.
+/// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it. The terrain keys of
+/// --scenario (dem, mesh or chain, start, goal, intermediate points) are ignored: DEM, --start and --goal replace them.
 #[derive(Debug, ClapArgs)]
 #[command(
     after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"

@@ -216,9 +216,9 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
         let hops = PostHops::new(ground.ground.clone(), lattice.stride)?;
         let tell = |what: &str, found: LayerProgress| progress.say(format_layer(what, found, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
-        let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &mut |found| tell("outbound hops", found))?;
+        let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &mut |found| tell("outbound", found))?;
         let back = args.back.then(|| {
-            search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &mut |found| tell("return hops", found))
+            search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &mut |found| tell("return", found))
         });
         let begun = std::time::Instant::now();
         let mobile = args
@@ -277,7 +277,7 @@ fn simulated(
 /// A progress line: the stage, the share done and the time left.
 fn format_layer(what: &str, found: LayerProgress, elapsed_s: f64) -> String {
     let all = found.reached + found.open;
-    format!("{what}, layer {}: {}", found.layer, format_share("posts", found.reached, all, elapsed_s))
+    format!("{what} hops, layer {}: {}", found.layer, format_share("posts", found.reached, all, elapsed_s))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a share for reading")]
