@@ -12,7 +12,7 @@ use super::{
 pub(super) const MARGIN_MM: f64 = 4.0;
 /// Line spacing as a multiple of the letter size.
 const LEADING: f64 = 1.4;
-/// Factor by which bold letters are wider than the estimate.
+/// Lines of bold letters, which are wider than estimated, are wrapped at this fraction of the width.
 const BOLD: f64 = 0.88;
 
 /// The caption above a picture.

@@ -62,7 +62,7 @@ fn drawn(name: &str, posts: MapPosts<'_>, per_hop: f64, most: f64, with_return: 
     // Every post is in exactly one entry of the legend.
     let counts = texts(&picture)
         .lines()
-        .filter(|line| !line.contains("way"))
+        .filter(|line| !line.contains("to the start"))
         .filter_map(|line| {
             let (_, count) = line.rsplit_once(": ")?;
             count.strip_suffix(" posts").or(count.strip_suffix(" post"))?.parse::<usize>().ok()
