@@ -350,7 +350,7 @@ fn write_files<'a>(
         files.push((file, whole("fewest hops from the start; -1 unreachable", &maps.out.hops)?));
     }
     if let (Some(file), Some(back)) = (&args.return_output, &maps.back) {
-        files.push((file, whole("fewest hops back to the start; -1 unreachable", &back.hops)?));
+        files.push((file, whole("fewest hops back to the start; -1 no way", &back.hops)?));
     }
     if let Some(file) = &args.effort_output {
         #[expect(clippy::cast_possible_truncation, reason = "the file holds 32-bit floats")]
