@@ -13,15 +13,16 @@
 //! let dem = synthesise(&SyntheticTerrain { rows: 60, cols: 120, ..SyntheticTerrain::default() })?;
 //! let profile = slice(&dem, MapPoint::new(10.0, 30.0), MapPoint::new(110.0, 32.0))?;
 //!
-//! // Chain: what the ground allows this hopper, segment by segment and in both directions.
-//! let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(8.0, 8.0) }).unwrap();
+//! // Chain: what the ground allows this hopper under this gravity, segment by segment and in both directions.
 //! let moon = Body::named("moon").ok_or("no moon")?;
+//! let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(8.0, 8.0) })?;
 //! let friction = FrictionCone::new(0.6)?;
 //! let surface = SurfaceProperties { grip: Some(Grip::Friction(friction)), rest: RestSlope::AsFrictionHolds };
 //! let chain = ConstrainedChain::new(PolygonalChain::from_profile(&profile, Some(friction))?, &hopper, moon.gravity, &surface)?;
 //!
 //! // Hop test: the feasible take-off angles of one pair, limit by limit.
-//! let test = HopTest::new(chain.clone());
+//! let test = HopTest::new(chain);
+//! let chain = test.chain();
 //! let (first_m, last_m) = chain.geometry().extent_m();
 //! let (start, goal) = (chain.geometry().station(first_m)?, chain.geometry().station(last_m)?);
 //! let set = test.takeoff_set(&start, &goal).ok_or("the same point")?;
@@ -36,25 +37,27 @@
 //! // Path: the command of every hop, and an independent checker that flies the path again.
 //! let path = generate(&test, &legs, TakeoffChoice::LeastSpeed, Split::FullReach)?;
 //! assert!(path.hops.len() >= 3);
-//! assert!(execute(&chain, &path, Some((start, goal))).passes());
+//! assert!(execute(chain, &path, Some((start, goal))).passes());
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! # The ladder
 //!
-//! A module uses only those above it; `tests/layers.rs` reads the sources and enforces this.
+//! A module uses only those above it; `tests/library/layers.rs` reads the sources and enforces this.
 //!
 //! ```text
 //! quantity     angles, slopes, points, ids, sign-safe roots
 //! world        bodies, the hopper, friction cones, directions of travel
 //! ballistics   the equations of one arc: every limit as an interval of its take-off slope
-//! terrain      elevation rasters, slices of them, synthetic terrain from a seed
+//! terrain      elevation rasters with their overlays, slices of them, synthetic terrain from a seed
 //! chain        the polygonal chain and what each segment allows
 //! hop          the hop test: feasible take-off slopes between two stations of a chain, many hops on a segment
+//! ground       chains and DEMs under the same traits: raw facts, feasible windows between two contacts, first contact of an arc
+//! flight       one hop flown under drawn errors
 //! graph        nodes, hops as edges, the search
 //! path         the hops to fly, and `execute`, which flies them again without those equations
-//! uncertainty  how reliably a path is flown: trials under errors, first contact in two and three dimensions
-//! reach        reachability from one position of a map: along slices in all directions, and over all posts of a DEM
+//! uncertainty  how reliably a path is flown: policies, trials, statistics
+//! reach        hop counts from one position of a map: along slices in all directions, and over all posts of a DEM
 //! report       results as plain data; text, JSON, CSV, GeoJSON and the picture are views of it
 //! scenario     TOML, validated; the pipeline from terrain to a chain
 //! ```

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Limits of single hops in 60-digit arithmetic: the fixtures of tests/ballistics_precision.rs.
+"""Limits of single hops in 60-digit arithmetic: the fixtures of tests/library/ballistics_precision.rs.
 
     pip install mpmath
     python3 data/validation/hop_limits.py > data/validation/hop_limits.csv

@@ -26,7 +26,7 @@ impl Arc {
         self.sight
     }
 
-    /// The loft n: take-off slope above the line of sight's.
+    /// The loft n: the take-off slope minus the slope of the line of sight.
     pub const fn loft(&self) -> f64 {
         self.loft
     }
@@ -36,7 +36,7 @@ impl Arc {
         self.sight.slope() + self.loft
     }
 
-    /// Landing slope 2 b - m = b - n (P eq. 10).
+    /// Landing slope `l = b - n = 2 b - m` (P eq. 10).
     ///
     /// ```
     /// use chta::ballistics::{Arc, LineOfSight};
@@ -91,7 +91,7 @@ impl Arc {
         self.speed_at_slope(self.landing_slope())
     }
 
-    /// Speed where the arc has this slope: the horizontal part `sqrt(g X / (2 n))` is the same all along.
+    /// The speed at the point where the arc has this slope: the horizontal component `sqrt(g X / (2 n))` is constant.
     fn speed_at_slope(&self, slope: f64) -> f64 {
         self.horizontal_speed_m_s() * libm::hypot(1.0, slope)
     }
@@ -112,7 +112,7 @@ impl Arc {
         (2.0 * self.sight.run_m() * self.loft / self.gravity_m_s2).sqrt()
     }
 
-    /// The highest point of the flight above the take-off, m.
+    /// The height of the flight's highest point above the take-off, m.
     ///
     /// ```text
     ///     X m^2 / (4 n) where the arc rises and then falls, 0 where it never rises (m <= 0),

@@ -1,4 +1,4 @@
-//! Which of the feasible arcs to fly.
+//! Which of the feasible arcs is flown.
 
 use super::LineOfSight;
 use crate::quantity::SlopeInterval;
@@ -6,12 +6,12 @@ use crate::quantity::SlopeInterval;
 /// How to choose the take-off angle from its feasible set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum TakeoffChoice {
-    /// Least take-off speed, and with it least landing speed (P Prop. 2).
+    /// Least take-off speed, which is also the least landing speed (P Prop. 2).
     #[default]
     LeastSpeed,
-    /// The middle of the angle interval: furthest from all limits (Campana and Laumond 2016).
+    /// The middle of the interval of angles: the largest angular margin on both sides (Campana and Laumond 2016).
     MidRange,
-    /// The flattest arc: least flight time.
+    /// The flattest arc, which has the least flight time.
     LeastTime,
 }
 
@@ -28,7 +28,7 @@ impl TakeoffChoice {
         }
     }
 
-    /// The loft to fly, from a feasible set that is not empty.
+    /// The loft to fly, chosen from a feasible set that is not empty.
     ///
     /// ```text
     ///     least speed: n = sqrt(1 + b^2) clamped into the set           (P eq. 20, 22)
@@ -37,7 +37,7 @@ impl TakeoffChoice {
     /// ```
     ///
     /// # Returns
-    /// A loft of the set, positive and finite. The line of sight's own open end is never chosen.
+    /// A member of the set, positive and finite. The open end `n = 0` (the line of sight itself) is never returned.
     ///
     /// # Examples
     /// ```
@@ -62,8 +62,8 @@ impl TakeoffChoice {
 
 /// The loft whose take-off direction bisects the angle between those of two lofts.
 ///
-/// Unit vectors along both directions add up to one along the bisector, whose loft is therefore the mean of both, each weighted by the
-/// other's `sqrt(1 + m^2)`: no tangent, and no digits lost next to the vertical.
+/// The sum of the unit vectors along both directions points along the bisector. Its loft is therefore the mean of both lofts,
+/// each weighted by the other's `sqrt(1 + m^2)`: no tangent is needed, and no digits are lost near the vertical.
 fn bisecting_loft(sight: LineOfSight, lower: f64, upper: f64) -> f64 {
     let length = |loft: f64| libm::hypot(1.0, sight.slope() + loft);
     let first = length(lower);

@@ -1,4 +1,4 @@
-//! The flight envelope: all limits of a hop but the terrain, taken together.
+//! The flight envelope: all limits of a hop except the terrain, combined.
 
 use super::{LineOfSight, limits};
 use crate::{
@@ -6,20 +6,21 @@ use crate::{
     world::{Gravity, Hopper},
 };
 
-/// The flight envelope of a hopper under a gravity: the hops that its limits and the contacts allow over ground without obstacles.
+/// The flight envelope of a hopper under a given gravity: the hops that its limits and the contacts allow over ground without
+/// obstacles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightEnvelope {
     hopper: Hopper,
     gravity: Gravity,
-    /// The machine's own take-off slopes.
+    /// The take-off slopes that the mechanism allows.
     mechanical: SlopeInterval,
 }
 
-/// The limits that the ground sets to one contact, take-off or landing: directions of travel as slopes, and a greatest speed. The
-/// constraints of a chain state the same with their angles ([`ContactRule`](crate::chain::ContactRule)).
+/// The limits of one contact (take-off or landing): directions of travel as slopes, and a greatest speed.
+/// [`ContactRule`](crate::chain::ContactRule) is the form with angles that the chain's constraints use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactLimits {
-    /// Directions of travel.
+    /// Allowed directions of travel.
     pub slopes: SlopeInterval,
     /// Greatest speed, m/s.
     pub speed_max_m_s: f64,
@@ -50,12 +51,20 @@ impl FlightEnvelope {
         self.gravity.m_s2()
     }
 
-    /// The machine's own take-off slopes.
+    /// The take-off slopes that the mechanism allows.
     pub const fn mechanical(&self) -> SlopeInterval {
         self.mechanical
     }
 
-    /// The lofts that all limits but the terrain allow. There is an arc where the interval is not empty and has a positive loft.
+    /// The lofts that all limits except the terrain allow: the intersection of the intervals in [`limits`].
+    ///
+    /// Source: P eq. 21 without eq. 14.
+    ///
+    /// # Returns
+    /// A hop exists if the interval is not empty and contains a positive loft.
+    ///
+    /// # Degenerate
+    /// A speed limit of 0 or NaN gives the empty interval.
     ///
     /// # Examples
     /// ```
@@ -75,7 +84,7 @@ impl FlightEnvelope {
             .intersect(self.machine(sight))
     }
 
-    /// The lofts that the machine's greatest height and longest flight allow.
+    /// The lofts that the hopper's greatest apex height and longest flight time allow; all lofts if it has neither limit.
     #[inline]
     pub fn machine(&self, sight: LineOfSight) -> SlopeInterval {
         let apex =

@@ -7,12 +7,12 @@ use crate::quantity::Angle;
 pub struct LineOfSight {
     run_m: f64,
     slope: f64,
-    /// `sqrt(1 + b^2) = sec(beta)`: length per run, and the loft of least speed.
+    /// `sqrt(1 + b^2) = sec(beta)`: length over horizontal distance, and the loft of least speed.
     secant: f64,
 }
 
 impl LineOfSight {
-    /// From run `X > 0` and rise `Z`, both in m.
+    /// From run `X > 0` and rise `Z`, both in m. The caller excludes `X = 0`, for which the slope is infinite or NaN.
     ///
     /// ```
     /// use chta::ballistics::LineOfSight;
@@ -24,7 +24,8 @@ impl LineOfSight {
         Self::along(run_m, rise_m / run_m)
     }
 
-    /// From run and slope: for two points on one segment, whose own slope keeps more digits than the two heights.
+    /// From run and slope: for two points on one segment, whose stored slope has more correct digits than the difference of
+    /// the two heights.
     #[inline]
     pub fn along(run_m: f64, slope: f64) -> Self {
         Self { run_m, slope, secant: (1.0 + slope * slope).sqrt() }
@@ -54,9 +55,9 @@ impl LineOfSight {
         self.secant
     }
 
-    /// `b + sqrt(1 + b^2)`: the least `v^2 / (g X)` of a take-off, and the take-off slope that needs it (P eq. 16, 20).
+    /// `b + sqrt(1 + b^2)`: the least `v^2 / (g X)` at take-off, and the take-off slope that attains it (P eq. 16, 20).
     ///
-    /// Down a slope written as `1 / (sqrt(1 + b^2) - b)`, which keeps its digits.
+    /// For a falling line of sight computed as `1 / (sqrt(1 + b^2) - b)`, which keeps its digits.
     ///
     /// ```
     /// use chta::ballistics::LineOfSight;
@@ -68,7 +69,8 @@ impl LineOfSight {
         min_speed_ratio(self.slope, self.secant)
     }
 
-    /// `sqrt(1 + b^2) - b`: the least `v^2 / (g X)` of a landing, which is the take-off of the same line travelled backwards (P eq. 18).
+    /// `sqrt(1 + b^2) - b`: the least `v^2 / (g X)` at landing, equal to that of a take-off along the reversed line (P eq.
+    /// 18).
     #[inline]
     pub fn min_speed_ratio_reversed(&self) -> f64 {
         min_speed_ratio(-self.slope, self.secant)

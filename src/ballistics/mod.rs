@@ -1,4 +1,4 @@
-//! The equations of one arc and its limits, for any ground: here and, but for the independent checker in [`crate::path`], nowhere else.
+//! The equations of one arc and its limits, for any ground. Only the independent checker in [`crate::path`] repeats them.
 //!
 //! ```text
 //!                 . - ~ - .            m = tan(theta_t)   take-off slope
@@ -10,8 +10,9 @@
 //!         ---- X -------------->   l   in the direction of travel
 //! ```
 //!
-//! Every limit of a hop is an interval of its take-off slope (model section 2). Stated in the loft `n = m - b`, how much steeper than
-//! the line of sight the hop starts, all of them get shorter, and none loses digits at weak gravity or over long distances:
+//! Every limit of a hop is an interval of its take-off slope (model section 2). They are stated here in the loft `n = m - b`,
+//! the take-off slope above that of the line of sight. In this form they are shorter, and keep their digits at weak gravity
+//! and over long distances:
 //!
 //! | limit | in the loft |
 //! |---|---|

@@ -1,6 +1,6 @@
-//! The parabola of safety: what no arc of a speed gets beyond.
+//! The parabola of safety: the envelope of all arcs with a given take-off speed.
 
-/// The greatest rise that any arc of a speed reaches at a horizontal distance, m.
+/// The greatest height above the take-off that any arc of a given take-off speed reaches at a horizontal distance, m.
 ///
 /// ```text
 ///     Z <= v^2 / (2 g) - g X^2 / (2 v^2)        <=>   g (Z + hypot(X, Z)) <= v^2                      (model section 2)
@@ -10,7 +10,7 @@
 /// `X` in m, `v` in m/s, `g` in m/s^2.
 ///
 /// # Returns
-/// Negative infinity for `v = 0`.
+/// Negative where every arc is below the take-off height. Negative infinity for `v = 0`.
 ///
 /// # Examples
 /// ```
@@ -24,14 +24,19 @@ pub fn safety_ceiling_m(run_m: f64, speed_m_s: f64, gravity_m_s2: f64) -> f64 {
     if height_m > 0.0 { height_m - run_m * (run_m / (4.0 * height_m)) } else { f64::NEG_INFINITY }
 }
 
-/// The greatest horizontal distance that any arc of a speed covers while falling no further than a height, m.
+/// The greatest horizontal distance that any arc of a given take-off speed covers while falling at most a given height, m.
 ///
 /// ```text
 ///     X <= (v / g) sqrt(v^2 + 2 g h)
 /// ```
 ///
+/// Source: the parabola of safety at `Z = -h`, see [`safety_ceiling_m`].
+///
 /// # Units
 /// `v` in m/s, `g` in m/s^2, `h` in m, not negative.
+///
+/// # Returns
+/// 0 for `v = 0`; infinity for `g = 0`.
 ///
 /// # Examples
 /// ```

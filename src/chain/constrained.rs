@@ -1,4 +1,4 @@
-//! The chain with every segment's constraints resolved: the input of all analysis.
+//! The chain with the constraints of every segment resolved: the input of all analyses.
 
 use super::{GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station};
 use crate::{
@@ -6,7 +6,7 @@ use crate::{
     world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, InvalidSurface, RestSlope, SurfaceProperties},
 };
 
-/// A chain whose segments all know what they allow one hopper under one gravity: all that a question about hops needs.
+/// A chain with the resolved constraints of every segment, for one hopper and one gravity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ConstrainedChain {
     geometry: PolygonalChain,
@@ -14,22 +14,22 @@ pub struct ConstrainedChain {
     gravity: Gravity,
     surface: SurfaceProperties,
     segments: Vec<SegmentConstraints>,
-    /// Greatest take-off and landing speed over all segments, m/s: bounds the reach of any hop.
+    /// Greatest take-off and landing speed over all segments, m/s; they bound the reach of any hop.
     speed_bounds_m_s: (f64, f64),
 }
 
-/// What keeps a chain from being analysed.
+/// Why a chain cannot be analysed.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ConstraintProblem {
-    /// Neither the chain nor the scenario says what holds on this segment.
+    /// Neither the chain nor the scenario states constraints for this segment.
     #[error(
         "segment {} has no constraints: give the chain a column friction_coefficient or the six explicit columns, \
          or the scenario a [surface] with friction_coefficient or takeoff_from_slope_deg and landing_from_slope_deg",
         .0.index() + 1
     )]
     NoGrip(SegmentId),
-    /// No speed limit for this segment.
+    /// No speed limit is given for this segment.
     #[error(
         "segment {} has no speed limits: give the scenario a [hopper] with takeoff_speed_max_m_s and landing_speed_max_m_s",
         .0.index() + 1
@@ -40,17 +40,17 @@ pub enum ConstraintProblem {
     Surface(#[from] InvalidSurface),
 }
 
-/// All that keeps a chain from being analysed: the first segment with each problem and how many share it.
+/// All reasons why a chain cannot be analysed: the first segment with each problem, and how many more segments have it.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", .0.iter().map(|(problem, others)| if *others == 0 { problem.to_string() } else { format!("{problem} (and {others} more segments)") }).collect::<Vec<_>>().join("; "))]
 pub struct ConstraintProblems(pub Vec<(ConstraintProblem, usize)>);
 
 impl ConstrainedChain {
-    /// Resolves the constraints of every segment from what the chain, the hopper and the scenario's surface say.
+    /// Resolves the constraints of every segment from the chain, the hopper and the scenario's surface.
     ///
-    /// The chain's own friction, offsets or explicit limits go first, the surface fills what it leaves open; of two speed limits the
-    /// smaller counts. The rest slope is checked against the full inclination, `n_z = cos chi cos alpha`; left to friction, it is
-    /// that of the coefficient which rules the segment.
+    /// The chain's own friction, angles or explicit limits have priority, and the surface supplies what the chain leaves
+    /// open; of two speed limits the smaller applies. The rest slope is compared with the full inclination of the surface,
+    /// `n_z = cos chi cos alpha`; a rest slope left to friction is the friction angle of the segment's own coefficient.
     ///
     /// # Errors
     /// [`ConstraintProblems`] where a segment is left without constraints, or the surface has a property without meaning.
@@ -61,7 +61,7 @@ impl ConstrainedChain {
     /// let chain = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 1.0)]).unwrap();
     /// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.6).unwrap())), rest: RestSlope::AsFrictionHolds };
     /// let chain = ConstrainedChain::new(chain, &Hopper::with_speeds(10.0, 10.0).unwrap(), Gravity::new(3.711).unwrap(), &surface).unwrap();
-    /// // 45 degrees is steeper than atan 0.6 = 31 degrees: nothing rests there.
+    /// // 45 degrees is steeper than atan 0.6 = 31 degrees, so nothing rests there.
     /// let refusal = chain.segments()[0].check_contact(Contact::Landing, Direction::Forward).unwrap_err();
     /// assert!((refusal.excess_deg().unwrap() - (45.0 - 30.963_756_532_073_52)).abs() < 1e-9);
     /// ```
@@ -138,17 +138,17 @@ impl ConstrainedChain {
         self.speed_bounds_m_s
     }
 
-    /// The constraints that rule a contact at a station; `None` beyond the chain's ends.
+    /// The constraints of the segment that rules a contact at a station; `None` beyond the chain's ends.
     #[inline]
     pub fn ruling(&self, station: &Station, contact: Contact, direction: Direction) -> Option<&SegmentConstraints> {
         let segment = station.ruling_segment(contact, direction, self.segments.len())?;
         self.segments.get(segment.index())
     }
 
-    /// The rule of a contact at a station, or why the ground refuses it whatever the hop.
+    /// The rule of a contact at a station, or the reason why the ground refuses the contact for every hop.
     ///
     /// # Errors
-    /// The ground's refusal.
+    /// The refusal by the ground.
     pub fn check_contact(
         &self,
         station: &Station,
@@ -159,7 +159,8 @@ impl ConstrainedChain {
     }
 }
 
-/// Resolves the constraints of one segment: what its ground, as met along a slope, allows this hopper.
+/// Resolves the constraints of one segment: what its ground, given by its slope along the plane of travel, allows this
+/// hopper.
 pub(crate) fn resolve_constraints(
     id: SegmentId,
     slope: f64,
@@ -208,8 +209,9 @@ pub(crate) fn resolve_constraints(
     Ok(SegmentConstraints::new(forward, reverse, refusal))
 }
 
-/// The tangent of a surface's inclination, from its slope `s` along the plane of travel and the tangent `t` of its cross-slope:
-/// `n_z = cos chi cos alpha` gives `tan^2 = (1 + s^2)(1 + t^2) - 1`. Exactly `|s|` where `t` is zero, so that limits that touch hold.
+/// The tangent of a surface's inclination, from its slope `s` along the plane of travel and the tangent `t` of its
+/// cross-slope: `n_z = cos chi cos alpha` gives `tan^2 = (1 + s^2)(1 + t^2) - 1`. Returns exactly `|s|` for `t = 0`, so that
+/// a slope of exactly the limit is allowed.
 fn tilt_slope(s: f64, t: f64) -> f64 {
     if t == 0.0 { s.abs() } else { libm::hypot(s, t * libm::hypot(1.0, s)) }
 }
@@ -249,7 +251,7 @@ mod tests {
 
     #[test]
     fn cross_slope_makes_flat_looking_ground_unusable() {
-        // mu = 0.6 allows no side-slope over 31 degrees (model section 1).
+        // mu = 0.6 allows no cross-slope above 31 degrees (model section 1).
         for (chi_deg, allowed) in [(30.9, true), (31.0, false)] {
             let form = GroundForm::Surface { friction: None, cross_slope: Angle::from_degrees(chi_deg) };
             let surface = SurfaceProperties { rest: RestSlope::Unlimited, ..friction(0.6) };
@@ -262,7 +264,8 @@ mod tests {
     #[test]
     fn tilt_agrees_with_the_normal_of_the_plane() {
         for (s, t) in [(0.3, 0.4), (-1.0, 0.2), (0.0, 2.0), (5.0, 1e-3)] {
-            // In-plane direction (1, 0, s); the normal's part in the plane is along (-s, 0, 1), its part across has tangent t.
+            // The in-plane direction is (1, 0, s); the normal's in-plane component is along (-s, 0, 1), and the tangent of
+            // its angle to the plane is t.
             let (s, t): (f64, f64) = (s, t);
             let along = nalgebra::Vector3::new(-s, 0.0, 1.0) / (1.0 + s * s).sqrt();
             let normal = (along + nalgebra::Vector3::y() * t).normalize();
@@ -309,6 +312,13 @@ mod tests {
             chain.segments()[0].check_contact(Contact::Takeoff, Direction::Forward),
             Err(GroundRefusal::NothingAhead { .. })
         ));
+    }
+
+    #[test]
+    fn a_surface_without_meaning_makes_no_chain() {
+        let surface = SurfaceProperties { rest: RestSlope::AtMost(Angle::from_degrees(f64::NAN)), ..friction(0.6) };
+        let ConstraintProblems(problems) = constrained(one_segment(0.0, SegmentGround::BARE.form), &ten(), &surface).unwrap_err();
+        assert!(matches!(problems.as_slice(), [(ConstraintProblem::Surface(InvalidSurface::RestSlope { .. }), 0)]), "{problems:?}");
     }
 
     #[test]

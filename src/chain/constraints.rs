@@ -1,4 +1,4 @@
-//! What one segment allows, for either direction of travel.
+//! The constraints of one segment, for both directions of travel.
 
 use std::fmt;
 
@@ -17,23 +17,23 @@ pub struct ContactRule {
 }
 
 impl ContactRule {
-    /// A rule from angles as stated (cut to (-90, 90) degrees here) and a speed limit in m/s.
+    /// A rule from angles, restricted here to (-90, 90) degrees, and a speed limit in m/s.
     pub fn new(angles: AngleInterval, speed_max_m_s: f64) -> Self {
         Self { angles, slopes: angles.slopes(), speed_max_m_s }
     }
 
-    /// The angles as stated.
+    /// The angles as given.
     pub const fn angles(&self) -> AngleInterval {
         self.angles
     }
 
-    /// The slopes allowed.
+    /// The allowed slopes.
     #[inline]
     pub const fn slopes(&self) -> SlopeInterval {
         self.slopes
     }
 
-    /// The greatest speed, m/s; 0: not allowed at all.
+    /// The greatest speed, m/s; 0 means that the contact is not allowed.
     #[inline]
     pub const fn speed_max_m_s(&self) -> f64 {
         self.speed_max_m_s
@@ -52,7 +52,8 @@ impl ContactRule {
     }
 }
 
-/// The line constraints of a segment for one direction of travel, as seen by the traveller (CHTA paper, Definition 2).
+/// The line constraints of a segment for one direction of travel, with angles seen along that direction (CHTA paper,
+/// Definition 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LineConstraints {
     /// Take-off angles and speed.
@@ -62,7 +63,7 @@ pub struct LineConstraints {
 }
 
 impl LineConstraints {
-    /// The constraints that a friction cone, cut by the plane of travel, puts on a slope.
+    /// The constraints from a friction cone, intersected by the plane of travel, on a segment of a given slope.
     ///
     /// ```text
     ///     take-off: alpha + pi/2 -+ delta,   landing: alpha - pi/2 -+ delta
@@ -71,12 +72,13 @@ impl LineConstraints {
     /// Source: Campana and Laumond 2016, section IV-A; model section 1.
     ///
     /// # Arguments
-    /// `slope`: the segment's slope as seen by the traveller; `cone_half_angle`: delta of [`FrictionCone::cut`]; the two speeds in m/s.
+    /// `slope`: the segment's slope along the direction of travel; `cone_half_angle`: delta of [`FrictionCone::cut`]; the two
+    /// speeds in m/s.
     ///
     /// # Examples
     /// ```
     /// use chta::{chain::LineConstraints, quantity::Angle};
-    /// // Flat ground, friction angle 30 degrees: take off between 60 and 120 degrees, of which 60 to 90 is forward.
+    /// // Flat ground, friction angle 30 degrees: take-off between 60 and 120 degrees, of which 60 to 90 point forward.
     /// let c = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 10.0, 8.0);
     /// assert!((c.takeoff.angles().min.degrees() - 60.0).abs() < 1e-12);
     /// assert_eq!(c.takeoff.slopes().upper, f64::INFINITY);
@@ -91,7 +93,26 @@ impl LineConstraints {
         }
     }
 
-    /// The constraints of angles stated from the slope (CHTA paper, section V-B).
+    /// The constraints from angles relative to the slope.
+    ///
+    /// ```text
+    ///     take-off: alpha + [t1, t2],   landing: alpha + [l1, l2],   tan alpha = slope
+    /// ```
+    ///
+    /// Source: CHTA paper, section V-B.
+    ///
+    /// # Arguments
+    /// `slope`: the segment's slope along the direction of travel; the intervals `[t1, t2]` and `[l1, l2]`; the two speeds in m/s.
+    ///
+    /// # Examples
+    /// ```
+    /// use chta::{chain::LineConstraints, quantity::AngleInterval};
+    /// // Take-off 60 to 90 degrees above a slope of 45 degrees: 105 degrees and more, so no take-off towards +x.
+    /// let (takeoff, landing) = (AngleInterval::from_degrees(60.0, 90.0), AngleInterval::from_degrees(-90.0, -60.0));
+    /// let c = LineConstraints::from_offsets(1.0, takeoff, landing, 10.0, 8.0);
+    /// assert!((c.takeoff.angles().min.degrees() - 105.0).abs() < 1e-12 && c.takeoff.slopes().is_empty());
+    /// assert!((c.landing.angles().max.degrees() + 15.0).abs() < 1e-12);
+    /// ```
     pub fn from_offsets(
         slope: f64,
         takeoff: AngleInterval,
@@ -110,7 +131,7 @@ impl LineConstraints {
         }
     }
 
-    /// The same angles, with no speed above those given.
+    /// The same angles, with speeds of at most those given.
     #[must_use]
     pub fn capped(self, takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Self {
         Self { takeoff: self.takeoff.capped(takeoff_speed_max_m_s), landing: self.landing.capped(landing_speed_max_m_s) }
@@ -125,16 +146,16 @@ impl LineConstraints {
     }
 }
 
-/// Why the ground itself refuses a contact, whatever the hop.
+/// Why the ground refuses a contact for every hop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GroundRefusal {
-    /// The chain states no limits for this direction, or ends here.
+    /// The chain states no limits for this direction, or it ends here.
     NoGround,
-    /// A keep-out zone.
+    /// The segment lies in a keep-out zone.
     KeepOut,
-    /// Too steep to rest on.
+    /// The surface is too steep to rest on.
     TooSteep {
-        /// Inclination of the surface against the horizontal.
+        /// Inclination of the surface from the horizontal.
         tilt: Angle,
         /// The steepest allowed.
         max: Angle,
@@ -148,7 +169,7 @@ pub enum GroundRefusal {
     },
     /// A speed limit of zero.
     SpeedZero,
-    /// A cone with no direction inside (-90, 90) degrees.
+    /// The cone contains no direction inside (-90, 90) degrees.
     NothingAhead {
         /// The cone.
         angles: AngleInterval,
@@ -156,7 +177,7 @@ pub enum GroundRefusal {
 }
 
 impl GroundRefusal {
-    /// The limit that this refusal counts under.
+    /// The limit under which this refusal is counted.
     pub const fn limit(&self, contact: Contact) -> Limit {
         match (self, contact) {
             (Self::NoGround, _) => Limit::Direction,
@@ -169,7 +190,7 @@ impl GroundRefusal {
         }
     }
 
-    /// By how many degrees the limit is missed, where it is one of angles.
+    /// By how many degrees the limit is exceeded, if it is a limit of angles.
     pub fn excess_deg(&self) -> Option<f64> {
         match self {
             Self::TooSteep { tilt, max } => Some(tilt.degrees() - max.degrees()),
@@ -186,7 +207,7 @@ impl GroundRefusal {
 impl fmt::Display for GroundRefusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoGround => write!(f, "the chain grants nothing in this direction"),
+            Self::NoGround => write!(f, "the chain allows no contact in this direction"),
             Self::KeepOut => write!(f, "it lies in a keep-out zone"),
             Self::TooSteep { tilt, max } => {
                 write!(f, "its surface slopes {:.3} deg, more than the rest slope of {:.3} deg", tilt.degrees(), max.degrees())
@@ -199,30 +220,35 @@ impl fmt::Display for GroundRefusal {
             ),
             Self::SpeedZero => write!(f, "its speed limit is 0"),
             Self::NothingAhead { angles } => {
-                write!(f, "its cone, {:.3} to {:.3} deg, holds no direction of travel", angles.min.degrees(), angles.max.degrees())
+                write!(
+                    f,
+                    "its cone, {:.3} to {:.3} deg, contains no direction of travel",
+                    angles.min.degrees(),
+                    angles.max.degrees()
+                )
             }
         }
     }
 }
 
-/// What a segment allows, as `None` where the ground refuses whatever the hop.
+/// The rules of one direction; `None` for a contact that the ground refuses for every hop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Allowed {
     takeoff: Option<ContactRule>,
     landing: Option<ContactRule>,
 }
 
-/// All that one segment allows: the line constraints of both directions, its steepness, and whether it is kept out of.
+/// All constraints of one segment: the line constraints of both directions, the rest slope and keep-out zones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentConstraints {
     stated: [Result<LineConstraints, GroundRefusal>; 2],
-    /// What holds for both directions.
+    /// The refusal that applies to every contact.
     refusal: Option<GroundRefusal>,
     allowed: [Allowed; 2],
 }
 
 impl SegmentConstraints {
-    /// From the constraints of the two directions (or why there are none) and a refusal that holds for both.
+    /// From the constraints of the two directions (or the reason why there are none) and a refusal that applies to both.
     pub fn new(
         forward: Result<LineConstraints, GroundRefusal>,
         reverse: Result<LineConstraints, GroundRefusal>,
@@ -238,7 +264,7 @@ impl SegmentConstraints {
         segment
     }
 
-    /// The rule of a contact, or why the ground refuses it whatever the hop.
+    /// The rule of a contact, or the reason why the ground refuses it for every hop.
     ///
     /// # Errors
     /// The first refusal, in the order of [`Limit::ALL`].
@@ -260,7 +286,7 @@ impl SegmentConstraints {
         Ok(rule)
     }
 
-    /// The rule of a contact where the ground allows one: what inner loops ask.
+    /// The rule of a contact if the ground allows it. This is the version for inner loops.
     #[inline]
     pub const fn allowed(&self, contact: Contact, direction: Direction) -> Option<&ContactRule> {
         let allowed = &self.allowed[direction as usize];
@@ -270,12 +296,12 @@ impl SegmentConstraints {
         }
     }
 
-    /// The line constraints as stated for a direction.
+    /// The line constraints of a direction as given, whether or not the ground refuses contacts.
     pub fn stated(&self, direction: Direction) -> Option<LineConstraints> {
         self.stated[direction as usize].ok()
     }
 
-    /// The refusal that holds for every contact here.
+    /// The refusal that applies to every contact on this segment.
     pub const fn refusal(&self) -> Option<GroundRefusal> {
         self.refusal
     }

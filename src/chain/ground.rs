@@ -1,38 +1,38 @@
-//! What a chain itself says of its segments, before hopper and scenario are known.
+//! What a chain states of its segments, before hopper and scenario are known.
 
 use super::LineConstraints;
 use crate::{quantity::Angle, world::FrictionCone};
 
-/// What the chain says of one segment.
+/// What the chain states of one segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentGround {
     /// How the constraints are stated.
     pub form: GroundForm,
-    /// No take-off, no landing; flying over is allowed.
+    /// Whether take-off and landing are forbidden; flying over is allowed.
     pub keep_out: bool,
 }
 
-/// The ways of stating a segment's constraints.
+/// The forms in which a segment's constraints can be stated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum GroundForm {
-    /// By its surface: friction (from the scenario where the chain gives none) and cross-slope.
+    /// By its surface: friction (the scenario's if the chain gives none) and cross-slope.
     Surface {
         /// Friction of this segment.
         friction: Option<FrictionCone>,
         /// Angle between the surface normal and the plane of travel.
         cross_slope: Angle,
     },
-    /// By explicit limits; a direction without limits admits no hop.
+    /// By explicit limits; no hop is possible in a direction without limits.
     Explicit {
         /// For travel towards +x.
         forward: Option<LineConstraints>,
-        /// For travel towards -x, as seen by the traveller.
+        /// For travel towards -x, with angles seen along that direction.
         reverse: Option<LineConstraints>,
     },
 }
 
 impl SegmentGround {
-    /// Flat across, all else from the scenario: what a chain of bare `x_m,z_m` says.
+    /// Level across, everything else from the scenario: the ground of a chain with only `x_m,z_m`.
     pub const BARE: Self =
         Self { form: GroundForm::Surface { friction: None, cross_slope: Angle::from_radians(0.0) }, keep_out: false };
 

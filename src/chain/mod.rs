@@ -1,4 +1,4 @@
-//! The polygonal chain: terrain in the vertical plane of travel, with what each segment allows in each direction.
+//! The polygonal chain: terrain in the vertical plane of travel, with the constraints of each segment in each direction.
 //!
 //! ```text
 //!  z                        v3

@@ -1,4 +1,4 @@
-//! The chain's geometry, validated once.
+//! The chain's geometry, validated at construction.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use crate::{
     world::{Direction, FrictionCone},
 };
 
-/// A validated polygonal chain: at least two finite vertices, x strictly increasing, a ground for every segment.
+/// A validated polygonal chain: at least two finite vertices, x strictly increasing, and a ground for every segment.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PolygonalChain {
     vertices: Vec<ChainPoint>,
@@ -17,41 +17,41 @@ pub struct PolygonalChain {
     slopes: Vec<f64>,
     grounds: Vec<SegmentGround>,
     map: Option<Vec<MapPoint>>,
-    /// Vertices where the plane of travel turns, rising.
+    /// Vertices where the plane of travel turns, in ascending order.
     bends: Vec<VertexId>,
 }
 
-/// One thing that is wrong with a chain.
+/// One problem of a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ChainProblem {
     /// Fewer than two vertices.
     TooFewVertices {
-        /// How many there are.
+        /// Number of vertices given.
         count: usize,
     },
-    /// A coordinate that is no finite number.
+    /// A coordinate is NaN or infinite.
     NotFinite {
-        /// Which vertex.
+        /// The vertex.
         vertex: VertexId,
     },
-    /// A vertex that is not to the right of the one before.
+    /// The x of a vertex is not greater than that of the vertex before.
     NotIncreasing {
-        /// Which vertex.
+        /// The vertex.
         vertex: VertexId,
         /// Its x, m.
         x_m: f64,
         /// The x of the vertex before, m.
         before_m: f64,
     },
-    /// A segment so steep that its slope is no finite number.
+    /// A segment is so steep that its slope overflows.
     Vertical {
-        /// Which segment.
+        /// The segment.
         segment: SegmentId,
     },
-    /// A bend that is no inner vertex.
+    /// A bend is not an inner vertex.
     BendAtEnd {
-        /// Which vertex.
+        /// The vertex.
         vertex: VertexId,
     },
     /// A stated limit of a segment that is not a number, or a cross-slope beyond the vertical.
@@ -63,13 +63,13 @@ pub enum ChainProblem {
         /// What was found.
         found: f64,
     },
-    /// Grounds and segments, or map points and vertices, do not pair up.
+    /// The numbers of grounds and segments, or of map points and vertices, differ.
     CountMismatch {
-        /// Of what.
+        /// What was counted.
         what: &'static str,
-        /// How many were given.
+        /// Number given.
         found: usize,
-        /// How many are needed.
+        /// Number needed.
         expected: usize,
     },
 }
@@ -78,7 +78,7 @@ impl fmt::Display for ChainProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::TooFewVertices { count } => write!(f, "a chain of {count} vertices, expected at least 2"),
-            Self::NotFinite { vertex } => write!(f, "vertex {} has a coordinate that is no finite number", vertex.index() + 1),
+            Self::NotFinite { vertex } => write!(f, "vertex {} has a coordinate that is not a finite number", vertex.index() + 1),
             Self::NotIncreasing { vertex, x_m, before_m } => {
                 write!(f, "vertex {} has x = {x_m} m, expected more than the {before_m} m of the vertex before", vertex.index() + 1)
             }
@@ -104,7 +104,7 @@ impl fmt::Display for ChainProblem {
     }
 }
 
-/// All that is wrong with a chain.
+/// All problems of a chain.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
 pub struct InvalidChain(pub Vec<ChainProblem>);
@@ -113,7 +113,7 @@ impl PolygonalChain {
     /// A chain from its vertices, one ground per segment, and (optionally) one map point per vertex.
     ///
     /// # Errors
-    /// [`InvalidChain`] with every problem there is.
+    /// [`InvalidChain`] with every problem.
     pub fn new(vertices: Vec<ChainPoint>, grounds: Vec<SegmentGround>, map: Option<Vec<MapPoint>>) -> Result<Self, InvalidChain> {
         let mut problems = Vec::new();
         if vertices.len() < 2 {
@@ -163,7 +163,7 @@ impl PolygonalChain {
     /// A chain of bare vertices: constraints come from the scenario.
     ///
     /// # Errors
-    /// [`InvalidChain`] with every problem there is.
+    /// [`InvalidChain`] with every problem.
     ///
     /// # Examples
     /// ```
@@ -176,11 +176,11 @@ impl PolygonalChain {
         Self::new(vertices, grounds, None)
     }
 
-    /// A chain from a slice of the terrain: cross-slopes and keep-out from its facets, friction from them or the one given,
-    /// map points from the slice.
+    /// A chain from a slice of the terrain: cross-slopes and keep-out come from its facets, friction from them or from
+    /// `friction`, map points from the slice.
     ///
     /// # Errors
-    /// [`InvalidChain`], which a slice of sound terrain does not give.
+    /// [`InvalidChain`]; does not occur for a slice of valid terrain.
     pub fn from_profile(profile: &Profile, friction: Option<FrictionCone>) -> Result<Self, InvalidChain> {
         let vertices = profile.points.iter().map(|p| ChainPoint::new(p.x_m, p.z_m)).collect();
         let grounds = profile
@@ -195,11 +195,11 @@ impl PolygonalChain {
         Self::new(vertices, grounds, Some(map))
     }
 
-    /// A chain from slices that follow one another, each beginning where the one before ends: a bend at each place where the heading
-    /// changes (by more than a billionth of a radian).
+    /// A chain from consecutive slices, each beginning where the one before ends. There is a bend at each joint where the
+    /// heading changes by more than 1e-9 rad.
     ///
     /// # Errors
-    /// [`InvalidChain`], which slices of sound terrain do not give; also for no slice at all.
+    /// [`InvalidChain`]; for slices of valid terrain it only occurs if there are none.
     pub fn from_legs(legs: &[Profile], friction: Option<FrictionCone>) -> Result<Self, InvalidChain> {
         let mut joined = Profile { points: Vec::new(), facets: Vec::new(), heading: nalgebra::Vector2::zeros() };
         let mut bends = Vec::new();
@@ -211,7 +211,7 @@ impl PolygonalChain {
                 bends.push(VertexId(joined.points.len() - 1));
             }
             heading = Some(leg.heading);
-            // The place where two legs meet is one vertex.
+            // The point where two slices meet becomes one vertex.
             let shared = usize::from(!joined.points.is_empty());
             joined.points.extend(leg.points.iter().skip(shared).map(|point| ProfilePoint { x_m: begin_m + point.x_m, ..*point }));
             joined.facets.extend(&leg.facets);
@@ -219,10 +219,10 @@ impl PolygonalChain {
         Self::from_profile(&joined, friction)?.with_bends(bends)
     }
 
-    /// The same chain with bends: vertices where the vertical plane of travel turns, so that no hop may span them.
+    /// The same chain with bends: vertices where the vertical plane of travel turns, which no hop may span.
     ///
     /// # Errors
-    /// [`InvalidChain`] where a bend is no inner vertex.
+    /// [`InvalidChain`] if a bend is not an inner vertex.
     pub fn with_bends(mut self, mut bends: Vec<VertexId>) -> Result<Self, InvalidChain> {
         bends.sort_unstable();
         bends.dedup();
@@ -236,12 +236,12 @@ impl PolygonalChain {
         Ok(self)
     }
 
-    /// The vertices where the plane of travel turns, rising.
+    /// The vertices where the plane of travel turns, in ascending order.
     pub fn bends(&self) -> &[VertexId] {
         &self.bends
     }
 
-    /// The first bend strictly between two x, by the order of the chain; `None` where a hop between them spans none.
+    /// The first bend, in the order of the chain, strictly between two x; `None` if a hop between them spans none.
     #[inline]
     pub fn bend_between(&self, a_m: f64, b_m: f64) -> Option<VertexId> {
         if self.bends.is_empty() {
@@ -252,7 +252,7 @@ impl PolygonalChain {
         self.bends.get(next).copied().filter(|v| self.vertices[v.index()].x_m < high_m)
     }
 
-    /// The x of the next bend in a direction, strictly beyond `x_m`; `None` where there is none.
+    /// The x of the next bend in a direction, strictly beyond `x_m`; `None` if there is none.
     #[inline]
     pub fn next_bend_m(&self, x_m: f64, direction: Direction) -> Option<f64> {
         let at = |vertex: &VertexId| self.vertices[vertex.index()].x_m;
@@ -272,17 +272,17 @@ impl PolygonalChain {
         &self.slopes
     }
 
-    /// What the chain says of each segment.
+    /// The ground of each segment.
     pub fn grounds(&self) -> &[SegmentGround] {
         &self.grounds
     }
 
-    /// Where the vertices lie on the map.
+    /// The map coordinates of the vertices.
     pub fn map_points(&self) -> Option<&[MapPoint]> {
         self.map.as_deref()
     }
 
-    /// How many segments there are.
+    /// The number of segments.
     pub fn segment_count(&self) -> usize {
         self.slopes.len()
     }
@@ -292,7 +292,7 @@ impl PolygonalChain {
         (self.vertices[0].x_m, self.vertices[self.vertices.len() - 1].x_m)
     }
 
-    /// The place on the chain at `x_m`: a vertex where x is the same double, else the inside of a segment.
+    /// The station at `x_m`: at a vertex if x is the same double, else inside a segment.
     ///
     /// # Errors
     /// [`OffChain`] outside the chain, and for NaN.
@@ -317,12 +317,12 @@ impl PolygonalChain {
     /// The station at a vertex.
     ///
     /// # Panics
-    /// Where the chain has no such vertex.
+    /// Panics if the chain has no such vertex.
     pub fn vertex_station(&self, vertex: VertexId) -> Station {
         Station { point: self.vertices[vertex.index()], site: Site::Vertex(vertex) }
     }
 
-    /// The chain's point at `x_m` on (the line of) a segment, counted from the nearer vertex so that digits are kept.
+    /// The point at `x_m` on the (extended) line of a segment, computed from the nearer vertex to keep digits.
     fn point_inside(&self, segment: SegmentId, x_m: f64) -> ChainPoint {
         let (a, b) = (self.vertices[segment.index()], self.vertices[segment.index() + 1]);
         let slope = self.slopes[segment.index()];
@@ -330,7 +330,8 @@ impl PolygonalChain {
         ChainPoint::new(x_m, z_m)
     }
 
-    /// The map point below a station, on the straight line between its segment's ends; `None` where the chain is on no map.
+    /// The map point of a station, by linear interpolation between its segment's ends; `None` if the chain has no map
+    /// coordinates.
     pub fn map_point(&self, station: &Station) -> Option<MapPoint> {
         let map = self.map.as_deref()?;
         Some(match station.site {
@@ -353,13 +354,39 @@ mod tests {
     }
 
     #[test]
+    fn limits_that_are_not_numbers_are_refused() {
+        use crate::{
+            chain::{ContactRule, GroundForm, LineConstraints},
+            quantity::{Angle, AngleInterval},
+        };
+        let refused = |form| {
+            let vertices = vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 0.0)];
+            let made = PolygonalChain::new(vertices, vec![SegmentGround { form, keep_out: false }], None);
+            made.err().is_some_and(|InvalidChain(problems)| matches!(problems.as_slice(), [ChainProblem::NotALimit { .. }]))
+        };
+        let explicit = |min, max, speed| {
+            let rule = ContactRule::new(AngleInterval::from_degrees(min, max), speed);
+            GroundForm::Explicit { forward: Some(LineConstraints { takeoff: rule, landing: rule }), reverse: None }
+        };
+        assert!(!refused(explicit(10.0, 80.0, 5.0)));
+        assert!(!refused(explicit(80.0, 10.0, 5.0)), "an empty cone is a limit: it refuses every hop");
+        for (min, max, speed) in [(f64::NAN, 80.0, 5.0), (10.0, f64::NAN, 5.0), (10.0, 80.0, f64::NAN)] {
+            assert!(refused(explicit(min, max, speed)), "{min} to {max} deg, {speed} m/s");
+        }
+        for degrees in [f64::NAN, f64::INFINITY, 90.1, -91.0] {
+            let cross_slope = Angle::from_degrees(degrees);
+            assert!(refused(GroundForm::Surface { friction: None, cross_slope }), "cross-slope {degrees} deg");
+        }
+    }
+
+    #[test]
     fn every_problem_is_reported_at_once() {
         let InvalidChain(problems) = chain(&[(0.0, 0.0), (0.0, 1.0), (f64::NAN, 0.0), (3.0, f64::INFINITY)]).unwrap_err();
         assert!(problems.contains(&ChainProblem::NotFinite { vertex: VertexId(2) }), "{problems:?}");
         assert!(problems.contains(&ChainProblem::NotFinite { vertex: VertexId(3) }), "{problems:?}");
         assert!(problems.contains(&ChainProblem::NotIncreasing { vertex: VertexId(1), x_m: 0.0, before_m: 0.0 }), "{problems:?}");
-        assert!(chain(&[(0.0, 0.0)]).is_err(), "one vertex is no chain");
-        assert!(chain(&[]).is_err(), "no vertex is no chain");
+        assert!(chain(&[(0.0, 0.0)]).is_err(), "one vertex is not a chain");
+        assert!(chain(&[]).is_err(), "an empty list is not a chain");
     }
 
     #[test]
@@ -379,7 +406,7 @@ mod tests {
     }
 
     #[test]
-    fn shared_segments_count_both_ends() {
+    fn shared_segments_include_both_ends() {
         let c = chain(&[(0.0, 0.0), (1.0, 1.0), (2.0, 1.0)]).unwrap();
         let at = |x| c.station(x).unwrap();
         assert_eq!(at(0.0).shared_segment(&at(1.0)), Some(SegmentId(0)));

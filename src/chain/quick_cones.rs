@@ -1,33 +1,33 @@
-//! The cones of a contact without trigonometry, for maps that ask for millions of them.
+//! The cones of a contact without trigonometry, for maps that need millions of them.
 
 use crate::{
     quantity::{AngleInterval, SlopeInterval},
     world::FrictionCone,
 };
 
-/// What quick arithmetic says of the directions that the ground allows a contact.
+/// The directions that the ground allows a contact, by fast arithmetic.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QuickCone {
-    /// None at all.
+    /// No direction.
     Closed,
-    /// These slopes, to a relative error of some 1e-8.
+    /// These slopes, with a relative error of some 1e-8.
     Open(SlopeInterval),
-    /// Too near to closing, or to the vertical, to be sure: ask [`LineConstraints`](super::LineConstraints).
+    /// Too close to a closed cone, or to the vertical, to decide: use [`LineConstraints`](super::LineConstraints).
     Doubtful,
 }
 
-/// The ground's grip, prepared for [`takeoff`](Self::takeoff) and [`landing`](Self::landing).
+/// The grip of the ground, prepared for [`takeoff`](Self::takeoff) and [`landing`](Self::landing).
 ///
-/// Says what [`LineConstraints::from_cone`](super::LineConstraints::from_cone) and
-/// [`from_offsets`](super::LineConstraints::from_offsets) say, from slopes alone.
+/// Gives the results of [`LineConstraints::from_cone`](super::LineConstraints::from_cone) and
+/// [`from_offsets`](super::LineConstraints::from_offsets), computed from slopes alone.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum QuickGrip {
-    /// Coulomb friction, by the square of its coefficient.
+    /// Coulomb friction, given by the square of its coefficient.
     Friction {
         /// `mu^2`.
         squared: f64,
     },
-    /// Angles above the segment's own slope, each as its cosine and sine.
+    /// Angles relative to the segment's own slope, each given by its cosine and sine.
     FromSlope {
         /// Least and greatest take-off angle.
         takeoff: [Turn; 2],
@@ -36,7 +36,7 @@ pub enum QuickGrip {
     },
 }
 
-/// A turn by an angle of at most 180 degrees either way.
+/// A rotation by at most 180 degrees in either sense.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Turn {
     cos: f64,
@@ -44,20 +44,21 @@ pub struct Turn {
     upward: bool,
 }
 
-/// Squares of tangents below this, and differences of tangents below its square root, are doubtful: from there on the square root and the
-/// quotient of what is left lose more than half of a double's digits. Larger would only ask the exact code more often.
+/// Squared tangents below this, and differences of tangents below its square root, are doubtful: there the square root and
+/// the quotient of the small remainder lose more than half of a double's digits. A larger value would only call the exact
+/// code more often.
 const FADING: f64 = 1.0e-6;
 
-/// The square root of [`FADING`]: next to the vertical a difference of tangents is an angle, and this a twentieth of a degree.
+/// The square root of [`FADING`]: near the vertical a difference of tangents is an angle, here a twentieth of a degree.
 const NEAR: f64 = 1.0e-3;
 
 impl QuickGrip {
-    /// Of friction.
+    /// The grip of Coulomb friction.
     pub fn friction(cone: FrictionCone) -> Self {
         Self::Friction { squared: cone.coefficient() * cone.coefficient() }
     }
 
-    /// Of angles stated from the slope.
+    /// The grip given by angles relative to the slope.
     pub fn from_slope(takeoff: AngleInterval, landing: AngleInterval) -> Self {
         let turns = |angles: AngleInterval| [angles.min, angles.max].map(|angle| Turn::by(angle.radians()));
         Self::FromSlope { takeoff: turns(takeoff), landing: turns(landing) }
@@ -66,13 +67,14 @@ impl QuickGrip {
     /// The take-off directions on a facet.
     ///
     /// ```text
-    ///     T^2 = tan^2 delta = (mu^2 - G + (1 + mu^2) a^2) / (1 + G)          (model section 1, with cos^2 chi = (1 + a^2) / (1 + G))
+    ///     T^2 = tan^2 delta = (mu^2 - G + (1 + mu^2) a^2) / (1 + G)        (model section 1, with cos^2 chi = (1 + a^2) / (1 + G))
     ///     m >= tan(alpha + pi/2 - delta) = (1 + a T) / (T - a)               closed where T <= a
     ///     m <= tan(alpha + pi/2 + delta) = (a T - 1) / (a + T)               no bound where a + T >= 0
     /// ```
     ///
     /// # Arguments
-    /// `slope`: `a`, of the facet along the direction of travel; `steepness_squared`: `G`, the square of the facet's gradient.
+    /// `slope`: `a`, the facet's slope along the direction of travel; `steepness_squared`: `G`, the square of the facet's
+    /// gradient.
     ///
     /// # Examples
     /// ```
@@ -90,7 +92,8 @@ impl QuickGrip {
         }
     }
 
-    /// The landing directions on a facet: those of the take-off on the same ground travelled backwards, seen from the other side.
+    /// The landing directions on a facet: the take-off directions on the same ground for reversed travel, with the sign of
+    /// the slopes changed.
     ///
     /// ```
     /// use chta::{chain::{QuickCone, QuickGrip}, world::FrictionCone};
@@ -110,7 +113,7 @@ impl QuickGrip {
     }
 }
 
-/// The friction cone's directions towards +x on a facet.
+/// The directions towards +x inside the friction cone on a facet.
 #[inline]
 fn cone_ahead(mu_squared: f64, slope: f64, steepness_squared: f64) -> QuickCone {
     let tangent_squared = (mu_squared - steepness_squared + (1.0 + mu_squared) * (slope * slope)) / (1.0 + steepness_squared);
@@ -122,7 +125,7 @@ fn cone_ahead(mu_squared: f64, slope: f64, steepness_squared: f64) -> QuickCone 
     if ahead < -NEAR && tangent_squared > FADING {
         return QuickCone::Closed;
     }
-    // Also where a number is none.
+    // False as well if a number is NaN.
     let sure = tangent_squared > FADING && ahead > NEAR && behind.abs() > NEAR;
     if !sure {
         return QuickCone::Doubtful;
@@ -132,7 +135,7 @@ fn cone_ahead(mu_squared: f64, slope: f64, steepness_squared: f64) -> QuickCone 
     QuickCone::Open(SlopeInterval { lower: (1.0 + turned) / ahead, upper })
 }
 
-/// Angles between two turns from a slope.
+/// The slopes between two rotations of a given slope.
 #[inline]
 fn turned([least, greatest]: &[Turn; 2], slope: f64) -> QuickCone {
     let (Some(lower), Some(upper)) = (least.from(slope), greatest.from(slope)) else { return QuickCone::Doubtful };
@@ -143,13 +146,13 @@ fn turned([least, greatest]: &[Turn; 2], slope: f64) -> QuickCone {
 }
 
 impl Turn {
-    /// Larger angles turn as far as 180 degrees, which every slope takes beyond the vertical.
+    /// Larger angles are clamped to 180 degrees, which rotates every slope beyond the vertical.
     fn by(angle_rad: f64) -> Self {
         let angle_rad = angle_rad.clamp(-std::f64::consts::PI, std::f64::consts::PI);
         Self { cos: libm::cos(angle_rad), sin: libm::sin(angle_rad), upward: angle_rad > 0.0 }
     }
 
-    /// The slope that this turn makes of another: infinite at and beyond the vertical, `None` too near to it.
+    /// The slope after this rotation of another: infinite at and beyond the vertical, `None` too close to it.
     #[inline]
     fn from(self, slope: f64) -> Option<f64> {
         let (run, rise) = (self.cos - slope * self.sin, self.sin + slope * self.cos);
@@ -169,7 +172,7 @@ mod tests {
     use super::*;
     use crate::{chain::LineConstraints, quantity::Angle};
 
-    /// The exact road: angles of the facet, then tangents.
+    /// The exact computation: angles of the facet, then tangents.
     fn exact(mu: f64, along: f64, across: f64) -> Option<LineConstraints> {
         let cross_slope = Angle::from_slope(across / libm::hypot(1.0, along));
         let delta = FrictionCone::new(mu).unwrap().cut(cross_slope)?;

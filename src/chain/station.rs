@@ -1,11 +1,12 @@
-//! A position on the chain, and which segment rules there.
+//! A position on the chain, and the segment that rules there.
 
 use crate::{
     quantity::{ChainPoint, SegmentId, VertexId},
     world::{Contact, Direction},
 };
 
-/// Whether a station is at a vertex or inside a segment. It is at a vertex where its x is the same double; nothing snaps.
+/// Whether a station is at a vertex or inside a segment. It is at a vertex if its x is the same double; nearby positions are
+/// not snapped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Site {
     /// At a vertex.
@@ -35,27 +36,27 @@ impl Site {
 pub struct Station {
     /// The point.
     pub point: ChainPoint,
-    /// Vertex or segment.
+    /// The vertex or segment.
     pub site: Site,
 }
 
-/// An x that the chain does not reach.
+/// An x outside the chain.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("x = {x_m} m is off the chain, which reaches from {first_x_m} to {last_x_m} m: choose a point between")]
 pub struct OffChain {
-    /// What was asked for.
+    /// The x requested.
     pub x_m: f64,
-    /// Where the chain begins.
+    /// The x where the chain begins.
     pub first_x_m: f64,
-    /// Where the chain ends.
+    /// The x where the chain ends.
     pub last_x_m: f64,
 }
 
 impl Station {
-    /// The segment that rules a contact here for a direction of travel, on a chain of `segment_count` segments.
+    /// The segment whose constraints rule a contact here for a direction of travel, on a chain of `segment_count` segments.
     ///
-    /// Inside a segment that segment; at a vertex the ground ahead for a take-off and the ground just flown over for a landing
-    /// (CHTA paper, Definition 2). `None` at the chain's ends where that ground does not exist.
+    /// Inside a segment, that segment; at a vertex, the ground ahead for a take-off and the ground just flown over for a
+    /// landing (CHTA paper, Definition 2). `None` at the chain's ends where that ground does not exist.
     #[inline]
     pub fn ruling_segment(&self, contact: Contact, direction: Direction, segment_count: usize) -> Option<SegmentId> {
         match self.site {
@@ -72,11 +73,11 @@ impl Station {
         }
     }
 
-    /// The segment that both stations lie on, ends included; `None` where there is none.
+    /// The segment that both stations lie on, ends included; `None` if there is none.
     #[inline]
     pub fn shared_segment(&self, other: &Self) -> Option<SegmentId> {
         let range = |site: Site| match site {
-            // Segments that a vertex ends: the one before and the one after.
+            // The segments adjacent to a vertex: the one before and the one after.
             Site::Vertex(v) => (v.index().wrapping_sub(1), v.index()),
             Site::Inside(s) => (s.index(), s.index()),
         };

@@ -1,10 +1,10 @@
-//! The search itself: label-setting A* in batches of equal hop count. A batch's edges are evaluated when its nodes are settled, and never
-//! stored.
+//! The search: label-setting A* in batches of equal hop count. The edges of a batch are evaluated when its nodes are settled,
+//! and never stored.
 //!
-//! Every edge takes one hop at least, so a node's best cost is known once all nodes of fewer hops have had their say: all that are then
-//! due at one hop count are one batch, evaluated in any order and by any number of threads. What a batch offers to a node is compared by
-//! cost, then by the place of the node before (smaller goes first, the start before all): a total order, so that the best offer is the
-//! same whoever makes it first.
+//! Every edge takes at least one hop, so the best cost of a node is known once all nodes with fewer hops are settled. All
+//! nodes then due at one hop count form a batch, which any number of threads may evaluate in any order. Offers to a node are
+//! compared by cost, then by the index of the predecessor (the smaller one wins, the start before all). This is a total
+//! order, so the result does not depend on the order of evaluation.
 
 use std::{collections::BTreeMap, ops::Range, sync::Arc};
 
@@ -23,7 +23,7 @@ use crate::{
     world::{Direction, Limit},
 };
 
-/// Where a hop comes from: the start, or a node by its number and one.
+/// The predecessor of a label: the start (0), or a node as its index plus one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Origin(u32);
 
@@ -37,18 +37,18 @@ impl Origin {
         Self(index as u32 + 1)
     }
 
-    /// Which node; `None` for the start.
+    /// The node's index; `None` for the start.
     pub(super) const fn index(self) -> Option<usize> {
         (self.0 as usize).checked_sub(1)
     }
 }
 
-/// The best path known to a node or a goal.
+/// The best known path to a node or a goal.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Label {
     pub(super) cost: Cost,
     pub(super) from: Origin,
-    /// Whether no better path can turn up.
+    /// Whether the label is final.
     settled: bool,
 }
 
@@ -56,29 +56,29 @@ impl Label {
     /// No path known.
     pub(super) const UNKNOWN: Self = Self { cost: Cost::UNREACHED, from: Origin(u32::MAX), settled: false };
 
-    /// Where the journey begins.
+    /// The label of the start.
     pub(super) const fn at_start() -> Self {
         Self { cost: Cost::of_hops(0), from: Origin::START, settled: true }
     }
 
-    /// Takes an offer where it is better, by cost, then by origin.
+    /// Accepts an offer if it is better, by cost, then by origin.
     pub(super) fn offer(&mut self, cost: Cost, from: Origin) {
         if self.takes(cost, from) {
             (self.cost, self.from) = (cost, from);
         }
     }
 
-    /// Whether an offer is better than what is known.
+    /// Whether an offer is better than the known path.
     fn takes(&self, cost: Cost, from: Origin) -> bool {
         (cost, from) < (self.cost, self.from)
     }
 
-    /// Whether some path is known.
+    /// Whether a path is known.
     pub(super) const fn is_known(&self) -> bool {
         self.cost.hops() < Cost::UNREACHED.hops()
     }
 
-    /// Whether a path of so many hops might be better.
+    /// Whether a path with this many hops could be better.
     const fn waits_for(&self, hops: u64, aim: Aim) -> bool {
         let known = self.cost.hops();
         !self.settled
@@ -89,12 +89,12 @@ impl Label {
     }
 }
 
-/// How much was looked at.
+/// The amount of work done.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Tally {
-    /// Pairs given to the hop test.
+    /// Pairs passed to the hop test.
     pub(super) pairs: u64,
-    /// How the refused ones fell.
+    /// The refused pairs by limit.
     pub(super) refusals: RefusalCounts,
 }
 
@@ -105,26 +105,27 @@ impl std::ops::AddAssign for Tally {
     }
 }
 
-/// A place that hops leave from, with the cost of getting there.
+/// A station from which hops leave, with the cost of the path to it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Takeoff {
     pub(super) station: Station,
     pub(super) cost: Cost,
     pub(super) origin: Origin,
-    /// How far one hop carries from here at most, m.
+    /// A bound on the distance of one hop from here, m.
     pub(super) reach_m: f64,
 }
 
-/// What a search is after.
+/// What a search minimises.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Aim {
     /// Fewest hops, then least effort.
     HopsThenEffort,
-    /// Fewest hops alone: the first path with that hop count is enough.
+    /// Only the number of hops: the first path with the fewest hops is enough.
     Hops,
 }
 
-/// A label-setting A* search over one graph, for one start after another; nodes of equal hop count are settled as one batch.
+/// A label-setting A* search over one graph, run for one start after another; nodes of equal hop count are settled as one
+/// batch.
 #[derive(Debug)]
 pub(super) struct BatchedSearch<'g> {
     graph: &'g HopGraph<'g>,
@@ -132,13 +133,13 @@ pub(super) struct BatchedSearch<'g> {
     reach: &'g LocalReach,
     aim: Aim,
     labels: Vec<Label>,
-    /// The nodes whose labels have to be forgotten before the next start.
+    /// The nodes whose labels have to be reset before the next start.
     known: Vec<u32>,
-    /// Nodes due, by the least hops of any path through them to a goal, then by their own hops.
+    /// Open nodes, by the least number of hops of any path through them to a goal, then by their own hops.
     due: BTreeMap<(u64, u64), Vec<u32>>,
     sweep: Sweep,
     tally: Tally,
-    /// The least work of a batch that is shared among threads, in pairs: below, waking them takes longer.
+    /// The least work of a batch, in pairs, that is divided among threads: below it, waking them takes longer.
     shared_from_pairs: usize,
     /// In tests, the order in which a batch is evaluated.
     #[cfg(test)]
@@ -148,10 +149,10 @@ pub(super) struct BatchedSearch<'g> {
 impl<'g> BatchedSearch<'g> {
     /// Some 100 to 200 microseconds of work.
     const SHARED_FROM_PAIRS: usize = 4096;
-    /// Pieces of a shared batch for each thread, so that unequal ones even out.
+    /// Parts per thread of a shared batch, which balances parts of unequal work.
     const PIECES_PER_THREAD: usize = 4;
 
-    /// Before any start.
+    /// A search that has not run yet.
     pub(super) fn new(graph: &'g HopGraph<'g>, table: &'g Arc<LandingTable>, reach: &'g LocalReach, aim: Aim) -> Self {
         Self {
             graph,
@@ -169,18 +170,19 @@ impl<'g> BatchedSearch<'g> {
         }
     }
 
-    /// What the last run looked at.
+    /// The work of the last run.
     pub(super) const fn tally(&self) -> Tally {
         self.tally
     }
 
-    /// The fewest hops to a node, where the last run found no path to some goal or had none; `None` where no hops get there.
+    /// The fewest hops to a node, after a run that had no goals or left some goal without a path; `None` if the node is
+    /// unreachable.
     pub(super) fn hops(&self, node: NodeId) -> Option<u64> {
         let label = self.labels[node.index()];
         label.is_known().then(|| label.cost.hops())
     }
 
-    /// The stations of the best path to a goal, after a run that found one: from the start on, the goal left out.
+    /// The stations of the best path to a goal, from the start on and without the goal, after a run that found one.
     pub(super) fn stations_before(&self, start: &Station, goal: &Label) -> Vec<Station> {
         let mut from = goal.from;
         let mut stations = Vec::new();
@@ -193,11 +195,12 @@ impl<'g> BatchedSearch<'g> {
         stations
     }
 
-    /// Searches from a start until every goal has its best path, or until all that can be reached has been.
+    /// Searches from a start until every goal has its best path, or until all reachable nodes are settled.
     ///
-    /// In order of the least hops that any path through a node can have, its own and those of the bound on what is left (A*); nodes of
-    /// the same two numbers are one batch. The bound never falls by more than an edge's hops along it, so a batch is complete when its
-    /// turn comes, and every node by which a best path might lead has had its turn before.
+    /// Nodes are settled in the order of the least number of hops that a path through them can have: their own hops plus the
+    /// bound on the remaining ones (A*). Nodes with the same two numbers form one batch. The bound is consistent (along an
+    /// edge it falls by at most the edge's hops), so a batch is complete when its turn comes, and every node on a best path
+    /// has been settled before.
     pub(super) fn run(&mut self, start: &Station, goals: &mut Goals) {
         let left = HopsLeft::to(self.reach, goals.stations());
         self.forget();
@@ -217,7 +220,7 @@ impl<'g> BatchedSearch<'g> {
         }
     }
 
-    /// Forgets the start before.
+    /// Resets the labels of the previous start.
     fn forget(&mut self) {
         for node in self.known.drain(..) {
             self.labels[node as usize] = Label::UNKNOWN;
@@ -226,7 +229,8 @@ impl<'g> BatchedSearch<'g> {
         self.tally = Tally::default();
     }
 
-    /// Settles the nodes of a batch, from left to right; those for which fewer hops have turned up since have been settled.
+    /// Settles the nodes of a batch, from left to right; nodes that have since been reached with fewer hops are already
+    /// settled.
     fn takeoffs(&mut self, mut nodes: Vec<u32>, hops: u64) -> Vec<Takeoff> {
         nodes.sort_unstable();
         let stations = self.graph.nodes().stations();
@@ -244,8 +248,8 @@ impl<'g> BatchedSearch<'g> {
         takeoffs
     }
 
-    /// Evaluates the edges out of a batch, given from left to right: to the goals, and to the nodes unless every goal is too near for one
-    /// of them to lead there.
+    /// Evaluates the edges out of a batch, given from left to right: to the goals, and to the nodes unless the goals' labels
+    /// show that no path through them can be better.
     fn settle(&mut self, batch: &mut [Takeoff], goals: &mut Goals, left: HopsLeft<'_>) {
         self.tally += goals.land_from(self.graph, batch);
         // A path through a landing of this batch takes at least two hops more.
@@ -255,7 +259,7 @@ impl<'g> BatchedSearch<'g> {
         }
         let mut begin = 0;
         while begin < batch.len() {
-            // Take-offs whose landings overlap, so that all of these are one stretch of nodes.
+            // Take-offs with overlapping ranges of landings, which together form one contiguous range of nodes.
             let mut window = self.landings(&batch[begin]);
             let mut end = begin + 1;
             while let Some(range) = batch.get(end).map(|takeoff| self.landings(takeoff)).filter(|r| r.start < window.end) {
@@ -267,12 +271,12 @@ impl<'g> BatchedSearch<'g> {
         }
     }
 
-    /// The nodes that a take-off might reach.
+    /// The nodes within reach of a take-off.
     fn landings(&self, takeoff: &Takeoff) -> Range<usize> {
         around(self.graph.nodes().stations(), &takeoff.station, takeoff.reach_m)
     }
 
-    /// Evaluates the edges from some take-offs of the same hops to all nodes of a stretch that wait for them.
+    /// Evaluates the edges from take-offs with equal hops to all nodes of a range that could get better labels from them.
     fn sweep_stretch(&mut self, batch: &mut [Takeoff], window: Range<usize>, left: HopsLeft<'_>) {
         let Some(hops) = batch.first().map(|takeoff| takeoff.cost.hops() + 1) else { return };
         let waits = |node: &usize| self.labels[*node].waits_for(hops, self.aim);
@@ -298,7 +302,7 @@ impl<'g> BatchedSearch<'g> {
         }
     }
 
-    /// Takes an offer to a node where it is better than what is known, and makes the node due where it has fewer hops.
+    /// Accepts an offer to a node if it is better than the known path, and opens the node if it has fewer hops.
     fn take(&mut self, node: usize, offer: &Label, left: HopsLeft<'_>) {
         let label = &mut self.labels[node];
         let before = *label;
@@ -317,21 +321,21 @@ impl<'g> BatchedSearch<'g> {
     }
 }
 
-/// Neighbouring nodes that may still get better labels, all from take-offs of the same hops.
+/// Neighbouring nodes that could still get better labels, all from take-offs with equal hops.
 #[derive(Clone, Copy)]
 struct Stretch<'s> {
     graph: &'s HopGraph<'s>,
     aim: Aim,
-    /// The hops of a landing.
+    /// The number of hops at a landing.
     hops: u64,
     first: usize,
-    /// Those for which a landing might be better than what is known.
+    /// The nodes whose labels a landing could improve.
     waiting: &'s [usize],
     labels: &'s [Label],
 }
 
 impl Stretch<'_> {
-    /// The best labels that some take-offs have to offer.
+    /// The best labels that a set of take-offs can offer.
     fn offers(&self, sweep: &mut Sweep, takeoffs: &[Takeoff]) -> (Vec<Label>, Tally) {
         let mut labels = self.labels.to_vec();
         let mut tally = Tally::default();
@@ -353,7 +357,7 @@ impl Stretch<'_> {
         (labels, tally)
     }
 
-    /// Offers a node what the hop test makes of one pair, where it waits for that.
+    /// Offers a node the result of the hop test for one pair, if that could improve its label.
     #[inline]
     fn evaluate(&self, takeoff: &Takeoff, node: usize, single: Result<SlopeInterval, Limit>, label: &mut Label, tally: &mut Tally) {
         if !label.waits_for(self.hops, self.aim) {
@@ -366,7 +370,7 @@ impl Stretch<'_> {
                 let least = takeoff.cost + Cost::of_hops(edge.hops());
                 match self.aim {
                     Aim::Hops => label.offer(least, takeoff.origin),
-                    // What would be too much without any effort for this edge need not be worked out.
+                    // The edge's effort need not be computed if the cost would be too high without it.
                     Aim::HopsThenEffort if label.takes(least, takeoff.origin) => {
                         label.offer(takeoff.cost + self.graph.cost(&takeoff.station, landing, edge), takeoff.origin);
                     }
@@ -390,7 +394,7 @@ mod tests {
         world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
     };
 
-    /// Level ground, where many hops cost the same to the last bit, with a needle here and there.
+    /// Level ground with a few needles, where many hops cost the same to the last bit.
     fn chain() -> ConstrainedChain {
         let height = |i: u8| if i % 7 == 3 { 0.5 } else { 0.0 };
         let points = (0..60).map(|i| ChainPoint::new(f64::from(i), height(i))).collect();
@@ -404,7 +408,7 @@ mod tests {
         .unwrap()
     }
 
-    /// The order of a shuffle of cards, and back to front.
+    /// Unchanged, reversed, and shuffled like cards.
     const ORDERS: [fn(&mut [Takeoff]); 3] = [
         |_| {},
         <[Takeoff]>::reverse,
@@ -443,7 +447,7 @@ mod tests {
     }
 
     #[test]
-    fn of_equal_offers_the_one_from_farthest_left_stays() {
+    fn among_equal_offers_the_leftmost_origin_wins() {
         let mut label = Label::UNKNOWN;
         for (hops, from) in [(3, 8), (2, 9), (2, 4), (2, 6), (3, 0)] {
             label.offer(Cost::of_hops(hops), Origin::node(from));
@@ -454,7 +458,7 @@ mod tests {
     }
 
     #[test]
-    fn a_start_leaves_nothing_to_the_next() {
+    fn a_run_does_not_affect_the_next_one() {
         let chain = chain();
         let test = HopTest::new(chain.clone());
         let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(1)).unwrap();

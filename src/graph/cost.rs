@@ -1,4 +1,4 @@
-//! What the search minimises: hops first, then the chosen effort.
+//! The objective of the search: hops first, then the chosen effort.
 
 use std::{cmp::Ordering, ops::Add};
 
@@ -14,7 +14,7 @@ pub enum Effort {
     Energy,
     /// The sum of flight times, s.
     Time,
-    /// The largest take-off speed, m/s. Valid as a second criterion because hops go first.
+    /// The largest take-off speed, m/s. Valid as a second criterion because hops are compared first.
     PeakSpeed,
 }
 
@@ -41,7 +41,7 @@ impl Effort {
         }
     }
 
-    /// What the effort of a path is, in words: no speed of any one hop is meant where it is a sum over the hops.
+    /// The effort of a whole path in words, which says whether it is a sum over the hops or the speed of one hop.
     pub const fn total(self) -> &'static str {
         match self {
             Self::TakeoffSpeed => "sum of take-off speeds",
@@ -51,10 +51,10 @@ impl Effort {
         }
     }
 
-    /// The cost of `hops` flights of the same arc.
+    /// The cost of `hops` flights along the same arc.
     ///
     /// # Panics
-    /// Never; a flight that is no number (which the hop test does not yield) costs infinitely much.
+    /// Never; a NaN effort (which the hop test does not yield) becomes an infinite cost.
     #[expect(clippy::cast_precision_loss, reason = "hop counts stay below 2^53")]
     pub fn cost(self, arc: &Arc, hops: u64) -> Cost {
         let v = arc.takeoff_speed_m_s();
@@ -74,21 +74,21 @@ impl Effort {
     }
 }
 
-/// Hops, then effort: totally ordered, never negative, never NaN.
+/// Number of hops, then effort: totally ordered, never negative, never NaN.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Cost {
     hops: u64,
-    /// Efforts that add up.
+    /// Efforts that are summed.
     sum: f64,
-    /// Efforts of which the largest counts.
+    /// Efforts whose maximum counts.
     peak: f64,
 }
 
 impl Cost {
-    /// More than any path costs.
+    /// More than the cost of any path.
     pub(super) const UNREACHED: Self = Self { hops: u64::MAX, sum: f64::INFINITY, peak: f64::INFINITY };
 
-    /// So many hops without any effort: no journey of as many hops costs less.
+    /// A number of hops without effort: a lower bound on the cost of every path with this many hops.
     pub const fn of_hops(hops: u64) -> Self {
         Self { hops, sum: 0.0, peak: 0.0 }
     }
@@ -98,7 +98,7 @@ impl Cost {
         self.hops
     }
 
-    /// The effort, in the unit of the [`Effort`] it was counted in.
+    /// The effort, in the unit of the [`Effort`] used.
     pub fn effort(self) -> f64 {
         self.sum.max(self.peak)
     }
@@ -132,14 +132,14 @@ mod tests {
     use crate::ballistics::LineOfSight;
 
     #[test]
-    fn hops_go_before_any_effort() {
+    fn hops_are_compared_before_effort() {
         let costly = Effort::Energy.cost(&Arc::new(LineOfSight::new(1e5, 0.0), 1.0, 25.0), 1);
         let cheap = Effort::Energy.cost(&Arc::new(LineOfSight::new(1e-3, 0.0), 1.0, 1e-5), 2);
-        assert!(costly < cheap, "one costly hop goes before two cheap ones");
+        assert!(costly < cheap, "one costly hop is less than two cheap ones");
     }
 
     #[test]
-    fn peak_speed_takes_the_larger_and_others_add_up() {
+    fn peak_speed_is_a_maximum_and_the_others_are_sums() {
         let (slow, fast) = (Arc::new(LineOfSight::new(1.0, 0.0), 1.0, 1.0), Arc::new(LineOfSight::new(4.0, 0.0), 1.0, 1.0));
         let total = |effort: Effort| (effort.cost(&slow, 1) + effort.cost(&fast, 2)).effort();
         assert!((total(Effort::PeakSpeed) - 2.0).abs() < 1e-12, "the fastest of 1, 2 and 2 m/s");

@@ -13,28 +13,29 @@ use crate::{
     world::{Direction, tolerant_speed_m_s},
 };
 
-/// The cost of the cheapest path from every node to the goal, computed once, for a robot that landed elsewhere than planned.
+/// The cost of the cheapest path from every node to the goal, computed once, for replanning after each landing.
 ///
-/// A hop from anywhere to any node, and that node's cost-to-go, is a whole journey; the best of them is the best plan from there whose
-/// landings after the first are nodes.
+/// A hop from any station to a node, plus the cost-to-go of that node, is the cost of a whole path. The best of these is the
+/// best plan from that station whose landings after the first are nodes.
 #[derive(Clone, Debug)]
 pub struct CostToGo {
     nodes: NodeSet,
     options: SearchOptions,
     costs: Vec<Option<Cost>>,
-    /// The nodes from which the goal is reached, the cheapest first.
+    /// The nodes from which the goal can be reached, in ascending order of cost.
     in_order: Vec<NodeId>,
-    /// Where reliability counts: the successors of every node, the most reliable first.
+    /// With reliability options: the successors of every node, the most reliable first.
     policy: Option<ReliabilityPolicy>,
 }
 
 impl CostToGo {
-    /// Dijkstra's algorithm from the goal against the direction of the hops.
+    /// Runs Dijkstra's algorithm from the goal against the direction of the hops.
     ///
-    /// `options` says how costs are counted (its spacing is that of the nodes given, and not looked at).
+    /// `options` defines the costs; its spacing is ignored, since the nodes are given.
     ///
     /// # Complexity
-    /// With V nodes, W of them in reach of each and S vertices flown past: O(V W S + V W log V) time, O(V W) heap entries at worst.
+    /// With V nodes, W of them in reach of each and S vertices flown over: O(V W S + V W log V) time, O(V W) heap entries at
+    /// worst.
     pub fn of(test: &HopTest, nodes: NodeSet, options: &SearchOptions) -> Self {
         let costs = costs_to_go(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split));
         let mut in_order: Vec<NodeId> = (0..costs.len()).map(NodeId).filter(|node| costs[node.index()].is_some()).collect();
@@ -42,30 +43,31 @@ impl CostToGo {
         Self { nodes, options: options.clone(), costs, in_order, policy: None }
     }
 
-    /// The same with a reliability policy: the successors of every node in order of the reliability of the rest of the path, within the
-    /// extra hops allowed, as [`most_reliable_paths`](super::most_reliable_paths) weighs it.
+    /// The same with a reliability policy: the successors of every node, sorted by the reliability of the rest of the path
+    /// within the extra hops allowed, weighted as in [`most_reliable_paths`](super::most_reliable_paths).
     ///
     /// # Complexity
-    /// As [`of`](Self::of), and a risk estimate for every edge on some path within the hop budget.
+    /// That of [`of`](Self::of), plus a risk estimate for every edge on some path within the hop budget.
     pub fn with_reliability(test: &HopTest, nodes: NodeSet, options: &SearchOptions, reliability: &ReliabilityOptions) -> Self {
         let costs = Self::of(test, nodes, options);
         let policy = ReliabilityPolicy::of(&costs.graph(test), &costs.costs, options, reliability);
         Self { policy: Some(policy), ..costs }
     }
 
-    /// Whether reliability counts.
+    /// Whether there is a reliability policy.
     #[inline]
     pub const fn weighs_reliability(&self) -> bool {
         self.policy.is_some()
     }
 
-    /// The successors of a node, the most reliable first; empty where reliability does not count, at the goal, and where no path leads to it.
+    /// The successors of a node, the most reliable first; empty without a reliability policy, at the goal, and if the goal
+    /// cannot be reached from the node.
     #[inline]
     pub fn reliable_successors(&self, node: NodeId) -> &[NodeId] {
         self.policy.as_ref().map_or(&[], |policy| policy.successors(node))
     }
 
-    /// The node nearest to a place along the chain.
+    /// The node nearest to a position along the chain.
     pub fn nearest_node(&self, x_m: f64) -> NodeId {
         let stations = self.nodes.stations();
         let after = stations.partition_point(|station| station.point.x_m < x_m).min(stations.len() - 1);
@@ -74,7 +76,7 @@ impl CostToGo {
         NodeId(if away_m(before) <= away_m(after) { before } else { after })
     }
 
-    /// The graph that the costs are counted in.
+    /// The graph that defines the costs.
     fn graph<'g>(&'g self, test: &'g HopTest) -> HopGraph<'g> {
         HopGraph::new(test, &self.nodes, self.options.effort, self.options.takeoff, self.options.split)
     }
@@ -84,41 +86,42 @@ impl CostToGo {
         &self.nodes
     }
 
-    /// How the costs are counted.
+    /// The options that define the costs.
     pub const fn options(&self) -> &SearchOptions {
         &self.options
     }
 
-    /// The cost-to-go of a node: zero at the goal, `None` where no path leads to it.
+    /// The cost-to-go of a node: zero at the goal, `None` if the goal cannot be reached from it.
     ///
     /// # Panics
-    /// Where there is no such node.
+    /// Panics if there is no such node.
     #[inline]
     pub fn of_node(&self, node: NodeId) -> Option<Cost> {
         self.costs[node.index()]
     }
 
-    /// The nodes from which the goal is reached, those with the least cost-to-go first.
+    /// The nodes from which the goal can be reached, in ascending order of cost-to-go.
     pub fn in_order(&self) -> &[NodeId] {
         &self.in_order
     }
 
-    /// No hop over this line of sight costs less.
+    /// A lower bound on the cost of a hop over this line of sight.
     #[inline]
     pub fn least_cost(&self, sight: LineOfSight, gravity_m_s2: f64) -> Cost {
         let fastest = Arc::new(sight, sight.secant(), gravity_m_s2);
         match self.options.effort {
             Effort::TakeoffSpeed | Effort::Energy | Effort::PeakSpeed => self.options.effort.cost(&fastest, 1),
-            // A flat and fast arc takes less time than any bound worth computing.
+            // A flat and fast arc takes so little time that a bound on it is not worth computing.
             Effort::Time => Cost::of_hops(1),
         }
     }
 
-    /// The best first leg from any station of the chain, which need not be a node. `None` where no node that leads to the goal is in reach.
+    /// The best first leg from any station of the chain, which need not be a node. `None` if no node that leads to the goal
+    /// is in reach.
     ///
-    /// Where reliability counts: of the successors of the nearest node, the most reliable first, the first that is feasible from the station
-    /// itself (risk changes little between a node and the positions near it, feasibility may). Otherwise, and where none of them is
-    /// feasible: the [cheapest](Self::cheapest_leg).
+    /// With a reliability policy: the most reliable successor of the nearest node that is feasible from the station itself
+    /// (between a node and positions near it the risk changes little, but feasibility may change). Without a policy, and if
+    /// no such successor is feasible: the [cheapest leg](Self::cheapest_leg).
     pub fn best_leg(&self, test: &HopTest, from: &Station) -> Option<Leg> {
         let graph = self.graph(test);
         let leg_to = |node: &NodeId| {
@@ -130,13 +133,13 @@ impl CostToGo {
     }
 
     /// The first leg of the cheapest path from any station of the chain, and the cost of that path.
-    /// `None` where no node that leads to the goal is in reach.
+    /// `None` if no node that leads to the goal is in reach.
     ///
-    /// Nodes are tried from the goal's side on: those with the least cost-to-go come early, and the others need no hop test. Of two legs that
-    /// make the journey cost the same, the one tried first is taken.
+    /// Nodes are tried in ascending order of their cost-to-go, until no further node can give a cheaper path, so that most
+    /// need no hop test. Of two legs with equal total cost, the one tried first is returned.
     ///
     /// # Complexity
-    /// A hop test for each node in reach that could still be better than the best known.
+    /// A hop test for each node in reach that could still improve on the best leg.
     pub fn cheapest_leg(&self, test: &HopTest, from: &Station) -> Option<(Leg, Cost)> {
         let graph = self.graph(test);
         let stations = self.nodes.stations();
@@ -178,13 +181,13 @@ struct OneHop {
 
 impl OneHop {
     fn of(test: &HopTest) -> Self {
-        // A billionth more than the tolerance allows: rounding must not lose a hop that touches.
+        // Relatively 1e-9 more than the tolerance allows: rounding must not exclude a hop exactly on the limit.
         let squared = |speed_m_s: f64| tolerant_speed_m_s(tolerant_speed_m_s(speed_m_s)) * tolerant_speed_m_s(speed_m_s);
         let (takeoff_m_s, landing_m_s) = test.chain().speed_bounds_m_s();
         Self { takeoff_squared: squared(takeoff_m_s), landing_squared: squared(landing_m_s), gravity: test.gravity_m_s2() }
     }
 
-    /// Whether no hop reaches over a line of sight.
+    /// Whether no hop can span a line of sight.
     #[inline]
     fn excludes(&self, sight: LineOfSight) -> bool {
         let g_x = self.gravity * sight.run_m();
@@ -192,7 +195,7 @@ impl OneHop {
     }
 }
 
-/// The least costs of all nodes, by Dijkstra's algorithm.
+/// The least costs of all nodes, from Dijkstra's algorithm.
 fn costs_to_go(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
     let nodes = graph.nodes();
     let mut costs: Vec<Option<Cost>> = vec![None; nodes.stations().len()];
@@ -242,7 +245,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cost_to_go_of_every_node_is_what_a_search_from_it_costs() {
+    fn the_cost_to_go_of_every_node_equals_the_cost_of_a_search_from_it() {
         let chain = rough_chain();
         let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
@@ -295,7 +298,7 @@ mod tests {
                 assert_eq!(to_go.cheapest_leg(&test, &from).map(|(_, cost)| cost), of_all, "from {from:?}");
                 found += u32::from(of_all.is_some());
             }
-            assert!(found > 50, "only {found} places lead on");
+            assert!(found > 50, "only {found} positions lead to the goal");
         }
     }
 }

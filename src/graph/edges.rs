@@ -1,4 +1,4 @@
-//! The hop graph: edges evaluated when asked for, through petgraph's traits.
+//! The hop graph: edges are evaluated on demand, through petgraph's traits.
 
 use std::{collections::HashSet, ops::Range};
 
@@ -13,17 +13,17 @@ use crate::{
     world::Limit,
 };
 
-/// What joins two nodes.
+/// An edge between two nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
-    /// One hop, with these feasible lofts.
+    /// One hop, with its feasible lofts.
     Hop(SlopeInterval),
     /// Several hops along one segment.
     Along(SegmentHops),
 }
 
 impl Edge {
-    /// How many hops it takes.
+    /// The number of hops.
     pub const fn hops(&self) -> u64 {
         match self {
             Self::Hop(_) => 1,
@@ -34,8 +34,8 @@ impl Edge {
 
 /// The hop graph over a node set. Edges are computed when visited and never stored.
 ///
-/// petgraph's algorithms run on it as they are; [`search`](super::search()) has a faster way of its own, against which its tests hold
-/// petgraph's.
+/// petgraph's algorithms run on it without changes. [`search`](super::search()) uses a faster algorithm, which the tests
+/// compare with petgraph's.
 #[derive(Debug)]
 pub struct HopGraph<'a> {
     test: &'a HopTest,
@@ -46,7 +46,7 @@ pub struct HopGraph<'a> {
 }
 
 impl<'a> HopGraph<'a> {
-    /// A graph over nodes, with the effort, choice of take-off angle and split that its costs are counted in.
+    /// A graph over nodes; effort, choice of take-off angle and split define its costs.
     pub const fn new(test: &'a HopTest, nodes: &'a NodeSet, effort: Effort, choice: TakeoffChoice, split: Split) -> Self {
         Self { test, nodes, effort, choice, split }
     }
@@ -56,21 +56,22 @@ impl<'a> HopGraph<'a> {
         self.nodes
     }
 
-    /// The hop test behind the edges.
+    /// The hop test that evaluates the edges.
     pub const fn test(&self) -> &'a HopTest {
         self.test
     }
 
-    /// What joins two stations: one hop where one will do, else hops along their common segment (P Algorithm 2, by its prose).
+    /// The edge between two stations: one hop if feasible, else hops along their common segment (P Algorithm 2, as its text
+    /// describes it).
     ///
     /// # Errors
-    /// The limit that refuses the single hop, where there are no hops along a segment either.
+    /// The limit that refuses the single hop, if hops along a segment are not possible either.
     #[inline]
     pub fn edge(&self, takeoff: &Station, landing: &Station) -> Result<Edge, Limit> {
         self.edge_of(takeoff, landing, self.test.lofts(takeoff, landing))
     }
 
-    /// As [`edge`](Self::edge), where it is known what the hop test says of the single hop.
+    /// As [`edge`](Self::edge), with the result of the hop test for the single hop already known.
     #[inline]
     pub(super) fn edge_of(
         &self,
@@ -98,14 +99,14 @@ impl<'a> HopGraph<'a> {
         }
     }
 
-    /// The candidate landings of a station: where the chain's speeds and heights do not rule out one hop, or on a segment that it lies
-    /// on, along which many hops reach farther.
+    /// The candidate landings of a station: those that the chain's speeds and heights do not exclude for one hop, and those
+    /// on the station's own segments, which several hops along the segment may reach.
     pub(super) fn landings(&self, takeoff: &Station) -> Range<usize> {
         around(self.nodes.stations(), takeoff, self.test.counted_reach_m(takeoff))
     }
 }
 
-/// One edge as petgraph sees it.
+/// One edge in petgraph's interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EdgeReference {
     source: NodeId,
@@ -135,7 +136,7 @@ impl EdgeRef for EdgeReference {
     }
 }
 
-/// The edges that leave one node, each evaluated when drawn.
+/// The edges that leave one node, each evaluated when the iterator yields it.
 #[derive(Clone, Debug)]
 pub struct Edges<'g> {
     graph: &'g HopGraph<'g>,

@@ -1,11 +1,11 @@
-//! What stops a search without success: how far one gets from either end, and what refuses in the gap.
+//! Why a search finds no path: the nodes reached from either end, and the limits that refuse the hops between them.
 
 use std::collections::VecDeque;
 
 use super::{HopGraph, RefusalCounts, local_reach::LocalReach, nodes::around};
 use crate::{chain::Station, hop::Conflict, quantity::NodeId};
 
-/// How far one gets from start and towards goal over the nodes of one graph, and what refuses in between.
+/// The nodes reached from the start and those that lead to the goal, over one graph, and the refusals between them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frontier {
     /// Every node that the start reaches, the start included, from left to right.
@@ -16,30 +16,30 @@ pub struct Frontier {
     pub nearest_to_goal: Station,
     /// The node nearest to the start from which the goal can be reached.
     pub nearest_to_start: Station,
-    /// What refused the hops out of the reached set.
+    /// The refusals of all hops out of the reached set.
     pub refusals: RefusalCounts,
-    /// Of those refusals by two conflicting limits, the one with the smallest gap in degrees.
+    /// Of the refusals by two conflicting limits, the one with the smallest gap in degrees.
     pub nearest_miss: Option<NearestMiss>,
 }
 
-/// The refused hop that came closest.
+/// The refused hop with the smallest gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestMiss {
-    /// From here.
+    /// The take-off station.
     pub takeoff: Station,
-    /// To there.
+    /// The landing station.
     pub landing: Station,
-    /// Why not.
+    /// Why the hop is refused.
     pub conflict: Conflict,
 }
 
 impl Frontier {
-    /// The most refused hops out of the reached set that are taken apart for the nearest miss; the counts are of all.
+    /// The most refused hops out of the reached set that are analysed for the nearest miss; the counts include all of them.
     ///
-    /// Taking a refusal apart costs some microseconds, so this bounds the work to about a second.
+    /// Analysing a refusal costs some microseconds, so this limits the work to about a second.
     const EXPLAINED: usize = 200_000;
 
-    /// Of a graph whose search found no path, by its nodes that were reached.
+    /// The frontier of a graph without a path, given the nodes that were reached.
     pub(super) fn of(graph: &HopGraph<'_>, reach: &LocalReach, reached: &[bool]) -> Self {
         let nodes = graph.nodes();
         let leads = leading_to_goal(graph, reach);
@@ -64,7 +64,7 @@ impl Frontier {
     }
 }
 
-/// Which nodes lead to the goal: breadth-first, against the direction of the hops.
+/// The nodes that lead to the goal: breadth-first search against the direction of the hops.
 fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach) -> Vec<bool> {
     let nodes = graph.nodes();
     let mut leads = vec![false; nodes.stations().len()];
@@ -82,7 +82,7 @@ fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach) -> Vec<bool> {
     leads
 }
 
-/// What refuses the hops that leave a set of nodes, and the smallest gap among them.
+/// The refusals of the hops that leave a set of nodes, and the smallest gap among them.
 fn refusals_out_of(graph: &HopGraph<'_>, reached: &[bool]) -> (RefusalCounts, Option<NearestMiss>) {
     let stations = graph.nodes().stations();
     let mut counts = RefusalCounts::default();

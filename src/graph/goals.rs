@@ -7,19 +7,19 @@ use super::{
 };
 use crate::chain::Station;
 
-/// Goals and the best path known to each.
+/// The goals and the best known path to each.
 #[derive(Clone, Debug)]
 pub(super) struct Goals {
-    /// From left to right.
+    /// The goals, from left to right.
     stations: Vec<Station>,
     labels: Vec<Label>,
-    /// Where each goal stood among those given, by its place from left to right.
+    /// For each goal from left to right, its index in the list given.
     given: Vec<usize>,
     most_hops: u64,
 }
 
 impl Goals {
-    /// Goals to which no path is known yet.
+    /// Goals without a known path.
     pub(super) fn new(goals: &[Station]) -> Self {
         let mut given: Vec<usize> = (0..goals.len()).collect();
         given.sort_by(|&a, &b| goals[a].point.x_m.total_cmp(&goals[b].point.x_m));
@@ -32,7 +32,7 @@ impl Goals {
         &self.stations
     }
 
-    /// The best path known to each goal, in the order in which they were given; `None` where there is none.
+    /// The best known path to each goal, in the order in which the goals were given; `None` if there is none.
     pub(super) fn labels(&self) -> Vec<Option<Label>> {
         let mut labels = vec![None; self.labels.len()];
         for (label, &given) in self.labels.iter().zip(&self.given) {
@@ -41,12 +41,12 @@ impl Goals {
         labels
     }
 
-    /// The most hops of the paths known; unbounded where some goal has no path yet, or where there are no goals.
+    /// The most hops of the known paths; unbounded if some goal has no path yet, or if there are no goals.
     pub(super) const fn most_hops(&self) -> u64 {
         self.most_hops
     }
 
-    /// Goals at the start are reached without a hop.
+    /// Goals at the start are reached with zero hops.
     pub(super) fn arrive_at(&mut self, start: &Station) {
         for (station, label) in self.stations.iter().zip(&mut self.labels) {
             if station.point.x_m == start.point.x_m {
@@ -56,7 +56,7 @@ impl Goals {
         self.count();
     }
 
-    /// Tries the goals from some take-offs.
+    /// Evaluates the hops from a set of take-offs to the goals.
     pub(super) fn land_from(&mut self, graph: &HopGraph<'_>, takeoffs: &[Takeoff]) -> Tally {
         let mut tally = Tally::default();
         for takeoff in takeoffs {

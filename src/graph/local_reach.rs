@@ -1,4 +1,4 @@
-//! How far a hop can carry near a place, and the hops that this leaves to a goal at least.
+//! Local bounds on the length of a hop, and the lower bound on the number of hops to a goal that follows.
 
 use std::collections::VecDeque;
 
@@ -8,27 +8,28 @@ use crate::{
     quantity::ChainPoint,
 };
 
-/// A bound on the length of every hop that begins, ends or passes over a place, by segment.
+/// A bound, for each segment, on the length of every hop that begins, ends or passes over it.
 ///
-/// The parabola of safety with the relief that a hop finds there: within a bound on its length to either side. The relief of the whole
-/// chain gives a first bound, the relief within that a second, and so on: a few rounds halve what a long chain gives.
+/// The bound is the parabola of safety with the relief that such a hop can meet: the relief within the bound on either side.
+/// The relief of the whole chain gives a first bound, the relief within that a second one, and so on; on a long chain a few
+/// rounds halve the bound.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct LocalReach {
     /// By segment, m.
     reach_m: Vec<f64>,
-    /// By vertex: a hop from one place to another takes this potential up by 1 at most, whichever way it goes, since each segment adds
-    /// its run over the bound on all hops that touch it.
+    /// For each vertex, a potential: each segment adds its length divided by the bound on all hops that touch it. A hop in
+    /// either direction therefore changes the potential by at most 1.
     potential: Vec<f64>,
     first_m: Vec<f64>,
 }
 
 impl LocalReach {
-    /// Rounds beyond this find nothing more.
+    /// More rounds no longer improve the bound.
     const ROUNDS: usize = 5;
-    /// What the bound is too large by on purpose: far more than rounding in sums of it, and no loss.
+    /// A safety factor on the bound: far more than the rounding error of sums of it, without noticeable loss.
     const SLACK: f64 = 1.0 + 1e-6;
 
-    /// Of a chain and a hopper.
+    /// The bounds for a chain and a hopper.
     ///
     /// # Complexity
     /// Linear in the vertices.
@@ -79,16 +80,16 @@ impl LocalReach {
     }
 }
 
-/// The least number of hops from any place to the goals of one search.
+/// A lower bound on the number of hops from any station to the goals of one search.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HopsLeft<'r> {
     reach: &'r LocalReach,
-    /// The potentials between which all goals lie; `None` without goals.
+    /// The least and greatest potential of all goals; `None` without goals.
     goals: Option<(f64, f64)>,
 }
 
 impl<'r> HopsLeft<'r> {
-    /// To some goals.
+    /// The bound for a set of goals.
     pub(super) fn to(reach: &'r LocalReach, goals: &[Station]) -> Self {
         let potentials = goals.iter().map(|goal| reach.potential_at(goal));
         let span =
@@ -96,10 +97,10 @@ impl<'r> HopsLeft<'r> {
         Self { reach, goals: span.filter(|(low, high)| low.is_finite() && high.is_finite()) }
     }
 
-    /// The bound on hops from a station to the nearest of the goals; 0 between them, and where nothing is known.
+    /// The bound on hops from a station to the nearest of the goals; 0 between them, without goals, and without finite bounds.
     ///
-    /// Along an edge of n hops the potential changes by less than n, so the bound never falls by more than n: the condition for A* to
-    /// settle each node once.
+    /// Along an edge of n hops the potential changes by less than n, so the bound never falls by more than n: it is
+    /// consistent, and A* settles each node once.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -112,7 +113,7 @@ impl<'r> HopsLeft<'r> {
     }
 }
 
-/// The relief that each segment's ends and all between them have with the vertices up to a distance away, the next one beyond included.
+/// For each segment, the relief of its ends and of all vertices up to a distance away, including the first vertex beyond.
 fn reliefs_m(vertices: &[ChainPoint], distance_m: f64) -> impl Iterator<Item = f64> {
     let mut highest = Extreme::new(|a, b| a >= b);
     let mut lowest = Extreme::new(|a, b| a <= b);
@@ -130,7 +131,7 @@ fn reliefs_m(vertices: &[ChainPoint], distance_m: f64) -> impl Iterator<Item = f
     })
 }
 
-/// The extreme of a window that moves to the right: whatever a newcomer outdoes is never needed again.
+/// The extreme of a window that moves to the right: values that a later one dominates are discarded.
 struct Extreme<F> {
     outdoes: F,
     waiting: VecDeque<(usize, f64)>,
@@ -148,7 +149,7 @@ impl<F: Fn(f64, f64) -> bool> Extreme<F> {
         self.waiting.push_back((at, value));
     }
 
-    /// The extreme from a place on, which never goes back.
+    /// The extreme from an index on; the index never decreases.
     fn of(&mut self, first: usize) -> f64 {
         while self.waiting.front().is_some_and(|(at, _)| *at < first) {
             self.waiting.pop_front();
@@ -168,7 +169,7 @@ mod tests {
         world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
     };
 
-    /// A plain, a canyon and a hill, with short and long segments; fast landings, so that it is the relief that bounds a hop.
+    /// A plain, a canyon and a hill, with short and long segments; landings may be fast, so that the relief bounds a hop.
     fn chain(hopper: &Hopper) -> ConstrainedChain {
         let height = |i: i32| match i {
             20..=24 => -6.0 - f64::from(i % 2),
@@ -182,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn no_edge_is_longer_than_the_bound_along_it_or_takes_the_potential_farther_than_its_hops() {
+    fn no_edge_exceeds_the_bound_along_it_or_the_potential_of_its_hops() {
         let hopper = Hopper::with_speeds(5.0, 25.0).unwrap();
         let chain = chain(&hopper);
         let test = HopTest::new(chain.clone());
@@ -202,16 +203,19 @@ mod tests {
                 }
                 assert!(gained < f64::from(u32::try_from(edge.hops()).unwrap()), "from {i} to {j}: {gained}");
                 let goal = HopsLeft::to(&reach, &[stations[90]]);
-                assert!(goal.from(takeoff) <= edge.hops() + goal.from(landing), "the bound falls faster than hops are made");
+                assert!(goal.from(takeoff) <= edge.hops() + goal.from(landing), "the bound falls by more than the edge's hops");
                 edges += 1;
             }
         }
-        assert!(edges > 1000 && greatest_share > 0.5, "{edges} edges, of the bound up to {greatest_share}");
-        assert!(reach.reach_m.iter().copied().fold(f64::INFINITY, f64::min) < test.greatest_reach_m(), "local where the ground is");
+        assert!(edges > 1000 && greatest_share > 0.5, "{edges} edges, greatest share of the bound {greatest_share}");
+        assert!(
+            reach.reach_m.iter().copied().fold(f64::INFINITY, f64::min) < test.greatest_reach_m(),
+            "the bound is smaller on flat ground than for the whole chain"
+        );
     }
 
     #[test]
-    fn reliefs_are_those_of_the_windows_taken_one_by_one() {
+    fn reliefs_equal_those_of_each_window_evaluated_separately() {
         let heights = [0.0, 3.0, -1.0, 4.0, 1.0, -5.0, 9.0, 2.0, 6.0, 5.0, 3.0, 5.0];
         let vertices: Vec<ChainPoint> = (0i32..).zip(heights).map(|(x, z)| ChainPoint::new(f64::from(x * x), z)).collect();
         for distance_m in [0.0, 0.5, 3.0, 7.0, 20.0, 1e3] {

@@ -1,11 +1,11 @@
 //! The hop graph over points of the chain, and the search for the path of fewest hops.
 //!
 //! Nodes are the vertices, points between them, start and goal; an edge is one hop, or several along one segment, in either
-//! direction of travel. Edges are evaluated when the node they leave from is settled and never stored, so memory grows with the nodes
-//! alone. Nodes are settled in batches of one hop count, each by as many threads as are worth it.
+//! direction of travel. Edges are evaluated when their source node is settled and never stored, so memory grows only with the
+//! nodes. Nodes are settled in batches of one hop count, each shared among as many threads as its size justifies.
 //!
-//! Discretising can only miss paths: a path found is real, a failure at some density of points proves nothing. [`proof`] bounds the
-//! fewest hops from both sides, for every density.
+//! A discretisation can only miss paths: a path found exists, but a failure at some density of points proves nothing.
+//! [`proof`] bounds the fewest hops from both sides, for every density.
 
 mod batched_search;
 mod cost;

@@ -1,4 +1,4 @@
-//! The points of the chain between which hops are tried.
+//! The points of the chain between which hops are tested.
 
 use std::ops::Range;
 
@@ -10,17 +10,17 @@ use crate::{
 /// How densely the segments are filled with points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PointSpacing {
-    /// This many equidistant points inside each segment: the paper's k.
+    /// This many equidistant points inside each segment: k in the CHTA paper.
     PerSegment(u32),
-    /// As many on each segment as keep neighbours on it no farther apart than this along the ground, m.
+    /// On each segment, as many equidistant points as keep neighbours at most this far apart along the ground, m.
     AtMostM(f64),
 }
 
-/// More nodes than fit the memory this program allows itself.
+/// More nodes than the program's memory limit allows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{nodes} nodes, expected at most {}: choose fewer points per segment or a wider node spacing", NodeSet::MAX_NODES)]
 pub struct TooManyNodes {
-    /// How many there would be.
+    /// The number of nodes requested.
     pub nodes: u64,
 }
 
@@ -34,13 +34,13 @@ pub struct NodeSet {
 }
 
 impl NodeSet {
-    /// The largest set: some 150 bytes a node in nodes, landings and search, so 3 GB.
+    /// The largest set: with some 150 bytes per node for nodes, landings and search it takes 3 GB.
     pub const MAX_NODES: u64 = 20_000_000;
 
     /// All vertices, equidistant points inside each segment, start and goal (P section IV-B).
     ///
     /// # Errors
-    /// [`TooManyNodes`] above [`NodeSet::MAX_NODES`].
+    /// [`TooManyNodes`] for more than [`NodeSet::MAX_NODES`].
     pub fn new(chain: &ConstrainedChain, start: Station, goal: Station, spacing: PointSpacing) -> Result<Self, TooManyNodes> {
         let mut nodes = Self::of_chain(chain, spacing)?;
         nodes.insert(start);
@@ -49,11 +49,11 @@ impl NodeSet {
         Ok(nodes)
     }
 
-    /// All vertices and equidistant points inside each segment: what every journey over a chain has in common. It starts at the first
-    /// vertex and its goal is the last.
+    /// All vertices and equidistant points inside each segment: the nodes that all searches over a chain share. Its start is
+    /// the first vertex and its goal the last.
     ///
     /// # Errors
-    /// [`TooManyNodes`] above [`NodeSet::MAX_NODES`], a start and a goal of their own counted.
+    /// [`TooManyNodes`] for more than [`NodeSet::MAX_NODES`], including a separate start and goal.
     pub fn of_chain(chain: &ConstrainedChain, spacing: PointSpacing) -> Result<Self, TooManyNodes> {
         let geometry = chain.geometry();
         let inside = |pair: &[ChainPoint]| match spacing {
@@ -77,7 +77,7 @@ impl NodeSet {
                 #[expect(clippy::cast_precision_loss, reason = "fewer points than 2^53")]
                 let fraction = j as f64 / (k + 1) as f64;
                 let x_m = pair[0].x_m + (pair[1].x_m - pair[0].x_m) * fraction;
-                // Segments too short for their points fold them together.
+                // On very short segments several points may round to the same x.
                 if stations.last().is_some_and(|last| last.point.x_m < x_m) && x_m < pair[1].x_m {
                     stations.push(geometry.station_inside(SegmentId(i), x_m));
                 }
@@ -88,7 +88,7 @@ impl NodeSet {
         Ok(Self { stations, start: NodeId(0), goal, most_per_segment: u32::try_from(most).unwrap_or(u32::MAX) })
     }
 
-    /// Makes a station a node, unless there is one at its x: the same x is the same place.
+    /// Adds a station as a node unless there is one at its x: equal x means the same position.
     fn insert(&mut self, station: Station) {
         if self.find(&station).is_none() {
             let at = self.at(&station);
@@ -101,7 +101,7 @@ impl NodeSet {
         NodeId(self.stations.partition_point(|s| s.point.x_m < station.point.x_m))
     }
 
-    /// The node at a station's x; `None` where there is none.
+    /// The node at a station's x; `None` if there is none.
     pub fn find(&self, station: &Station) -> Option<NodeId> {
         let at = self.at(station);
         self.stations.get(at.index()).is_some_and(|s| s.point.x_m == station.point.x_m).then_some(at)
@@ -115,7 +115,7 @@ impl NodeSet {
     /// The station of one node.
     ///
     /// # Panics
-    /// Where there is no such node.
+    /// Panics if there is no such node.
     #[inline]
     pub fn station(&self, node: NodeId) -> &Station {
         &self.stations[node.index()]
@@ -136,13 +136,13 @@ impl NodeSet {
         self.most_per_segment
     }
 
-    /// The nodes whose x lies within `distance_m` of a station's.
+    /// The nodes whose x lies within `distance_m` of a station.
     pub fn within(&self, station: &Station, distance_m: f64) -> Range<usize> {
         within(&self.stations, station, distance_m)
     }
 }
 
-/// The stations, of some that rise in x, whose x lies within `distance_m` of another's.
+/// The sub-range of `stations` (sorted by x) whose x lies within `distance_m` of `station`.
 fn within(stations: &[Station], station: &Station, distance_m: f64) -> Range<usize> {
     let (low, high) = (station.point.x_m - distance_m, station.point.x_m + distance_m);
     let first = stations.partition_point(|s| s.point.x_m < low);
@@ -150,8 +150,8 @@ fn within(stations: &[Station], station: &Station, distance_m: f64) -> Range<usi
     first..end.max(first)
 }
 
-/// The stations, of some that rise in x, within a distance of another or on a segment that it lies on: with one hop's reach for the
-/// distance, all that hops or hops along a segment join to it.
+/// The sub-range of `stations` (sorted by x) within `distance_m` of `station` or on one of its segments. With the reach of
+/// one hop as distance, it contains all stations that a hop, or hops along a segment, can join to it.
 pub(super) fn around(stations: &[Station], station: &Station, distance_m: f64) -> Range<usize> {
     let mut range = within(stations, station, distance_m);
     while range.start > 0 && stations[range.start - 1].shared_segment(station).is_some() {
@@ -163,7 +163,7 @@ pub(super) fn around(stations: &[Station], station: &Station, distance_m: f64) -
     range
 }
 
-/// Points inside a stretch so that neighbours are no farther apart than the spacing.
+/// The number of points inside a stretch that keeps neighbours at most the spacing apart.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is refused above MAX_NODES")]
 fn points_needed(length_m: f64, spacing_m: f64) -> u64 {
     // Written so that a spacing that is not a number, like one of 0 or less, asks for more points than there may be.

@@ -1,4 +1,4 @@
-//! Questions and their answers, in rounds of denser nodes.
+//! Questions (pairs of start and goal) and their answers, in rounds of denser nodes.
 
 use std::{collections::HashMap, sync::Arc};
 
@@ -16,10 +16,10 @@ use crate::{
     world::{Contact, Direction},
 };
 
-/// The least node set whose batches may be worth sharing among threads.
+/// The smallest node set whose batches may be worth sharing among threads.
 const SHARED_FROM_NODES: usize = 4096;
 
-/// What one round of searches goes over.
+/// The settings of one round of searches.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Round<'a> {
     pub(super) test: &'a HopTest,
@@ -28,7 +28,7 @@ pub(super) struct Round<'a> {
     pub(super) nodes: &'a NodeSet,
     pub(super) spacing: PointSpacing,
     pub(super) options: &'a SearchOptions,
-    /// Whether no denser nodes are to be tried.
+    /// Whether no denser nodes will be tried after this round.
     pub(super) is_last: bool,
 }
 
@@ -39,7 +39,7 @@ impl<'a> Round<'a> {
         HopGraph::new(self.test, nodes, effort, takeoff, split)
     }
 
-    /// An answer over the shared nodes and those that start and goal add to them.
+    /// An answer with counts that include the nodes added for start and goal.
     fn answer(&self, (start, goal): &(Station, Station), outcome: Outcome, tally: Tally) -> Answer {
         let adds = |station: &Station| usize::from(self.nodes.find(station).is_none());
         let goal_adds = if goal.point.x_m == start.point.x_m { 0 } else { adds(goal) };
@@ -58,7 +58,7 @@ impl<'a> Round<'a> {
 #[derive(Clone, Debug)]
 struct Question {
     ends: (Station, Station),
-    /// What was looked at for it so far.
+    /// The work done for it so far.
     tally: Tally,
     answer: Option<Answer>,
 }
@@ -67,17 +67,17 @@ struct Question {
 #[derive(Clone, Debug)]
 pub(super) struct Questions {
     questions: Vec<Question>,
-    /// The questions of each start.
+    /// The indices of the questions of each start.
     by_start: Vec<Vec<usize>>,
 }
 
 impl Questions {
-    /// Nothing answered yet.
+    /// Questions without answers.
     pub(super) fn new(pairs: &[(Station, Station)]) -> Self {
         let mut places = HashMap::new();
         let mut by_start: Vec<Vec<usize>> = Vec::new();
         for (i, (start, _)) in pairs.iter().enumerate() {
-            // The same double is the same place, and 0 is -0.
+            // Equal doubles are the same position, and -0 equals 0.
             let place = *places.entry((start.point.x_m + 0.0).to_bits()).or_insert(by_start.len());
             match by_start.get_mut(place) {
                 Some(questions) => questions.push(i),
@@ -88,7 +88,7 @@ impl Questions {
         Self { questions, by_start }
     }
 
-    /// Whether all are answered.
+    /// Whether all questions are answered.
     pub(super) fn are_answered(&self) -> bool {
         self.questions.iter().all(|question| question.answer.is_some())
     }
@@ -98,7 +98,7 @@ impl Questions {
         self.questions.into_iter().filter_map(|question| question.answer).collect()
     }
 
-    /// Answers those of which an end refuses whatever the hop.
+    /// Answers the questions with an end that refuses every hop.
     pub(super) fn refuse_ends(&mut self, round: &Round<'_>) {
         for question in &mut self.questions {
             let refusing = refusing_endpoints(round.test, &question.ends);
@@ -111,7 +111,7 @@ impl Questions {
     /// Searches once from each start that has open questions.
     ///
     /// # Errors
-    /// [`TooManyNodes`], where the ends of a question without a path are what is too much.
+    /// [`TooManyNodes`] if adding the ends of a question without a path exceeds the limit.
     pub(super) fn ask(&mut self, round: &Round<'_>) -> Result<(), TooManyNodes> {
         let graph = round.graph(round.nodes);
         let table = Arc::new(LandingTable::new(round.test, round.nodes.stations()));
@@ -123,7 +123,7 @@ impl Questions {
             let goals: Vec<Station> = open.iter().map(|&i| self.questions[i].ends.1).collect();
             let mut goals = Goals::new(&goals);
             if round.nodes.stations().len() >= SHARED_FROM_NODES {
-                // From inside the pool, whose threads hear of each other sooner than of one outside.
+                // Run inside the pool: its threads notice work from one another sooner than from a thread outside.
                 rayon::scope(|_| batched.run(&start, &mut goals));
             } else {
                 batched.run(&start, &mut goals);
@@ -143,7 +143,7 @@ impl Questions {
     }
 }
 
-/// Which of start and goal refuse whatever the hop. A journey of no hop asks nothing of either.
+/// The refusals of start and goal for every hop. A journey without hops needs neither.
 fn refusing_endpoints(test: &HopTest, (start, goal): &(Station, Station)) -> Vec<EndpointRefusal> {
     let Some(towards) = Direction::between(start.point.x_m, goal.point.x_m) else { return Vec::new() };
     [(start, Contact::Takeoff), (goal, Contact::Landing)]
@@ -152,7 +152,7 @@ fn refusing_endpoints(test: &HopTest, (start, goal): &(Station, Station)) -> Vec
         .collect()
 }
 
-/// The path that a goal's label ends.
+/// The path that ends with a goal's label.
 fn path(graph: &HopGraph<'_>, batched: &BatchedSearch<'_>, (start, goal): &(Station, Station), goal_label: &Label) -> Outcome {
     let mut stations = batched.stations_before(start, goal_label);
     if goal_label.cost > Cost::default() {
@@ -168,7 +168,7 @@ fn path(graph: &HopGraph<'_>, batched: &BatchedSearch<'_>, (start, goal): &(Stat
     Outcome::Path { legs, cost: goal_label.cost }
 }
 
-/// What stops a search without success, over the shared nodes and the two ends.
+/// Why a search finds no path, over the shared nodes and the two ends.
 fn frontier(round: &Round<'_>, batched: &BatchedSearch<'_>, (start, goal): (Station, Station)) -> Result<Frontier, TooManyNodes> {
     let nodes = NodeSet::new(round.test.chain(), start, goal, round.spacing)?;
     let mut shared = round.nodes.stations().iter().enumerate().peekable();

@@ -1,4 +1,4 @@
-//! How far one gets from a start in any direction along the chain.
+//! The positions that a start reaches in either direction along the chain.
 
 use std::sync::Arc;
 
@@ -16,13 +16,13 @@ use crate::{
     world::Limit,
 };
 
-/// The nodes of a chain, from left to right, with the fewest hops that a start needs to each.
+/// The nodes of a chain, from left to right, with the fewest hops from a start to each.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reachable {
-    /// Each node and its hops; `None` where no hops over these nodes get there.
+    /// Each node and its hops; `None` if it is unreachable over these nodes.
     pub nodes: Vec<(Station, Option<u64>)>,
-    /// Of the node that the start reaches with the greatest x: which limit refuses the hop from it to the next node on. `None` where it
-    /// is the last node.
+    /// The limit that refuses the hop from the reached node with the greatest x to the next node. `None` if it is the last
+    /// node.
     pub refusing_ahead: Option<Limit>,
 }
 
@@ -32,7 +32,7 @@ pub struct Reachable {
 /// [`TooManyNodes`].
 ///
 /// # Complexity
-/// As [`search`](super::search()), for the nodes that are reached.
+/// That of [`search`](super::search()), for the nodes that are reached.
 pub fn reachable(test: &HopTest, start: Station, spacing: PointSpacing) -> Result<Reachable, TooManyNodes> {
     let set = NodeSet::new(test.chain(), start, start, spacing)?;
     let graph = HopGraph::new(test, &set, Effort::default(), TakeoffChoice::default(), Split::default());

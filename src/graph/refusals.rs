@@ -4,8 +4,8 @@ use std::ops::AddAssign;
 
 use crate::world::Limit;
 
-/// How many pairs each limit refused. A pair counts once, under the first limit that left nothing, in the order of testing: ground,
-/// speeds, cones, machine, terrain.
+/// The number of pairs that each limit refused. A pair counts once, under the first limit that leaves no arc, in the order of
+/// testing: ground, speeds, cones, machine, terrain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct RefusalCounts {
     counts: [u64; Limit::ALL.len()],
@@ -18,19 +18,19 @@ impl RefusalCounts {
         self.counts[limit.index()] += 1;
     }
 
-    /// How many pairs a limit refused.
+    /// The number of pairs that a limit refused.
     pub const fn of(&self, limit: Limit) -> u64 {
         self.counts[limit.index()]
     }
 
-    /// All limits that refused anything, with their counts, most first.
+    /// All limits with refusals and their counts, in descending order.
     pub fn ranked(&self) -> Vec<(Limit, u64)> {
         let mut ranked: Vec<_> = Limit::ALL.into_iter().map(|limit| (limit, self.of(limit))).filter(|(_, n)| *n > 0).collect();
         ranked.sort_by_key(|(limit, n)| (std::cmp::Reverse(*n), *limit));
         ranked
     }
 
-    /// All refusals together.
+    /// The sum of all counts.
     pub fn total(&self) -> u64 {
         self.counts.iter().sum()
     }

@@ -11,20 +11,20 @@ use crate::{
     world::Direction,
 };
 
-/// Whether, and how, reliability counts in the choice of a path.
+/// How reliability is weighed in the choice of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum ReliabilityUse {
-    /// It does not count.
+    /// Reliability is not considered.
     #[default]
     Ignored,
     /// The most reliable of the paths with the fewest hops.
     FewestHops,
-    /// Hops are traded for reliability: the most reliable path with some hops more than the fewest.
+    /// The most reliable path with a limited number of hops more than the fewest.
     Traded,
 }
 
 impl ReliabilityUse {
-    /// All of them.
+    /// All variants.
     pub const ALL: [Self; 3] = [Self::Ignored, Self::FewestHops, Self::Traded];
 
     /// The name in scenarios.
@@ -40,31 +40,32 @@ impl ReliabilityUse {
 /// How reliability is estimated and weighed in the choice of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReliabilityOptions {
-    /// What the probability of a hop to fail is estimated from.
+    /// The source of a hop's estimated probability to fail.
     pub model: RiskModel,
-    /// How many hops more than the fewest a more reliable path may take; 0: the most reliable path with the fewest hops.
+    /// How many hops more than the fewest a more reliable path may take; 0: the most reliable of the paths with the fewest
+    /// hops.
     pub extra_hops_max: u32,
-    /// How far from the goal the last hop may come down, m.
+    /// Allowed distance of the last landing from the goal, m.
     pub goal_tolerance_m: Option<f64>,
 }
 
-/// The most reliable path of its hop count, more reliable than every path with fewer hops.
+/// The most reliable path with its number of hops, more reliable than every path with fewer hops.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ReliablePath {
-    /// Its edges from start to goal.
+    /// The edges from start to goal.
     pub legs: Vec<Leg>,
-    /// Its hops, and its effort.
+    /// The number of hops, and the effort.
     pub cost: Cost,
-    /// The estimated probability that all its hops come off: the product over them.
+    /// The estimated probability that all hops succeed: the product over them.
     pub success: f64,
 }
 
-/// For the fewest hops, and for each extra hop allowed, the most reliable path, kept only if it beats all shorter ones (the Pareto front
-/// of hops against success probability). Empty where there is no path over the nodes.
+/// For the fewest hops, and for each extra hop allowed, the most reliable path, kept only if it beats all shorter ones (the
+/// Pareto front of hops against success probability). Empty if there is no path over the nodes.
 ///
-/// A hop weighs `-ln(1 - p)`, so weights add up as probabilities multiply. Shortest paths by hops and weight together, layer by layer
-/// over the number of hops (Bellman 1958, restricted to nodes from which the goal is still within the hops allowed). Ties go to the
-/// path whose nodes come first.
+/// A hop has the weight `-ln(1 - p)`, so the sum of weights is `-ln` of the success probability of the path. Paths of least
+/// weight for each number of hops are found layer by layer (Bellman 1958, restricted to nodes from which the goal is still
+/// within the hop budget). Ties go to the path whose nodes come first.
 ///
 /// # Complexity
 /// With E edges within reach of the budget: E hop tests and E risk estimates, `E (1 + extra)` additions; 12 bytes for each edge.
@@ -87,7 +88,7 @@ pub fn most_reliable_paths(
     paths
 }
 
-/// Finds a path as [`search`] does, then replaces it by the most reliable path over the same nodes that the options allow.
+/// Finds a path as [`search`] does, then replaces it by the most reliable path over the same nodes within the hop budget.
 ///
 /// # Errors
 /// [`TooManyNodes`].
@@ -121,7 +122,7 @@ pub(super) struct Step {
     pub(super) hops: u64,
 }
 
-/// All edges that a path within the budget may take.
+/// All edges on paths within the hop budget.
 struct Lattice {
     steps: Vec<Vec<Step>>,
     /// The least number of hops from each node to the goal.
@@ -137,11 +138,11 @@ struct Label {
     from: Option<(u64, usize)>,
 }
 
-/// Labels by number of hops, then by node: sparse, since few nodes are of use after so many hops.
+/// Labels by number of hops, then by node: sparse, since for a given number of hops only few nodes have a label.
 type Labels = BTreeMap<u64, BTreeMap<usize, Label>>;
 
 impl Lattice {
-    /// The edges out of every node within the budget, breadth first by hops; `None` where the goal is not reached.
+    /// The edges out of every node within the budget, breadth first by hops; `None` if the goal is not reached.
     fn within(graph: &HopGraph<'_>, extra: u64) -> Option<Self> {
         let nodes = graph.nodes();
         let count = nodes.stations().len();
@@ -177,7 +178,7 @@ impl Lattice {
         (from_start[goal] != u64::MAX).then(|| Self { to_goal: hops_to(goal, &steps), steps, budget })
     }
 
-    /// Every label from which the goal is still within the budget.
+    /// All labels from which the goal is still within the budget.
     fn labelled(&self, graph: &HopGraph<'_>, options: &SearchOptions, reliability: &ReliabilityOptions) -> Labels {
         let nodes = graph.nodes();
         let start = nodes.start().index();
@@ -280,13 +281,13 @@ pub(super) fn edge_weight(
         Ok(Edge::Along(along)) => {
             along_weight(test, (takeoff, landing), &along, (options.takeoff, options.split), reliability, tolerance_m)
         }
-        // It was an edge when the lattice was built.
+        // The pair was an edge when the lattice was built.
         Err(_) => f64::INFINITY,
     }
 }
 
-/// The weight of many hops along one segment: those next to its ends one by one, since other ground lies within their scatter; those
-/// between weigh as the last of them.
+/// The weight of many hops along one segment. The hops near its ends are evaluated one by one, since their scatter includes
+/// other ground; the hops between have the weight of the last of these.
 #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
 fn along_weight(
     test: &HopTest,
@@ -321,7 +322,7 @@ fn along_weight(
     first.chain(last).map(weight).sum::<f64>() + weight(BESIDE_AN_END) * between as f64
 }
 
-/// The path to the goal that a label ends.
+/// The path to the goal that ends with a label.
 fn path_to_goal(graph: &HopGraph<'_>, labels: &Labels, hops: u64, weight: f64) -> Option<ReliablePath> {
     let nodes = graph.nodes();
     let mut at = (hops, nodes.goal().index());

@@ -8,16 +8,18 @@ use super::{
 };
 use crate::quantity::NodeId;
 
-/// How many successors are kept for each node. A robot near the node takes the first that is feasible from its real position; if none of
-/// these is feasible, the remaining ones are unlikely to be more reliable than any feasible hop.
+/// The number of successors kept for each node. A robot near the node takes the first that is feasible from its actual
+/// position; if none of these is feasible, the remaining ones are unlikely to be more reliable than any feasible hop.
 const KEPT: usize = 32;
 
-/// For every node, its successors in order of the reliability of the rest of the path within the hop budget, the most reliable first.
+/// For every node, its successors in order of the reliability of the rest of the path within the hop budget, the most reliable
+/// first.
 #[derive(Clone, Debug)]
 pub(super) struct ReliabilityPolicy {
-    /// Of every node, at most [`KEPT`].
+    /// For every node, at most [`KEPT`] successors.
     successors: Vec<Vec<NodeId>>,
-    /// Of every node the weight of the most reliable path to the goal, `-ln` of its estimated success; infinite where there is none.
+    /// For every node, the weight of the most reliable path to the goal, `-ln` of its estimated success probability; infinite
+    /// if there is none.
     #[cfg(test)]
     weights: Vec<f64>,
 }
@@ -31,13 +33,14 @@ struct Successor {
 }
 
 impl ReliabilityPolicy {
-    /// From the least costs of all nodes: with `W_k(u)` the least weight from `u` with at most `k` hops,
+    /// Computes the policy from the least costs of all nodes. Let `W_k(u)` be the least weight from `u` with at most `k`
+    /// hops:
     ///
     /// ```text
     ///     W_k(u) = min over edges (u, v) of n hops of  w(u, v) + W_(k - n)(v),   W_k(goal) = 0
     /// ```
     ///
-    /// from `k = 0` on (Bellman 1958), for the `k` from the fewest hops of a node to as many more as the options allow.
+    /// for ascending `k` (Bellman 1958), from a node's fewest hops to the number that the options allow.
     ///
     /// # Complexity
     /// With E edges on some path within the hop budget: E hop tests and risk estimates, `E (1 + extra)` additions.
@@ -77,7 +80,8 @@ impl ReliabilityPolicy {
                 .filter(|&(weight, ..)| weight < f64::INFINITY)
                 .map(|(weight, edge, rest)| (weight, edge.hops + table.hops_of_use(edge.target, rest), edge.target))
                 .collect();
-            // Of equally reliable paths the one with the fewest hops, so that hops without risk lead to the goal as well.
+            // Of equally reliable paths the one with the fewest hops comes first, so that hops without risk lead to the goal
+            // as well.
             onward.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
             onward.into_iter().take(KEPT).map(|(.., target)| NodeId(target)).collect()
         };
@@ -88,24 +92,24 @@ impl ReliabilityPolicy {
         }
     }
 
-    /// The successors of a node, the most reliable first; empty at the goal and where no path leads to it.
+    /// The successors of a node, the most reliable first; empty at the goal and if the goal cannot be reached from the node.
     pub(super) fn successors(&self, node: NodeId) -> &[NodeId] {
         &self.successors[node.index()]
     }
 }
 
-/// The least weights by node and hops allowed.
+/// The least weights by node and number of hops allowed.
 struct Table<'a> {
     costs: &'a [Option<Cost>],
     extra: u64,
-    /// Hops that no node needs more than.
+    /// The largest number of hops that any node needs.
     most_hops: u64,
-    /// Of every node, with its fewest hops allowed, one more, and so on.
+    /// For every node, the weight with its fewest hops, with one more, and so on.
     weights: Vec<f64>,
 }
 
 impl<'a> Table<'a> {
-    /// Nothing but the goal reaches the goal.
+    /// The initial table: only the goal itself reaches the goal.
     fn new(costs: &'a [Option<Cost>], extra: u64) -> Self {
         let most_hops = costs.iter().flatten().map(|cost| cost.hops()).max().unwrap_or(0) + extra;
         let mut weights = vec![f64::INFINITY; costs.len() * weights_each(extra)];
@@ -117,32 +121,33 @@ impl<'a> Table<'a> {
         Self { costs, extra, most_hops, weights }
     }
 
-    /// Where the weight of a node with so many hops allowed stands; `None` where no path is that short, or more hops are allowed than needed.
+    /// The index of the weight of a node for a number of hops allowed; `None` if no path is that short, or if more hops are
+    /// allowed than needed.
     fn place(&self, node: usize, allowed: u64) -> Option<usize> {
         let more = allowed.checked_sub(self.costs[node]?.hops()).filter(|&more| more <= self.extra)?;
         #[expect(clippy::cast_possible_truncation, reason = "a few hops more")]
         Some(node * weights_each(self.extra) + more as usize)
     }
 
-    /// The least weight of a node with so many hops allowed.
+    /// The least weight of a node for a number of hops allowed.
     fn at(&self, node: usize, allowed: u64) -> f64 {
         self.place(node, allowed).map_or(f64::INFINITY, |place| self.weights[place])
     }
 
-    /// The fewest hops of the most reliable path from a node with so many allowed.
+    /// The fewest hops of the most reliable path from a node for a number of hops allowed.
     fn hops_of_use(&self, node: usize, allowed: u64) -> u64 {
         let weight = self.at(node, allowed);
         let fewer = (0..=allowed).rev().take_while(|&hops| self.place(node, hops).is_some() && self.at(node, hops) == weight);
         fewer.last().unwrap_or(allowed)
     }
 
-    /// The least weight of a journey that goes on by an edge, with so many hops allowed in all.
+    /// The least weight of a path that continues with an edge, for a total number of hops allowed.
     fn onward(&self, edge: &Successor, allowed: u64) -> f64 {
         allowed.checked_sub(edge.hops).map_or(f64::INFINITY, |rest| edge.weight + self.at(edge.target, rest))
     }
 }
 
-/// Weights kept for each node.
+/// Number of weights kept for each node.
 #[expect(clippy::cast_possible_truncation, reason = "a few hops more")]
 const fn weights_each(extra: u64) -> usize {
     extra as usize + 1
@@ -176,7 +181,7 @@ mod tests {
         [RiskModel::Deviations(deviations), RiskModel::Slack]
     }
 
-    /// Against the most reliable path from each start, found forwards.
+    /// Compares with the most reliable path from each start, found by forward search.
     #[test]
     fn the_policy_weighs_every_node_as_the_most_reliable_path_from_it() {
         let chain = rough_chain();
@@ -207,7 +212,7 @@ mod tests {
             }
         }
         assert_eq!(compared, 32);
-        assert!(bought > 4, "extra hops raised the reliability {bought} times");
+        assert!(bought > 4, "extra hops raised the reliability only {bought} times");
     }
 
     #[test]
@@ -232,11 +237,11 @@ mod tests {
                     let path = std::iter::successors(Some(start), |node| to_go.reliable_successors(*node).first().copied());
                     let last = path.take(count + 1).last();
                     if to_go.of_node(start).is_some() {
-                        assert_eq!(last, Some(goal), "from {start:?} in circles");
+                        assert_eq!(last, Some(goal), "the successors from {start:?} form a cycle");
                         arrived += 1;
                     }
                 }
-                assert!(arrived > 30, "{arrived} nodes lead to the goal");
+                assert!(arrived > 30, "only {arrived} nodes lead to the goal");
             }
         }
     }

@@ -11,66 +11,66 @@ use crate::{
     hop::{HopTest, Split},
 };
 
-/// The points per segment that "auto" tries, the first that finds a path answering.
+/// The numbers of points per segment that "auto" tries; the first with a path gives the answer.
 ///
-/// From 1 on all but 2 halve the gaps of the one before. Sets for k and k + 1 are not nested, and a larger k may cost a hop: all that
-/// is claimed is that a path appears.
+/// Apart from the 2, each halves the gaps of the one before. The node sets for k and k + 1 are not nested, and a larger k
+/// may cost a hop: the only guarantee is that a path was found.
 pub const AUTO_POINTS_PER_SEGMENT: [u32; 7] = [0, 1, 2, 3, 7, 15, 31];
 
-/// How to search.
+/// Options of the search.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct SearchOptions {
-    /// How densely to fill segments with points; `None`: automatically, by [`AUTO_POINTS_PER_SEGMENT`].
+    /// How densely to fill segments with points; `None`: the first of [`AUTO_POINTS_PER_SEGMENT`] with a path.
     pub spacing: Option<PointSpacing>,
     /// The second criterion after hops.
     pub effort: Effort,
-    /// Which feasible take-off angle to fly.
+    /// Which feasible take-off angle to use.
     pub takeoff: TakeoffChoice,
-    /// How to divide many hops along one segment.
+    /// How to divide several hops along one segment.
     pub split: Split,
 }
 
-/// One edge of the path found.
+/// One edge of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
-    /// Where it begins.
+    /// The take-off station of its first hop.
     pub takeoff: Station,
-    /// Where it ends.
+    /// The landing station of its last hop.
     pub landing: Station,
-    /// One hop or several.
+    /// One hop or several along a segment.
     pub edge: Edge,
 }
 
-/// What the search came to.
+/// The result of the search.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
     /// A path.
     Path {
-        /// Its edges from start to goal; none where start and goal are the same place.
+        /// The edges from start to goal; empty if start and goal are the same position.
         legs: Vec<Leg>,
         /// Hops and effort.
         cost: Cost,
     },
-    /// Start, goal or both refuse whatever the hop.
+    /// Start, goal or both refuse every hop.
     EndpointsRefuse(Vec<EndpointRefusal>),
-    /// No path over these nodes; another choice of points may have one.
+    /// There is no path over these nodes; another choice of points may have one.
     NoPath(Box<Frontier>),
 }
 
-/// The outcome and what it took.
+/// The result of the search and its work.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Answer {
-    /// What came of it.
+    /// The result.
     pub outcome: Outcome,
-    /// The spacing that answered.
+    /// The spacing that gave the result.
     pub spacing: PointSpacing,
     /// The greatest number of points inside one segment.
     pub points_per_segment: u32,
-    /// How many nodes there were.
+    /// Number of nodes.
     pub nodes: usize,
-    /// How many pairs were tested, over all spacings tried. Questions with one start share the search and its counts.
+    /// Number of pairs tested, over all spacings tried. Questions with the same start share one search and its counts.
     pub pairs_tested: u64,
-    /// How the refused pairs fell.
+    /// The refused pairs by limit.
     pub refusals: RefusalCounts,
 }
 
@@ -84,19 +84,19 @@ impl Answer {
     }
 }
 
-/// Finds the path of fewest hops, and of least effort among those, over the nodes asked for (P Algorithm 3).
+/// Finds the path of fewest hops, and of least effort among those, over the chosen nodes (P Algorithm 3).
 ///
-/// Of several such paths it gives the one whose nodes, compared from the goal backwards, come first along the chain. The answer does
-/// not depend on the number of threads (those of the rayon pool it is called in).
+/// Of several such paths it returns the one whose nodes, compared from the goal backwards, come first along the chain. The
+/// result does not depend on the number of threads (those of the rayon pool in which it is called).
 ///
-/// `progress` is told each spacing before it is tried.
+/// `progress` is called with each spacing before it is tried.
 ///
 /// # Errors
 /// [`TooManyNodes`].
 ///
 /// # Complexity
-/// With V nodes, W of them in reach of each ahead of the nodes of as many hops, and S vertices flown past: about O(V W), as
-/// [`Sweep`](crate::hop::Sweep) evaluates one take-off, in time; some 150 bytes a node in memory, no stored edges.
+/// With V nodes, W of them in reach of each ahead of the nodes with equal hops, and S vertices flown over: about O(V W) time,
+/// as [`Sweep`](crate::hop::Sweep) evaluates one take-off; some 150 bytes of memory per node, and no stored edges.
 pub fn search(
     test: &HopTest,
     start: Station,
@@ -105,14 +105,14 @@ pub fn search(
     progress: &mut dyn FnMut(PointSpacing),
 ) -> Result<Answer, TooManyNodes> {
     let mut answers = search_pairs(test, &[(start, goal)], options, progress)?;
-    // One question, one answer.
+    // One question has one answer.
     answers.pop().ok_or(TooManyNodes { nodes: 0 })
 }
 
-/// Answers many questions, each a start and a goal, with one search for each start.
+/// Answers several questions, each a start and a goal, with one search per start.
 ///
-/// Every answer is that of [`search`] for its pair, but for the counts of pairs tested and refused, which are those of the shared
-/// search: goals are sinks, so they do not block each other.
+/// Every answer equals that of [`search`] for its pair, except for the counts of pairs tested and refused, which are those of
+/// the shared search: goals are sinks, so they do not block each other.
 ///
 /// # Errors
 /// [`TooManyNodes`].

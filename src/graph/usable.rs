@@ -1,4 +1,4 @@
-//! Whether start or goal itself refuses, before any hop is tried.
+//! Whether the start or the goal itself refuses every hop.
 
 use crate::{
     chain::{ConstrainedChain, GroundRefusal, Station},
@@ -6,18 +6,18 @@ use crate::{
     world::{Contact, Direction},
 };
 
-/// A start from which nothing takes off, or a goal on which nothing lands.
+/// A start that allows no take-off, or a goal that allows no landing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct EndpointRefusal {
     /// Start (take-off) or goal (landing).
     pub contact: Contact,
-    /// Where.
+    /// The station.
     pub station: Station,
-    /// Why, for the direction named.
+    /// The reason, for the direction `direction`.
     pub refusal: GroundRefusal,
-    /// The direction of travel that the refusal speaks of; the other one is refused as well.
+    /// The direction of travel of that reason; the other direction is refused as well.
     pub direction: Direction,
-    /// The nearest point of the chain that would do, by x; `None` where there is none.
+    /// The nearest usable point of the chain, by x; `None` if there is none.
     pub nearest: Option<Station>,
 }
 
@@ -28,9 +28,9 @@ pub fn is_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) 
     })
 }
 
-/// Why a start or goal refuses in both directions; `None` where it does not.
+/// Why a start or goal refuses every hop in both directions; `None` if it does not.
 ///
-/// `towards` is the direction of the journey, whose reason is told.
+/// `towards` is the direction of the journey; the reason for this direction is returned.
 pub fn endpoint_refusal(
     chain: &ConstrainedChain,
     station: &Station,
@@ -42,17 +42,17 @@ pub fn endpoint_refusal(
     }
     let refusal_in = |direction| chain.check_contact(station, contact, direction).err().map(|refusal| (direction, refusal));
     let away = if towards == Direction::Forward { Direction::Reverse } else { Direction::Forward };
-    // At the chain's end the ground ahead does not exist: the other direction then tells more.
-    let told =
+    // At the chain's end the ground ahead does not exist: the reason for the other direction is then more informative.
+    let reason =
         [towards, away].into_iter().filter_map(refusal_in).min_by_key(|(_, refusal)| matches!(refusal, GroundRefusal::NoGround))?;
-    let (direction, refusal) = told;
+    let (direction, refusal) = reason;
     Some(EndpointRefusal { contact, station: *station, refusal, direction, nearest: nearest_usable(chain, station, contact) })
 }
 
 /// The nearest usable point by x.
 ///
-/// What a segment allows holds all over it, so that is an end of a segment, or, where that vertex obeys another segment, a point a
-/// hundredth of the segment inside.
+/// The constraints of a segment are the same all over it, so the point is an end of a segment, or, if another segment rules
+/// that vertex, a point inside at a hundredth of the segment's length.
 fn nearest_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> Option<Station> {
     let geometry = chain.geometry();
     let away = |other: &Station| (other.point.x_m - station.point.x_m).abs();
@@ -74,7 +74,7 @@ mod tests {
     };
 
     #[test]
-    fn a_start_on_a_wall_is_told_its_slope_and_the_nearest_flat_place() {
+    fn a_start_on_a_wall_reports_its_slope_and_the_nearest_flat_point() {
         let points = [(0.0, 0.0), (10.0, 0.0), (20.0, 20.0), (21.0, 40.0), (30.0, 40.0)];
         let chain = PolygonalChain::bare(points.map(|(x, z)| ChainPoint::new(x, z)).to_vec()).unwrap();
         let surface =

@@ -1,4 +1,4 @@
-//! Why a pair cannot be hopped: a refusal is an answer.
+//! Why no hop joins a pair of stations.
 
 use std::fmt;
 
@@ -8,55 +8,55 @@ use crate::{
     world::{Contact, Limit},
 };
 
-/// By how much a limit refuses every arc by itself.
+/// By how much a single limit refuses every arc.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shortfall {
-    /// The ground at one end refuses whatever the hop.
+    /// The ground at one end refuses the contact for every hop.
     Ground {
-        /// Which end.
+        /// Which end of the hop.
         contact: Contact,
-        /// Why.
+        /// Why the ground refuses it.
         refusal: GroundRefusal,
     },
-    /// Even the arc of least speed is too fast.
+    /// The arc of least speed is too fast.
     Speed {
-        /// The least speed there is, m/s.
+        /// The least speed of any arc, m/s.
         needed_m_s: f64,
-        /// The greatest allowed, m/s.
+        /// The greatest speed allowed, m/s.
         limit_m_s: f64,
     },
-    /// The plane of travel turns on the way.
+    /// The plane of travel turns between take-off and landing.
     Bend {
-        /// Where, m along the chain.
+        /// x of the bend, m along the chain.
         x_m: f64,
     },
     /// The landing itself is too high.
     Height {
         /// Its height above the take-off, m.
         needed_m: f64,
-        /// The greatest allowed, m.
+        /// The greatest height allowed, m.
         limit_m: f64,
     },
 }
 
-/// Why no arc joins a pair.
+/// Why no arc joins a pair of stations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Conflict {
-    /// One limit refuses every arc by itself.
+    /// A single limit refuses every arc.
     Alone(LimitInterval),
-    /// Two limits leave nothing between them: the lower end that one sets lies above the upper end that the other sets.
+    /// Two limits have no arc in common: the lower bound from one lies above the upper bound from the other.
     Pair {
-        /// Sets the lower end.
+        /// The limit with the lower bound.
         lower: LimitInterval,
-        /// Sets the upper end.
+        /// The limit with the upper bound.
         upper: LimitInterval,
-        /// How far apart the two ends are, degrees.
+        /// By how much the lower bound exceeds the upper bound, degrees.
         gap_deg: f64,
     },
 }
 
 impl Conflict {
-    /// The limit that a count of refusals puts this under: the one that refuses alone, or of a pair the one that sets the lower end,
+    /// The limit under which this conflict is counted: the one that refuses alone, or the one of a pair with the lower bound,
     /// unless that is only the line of sight.
     pub const fn counted_under(&self) -> Limit {
         match self {
@@ -93,7 +93,7 @@ impl fmt::Display for Conflict {
                 None => write!(f, "{} refuses every arc", limit.limit),
             },
             Self::Pair { lower, upper, gap_deg } => {
-                write!(f, "{} asks for a take-off at least {gap_deg:.6} deg steeper than {} allows", lower.limit, upper.limit)?;
+                write!(f, "{} needs a take-off at least {gap_deg:.6} deg steeper than {} allows", lower.limit, upper.limit)?;
                 match lower.vertex {
                     Some(vertex) => write!(f, ", over vertex {}", vertex.index() + 1),
                     None => Ok(()),

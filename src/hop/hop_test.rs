@@ -1,4 +1,4 @@
-//! The hop test: may one hop join two stations, and with which take-off slopes?
+//! The hop test: whether a single hop can join two stations, and with which take-off slopes.
 
 use std::sync::{Arc, OnceLock};
 
@@ -15,7 +15,8 @@ use crate::{
 /// It shares its chain, and its tables are made when they are first needed: to make or to clone one costs next to nothing, and it may
 /// be kept and sent to other threads.
 ///
-/// The kernel, [`lofts`](Self::lofts), has no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains what it found.
+/// The kernel, [`lofts`](Self::lofts), uses no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains
+/// the result.
 #[derive(Clone, Debug)]
 pub struct HopTest {
     chain: Arc<ConstrainedChain>,
@@ -26,32 +27,32 @@ pub struct HopTest {
 /// What searches ask of a chain again and again, each made when it is first needed.
 #[derive(Debug, Default)]
 struct Tables {
-    /// Heights and speeds over any stretch.
+    /// Bounds of height and speed over any part of the chain.
     relief: OnceLock<Relief>,
-    /// How far one hop carries on each segment, by direction.
+    /// The reach of one hop along each segment, by direction.
     reaches: OnceLock<Vec<[Option<SegmentReach>; 2]>>,
 }
 
 impl HopTest {
-    /// For a chain, with its hopper and gravity.
+    /// The test for a chain, with its hopper and gravity.
     pub fn new(chain: impl Into<Arc<ConstrainedChain>>) -> Self {
         let chain = chain.into();
         let envelope = FlightEnvelope::new(chain.hopper(), chain.gravity());
         Self { chain, envelope, tables: Arc::default() }
     }
 
-    /// The chain it answers for.
+    /// The chain.
     #[inline]
     pub fn chain(&self) -> &ConstrainedChain {
         &self.chain
     }
 
-    /// The chain it answers for, to share.
+    /// The chain, as a shared pointer.
     pub fn shared_chain(&self) -> Arc<ConstrainedChain> {
         Arc::clone(&self.chain)
     }
 
-    /// The hopper it answers for.
+    /// The hopper.
     pub const fn hopper(&self) -> &Hopper {
         self.envelope.hopper()
     }
@@ -61,12 +62,12 @@ impl HopTest {
         self.envelope.gravity_m_s2()
     }
 
-    /// Heights and speeds over any stretch of the chain.
+    /// Bounds of height and speed over any part of the chain.
     pub(super) fn relief(&self) -> &Relief {
         self.tables.relief.get_or_init(|| Relief::of(&self.chain))
     }
 
-    /// How far one hop carries on each segment, by direction.
+    /// The reach of one hop along each segment, by direction.
     fn reaches(&self) -> &[[Option<SegmentReach>; 2]] {
         self.tables.reaches.get_or_init(|| {
             (0..self.chain.segments().len())
@@ -75,14 +76,15 @@ impl HopTest {
         })
     }
 
-    /// The machine's own take-off slopes.
+    /// The take-off slopes that the mechanism allows.
     pub const fn mechanical(&self) -> SlopeInterval {
         self.envelope.mechanical()
     }
 
-    /// The line of sight between two stations in the direction of travel; `None` where they share the same x.
+    /// The line of sight between two stations in the direction of travel; `None` if both have the same x.
     ///
-    /// For two stations on one segment its slope is the segment's own: the quotient of two nearly equal heights would lose digits.
+    /// For two stations on one segment its slope is the segment's own slope: the difference of two nearly equal heights would
+    /// lose digits.
     #[inline]
     pub fn line_of_sight(&self, takeoff: &Station, landing: &Station) -> Option<LineOfSight> {
         let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
@@ -93,15 +95,16 @@ impl HopTest {
         })
     }
 
-    /// The feasible lofts of one hop between two stations, all limits included, or the limit that left nothing.
+    /// The feasible lofts of one hop between two stations under all limits, or the limit that leaves no arc.
     ///
-    /// Cheap limits go first, the terrain last, and it stops at the first vertex that leaves nothing.
+    /// Cheap limits are tested first and the terrain last; the test stops at the first vertex that leaves no arc.
     ///
     /// Source: P eq. 21; model section 2.
     ///
     /// # Errors
-    /// The first limit, in the order of testing (ground, bends, speeds, cones, machine, terrain), that with those before it leaves no arc.
-    /// [`takeoff_set`](Self::takeoff_set) tells the whole story. [`Limit::Direction`] where both stations share the same x.
+    /// The first limit, in the order of testing (ground, bends, speeds, cones, machine, terrain), that leaves no arc together
+    /// with those before it. [`takeoff_set`](Self::takeoff_set) evaluates every limit. [`Limit::Direction`] if both stations
+    /// have the same x.
     #[inline]
     pub fn lofts(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).ok_or(Limit::Direction)?;
@@ -124,7 +127,7 @@ impl HopTest {
         Ok(SlopeInterval { lower, upper: in_envelope.upper })
     }
 
-    /// The rule that the ground allows a contact, or the limit by which it refuses.
+    /// The rule of a contact, or the limit by which the ground refuses it.
     #[inline]
     pub(super) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&ContactRule, Limit> {
         let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
@@ -134,10 +137,10 @@ impl HopTest {
         })
     }
 
-    /// The lofts that all limits but the terrain allow, with at least one positive loft.
+    /// The lofts that all limits except the terrain allow, with at least one positive loft.
     ///
     /// # Errors
-    /// The limit that left nothing.
+    /// The limit that leaves no arc.
     #[inline]
     pub(crate) fn lofts_in_envelope(
         &self,
@@ -149,19 +152,19 @@ impl HopTest {
         if lofts.is_empty() || lofts.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(lofts) }
     }
 
-    /// The lofts that the machine's greatest height and longest flight allow.
+    /// The lofts that the hopper's greatest apex height and longest flight time allow.
     #[inline]
     pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
         self.envelope.machine(sight)
     }
 
-    /// Whether the machine has a greatest height or a longest flight.
+    /// Whether the hopper has a greatest apex height or a longest flight time.
     #[inline]
     pub(super) const fn has_machine_limits(&self) -> bool {
         self.envelope.hopper().limits().apex_height_max_m.is_some() || self.envelope.hopper().limits().flight_time_max_s.is_some()
     }
 
-    /// Which limit left nothing, limits taken one after the other.
+    /// The limit that leaves no arc when the limits are applied in order.
     #[cold]
     fn refusing(&self, sight: LineOfSight, from: &ContactRule, to: &ContactRule) -> Limit {
         let takeoff = limits::takeoff_speed(sight, from.speed_max_m_s(), self.gravity_m_s2());
@@ -175,7 +178,7 @@ impl HopTest {
         self.refusing_after_speeds(sight, both, from.slopes(), to.slopes())
     }
 
-    /// Which limit left nothing of what both speeds allow, limits taken one after the other.
+    /// The limit that leaves no arc of those that both speeds allow, when the limits are applied in order.
     pub(super) fn refusing_after_speeds(
         &self,
         sight: LineOfSight,
@@ -202,18 +205,18 @@ impl HopTest {
         Limit::FlightTime
     }
 
-    /// The feasible take-off set with every limit by itself, what sets its ends, or which limits conflict.
+    /// The feasible take-off set, each limit by itself, and the limits that set its ends or that conflict.
     ///
-    /// `None` where the two stations share the same x.
+    /// `None` if both stations have the same x.
     pub fn takeoff_set(&self, takeoff: &Station, landing: &Station) -> Option<TakeoffSet> {
         TakeoffSet::of(self, takeoff, landing)
     }
 
-    /// The least number of hops that join two stations of one segment, hop by hop along the ground; `None` where they share no
-    /// segment or its cones leave no arc.
+    /// The least number of hops along the ground that join two stations of one segment; `None` if they share no segment or
+    /// its cones allow no arc.
     ///
-    /// To be asked where a single hop is impossible: also for pairs within one reach, which the pseudo-code of the paper's
-    /// Algorithm 2 loses (its prose does not).
+    /// Meant for pairs that a single hop cannot join, including pairs within one reach. The pseudo-code of Algorithm 2 in the
+    /// CHTA paper misses the latter (its text does not).
     pub fn segment_hops(&self, takeoff: &Station, landing: &Station) -> Option<SegmentHops> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let segment = takeoff.shared_segment(landing)?;
@@ -221,7 +224,7 @@ impl HopTest {
         reach.hops_over((landing.point.x_m - takeoff.point.x_m).abs())
     }
 
-    /// How far one hop carries along a segment; `None` where its ground allows no hop along it.
+    /// The reach of one hop along a segment; `None` if its ground allows no hop along it.
     pub fn segment_reach(&self, segment: SegmentId, direction: Direction) -> Option<SegmentReach> {
         self.reaches().get(segment.index()).and_then(|both| both[direction as usize])
     }

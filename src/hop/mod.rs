@@ -1,7 +1,7 @@
-//! The hop test: what is bound to a chain. May one hop join two stations, with which take-off slopes, and how many hops does a stretch
-//! of one segment need?
+//! The hop test over a chain: whether a single hop can join two stations, with which take-off slopes, and how many hops a
+//! stretch of one segment needs.
 //!
-//! The equations themselves stand in [`crate::ballistics`]; here they are asked for the stations of a
+//! The equations are in [`crate::ballistics`]; this module applies them to the stations of a
 //! [`ConstrainedChain`](crate::chain::ConstrainedChain).
 
 mod conflict;

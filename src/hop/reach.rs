@@ -1,4 +1,5 @@
-//! How far one hop may carry from a place, or to it: the parabolas of safety of take-off and landing together.
+//! Bounds of the distance that one hop can cover from or to a station: the parabolas of safety of take-off and landing
+//! combined.
 
 use std::ops::Range;
 
@@ -8,7 +9,7 @@ use crate::{
     world::{Contact, Direction, tolerant_speed_m_s},
 };
 
-/// The ends of height and speed over a stretch of a chain.
+/// The extremes of height and speed over part of a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Extremes {
     lowest_m: f64,
@@ -30,13 +31,13 @@ impl Extremes {
         }
     }
 
-    /// How far the ground goes down and up from a height, m; more by what the rounding of points inside segments may add.
+    /// How far the ground extends below and above a height, m, plus the possible rounding of points inside segments.
     fn about_m(&self, z_m: f64) -> (f64, f64) {
         let blur_m = 8.0 * f64::EPSILON * self.lowest_m.abs().max(self.highest_m.abs());
         (z_m - self.lowest_m + blur_m, self.highest_m - z_m + blur_m)
     }
 
-    /// Of one vertex and the segment after it.
+    /// The extremes of one vertex and the segment after it.
     fn at(chain: &ConstrainedChain, vertex: usize) -> Self {
         let z_m = chain.geometry().vertices()[vertex].z_m;
         let greatest = |contact| {
@@ -47,15 +48,15 @@ impl Extremes {
     }
 }
 
-/// The extremes of every stretch of a chain, by a tree over blocks of vertices.
+/// The extremes over any part of a chain, from a tree over blocks of vertices.
 #[derive(Clone, Debug)]
 pub(super) struct Relief {
-    /// A binary heap: node i is over nodes 2 i and 2 i + 1, the leaves are the second half.
+    /// A complete binary tree in heap order: node i covers nodes 2 i and 2 i + 1, the leaves are the second half.
     tree: Vec<Extremes>,
 }
 
 impl Relief {
-    /// How many vertices one leaf covers.
+    /// Number of vertices that one leaf covers.
     const BLOCK: usize = 16;
 
     pub(super) fn of(chain: &ConstrainedChain) -> Self {
@@ -72,7 +73,7 @@ impl Relief {
         Self { tree }
     }
 
-    /// Over vertices and the segments after them, rounded outwards to whole blocks.
+    /// The extremes over vertices and the segments after them, extended to whole blocks.
     fn over(&self, vertices: Range<usize>) -> Extremes {
         let leaves = self.tree.len() / 2;
         let (mut low, mut high) = (leaves + vertices.start / Self::BLOCK, leaves + vertices.end.div_ceil(Self::BLOCK).min(leaves));
@@ -93,18 +94,18 @@ impl Relief {
     }
 }
 
-/// Rounding of the bounds, with much to spare and next to no pairs lost.
+/// A margin for the rounding of the bounds: much larger than rounding, and small enough to keep the bounds sharp.
 const SLACK: f64 = 1.0 + 1e-9;
 
-/// The horizontal distance that no hop exceeds with these greatest speeds, drop and climb.
+/// The greatest horizontal distance of any hop with given greatest speeds, drop and climb.
 ///
 /// ```text
 ///     take-off:  g (Z + hypot(X, Z)) <= v_t^2      landing:  g (hypot(X, Z) - Z) <= v_l^2
 ///     X <= (v_t / g) sqrt(v_t^2 + 2 g drop),       X <= (v_l / g) sqrt(v_l^2 + 2 g climb),      X <= v_t v_l / g
 /// ```
 ///
-/// The first two are the parabolas of safety at the lowest and at the highest landing; the third is where the two parabolas meet, at
-/// `Z = (v_t^2 - v_l^2) / (2 g)`, whatever the ground.
+/// The first two are the parabolas of safety at the lowest and at the highest landing. The third is where the two parabolas
+/// intersect, at `Z = (v_t^2 - v_l^2) / (2 g)`, and holds for any ground.
 ///
 /// # Units
 /// Speeds in m/s (their tolerance is added here), heights in m, gravity in m/s^2.
@@ -114,28 +115,29 @@ pub(super) fn farthest_m(takeoff_m_s: f64, landing_m_s: f64, drop_m: f64, climb_
     safe_m(takeoff, drop_m, gravity_m_s2).min(safe_m(landing, climb_m, gravity_m_s2)).min(meeting) * SLACK
 }
 
-/// The parabola of safety's distance, where it has come down by a height.
+/// The range of the parabola of safety at a given height below its origin.
 fn safe_m(speed_m_s: f64, height_m: f64, gravity_m_s2: f64) -> f64 {
     speed_m_s / gravity_m_s2 * (speed_m_s * speed_m_s + 2.0 * gravity_m_s2 * height_m.max(0.0)).sqrt()
 }
 
 impl HopTest {
-    /// The horizontal distance beyond which no hop from this station lands, in either direction, m.
+    /// A horizontal distance beyond which no hop from this station lands, in either direction, m.
     ///
-    /// The greater of [`landing_reach_m`](Self::landing_reach_m) both ways.
+    /// The greater [`landing_reach_m`](Self::landing_reach_m) of both directions.
     pub fn reach_bound_m(&self, takeoff: &Station) -> f64 {
         Direction::BOTH.map(|direction| self.landing_reach_m(takeoff, direction)).into_iter().fold(0.0, f64::max)
     }
 
-    /// The horizontal distance beyond which no hop from this station lands, in one direction, m.
+    /// A horizontal distance beyond which no hop from this station lands, in one direction, m.
     ///
     /// ```text
     ///     X <= min( v_t v_l / g,  (v_t / g) sqrt(v_t^2 + 2 g drop),  (v_l / g) sqrt(v_l^2 + 2 g climb) )
     /// ```
     ///
-    /// from the parabolas of safety of take-off and landing, with the speed allowed here and the greatest landing speed, drop and climb
-    /// within the bound itself: it starts from those of the whole chain and shrinks until it stands. Whatever a wall or a canyon may
-    /// hide, nothing beyond is in reach. Where the ground here refuses take-offs, the chain's greatest speed is taken.
+    /// from the parabolas of safety of take-off and landing, with the speed allowed here and the greatest landing speed, drop
+    /// and climb within the bound itself. The iteration starts with those of the whole chain and shrinks the bound until it
+    /// no longer changes much. The bound holds for any terrain. If the ground here refuses take-offs, the chain's greatest
+    /// speed is used.
     pub fn landing_reach_m(&self, takeoff: &Station, direction: Direction) -> f64 {
         let allowed = self.allowed(takeoff, Contact::Takeoff, direction).map(ContactRule::speed_max_m_s);
         let speed = allowed.unwrap_or(self.chain().speed_bounds_m_s().0);
@@ -146,8 +148,8 @@ impl HopTest {
         })
     }
 
-    /// The horizontal distance beyond which no hop that lands on this station in a direction of travel takes off, m: as
-    /// [`landing_reach_m`](Self::landing_reach_m), the hop flown backwards.
+    /// A horizontal distance beyond which no hop that lands on this station in a direction of travel takes off, m. It is
+    /// [`landing_reach_m`](Self::landing_reach_m) of the reversed hop.
     pub fn takeoff_reach_m(&self, landing: &Station, direction: Direction) -> f64 {
         let allowed = self.allowed(landing, Contact::Landing, direction).map(ContactRule::speed_max_m_s);
         let speed = allowed.unwrap_or(self.chain().speed_bounds_m_s().1);
@@ -159,22 +161,22 @@ impl HopTest {
         })
     }
 
-    /// The horizontal distance that no hop of this chain exceeds, m.
+    /// A horizontal distance that no hop of this chain exceeds, m.
     pub fn greatest_reach_m(&self) -> f64 {
         let ground = self.relief().over(0..self.chain().geometry().vertices().len());
         self.reach_over_relief_m(ground.about_m(ground.lowest_m).1)
     }
 
-    /// The horizontal distance that no hop exceeds over ground whose lowest and highest point differ by so much, m.
+    /// A horizontal distance that no hop exceeds over ground with a given difference between highest and lowest point, m.
     pub(crate) fn reach_over_relief_m(&self, relief_m: f64) -> f64 {
         let (takeoff_m_s, landing_m_s) = self.chain().speed_bounds_m_s();
         farthest_m(takeoff_m_s, landing_m_s, relief_m, relief_m, self.gravity_m_s2())
     }
 
-    /// The distance within which refused hops from a station are counted, m: what the greatest speeds, the greatest drop and the greatest
-    /// climb of the whole chain leave possible.
+    /// The distance within which refused hops from a station are counted, m: the bound from the greatest speeds, drop and
+    /// climb of the whole chain.
     ///
-    /// Not the sharpest bound there is, but one that says the same of a chain however sharp the search's own bounds get.
+    /// Not the sharpest bound: it keeps the counts independent of improvements of the bounds that the search uses.
     pub(crate) fn counted_reach_m(&self, takeoff: &Station) -> f64 {
         let ground = self.relief().over(0..self.chain().geometry().vertices().len());
         let (drop_m, climb_m) = (takeoff.point.z_m - ground.lowest_m, ground.highest_m - takeoff.point.z_m);
@@ -183,9 +185,10 @@ impl HopTest {
         safe_m(takeoff_m_s, drop_m, g).min(safe_m(landing_m_s, climb_m, g)) * (1.0 + 1e-12)
     }
 
-    /// A bound that shrinks with the ground that it has within it: from that of the whole chain until it stands.
+    /// A bound that shrinks with the ground inside it: starts with that of the whole chain and stops when it no longer
+    /// changes much.
     fn shrunk_m(&self, from: &Station, towards: Direction, bound_m: impl Fn(Extremes) -> f64) -> f64 {
-        /// Not worth another look at the ground.
+        /// A bound that shrinks by less than this factor is not worth another pass.
         const WORTH: f64 = 0.9;
         let vertices = self.chain().geometry().vertices().len();
         let mut reach_m = bound_m(self.relief().over(0..vertices));
@@ -198,7 +201,7 @@ impl HopTest {
         }
     }
 
-    /// The vertices whose segments hold all of the chain from a station to a distance in a direction.
+    /// The vertices whose segments contain the part of the chain from a station to a distance in a direction.
     fn vertices_within(&self, from: &Station, towards: Direction, distance_m: f64) -> Range<usize> {
         let vertices = self.chain().geometry().vertices();
         let here = match from.site {
@@ -206,7 +209,7 @@ impl HopTest {
             Site::Inside(segment) => segment.index(),
         };
         let away = |i: usize| (vertices[i].x_m - from.point.x_m).abs();
-        // Steps that double until one is beyond, then halves: the stretch is short next to the chain.
+        // Doubling steps until one is beyond, then bisection: the part is short compared with the chain.
         let mut step = 1;
         match towards {
             Direction::Forward => {

@@ -1,4 +1,4 @@
-//! Many hops along one segment.
+//! Several hops along one segment.
 
 use super::HopTest;
 use crate::{
@@ -8,10 +8,10 @@ use crate::{
     world::{Contact, Direction, Limit, SPEED_TOLERANCE},
 };
 
-/// How to divide a stretch of one segment among its hops.
+/// How to divide a stretch of one segment into hops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Split {
-    /// Hops of full reach, the last one takes the rest (P Algorithm 4): least sum of speeds, least time.
+    /// Hops of full reach, the last one covers the rest (P Algorithm 4): least sum of speeds, least time.
     #[default]
     FullReach,
     /// Hops of equal length: the same energy, lower peak speed.
@@ -31,17 +31,17 @@ impl Split {
     }
 }
 
-/// How far one hop carries along a segment in one direction, and how.
+/// The reach of one hop along a segment in one direction, and the arc that attains it.
 ///
-/// On one segment the slope `b` is the same for every hop, so the cones allow the same lofts to each of them (P eq. 23-25), and a hop
-/// of loft `n` covers at most
+/// On one segment the slope `b` is the same for every hop, so the cones allow each of them the same lofts (P eq. 23-25), and
+/// a hop of loft `n` covers at most
 ///
 /// ```text
 ///     X_t = 2 v_t^2 n / (g (1 + (b + n)^2)),   X_l = 2 v_l^2 n / (g (1 + (b - n)^2))            (P eq. 29, 30, as run)
 /// ```
 ///
-/// both largest at `n = sqrt(1 + b^2)` and falling away on either side (P Remark 2). A greatest flight time or apex height puts a
-/// falling bound beside them.
+/// both largest at `n = sqrt(1 + b^2)` and decreasing on either side (P Remark 2). A greatest flight time or apex height adds
+/// bounds that decrease with the loft.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentReach {
     sight_slope: f64,
@@ -50,13 +50,13 @@ pub struct SegmentReach {
     loft: f64,
     reach_m: f64,
     tolerant_reach_m: f64,
-    /// The length of a hop of full reach: the reach, but a billionth less than the machine's limits allow. They hold without tolerance,
-    /// so a hop on the very limit would lose its one arc to rounding.
+    /// The length of a hop of full reach: the reach, reduced by a relative 1e-9 if limits of the machine end it. These have
+    /// no tolerance, so rounding could refuse the only arc of a hop exactly on the limit.
     stride_m: f64,
     limit: Limit,
 }
 
-/// Hops of one length along a segment.
+/// A number of hops along one segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentHops {
     reach: SegmentReach,
@@ -65,7 +65,7 @@ pub struct SegmentHops {
 }
 
 impl SegmentReach {
-    /// The reach along a segment; `None` where its ground or its cones allow no arc along it.
+    /// The reach along a segment; `None` if its ground or its cones allow no arc along it.
     pub(super) fn on(test: &HopTest, segment: SegmentId, direction: Direction) -> Option<Self> {
         let constraints = test.chain().segments().get(segment.index())?;
         let from = constraints.allowed(Contact::Takeoff, direction)?;
@@ -79,7 +79,7 @@ impl SegmentReach {
         }
         let ends = Ends { b: sight_slope, takeoff_m_s: from.speed_max_m_s(), landing_m_s: to.speed_max_m_s(), test };
         let flattest = lofts.lower.max(f64::MIN_POSITIVE);
-        // Not `clamp`, which panics where the set ends below the least positive number.
+        // Not `clamp`, which panics if the set ends below the least positive number.
         let fastest = sight.secant().min(lofts.upper).max(flattest);
         let loft = ends.best_loft(flattest, fastest);
         let (by_speed, limit) = ends.by_speed_m(loft);
@@ -111,20 +111,20 @@ impl SegmentReach {
         self.sight_slope + self.loft
     }
 
-    /// The slope of the ground, as the traveller sees it.
+    /// The slope of the ground along the direction of travel.
     pub const fn sight_slope(&self) -> f64 {
         self.sight_slope
     }
 
-    /// Which limit ends the reach.
+    /// The limit that ends the reach.
     pub const fn limit(&self) -> Limit {
         self.limit
     }
 
     /// The least number of hops over a horizontal distance, `N = ceil(X / reach)` (P eq. 26).
     ///
-    /// No mixture of angles or lengths along the segment needs fewer: none of its hops goes farther. `None` where the number is too
-    /// large to count (over 2^53).
+    /// No combination of angles or lengths along the segment needs fewer hops, since none goes farther than the reach. `None`
+    /// if the number exceeds 2^53.
     pub fn hops_over(&self, run_m: f64) -> Option<SegmentHops> {
         let hops = (run_m / self.tolerant_reach_m).ceil().max(1.0);
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1 and at most 2^53")]
@@ -133,20 +133,20 @@ impl SegmentReach {
 }
 
 impl SegmentHops {
-    /// How many hops.
+    /// The number of hops.
     pub const fn hops(&self) -> u64 {
         self.hops
     }
 
-    /// The reach they are made of.
+    /// The reach that the hops use.
     pub const fn reach(&self) -> SegmentReach {
         self.reach
     }
 
-    /// The horizontal lengths of the hops, m: all but the last, and the last.
+    /// The horizontal lengths of the hops, m: of each but the last, and of the last.
     ///
-    /// Full reach leaves the last hop the rest. Where the rest would be over the reach by a tolerance (a stretch of exactly so many
-    /// reaches), the hops are equal.
+    /// With full reach the last hop covers the rest. If rounding leaves a rest slightly over the reach (a stretch of exactly
+    /// a multiple of the reach), the hops are equal.
     #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
     pub fn lengths_m(&self, split: Split) -> (f64, f64) {
         let equal = self.run_m / self.hops as f64;
@@ -158,25 +158,25 @@ impl SegmentHops {
         }
     }
 
-    /// The arc of a hop of this length along the segment, by the choice asked for.
+    /// The arc of a hop of this length along the segment, selected by `choice`.
     ///
     /// With the mid-range choice each hop takes the middle of its own set, between the line of sight and the vertical (model
-    /// section 3); a hop of full reach has one arc only.
+    /// section 3); a hop of full reach has only one arc.
     pub fn arc(&self, test: &HopTest, length_m: f64, choice: TakeoffChoice) -> Arc {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
         Arc::new(sight, choice.loft(sight, self.lofts(test, length_m)), test.gravity_m_s2())
     }
 
-    /// The feasible lofts of a hop of this length along the segment: one point at least.
+    /// The feasible lofts of a hop of this length along the segment; at least a single loft.
     pub fn lofts(&self, test: &HopTest, length_m: f64) -> SlopeInterval {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
-        // At full reach the set is one point, which rounding may lose.
+        // At full reach the set is a single loft, which rounding may lose.
         let only = SlopeInterval { lower: self.reach.loft, upper: self.reach.loft };
         test.lofts_in_envelope(sight, &self.reach.from, &self.reach.to).unwrap_or(only)
     }
 }
 
-/// The reaches of a hop along one segment as functions of its loft.
+/// The reach of a hop along one segment as a function of its loft.
 struct Ends<'a> {
     b: f64,
     takeoff_m_s: f64,
@@ -185,14 +185,18 @@ struct Ends<'a> {
 }
 
 impl Ends<'_> {
-    /// The distance that the speeds allow, and which one ends it.
+    /// The distance that the speed limits allow, `min(X_t, X_l)` of [`SegmentReach`], and the limit that ends it.
     fn by_speed_m(&self, n: f64) -> (f64, Limit) {
         let covered = |speed: f64, slope: f64| 2.0 * speed * speed / self.test.gravity_m_s2() * (n / (1.0 + slope * slope));
         let (takeoff, landing) = (covered(self.takeoff_m_s, self.b + n), covered(self.landing_m_s, self.b - n));
         if landing < takeoff { (landing, Limit::LandingSpeed) } else { (takeoff, Limit::TakeoffSpeed) }
     }
 
-    /// The distance that flight time and apex height allow, falling with the loft, and which one ends it.
+    /// The distance that flight time and apex height allow, decreasing with the loft, and the limit that ends it.
+    ///
+    /// ```text
+    ///     time T: X <= g T^2 / (2 n),      apex H: X <= 4 H n / (b + n)^2,   H / b for n <= b,   no bound for b + n <= 0
+    /// ```
     fn by_machine_m(&self, n: f64) -> (f64, Limit) {
         let hopper = self.test.hopper();
         let g = self.test.gravity_m_s2();
@@ -211,10 +215,10 @@ impl Ends<'_> {
         if apex < time { (apex, Limit::ApexHeight) } else { (time, Limit::FlightTime) }
     }
 
-    /// The loft of the farthest hop, from the flattest to the fastest one.
+    /// The loft of the farthest hop, between the flattest loft and the loft of greatest distance by speed.
     ///
-    /// Up to the fastest, what the speeds allow rises with the loft and what the machine allows falls: the best is at the fastest, or
-    /// where the two meet, found by bisection to the last digit.
+    /// In this interval the distance allowed by the speeds increases with the loft and that allowed by the machine decreases.
+    /// The best loft is the upper end, or the intersection of the two, found by bisection to the last digit.
     fn best_loft(&self, flattest: f64, fastest: f64) -> f64 {
         let machine_ends = |n: f64| self.by_machine_m(n).0 < self.by_speed_m(n).0;
         if !machine_ends(fastest) {
@@ -225,7 +229,7 @@ impl Ends<'_> {
         }
         let (mut low, mut high) = (flattest, fastest);
         loop {
-            // The geometric mean halves the exponent's range too; both ends are positive.
+            // The geometric mean bisects the exponents; both ends are positive.
             let middle = if high > 2.0 * low { low.sqrt() * high.sqrt() } else { 0.5 * (low + high) };
             if middle <= low || middle >= high {
                 return low;

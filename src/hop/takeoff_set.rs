@@ -1,4 +1,4 @@
-//! The feasible take-off set of one pair, with every limit by itself: the hop test, explained.
+//! The feasible take-off set of one pair of stations, with each limit evaluated separately.
 
 use super::{Conflict, HopTest, Shortfall, terrain_limit};
 use crate::{
@@ -8,25 +8,25 @@ use crate::{
     world::{Contact, Direction, Limit},
 };
 
-/// One limit of a hop, by itself.
+/// One limit of a hop, evaluated by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LimitInterval {
     /// Which limit.
     pub limit: Limit,
-    /// The lofts it allows; empty where it refuses every arc.
+    /// The lofts that it allows; empty if it refuses every arc.
     pub lofts: SlopeInterval,
-    /// For the terrain: the vertex that decides.
+    /// For the terrain: the vertex that sets the limit.
     pub vertex: Option<VertexId>,
-    /// By how much it refuses every arc, where it does.
+    /// By how much it refuses every arc, if it does.
     pub shortfall: Option<Shortfall>,
 }
 
-/// Which limits set the two ends of a feasible set.
+/// The limits that set the two ends of a feasible set.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Binding {
-    /// Sets the least take-off angle.
+    /// The limit that sets the least take-off angle.
     pub lower: LimitInterval,
-    /// Sets the greatest take-off angle.
+    /// The limit that sets the greatest take-off angle.
     pub upper: LimitInterval,
 }
 
@@ -39,7 +39,7 @@ pub struct TakeoffSet {
     verdict: Verdict,
 }
 
-/// What the limits come to.
+/// The combined result of all limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Verdict {
     Feasible(SlopeInterval, Binding),
@@ -47,7 +47,7 @@ enum Verdict {
 }
 
 impl TakeoffSet {
-    /// Takes the limits of a pair apart; `None` where the two stations share the same x.
+    /// Evaluates each limit of a pair; `None` if both stations have the same x.
     pub(super) fn of(test: &HopTest, takeoff: &Station, landing: &Station) -> Option<Self> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let sight = test.line_of_sight(takeoff, landing)?;
@@ -66,12 +66,12 @@ impl TakeoffSet {
         self.sight
     }
 
-    /// Every limit that had a say, by itself.
+    /// Every limit that applies to the pair, by itself.
     pub fn limits(&self) -> &[LimitInterval] {
         &self.limits
     }
 
-    /// The feasible lofts; `None` where there are none.
+    /// The feasible lofts; `None` if there are none.
     pub fn lofts(&self) -> Option<SlopeInterval> {
         match self.verdict {
             Verdict::Feasible(lofts, _) => Some(lofts),
@@ -79,7 +79,7 @@ impl TakeoffSet {
         }
     }
 
-    /// Which limits set the ends of the feasible set; `None` where it is empty.
+    /// The limits that set the ends of the feasible set; `None` if it is empty.
     pub fn binding(&self) -> Option<Binding> {
         match self.verdict {
             Verdict::Feasible(_, binding) => Some(binding),
@@ -87,7 +87,7 @@ impl TakeoffSet {
         }
     }
 
-    /// Why the set is empty; `None` where it is not.
+    /// Why the set is empty; `None` if it is not.
     pub fn conflict(&self) -> Option<Conflict> {
         match self.verdict {
             Verdict::Feasible(..) => None,
@@ -95,7 +95,7 @@ impl TakeoffSet {
         }
     }
 
-    /// The feasible take-off angles; `None` where there are none.
+    /// The feasible take-off angles; `None` if there are none.
     pub fn angles(&self) -> Option<AngleInterval> {
         self.angles_of(self.lofts()?)
     }
@@ -105,13 +105,13 @@ impl TakeoffSet {
         lofts.shifted(self.sight.slope()).angles()
     }
 
-    /// The arc to fly by a choice; `None` where there is none.
+    /// The arc selected by `choice`; `None` if there is none.
     pub fn arc(&self, choice: TakeoffChoice, gravity_m_s2: f64) -> Option<Arc> {
         Some(Arc::new(self.sight, choice.loft(self.sight, self.lofts()?), gravity_m_s2))
     }
 }
 
-/// The line of sight as a limit: open at its lower end, since no arc is the line itself.
+/// The line of sight as a limit: open at its lower end, since an arc always has a positive loft.
 const ABOVE_SIGHT: LimitInterval = LimitInterval {
     limit: Limit::LineOfSight,
     lofts: SlopeInterval { lower: 0.0, upper: f64::INFINITY },
@@ -119,7 +119,7 @@ const ABOVE_SIGHT: LimitInterval = LimitInterval {
     shortfall: None,
 };
 
-/// Every limit that has a say in a pair, in the order of [`Limit::ALL`].
+/// Every limit that applies to a pair, in the order of [`Limit::ALL`].
 fn all_limits(
     test: &HopTest,
     takeoff: &Station,
@@ -169,7 +169,7 @@ fn all_limits(
     found
 }
 
-/// The limits of the machine itself, those that it has.
+/// The limits of the machine that this hopper has.
 fn machine_limits(
     test: &HopTest,
     sight: LineOfSight,
@@ -189,7 +189,7 @@ fn machine_limits(
     }
 }
 
-/// The intersection of all limits and what sets its ends, or the conflict that leaves nothing.
+/// The intersection of all limits with those that set its ends, or the conflict that leaves it empty.
 fn evaluate(sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
     if let Some(alone) = limits.iter().find(|limit| limit.lofts.is_empty()) {
         return Verdict::Refused(Conflict::Alone(*alone));

@@ -1,4 +1,4 @@
-//! The ground in between, as a limit of a hop over a chain.
+//! The terrain limit of a hop over a chain.
 
 use crate::{
     ballistics::limits::clearing_loft,
@@ -6,16 +6,22 @@ use crate::{
     quantity::{SlopeInterval, VertexId},
 };
 
-/// The lofts that clear every chain vertex flown past, and the vertex that decides.
+/// The lofts that clear every chain vertex flown over, and the vertex that sets the bound.
 ///
-/// Vertices are enough: between them the arc is concave and the ground straight. The answer depends a little on how finely flat
-/// ground is divided, since a clearance over a vertex just after take-off asks for a steep start (model section 2).
+/// ```text
+///     n >= max over vertices p of  s_p - t_p                                   (P eq. 14; see clearing_loft)
+/// ```
+///
+/// Testing vertices is sufficient: between them the arc is concave and the ground straight. The result depends slightly on
+/// how finely flat ground is divided, since a clearance over a vertex just after take-off requires a steep start (model
+/// section 2).
 ///
 /// # Returns
-/// An interval without upper end, and the vertex that sets its lower end; no lower end and no vertex where none is flown past.
+/// An interval without upper bound, and the vertex that sets its lower bound; no lower bound and no vertex if none is flown
+/// over.
 ///
 /// # Complexity
-/// One division pair per vertex flown past.
+/// Two divisions per vertex flown over.
 pub fn terrain_limit(
     chain: &PolygonalChain,
     takeoff: &Station,
@@ -32,7 +38,7 @@ pub fn terrain_limit(
     (SlopeInterval { lower: highest.0, upper: f64::INFINITY }, highest.1)
 }
 
-/// The indices of the vertices strictly between two stations, whichever is left.
+/// The indices of the vertices strictly between two stations, in either order.
 #[inline]
 pub(crate) fn flown_past(a: &Station, b: &Station) -> std::ops::Range<usize> {
     let (left, right) = if a.point.x_m <= b.point.x_m { (a.site, b.site) } else { (b.site, a.site) };

@@ -6,7 +6,7 @@ use super::SlopeInterval;
 
 /// An elevation above the direction of travel, in radians inside.
 ///
-/// Trigonometry goes through [`libm`], so that results are the same bytes on every platform.
+/// Trigonometry goes through [`libm`], so that results are byte-identical on every platform.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd, Default)]
 pub struct Angle {
     radians: f64,
@@ -49,8 +49,10 @@ impl Angle {
         self.radians.to_degrees()
     }
 
-    /// Degrees that read back as this very angle, with the fewest digits there are; `None` for the one angle in eleven that no double
-    /// of degrees gives (pi / 180 stretches the significand) and for what is no finite angle.
+    /// The angle in degrees with the fewest digits that read back as exactly this angle.
+    ///
+    /// `None` for a non-finite angle, and for the one radian double in eleven that no double of degrees converts to (pi / 180
+    /// stretches the significand).
     ///
     /// ```
     /// use chta::quantity::Angle;
@@ -67,8 +69,8 @@ impl Angle {
             .min_by_key(|degrees| degrees.to_string().len())
     }
 
-    /// The tangent, with plus or minus infinity at and beyond a right angle, so that no tangent of an angle outside (-90, 90)
-    /// degrees is ever taken.
+    /// The tangent; plus or minus infinity at and beyond a right angle, so that an angle outside (-90, 90) degrees never has the
+    /// finite slope of another direction. NaN gives NaN.
     ///
     /// ```
     /// use chta::quantity::Angle;
@@ -94,7 +96,7 @@ impl std::ops::Neg for Angle {
     }
 }
 
-/// A closed interval of angles as stated by a user or a cone, not yet cut to (-90, 90) degrees.
+/// A closed interval of angles as given by the user or a cone, not yet restricted to (-90, 90) degrees.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AngleInterval {
     /// The lower end.
@@ -117,8 +119,8 @@ impl AngleInterval {
 
     /// The slopes of the directions inside (-90, 90) degrees.
     ///
-    /// A lower end at or below -90 degrees, or an upper end at or above +90, is no bound; a lower end at or above +90, or an upper
-    /// end at or below -90, leaves nothing (model section 1).
+    /// A lower end at or below -90 degrees, or an upper end at or above +90, sets no bound. A lower end at or above +90, or
+    /// an upper end at or below -90, leaves the empty interval (model section 1).
     ///
     /// ```
     /// use chta::quantity::AngleInterval;

@@ -1,7 +1,7 @@
 //! Numbers and their units as text for readers.
 
-/// A number with as many digits as a reader has use for: ten significant ones at most, no trailing zeros, with an exponent where it would
-/// have many zeros. Results that programs read keep all digits.
+/// Formats a number for people: at most ten significant digits, no trailing zeros, and an exponent for very large and very
+/// small numbers. Results meant for programs keep all digits.
 ///
 /// ```
 /// use chta::quantity::format_number;
@@ -12,8 +12,8 @@
 /// assert_eq!(format_number(2.0), "2");
 /// ```
 pub fn format_number(number: f64) -> String {
-    // Ten significant digits, read back: the shortest text of that number has no more.
-    // The very largest numbers would round to infinity.
+    // Round to ten significant digits and parse again: the shortest text of the result has no more digits.
+    // Numbers near f64::MAX would round to infinity and keep their value.
     let rounded = format!("{number:.9e}").parse().ok().filter(|rounded: &f64| rounded.is_finite()).unwrap_or(number);
     let size = f64::abs(rounded);
     if size == 0.0 {
@@ -25,7 +25,7 @@ pub fn format_number(number: f64) -> String {
     }
 }
 
-/// The unit of the numbers of a key or a column, as its name ends; empty where they have none.
+/// The unit given by the ending of a key's or column's name; empty for a dimensionless one.
 ///
 /// ```
 /// use chta::quantity::unit_of;

@@ -1,6 +1,6 @@
-//! Ids that cannot be mixed up.
+//! Index types that cannot be confused with one another.
 
-/// Defines a numbered id.
+/// Defines an index type.
 macro_rules! id {
     ($(#[$doc:meta])* $name:ident) => {
         $(#[$doc])*
@@ -8,7 +8,7 @@ macro_rules! id {
         pub struct $name(pub usize);
 
         impl $name {
-            /// The number as used to index, from 0.
+            /// The index, from 0.
             pub const fn index(self) -> usize {
                 self.0
             }

@@ -1,17 +1,18 @@
-//! Intervals of numbers, rounded outwards: what is computed with them holds for every number inside.
+//! Interval arithmetic with outward rounding: a result encloses the true value for all arguments inside the operands.
 
 use std::{
     marker::PhantomData,
     ops::{Add, Div, Mul, Neg, Sub},
 };
 
-/// Which way the ends of an interval are rounded.
+/// How the ends of an interval are rounded.
 ///
-/// IEEE arithmetic and its square root are correctly rounded, so the neighbour of a result bounds the true value.
+/// IEEE arithmetic and its square root are correctly rounded, so the next double below or above a result bounds the true
+/// value.
 pub trait Rounding: Copy + std::fmt::Debug + PartialEq + Default + Send + Sync + 'static {
-    /// A number not above the one whose rounding this is.
+    /// A bound not above the exact value that `rounded` approximates.
     fn down(rounded: f64) -> f64;
-    /// A number not below the one whose rounding this is.
+    /// A bound not below the exact value that `rounded` approximates.
     fn up(rounded: f64) -> f64;
 }
 
@@ -33,8 +34,8 @@ impl Rounding for Outwards {
 
 /// A closed interval of real numbers, ends possibly infinite; empty where `lower > upper`.
 ///
-/// Every operation encloses all results of that operation on numbers of its arguments. An end that is no number (the sum of two
-/// opposite infinities) becomes the infinity on its side, which bounds nothing.
+/// Every operation encloses all results of that operation on members of its operands. An end that is NaN (the sum of two
+/// opposite infinities) becomes the infinity on its side, so it bounds nothing.
 ///
 /// ```
 /// use chta::quantity::Interval;
@@ -52,24 +53,24 @@ pub struct Interval<R = Outwards> {
 }
 
 impl<R: Rounding> Interval<R> {
-    /// Every number.
+    /// All real numbers.
     pub const ALL: Self = Self::new(f64::NEG_INFINITY, f64::INFINITY);
-    /// No number.
+    /// The empty interval.
     pub const EMPTY: Self = Self::new(f64::INFINITY, f64::NEG_INFINITY);
 
-    /// From its two ends, as they are.
+    /// An interval from its two ends, without rounding.
     #[inline]
     pub const fn new(lower: f64, upper: f64) -> Self {
         Self { lower, upper, rounding: PhantomData }
     }
 
-    /// One number.
+    /// The interval of a single number.
     #[inline]
     pub const fn point(number: f64) -> Self {
         Self::new(number, number)
     }
 
-    /// Ends that are roundings of true ones, moved by the rounding; what is no number bounds nothing.
+    /// Moves two computed ends outwards by the rounding; a NaN end becomes infinite.
     #[inline]
     fn rounded(lower: f64, upper: f64) -> Self {
         let lower = if lower.is_nan() { f64::NEG_INFINITY } else { R::down(lower) };
@@ -77,40 +78,40 @@ impl<R: Rounding> Interval<R> {
         Self::new(lower, upper)
     }
 
-    /// Whether no number is inside.
+    /// Whether the interval is empty.
     #[inline]
     pub fn is_empty(self) -> bool {
         self.lower > self.upper
     }
 
-    /// Whether a number is inside.
+    /// Whether `number` lies inside, ends included.
     #[inline]
     pub fn contains(self, number: f64) -> bool {
         self.lower <= number && number <= self.upper
     }
 
-    /// The numbers in both.
+    /// The intersection of both.
     #[inline]
     #[must_use]
     pub fn intersect(self, other: Self) -> Self {
         Self::new(self.lower.max(other.lower), self.upper.min(other.upper))
     }
 
-    /// The least interval around both.
+    /// The smallest interval that contains both.
     #[inline]
     #[must_use]
     pub fn hull(self, other: Self) -> Self {
         Self::new(self.lower.min(other.lower), self.upper.max(other.upper))
     }
 
-    /// Half of it: exact but for the least numbers there are.
+    /// Half the interval: exact except for subnormal numbers.
     #[inline]
     #[must_use]
     pub fn halved(self) -> Self {
         Self::rounded(0.5 * self.lower, 0.5 * self.upper)
     }
 
-    /// The squares of its numbers.
+    /// The squares of all numbers inside.
     #[inline]
     #[must_use]
     pub fn squared(self) -> Self {
@@ -118,11 +119,11 @@ impl<R: Rounding> Interval<R> {
         let (near, far) = if a <= b { (a, b) } else { (b, a) };
         let near = if self.lower <= 0.0 && self.upper >= 0.0 { 0.0 } else { near };
         let square = Self::rounded(near * near, far * far);
-        // A square is never negative, however it is rounded.
+        // A square is never negative, whatever the rounding.
         Self::new(if near == 0.0 { 0.0 } else { square.lower }, square.upper)
     }
 
-    /// The square roots of its numbers that have one; empty where none has.
+    /// The square roots of all non-negative numbers inside; empty if there are none.
     #[inline]
     #[must_use]
     pub fn sqrt(self) -> Self {
@@ -134,10 +135,11 @@ impl<R: Rounding> Interval<R> {
     }
 }
 
-/// A quotient with numbers on both sides of zero below bounds nothing; none is asked for here.
+/// The least and the greatest of the four products (or quotients) of two intervals' ends. The caller of a quotient excludes
+/// divisors that contain zero.
 #[inline]
 fn least_greatest(products: [f64; 4]) -> (f64, f64) {
-    // One product that is no number (zero times infinity) makes both ends none.
+    // One NaN product (zero times infinity) makes both ends NaN.
     if products.iter().any(|product| product.is_nan()) {
         return (f64::NAN, f64::NAN);
     }
@@ -181,7 +183,7 @@ impl<R: Rounding> Mul for Interval<R> {
 impl<R: Rounding> Div for Interval<R> {
     type Output = Self;
 
-    /// The quotients; everything where the divisor may be zero.
+    /// The quotients; [`Interval::ALL`] if the divisor may be zero.
     #[inline]
     fn div(self, other: Self) -> Self {
         if other.lower <= 0.0 && other.upper >= 0.0 {

@@ -1,6 +1,8 @@
-//! Numbers with a meaning: angles, slopes, points, ids, the roots of quadratics, and intervals that round outwards.
+//! Numbers with a physical meaning: angles, slopes, points, indices, roots of quadratics, and intervals with outward
+//! rounding.
 //!
-//! Inside the program a direction is its slope `m = tan(theta)`; [`Angle`] is for the edges, where degrees come in and go out.
+//! Inside the program a direction is its slope `m = tan(theta)`; [`Angle`] is used for input and output, where degrees
+//! appear.
 
 mod angle;
 mod format;

@@ -3,9 +3,9 @@
 /// A point of the chain's vertical plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ChainPoint {
-    /// Along the transect, m.
+    /// Distance along the transect, m.
     pub x_m: f64,
-    /// Up, m.
+    /// Elevation, m.
     pub z_m: f64,
 }
 

@@ -1,15 +1,15 @@
-//! Sign-safe roots of the quadratics that limits lead to.
+//! Roots, without loss of digits, of the quadratics that the speed and apex limits lead to.
 
-/// The quadratic `n^2 - 2 (w + e) n + w^2`, known by the root `w >= 0` of its roots' product and the excess `e` of half their sum
-/// over it.
+/// The quadratic `n^2 - 2 (w + e) n + w^2`, given by the geometric mean `w >= 0` of its roots and the excess `e` of their
+/// arithmetic mean over it.
 ///
-/// Every speed and apex limit of a hop has this form, with a product that is a sum of squares. The roots are real where the excess is
-/// not negative, and how far apart they are hangs on it alone, so it is given as such: taken as the difference of two large numbers
-/// (at the foot of a wall, next to the end of the reach) it would lose its digits. Neither root then loses any: the larger is
-/// `w + e + sqrt(e (2 w + e))`, the smaller `w^2` over it.
+/// Every speed and apex limit of a hop has this form, with a product of roots that is a sum of squares. The roots are real if
+/// `e >= 0`, and their distance depends on `e` alone. That is why `e` is an input: computed here as the difference of two
+/// large numbers it would lose its digits (at the foot of a wall, or near the greatest reach). Both roots then keep full
+/// precision: the larger is `w + e + sqrt(e (2 w + e))`, the smaller is `w^2` over the larger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MonicQuadratic {
-    /// Half the sum of the roots, less their geometric mean.
+    /// The arithmetic mean of the roots minus their geometric mean.
     pub excess: f64,
     /// The geometric mean of the roots, not negative.
     pub geometric_mean: f64,
@@ -25,7 +25,7 @@ pub struct Roots {
 }
 
 impl MonicQuadratic {
-    /// The two roots where they are real and the larger one is positive, else `None` (also for NaN).
+    /// The two roots if they are real and the larger one is positive, else `None` (also for NaN).
     ///
     /// ```
     /// use chta::quantity::MonicQuadratic;

@@ -1,4 +1,4 @@
-//! Intervals of slopes: every limit of a hop is one of these.
+//! Intervals of slopes: the form of every limit of a hop.
 
 use super::{Angle, AngleInterval};
 
@@ -12,12 +12,12 @@ pub struct SlopeInterval {
 }
 
 impl SlopeInterval {
-    /// Every direction of travel.
+    /// All directions.
     pub const ALL: Self = Self { lower: f64::NEG_INFINITY, upper: f64::INFINITY };
-    /// No direction at all.
+    /// No direction.
     pub const EMPTY: Self = Self { lower: f64::INFINITY, upper: f64::NEG_INFINITY };
 
-    /// Whether no slope is inside. An end that is not a number counts as empty.
+    /// Whether the interval is empty. An interval with a NaN end counts as empty.
     pub fn is_empty(self) -> bool {
         let nonempty = self.lower <= self.upper;
         !nonempty
@@ -28,7 +28,7 @@ impl SlopeInterval {
         self.lower <= slope && slope <= self.upper
     }
 
-    /// The slopes in both.
+    /// The intersection of both.
     ///
     /// ```
     /// use chta::quantity::SlopeInterval;
@@ -47,7 +47,7 @@ impl SlopeInterval {
         Self { lower: self.lower + offset, upper: self.upper + offset }
     }
 
-    /// The same directions as angles; `None` where empty.
+    /// The same directions as angles; `None` if empty.
     pub fn angles(self) -> Option<AngleInterval> {
         (!self.is_empty()).then(|| AngleInterval { min: Angle::from_slope(self.lower), max: Angle::from_slope(self.upper) })
     }

@@ -2,20 +2,20 @@
 
 use super::{GeoReference, MapBounds, PostLattice, TerrainError, lattice::check_sides};
 
-/// No elevation lies further than this from the datum, m: larger numbers are unlabelled no-data (a billion metres is beyond any
-/// body; -2147483648 and 3.4e38, the usual marks, are beyond a billion).
+/// The largest absolute elevation, m: larger numbers are undeclared no-data values (no body has such elevations; the usual
+/// marks -2147483648 and 3.4e38 exceed 1e9).
 pub const ELEVATION_LIMIT_M: f64 = 1.0e9;
 
-/// A raster of elevations: at least 2 x 2 posts, row-major from the north, gaps explicit.
+/// A raster of elevations: at least 2 x 2 posts, row-major from the north, with explicit gaps.
 ///
-/// Kept as 32-bit floats where each elevation is one exactly, as 64-bit floats otherwise, so nothing is ever rounded.
+/// Stored as 32-bit floats if that represents every elevation exactly, else as 64-bit floats, so no elevation is rounded.
 #[derive(Clone, Debug)]
 pub struct Dem {
     lattice: PostLattice,
     posts: Posts,
 }
 
-/// The elevations of a raster as they are kept, row after row from the north; NaN is a gap.
+/// The stored elevations of a raster, row after row from the north; NaN is a gap.
 #[derive(Clone, Copy, Debug)]
 pub enum Samples<'a> {
     /// 32-bit floats.
@@ -47,7 +47,7 @@ impl Posts {
         value.filter(|value| !value.is_nan())
     }
 
-    /// Single precision where that loses nothing.
+    /// Converts to single precision if no elevation changes.
     #[expect(clippy::cast_possible_truncation, reason = "taken only where the way back gives the same number")]
     fn narrowed(self) -> Self {
         match self {
@@ -60,12 +60,12 @@ impl Posts {
 }
 
 impl Dem {
-    /// A raster from its elevations, row after row from the north, each row from the west, NaN where there is none.
+    /// A raster from its elevations, row after row from the north, each row from the west; NaN means no elevation.
     ///
     /// # Errors
-    /// [`TerrainError::InvalidDem`] where there are fewer than 2 rows or columns, the count of elevations is not `rows * cols`, an
-    /// elevation is beyond [`ELEVATION_LIMIT_M`] (infinite ones are), no post has an elevation at all, or the posts' map coordinates
-    /// run out of the numbers.
+    /// [`TerrainError::InvalidDem`] if there are fewer than 2 rows or columns, the number of elevations is not `rows * cols`,
+    /// an elevation is beyond [`ELEVATION_LIMIT_M`] (also if infinite), no post has an elevation, or neighbouring posts have
+    /// equal map coordinates in floating point.
     ///
     /// # Examples
     /// ```
@@ -81,7 +81,7 @@ impl Dem {
         Self::from_posts(rows, cols, Posts::Double(elevations_m).narrowed(), georeference)
     }
 
-    /// The same from 32-bit elevations, which are kept as they are.
+    /// The same from 32-bit elevations, which are stored as they are.
     ///
     /// # Errors
     /// As [`Dem::new`].
@@ -117,7 +117,7 @@ impl Dem {
         )))
     }
 
-    /// Where all posts lie.
+    /// The lattice of the posts.
     pub fn lattice(&self) -> &PostLattice {
         &self.lattice
     }
@@ -132,7 +132,7 @@ impl Dem {
         self.lattice.cols()
     }
 
-    /// Where the posts lie.
+    /// The position of the posts on the map.
     pub fn georeference(&self) -> &GeoReference {
         self.lattice.georeference()
     }
@@ -142,7 +142,7 @@ impl Dem {
         self.lattice.bounds()
     }
 
-    /// Elevation of a post, m; `None` where there is none, and outside the raster.
+    /// Elevation of a post, m; `None` if it has none, and outside the raster.
     pub fn elevation(&self, row: usize, col: usize) -> Option<f64> {
         self.posts.at(self.lattice.index(row, col)?)
     }
@@ -152,12 +152,12 @@ impl Dem {
         (0..self.posts.len()).map(|index| self.posts.at(index))
     }
 
-    /// Whether the elevations are kept as 32-bit floats (which loses nothing).
+    /// Whether the elevations are stored as 32-bit floats (without loss).
     pub fn is_single_precision(&self) -> bool {
         matches!(self.posts, Posts::Single(_))
     }
 
-    /// The elevations as they are kept, for loops over millions of them.
+    /// The stored elevations, for loops over millions of them.
     pub fn samples(&self) -> Samples<'_> {
         match &self.posts {
             Posts::Single(values) => Samples::Single(values),
@@ -167,7 +167,7 @@ impl Dem {
 
     /// Lowest and highest elevation, m.
     pub fn elevation_range_m(&self) -> (f64, f64) {
-        // The minimum and maximum of a number and NaN are the number.
+        // `min` and `max` of a number and NaN return the number.
         match &self.posts {
             Posts::Single(values) => {
                 let (low, high) =
@@ -185,13 +185,13 @@ impl Dem {
     }
 }
 
-/// Whether there is any elevation; refuses what is none.
+/// Whether there is any elevation; refuses values beyond the limit.
 fn any_elevation<T: Copy + Into<f64>>(posts: &[T], cols: usize) -> Result<bool, TerrainError> {
     let mut any = false;
     for (index, &post) in posts.iter().enumerate() {
         let z_m: f64 = post.into();
         any |= !z_m.is_nan();
-        // Without the call, which would hold up a loop over millions.
+        // Compared inline: a function call would slow down a loop over millions of posts.
         if z_m.abs() >= ELEVATION_LIMIT_M {
             check_elevation(z_m, index / cols, index % cols)?;
         }
@@ -199,7 +199,7 @@ fn any_elevation<T: Copy + Into<f64>>(posts: &[T], cols: usize) -> Result<bool, 
     Ok(any)
 }
 
-/// Refuses a number that no elevation has; NaN is a gap.
+/// Refuses a value beyond the limit for elevations; NaN is a gap.
 pub(super) fn check_elevation(z_m: f64, row: usize, col: usize) -> Result<(), TerrainError> {
     if z_m.is_nan() || z_m.abs() < ELEVATION_LIMIT_M {
         return Ok(());
@@ -210,7 +210,7 @@ pub(super) fn check_elevation(z_m: f64, row: usize, col: usize) -> Result<(), Te
     )))
 }
 
-/// Same posts at the same places: gaps equal gaps, and how the numbers are kept does not matter.
+/// Equal posts at equal positions: gaps equal gaps, and the precision of storage is ignored.
 impl PartialEq for Dem {
     fn eq(&self, other: &Self) -> bool {
         self.lattice == other.lattice && self.elevations().eq(other.elevations())

@@ -1,4 +1,4 @@
-//! What can be wrong with terrain: one enum, one sentence per variant.
+//! The errors of terrain: one enum, one sentence per variant.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -6,16 +6,16 @@ use std::path::PathBuf;
 use super::{LonLat, MapBounds, NoProjection, ScaleMend};
 use crate::quantity::{MapPoint, format_number};
 
-/// Why a DEM could not be read, written, sliced or made up.
+/// Why a DEM or mesh could not be read, written, sliced or generated.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TerrainError {
-    /// A problem of one file, named.
+    /// A problem of one file, with its name.
     #[error("terrain '{}': {problem}", path.display())]
     InFile {
         /// The file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// The problem.
         problem: Box<Self>,
     },
     /// A problem of an overlay: keep-out zones or a friction raster.
@@ -25,7 +25,7 @@ pub enum TerrainError {
         what: &'static str,
         /// The file.
         path: PathBuf,
-        /// What was found, what was expected and how to mend it.
+        /// What was found, what was expected and how to correct it.
         problem: String,
     },
     /// The operating system refused to read or write.
@@ -33,26 +33,26 @@ pub enum TerrainError {
     Io {
         /// "read" or "written".
         action: &'static str,
-        /// The system's words.
+        /// The message of the operating system.
         reason: std::io::Error,
     },
-    /// No reader knows the content.
-    #[error("the content is no known elevation format (it begins with {found}), expected one of: {expected}")]
+    /// The content is in none of the known formats.
+    #[error("the content is not a known elevation format (it begins with {found}), expected one of: {expected}")]
     NotRecognised {
         /// The first bytes, printable.
         found: String,
         /// Names of the formats that can be read.
         expected: String,
     },
-    /// Bytes that are not what the format promises.
+    /// The bytes do not follow the format.
     #[error("the {format} is damaged: {reason}; expected a whole file, so copy or download it again")]
     Damaged {
         /// The format.
         format: &'static str,
-        /// What did not fit.
+        /// What is wrong.
         reason: String,
     },
-    /// A sound file of a kind that holds no usable elevations; the text says what was found, what was expected and how to mend it.
+    /// A valid file without usable elevations; the text says what was found, what was expected and how to correct it.
     #[error("{found}, expected {expected}; mend it with: {mend}")]
     Unsuitable {
         /// What the file holds.
@@ -78,7 +78,7 @@ pub enum TerrainError {
         /// How many more there were.
         further: usize,
     },
-    /// Numbers that make no raster.
+    /// The numbers do not form a raster.
     #[error("{0}")]
     InvalidDem(String),
     /// Numbers that make no profile.
@@ -90,14 +90,14 @@ pub enum TerrainError {
         /// The point.
         at: MapPoint,
     },
-    /// A point that the DEM does not cover.
+    /// A point outside the DEM.
     #[error("the {which} point ({} m, {} m) is off the map, expected {bounds} (the outermost posts)", format_number(at.x), format_number(at.y))]
     OffTheMap {
         /// "from" or "to".
         which: &'static str,
         /// The point.
         at: MapPoint,
-        /// What the DEM covers.
+        /// The area of the DEM.
         bounds: MapBounds,
     },
     /// Longitude and latitude on a map without a known projection.
@@ -108,39 +108,39 @@ pub enum TerrainError {
     NoProjection {
         /// "from" or "to".
         which: &'static str,
-        /// What is known of the map.
+        /// Why the map has no known projection.
         reason: NoProjection,
     },
-    /// A place on the body that the DEM does not cover.
+    /// A point, given as longitude and latitude, outside the DEM.
     #[error("the {which} point ({place}) {}, expected {bounds} (the outermost posts)", lies(*at))]
     LonLatOffTheMap {
         /// "from" or "to".
         which: &'static str,
-        /// The place.
+        /// The point.
         place: LonLat,
-        /// Where on the map that is, if anywhere.
+        /// Its position on the map, if it has one.
         at: Option<MapPoint>,
-        /// What the DEM covers.
+        /// The area of the DEM.
         bounds: MapBounds,
     },
     /// A map whose scale along the transect is not 1.
     #[error("{found}, expected 1 within 1 %; mend it with: {mend}; or take it as it is with terrain.accept_map_scale = true")]
     MapScale {
-        /// The factor and its place.
+        /// The scale factor and its position.
         found: String,
         /// What makes a map that is true along the transect.
         mend: ScaleMend,
     },
-    /// A line that leaves what its projection shows of the body.
+    /// A line that leaves the part of the map that shows the body.
     #[error(
         "the line from ({} m, {} m) to ({} m, {} m) leaves the part of the map that shows the body, expected longitude and latitude all \
          the way; choose another line, or cut the map to the part that is needed (gdalwarp -te)",
         format_number(from.x), format_number(from.y), format_number(to.x), format_number(to.y)
     )]
     OffTheBody {
-        /// Where it begins.
+        /// Its first end.
         from: MapPoint,
-        /// Where it ends.
+        /// Its second end.
         to: MapPoint,
     },
     /// The plane of a slice meets posts without elevation.
@@ -149,13 +149,13 @@ pub enum TerrainError {
          transect or fill the gap with: gdal_fillnodata.py in.tif filled.tif", at.x, at.y
     )]
     NoData {
-        /// Where on the map.
+        /// The position on the map.
         at: MapPoint,
-        /// How far from the first point.
+        /// The distance from the first point.
         distance_m: f64,
     },
-    /// No reader of meshes knows the content.
-    #[error("the content is no known mesh format (it begins with {found}), expected one of: {expected}")]
+    /// The content is in none of the known mesh formats.
+    #[error("the content is not a known mesh format (it begins with {found}), expected one of: {expected}")]
     NotAMesh {
         /// The first bytes, printable.
         found: String,
@@ -169,20 +169,20 @@ pub enum TerrainError {
         format: &'static str,
         /// Line of the file, from 1.
         line: usize,
-        /// What stands there, and what was expected.
+        /// What was found, and what was expected.
         problem: String,
     },
-    /// Numbers that make no surface.
+    /// The numbers do not form a surface.
     #[error("{0}")]
     InvalidMesh(String),
-    /// The plane of a slice meets no triangle for a stretch.
+    /// The plane of a slice meets no triangle over part of the transect.
     #[error(
         "the plane meets no triangle of the mesh from x = {begin_m} m to {end_m} m along the transect, map ({:.6}, {:.6}) m to ({:.6}, {:.6}) m{}, expected \
          ground all the way; choose another transect, or close the hole in the mesh (narrow cracks: weld its vertices)",
         begin.x, begin.y, end.x, end.y, further_gaps(*further)
     )]
     MeshGap {
-        /// Where the stretch begins along the transect, m.
+        /// Where this part begins along the transect, m.
         begin_m: f64,
         /// Where it ends, m.
         end_m: f64,
@@ -190,23 +190,23 @@ pub enum TerrainError {
         begin: MapPoint,
         /// Where it ends on the map.
         end: MapPoint,
-        /// How many more stretches there are.
+        /// Number of further parts without triangles.
         further: usize,
     },
-    /// An option of the synthetic terrain that makes no sense.
+    /// An option of the synthetic terrain is out of range.
     #[error("synthetic terrain: {option} is {found}, expected {expected}")]
     InvalidOption {
         /// The option's name.
         option: &'static str,
         /// Its value.
         found: String,
-        /// What is allowed.
+        /// The allowed values.
         expected: String,
     },
 }
 
 impl TerrainError {
-    /// The same problem with the name of its file.
+    /// The same problem with the name of the file.
     pub(super) fn in_file(self, path: &std::path::Path) -> Self {
         Self::InFile { path: path.to_path_buf(), problem: Box::new(self) }
     }
@@ -227,9 +227,9 @@ pub struct AsciiProblem {
     pub line: usize,
     /// Character of the line, from 1.
     pub column: usize,
-    /// What stands there.
+    /// What was found.
     pub found: String,
-    /// What was expected, and how to mend it.
+    /// What was expected, and how to correct it.
     pub expected: String,
 }
 
@@ -239,7 +239,7 @@ impl fmt::Display for AsciiProblem {
     }
 }
 
-/// Where a place lies, for a sentence.
+/// A phrase for the position of a point.
 fn lies(at: Option<MapPoint>) -> String {
     at.map_or_else(
         || "lies nowhere on the map".to_owned(),

@@ -1,10 +1,11 @@
-//! Formats that this crate does not read itself: known by name, so that a refusal can say what they are and what to do.
+//! Formats that this crate does not read itself. They are recognised by name, so that the error can say what the file is and
+//! what to do.
 //!
-//! The `gdal` feature reads them, and whatever else GDAL knows (`src/terrain/gdal.rs`).
+//! The `gdal` feature reads them, and all other formats of GDAL (`src/terrain/gdal.rs`).
 
 use super::TerrainError;
 
-/// How files of a format begin, and its name.
+/// The first bytes of files of a format, and its name.
 const BEGINNINGS: [(&[u8], &str); 9] = [
     (b"Object = IsisCube", "an ISIS cube"),
     (b"LBLSIZE=", "a VICAR image"),
@@ -17,7 +18,7 @@ const BEGINNINGS: [(&[u8], &str); 9] = [
     (b"DSBB", "a Surfer grid"),
 ];
 
-/// The name of a format with an article, if the file begins like one of those.
+/// The name of a format with an article, if the file begins like one of these.
 pub(super) fn name(beginning: &[u8]) -> Option<&'static str> {
     let text = beginning.trim_ascii_start();
     let label = text.starts_with(b"<") && contains(text, b"Product_Observational");
@@ -31,7 +32,7 @@ fn contains(text: &[u8], word: &[u8]) -> bool {
     text.windows(word.len()).any(|window| window == word)
 }
 
-/// The refusal of a build without GDAL.
+/// The error of a build without GDAL.
 pub(super) fn refusal(name: &str) -> TerrainError {
     TerrainError::Unsuitable {
         found: format!("{name}, which this build does not read"),

@@ -1,4 +1,4 @@
-//! The formats that can be read, told apart by content.
+//! The raster formats that can be read, recognised by content.
 
 use std::fs::File;
 use std::io::Read;
@@ -12,39 +12,39 @@ use super::pds3::Pds3Reader;
 use super::xyz::XyzReader;
 use super::{Dem, DemFile, TerrainError};
 
-/// How many bytes of a file its readers get to see when asked whether it is theirs.
+/// Number of bytes of a file that readers get to recognise their format.
 const PROBE_BYTES: u64 = 4096;
 
-/// A reader of one file format. A new format implements this and joins `READERS` and [`FORMATS`].
+/// A reader of one file format. To add a format, implement this trait and add the reader to `READERS` and [`FORMATS`].
 pub trait DemReader: Sync {
     /// The format's name.
     fn name(&self) -> &'static str;
 
-    /// Whether a file that begins like this is of the format. Content decides, never the extension.
+    /// Whether a file with this beginning has the format. The content decides, never the extension.
     fn recognises(&self, beginning: &[u8]) -> bool;
 
-    /// Reads a whole file held in memory.
+    /// Reads a whole file from memory.
     ///
     /// # Errors
-    /// [`TerrainError`] with what was found, what was expected, and how to mend it.
+    /// [`TerrainError`] with what was found, what was expected, and how to correct it.
     fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError>;
 
     /// Reads a file from disk.
     ///
     /// # Errors
-    /// As [`DemReader::read_bytes`], and where the file cannot be read.
+    /// As [`DemReader::read_bytes`], and if the file cannot be read.
     fn read_path(&self, path: &Path) -> Result<Dem, TerrainError>;
 
-    /// Opens a file from disk to read parts of it. Formats that can only be read whole are.
+    /// Opens a file from disk to read parts of it. Formats that can only be read as a whole are read as a whole.
     ///
     /// # Errors
-    /// As [`DemReader::read_path`], but for what is wrong with posts that nobody asks for.
+    /// As [`DemReader::read_path`], except for problems of posts that are not requested.
     fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
         Ok(Box::new(self.read_path(path)?))
     }
 }
 
-/// The readers, asked in this order.
+/// The readers, in the order in which they are tried.
 static READERS: [&dyn DemReader; 4] = [&GeoTiffReader, &AsciiGridReader, &Pds3Reader, &XyzReader];
 
 /// Names of the formats and one line about each, for help texts.
@@ -58,19 +58,20 @@ pub const FORMATS: [(&str, &str); 4] = [
     ),
 ];
 
-/// Reads a DEM file, whatever its extension. With the feature `gdal`, what none of the formats is goes to GDAL.
+/// Reads a DEM file with any extension. With the feature `gdal`, files in none of the formats are passed to GDAL.
 ///
 /// # Errors
-/// [`TerrainError::InFile`], around what is wrong: the file cannot be read, is of no known format, is damaged, or holds something
-/// other than elevations in metres on a north-up map in metres.
+/// [`TerrainError::InFile`] with the cause: the file cannot be read, has no known format, is damaged, or does not hold
+/// elevations in metres on a north-up map in metres.
 pub fn read_dem(path: &Path) -> Result<Dem, TerrainError> {
     reader_of(path).and_then(|reader| reader.read_path(path)).map_err(|error| error.in_file(path))
 }
 
-/// Opens a DEM file, whatever its extension, to read parts of it: of a GeoTIFF or PDS3 image only what is asked for, of a text all.
+/// Opens a DEM file with any extension to read parts of it: from a GeoTIFF or PDS3 image only the parts requested, from a
+/// text file everything.
 ///
 /// # Errors
-/// As [`read_dem`], but what is wrong with posts that are not asked for goes unnoticed.
+/// As [`read_dem`], but problems of posts that are not requested are not detected.
 pub fn open_dem(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
     reader_of(path).and_then(|reader| reader.open_path(path)).map_err(|error| error.in_file(path))
 }
@@ -81,7 +82,7 @@ fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {
         return Ok(reader);
     }
     #[cfg(feature = "gdal")]
-    if !beginning.is_empty() {
+    if !beginning.is_empty() && super::gdal::can_open(path) {
         return Ok(&super::gdal::GdalReader);
     }
     #[cfg(not(feature = "gdal"))]
@@ -91,7 +92,7 @@ fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {
     Err(label_beside(path).unwrap_or_else(|| not_recognised(&beginning)))
 }
 
-/// What to say of an image whose PDS3 label lies beside it.
+/// The error for an image whose PDS3 label is a separate file next to it.
 fn label_beside(path: &Path) -> Option<TerrainError> {
     let label = ["lbl", "LBL"].map(|extension| path.with_extension(extension)).into_iter().find(|label| label.is_file())?;
     Some(TerrainError::Unsuitable {

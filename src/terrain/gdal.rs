@@ -1,6 +1,6 @@
-//! Whatever raster GDAL reads, through its C library (feature `gdal`).
+//! Reads all raster formats of GDAL through its C library (feature `gdal`).
 //!
-//! Place, units and projection go through the same checks as a GeoTIFF's: GDAL writes them into the tags of an empty one.
+//! Position, units and projection pass the same checks as those of a GeoTIFF: GDAL writes them into the tags of an empty one.
 
 use std::io::Write;
 use std::path::Path;
@@ -13,7 +13,7 @@ use super::geotiff::{Placed, place_by_tags};
 use super::window::turn_round;
 use super::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
 
-/// GDAL as a format.
+/// The reader of GDAL's formats.
 pub(super) struct GdalReader;
 
 impl DemReader for GdalReader {
@@ -21,7 +21,7 @@ impl DemReader for GdalReader {
         "GDAL raster"
     }
 
-    /// GDAL is asked last, so it may try anything.
+    /// GDAL is tried last, so it accepts any file.
     fn recognises(&self, _beginning: &[u8]) -> bool {
         true
     }
@@ -52,6 +52,12 @@ impl DemReader for GdalReader {
     }
 }
 
+/// Whether GDAL can open this file as a raster.
+pub(super) fn can_open(path: &Path) -> bool {
+    let options = gdal::DatasetOptions { open_flags: gdal::GdalOpenFlags::GDAL_OF_RASTER, ..gdal::DatasetOptions::default() };
+    Dataset::open_ex(path, options).is_ok()
+}
+
 struct OpenRaster {
     dataset: Dataset,
     lattice: PostLattice,
@@ -59,7 +65,7 @@ struct OpenRaster {
     states_metres: bool,
     scale: f64,
     offset: f64,
-    /// 1, or 1000 where the band says that it is in km.
+    /// 1, or 1000 if the band is in km.
     metres_per_unit: f64,
 }
 
@@ -77,7 +83,7 @@ impl OpenRaster {
         let band = dataset.rasterband(1).map_err(|error| refused(&error))?;
         if matches!(band.band_type(), GdalDataType::Unknown) {
             return Err(unsuitable(
-                "samples of no plain number type".to_owned(),
+                "samples of an unsupported type".to_owned(),
                 "integers or reals",
                 "gdal_translate -ot Float32 in out.tif",
             ));
@@ -106,7 +112,7 @@ fn skeleton(dataset: &Dataset) -> Result<Vec<u8>, TerrainError> {
     let path = folder.path().join("place.tif");
     let written = || -> gdal::errors::Result<()> {
         let mut tags = DriverManager::get_driver_by_name("GTiff")?.create_with_band_type::<u8, _>(&path, 1, 1, 1)?;
-        // GDAL gives no transform where there is none: then the tags have none, and are refused as such.
+        // If GDAL reports no transform, the tags have none, and the checks refuse them.
         if let Ok(transform) = dataset.geo_transform() {
             tags.set_geo_transform(&transform)?;
         }

@@ -1,4 +1,4 @@
-//! Where a raster's posts lie on the map.
+//! The position of a raster's posts on the map.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use super::TerrainError;
 use super::projection::{MapProjection, NoProjection, stated_ellipsoid};
 use crate::quantity::{MapPoint, format_number};
 
-/// The place of a raster on the map: north up, posts on a lattice of rectangles.
+/// The position of a raster on the map: north up, posts on a rectangular lattice.
 ///
 /// ```text
 ///   north_west o-----o-----o   north
@@ -19,26 +19,26 @@ pub struct GeoReference {
     north_west: MapPoint,
     dx_m: f64,
     dy_m: f64,
-    /// What the file said of its map projection; empty for a local map.
+    /// The map projection as given by the file; empty for a local map.
     pub coordinate_system: CoordinateSystem,
-    /// The tags the transform came from, kept so that they can be written back byte for byte.
+    /// The tags that gave the transform, kept so that they can be written back byte for byte.
     pub transform_tags: TransformTags,
 }
 
-/// What a GeoTIFF says of its map projection: its key directory and description, verbatim.
+/// The map projection of a GeoTIFF: its key directory and description, verbatim.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CoordinateSystem {
-    /// Tag 34735; empty where there is none.
+    /// Tag 34735; empty if absent.
     pub key_directory: Vec<u16>,
     /// Tag 34736.
     pub double_parameters: Vec<f64>,
     /// Tag 34737.
     pub ascii_parameters: String,
-    /// The citation, or the EPSG code, for people.
+    /// The citation, or the EPSG code, in readable form.
     pub description: Option<String>,
 }
 
-/// The tags that place a GeoTIFF on the map, and its no-data text, verbatim.
+/// The tags with the position of a GeoTIFF on the map, and its no-data text, verbatim.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TransformTags {
     /// Tag 33550.
@@ -61,7 +61,7 @@ pub struct MapBounds {
 }
 
 impl MapBounds {
-    /// Whether a point lies in the rectangle, its border included.
+    /// Whether a point lies in the rectangle, including its border.
     pub fn contains(&self, at: MapPoint) -> bool {
         (self.min.x..=self.max.x).contains(&at.x) && (self.min.y..=self.max.y).contains(&at.y)
     }
@@ -71,7 +71,7 @@ impl MapBounds {
         self.min.x <= other.max.x && other.min.x <= self.max.x && self.min.y <= other.max.y && other.min.y <= self.max.y
     }
 
-    /// Whether coordinates of degrees could be these.
+    /// Whether the coordinates could be degrees.
     pub(super) fn may_be_degrees(&self) -> bool {
         let Self { min, max } = self;
         min.x >= -180.0 && max.x <= 360.0 && min.y >= -90.0 && max.y <= 90.0
@@ -86,10 +86,10 @@ impl fmt::Display for MapBounds {
 }
 
 impl GeoReference {
-    /// A local map without projection: the north-west post and the spacings east and north, m.
+    /// A local map without projection, from the north-west post and the spacings to the east and north, m.
     ///
     /// # Errors
-    /// [`TerrainError::InvalidDem`] where a coordinate is not finite or a spacing is not above zero.
+    /// [`TerrainError::InvalidDem`] if a coordinate is not finite or a spacing is not above zero.
     pub fn local(north_west: MapPoint, dx_m: f64, dy_m: f64) -> Result<Self, TerrainError> {
         if !(north_west.x.is_finite() && north_west.y.is_finite()) {
             return Err(TerrainError::InvalidDem(format!(
@@ -146,7 +146,7 @@ impl GeoReference {
     /// The map projection, from what the file or the caller said of it.
     ///
     /// # Errors
-    /// [`NoProjection`] where it said nothing, or a projection that is not known here.
+    /// [`NoProjection`] if the file gives none, or an unsupported one.
     pub fn projection(&self) -> Result<MapProjection, NoProjection> {
         MapProjection::of(&self.coordinate_system)
     }
@@ -166,7 +166,7 @@ impl GeoReference {
         self.dy_m
     }
 
-    /// Map coordinates of a post, each one product and one sum from the north-west post.
+    /// Map coordinates of a post, each computed by one product and one sum from the north-west post.
     ///
     /// ```
     /// use chta::quantity::MapPoint;
@@ -181,7 +181,7 @@ impl GeoReference {
         MapPoint::new(self.north_west.x + col * self.dx_m, self.north_west.y - row * self.dy_m)
     }
 
-    /// The place of every `stride`-th post, counted from the north-west one; of every post for a stride of 1 (and 0).
+    /// The position of every `stride`-th post, counted from the north-west one; of every post for a stride of 1 (and 0).
     #[must_use]
     pub fn every(&self, stride: usize) -> Self {
         #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
@@ -189,20 +189,21 @@ impl GeoReference {
         Self { dx_m: self.dx_m * step, dy_m: self.dy_m * step, ..self.clone() }
     }
 
-    /// The rectangle of the outermost posts of a raster with so many rows and columns.
+    /// The rectangle of the outermost posts of a raster with these numbers of rows and columns.
     pub fn bounds(&self, rows: usize, cols: usize) -> MapBounds {
         let south_east = self.post(rows.saturating_sub(1), cols.saturating_sub(1));
         MapBounds { min: MapPoint::new(self.north_west.x, south_east.y), max: MapPoint::new(south_east.x, self.north_west.y) }
     }
 }
 
-/// How many times its own map's width a terrain would have to rise before the map is taken to be in degrees.
+/// A map is taken to be in degrees if its relief exceeds its width by this factor.
 ///
-/// The steepest landscapes rise about once their width; a map in degrees is some 100 000 times too narrow (Earth, Mars; 30 000 on the
-/// Moon). Smaller would refuse cliffs cut out narrowly, larger would let through gentle plains in degrees.
+/// The steepest landscapes rise about once their width; a map in degrees appears some 100 000 times too narrow (Earth, Mars;
+/// 30 000 on the Moon). A smaller factor would refuse narrow cut-outs of cliffs, a larger one would accept gentle plains in
+/// degrees.
 const RELIEF_TO_WIDTH_OF_DEGREES: f64 = 5.0;
 
-/// Refuses a raster without stated units whose numbers only make sense in degrees.
+/// Refuses a raster without stated units whose numbers are only plausible in degrees.
 pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
     if !dem.bounds().may_be_degrees() {
         return Ok(());
@@ -224,7 +225,7 @@ pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
     Ok(())
 }
 
-/// How a map in degrees becomes one in metres: a stereographic map about the transect, true to scale around it.
+/// How to convert a map in degrees to metres: a stereographic map centred on the transect, which is true to scale around it.
 pub(super) fn mend_degrees(system: &CoordinateSystem) -> String {
     let figure = stated_ellipsoid(system).map_or_else(|| "+R=RADIUS_M".to_owned(), |ellipsoid| ellipsoid.proj());
     format!(

@@ -1,8 +1,8 @@
-//! Where the posts of a raster lie.
+//! The lattice of a raster's posts.
 
 use super::{GeoReference, MapBounds, TerrainError};
 
-/// Posts in rows and columns, and where on the map they lie: at least 2 x 2, with coordinates that tell neighbours apart.
+/// Posts in rows and columns, and their position on the map: at least 2 x 2, with different coordinates for neighbours.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PostLattice {
     rows: usize,
@@ -11,11 +11,11 @@ pub struct PostLattice {
 }
 
 impl PostLattice {
-    /// So many rows and columns at their place.
+    /// A lattice with a number of rows and columns and a position.
     ///
     /// # Errors
-    /// [`TerrainError::InvalidDem`] where there are fewer than 2 rows or columns, or the posts' map coordinates run out of the numbers:
-    /// 1 mm posts 10^14 m from the origin do not differ.
+    /// [`TerrainError::InvalidDem`] if there are fewer than 2 rows or columns, or if neighbouring posts have equal
+    /// coordinates in floating point, as for 1 mm posts 10^14 m from the origin.
     pub fn new(rows: usize, cols: usize, georeference: GeoReference) -> Result<Self, TerrainError> {
         check_sides(rows, cols)?;
         let bounds = georeference.bounds(rows, cols);
@@ -41,7 +41,7 @@ impl PostLattice {
         self.cols
     }
 
-    /// Where the posts lie.
+    /// The position of the posts on the map.
     pub fn georeference(&self) -> &GeoReference {
         &self.georeference
     }
@@ -51,13 +51,13 @@ impl PostLattice {
         self.georeference.bounds(self.rows, self.cols)
     }
 
-    /// The place of a post where they stand row after row from the north; `None` outside.
+    /// The index of a post in row-major order from the north; `None` outside.
     pub(super) fn index(&self, row: usize, col: usize) -> Option<usize> {
         (row < self.rows && col < self.cols).then(|| row * self.cols + col)
     }
 }
 
-/// A square of posts is the least ground there is.
+/// The smallest raster is a square of four posts.
 pub(super) fn check_sides(rows: usize, cols: usize) -> Result<(), TerrainError> {
     if rows >= 2 && cols >= 2 {
         return Ok(());

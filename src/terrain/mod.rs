@@ -1,9 +1,10 @@
-//! Elevation rasters and what is cut from them.
+//! Elevation rasters and meshes, and vertical slices of them.
 //!
-//! A [`Dem`] is posts of elevation on a map in metres, read from a file by content ([`read_dem`]), made up from a seed
-//! ([`synthesise`]), or built in memory. [`slice`](slice()) cuts it along a vertical plane into a [`Profile`], from which a polygonal
-//! chain is made. A further file format is one more [`DemReader`], listed
-//! in [`FORMATS`]. A [`Mesh`] is triangles that may overhang, and [`slice_mesh`] cuts it the same way.
+//! A [`Dem`] is a raster of elevations on a map in metres: read from a file whose format is recognised by content
+//! ([`read_dem`]), generated from a seed ([`synthesise`]), or built in memory. [`slice`](slice()) intersects it with a
+//! vertical plane and returns a [`Profile`], from which a polygonal chain is made. A new file format is one more
+//! [`DemReader`], listed in [`FORMATS`]. A [`Mesh`] consists of triangles that may overhang, and [`slice_mesh`] slices it the
+//! same way.
 //!
 //! ```
 //! use chta::quantity::MapPoint;

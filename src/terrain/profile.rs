@@ -1,4 +1,4 @@
-//! What a vertical plane cuts out of a terrain.
+//! The profile of a terrain along a vertical plane.
 
 use nalgebra::{Vector2, Vector3};
 
@@ -11,7 +11,7 @@ use crate::{
 /// By how much the length of a direction of length 1 may differ from it.
 const UNIT_ROUNDING: f64 = 1.0e-6;
 
-/// The ground along a straight line on the map: a polygonal line, and the facet under each of its segments.
+/// The ground along a straight line on the map: a polygonal line, and the facet under each segment.
 ///
 /// ```text
 ///   points:   0-----1---2--------3      x_m strictly increasing from 0
@@ -19,11 +19,11 @@ const UNIT_ROUNDING: f64 = 1.0e-6;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Profile {
-    /// Every place where the plane crosses a line of the triangulated terrain, and its two ends.
+    /// The points where the plane crosses an edge of the triangulated terrain, and the two ends.
     pub points: Vec<ProfilePoint>,
-    /// Of the segment that begins at the point of the same number.
+    /// The facet of the segment that begins at the point with the same index.
     pub facets: Vec<ProfileFacet>,
-    /// Direction of travel on the map, of length 1.
+    /// Direction of travel on the map, a unit vector.
     pub heading: Vector2<f64>,
 }
 
@@ -34,20 +34,20 @@ pub struct ProfilePoint {
     pub x_m: f64,
     /// Elevation, m.
     pub z_m: f64,
-    /// Where on the map.
+    /// Position on the map.
     pub map: MapPoint,
 }
 
-/// The facet under a segment, and what lies over it.
+/// The facet under a segment, and the overlays on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProfileFacet {
-    /// Upward normal of length 1: east, north, up.
+    /// Upward unit normal: east, north, up.
     pub normal: Vector3<f64>,
     /// Angle between the normal and the vertical plane of travel, 0 to 90 degrees.
     pub cross_slope: Angle,
-    /// No take-off, no landing: the segment lies in a keep-out zone.
+    /// Whether the segment lies in a keep-out zone: no take-off and no landing.
     pub keep_out: bool,
-    /// Friction of the segment where a raster gives it.
+    /// Friction of the segment, if a raster gives it.
     pub friction: Option<FrictionCone>,
 }
 
@@ -120,18 +120,19 @@ impl Profile {
 }
 
 impl ProfileFacet {
-    /// The facet of gradient (east, north) as met along `heading`.
+    /// The facet with a gradient (east, north), for a direction of travel `heading`.
     ///
     /// ```text
-    /// n = (-p, -q, 1) / sqrt(1 + p^2 + q^2),   cross-slope = asin |n . s|,   s horizontal, across the heading
+    /// n = (-p, -q, 1) / sqrt(1 + p^2 + q^2),   cross-slope = asin |n . s|,   s the horizontal unit vector across the heading
     /// ```
     ///
-    /// taken as atan2 of the parts of n across and along the plane, which keeps its digits near 0 and near 90 degrees.
+    /// computed as atan2 of the components of n across and along the plane, which keeps its digits near 0 and near 90
+    /// degrees.
     ///
     /// ```
     /// use chta::terrain::ProfileFacet;
     /// use nalgebra::Vector2;
-    /// // A side-slope of 45 degrees, walked along its contour.
+    /// // A slope of 45 degrees, traversed along its contour.
     /// let facet = ProfileFacet::from_gradient(Vector2::new(0.0, 1.0), Vector2::new(1.0, 0.0));
     /// assert!((facet.cross_slope.degrees() - 45.0).abs() < 1e-12);
     /// ```
@@ -147,13 +148,13 @@ impl ProfileFacet {
         }
     }
 
-    /// The facet of a normal (east, north, up; any length above 0, either way up) as met along `heading`: as
-    /// [`from_gradient`](Self::from_gradient), and for upright facets too.
+    /// The facet with a normal (east, north, up; of any length above 0, up or down), for a direction of travel `heading`:
+    /// like [`from_gradient`](Self::from_gradient), but for upright facets too.
     ///
     /// ```
     /// use chta::terrain::ProfileFacet;
     /// use nalgebra::{Vector2, Vector3};
-    /// // A wall, walked along its foot.
+    /// // A wall, traversed along its foot.
     /// let facet = ProfileFacet::from_normal(Vector3::new(0.0, 2.0, 0.0), Vector2::new(1.0, 0.0));
     /// assert_eq!(facet.cross_slope.degrees(), 90.0);
     /// ```
@@ -169,7 +170,7 @@ impl ProfileFacet {
         }
     }
 
-    /// How steep the facet is in its steepest direction, 0 to 90 degrees.
+    /// The inclination of the facet in its steepest direction, 0 to 90 degrees.
     pub fn tilt(&self) -> Angle {
         Angle::from_radians(libm::atan2(libm::hypot(self.normal.x, self.normal.y), self.normal.z))
     }

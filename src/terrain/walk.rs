@@ -1,21 +1,21 @@
-//! A straight walk over the triangles of a DEM, one after the other, without any memory of its own.
+//! A straight walk over the triangles of a DEM, from one to the next, without allocation.
 
 use nalgebra::Vector2;
 
 use super::Dem;
 use crate::quantity::MapPoint;
 
-/// Within so many post spacings a place is on a line of the lattice, as in [`slice`](super::slice()).
+/// A position within this many post spacings of a line of the lattice is on it, as in [`slice`](super::slice()).
 const ON_THE_LINE: f64 = 1.0e-9;
 
-/// The triangulated ground of a DEM (every square of posts split from north-west to south-east), to be walked over.
+/// The triangulated ground of a DEM (every square of posts divided from north-west to south-east), for straight walks.
 ///
-/// Heights of posts are asked of a function of row and column, which is the DEM's own ([`Triangles::nominal`]) or that with errors;
-/// NaN where there is no ground.
+/// A function of row and column gives the heights of posts: the DEM's own ([`Triangles::nominal`]) or heights with errors;
+/// NaN means no ground.
 #[derive(Clone, Copy, Debug)]
 pub struct Triangles<'a> {
     dem: &'a Dem,
-    /// Of the last square's north-west post.
+    /// Column of the last square's north-west post.
     last_col: isize,
     last_row: isize,
     origin: MapPoint,
@@ -28,24 +28,24 @@ pub struct Triangles<'a> {
 pub struct FacetSpan {
     /// Where it begins, m from the beginning of the walk.
     pub from_m: f64,
-    /// Where it ends.
+    /// Where it ends, m from the beginning of the walk.
     pub to_m: f64,
-    /// Height of the ground where it begins, m.
+    /// Height of the ground at its beginning, m.
     pub from_z_m: f64,
-    /// Height of the ground where it ends, m.
+    /// Height of the ground at its end, m.
     pub to_z_m: f64,
-    /// Slope of the triangle towards east and north.
+    /// Gradient of the triangle, to the east and north.
     pub gradient: Vector2<f64>,
 }
 
-/// Which half of a square: north-east or south-west of its diagonal.
+/// The half of a square: north-east or south-west of its diagonal.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Half {
     NorthEast,
     SouthWest,
 }
 
-/// The side by which a walk leaves a triangle.
+/// The side through which a walk leaves a triangle.
 #[derive(Clone, Copy, Debug)]
 enum Side {
     East,
@@ -55,7 +55,7 @@ enum Side {
     Diagonal,
 }
 
-/// A triangle with the heights of its posts. The third is the north-east or the south-west one.
+/// A triangle with the heights of its posts; the third post is the north-east or the south-west one.
 #[derive(Clone, Copy, Debug)]
 struct Triangle {
     col: isize,
@@ -98,12 +98,12 @@ impl<'a> Triangles<'a> {
         self.dem.georeference().post(row, col)
     }
 
-    /// Whether a place lies on the map, its border included.
+    /// Whether a position lies on the map, including its border.
     pub fn covers(&self, place: MapPoint) -> bool {
         self.lattice(place).is_some()
     }
 
-    /// Height and gradient of the ground at a place; `None` off the map and where a post of the triangle is missing.
+    /// Height and gradient of the ground at a position; `None` off the map and if a post of the triangle is missing.
     ///
     /// # Examples
     /// ```
@@ -125,13 +125,13 @@ impl<'a> Triangles<'a> {
         (!height_m.is_nan()).then(|| (height_m, triangle.gradient(self.spacing_m)))
     }
 
-    /// The triangles met on a straight way from a place, as far as there is ground.
+    /// The triangles along a straight line from a position, up to the end of the ground.
     ///
-    /// From a place on a line of the lattice (within a billionth of a post spacing) the walk begins with the triangle ahead; along a
-    /// line, with one of the two beside it. The spans touch, and the ground is continuous over them.
+    /// From a position on a line of the lattice (within 1e-9 post spacings) the walk begins with the triangle ahead; along a
+    /// line, with one of the two beside it. Consecutive spans share their ends, and the ground is continuous over them.
     ///
     /// # Arguments
-    /// `heading`: east and north, of length 1.
+    /// `heading`: unit vector, east and north.
     ///
     /// # Examples
     /// ```
@@ -165,7 +165,7 @@ impl<'a> Triangles<'a> {
         }
     }
 
-    /// Columns east and rows south of the north-west post, whole where nearly so; `None` off the map.
+    /// Columns east and rows south of the north-west post, rounded if nearly integers; `None` off the map.
     #[inline]
     fn lattice(&self, place: MapPoint) -> Option<(f64, f64)> {
         let u = self.nearly_whole((place.x - self.origin.x) / self.spacing_m.x);
@@ -180,7 +180,7 @@ impl<'a> Triangles<'a> {
         if (value - whole).abs() <= self.tolerance { whole } else { value }
     }
 
-    /// The triangle ahead of a place on the lattice; `None` where the map ends there.
+    /// The triangle ahead of a position on the lattice; `None` if the map ends there.
     #[inline]
     fn ahead<H: Fn(usize, usize) -> f64>(&self, u: f64, v: f64, step: Vector2<f64>, heights: &H) -> Option<Triangle> {
         let square = |at: f64, step: f64, last: isize| {
@@ -237,7 +237,7 @@ impl Triangle {
         }
     }
 
-    /// The triangle beyond a side, whose far post is asked for; the two posts of the side are kept.
+    /// The triangle beyond a side: reads the height of its third post and keeps the two posts of the side.
     #[inline]
     fn beyond(self, side: Side, ground: &Triangles<'_>, heights: &impl Fn(usize, usize) -> f64) -> Option<Self> {
         let Self { col, row, half, north_west_m, south_east_m, third_m } = self;
@@ -263,7 +263,7 @@ impl Triangle {
     }
 }
 
-/// The triangles met on a straight way; see [`Triangles::walk`].
+/// An iterator over the triangles along a straight line; see [`Triangles::walk`].
 #[derive(Clone, Debug)]
 pub struct FacetWalk<'a, H> {
     ground: Triangles<'a>,
@@ -279,7 +279,8 @@ pub struct FacetWalk<'a, H> {
 }
 
 impl<H> FacetWalk<'_, H> {
-    /// Where the walk leaves a triangle, and by which side. A direction crosses each side one way only, so no walk turns round.
+    /// The distance at which the walk leaves a triangle, and through which side. A direction crosses each side in one sense
+    /// only, so no walk turns back.
     #[inline]
     fn exit(&self, triangle: &Triangle) -> (f64, Side) {
         let (col, row) = (coordinate(triangle.col), coordinate(triangle.row));
@@ -326,7 +327,7 @@ impl<H: Fn(usize, usize) -> f64> Iterator for FacetWalk<'_, H> {
                     self.next = None;
                     return None;
                 }
-                // Only touched, at one of its posts.
+                // The line only touches the triangle at one of its posts.
                 continue;
             }
             return Some(FacetSpan { from_m, to_m, from_z_m, to_z_m, gradient: triangle.gradient(self.ground.spacing_m) });
@@ -367,7 +368,7 @@ mod tests {
         synthesise(&terrain).unwrap()
     }
 
-    /// The slice is the other road: crossings of all lines, sorted.
+    /// Compares with the slice, which sorts the crossings of all lines.
     fn agrees_with_slice(dem: &Dem, from: MapPoint, to: MapPoint) {
         let profile = slice(dem, from, to).unwrap();
         let ground = Triangles::of(dem);
@@ -386,14 +387,14 @@ mod tests {
                 assert!((span.to_m - points[1].x_m).abs() < 1e-6 && (span.to_z_m - points[1].z_m).abs() < 1e-5, "{span:?}");
             }
             let normal = nalgebra::Vector3::new(-span.gradient.x, -span.gradient.y, 1.0).normalize();
-            // Along an edge of the lattice either triangle may be walked.
+            // Along an edge of the lattice, the walk may use either triangle.
             let along = facet.normal.xy().dot(&heading) / facet.normal.z;
             assert!((normal.xy().dot(&heading) / normal.z - along).abs() < 1e-6, "{span:?} against {facet:?}");
         }
     }
 
     #[test]
-    fn walks_meet_the_ground_that_slices_cut() {
+    fn walks_agree_with_slices() {
         let dem = rough();
         let mut draw = Draw::seeded(1);
         for _ in 0..400 {
@@ -423,7 +424,7 @@ mod tests {
     }
 
     #[test]
-    fn walks_end_where_the_ground_does() {
+    fn walks_end_where_the_ground_ends() {
         let map = GeoReference::local(MapPoint::new(0.0, 2.0), 1.0, 1.0).unwrap();
         let dem = Dem::new(3, 4, vec![0.0, 0.0, 0.0, 0.0, 0.0, 0.0, f64::NAN, 0.0, 0.0, 0.0, 0.0, 0.0], map).unwrap();
         let ground = Triangles::of(&dem);
@@ -431,10 +432,10 @@ mod tests {
             let spans = ground.walk(MapPoint::new(from.0, from.1), Vector2::new(heading.0, heading.1), ground.nominal());
             spans.last().map(|span| span.to_m)
         };
-        assert_eq!(end_m((0.5, 0.25), (-1.0, 0.0)), Some(0.5), "the border");
-        assert_eq!(end_m((0.25, 0.5), (1.0, 0.0)), Some(1.25), "the square with the gap has its south-west half");
+        assert_eq!(end_m((0.5, 0.25), (-1.0, 0.0)), Some(0.5), "ends at the border");
+        assert_eq!(end_m((0.25, 0.5), (1.0, 0.0)), Some(1.25), "ends at the south-west half of the square with the gap");
         assert_eq!(end_m((3.0, 0.0), (1.0, 0.0)), None, "at the border, outwards");
-        assert_eq!(end_m((-0.1, 0.0), (1.0, 0.0)), None, "off the map");
-        assert_eq!(end_m((0.5, 0.5), (0.0, 0.0)), None, "nowhere");
+        assert_eq!(end_m((-0.1, 0.0), (1.0, 0.0)), None, "starts off the map");
+        assert_eq!(end_m((0.5, 0.5), (0.0, 0.0)), None, "has no direction");
     }
 }

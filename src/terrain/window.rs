@@ -1,35 +1,35 @@
-//! Rasters read where they are needed.
+//! Rasters of which parts are read on demand.
 
 use super::{Dem, PostLattice, TerrainError};
 
-/// A rectangle of posts, counted from the north-west.
+/// A rectangle of posts, with rows and columns counted from the north-west.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Window {
     /// Northernmost row.
     pub first_row: usize,
     /// Westernmost column.
     pub first_col: usize,
-    /// How many rows.
+    /// Number of rows.
     pub rows: usize,
-    /// How many columns.
+    /// Number of columns.
     pub cols: usize,
 }
 
 impl Window {
-    /// The place of a post among the window's own, row after row; `None` outside.
+    /// The index of a post in the window, in row-major order; `None` outside.
     fn index(&self, row: usize, col: usize) -> Option<usize> {
         let (row, col) = (row.checked_sub(self.first_row)?, col.checked_sub(self.first_col)?);
         (row < self.rows && col < self.cols).then_some(row * self.cols + col)
     }
 
-    /// Where these posts stand in a file of so many rows, which may begin with the southernmost.
+    /// This window in a file with a number of rows, which may store the southernmost row first.
     pub(super) const fn stored(self, of_rows: usize, south_up: bool) -> Self {
         let first_row = if south_up { of_rows - self.first_row - self.rows } else { self.first_row };
         Self { first_row, ..self }
     }
 }
 
-/// Puts the northernmost row first where the southernmost is stored first.
+/// Reverses the order of rows if the southernmost row is stored first.
 pub(super) fn turn_round<T>(posts: &mut [T], cols: usize, south_up: bool) {
     if south_up {
         posts.reverse();
@@ -37,15 +37,15 @@ pub(super) fn turn_round<T>(posts: &mut [T], cols: usize, south_up: bool) {
     }
 }
 
-/// A DEM that is open: its place is known, its posts are read when asked for.
+/// An open DEM: its lattice is known, and posts are read on demand.
 pub trait DemFile {
-    /// Where all posts lie.
+    /// The lattice of all posts.
     fn lattice(&self) -> &PostLattice;
 
     /// The elevations of a window inside the raster, row after row from the north, NaN for gaps.
     ///
     /// # Errors
-    /// [`TerrainError`] where the file cannot be read or is damaged there, or holds what is no elevation.
+    /// [`TerrainError`] if the file cannot be read or is damaged there, or holds an invalid elevation.
     fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError>;
 }
 
@@ -60,7 +60,7 @@ impl DemFile for Dem {
     }
 }
 
-/// What a slice asks of a terrain.
+/// The terrain that a slice needs.
 pub(super) trait Posts {
     fn lattice(&self) -> &PostLattice;
     fn elevation(&self, row: usize, col: usize) -> Option<f64>;
@@ -76,7 +76,7 @@ impl Posts for Dem {
     }
 }
 
-/// One window's posts under the numbers of the whole raster; outside the window there are none.
+/// The posts of one window, with indices of the whole raster; there are none outside the window.
 pub(super) struct Part<'a> {
     file: &'a dyn DemFile,
     window: Window,
@@ -84,7 +84,7 @@ pub(super) struct Part<'a> {
 }
 
 impl<'a> Part<'a> {
-    /// No posts yet: enough to know where the lattice lies.
+    /// An empty part: only the position of the lattice is known.
     pub(super) fn none_of(file: &'a dyn DemFile) -> Self {
         Self { file, window: Window { first_row: 0, first_col: 0, rows: 0, cols: 0 }, elevations_m: Vec::new() }
     }

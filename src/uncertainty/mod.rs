@@ -19,11 +19,12 @@
 //! # Examples
 //! ```
 //! use chta::{chain::*, graph::*, hop::{HopTest, Split}, path::generate, quantity::*, uncertainty::*, world::*};
-//! let hopper = Hopper::with_speeds(9.0, 9.0).unwrap();
+//! let hopper = Hopper::with_speeds(9.0, 9.0)?;
 //! let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(1.5)?)), rest: RestSlope::AsFrictionHolds };
 //! let chain = PolygonalChain::bare(vec![ChainPoint::new(-50.0, 0.0), ChainPoint::new(99.0, 0.0)])?;
 //! let chain = ConstrainedChain::new(chain, &hopper, Gravity::new(1.6)?, &surface)?;
-//! let test = HopTest::new(chain.clone());
+//! let test = HopTest::new(chain);
+//! let chain = test.chain();
 //! let (start, goal) = (chain.geometry().station(0.0)?, chain.geometry().station(40.0)?);
 //! let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {})?;
 //! let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path") };

@@ -2,7 +2,7 @@
 
 use super::Gravity;
 
-/// A body to hop on, with constant gravity.
+/// A body to hop on, with constant surface gravity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Lower-case name.
@@ -11,12 +11,12 @@ pub struct Body {
     pub gravity: Gravity,
     /// Mean radius, m.
     pub radius_m: f64,
-    /// Where the two numbers come from.
+    /// The sources of gravity and radius.
     pub source: &'static str,
 }
 
 impl Body {
-    /// The known body of this name, whatever the case.
+    /// The known body of this name, in any letter case.
     ///
     /// ```
     /// use chta::world::Body;
@@ -38,18 +38,18 @@ impl Body {
         (2.0 * self.gravity.m_s2() * self.radius_m).sqrt()
     }
 
-    /// Gravity from the gravitational parameter and the mean radius, `GM / R^2`.
+    /// A body whose gravity follows from the gravitational parameter and the mean radius, `g = GM / R^2`.
     const fn from_gm(name: &'static str, gm_m3_s2: f64, radius_m: f64, source: &'static str) -> Self {
         Self { name, gravity: Gravity::known(gm_m3_s2 / (radius_m * radius_m)), radius_m, source }
     }
 
-    /// Gravity as published.
+    /// A body whose gravity is taken as published.
     const fn published(name: &'static str, gravity_m_s2: f64, radius_m: f64, source: &'static str) -> Self {
         Self { name, gravity: Gravity::known(gravity_m_s2), radius_m, source }
     }
 }
 
-/// Every body the program knows by name. Rotation and the shapes of small bodies are not in these numbers.
+/// Every body that the program knows by name. The gravities ignore rotation and the irregular shapes of small bodies.
 pub const KNOWN_BODIES: [Body; 15] = [
     Body::from_gm("moon", 4.902_800_066e12, 1_737_400.0, "GM: GRAIL, JPL DE430 (Folkner et al. 2014); radius: IAU WGCCRE 2015"),
     Body::published(
@@ -77,7 +77,7 @@ pub const KNOWN_BODIES: [Body; 15] = [
 mod tests {
     use super::*;
 
-    /// Surface gravities as encyclopaedias and fact sheets print them (NSSDCA, JPL SSD), to their few digits.
+    /// Compares with surface gravities of fact sheets (NSSDCA, JPL SSD), to the few digits printed there.
     #[test]
     fn gravities_agree_with_printed_fact_sheets() {
         let printed = [
@@ -97,7 +97,7 @@ mod tests {
             ("67p", 2.45e-4),
             ("earth", 9.81),
         ];
-        assert_eq!(printed.len(), KNOWN_BODIES.len(), "a body has no printed figure");
+        assert_eq!(printed.len(), KNOWN_BODIES.len(), "every body needs a printed figure");
         for (name, gravity) in printed {
             let body = Body::named(name).unwrap();
             assert!((body.gravity.m_s2() / gravity - 1.0).abs() < 0.02, "{name}: {} against {gravity}", body.gravity.m_s2());

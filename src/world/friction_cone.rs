@@ -1,4 +1,4 @@
-//! The friction cone and its cut by the vertical plane of travel.
+//! The friction cone and its intersection with the vertical plane of travel.
 
 use crate::quantity::Angle;
 
@@ -8,7 +8,7 @@ pub struct FrictionCone {
     coefficient: f64,
 }
 
-/// A friction coefficient that is no number, infinite or negative.
+/// A friction coefficient that is NaN, infinite or negative.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("friction coefficient {0} is not a finite number of at least 0 (dry rock and regolith: 0.3 to 1.2)")]
 pub struct InvalidFriction(pub f64);
@@ -17,7 +17,7 @@ impl FrictionCone {
     /// The cone of a friction coefficient `mu`.
     ///
     /// # Errors
-    /// [`InvalidFriction`] where `mu` is not finite or negative.
+    /// [`InvalidFriction`] if `mu` is negative or not finite.
     pub fn new(coefficient: f64) -> Result<Self, InvalidFriction> {
         if coefficient.is_finite() && coefficient >= 0.0 { Ok(Self { coefficient }) } else { Err(InvalidFriction(coefficient)) }
     }
@@ -32,22 +32,22 @@ impl FrictionCone {
         Angle::from_slope(self.coefficient)
     }
 
-    /// The half-angle of the planar cone that a vertical plane of travel cuts from this cone.
+    /// The half-angle of the planar cone in which a vertical plane of travel intersects this cone.
     ///
     /// ```text
     ///     delta = acos(cos phi / cos chi),   tan delta = sqrt((mu - t)(mu + t) / (1 + t^2)),   t = tan chi
     /// ```
     ///
-    /// where `chi` is the angle between the surface normal and the plane. The second form, used here, keeps its digits next to
-    /// `chi = phi`, where the cone closes, and for small `mu`.
+    /// where `chi` is the angle between the surface normal and the plane. The second form, used here, keeps its digits near
+    /// `chi = phi`, where the planar cone closes, and for small `mu`.
     ///
-    /// Source: model section 1; the plane cut of Campana and Laumond 2016, section IV-A.
+    /// Source: model section 1; the intersection with the plane is that of Campana and Laumond 2016, section IV-A.
     ///
     /// # Units
     /// `cross_slope`: the angle chi, 0 to 90 degrees.
     ///
     /// # Returns
-    /// The half-angle delta; `None` where the plane misses the cone (`chi > phi`). `chi = phi` gives zero.
+    /// The half-angle delta; `None` if the plane misses the cone (`chi > phi`). `chi = phi` gives zero.
     ///
     /// # Examples
     /// ```
@@ -71,7 +71,7 @@ impl FrictionCone {
 mod tests {
     use super::*;
 
-    /// The other road: the cone's cut found by turning a vector inside the plane until it leaves the cone.
+    /// Independent check: rotates a vector inside the plane until it leaves the cone.
     #[test]
     fn cut_agrees_with_a_search_in_the_plane() {
         for mu in [0.05, 0.6, 1.2, 5.0] {
@@ -84,7 +84,7 @@ mod tests {
                     cos >= 1.0 / (1.0 + mu * mu).sqrt()
                 };
                 match cone.cut(Angle::from_radians(chi)) {
-                    None => assert!(!inside(0.0), "mu {mu} chi {chi_deg}: refused, but the axis itself is inside"),
+                    None => assert!(!inside(0.0), "mu {mu} chi {chi_deg}: no cut, but the plane's own axis is inside the cone"),
                     Some(delta) => {
                         let (mut low, mut high) = (0.0, std::f64::consts::FRAC_PI_2);
                         for _ in 0..80 {

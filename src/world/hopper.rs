@@ -1,4 +1,4 @@
-//! The robot: what its actuator gives and its body takes.
+//! The robot: the limits of its actuator and its body.
 
 use std::fmt;
 
@@ -6,31 +6,31 @@ use crate::quantity::Angle;
 
 /// The limits of a ballistic hopper as stated, not yet checked: [`Hopper::new`] does that.
 ///
-/// The two speeds are infinite where nothing but the chain's explicit constraints limits them.
+/// The two speeds are infinite if only the chain's explicit constraints limit them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HopperLimits {
     /// Greatest take-off speed, m/s.
     pub takeoff_speed_max_m_s: f64,
     /// Greatest landing speed, m/s.
     pub landing_speed_max_m_s: f64,
-    /// The paper's epsilon: height to keep over every vertex flown past, m.
+    /// Height to keep above every vertex flown over, m (epsilon in the CHTA paper).
     pub clearance_m: f64,
-    /// Mechanical least take-off angle from the horizontal.
+    /// Least take-off angle from the horizontal that the mechanism allows.
     pub takeoff_angle_min: Option<Angle>,
-    /// Mechanical greatest take-off angle from the horizontal.
+    /// Greatest take-off angle from the horizontal that the mechanism allows.
     pub takeoff_angle_max: Option<Angle>,
     /// Greatest apex above the take-off point, m.
     pub apex_height_max_m: Option<f64>,
     /// Longest flight, s.
     pub flight_time_max_s: Option<f64>,
-    /// Mass, kg, for totals of energy.
+    /// Mass, kg, used for energies only.
     pub mass_kg: Option<f64>,
-    /// Rest between hops, s, for the mission time.
+    /// Rest between hops, s, used for the mission time only.
     pub rest_time_s: Option<f64>,
 }
 
 impl HopperLimits {
-    /// No limit at all: all limits come from the chain.
+    /// No limits of the hopper: all limits come from the chain.
     pub const UNLIMITED: Self = Self {
         takeoff_speed_max_m_s: f64::INFINITY,
         landing_speed_max_m_s: f64::INFINITY,
@@ -84,7 +84,7 @@ impl fmt::Display for HopperProblem {
 }
 
 impl Hopper {
-    /// A hopper of which nothing is known: all limits come from the chain.
+    /// A hopper without limits of its own: all limits come from the chain.
     pub const UNLIMITED: Self = Self { limits: HopperLimits::UNLIMITED };
 
     /// A hopper with these limits.

@@ -1,35 +1,36 @@
-//! The names of all limits, and the program's one tolerance.
+//! The names of all limits, and the program's only tolerance.
 
 use std::fmt;
 
-/// A limit that can shape or refuse a hop. Its [`name`](Self::name) is the one that every result uses.
+/// A limit that can restrict or refuse a hop. All results use its [`name`](Self::name).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Limit {
-    /// The ground allows nothing in this direction of travel (a chain CSV without the six columns for it, or the chain's end).
+    /// The ground allows no contact in this direction of travel (a chain CSV without the six columns for it, or the chain's
+    /// end).
     Direction,
     /// The point lies in a keep-out zone.
     KeepOut,
-    /// The surface is steeper than the hopper can rest on.
+    /// The surface is steeper than the hopper's rest slope.
     RestSlope,
-    /// A hop is flown in one vertical plane: it spans no bend of the chain. It may begin or end at one.
+    /// A hop is flown in one vertical plane, so it may not span a bend of the chain. It may begin or end at one.
     Bend,
     /// The take-off direction must lie in the take-off cone of the ground.
     TakeoffCone,
     /// The landing direction must lie in the landing cone of the ground.
     LandingCone,
-    /// The actuator: a greatest take-off speed.
+    /// Take-off speed: limit of the actuator.
     TakeoffSpeed,
-    /// Damage: a greatest landing speed.
+    /// Landing speed: limit of the structure.
     LandingSpeed,
     /// The arc must rise above the line of sight from take-off to landing.
     LineOfSight,
-    /// The arc must clear every vertex flown past.
+    /// The arc must clear every vertex flown over.
     Terrain,
-    /// The machine's own least and greatest take-off angle.
+    /// The least and greatest take-off angle of the mechanism.
     MechanicalAngle,
-    /// The machine's greatest apex above the take-off point.
+    /// The hopper's greatest apex height above the take-off point.
     ApexHeight,
-    /// The machine's longest flight.
+    /// The hopper's longest flight time.
     FlightTime,
 }
 
@@ -51,7 +52,7 @@ impl Limit {
         Self::FlightTime,
     ];
 
-    /// The name in JSON, CSV and messages.
+    /// The name used in JSON, CSV and messages.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Direction => "direction",
@@ -70,7 +71,7 @@ impl Limit {
         }
     }
 
-    /// The place in [`Limit::ALL`], to count by.
+    /// The index in [`Limit::ALL`], for arrays of counts.
     pub const fn index(self) -> usize {
         self as usize
     }
@@ -82,13 +83,17 @@ impl fmt::Display for Limit {
     }
 }
 
-/// The program's one tolerance: a speed limit `v` holds as `v (1 + SPEED_TOLERANCE)` (model section 1).
+/// The program's only tolerance: a speed limit `v` is applied as `v (1 + SPEED_TOLERANCE)` (model section 1).
 ///
-/// Larger than the rounding of any formula here (some 1e-15) by far, smaller than any speed sensor by far. Without it a distance of
-/// exactly one reach is a hop for one formula and none for another.
+/// It is far larger than the rounding errors of the formulas here (some 1e-15) and far smaller than the error of any speed
+/// sensor. Without it, a hop over exactly the greatest reach would be feasible by one formula and infeasible by another.
 pub const SPEED_TOLERANCE: f64 = 1e-9;
 
-/// The speed that a limit really allows: `v (1 + 1e-9)`.
+/// The speed limit as applied, `v (1 + 1e-9)`.
+///
+/// ```
+/// assert_eq!(chta::world::tolerant_speed_m_s(2.0), 2.000_000_002);
+/// ```
 #[inline]
 pub fn tolerant_speed_m_s(limit_m_s: f64) -> f64 {
     limit_m_s * (1.0 + SPEED_TOLERANCE)
@@ -99,9 +104,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn index_is_the_place_in_the_list() {
+    fn index_is_the_position_in_the_list() {
         for (i, limit) in Limit::ALL.iter().enumerate() {
-            assert_eq!(limit.index(), i, "{limit} stands elsewhere in Limit::ALL");
+            assert_eq!(limit.index(), i, "{limit} has another index in Limit::ALL");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! The body hopped on, the robot, and the ground's grip.
+//! The body hopped on, the hopper, and the grip of the ground.
 
 mod body;
 mod friction_cone;

@@ -1,41 +1,41 @@
-//! The ground's grip, and how steep a place may be to rest on.
+//! The grip of the ground, and the steepest slope to rest on.
 
 use std::f64::consts::FRAC_PI_2;
 
 use super::FrictionCone;
 use crate::quantity::{Angle, AngleInterval};
 
-/// What keeps a hopper from sliding.
+/// What keeps the hopper's foot from sliding.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Grip {
     /// Coulomb friction: a cone about the surface normal (Campana and Laumond 2016, section IV-A).
     Friction(FrictionCone),
-    /// Angles above the segment's own slope, as the CHTA paper states them (section V-B); the cross-slope does not matter.
+    /// Angles relative to the segment's own slope, as in the CHTA paper (section V-B); the cross-slope has no effect.
     FromSlope {
-        /// Take-off angles above the slope.
+        /// Take-off angles relative to the slope.
         takeoff: AngleInterval,
-        /// Landing angles above the slope.
+        /// Landing angles relative to the slope.
         landing: AngleInterval,
     },
 }
 
-/// The steepest surface a hopper rests on between hops.
+/// The steepest surface on which a hopper may rest between hops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RestSlope {
-    /// As steep as friction holds: `atan mu` where a friction coefficient is given, else no limit.
+    /// The friction angle `atan mu` if a friction coefficient is given, else no limit.
     AsFrictionHolds,
-    /// No steeper than this.
+    /// A given slope.
     AtMost(Angle),
-    /// The paper's model: contact is an instant, nothing rests.
+    /// No limit, as in the CHTA paper: a contact lasts an instant and the hopper does not rest.
     Unlimited,
 }
 
-/// The ground where the chain itself says nothing.
+/// The ground properties where the chain itself states none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SurfaceProperties {
-    /// What keeps the hopper from sliding; `None` where every segment of the chain says it.
+    /// What keeps the foot from sliding; `None` if every segment of the chain states it.
     pub grip: Option<Grip>,
-    /// What it may rest on.
+    /// The steepest slope to rest on.
     pub rest: RestSlope,
 }
 

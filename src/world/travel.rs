@@ -1,4 +1,4 @@
-//! Which way a hop goes along its plane, and which of its two ends is meant.
+//! The direction of travel in the vertical plane, and the two ends of a hop.
 
 /// A direction of travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -13,7 +13,7 @@ impl Direction {
     /// Both directions.
     pub const BOTH: [Self; 2] = [Self::Forward, Self::Reverse];
 
-    /// The direction of travel between two stations; `None` where they share the same x.
+    /// The direction of travel between two stations; `None` if both have the same x.
     pub fn between(takeoff_x_m: f64, landing_x_m: f64) -> Option<Self> {
         if landing_x_m > takeoff_x_m {
             Some(Self::Forward)
@@ -24,7 +24,7 @@ impl Direction {
         }
     }
 
-    /// +1 forward, -1 in reverse: multiplies x and slopes to see them as the traveller does.
+    /// +1 forward, -1 in reverse: the factor that converts x and slopes to the direction of travel.
     pub const fn sign(self) -> f64 {
         match self {
             Self::Forward => 1.0,

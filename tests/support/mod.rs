@@ -1,5 +1,4 @@
 //! What several test files share: a seeded generator biased to the ugly, and short ways to build chains.
-#![allow(dead_code, reason = "each test file uses its own part")]
 #![allow(clippy::unwrap_used, reason = "test helpers: a chain that cannot be built fails its test")]
 
 use chta::{

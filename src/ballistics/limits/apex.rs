@@ -1,18 +1,18 @@
-//! The machine's greatest height of flight.
+//! The apex height limit.
 
 use crate::{
     ballistics::LineOfSight,
     quantity::{MonicQuadratic, SlopeInterval},
 };
 
-/// The lofts at which the flight stays below a height above its take-off.
+/// The lofts at which the flight rises at most a given height above its take-off.
 ///
 /// ```text
 ///     X (b + n)^2 <= 4 H n   <=>   n^2 - 2 (2 H / X - b) n + b^2 <= 0
 /// ```
 ///
-/// Only the larger root limits: below the smaller one the arc has its apex behind the take-off (falling ground) or beyond the landing
-/// (rising ground), and its highest point is the take-off or the landing itself.
+/// Only the larger root is a bound: below the smaller root the parabola has its apex before the take-off (falling ground) or
+/// beyond the landing (rising ground), so the flight's highest point is the take-off or the landing itself.
 ///
 /// Source: model section 2 (apex height), with that correction.
 ///
@@ -20,7 +20,10 @@ use crate::{
 /// `H` in m.
 ///
 /// # Returns
-/// An interval without lower end; empty where the landing itself is higher than `H`.
+/// An interval without lower bound; empty if the landing itself is higher than `H`.
+///
+/// # Degenerate
+/// `H = 0` over falling ground leaves the arcs that never rise, `n <= -b`. `H < 0` and NaN give the empty interval.
 ///
 /// # Examples
 /// ```
@@ -32,7 +35,7 @@ use crate::{
 #[inline]
 pub fn apex_height(sight: LineOfSight, height_max_m: f64) -> SlopeInterval {
     let (b, h) = (sight.slope(), height_max_m / sight.run_m());
-    // Half the sum of the roots, 2 h - b, less their geometric mean |b|.
+    // Half the sum of the roots, 2 h - b, minus their geometric mean |b|.
     match (MonicQuadratic { excess: 2.0 * (h - b.max(0.0)), geometric_mean: b.abs() }).roots() {
         Some(roots) => SlopeInterval { lower: f64::NEG_INFINITY, upper: roots.larger },
         None => SlopeInterval::EMPTY,

@@ -1,4 +1,4 @@
-//! Directions: the cones of the ground, and the machine's own take-off angles.
+//! Direction limits: the cones of the ground, and the take-off angles of the mechanism.
 
 use crate::{ballistics::LineOfSight, quantity::SlopeInterval};
 
@@ -8,7 +8,10 @@ use crate::{ballistics::LineOfSight, quantity::SlopeInterval};
 ///     m1 <= b + n <= m2                                                        (CHTA paper, Definition 2)
 /// ```
 ///
-/// Serves the take-off cone of the ground and the mechanical take-off angles of the machine alike.
+/// Used both for the take-off cone of the ground and for the take-off angles of the mechanism.
+///
+/// # Returns
+/// The cone's interval of slopes moved by `-b`; empty if the cone is. An infinite end stays infinite.
 ///
 /// # Examples
 /// ```
@@ -26,6 +29,9 @@ pub fn takeoff_cone(sight: LineOfSight, slopes: SlopeInterval) -> SlopeInterval 
 /// ```text
 ///     l1 <= b - n <= l2                                                        (P eq. 12, 13)
 /// ```
+///
+/// # Returns
+/// The interval `[b - l2, b - l1]`; empty if the cone is. An infinite end stays infinite.
 ///
 /// # Examples
 /// ```

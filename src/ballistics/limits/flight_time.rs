@@ -1,8 +1,8 @@
-//! The machine's longest flight.
+//! The flight time limit.
 
 use crate::{ballistics::LineOfSight, quantity::SlopeInterval};
 
-/// The lofts at which the flight is no longer than a time.
+/// The lofts at which the flight takes at most a given time.
 ///
 /// ```text
 ///     sqrt(2 X n / g) <= T   <=>   n <= g T^2 / (2 X)                          (model section 2)
@@ -10,6 +10,9 @@ use crate::{ballistics::LineOfSight, quantity::SlopeInterval};
 ///
 /// # Units
 /// `T` in s, `g` in m/s^2.
+///
+/// # Returns
+/// An interval without lower bound; without positive lofts for `T = 0`.
 ///
 /// # Examples
 /// ```

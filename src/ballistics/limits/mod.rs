@@ -1,7 +1,7 @@
 //! Each limit of a hop as an interval of the loft `n = m - b`; one file per kind.
 //!
-//! All are closed forms of ratios and one square root: no trigonometry, no allocation. An empty interval means that the limit alone
-//! refuses every arc.
+//! All are closed forms of quotients and at most one square root, without trigonometry or allocation. An empty interval means
+//! that the limit alone refuses every arc.
 
 mod apex;
 mod cones;

@@ -1,4 +1,4 @@
-//! Take-off and landing speed.
+//! The take-off and landing speed limits.
 
 use crate::{
     ballistics::LineOfSight,
@@ -12,13 +12,13 @@ use crate::{
 ///     g X (1 + (b + n)^2) <= 2 n v^2   <=>   n^2 - 2 (q - b) n + (1 + b^2) <= 0,   q = v^2 / (g X)      (P eq. 15)
 /// ```
 ///
-/// The limit holds as `v (1 + 1e-9)`, the program's one tolerance.
+/// The limit is applied as `v (1 + 1e-9)`, the program's only tolerance.
 ///
 /// # Units
 /// `v` in m/s, `g` in m/s^2.
 ///
 /// # Returns
-/// A closed interval of positive lofts, empty where the landing is out of reach (and for `v = 0` or NaN).
+/// A closed interval of positive lofts; empty if the landing is out of reach, and for `v = 0` or NaN.
 ///
 /// # Examples
 /// ```
@@ -38,8 +38,8 @@ pub fn takeoff_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) 
 ///     g X (1 + (b - n)^2) <= 2 n v^2   <=>   n^2 - 2 (q + b) n + (1 + b^2) <= 0,   q = v^2 / (g X)      (P eq. 17, with v_l)
 /// ```
 ///
-/// Equal to the take-off limit at `v^2 + 2 g Z`, without the cancellation of that sum. Units, tolerance and return as
-/// [`takeoff_speed`].
+/// Equal to the take-off limit at `v^2 + 2 g Z`, without the cancellation of that sum. Units, tolerance and return value are
+/// those of [`takeoff_speed`].
 ///
 /// # Examples
 /// ```
@@ -53,8 +53,8 @@ pub fn landing_speed(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) 
     between_roots(sight, reach_ratio(sight, speed_max_m_s, gravity_m_s2) - sight.min_speed_ratio_reversed())
 }
 
-/// Both speed limits at once, with one square root: the two quadratics have the same product of roots, so the one with the smaller
-/// sum lies inside the other.
+/// The intersection of both speed limits, with one square root: the two quadratics have the same product of roots, so the
+/// interval with the smaller sum of roots lies inside the other.
 ///
 /// ```
 /// use chta::ballistics::{LineOfSight, limits};
@@ -76,7 +76,8 @@ fn reach_ratio(sight: LineOfSight, speed_max_m_s: f64, gravity_m_s2: f64) -> f64
     v * v / (gravity_m_s2 * sight.run_m())
 }
 
-/// Between the roots of `n^2 - 2 (w + e) n + w^2`, with `w = sqrt(1 + b^2)` and the excess `e` of `q` over the ratio of least speed.
+/// The interval between the roots of `n^2 - 2 (w + e) n + w^2`, with `w = sqrt(1 + b^2)` and the excess `e` of `q` over its
+/// least value.
 #[inline]
 fn between_roots(sight: LineOfSight, excess: f64) -> SlopeInterval {
     match (MonicQuadratic { excess, geometric_mean: sight.secant() }).roots() {

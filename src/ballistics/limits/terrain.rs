@@ -1,4 +1,4 @@
-//! The ground in between.
+//! The clearance over the terrain between take-off and landing.
 
 use crate::quantity::ChainPoint;
 
@@ -8,12 +8,16 @@ use crate::quantity::ChainPoint;
 ///     n >= s - t,   s = (z_p + eps - z_t) / |x_p - x_t|,   t = (z_l - z_p - eps) / |x_l - x_p|
 /// ```
 ///
-/// `s` is the slope at which the take-off sees the point, `t` that at which the point sees the landing: the loft has to make up for
-/// the kink between them. This is P eq. 14 (`m >= s + (d/X)(s - t)`) less the line of sight's slope, which is the mean of `s` and
-/// `t`, weighted by their runs.
+/// `s` is the slope from the take-off to the point, `t` the slope from the point to the landing; the loft must be at least
+/// the difference. This is P eq. 14 (`m >= s + (d/X)(s - t)`) minus the slope of the line of sight, which is the mean of `s`
+/// and `t` weighted by their horizontal distances.
 ///
 /// # Units
 /// All in m; `eps` is the clearance.
+///
+/// # Degenerate
+/// The point has to lie strictly between take-off and landing: at the x of either the result is infinite or NaN. A loft of at
+/// most 0 means that every arc clears the point.
 ///
 /// # Examples
 /// ```
@@ -25,7 +29,7 @@ use crate::quantity::ChainPoint;
 /// ```
 #[inline]
 pub fn clearing_loft(takeoff: ChainPoint, landing: ChainPoint, point: ChainPoint, clearance_m: f64) -> f64 {
-    // Heights are subtracted before the clearance is added: close doubles subtract without error.
+    // Subtract the heights before adding the clearance: the difference of close doubles is exact.
     let seen = ((point.z_m - takeoff.z_m) + clearance_m) / (point.x_m - takeoff.x_m).abs();
     let ahead = ((landing.z_m - point.z_m) - clearance_m) / (landing.x_m - point.x_m).abs();
     seen - ahead

@@ -1,4 +1,4 @@
-//! The columns there are, what each holds, and what a field of each must be.
+//! The known columns, their meaning, and the values that each accepts.
 
 use super::degrees::read_degrees;
 
@@ -7,14 +7,14 @@ use super::degrees::read_degrees;
 pub struct CsvColumn {
     /// Its name in the header, which ends in its unit.
     pub name: &'static str,
-    /// One line on what it holds.
+    /// One line on its meaning.
     pub help: &'static str,
-    /// Whether a file without it is refused.
+    /// Whether a file must have it.
     pub required: bool,
     kind: Kind,
 }
 
-/// What a field must be.
+/// The values that a column accepts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Kind {
     /// Any finite number.
@@ -23,14 +23,14 @@ enum Kind {
     Friction,
     /// A speed limit, at least 0.
     Speed,
-    /// An angle in degrees between two ends.
+    /// An angle in degrees between two bounds.
     Degrees { least: f64, greatest: f64 },
     /// 0 or 1.
     Flag,
 }
 
-/// The farthest that an angle may be from the horizontal. The cone of a slope of nearly 90 degrees with a half-angle of nearly 90
-/// reaches 270; whatever lies beyond is a slip of the pen. A smaller bound would refuse cones that the program itself derives.
+/// The largest absolute value of an angle. The cone of a slope of nearly 90 degrees with a half-angle of nearly 90 reaches
+/// 270 degrees; a larger value is a typing error. A smaller bound would refuse cones that the program itself computes.
 const ANGLE_MAX_DEG: f64 = 270.0;
 
 const fn required(name: &'static str, help: &'static str) -> CsvColumn {
@@ -50,14 +50,15 @@ pub(super) const Z: usize = 1;
 pub(super) const FRICTION: usize = 2;
 pub(super) const CROSS_SLOPE: usize = 3;
 pub(super) const KEEP_OUT: usize = 4;
-/// The first of the six for travel towards +x: least and greatest take-off angle and take-off speed, then the same of the landing.
+/// The first of the six columns for travel towards +x: least and greatest take-off angle and take-off speed, then the same
+/// for landing.
 pub(super) const FORWARD: usize = 5;
-/// The first of the six for travel towards -x.
+/// The first of the six columns for travel towards -x.
 pub(super) const REVERSE: usize = FORWARD + SIX;
 pub(super) const SIX: usize = 6;
 pub(super) const MAP_X: usize = REVERSE + SIX;
 pub(super) const MAP_Y: usize = MAP_X + 1;
-/// Of the vertex, as the two before it.
+/// A property of the vertex, as are the two columns before it.
 pub(super) const BEND: usize = MAP_Y + 1;
 
 /// All columns of a chain CSV.
@@ -98,7 +99,7 @@ pub const PAIRS_COLUMNS: [CsvColumn; 2] = [
     required("goal_x_m", "where on the chain the path ends (required)"),
 ];
 
-/// What a field should have been, and how to mend it.
+/// The value that a field should have, and how to correct the file.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Fault {
     pub(super) expected: String,
@@ -106,7 +107,7 @@ pub(super) struct Fault {
 }
 
 impl CsvColumn {
-    /// The value of a field, angles in radians.
+    /// The value of a field; angles are returned in radians.
     pub(super) fn parse(&self, text: &str) -> Result<f64, Fault> {
         let fault = |help: String| Fault { expected: self.expected().to_owned(), help };
         let number: f64 = text.parse().map_err(|_| fault(help_for_text(text)))?;
@@ -117,15 +118,15 @@ impl CsvColumn {
             Kind::Finite => Ok(number),
             Kind::Friction | Kind::Speed if number >= 0.0 => Ok(number),
             Kind::Friction => Err(fault("dry rock and regolith have 0.3 to 1.2".to_owned())),
-            Kind::Speed => Err(fault("a speed has no sign here: write its amount, or 0 for not allowed".to_owned())),
+            Kind::Speed => Err(fault("speeds are given without sign: write the magnitude, or 0 for not allowed".to_owned())),
             Kind::Degrees { least, greatest } if least <= number && number <= greatest => Ok(read_degrees(text, number).radians()),
             Kind::Degrees { .. } => Err(fault("check the unit: angles are degrees".to_owned())),
             Kind::Flag if number == 0.0 || number == 1.0 => Ok(number),
-            Kind::Flag => Err(fault("write 1 where neither take-off nor landing is allowed, else 0".to_owned())),
+            Kind::Flag => Err(fault("write 1 if neither take-off nor landing is allowed, else 0".to_owned())),
         }
     }
 
-    /// What a field must be, in words.
+    /// A phrase that describes the accepted values.
     pub(super) fn expected(&self) -> &'static str {
         match self.kind {
             Kind::Finite => "a finite number",
@@ -139,33 +140,32 @@ impl CsvColumn {
 
     fn help_for_infinite(&self, text: &str) -> String {
         if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && text.contains(|c: char| c.is_ascii_digit()) {
-            return "no number may be beyond 1.8e308: check the exponent".to_owned();
+            return "numbers must be below 1.8e308: check the exponent".to_owned();
         }
         match self.kind {
             Kind::Speed => {
-                "where nothing limits the speed, write one that is never reached: the smaller of chain and [hopper] counts"
-                    .to_owned()
+                "if the speed has no limit, write one that is never reached: the smaller of chain and [hopper] applies".to_owned()
             }
-            Kind::Degrees { least, .. } if least < 0.0 => "where nothing limits the angle, write -90 or 90".to_owned(),
+            Kind::Degrees { least, .. } if least < 0.0 => "if the angle has no limit, write -90 or 90".to_owned(),
             _ => "write a number, or remove the row".to_owned(),
         }
     }
 }
 
-/// How to mend text that is no number.
+/// How to correct text that is not a number.
 fn help_for_text(text: &str) -> String {
     let point = text.replacen(',', ".", 1);
     let number = text.trim_end_matches(|c: char| !(c.is_ascii_digit() || c == '.')).trim_end();
     if text.contains(',') && point.parse::<f64>().is_ok() {
         format!("write a decimal point, not a comma: {}", excerpt(&point))
     } else if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && number.parse::<f64>().is_ok() {
-        format!("write the number alone, {}: its unit stands in the column's name", excerpt(number))
+        format!("write the number alone, {}: its unit is given by the column's name", excerpt(number))
     } else {
         "write a plain number such as 12.5 or 1e-3".to_owned()
     }
 }
 
-/// User text for a message: short, on one line, with nothing a terminal would obey.
+/// User text for a message: short, on one line, without control characters.
 pub(super) fn excerpt(text: &str) -> String {
     const SHOWN: usize = 40;
     let mut shown: String = text.chars().take(SHOWN).flat_map(char::escape_debug).collect();
@@ -175,11 +175,11 @@ pub(super) fn excerpt(text: &str) -> String {
     shown
 }
 
-/// The known name nearest to an unknown one; `None` where none is near.
+/// The known name nearest to an unknown one; `None` if none is similar.
 pub(super) fn nearest(columns: &[CsvColumn], name: &str) -> Option<&'static str> {
-    /// Below this, the nearest name has nothing to do with what was typed (`note` and `map_x_m`: 0.0; `x` and `x_m`: 0.8).
+    /// Below this similarity the nearest name is unrelated to the text typed (`note` and `map_x_m`: 0.0; `x` and `x_m`: 0.8).
     const NEAR: f64 = 0.7;
-    /// No column's name is half as long, and the search is quadratic.
+    /// No column has a name half as long, and the comparison takes quadratic time.
     const LONGEST: usize = 64;
     if name.len() > LONGEST {
         return None;
@@ -194,7 +194,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_indices_point_at_the_names() {
+    fn the_indices_match_the_names() {
         let named = [
             (X, "x_m"),
             (Z, "z_m"),
@@ -216,7 +216,7 @@ mod tests {
     }
 
     #[test]
-    fn nearest_names_are_near() {
+    fn similar_names_are_found_and_unrelated_ones_are_not() {
         for (typed, known) in
             [("x", "x_m"), ("Z_M", "z_m"), ("friction", "friction_coefficient"), ("takeoff_speed_m_s", "takeoff_speed_max_m_s")]
         {

@@ -1,8 +1,9 @@
-//! Angles as degrees in text, without loss.
+//! Lossless text of angles in degrees.
 //!
-//! Degrees to radians is one product, `d * (pi/180)`. Where the significand grows by 1.117 in that product, neighbouring doubles of
-//! degrees lie 1.117 radian doubles apart, so one radian double in eleven is the image of none. Such an angle is written with more
-//! digits than a double holds; the reader adds what the digits say beyond the double before it rounds.
+//! Degrees are converted to radians by one product, `d * (pi/180)`. Where this product stretches the significand by 1.117,
+//! neighbouring doubles of degrees are 1.117 doubles of radians apart, so one radian double in eleven is not the product of
+//! any double of degrees. Such an angle is written with more digits than a double holds; the reader adds the digits beyond
+//! the double before it rounds.
 
 use std::f64::consts::PI;
 
@@ -12,14 +13,14 @@ use crate::quantity::Angle;
 /// The factor of [`f64::to_radians`].
 const RADIANS_PER_DEGREE: f64 = PI / 180.0;
 
-/// Digits that a double can need; text with more speaks of an angle between two doubles.
+/// The most digits that a double needs; longer text means an angle between two doubles.
 const DOUBLE_DIGITS: usize = 17;
 
-/// Digits used of longer text: beyond the 25 that any angle needs, below the 38 of an `i128`.
+/// The digits used of longer text: more than the 25 that any angle needs, fewer than the 38 of an `i128`.
 const LONGEST_DIGITS: usize = 31;
 
-/// Below this many degrees the parts beyond a double would sink into subnormal numbers. Such angles are doubles of degrees and no more;
-/// one that no double of degrees gives is written an ulp off, a billionth of a billionth of an angle that is nothing.
+/// Below this many degrees the part beyond a double would be subnormal. Such an angle is written as a double of degrees; if
+/// no double of degrees gives it exactly, the text is off by one ulp, a relative error of some 1e-16.
 const LONG_TEXT_MIN_DEG: f64 = 1e-270;
 
 /// A decimal number `mantissa * 10^exponent`.
@@ -32,7 +33,7 @@ struct Decimal {
 }
 
 impl Decimal {
-    /// From text that [`f64`] accepts and that is finite; digits beyond [`LONGEST_DIGITS`] are cut.
+    /// Parses text that [`f64`] accepts as a finite number; digits beyond [`LONGEST_DIGITS`] are dropped.
     fn parse(text: &str) -> Option<Self> {
         let (number, exponent) = text.split_once(['e', 'E']).unwrap_or((text, "0"));
         let (negative, unsigned) = match number.strip_prefix('-') {
@@ -55,12 +56,12 @@ impl Decimal {
         Some(parsed)
     }
 
-    /// A double to [`LONGEST_DIGITS`] digits, of which std gives each one right.
+    /// A double to [`LONGEST_DIGITS`] digits; the standard library prints each of them exactly.
     fn of_double(value: f64) -> Option<Self> {
         Self::parse(&format!("{value:.*e}", LONGEST_DIGITS - 1))
     }
 
-    /// `self - other` as the nearest double; `None` where the two are no neighbours.
+    /// `self - other` as the nearest double; `None` if the two numbers are far apart.
     fn minus(self, other: Self) -> Option<f64> {
         let exponent = self.exponent.min(other.exponent);
         let aligned = |d: Self| {
@@ -90,7 +91,7 @@ impl Decimal {
     }
 }
 
-/// The angle that `text` states in degrees; `degrees` is the same text as a finite double.
+/// The angle that `text` gives in degrees; `degrees` is the same text parsed as a finite double.
 pub(super) fn read_degrees(text: &str, degrees: f64) -> Angle {
     let beyond_double = || {
         let stated = Decimal::parse(text).filter(|stated| stated.digits > DOUBLE_DIGITS && degrees.abs() >= LONG_TEXT_MIN_DEG)?;
@@ -106,7 +107,8 @@ pub(super) fn read_degrees(text: &str, degrees: f64) -> Angle {
     }
 }
 
-/// Text of degrees that reads back as the same double of radians (from [`LONG_TEXT_MIN_DEG`] up); `None` for what is no finite angle.
+/// Text of an angle in degrees that reads back as the same double of radians (from [`LONG_TEXT_MIN_DEG`] up); `None` if the
+/// angle is not finite.
 pub(super) fn degrees_text(angle: Angle) -> Option<String> {
     if let Some(degrees) = angle.shortest_degrees() {
         return Some(number_text(degrees));
@@ -115,13 +117,13 @@ pub(super) fn degrees_text(angle: Angle) -> Option<String> {
     degrees.is_finite().then(|| longer_text(angle, degrees).unwrap_or_else(|| number_text(degrees)))
 }
 
-/// The shortest text of more than 17 digits that reads back.
+/// The shortest text of more than 17 digits that reads back exactly.
 fn longer_text(angle: Angle, degrees: f64) -> Option<String> {
     let rounded = degrees * RADIANS_PER_DEGREE;
     let lost = libm::fma(degrees, RADIANS_PER_DEGREE, -rounded);
     let rest = ((angle.radians() - rounded) - lost) / RADIANS_PER_DEGREE;
     let double = Decimal::of_double(degrees)?;
-    // `rest` in units of the last digit: some 1e15 of them, so that a double counts them well enough.
+    // `rest` in units of the last digit: some 1e15 units, which a double represents well enough.
     let unit: f64 = format!("1e{}", double.exponent).parse().ok()?;
     let units: i128 = format!("{:.0}", rest / unit).parse().ok()?;
     let exact = Decimal { mantissa: double.mantissa.checked_add(units)?, ..double };
@@ -153,7 +155,7 @@ mod tests {
         assert_eq!(degrees_text(Angle::from_radians(f64::INFINITY)), None);
     }
 
-    /// Every degree and tenth from -270 to 270 is written as a person would write it.
+    /// Every tenth of a degree from -270 to 270 is written without extra digits.
     #[test]
     fn tenths_of_a_degree_stay_short() {
         for tenths in -2700..=2700 {
@@ -164,7 +166,7 @@ mod tests {
         }
     }
 
-    /// Doubles of radians that no double of degrees gives do exist, and go through text unharmed.
+    /// Some doubles of radians have no double of degrees; they must survive writing and reading.
     #[test]
     fn unreachable_radians_take_more_digits() {
         let mut longer = 0;
@@ -181,7 +183,7 @@ mod tests {
     }
 
     #[test]
-    fn zeros_beyond_the_double_change_nothing() {
+    fn trailing_zeros_do_not_change_the_angle() {
         assert_eq!(read("63.500000000000000000000000000000000000000000000"), Angle::from_degrees(63.5));
         assert_eq!(read("0.00000000000000000000000000000"), Angle::from_degrees(0.0));
     }
@@ -203,9 +205,9 @@ mod tests {
             prop_assert_eq!(read(&text).radians(), radians, "{}", text);
         }
 
-        /// Any text that is a number at all is an angle, near what the double says.
+        /// Any text that is a number gives an angle near the one that the parsed double gives.
         #[test]
-        fn digits_never_lead_astray(text in "[+-]?[0-9]{0,40}\\.[0-9]{1,40}(e-?[0-9]{1,2})?") {
+        fn long_text_stays_near_the_parsed_double(text in "[+-]?[0-9]{0,40}\\.[0-9]{1,40}(e-?[0-9]{1,2})?") {
             let number: f64 = text.parse().unwrap();
             let (angle, plain) = (read(&text).radians(), Angle::from_degrees(number).radians());
             prop_assert!((angle - plain).abs() <= 2.3e-16 * plain.abs(), "{} gave {}, expected {}", text, angle, plain);

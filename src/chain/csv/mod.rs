@@ -1,4 +1,4 @@
-//! The chain as a CSV file, read with every problem named at once, and written so that it reads back as it was.
+//! The chain as a CSV file: reading reports every problem at once, and a written file reads back as the same chain.
 //!
 //! ```text
 //! x_m,z_m,friction_coefficient      a vertex per row; the other columns say what
@@ -7,14 +7,15 @@
 //! 9,1,                              no segment begins at the last vertex
 //! ```
 //!
-//! [`CHAIN_COLUMNS`] lists every column. Two ways of stating a segment exist, one per file: its surface (`friction_coefficient`,
-//! `cross_slope_deg`), which fixes both directions, or explicit limits, six columns for each direction. `keep_out` goes with either.
-//! A set of columns counts as given where some row fills it; six columns of a direction are given together or not at all, and fill
-//! every row but the last. With one direction given, no hop goes the other way, and a warning says so.
+//! [`CHAIN_COLUMNS`] lists every column. A file states its segments in one of two forms: by their surface
+//! (`friction_coefficient`, `cross_slope_deg`), which applies to both directions, or by explicit limits, six columns for each
+//! direction. `keep_out` may be added to either. A group of columns counts as present if some row fills it. The six columns
+//! of a direction are given together or not at all, and are filled in every row but the last. If only one direction is given,
+//! no hop goes the other way, and a warning says so.
 //!
-//! Angles are degrees in the file and radians inside. Text of up to 17 significant digits is read as a double and converted, as
-//! [`Angle::from_degrees`](crate::quantity::Angle::from_degrees) does. One radian double in eleven is no double of degrees at all: such an
-//! angle is written with more digits, and text of more than 17 digits is honoured digit by digit.
+//! Angles are degrees in the file and radians inside the program. Text of up to 17 significant digits is read as a double and
+//! converted, as [`Angle::from_degrees`](crate::quantity::Angle::from_degrees) does. One radian double in eleven has no
+//! double of degrees: such an angle is written with more digits, and all digits of longer text are used.
 
 mod columns;
 mod degrees;

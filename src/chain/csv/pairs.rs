@@ -1,4 +1,4 @@
-//! Several starts and goals in one CSV.
+//! Several pairs of start and goal in one CSV.
 
 use std::path::Path;
 
@@ -7,27 +7,27 @@ use super::{CsvFileError, CsvProblems, PAIRS_COLUMNS, problem::read_file, table:
 /// A start and a goal on the chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StartGoal {
-    /// Where the path starts, m.
+    /// Start of the path, m.
     pub start_x_m: f64,
-    /// Where it ends, m.
+    /// End of the path, m.
     pub goal_x_m: f64,
 }
 
-/// What a CSV of pairs holds.
+/// The content of a CSV of pairs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairsFile {
     /// The pairs, in the order of the file.
     pub pairs: Vec<StartGoal>,
-    /// What was ignored.
+    /// Warnings of ignored content.
     pub warnings: Vec<String>,
 }
 
 /// Reads pairs of start and goal from a CSV with the columns `start_x_m,goal_x_m`.
 ///
-/// Whether they lie on a chain is for the chain to say ([`PolygonalChain::station`](crate::chain::PolygonalChain::station)).
+/// Does not check that they lie on a chain; [`PolygonalChain::station`](crate::chain::PolygonalChain::station) does.
 ///
 /// # Errors
-/// [`CsvProblems`] with every problem of the file; a file without a single pair is one.
+/// [`CsvProblems`] with every problem of the file, including a file without pairs.
 ///
 /// # Examples
 /// ```
@@ -56,7 +56,7 @@ pub fn read_pairs_csv(source: &[u8]) -> Result<PairsFile, CsvProblems> {
 /// Reads a file of pairs; see [`read_pairs_csv`].
 ///
 /// # Errors
-/// [`CsvFileError`] where the file cannot be read or has problems.
+/// [`CsvFileError`] if the file cannot be read or has problems.
 pub fn read_pairs_csv_file(path: impl AsRef<Path>) -> Result<PairsFile, CsvFileError> {
     read_file(path.as_ref().to_owned(), read_pairs_csv)
 }

@@ -1,30 +1,32 @@
-//! What is wrong with a CSV file, as plain data that names the place.
+//! The problems of a CSV file as plain data, each with its position in the file.
 
 use std::{fmt, io, ops::Range, path::PathBuf};
 
-/// How many problems of one file are told in full; the rest is counted. More would scroll the first off the screen.
-const TOLD_AT_MOST: usize = 50;
+/// How many problems of one file are listed; the others are only counted. A longer list would scroll the first problem off
+/// the screen.
+const LISTED_AT_MOST: usize = 50;
 
-/// One thing that is wrong with a CSV file.
+/// One problem of a CSV file.
 ///
 /// Its `Display` is one sentence; [`text`](Self::text) and [`span`](Self::span) are for underlining the field.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct CsvProblem {
     /// Line of the file, from 1.
     pub line: u64,
-    /// Column of the field's first character in that line, from 1, counted in characters; `None` where the whole line is meant.
+    /// Column of the field's first character in that line, from 1, counted in characters; `None` if the problem concerns the
+    /// whole line.
     pub column: Option<u64>,
-    /// Name of the CSV column, where the problem belongs to one.
+    /// Name of the CSV column, if the problem belongs to one.
     pub name: Option<String>,
-    /// The line, or a window of it around the field where it is long (then with `...` at the ends that are cut).
+    /// The line, or an excerpt around the field of a long line (with `...` where it is cut).
     pub text: String,
     /// The field's bytes within [`text`](Self::text); empty for an empty field.
     pub span: Range<usize>,
-    /// What stands there.
+    /// The text or value found.
     pub found: String,
     /// What was expected.
     pub expected: String,
-    /// How to mend it.
+    /// How to correct it.
     pub help: String,
 }
 
@@ -41,38 +43,38 @@ impl fmt::Display for CsvProblem {
     }
 }
 
-/// All that is wrong with a CSV file, in the order of its lines.
+/// All problems of a CSV file, in the order of its lines.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct CsvProblems {
-    /// The problems told in full, at most 50.
+    /// The listed problems, at most 50.
     pub problems: Vec<CsvProblem>,
-    /// How many more there are.
+    /// How many more problems there are.
     pub more: usize,
 }
 
 impl CsvProblems {
-    /// Takes note of a problem, which is only put into words while there is room for it.
-    pub(super) fn push(&mut self, tell: impl FnOnce() -> CsvProblem) {
-        if self.problems.len() < TOLD_AT_MOST {
-            self.problems.push(tell());
+    /// Adds a problem; its message is only composed if it is listed.
+    pub(super) fn push(&mut self, problem: impl FnOnce() -> CsvProblem) {
+        if self.problems.len() < LISTED_AT_MOST {
+            self.problems.push(problem());
         } else {
             self.more += 1;
         }
     }
 
-    /// Whether nothing is wrong.
+    /// Whether there is no problem.
     pub fn is_empty(&self) -> bool {
         self.problems.is_empty()
     }
 
-    /// The same problems in the order of the file.
+    /// The same problems, sorted by their position in the file.
     #[must_use]
     pub(super) fn sorted(mut self) -> Self {
         self.problems.sort_by_key(|problem| (problem.line, problem.column));
         self
     }
 
-    /// One line per problem, each begun with `prefix`.
+    /// Writes one line per problem, each with `prefix` in front.
     fn write_lines(&self, f: &mut fmt::Formatter<'_>, prefix: &str) -> fmt::Result {
         for (i, problem) in self.problems.iter().enumerate() {
             let end = if i == 0 { "" } else { "\n" };
@@ -94,22 +96,22 @@ impl fmt::Display for CsvProblems {
 
 impl std::error::Error for CsvProblems {}
 
-/// Why a CSV file gives no data.
+/// Why no data could be read from a CSV file.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum CsvFileError {
     /// The file cannot be read.
     Read {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// Why not.
+        /// The cause.
         source: io::Error,
     },
-    /// Its text has problems.
+    /// The text of the file has problems.
     Problems {
-        /// Which file.
+        /// The file.
         path: PathBuf,
-        /// All of them.
+        /// All problems found.
         problems: CsvProblems,
     },
 }
@@ -134,7 +136,7 @@ impl std::error::Error for CsvFileError {
     }
 }
 
-/// Reads a file whole and hands its bytes to a reader.
+/// Reads a whole file and passes its bytes to `reader`.
 pub(super) fn read_file<T>(path: PathBuf, reader: impl FnOnce(&[u8]) -> Result<T, CsvProblems>) -> Result<T, CsvFileError> {
     match std::fs::read(&path) {
         Ok(bytes) => reader(&bytes).map_err(|problems| CsvFileError::Problems { path, problems }),

@@ -1,4 +1,4 @@
-//! A chain from its CSV.
+//! Reads a chain from CSV.
 
 use std::path::Path;
 
@@ -20,9 +20,10 @@ use crate::{
 pub struct ChainFile {
     /// The chain.
     pub chain: PolygonalChain,
-    /// The projection of its map, where comments at its head state one (`# crs_proj: +proj=...`, as `chta slice` writes them).
+    /// The projection of its map, if comments at the head of the file state one (`# crs_proj: +proj=...`, as written by
+    /// `chta slice`).
     pub projection: Option<MapProjection>,
-    /// What was ignored, and what the file leaves impossible without saying so.
+    /// Warnings: ignored content, and directions without any possible hop.
     pub warnings: Vec<String>,
 }
 
@@ -38,9 +39,9 @@ pub struct ChainFile {
 /// assert_eq!(file.chain.slopes(), [0.25, 0.0]);
 ///
 /// let problems = read_chain_csv(b"x_m,z_m\n0,0\n2,inf\n1,3\n").unwrap_err();
-/// let told: Vec<String> = problems.problems.iter().map(ToString::to_string).collect();
-/// assert!(told[0].starts_with("line 3, column 3 (z_m): found `inf`, expected a finite number"));
-/// assert!(told[1].starts_with("line 4, column 1 (x_m): found `1`, expected more than 2, the x_m of line 3"));
+/// let messages: Vec<String> = problems.problems.iter().map(ToString::to_string).collect();
+/// assert!(messages[0].starts_with("line 3, column 3 (z_m): found `inf`, expected a finite number"));
+/// assert!(messages[1].starts_with("line 4, column 1 (x_m): found `1`, expected more than 2, the x_m of line 3"));
 /// ```
 pub fn read_chain_csv(source: &[u8]) -> Result<ChainFile, CsvProblems> {
     let mut problems = CsvProblems::default();
@@ -71,7 +72,7 @@ pub fn read_chain_csv(source: &[u8]) -> Result<ChainFile, CsvProblems> {
     }
 }
 
-/// The projection that comments before the header state; one that is not understood becomes a warning.
+/// The projection given by comments before the header; one that cannot be used causes a warning.
 fn stated_projection(source: &[u8], warnings: &mut Vec<String>) -> Option<MapProjection> {
     let head: Vec<&str> = source
         .split(|byte| matches!(byte, b'\n' | b'\r'))
@@ -83,7 +84,7 @@ fn stated_projection(source: &[u8], warnings: &mut Vec<String>) -> Option<MapPro
     match MapProjection::from_proj_string(&comment("crs_proj")?, comment("crs_name"), comment("crs_code")) {
         Ok(projection) => Some(projection),
         Err(reason) => {
-            warnings.push(format!("the comment crs_proj is passed over, so results have no longitude and latitude: {reason}"));
+            warnings.push(format!("the comment crs_proj is ignored, so results have no longitude and latitude: {reason}"));
             None
         }
     }
@@ -92,19 +93,19 @@ fn stated_projection(source: &[u8], warnings: &mut Vec<String>) -> Option<MapPro
 /// Reads a chain file; see [`read_chain_csv`].
 ///
 /// # Errors
-/// [`CsvFileError`] where the file cannot be read or has problems.
+/// [`CsvFileError`] if the file cannot be read or has problems.
 pub fn read_chain_csv_file(path: impl AsRef<Path>) -> Result<ChainFile, CsvFileError> {
     read_file(path.as_ref().to_owned(), read_chain_csv)
 }
 
-/// The columns of one way of stating a segment, of which a file must fill one way only.
+/// The columns of the two forms of stating segments; a file fills the columns of one form only.
 const SURFACE_FORM: std::ops::Range<usize> = FRICTION..KEEP_OUT;
 const EXPLICIT_FORM: std::ops::Range<usize> = FORWARD..MAP_X;
 
-/// A table on its way to a chain.
+/// A table, and which of its columns are filled, while it is converted to a chain.
 struct Reading<'a> {
     table: Table<'a>,
-    /// For each column, the first row that fills it (the last row fills none of the segment's columns).
+    /// For each column, the first row that fills it. (The last row does not fill columns of segments.)
     filled: Vec<Option<usize>>,
 }
 
@@ -125,7 +126,7 @@ impl<'a> Reading<'a> {
         columns.any(|column| self.fills(column))
     }
 
-    /// Both or neither of the map's columns, all six of a direction or none.
+    /// Checks that both or neither of the map's columns are given, and all six or none of a direction.
     fn check_sets(&self, problems: &mut CsvProblems) {
         for (set, called) in [
             (FORWARD..REVERSE, "all six columns for travel towards +x, or none"),
@@ -144,7 +145,7 @@ impl<'a> Reading<'a> {
         }
     }
 
-    /// Surface form or explicit form, never both.
+    /// Checks that the file uses the surface form or the explicit form, not both.
     fn check_forms(&self, problems: &mut CsvProblems) {
         let (Some(surface), Some(explicit)) = (self.first_of(SURFACE_FORM), self.first_of(EXPLICIT_FORM)) else { return };
         let expected = "the surface form (friction_coefficient, cross_slope_deg) or the explicit form (takeoff_*, landing_*, reverse_*), one per file";
@@ -177,16 +178,16 @@ impl<'a> Reading<'a> {
         }
     }
 
-    /// The first row that fills some column of a form, and which one.
+    /// The first row that fills some column of a form, and that column.
     fn first_of(&self, form: std::ops::Range<usize>) -> Option<(usize, usize)> {
         form.filter_map(|column| Some((self.filled.get(column).copied().flatten()?, column))).min()
     }
 
-    /// A column that some row fills is filled by all.
+    /// Checks that a column filled in some row is filled in all rows.
     fn check_blanks(&self, problems: &mut CsvProblems) {
         let both_forms = self.fills_any(SURFACE_FORM) && self.fills_any(EXPLICIT_FORM);
         for (column, known) in CHAIN_COLUMNS.iter().enumerate() {
-            // Which of two forms is meant decides which blanks are wrong: first things first.
+            // A mixture of both forms is reported first: the intended form decides which blanks are errors.
             let undecided = both_forms && (SURFACE_FORM.contains(&column) || EXPLICIT_FORM.contains(&column));
             let Some(first) = self.filled.get(column).copied().flatten().filter(|_| !undecided && !known.required) else {
                 continue;
@@ -203,7 +204,7 @@ impl<'a> Reading<'a> {
         }
     }
 
-    /// No segment begins at the last vertex, so its row says nothing of one.
+    /// Checks that the last row leaves the segment columns empty: no segment begins at the last vertex.
     fn check_last_row(&self, problems: &mut CsvProblems) {
         let known = |&last: &usize| last > 0 && self.table.complete && !self.table.is_ragged(last);
         let Some(last) = self.table.row_count().checked_sub(1).filter(known) else { return };
@@ -216,7 +217,7 @@ impl<'a> Reading<'a> {
         });
     }
 
-    /// No least angle above its greatest.
+    /// Checks that no least angle is above its greatest.
     fn check_cones(&self, problems: &mut CsvProblems) {
         for row in 0..self.table.row_count().saturating_sub(1) {
             for least in [FORWARD, FORWARD + 3, REVERSE, REVERSE + 3] {
@@ -233,7 +234,7 @@ impl<'a> Reading<'a> {
         }
     }
 
-    /// What the chain itself finds wrong, told of the rows whose x is known.
+    /// Reports the problems of the chain's geometry, for the rows whose x is known.
     fn check_geometry(&self, problems: &mut CsvProblems) {
         let rows: Vec<usize> = (0..self.table.row_count()).filter(|&row| self.table.value(row, X).is_some()).collect();
         let row_of = |vertex: usize| rows.get(vertex).copied().unwrap_or_default();
@@ -244,7 +245,7 @@ impl<'a> Reading<'a> {
         for problem in invalid.0 {
             let certain = match problem {
                 ChainProblem::TooFewVertices { .. } => self.table.row_count() < 2 && self.table.complete,
-                // Only between neighbours whose four coordinates are known.
+                // Only if all four coordinates of the two vertices are known.
                 ChainProblem::Vertical { segment } => {
                     let (a, b) = (row_of(segment.index()), row_of(segment.index() + 1));
                     b == a + 1 && known(a, Z).is_some() && known(b, Z).is_some()
@@ -257,7 +258,7 @@ impl<'a> Reading<'a> {
         }
     }
 
-    /// A problem of the chain, in words of the file.
+    /// A problem of the geometry, described with lines and fields of the file.
     fn geometry_problem(&self, problem: &ChainProblem, row_of: &dyn Fn(usize) -> usize) -> CsvProblem {
         match *problem {
             ChainProblem::TooFewVertices { count } => {
@@ -282,17 +283,16 @@ impl<'a> Reading<'a> {
                     "move the vertices apart",
                 )
             }
-            // Fields that are no finite numbers never reach the chain, and its lists are made of equal length.
+            // Non-finite fields never reach the chain, and its lists are built with equal lengths.
             ref other => self.table.row_place(0).problem(other.to_string(), "a valid chain", "check the rows"),
         }
     }
 
-    /// Warns of blank columns, and of a direction that nothing is said of.
+    /// Warns of empty columns, and of a direction without limits.
     fn warn(&mut self) {
         let blank = (0..CHAIN_COLUMNS.len()).filter(|&column| self.table.has(column) && !self.fills(column));
-        let mut warnings: Vec<String> = blank
-            .map(|column| format!("column {} is empty in every row, as if it were not there", CHAIN_COLUMNS[column].name))
-            .collect();
+        let mut warnings: Vec<String> =
+            blank.map(|column| format!("column {} is empty in every row and is ignored", CHAIN_COLUMNS[column].name)).collect();
         match (self.fills(FORWARD), self.fills(REVERSE)) {
             (true, false) => warnings.push("no hop goes towards -x: the chain has no reverse_ columns".to_owned()),
             (false, true) => warnings.push("no hop goes towards +x: the chain has the reverse_ columns alone".to_owned()),
@@ -301,7 +301,7 @@ impl<'a> Reading<'a> {
         self.table.warnings.append(&mut warnings);
     }
 
-    /// The chain, once nothing is wrong with the table.
+    /// The chain, once the table has no problems.
     fn chain(&self) -> Result<PolygonalChain, crate::chain::InvalidChain> {
         let rows = 0..self.table.row_count();
         let value = |row: usize, column: usize| self.table.value(row, column);
@@ -313,7 +313,7 @@ impl<'a> Reading<'a> {
         PolygonalChain::new(vertices, grounds, map)?.with_bends(bends)
     }
 
-    /// What a row says of the segment that begins there.
+    /// The ground that a row states for the segment that begins there.
     fn ground(&self, row: usize) -> SegmentGround {
         let explicit = self.fills(FORWARD) || self.fills(REVERSE);
         let form = if explicit {
@@ -327,7 +327,7 @@ impl<'a> Reading<'a> {
         SegmentGround { form, keep_out: self.table.value(row, KEEP_OUT) == Some(1.0) }
     }
 
-    /// The six of a direction.
+    /// The limits that a row states for a direction.
     fn limits(&self, row: usize, direction: Direction) -> Option<LineConstraints> {
         let first = match direction {
             Direction::Forward => FORWARD,
@@ -342,7 +342,7 @@ impl<'a> Reading<'a> {
     }
 }
 
-/// How many rows fill a column: those of segments end before the last vertex.
+/// How many rows must fill a column: all, or all but the last for a column of segments.
 fn rows_of(column: usize, row_count: usize) -> usize {
     if (FRICTION..MAP_X).contains(&column) { row_count.saturating_sub(1) } else { row_count }
 }

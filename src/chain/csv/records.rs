@@ -1,4 +1,4 @@
-//! The text of a CSV file cut into records and fields, each with its place.
+//! Splits the text of a CSV file into records and fields with their positions.
 
 use std::ops::Range;
 
@@ -6,25 +6,26 @@ use csv_core::{ReadFieldResult, Reader};
 
 use super::{CsvProblem, columns::excerpt};
 
-/// The longest line read. A full row takes some 500 bytes; what is longer is no table, and every message would have to look for its ends.
+/// The longest line read. A full row takes some 500 bytes; a longer line is not part of a table, and every message would have
+/// to search for its ends.
 pub(super) const LINE_MAX_BYTES: usize = 1 << 16;
 
-/// The longest piece of a line that a problem quotes, and how much of it may stand before the field.
+/// The longest excerpt of a line that a problem quotes, and how much of it may precede the field.
 const WINDOW_BYTES: usize = 160;
 const WINDOW_BEFORE_BYTES: usize = 60;
 
-/// One record: where it begins and where its fields are.
+/// One record: its position and the positions of its fields.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Record {
-    /// Byte of the source.
+    /// Byte offset in the source.
     pub(super) offset: usize,
     /// Line of the file, from 1.
     pub(super) line: u64,
-    /// Bytes of the source for each field, quotes and blanks included.
+    /// Byte range of each field in the source, including quotes and blanks.
     pub(super) fields: Vec<Range<usize>>,
 }
 
-/// Text in UTF-8 without its byte order mark, or what it is instead.
+/// The text without its byte order mark, or the problem if it is not UTF-8.
 pub(super) fn text_of(bytes: &[u8]) -> Result<&str, Box<CsvProblem>> {
     let refused = |at: usize, found: String, help: &str| {
         let before = bytes.get(..at).unwrap_or_default();
@@ -69,7 +70,7 @@ fn is_line_end(byte: u8) -> bool {
     byte == b'\n' || byte == b'\r'
 }
 
-/// Goes through the records of a text; blank lines and lines that begin with `#` are none.
+/// Reads the records of a text one by one; blank lines and lines that begin with `#` are skipped.
 #[derive(Debug)]
 pub(super) struct Records<'a> {
     source: &'a str,
@@ -83,15 +84,16 @@ impl<'a> Records<'a> {
         Self { source, position: 0, line: 1, machine: Reader::new() }
     }
 
-    /// From a record that was met before, to meet it again.
+    /// Starts at a record read before, to read it again.
     pub(super) fn again(source: &'a str, offset: usize, line: u64) -> Self {
         Self { source, position: offset, line, machine: Reader::new() }
     }
 
-    /// Reads the next record into `record`; whether there was one.
+    /// Reads the next record into `record`; returns whether there was one.
     ///
     /// # Errors
-    /// A line beyond [`LINE_MAX_BYTES`], and a quote that is never closed. Nothing can be read after either.
+    /// A line longer than [`LINE_MAX_BYTES`], and a quote that is not closed. The rest of the file cannot be read after
+    /// either.
     pub(super) fn read(&mut self, record: &mut Record) -> Result<bool, Box<CsvProblem>> {
         self.skip_between();
         record.fields.clear();
@@ -135,7 +137,8 @@ impl<'a> Records<'a> {
     /// Skips line ends and comments.
     fn skip_between(&mut self) {
         let start = self.position;
-        // The record before may have ended with the first half of "\r\n", which counted as its line end.
+        // The previous record may have ended after the first half of "\r\n", which was counted as its
+        // line end.
         let inside_line_end =
             start > 0 && self.source.as_bytes().get(start - 1) == Some(&b'\r') && self.rest().first() == Some(&b'\n');
         loop {
@@ -152,10 +155,10 @@ impl<'a> Records<'a> {
         self.line += line_ends(skipped);
     }
 
-    /// The next field's bytes, and whether it is the record's last.
+    /// The byte range of the next field, and whether it is the record's last.
     fn field(&mut self) -> (Range<usize>, bool) {
         let start = self.position;
-        // Only the bounds are wanted: the decoded field goes nowhere.
+        // Only the bounds are needed: the decoded text is discarded.
         let mut decoded = [0; 1024];
         loop {
             let rest = self.rest();
@@ -163,7 +166,7 @@ impl<'a> Records<'a> {
             self.position += taken;
             match result {
                 ReadFieldResult::Field { record_end } => {
-                    // At the text's end no delimiter was taken.
+                    // At the end of the text no delimiter was consumed.
                     let end = if rest.is_empty() { self.position } else { self.position - 1 };
                     return (start..end, record_end);
                 }
@@ -174,13 +177,13 @@ impl<'a> Records<'a> {
     }
 }
 
-/// A field's text without the blanks and the pair of quotes around it.
+/// A field's text without surrounding blanks and quotes.
 pub(super) fn plain(raw: &str) -> &str {
     let trimmed = raw.trim();
     trimmed.strip_prefix('"').and_then(|rest| rest.strip_suffix('"')).unwrap_or(trimmed).trim()
 }
 
-/// A place in the file, ready for a message.
+/// A position in the file, for a message.
 #[derive(Clone, Debug)]
 pub(super) struct Place {
     line: u64,
@@ -191,7 +194,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// The place of some bytes of the source inside a record.
+    /// The position of some bytes of the source inside a record.
     pub(super) fn of(source: &str, record: &Record, bytes: Range<usize>) -> Self {
         let before = source.get(record.offset..bytes.start).unwrap_or_default();
         let line_start = record.offset + before.rfind(['\n', '\r']).map_or(0, |at| at + 1);
@@ -200,7 +203,7 @@ impl Place {
         Self { line: record.line + line_ends(before.as_bytes()), column: Some(column), name: None, text, span }
     }
 
-    /// The place of a field, without the blanks around it.
+    /// The position of a field, without surrounding blanks.
     pub(super) fn of_field(source: &str, record: &Record, index: usize) -> Self {
         let Some(field) = record.fields.get(index) else { return Self::of_line(source, record) };
         let raw = source.get(field.clone()).unwrap_or_default();
@@ -216,20 +219,20 @@ impl Place {
         Self { column: None, span: 0..shown, ..place }
     }
 
-    /// The same place, with the name of its column.
+    /// The same position, with the name of its column.
     #[must_use]
     pub(super) fn named(self, name: &str) -> Self {
         Self { name: Some(excerpt(name)), ..self }
     }
 
-    /// The problem found there.
+    /// The problem found at this position.
     pub(super) fn problem(self, found: String, expected: impl Into<String>, help: impl Into<String>) -> CsvProblem {
         let Self { line, column, name, text, span } = self;
         CsvProblem { line, column, name, text, span, found, expected: expected.into(), help: help.into() }
     }
 }
 
-/// The line that begins at `line_start`, or a window of it, and the span of `bytes` therein.
+/// The line that begins at `line_start`, or an excerpt of it, and the range of `bytes` within it.
 fn window(source: &str, line_start: usize, bytes: Range<usize>) -> (String, Range<usize>) {
     let all = source.as_bytes();
     let from = if bytes.start - line_start <= WINDOW_BEFORE_BYTES {
@@ -249,7 +252,7 @@ fn window(source: &str, line_start: usize, bytes: Range<usize>) -> (String, Rang
     (text, within(bytes.start)..within(bytes.end))
 }
 
-/// The start of the character that byte `at` belongs to.
+/// The start of the character that contains byte `at`.
 fn char_start(source: &str, at: usize) -> usize {
     (0..=at).rev().find(|&at| source.is_char_boundary(at)).unwrap_or(0)
 }
@@ -269,7 +272,7 @@ mod tests {
     }
 
     #[test]
-    fn records_know_their_lines_whatever_ends_them() {
+    fn records_have_the_right_lines_for_every_line_end() {
         for end in ["\n", "\r\n", "\r"] {
             let source = ["# note, \"with\" quote", "a,b", "", "1 , \"2\"", "#", "\"3", "\",4", "5,"].join(end);
             let expected = vec![(2, vec!["a", "b"]), (4, vec!["1", "2"]), (6, vec!["3", "4"]), (8, vec!["5", ""])];
@@ -281,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn the_csv_crate_cuts_the_same_fields() {
+    fn the_csv_crate_splits_into_the_same_fields() {
         let source = "a,b,c\n1,\"x\"\"y, z\",\"\"\n\n\"p\nq\",,r";
         let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(source.as_bytes());
         let expected: Vec<Vec<String>> = reader.records().map(|r| r.unwrap().iter().map(str::to_owned).collect()).collect();
@@ -292,7 +295,7 @@ mod tests {
     }
 
     #[test]
-    fn a_record_met_again_has_the_same_fields() {
+    fn a_record_read_again_has_the_same_fields() {
         let source = "a,b\r\n1,2\r\n3,4";
         let mut records = Records::of(source);
         let mut record = Record::default();
@@ -304,8 +307,8 @@ mod tests {
     }
 
     #[test]
-    fn windows_hold_the_field_and_cut_characters_nowhere() {
-        // Two bytes for each letter: every cut by bytes would fall inside one.
+    fn excerpts_contain_the_field_and_split_no_character() {
+        // Each letter takes two bytes: a cut at an arbitrary byte would split one.
         let long = format!("{}FIELD{}", "\u{e4}".repeat(1001), "\u{f6}".repeat(999));
         let source = format!("first\n{long}\nlast");
         let record = Record { offset: 6, line: 2, fields: Vec::new() };

@@ -1,4 +1,4 @@
-//! A CSV file as a table of values under known columns.
+//! A CSV file as a table of values with known columns.
 
 use super::{
     CsvColumn, CsvProblems,
@@ -6,50 +6,50 @@ use super::{
     records::{Place, Record, Records, plain, text_of},
 };
 
-/// How many columns that nobody knows are warned of one by one.
+/// How many unknown columns are listed in warnings; the others are only counted.
 const WARNED_AT_MOST: usize = 20;
 
-/// What a field holds.
+/// The content of a field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Cell {
-    /// Nothing, or no such column.
+    /// Empty, or the column does not exist.
     Blank,
-    /// Something that was found wrong, and reported.
+    /// Invalid, and already reported.
     Bad,
-    /// Nobody knows: the row has too few or too many fields, as was reported.
+    /// Undetermined: the row has too few or too many fields, which is already reported.
     Unknown,
     /// A value, angles in radians.
     Value(f64),
 }
 
-/// A row, found again when there is something to say about it.
+/// The position of a row, from which it can be read again for a message.
 #[derive(Clone, Copy, Debug)]
 struct Row {
     offset: usize,
     line: u64,
 }
 
-/// The rows of a file under a set of known columns.
+/// The rows of a file, read with a set of known columns.
 #[derive(Debug)]
 pub(super) struct Table<'a> {
     source: &'a str,
     columns: &'static [CsvColumn],
     header: Record,
-    /// For each known column, the place of its field in a row.
+    /// For each known column, the index of its field in a row.
     fields: Vec<Option<usize>>,
-    /// For each known column, the place of its cell in a row of cells.
+    /// For each known column, the index of its cell in a row of cells.
     slots: Vec<Option<usize>>,
     width: usize,
     rows: Vec<Row>,
     cells: Vec<Cell>,
-    /// Whether the rows reach to the end of the file.
+    /// Whether all rows up to the end of the file were read.
     pub(super) complete: bool,
-    /// What was ignored.
+    /// Warnings of ignored content.
     pub(super) warnings: Vec<String>,
 }
 
 impl<'a> Table<'a> {
-    /// Reads a table; `None` where nothing more can be said about the file than the problems noted.
+    /// Reads a table; `None` if the file cannot be checked beyond the problems already reported.
     pub(super) fn read(bytes: &'a [u8], columns: &'static [CsvColumn], problems: &mut CsvProblems) -> Option<Self> {
         let source = match text_of(bytes) {
             Ok(source) => source,
@@ -103,7 +103,7 @@ impl<'a> Table<'a> {
         record.fields.get(field).and_then(|bytes| self.source.get(bytes.clone())).map_or("", plain)
     }
 
-    /// Whether the first record is a header with commas; if not, that is the file's only problem.
+    /// Whether the first record is a header with commas; if not, this is the only problem reported.
     fn is_a_header(&self, problems: &mut CsvProblems) -> bool {
         let names: Vec<&str> = (0..self.header.fields.len()).map(|field| self.text(&self.header, field)).collect();
         let known = |name: &str| self.columns.iter().any(|column| column.name == name.trim_matches(['"', ' ']));
@@ -133,7 +133,7 @@ impl<'a> Table<'a> {
         true
     }
 
-    /// Finds the known columns, and warns of the others.
+    /// Finds the known columns and warns of the others.
     fn read_header(&mut self, problems: &mut CsvProblems) {
         let mut unknown = 0;
         for field in 0..self.header.fields.len() {
@@ -246,7 +246,7 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// A row with too few or too many fields.
+    /// The problem of a row with too few or too many fields.
     fn ragged(&self, record: &Record) -> super::CsvProblem {
         let (found, expected) = (record.fields.len(), self.header.fields.len());
         let help = if found > expected {
@@ -260,7 +260,7 @@ impl<'a> Table<'a> {
         place.problem(fields, format!("{expected} as in the header"), help)
     }
 
-    /// How many rows there are.
+    /// The number of rows.
     pub(super) fn row_count(&self) -> usize {
         self.rows.len()
     }
@@ -275,13 +275,13 @@ impl<'a> Table<'a> {
         self.rows.get(row).map_or(self.header.line, |row| row.line)
     }
 
-    /// What stands in a row under a known column.
+    /// The content of a known column in a row.
     pub(super) fn cell(&self, row: usize, column: usize) -> Cell {
         let slot = self.slots.get(column).copied().flatten();
         slot.and_then(|slot| self.cells.get(row * self.width + slot)).copied().unwrap_or(Cell::Blank)
     }
 
-    /// The value in a row under a known column, where there is one.
+    /// The value of a known column in a row, if it has one.
     pub(super) fn value(&self, row: usize, column: usize) -> Option<f64> {
         if let Cell::Value(value) = self.cell(row, column) { Some(value) } else { None }
     }
@@ -291,7 +291,7 @@ impl<'a> Table<'a> {
         self.slots.get(column).is_some_and(Option::is_some)
     }
 
-    /// The place of a known column's field in a row.
+    /// The position of a known column's field in a row.
     pub(super) fn place(&self, row: usize, column: usize) -> Place {
         let record = self.record(row);
         let (Some(field), Some(known)) = (self.fields.get(column).copied().flatten(), self.columns.get(column)) else {
@@ -300,12 +300,12 @@ impl<'a> Table<'a> {
         Place::of_field(self.source, &record, field).named(known.name)
     }
 
-    /// The place of a whole row; of the header where there is no such row.
+    /// The position of a whole row, or of the header if there is no such row.
     pub(super) fn row_place(&self, row: usize) -> Place {
         Place::of_line(self.source, &self.record(row))
     }
 
-    /// The place of a known column's name in the header.
+    /// The position of a known column's name in the header.
     pub(super) fn header_place(&self, column: usize) -> Place {
         match self.fields.get(column).copied().flatten() {
             Some(field) => Place::of_field(self.source, &self.header, field),
@@ -319,7 +319,7 @@ impl<'a> Table<'a> {
         field.map_or_else(String::new, |field| excerpt(self.text(&self.record(row), field)))
     }
 
-    /// A row's record, read again.
+    /// Reads the record of a row again.
     fn record(&self, row: usize) -> Record {
         let mut record = Record::default();
         let found = self.rows.get(row).map(|row| Records::again(self.source, row.offset, row.line).read(&mut record));
@@ -327,7 +327,7 @@ impl<'a> Table<'a> {
     }
 }
 
-/// The names of the columns that a file must have.
+/// The names of the required columns.
 fn required_names(columns: &[CsvColumn]) -> String {
     columns.iter().filter(|column| column.required).map(|column| column.name).collect::<Vec<_>>().join(",")
 }

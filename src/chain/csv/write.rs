@@ -1,4 +1,4 @@
-//! A chain to its CSV.
+//! Writes a chain to CSV.
 
 use std::io::{self, Write};
 
@@ -16,37 +16,37 @@ use crate::{
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum ChainWriteError {
-    /// The output refuses.
+    /// The output cannot be written to.
     #[error("the chain cannot be written: {0}")]
     Io(#[from] io::Error),
-    /// Some segments state their surface, some explicit limits.
+    /// Some segments state their surface, others explicit limits.
     #[error("segment {} is in another form than segment 1, expected one form for the whole chain: state every segment in one form", .0.index() + 1)]
     MixedForms(SegmentId),
-    /// Some segments state their friction, some leave it to the scenario.
+    /// Some segments state their friction, others leave it to the scenario.
     #[error("segment {} differs from segment 1 in whether it states a friction coefficient, expected all or none: give every segment one", .0.index() + 1)]
     MixedFriction(SegmentId),
-    /// A number that the reader would refuse.
-    #[error("segment {} has the {column} {value}, expected {expected}: mend the chain before it is written", segment.index() + 1)]
+    /// A value that the reader would refuse.
+    #[error("segment {} has the {column} {value}, expected {expected}: correct the chain before writing it", segment.index() + 1)]
     Unwritable {
-        /// Which segment.
+        /// The segment.
         segment: SegmentId,
-        /// Under which column.
+        /// The column.
         column: &'static str,
-        /// The number, angles in degrees.
+        /// The value; angles in degrees.
         value: f64,
-        /// What the column takes.
+        /// The values that the column accepts.
         expected: &'static str,
     },
 }
 
-/// Writes a chain in the form it has, so that it reads back as it was.
+/// Writes a chain in the form of its grounds, so that it reads back as the same chain.
 ///
-/// Columns that would say nothing (no friction, cross-slopes all 0, no keep-out, no limits in a direction, no map) are left out.
-/// Where only some segments state limits for a direction, the others are written as speed 0, which means the same; so is a set whose
-/// least angle is above its greatest, which a file cannot state. All else reads back as the same chain, bit by bit.
+/// Columns without information (no friction, cross-slopes all 0, no keep-out, no limits in a direction, no map) are left out.
+/// If only some segments state limits for a direction, the others are written with speed 0, which means the same. So are
+/// limits whose least angle is above their greatest, which a file cannot state. Everything else reads back bit by bit.
 ///
 /// # Arguments
-/// `comments`: lines to put before the header, each behind `# `.
+/// `comments`: lines written before the header, each after `# `.
 ///
 /// # Errors
 /// [`ChainWriteError`]; a chain that cannot be written leaves the output untouched.
@@ -90,13 +90,13 @@ pub fn write_chain_csv(chain: &PolygonalChain, mut out: impl Write, comments: &[
     Ok(())
 }
 
-/// The shortest text that reads back as the same double, with an exponent where zeros would pile up.
+/// The shortest text that reads back as the same double, with an exponent instead of many zeros.
 pub(super) fn number_text(value: f64) -> String {
     let size = value.abs();
     if size == 0.0 || (1e-5..1e16).contains(&size) { format!("{value}") } else { format!("{value:e}") }
 }
 
-/// Which columns a chain fills.
+/// The groups of columns that a chain fills.
 #[derive(Debug, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "each is the presence of a column, free of the others")]
 struct Layout {
@@ -130,14 +130,15 @@ impl Layout {
                 _ => return Err(ChainWriteError::MixedForms(SegmentId(i))),
             }
         }
-        // A chain that allows nothing anywhere: without any of the twelve it would be one that leaves all to the scenario.
+        // A chain that allows no contact anywhere: without any of the twelve columns it would leave the limits to the
+        // scenario.
         if matches!(first.form, GroundForm::Explicit { .. }) && !layout.reverse {
             layout.forward = true;
         }
         Ok(layout)
     }
 
-    /// The columns about segments, in the order of [`CHAIN_COLUMNS`].
+    /// The columns of segments, in the order of [`CHAIN_COLUMNS`].
     fn segment_columns(&self) -> Vec<usize> {
         let single = [(self.friction, FRICTION), (self.cross_slope, CROSS_SLOPE), (self.keep_out, KEEP_OUT)];
         let single = single.into_iter().filter(|&(given, _)| given).map(|(_, column)| column);
@@ -183,13 +184,13 @@ impl Layout {
     }
 }
 
-/// What says the same as no limits at all: speed 0.
+/// Limits with speed 0, which mean the same as no limits stated: no contact is allowed.
 fn nothing_allowed() -> LineConstraints {
     let rule = ContactRule::new(AngleInterval { min: Angle::default(), max: Angle::default() }, 0.0);
     LineConstraints { takeoff: rule, landing: rule }
 }
 
-/// The six fields of a direction.
+/// Writes the six fields of a direction.
 fn write_limits(
     segment: SegmentId,
     first: usize,
@@ -207,13 +208,13 @@ fn write_limits(
     Ok(())
 }
 
-/// An angle's text, if the reader takes it.
+/// The text of an angle if the reader accepts it.
 fn angle_field(segment: SegmentId, column: usize, angle: Angle) -> Result<String, ChainWriteError> {
     let text = degrees_text(angle);
     checked(segment, column, angle.degrees(), |degrees| text.unwrap_or_else(|| number_text(degrees)))
 }
 
-/// The text of a value, if the reader takes it.
+/// The text of a value if the reader accepts it.
 fn checked(segment: SegmentId, column: usize, value: f64, text: impl FnOnce(f64) -> String) -> Result<String, ChainWriteError> {
     let known = &CHAIN_COLUMNS[column];
     let text = text(value);

@@ -1,12 +1,12 @@
-//! All arcs between two cells as four intervals that narrow each other.
+//! The set of all arcs between two cells as four intervals, each narrowed by the others.
 
 use crate::{
     quantity::{Interval, Rounding},
     world::Limit,
 };
 
-/// What is left of the arcs between two cells: slopes of take-off `m`, of landing `l`, of the line of sight `b`, and lofts `n`, with
-/// `m = b + n` and `l = b - n`.
+/// The arcs between two cells that are still possible: slopes of take-off `m`, of landing `l`, of the line of sight `b`, and
+/// lofts `n`, with `m = b + n` and `l = b - n`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Arcs<R> {
     pub(super) takeoff: Interval<R>,
@@ -16,24 +16,24 @@ pub(super) struct Arcs<R> {
 }
 
 impl<R: Rounding> Arcs<R> {
-    /// Every arc along lines of sight of these slopes.
+    /// All arcs over lines of sight with these slopes.
     pub(super) const fn along(sight: Interval<R>) -> Self {
         Self { takeoff: Interval::ALL, landing: Interval::ALL, sight, loft: Interval::new(0.0, f64::INFINITY) }
     }
 
-    /// Applies one limit and narrows the rest.
+    /// Applies one limit and narrows the other intervals.
     ///
     /// # Errors
-    /// The limit, where it leaves nothing.
+    /// The limit, if it leaves no arc.
     pub(super) fn limit(&mut self, apply: impl FnOnce(&mut Self), limit: Limit) -> Result<(), Limit> {
         apply(self);
         self.narrow();
         let left = !(self.takeoff.is_empty() || self.landing.is_empty() || self.sight.is_empty() || self.loft.is_empty());
-        // A loft of zero is no arc.
+        // An arc needs a positive loft.
         if left && self.loft.upper > 0.0 { Ok(()) } else { Err(limit) }
     }
 
-    /// Each interval by the others: `b = (m + l) / 2`, `n = (m - l) / 2 = m - b = b - l`.
+    /// Narrows each interval by the others: `b = (m + l) / 2`, `n = (m - l) / 2 = m - b = b - l`.
     fn narrow(&mut self) {
         self.sight = self.sight.intersect((self.takeoff + self.landing).halved());
         let by_both = (self.takeoff - self.landing).halved();
@@ -50,8 +50,8 @@ impl<R: Rounding> Arcs<R> {
 ///     m^2 - 2 q m + 1 + 2 q b <= 0   <=>   q - r <= m <= q + r,   r^2 = (q - b - w)(q - b + w),   w^2 = 1 + b^2
 /// ```
 ///
-/// They grow with `q` and shrink with `b`. The product of the roots gives the smaller one. Empty where no arc is fast enough. For
-/// landing slopes mirror both: `-l` over `-b`.
+/// The interval grows with `q` and shrinks with `b`. The smaller root follows from the product of the roots. Empty if the
+/// speed is too low for any arc. For landing slopes, apply it to `-b` and negate the result.
 pub(super) fn least_speed_slopes<R: Rounding>(ratio: f64, sight_slope: f64) -> Interval<R> {
     if !(ratio.is_finite() && sight_slope.is_finite()) {
         return Interval::ALL;

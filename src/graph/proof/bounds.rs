@@ -12,20 +12,20 @@ use crate::{
     hop::HopTest,
 };
 
-/// The cells that a proof may use where nothing else is asked for: some 200 bytes each.
+/// The default limit on the number of cells; a cell takes some 200 bytes.
 pub const DEFAULT_BUDGET_CELLS: usize = 50_000;
 
-/// How to bound.
+/// Options of the bounds.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BoundsOptions {
-    /// The greatest number of cells; memory grows with it alone.
+    /// The greatest number of cells; memory grows only with this number.
     pub budget_cells: usize,
-    /// How to search for the first path, and how its effort is counted. Without a spacing the few first choices of "auto" are tried; the
-    /// points inside may-cells take over from there.
+    /// Options of the search for the first path, including its effort. Without a spacing only the first few spacings of "auto" are
+    /// tried; after that, points inside may-cells are used.
     pub search: SearchOptions,
     /// When to stop.
     pub until: Until,
-    /// Whether to say of every cell what is proved of it, and why there is no path.
+    /// Whether to report what is proved for every cell, and why there is no path.
     pub explain: bool,
 }
 
@@ -35,24 +35,24 @@ impl Default for BoundsOptions {
     }
 }
 
-/// When bounds are close enough.
+/// The stopping criterion.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Until {
-    /// When they meet, or the goal is cut off.
+    /// Stop when the bounds meet, or when the goal is proved unreachable.
     #[default]
     BoundsMeet,
-    /// When it is known whether there is a path, in however many hops.
+    /// Stop when it is decided whether there is a path, with any number of hops.
     Decided,
 }
 
-/// What bounds come to.
+/// The conclusion from the bounds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ProofVerdict {
     /// A path was found.
     Traversable,
-    /// Proved: no path, at any resolution.
+    /// Proved: there is no path, at any resolution.
     Untraversable,
-    /// No path found, and none excluded: the budget ended.
+    /// Undecided within the budget: no path was found, and none is excluded.
     Open,
 }
 
@@ -67,43 +67,43 @@ impl ProofVerdict {
     }
 }
 
-/// What a proof took.
+/// The work done for a proof.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ProofSummary {
     /// Cells at the end.
     pub cells: usize,
-    /// How many cells were split in two.
+    /// Number of cells split in two.
     pub splits: u64,
-    /// How often the depths of all cells were settled.
+    /// Number of passes that settled the depths of all cells.
     pub rounds: u32,
-    /// How many pairs of cells were tested.
+    /// Number of pairs of cells tested.
     pub pairs_tested: u64,
-    /// Whether the best path goes over points of the cells, not over those of the search.
+    /// Whether the best path uses points of the cells rather than nodes of the search.
     pub path_over_cells: bool,
 }
 
-/// A path and a bound that no path undercuts.
+/// The best path found, and a lower bound on the hops of every path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bounds {
-    /// No path has fewer hops, at any resolution; `None`: proved, there is no path at all.
+    /// Every path has at least this many hops, at any resolution; `None`: there is provably no path.
     pub lower: Option<u64>,
-    /// The best path known with the counts of the search, or why none was found. The path may be one over points of the cells.
+    /// The best known path with the counts of the search, or why none was found. The path may use points of the cells.
     pub answer: Answer,
-    /// What it took.
+    /// The work done.
     pub summary: ProofSummary,
-    /// What is proved of each stretch, from left to right; empty where it was not asked for.
+    /// What is proved for each stretch, from left to right; empty if not requested.
     pub stretches: Vec<Stretch>,
-    /// Where there is proved to be no path: why. `None` also where it was not asked for.
+    /// Why there is no path, if that is proved; `None` also if not requested.
     pub gap: Option<Gap>,
 }
 
 impl Bounds {
-    /// The hops of the best path known; `None` where there is none.
+    /// The hops of the best known path; `None` if there is none.
     pub fn upper(&self) -> Option<u64> {
         self.answer.hops()
     }
 
-    /// What the bounds come to.
+    /// The conclusion from the bounds.
     pub fn verdict(&self) -> ProofVerdict {
         match (self.upper(), self.lower) {
             (Some(_), _) => ProofVerdict::Traversable,
@@ -112,7 +112,7 @@ impl Bounds {
         }
     }
 
-    /// Whether nothing is left open: the bounds meet, or there is no path.
+    /// Whether the question is decided: the bounds meet, or there is provably no path.
     pub fn is_proved(&self) -> bool {
         self.lower == self.upper()
     }
@@ -120,15 +120,15 @@ impl Bounds {
 
 /// Bounds the fewest hops from start to goal from both sides, for every choice of points.
 ///
-/// `progress` is told the two bounds and the cells of each round.
+/// `progress` is called with the state of each round: the two bounds and the number of cells.
 ///
 /// # Errors
-/// [`TooManyNodes`], of the search for a first path.
+/// [`TooManyNodes`] from the search for a first path.
 ///
 /// # Complexity
-/// Memory grows with the budget of cells alone. A round tests each cell against the cells one may-hop nearer to start or goal until one
-/// may be joined to it: with C cells, W of them in reach of each and S vertices flown past, O(C W S) at worst; later rounds only look at
-/// what was split and what lost its may-path.
+/// Memory grows only with the budget of cells. A round tests each cell against the cells one may-hop nearer to start or goal
+/// until it finds one that may be joined to it: with C cells, W of them in reach of each and S vertices flown over, O(C W S)
+/// at worst. Later rounds only test cells that were split or that lost their may-path.
 ///
 /// # Examples
 /// ```
@@ -137,13 +137,15 @@ impl Bounds {
 /// let grip = Some(Grip::Friction(FrictionCone::new(1.0).unwrap()));
 /// let points = [(0.0, 0.0), (60.0, 0.0), (60.5, 50.0), (80.0, 50.0)].map(|(x, z)| ChainPoint::new(x, z));
 /// let chain = PolygonalChain::bare(points.to_vec()).unwrap();
-/// let chain = ConstrainedChain::new(chain, &hopper, Gravity::new(1.0).unwrap(), &SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds }).unwrap();
-/// let test = HopTest::new(chain.clone());
+/// let (gravity, surface) = (Gravity::new(1.0).unwrap(), SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds });
+/// let chain = ConstrainedChain::new(chain, &hopper, gravity, &surface).unwrap();
+/// let test = HopTest::new(chain);
+/// let chain = test.chain();
 /// let at = |x| chain.geometry().station(x).unwrap();
-/// // A hop at 45 degrees carries v^2 / g = 25 m: 60 m take three, and no path takes two.
+/// // A hop at 45 degrees covers v^2 / g = 25 m: 60 m take three, and no path takes two.
 /// let there = bounds(&test, at(0.0), at(60.0), &BoundsOptions::default(), &mut |_| {}).unwrap();
 /// assert_eq!((there.lower, there.upper()), (Some(3), Some(3)));
-/// // 5 m/s lift no one over a 50 m wall: v^2 / (2 g) = 12.5 m.
+/// // At 5 m/s no arc rises over a 50 m wall: v^2 / (2 g) = 12.5 m.
 /// let up = bounds(&test, at(0.0), at(70.0), &BoundsOptions::default(), &mut |_| {}).unwrap();
 /// assert_eq!(up.verdict(), ProofVerdict::Untraversable);
 /// ```
@@ -157,7 +159,7 @@ pub fn bounds(
     bounds_with::<Sound>(test, start, goal, options, progress)
 }
 
-/// The same with the faults that a test asks for.
+/// The same with faults that a test selects.
 pub(super) fn bounds_with<F: Faults>(
     test: &HopTest,
     start: Station,
@@ -187,25 +189,25 @@ pub(super) fn bounds_with<F: Faults>(
     Ok(Bounds { lower, summary: closing.summary(), answer: closing.answer, stretches, gap })
 }
 
-/// The first path, over the points asked for, or the first of "auto" while they are few.
+/// The first path, over the points requested, or over the first spacings of "auto" while they are few.
 fn first_path(test: &HopTest, start: Station, goal: Station, options: &SearchOptions) -> Result<Answer, TooManyNodes> {
     let spacing = options.spacing.unwrap_or(PointSpacing::PerSegment(AUTO_POINTS_PER_SEGMENT[0]));
     search(test, start, goal, &SearchOptions { spacing: Some(spacing), ..options.clone() }, &mut |_| {})
 }
 
-/// Two bounds that close in on each other.
+/// The state of the refinement of both bounds.
 struct Closing<'a, 'o, F: Faults> {
     refinement: Refinement<'a, F>,
     options: &'o BoundsOptions,
     answer: Answer,
     rounds: u32,
     path_over_cells: bool,
-    /// How many cells there were when points were last tried.
+    /// The number of cells when points were last tried.
     tried_cells: usize,
 }
 
 impl<F: Faults> Closing<'_, '_, F> {
-    /// Refines until the bounds meet, the goal is cut off, or the budget ends; gives the lower bound.
+    /// Refines until the bounds meet, the goal is proved unreachable, or the budget ends; returns the lower bound.
     fn close(&mut self, progress: &mut dyn FnMut(ProofSummary)) -> Option<u64> {
         loop {
             let upper = self.answer.hops().map(|hops| u32::try_from(hops).unwrap_or(CUT_OFF));
@@ -219,7 +221,7 @@ impl<F: Faults> Closing<'_, '_, F> {
             if decided || upper.is_some_and(|upper| lower >= upper) {
                 return Some(u64::from(lower));
             }
-            // Only may-paths shorter than the best path can change the answer.
+            // Only may-paths shorter than the best path can change the result.
             let shorter = upper.map_or(CUT_OFF - 1, |upper| upper - 1);
             self.refinement.settle_to_goal(shorter);
             if self.try_points(shorter) {
@@ -232,10 +234,11 @@ impl<F: Faults> Closing<'_, '_, F> {
         }
     }
 
-    /// Without a path, may-paths longer than the shortest by this share are split with it: all of them have to be cut.
+    /// Without a path, may-paths up to this factor longer than the shortest are split together with it: all of them must be
+    /// cut.
     const BREADTH: u32 = 2;
 
-    /// Looks for a path of at most so many hops over points of the cells; whether there is one.
+    /// Searches for a path of at most this many hops over points of the cells; returns whether there is one.
     fn try_points(&mut self, at_most: u32) -> bool {
         self.tried_cells = self.refinement.cells.len();
         let tried = try_points(&self.refinement, Scope::Paths(at_most));
@@ -246,7 +249,7 @@ impl<F: Faults> Closing<'_, '_, F> {
         true
     }
 
-    /// What it took so far.
+    /// The work done so far.
     fn summary(&self) -> ProofSummary {
         ProofSummary {
             cells: self.refinement.cells.len(),

@@ -1,4 +1,4 @@
-//! The chain's continuum in cells: every vertex by itself, every segment in stretches.
+//! Division of the chain's continuum into cells: every vertex is a cell, and every segment is divided into stretches.
 
 use super::Faults;
 use crate::{
@@ -6,24 +6,24 @@ use crate::{
     quantity::{Interval, SegmentId, VertexId},
 };
 
-/// A vertex, or a stretch inside one segment; a stretch may be a single point.
+/// A vertex, or a stretch inside one segment, which may be a single point.
 ///
-/// A stretch counts as if its ends belonged to it, under its own segment's rules: more than there is where an end is a vertex, never
-/// less.
+/// A stretch includes its ends, with the constraints of its own segment. At an end that is a vertex this includes more than
+/// the ground has, never less.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Cell<R> {
-    /// Vertex or segment.
+    /// The vertex or segment.
     pub(super) site: Site,
-    /// Where it begins, m.
+    /// x of its left end, m.
     pub(super) from_m: f64,
-    /// Where it ends, m.
+    /// x of its right end, m.
     pub(super) to_m: f64,
     /// The ground's height at both ends, m.
     pub(super) heights_m: [Interval<R>; 2],
 }
 
 impl<R: crate::quantity::Rounding> Cell<R> {
-    /// The ends, one where the cell is a point.
+    /// The ends; only one if the cell is a point.
     pub(super) fn ends(&self) -> impl Iterator<Item = (f64, Interval<R>)> {
         let [first, last] = self.heights_m;
         let other = (self.from_m < self.to_m).then_some((self.to_m, last));
@@ -36,19 +36,19 @@ impl<R: crate::quantity::Rounding> Cell<R> {
         (first.lower.min(last.lower), first.upper.max(last.upper))
     }
 
-    /// Its length along x, m.
+    /// The length along x, m.
     pub(super) fn width_m(&self) -> f64 {
         self.to_m - self.from_m
     }
 
-    /// The x that divides a stretch in two; `None` for a point, or where no double lies between the ends.
+    /// The x that divides a stretch in two; `None` for a point, or if there is no double between the ends.
     pub(super) fn middle_m(&self) -> Option<f64> {
         let middle_m = self.from_m + 0.5 * (self.to_m - self.from_m);
         (self.from_m < middle_m && middle_m < self.to_m).then_some(middle_m)
     }
 }
 
-/// The segment that a pair of neighbouring sites shares, the left one first.
+/// The segment shared by two neighbouring sites, the left one first.
 pub(super) fn shared_segment(left: Site, right: Site) -> Option<SegmentId> {
     let ahead = match left {
         Site::Vertex(v) => v.index(),
@@ -61,13 +61,14 @@ pub(super) fn shared_segment(left: Site, right: Site) -> Option<SegmentId> {
     (ahead == behind).then_some(SegmentId(ahead))
 }
 
-/// The slope dz/dx of every segment, as it is without rounding.
+/// An enclosure of the exact slope dz/dx of every segment.
 pub(super) fn slopes<F: Faults>(geometry: &PolygonalChain) -> Vec<Interval<F::Rounding>> {
     let point = Interval::point;
     geometry.vertices().windows(2).map(|v| (point(v[1].z_m) - point(v[0].z_m)) / (point(v[1].x_m) - point(v[0].x_m))).collect()
 }
 
-/// The cells of a chain from left to right: vertices, start and goal each by itself, one stretch between neighbours.
+/// The cells of a chain from left to right: each vertex, the start and the goal as a cell of its own, and one stretch between
+/// neighbours.
 pub(super) fn partition<F: Faults>(
     geometry: &PolygonalChain,
     slopes: &[Interval<F::Rounding>],
@@ -116,7 +117,7 @@ pub(super) fn stretch<F: Faults>(
     let [a, b] = [0, 1].map(|end| geometry.vertices()[segment.index() + end]);
     let slope = slopes[segment.index()];
     let point = Interval::point;
-    // From the nearer vertex, which keeps more digits.
+    // Computed from the nearer vertex, which keeps more digits.
     let height = |x_m: f64| {
         if x_m == a.x_m {
             point(a.z_m)

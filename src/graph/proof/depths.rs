@@ -1,4 +1,4 @@
-//! How many may-hops a cell lies from one end of the journey: breadth first, kept up while cells are split.
+//! The number of may-hops of each cell from one end of the journey: a breadth-first search, updated as cells are split.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,55 +12,56 @@ pub(super) const CUT_OFF: u32 = u32::MAX;
 /// No cell.
 const NONE: u32 = u32::MAX;
 
-/// The end of the journey that depths are counted from.
+/// The end of the journey from which depths are counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Root {
-    /// From the start: depth is the least number of may-hops from it.
+    /// The start: depth is the least number of may-hops from it.
     Start,
-    /// Towards the goal: depth is the least number of may-hops to it.
+    /// The goal: depth is the least number of may-hops to it.
     Goal,
 }
 
-/// The depth of every cell, from below.
+/// A lower bound on the depth of every cell.
 ///
-/// Splitting cells only takes may-hops away, so depths only grow: a cell keeps the cell that gave it its depth until that one is split
-/// or gets deeper itself, and then looks for another one of the same depth, else goes one level down (Even and Shiloach 1981, with edges
-/// tested when asked for and none stored). Memory is a few numbers a cell.
+/// Splitting cells only removes may-hops, so depths only increase. A cell keeps the parent that gave its depth until that
+/// parent is split or becomes deeper. It then looks for another parent of the same depth, and otherwise moves one level down
+/// (Even and Shiloach 1981, with edges tested on demand and not stored). Memory is a few numbers per cell.
 #[derive(Clone, Debug)]
 pub(super) struct Depths {
     root: Root,
-    /// At least so many may-hops; [`CUT_OFF`] for proved never.
+    /// The least number of may-hops; [`CUT_OFF`] if provably unreachable.
     depth: Vec<u32>,
-    /// The cell one level up that gave the depth, or might.
+    /// The cell one level up that gave the depth, or a candidate for it.
     parent: Vec<u32>,
-    /// Whether the test of that parent has been made with the cells as they are.
+    /// Whether the edge from that parent was tested with the current cells.
     tested: Vec<bool>,
-    /// How many pairs of cells were tested.
+    /// Number of pairs of cells tested.
     pub(super) pairs_tested: u64,
 }
 
-/// What one cell's look for a parent came to.
+/// The result of one cell's search for a parent.
 struct Found {
     parent: Option<u32>,
     pairs_tested: u64,
 }
 
 impl Depths {
-    /// Before any test: one hop from the end at least.
+    /// The initial state before any test: every cell is at least one hop from the end.
     ///
-    /// The distance over the greatest reach would bound more, but not the may-graph: a cell is crossed for nothing there. A depth has to
-    /// be one that every may-path keeps to, or the level above holds no parent where one exists.
+    /// The distance divided by the greatest reach would be a larger bound on hops, but not in the may-graph, where crossing a
+    /// cell is free. A depth must be a lower bound for every may-path; otherwise the level above would lack a parent that
+    /// exists.
     pub(super) fn new(root: Root, cells: usize, end: usize) -> Self {
         let depth = (0..cells).map(|i| u32::from(i != end)).collect();
         Self { root, depth, parent: vec![NONE; cells], tested: vec![false; cells], pairs_tested: 0 }
     }
 
-    /// The least number of may-hops, as far as it was settled.
+    /// The least number of may-hops, as far as settled.
     pub(super) fn of(&self, cell: usize) -> u32 {
         self.depth[cell]
     }
 
-    /// Settles all depths up to a limit; deeper ones are only known to be deeper.
+    /// Settles all depths up to a limit; deeper cells are only known to be deeper.
     pub(super) fn settle<F: Faults>(&mut self, prover: &Prover<'_, F>, cells: &[Cell<F::Rounding>], limit: u32) {
         let reach_m = prover.greatest_reach_m();
         let mut by_depth: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
@@ -70,7 +71,7 @@ impl Depths {
             }
         }
         let mut above = by_depth.remove(&0).unwrap_or_default();
-        // Cells that are no nearer than the level at hand and still without a parent.
+        // Cells not nearer than the current level that have no parent yet.
         let mut waiting: BTreeSet<u32> = BTreeSet::new();
         let mut level = 0;
         while level < limit && !above.is_empty() && !(waiting.is_empty() && by_depth.is_empty()) {
@@ -80,7 +81,7 @@ impl Depths {
                 if self.has_parent(cell, level) {
                     settled.push(cell);
                 } else {
-                    // Without a depth until it has a parent, so that it is none itself.
+                    // A cell has no depth until it has a parent, so that it cannot be a parent itself.
                     self.depth[cell as usize] = CUT_OFF;
                     waiting.insert(cell);
                 }
@@ -101,7 +102,7 @@ impl Depths {
             settled.sort_unstable();
             above = settled;
         }
-        // Beyond an empty level there is nothing; else the rest is deeper than the limit.
+        // After an empty level all remaining cells are unreachable; otherwise they are deeper than the limit.
         let rest = if above.is_empty() { CUT_OFF } else { limit.saturating_add(1) };
         for cell in waiting.into_iter().chain(by_depth.into_values().flatten()) {
             self.depth[cell as usize] = rest;
@@ -113,17 +114,18 @@ impl Depths {
         }
     }
 
-    /// Whether the parent known still gives a cell this depth.
+    /// Whether the known parent still gives a cell this depth.
     fn has_parent(&self, cell: u32, level: u32) -> bool {
         self.tested[cell as usize] && self.is_above(self.parent[cell as usize], level)
     }
 
-    /// Whether a cell is one level nearer.
+    /// Whether a cell is one level nearer to the end.
     fn is_above(&self, cell: u32, level: u32) -> bool {
         self.depth.get(cell as usize) == Some(&(level - 1))
     }
 
-    /// Looks for a cell of the level above from which (or to which) a hop may lead: the one known, then the nearest first.
+    /// Looks for a cell of the level above from which (or to which) a hop may lead: first the known parent, then the nearest
+    /// cells.
     fn look<F: Faults>(&self, prover: &Prover<'_, F>, cells: &[Cell<F::Rounding>], cell: u32, level: u32, above: &[u32]) -> Found {
         let i = cell as usize;
         let known = self.parent[i];
@@ -137,7 +139,7 @@ impl Depths {
             }
         };
         if known != NONE {
-            // Where it was split, its halves stand in its place.
+            // A parent that was split is replaced by its halves.
             for candidate in [known, known + 1] {
                 if candidate != cell && self.is_above(candidate, level) && may(candidate) {
                     return Found { parent: Some(candidate), pairs_tested };
@@ -152,8 +154,7 @@ impl Depths {
         Found { parent, pairs_tested }
     }
 
-    /// The same for cells of which some were split: `halves` has, for each old cell, the index of its first new one and how many there
-    /// are.
+    /// Updates the depths after a split: `halves` holds, for each old cell, the index of its first new cell and their number.
     pub(super) fn after_split(&mut self, halves: &[(u32, u32)], count: usize) {
         let (mut depth, mut parent, mut tested) = (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));
         for (i, &(_, pieces)) in halves.iter().enumerate() {
@@ -172,7 +173,7 @@ impl Depths {
     }
 }
 
-/// The range of cells within a distance of any of a rising list.
+/// The range of cells within a distance of any cell of an ascending list.
 fn within_reach<R: crate::quantity::Rounding>(cells: &[Cell<R>], list: &[u32], reach_m: f64) -> std::ops::Range<u32> {
     let (Some(&first), Some(&last)) = (list.first(), list.last()) else { return 0..0 };
     let (low_m, high_m) = (cells[first as usize].from_m - reach_m, cells[last as usize].to_m + reach_m);
@@ -182,7 +183,7 @@ fn within_reach<R: crate::quantity::Rounding>(cells: &[Cell<R>], list: &[u32], r
     index(begin)..index(end.max(begin))
 }
 
-/// The cells of a rising list within a distance of a cell, the nearest first.
+/// The cells of an ascending list within a distance of a cell, the nearest first.
 fn nearest_cells<'c, R: crate::quantity::Rounding>(
     cells: &'c [Cell<R>],
     cell: u32,
@@ -198,7 +199,7 @@ fn nearest_cells<'c, R: crate::quantity::Rounding>(
     nearest_first(among, around, gap_m, reach_m)
 }
 
-/// The items of a list within a distance, the nearest first, given how far each is; from `around` on the distances grow to either side.
+/// The items of a list within a distance, the nearest first. The distances must increase in both directions from `around`.
 pub(super) fn nearest_first<I: Copy>(
     list: &[I],
     around: std::ops::Range<usize>,

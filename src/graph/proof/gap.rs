@@ -1,16 +1,17 @@
-//! Why not: what is proved reachable and unreachable along the chain, and which limits refuse in the gap.
+//! Why there is no path: the parts of the chain proved reachable and unreachable, and the limits that refuse the hops between
+//! them.
 
 use super::{Faults, Prover, cell::Cell, depths::CUT_OFF, points::try_points, refine::Refinement};
 use crate::graph::RefusalCounts;
 
-/// What is proved of a stretch of chain.
+/// What is proved for a stretch of the chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StretchClass {
-    /// A path from the start to a point of it was found.
+    /// A path from the start to one of its points was found.
     Reachable,
     /// No path leads from the start to any point of it, at any resolution.
     Unreachable,
-    /// Neither is known.
+    /// Neither is proved.
     Open,
 }
 
@@ -25,37 +26,37 @@ impl StretchClass {
     }
 }
 
-/// A stretch of chain of one class; of zero length it is a vertex, the start or the goal.
+/// A stretch of the chain with one class; a vertex, the start or the goal has zero length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stretch {
-    /// Where it begins, m.
+    /// x of its left end, m.
     pub from_x_m: f64,
-    /// Where it ends, m.
+    /// x of its right end, m.
     pub to_x_m: f64,
-    /// What is proved of it.
+    /// What is proved for it.
     pub class: StretchClass,
-    /// Whether a may-path leads from it to the goal; where none does, that is proved.
+    /// Whether a may-path leads from it to the goal; if not, the goal is provably unreachable from it.
     pub may_lead_to_goal: bool,
 }
 
-/// What keeps a journey from being possible.
+/// The gap that makes a journey impossible.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
-    /// No path from the start comes nearer to the goal than this place, m.
+    /// No path from the start comes nearer to the goal than this x, m.
     pub reached_x_m: f64,
-    /// No place nearer to the start than this one leads to the goal, m.
+    /// No position nearer to the start than this x leads to the goal, m.
     pub leads_to_goal_x_m: f64,
-    /// The cells that may be reached from the start.
+    /// Number of cells that may be reached from the start.
     pub reached_cells: usize,
-    /// The cells from which the goal may be reached.
+    /// Number of cells from which the goal may be reached.
     pub leading_cells: usize,
-    /// What refuses the hops out of the cells that may be reached to the others within reach: pairs of cells, each under the first limit
-    /// that left nothing.
+    /// The refusals of the hops from the cells that may be reached to the other cells within reach: pairs of cells, each
+    /// counted under the first limit that leaves no arc.
     pub refusals: RefusalCounts,
 }
 
 impl<F: Faults> Refinement<'_, F> {
-    /// Every cell with what is proved of it; settles all depths.
+    /// Every cell with what is proved for it; settles all depths.
     pub(super) fn stretches(&mut self) -> Vec<Stretch> {
         self.settle_from_start(CUT_OFF);
         self.settle_to_goal(CUT_OFF);
@@ -78,7 +79,7 @@ impl<F: Faults> Refinement<'_, F> {
         self.cells.iter().enumerate().map(stretch).collect()
     }
 
-    /// What keeps the journey from being possible, once the goal is cut off; settles all depths.
+    /// The gap, once the goal is proved unreachable; settles all depths.
     pub(super) fn gap(&mut self) -> Gap {
         self.settle_from_start(CUT_OFF);
         self.settle_to_goal(CUT_OFF);
@@ -101,12 +102,12 @@ impl<F: Faults> Refinement<'_, F> {
     }
 }
 
-/// The most pairs of cells that are asked for their limit, so that it takes no longer than a second.
+/// The most pairs of cells analysed, which takes about a second at most.
 const MOST_PAIRS: usize = 1_000_000;
 
-/// What refuses the hops from one set of cells to another.
+/// The refusals of the hops from one set of cells to another.
 ///
-/// Where there are too many pairs, every so many of the take-off cells are taken.
+/// If there are too many pairs, a regular sample of the take-off cells is used.
 fn refusals_between<F: Faults>(
     prover: &Prover<'_, F>,
     cells: &[Cell<F::Rounding>],

@@ -1,4 +1,4 @@
-//! The may-hop test: can interval arithmetic rule out every hop from one cell to another?
+//! The may-hop test: whether interval arithmetic can exclude every hop from one cell to another.
 
 use super::{
     Faults,
@@ -12,18 +12,18 @@ use crate::{
     world::{Contact, Direction, Limit, SPEED_TOLERANCE},
 };
 
-/// What the proof gives away on every limit beside a speed's own tolerance: a billionth of a clearance, a height or a time, and an
-/// angle of a nanoradian.
+/// The relaxation of every limit, in addition to a speed's own tolerance: a relative 1e-9 of a clearance, a height or a time,
+/// and 1e-9 rad of an angle.
 ///
-/// It covers what rounding does to the hop test (some 1e-15), to the libm tangents behind a cone's slopes (below one unit in the last
-/// place, an angle of 2e-16) and to the arctangents and sums before them, a million times over; and all that the independent checker
-/// tolerates. So whatever the search calls a hop, the proof does not refuse.
+/// It exceeds the rounding errors of the hop test (some 1e-15), of the libm tangents behind a cone's slopes (below one unit
+/// in the last place, an angle of 2e-16) and of the arctangents and sums before them by a factor of a million. It also
+/// exceeds the tolerances of the independent checker. The proof therefore never refuses a hop that the search accepts.
 const RELAXATION: f64 = 1e-9;
 
-/// The share of the speed tolerance given away beside it, for the rounding of the hop test's formulas.
+/// The additional relaxation of a speed, as a fraction of its tolerance, for the rounding errors of the hop test's formulas.
 const SPEED_MARGIN: f64 = 1e-3;
 
-/// One contact's rule, relaxed.
+/// The rule of one contact, relaxed.
 #[derive(Clone, Copy, Debug)]
 struct Rule<R> {
     slopes: Interval<R>,
@@ -31,10 +31,10 @@ struct Rule<R> {
     speed_squared: f64,
 }
 
-/// What a segment allows take-off and landing in one direction, or the limit by which it refuses.
+/// What a segment allows take-off and landing in one direction, or the limit by which it refuses them.
 type Contacts<R> = [Result<Rule<R>, Limit>; 2];
 
-/// A chain, a hopper and a gravity as intervals, ready to rule out hops.
+/// A chain, a hopper and a gravity as intervals, to exclude hops.
 #[derive(Debug)]
 pub(super) struct Prover<'a, F: Faults> {
     test: &'a HopTest,
@@ -45,15 +45,15 @@ pub(super) struct Prover<'a, F: Faults> {
     clearance_m: f64,
     apex_height_max_m: Option<f64>,
     flight_time_max_s: Option<f64>,
-    /// How many bends lie before each vertex.
+    /// Number of bends before each vertex.
     bends_before: Vec<usize>,
     heights_m: (f64, f64),
-    /// Greatest take-off and landing speed squared anywhere, (m/s)^2.
+    /// Squares of the greatest take-off and landing speed on the chain, (m/s)^2.
     speeds_squared: [f64; 2],
 }
 
 impl<'a, F: Faults> Prover<'a, F> {
-    /// Of a hop test, every limit relaxed.
+    /// From a hop test, with every limit relaxed.
     pub(super) fn new(test: &'a HopTest) -> Self {
         let chain = test.chain();
         let rules: Vec<_> = chain.segments().iter().map(|segment| Direction::BOTH.map(|d| contacts::<F>(segment, d))).collect();
@@ -85,20 +85,21 @@ impl<'a, F: Faults> Prover<'a, F> {
         }
     }
 
-    /// The hop test behind it.
+    /// The hop test.
     pub(super) const fn test(&self) -> &'a HopTest {
         self.test
     }
 
-    /// The exact slopes of the segments.
+    /// Enclosures of the exact slopes of the segments.
     pub(super) fn slopes(&self) -> &[Interval<F::Rounding>] {
         &self.slopes
     }
 
-    /// Whether a hop from some point of one cell to some point of another cannot be ruled out.
+    /// Whether a hop from some point of one cell to some point of another cannot be excluded.
     ///
     /// # Errors
-    /// The limit that, with those before it, leaves no arc between any two points of the cells: then there is none.
+    /// The limit that, together with those before it, leaves no arc between any two points of the cells. No hop exists in
+    /// this case.
     pub(super) fn may(&self, takeoff: &Cell<F::Rounding>, landing: &Cell<F::Rounding>) -> Result<(), Limit> {
         let (direction, left, right) = if takeoff.to_m <= landing.from_m {
             (Direction::Forward, takeoff, landing)
@@ -125,7 +126,7 @@ impl<'a, F: Faults> Prover<'a, F> {
             return Ok(());
         }
         self.limit_terrain(&mut arcs, takeoff, landing, flown_past)?;
-        // What the other limits have left of the line of sight limits the speeds once more.
+        // The range of line-of-sight slopes that the other limits left restricts the speeds once more.
         self.limit_speeds(&mut arcs, &from, &to, run_m).map_err(|_| Limit::Terrain)
     }
 
@@ -143,10 +144,11 @@ impl<'a, F: Faults> Prover<'a, F> {
         both[direction as usize][contact as usize]
     }
 
-    /// The slopes of all lines of sight from one cell to the other, as the traveller sees them.
+    /// The slopes of all lines of sight from one cell to the other, along the direction of travel.
     ///
-    /// Between two points on straight lines the slope of their chord is monotone in either point's x, so its extremes are at the
-    /// corners. Across a vertex that both cells end at, a chord's slope is a mean of the two segments' slopes.
+    /// The slope of a chord between two points on straight lines is monotone in the x of either point, so its extremes are at
+    /// the corners. Across a vertex at which both cells end, the slope of a chord is a mean of the slopes of the two
+    /// segments.
     fn sight_slopes(&self, left: &Cell<F::Rounding>, right: &Cell<F::Rounding>, direction: Direction) -> Interval<F::Rounding> {
         let slope_of = |site: Site| match site {
             Site::Inside(segment) => self.slopes[segment.index()],
@@ -166,7 +168,8 @@ impl<'a, F: Faults> Prover<'a, F> {
         if direction == Direction::Forward { forward } else { -forward }
     }
 
-    /// Both speeds: least run, and for the take-off the lowest, for the landing the highest line of sight allow the most.
+    /// Both speed limits: the least run allows the most arcs, together with the lowest line of sight for the take-off and the
+    /// highest for the landing.
     fn limit_speeds(
         &self,
         arcs: &mut Arcs<F::Rounding>,
@@ -186,8 +189,8 @@ impl<'a, F: Faults> Prover<'a, F> {
         arcs.limit(|arcs| arcs.landing = arcs.landing.intersect(slopes), Limit::LandingSpeed)
     }
 
-    /// Greatest height and longest flight: a flight is the higher and the longer, the longer its run, the steeper its line of sight and
-    /// the greater its loft, so the least run and the lowest line of sight allow the most loft.
+    /// Apex height and flight time limits: both quantities increase with the run, the slope of the line of sight and the
+    /// loft, so the least run and the lowest line of sight allow the greatest loft.
     fn limit_machine(&self, arcs: &mut Arcs<F::Rounding>, run_m: Interval<F::Rounding>) -> Result<(), Limit> {
         if run_m.lower <= 0.0 {
             return Ok(());
@@ -212,11 +215,11 @@ impl<'a, F: Faults> Prover<'a, F> {
         Ok(())
     }
 
-    /// The ground in between: `n >= s_p - t_p` for every vertex between the cells.
+    /// The terrain: `n >= s_p - t_p` for every vertex between the cells.
     ///
-    /// The slope `s_p` at which a take-off sees a vertex hangs on the take-off alone, the slope `t_p` at which the vertex sees the landing
-    /// on the landing alone, and both are monotone in x: their extremes are at the cells' ends. Where the cell ends at the vertex itself,
-    /// `s = slope + eps/d` falls with the distance: the far end has the least.
+    /// The slope `s_p` from the take-off to a vertex depends only on the take-off, the slope `t_p` from the vertex to the
+    /// landing only on the landing, and both are monotone in x: their extremes are at the ends of the cells. If the cell ends
+    /// at the vertex itself, `s = slope + eps/d` decreases with the distance, so the far end has the least value.
     fn limit_terrain(
         &self,
         arcs: &mut Arcs<F::Rounding>,
@@ -226,7 +229,8 @@ impl<'a, F: Faults> Prover<'a, F> {
     ) -> Result<(), Limit> {
         let mut loft = arcs.loft.lower;
         for vertex in &self.test.chain().geometry().vertices()[flown_past] {
-            // How far the vertex with its clearance stands above a place, per distance: seen from the take-off, and from the landing.
+            // The height of the vertex with its clearance above a position, divided by the distance: from the take-off and
+            // from the landing.
             let least_seen = |cell: &Cell<F::Rounding>| {
                 let seen = cell.ends().filter(|(x_m, _)| *x_m != vertex.x_m || self.clearance_m < 0.0).map(|(x_m, height_m)| {
                     let above = F::Rounding::down(F::Rounding::down(vertex.z_m - height_m.upper) + self.clearance_m);
@@ -234,7 +238,7 @@ impl<'a, F: Faults> Prover<'a, F> {
                 });
                 seen.fold(f64::INFINITY, f64::min)
             };
-            // t = -(how far it stands above the landing): s - t is the sum of both.
+            // t is the negative of this value at the landing, so s - t is the sum of both.
             loft = loft.max(F::Rounding::down(least_seen(takeoff) + least_seen(landing)));
             if loft > arcs.loft.upper {
                 return Err(Limit::Terrain);

@@ -1,10 +1,11 @@
-//! Bounds on the fewest hops that hold for every choice of points: a path that exists, and a proof that none is shorter, or that there
-//! is none at all.
+//! Bounds on the fewest hops that hold for every choice of points: a path, and a proof that no path is shorter, or that there
+//! is no path.
 //!
-//! Discretising can only miss paths, so the hops of a path found bound the fewest from above, and a failure proves nothing. A lower
-//! bound needs no points (model section 5): the chain is cut into cells, every vertex by itself, and a cell sees another unless interval
-//! arithmetic rules out every hop between any of their points. A breadth-first search over this over-estimating graph bounds the fewest
-//! hops from below; where it does not come to the goal, no path exists.
+//! A discretisation can only miss paths, so the hops of a path found are an upper bound, while a failure proves nothing. A
+//! lower bound must hold for all points (model section 5). The chain is divided into cells, with every vertex a cell of its
+//! own, and two cells are joined by a may-hop unless interval arithmetic excludes every hop between any of their points. This
+//! graph contains every real hop, so a breadth-first search over it bounds the fewest hops from below. If the search does not
+//! reach the goal, no path exists.
 //!
 //! ```text
 //!      vertex   stretch     vertex  stretch  vertex             may-hop: not ruled out by intervals
@@ -13,9 +14,10 @@
 //!      start         may-hop                  goal               until both bounds meet
 //! ```
 //!
-//! Cells on shortest may-paths are split until the bounds meet, the goal is cut off, or the budget of cells ends. Hops of any length are
-//! covered, down to zero, across a vertex and within one cell (which never shortens a may-path). All limits are relaxed by more than the
-//! program's tolerance and all rounding goes outwards, so nothing that the search or the checker calls a hop is refused here.
+//! Cells on shortest may-paths are split until the bounds meet, the goal is proved unreachable, or the budget of cells ends.
+//! The proof covers hops of any length down to zero, across a vertex and within one cell (a hop within a cell never shortens
+//! a may-path). All limits are relaxed by more than the program's tolerance and all rounding is outwards, so no hop accepted
+//! by the search or the checker is refused here.
 
 mod arcs;
 mod bounds;
@@ -34,16 +36,16 @@ pub use require::{CapabilityRange, Threshold, least_capability};
 
 use crate::quantity::{Outwards, Rounding};
 
-/// What a proof may be made to do wrong, to see that the tests notice: all of it is fixed at compile time, and only tests can choose
-/// anything but [`Sound`].
+/// Faults that tests can plant in a proof, to see that the checks detect them. They are fixed at compile time, and only tests
+/// can choose anything but [`Sound`].
 trait Faults: std::fmt::Debug + Send + Sync + 'static {
     /// How ends are rounded.
     type Rounding: Rounding;
     /// Whether vertices have no cells of their own.
     const DROPS_VERTICES: bool = false;
-    /// Whether hops towards -x are forgotten.
+    /// Whether hops towards -x are ignored.
     const FORGETS_REVERSE: bool = false;
-    /// The share of every tolerance that is given away: all of it.
+    /// The fraction of every tolerance by which limits are relaxed.
     const SLACK: f64 = 1.0;
 }
 

@@ -1,4 +1,4 @@
-//! Paths through points inside the may-cells: the upper bound, where equidistant points miss it.
+//! Paths through points inside the may-cells: they improve the upper bound where equidistant points miss a path.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -21,7 +21,7 @@ use crate::{
 #[derive(Clone, Copy, Debug)]
 struct Candidate {
     station: Station,
-    /// The least hops from the start to its cell, and from there to the goal.
+    /// The least hops from the start to its cell, and from its cell to the goal.
     from_start: u32,
     to_goal: u32,
 }
@@ -38,25 +38,25 @@ pub(super) struct Tried {
 /// How a point was reached.
 #[derive(Clone, Copy, Debug)]
 struct Reached {
-    /// From here, with these lofts; `None` for the start itself.
+    /// The previous point and the lofts of the hop; `None` for the start itself.
     by: Option<(usize, SlopeInterval)>,
 }
 
-/// From so many cells on only their middles are tried.
+/// With more cells than this, only their middles are tried.
 const MANY_CELLS: usize = 4000;
 
-/// Which points to try.
+/// Which cells supply the points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Scope {
-    /// Of the cells on may-paths from start to goal of at most so many hops, until the goal is reached.
+    /// Cells on may-paths from start to goal of at most this many hops; stops when the goal is reached.
     Paths(u32),
-    /// Of all cells that may be reached from the start.
+    /// All cells that may be reached from the start.
     FromStart,
 }
 
 /// Tries the middles and ends of cells, level by level from the start.
 ///
-/// As the cells get narrower their points get closer where it matters, and nowhere else.
+/// As cells are split, their points become denser exactly where a path may lead.
 pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope) -> Tried {
     let test = refinement.prover.test();
     let mut tried = Tried::over(refinement, scope);
@@ -91,7 +91,7 @@ pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope
 }
 
 impl Tried {
-    /// The points of the cells asked for, none reached yet.
+    /// The points of the selected cells, none of them reached yet.
     fn over<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope) -> Self {
         let geometry = refinement.prover.test().chain().geometry();
         let mut candidates: Vec<Candidate> = Vec::new();
@@ -106,7 +106,7 @@ impl Tried {
             }
             let width = cell.from_m < cell.to_m;
             let middle = if width { cell.middle_m() } else { Some(cell.from_m) };
-            // Many cells are dense enough by their middles.
+            // With many cells their middles are dense enough.
             let ends = if width && refinement.cells.len() < MANY_CELLS { [Some(cell.from_m), Some(cell.to_m)] } else { [None; 2] };
             let places = [ends[0], middle, ends[1]];
             for station in places.into_iter().flatten().filter_map(|x_m| geometry.station(x_m).ok()) {
@@ -120,7 +120,7 @@ impl Tried {
         candidates.dedup_by(|a, b| {
             let same = a.station.point.x_m == b.station.point.x_m;
             if same {
-                // An end that two stretches share may be as near as either.
+                // An end shared by two stretches gets the smaller depth of the two.
                 (b.from_start, b.to_goal) = (b.from_start.min(a.from_start), b.to_goal.min(a.to_goal));
             }
             same
@@ -133,7 +133,7 @@ impl Tried {
         Self { reached: vec![None; candidates.len()], candidates, start, goal }
     }
 
-    /// All points but the start, by the least hops to their cells.
+    /// All points except the start, by the least hops to their cells.
     fn by_depth(&self) -> BTreeMap<u32, Vec<usize>> {
         let mut by_depth: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (i, candidate) in self.candidates.iter().enumerate().filter(|(i, _)| *i != self.start) {
@@ -142,7 +142,7 @@ impl Tried {
         by_depth
     }
 
-    /// The range of points within a distance of any of a rising frontier.
+    /// The range of points within a distance of any point of an ascending frontier.
     fn within_reach(&self, frontier: &[usize], reach_m: f64) -> std::ops::Range<usize> {
         let x_m = |i: usize| self.candidates[i].station.point.x_m;
         let (Some(&first), Some(&last)) = (frontier.first(), frontier.last()) else { return 0..0 };
@@ -151,7 +151,7 @@ impl Tried {
         begin..end.max(begin)
     }
 
-    /// The nearest point of a rising frontier from which one hop leads to a point.
+    /// The nearest point of an ascending frontier from which one hop leads to a point.
     fn first_hop(&self, test: &HopTest, reach_m: f64, frontier: &[usize], to: usize) -> Option<(usize, SlopeInterval)> {
         let x_m = |i: usize| self.candidates[i].station.point.x_m;
         let around = frontier.partition_point(|&i| i < to);
@@ -161,7 +161,7 @@ impl Tried {
         })
     }
 
-    /// The path to the goal with its cost, where the goal was reached.
+    /// The path to the goal with its cost, if the goal was reached.
     pub(super) fn path(&self, test: &HopTest, options: &SearchOptions) -> Option<(Cost, Vec<Leg>)> {
         let (mut cost, mut legs) = (Cost::default(), Vec::new());
         let mut here = self.goal;
@@ -177,7 +177,7 @@ impl Tried {
         Some((cost, legs))
     }
 
-    /// The x of all points reached, rising.
+    /// The x of all points reached, in ascending order.
     pub(super) fn reached_x_m(&self) -> Vec<f64> {
         let points = self.candidates.iter().zip(&self.reached);
         points.filter(|(_, reached)| reached.is_some()).map(|(candidate, _)| candidate.station.point.x_m).collect()

@@ -1,4 +1,4 @@
-//! The cells with their depths from both ends, and their splitting.
+//! The cells with their depths from both ends, and the splitting of cells.
 
 use super::{
     Faults, Prover,
@@ -7,7 +7,7 @@ use super::{
 };
 use crate::chain::{Site, Station};
 
-/// The may-graph between two stations, as far as it is refined.
+/// The may-graph between two stations at its current refinement.
 #[derive(Debug)]
 pub(super) struct Refinement<'a, F: Faults> {
     pub(super) prover: Prover<'a, F>,
@@ -21,7 +21,7 @@ pub(super) struct Refinement<'a, F: Faults> {
 }
 
 impl<'a, F: Faults> Refinement<'a, F> {
-    /// One stretch between neighbours among the vertices, start and goal; no depth settled yet.
+    /// The coarsest cells: one stretch between neighbours among the vertices, start and goal; no depth is settled yet.
     pub(super) fn new(prover: Prover<'a, F>, start: &Station, goal: &Station) -> Self {
         let cells = partition::<F>(prover.test().chain().geometry(), prover.slopes(), [start, goal]);
         let at = |station: &Station| place_of(&cells, station.point.x_m);
@@ -31,8 +31,8 @@ impl<'a, F: Faults> Refinement<'a, F> {
         Self { prover, cells, start, goal, from_start, to_goal, splits: 0 }
     }
 
-    /// Settles the depths from the start up to a limit, and gives the goal's: no path has fewer hops (where it is no more than the
-    /// limit); [`CUT_OFF`]: there is none.
+    /// Settles the depths from the start up to a limit and returns the depth of the goal: every path has at least this many
+    /// hops (if it does not exceed the limit). [`CUT_OFF`] means that there is no path.
     pub(super) fn settle_from_start(&mut self, limit: u32) -> u32 {
         self.from_start.settle(&self.prover, &self.cells, limit);
         self.from_start.of(self.goal)
@@ -43,20 +43,20 @@ impl<'a, F: Faults> Refinement<'a, F> {
         self.to_goal.settle(&self.prover, &self.cells, limit);
     }
 
-    /// The least number of may-hops from start to goal over a cell, as far as settled; `None` where it is on no may-path.
+    /// The least number of may-hops from start to goal through a cell, as far as settled; `None` if it is on no may-path.
     pub(super) fn over(&self, cell: usize) -> Option<u32> {
         let (before, after) = (self.from_start.of(cell), self.to_goal.of(cell));
         (before != CUT_OFF && after != CUT_OFF).then(|| before.saturating_add(after))
     }
 
-    /// Splits the stretches on may-paths of at most so many hops, the wider half of the scale first, within the budget of cells; whether
-    /// there was anything to split.
+    /// Splits the wider stretches on may-paths of at most this many hops, within the budget of cells; returns whether there
+    /// was anything to split.
     pub(super) fn split(&mut self, at_most: u32, budget_cells: usize) -> bool {
         let on_path = |i: usize| self.over(i).is_some_and(|hops| hops <= at_most);
         let mut chosen: Vec<usize> = (0..self.cells.len()).filter(|&i| on_path(i) && self.cells[i].middle_m().is_some()).collect();
         let widest_m = chosen.iter().map(|&i| self.cells[i].width_m()).fold(0.0, f64::max);
         chosen.retain(|&i| self.cells[i].width_m() >= Self::WIDE * widest_m);
-        // A split stretch becomes two stretches and the point between them is an end of both: one cell more.
+        // A stretch is replaced by its two halves, which share the point between them: one cell more.
         let room = budget_cells.saturating_sub(self.cells.len());
         if chosen.len() > room {
             chosen.sort_by(|&a, &b| self.cells[b].width_m().total_cmp(&self.cells[a].width_m()).then(a.cmp(&b)));
@@ -67,10 +67,10 @@ impl<'a, F: Faults> Refinement<'a, F> {
         !chosen.is_empty()
     }
 
-    /// Stretches of at least this share of the widest one are split with it.
+    /// Stretches of at least this fraction of the widest one are split with it.
     const WIDE: f64 = 0.25;
 
-    /// Halves stretches, given by rising indices.
+    /// Halves stretches, given by ascending indices.
     fn halve(&mut self, chosen: &[usize]) {
         let mut cells = Vec::with_capacity(self.cells.len() + chosen.len());
         let mut halves = Vec::with_capacity(self.cells.len());
@@ -97,7 +97,7 @@ impl<'a, F: Faults> Refinement<'a, F> {
     }
 }
 
-/// The cell that is this very point; start and goal have cells of their own.
+/// The cell that is exactly this point; start and goal have cells of their own.
 fn place_of<R>(cells: &[Cell<R>], x_m: f64) -> usize {
     let first = cells.partition_point(|cell| cell.to_m < x_m);
     let is_point = |cell: &Cell<R>| cell.from_m == x_m && cell.to_m == x_m;

@@ -1,30 +1,32 @@
-//! The least capability that makes a journey possible, between a value that is proved not to and one that does.
+//! The least capability that makes a journey possible, bracketed by a value proved insufficient and one proved sufficient.
 
 use super::ProofVerdict;
 
-/// What is known of the least capability.
+/// Bounds on the least capability.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Threshold {
-    /// The most capable value at which the journey is proved impossible; `None`: not even at the weakest end of the range.
+    /// The most capable value at which the journey is proved impossible; `None`: not proved even at the weakest end of the
+    /// range.
     pub unreachable_at: Option<f64>,
-    /// The least capable value at which a path was found; `None`: not even at the strongest end.
+    /// The least capable value at which a path was found; `None`: not found even at the strongest end.
     pub reachable_at: Option<f64>,
 }
 
-/// The values to look among.
+/// The range of values to search.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CapabilityRange {
     /// The least capable value.
     pub weakest: f64,
-    /// The most capable value, above the weakest or below it.
+    /// The most capable value, numerically above or below the weakest.
     pub strongest: f64,
-    /// When to stop: where the two values are this close, as a share of the larger one (of the range, where it holds zero or negative
-    /// values).
+    /// The search stops when the two values differ by this fraction of the larger one (of the whole range, if it contains
+    /// zero or negative values).
     pub resolution: f64,
 }
 
 impl CapabilityRange {
-    /// The value in the middle: the geometric mean of positive values, which may lie far apart, else the mean.
+    /// The middle value: the geometric mean of positive values, which may differ by orders of magnitude, else the arithmetic
+    /// mean.
     fn middle(&self, a: f64, b: f64) -> f64 {
         if self.is_positive() { a.sqrt() * b.sqrt() } else { 0.5 * (a + b) }
     }
@@ -33,7 +35,7 @@ impl CapabilityRange {
         self.weakest > 0.0 && self.strongest > 0.0
     }
 
-    /// Whether two values are as close as asked for, or as numbers get.
+    /// Whether two values are within the resolution, or no double lies between them.
     fn is_close(&self, a: f64, b: f64) -> bool {
         let scale = if self.is_positive() { a.max(b) } else { (self.strongest - self.weakest).abs() };
         let middle = self.middle(a, b);
@@ -41,33 +43,36 @@ impl CapabilityRange {
     }
 }
 
-/// Narrows the least capability down by bisection, given what the bounds say at a value.
+/// Bounds the least capability by bisection, given the verdict at each value.
 ///
-/// A more capable value never makes a journey impossible, so what is proved or found at one value holds on its side of it. Where a value
-/// in between is left open, either side is narrowed by itself.
+/// A more capable value never makes a journey impossible, so a verdict at one value holds for all values on its side. If a
+/// value in between stays open, both bounds are refined separately.
 ///
 /// # Errors
-/// What the answer at a value gives.
+/// The error of `verdict_at` at a value.
 ///
 /// # Examples
 /// ```
 /// use chta::graph::proof::{CapabilityRange, ProofVerdict, least_capability};
-/// // Possible from 3 on; between 2.9 and 3.1 nothing is told.
-/// let mut told = |value: f64| Ok::<_, ()>(match value {
+/// // Possible from 3 on; the verdict between 2.9 and 3.1 is open.
+/// let mut verdict_at = |value: f64| Ok::<_, ()>(match value {
 ///     v if v < 2.9 => ProofVerdict::Untraversable,
 ///     v if v > 3.1 => ProofVerdict::Traversable,
 ///     _ => ProofVerdict::Open,
 /// });
 /// let range = CapabilityRange { weakest: 0.1, strongest: 100.0, resolution: 1e-3 };
-/// let found = least_capability(range, &mut told).unwrap();
+/// let found = least_capability(range, &mut verdict_at).unwrap();
 /// assert!((found.unreachable_at.unwrap() - 2.9).abs() < 0.01 && (found.reachable_at.unwrap() - 3.1).abs() < 0.01);
 /// ```
-pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> Result<ProofVerdict, E>) -> Result<Threshold, E> {
-    let strongest = told(range.strongest)?;
+pub fn least_capability<E>(
+    range: CapabilityRange,
+    verdict_at: &mut dyn FnMut(f64) -> Result<ProofVerdict, E>,
+) -> Result<Threshold, E> {
+    let strongest = verdict_at(range.strongest)?;
     if strongest == ProofVerdict::Untraversable {
         return Ok(Threshold { unreachable_at: Some(range.strongest), reachable_at: None });
     }
-    let weakest = told(range.weakest)?;
+    let weakest = verdict_at(range.weakest)?;
     if weakest == ProofVerdict::Traversable {
         return Ok(Threshold { unreachable_at: None, reachable_at: Some(range.weakest) });
     }
@@ -79,7 +84,7 @@ pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> 
     let mut open = None;
     while open.is_none() && !range.is_close(low, high) {
         let value = range.middle(low, high);
-        match told(value)? {
+        match verdict_at(value)? {
             ProofVerdict::Untraversable => (low, known.unreachable_at) = (value, Some(value)),
             ProofVerdict::Traversable => (high, known.reachable_at) = (value, Some(value)),
             ProofVerdict::Open => open = Some(value),
@@ -89,7 +94,7 @@ pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> 
     let mut above_proved = open;
     while !range.is_close(low, above_proved) {
         let value = range.middle(low, above_proved);
-        match told(value)? {
+        match verdict_at(value)? {
             ProofVerdict::Untraversable => (low, known.unreachable_at) = (value, Some(value)),
             ProofVerdict::Traversable => (above_proved, high, known.reachable_at) = (value, value, Some(value)),
             ProofVerdict::Open => above_proved = value,
@@ -99,7 +104,7 @@ pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> 
     let mut below_found = if range.weakest < range.strongest { open.min(high) } else { open.max(high) };
     while !range.is_close(below_found, high) {
         let value = range.middle(below_found, high);
-        match told(value)? {
+        match verdict_at(value)? {
             ProofVerdict::Traversable => (high, known.reachable_at) = (value, Some(value)),
             ProofVerdict::Untraversable => (below_found, known.unreachable_at) = (value, Some(value)),
             ProofVerdict::Open => below_found = value,
@@ -112,11 +117,12 @@ pub fn least_capability<E>(range: CapabilityRange, told: &mut dyn FnMut(f64) -> 
 mod tests {
     use super::*;
 
-    /// Of a world where `proved_to` is proved impossible, `found_from` is possible, and between nothing is told.
+    /// A model problem: values up to `proved_to` are proved impossible, values from `found_from` are possible, and those
+    /// between are open.
     fn threshold(range: CapabilityRange, proved_to: f64, found_from: f64) -> (Threshold, u32) {
         let mut asked = 0;
         let rising = range.weakest < range.strongest;
-        let mut told = |value: f64| {
+        let mut verdict_at = |value: f64| {
             asked += 1;
             Ok::<_, ()>(match value {
                 v if (v <= proved_to) == rising && v != proved_to || v == proved_to => ProofVerdict::Untraversable,
@@ -124,11 +130,11 @@ mod tests {
                 _ => ProofVerdict::Open,
             })
         };
-        (least_capability(range, &mut told).unwrap(), asked)
+        (least_capability(range, &mut verdict_at).unwrap(), asked)
     }
 
     #[test]
-    fn both_sides_close_in_whichever_way_is_up() {
+    fn both_bounds_converge_for_either_direction_of_capability() {
         for (weakest, strongest) in [(0.1, 100.0), (100.0, 0.1), (-50.0, 50.0), (50.0, -50.0), (0.0, 7.0), (7.0, 0.0)] {
             let range = CapabilityRange { weakest, strongest, resolution: 1e-4 };
             let at = |share: f64| weakest + (strongest - weakest) * share;
@@ -138,7 +144,7 @@ mod tests {
                 let scale = (strongest - weakest).abs();
                 assert!((proved - at(low)).abs() < 2e-4 * scale, "{range:?} {low} {high}: {found:?}");
                 assert!((reached - at(high)).abs() < 2e-4 * scale, "{range:?} {low} {high}: {found:?}");
-                assert!(asked < 60, "{asked} values asked for");
+                assert!(asked < 60, "{asked} values evaluated");
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Proofs that are made to go wrong, each of which the comparison with the search must catch.
+//! Proofs with planted faults, each of which the comparison with the search must detect.
 
 use super::{bounds::bounds_with, *};
 use crate::{
@@ -10,13 +10,13 @@ use crate::{
     world::{Gravity, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
-/// Ends rounded inwards, and no tolerance, which would hide it.
+/// Ends are rounded inwards, without the tolerance, which would hide the fault.
 impl Faults for Inwards {
     type Rounding = Self;
     const SLACK: f64 = 0.0;
 }
 
-/// Limits taken to the letter.
+/// Limits are applied without tolerance.
 #[derive(Clone, Copy, Debug)]
 struct ForgetsTolerance;
 
@@ -25,8 +25,8 @@ impl Faults for ForgetsTolerance {
     const SLACK: f64 = 0.0;
 }
 
-/// Vertices without cells of their own: a landing at a vertex obeys the ground behind it, a take-off the ground ahead, which no stretch
-/// does.
+/// Vertices have no cells of their own: a landing at a vertex obeys the ground behind it and a take-off the ground ahead,
+/// which no single stretch does.
 #[derive(Clone, Copy, Debug)]
 struct DropsVertices;
 
@@ -35,7 +35,7 @@ impl Faults for DropsVertices {
     const DROPS_VERTICES: bool = true;
 }
 
-/// No hop towards -x.
+/// Hops towards -x are ignored.
 #[derive(Clone, Copy, Debug)]
 struct ForgetsReverse;
 
@@ -44,7 +44,7 @@ impl Faults for ForgetsReverse {
     const FORGETS_REVERSE: bool = true;
 }
 
-/// A chain of some segments with constraints of their own in either direction, its hopper and its gravity.
+/// A random chain of several segments with separate constraints for both directions, its hopper and its gravity.
 pub(super) fn drawn_chain(draw: &mut Draw) -> ConstrainedChain {
     let g = draw.uniform(0.5, 10.0);
     let mut points = vec![ChainPoint::new(draw.uniform(-5.0, 5.0), draw.uniform(-5.0, 5.0))];
@@ -80,7 +80,8 @@ pub(super) fn drawn_chain(draw: &mut Draw) -> ConstrainedChain {
     ConstrainedChain::new(geometry, &hopper, Gravity::new(g).unwrap(), &surface).unwrap()
 }
 
-/// How many of some journeys have a path with fewer hops than the lower bound, or one where none is said to exist.
+/// The number of journeys for which the search finds a path with fewer hops than the lower bound, or a path where none should
+/// exist.
 fn contradictions<F: Faults>(journeys: usize) -> usize {
     let draw = &mut Draw::seeded(81);
     let options = BoundsOptions { budget_cells: 60, ..BoundsOptions::default() };
@@ -101,23 +102,24 @@ fn contradictions<F: Faults>(journeys: usize) -> usize {
 }
 
 #[test]
-fn nothing_contradicts_a_sound_proof() {
+fn the_search_never_contradicts_a_sound_proof() {
     assert_eq!(contradictions::<Sound>(300), 0);
 }
 
 #[test]
 fn a_dropped_vertex_cell_is_caught() {
     let caught = contradictions::<DropsVertices>(200);
-    assert!(caught > 0, "the test above would not notice");
+    assert!(caught > 0, "the test above would not detect it");
 }
 
 #[test]
 fn a_forgotten_direction_is_caught() {
     let caught = contradictions::<ForgetsReverse>(100);
-    assert!(caught > 20, "{caught} caught: the test above would not notice");
+    assert!(caught > 20, "{caught} caught: the test above would not detect it");
 }
 
-/// The lower bound over flat ground from cones of 60 degrees about the vertical, at 5 m/s and 1 m/s^2: one reach is v^2 / g = 25 m.
+/// The lower bound over flat ground with cones of 60 degrees about the vertical, at 5 m/s and 1 m/s^2: one reach is v^2 / g =
+/// 25 m.
 fn bound_over_flat_ground<F: Faults>(run_m: f64) -> Option<u64> {
     let line = LineConstraints::from_cone(0.0, crate::quantity::Angle::from_degrees(60.0), 5.0, 5.0);
     let form = GroundForm::Explicit { forward: Some(line), reverse: Some(line) };
@@ -131,18 +133,18 @@ fn bound_over_flat_ground<F: Faults>(run_m: f64) -> Option<u64> {
 }
 
 #[test]
-fn rounding_the_wrong_way_is_caught() {
-    // Exactly one reach has exactly one arc, which the last digit decides.
+fn rounding_inwards_is_detected() {
+    // A run of exactly one reach has exactly one arc, so the last digit decides.
     assert_eq!(bound_over_flat_ground::<Sound>(25.0), Some(1));
-    assert_eq!(bound_over_flat_ground::<ForgetsTolerance>(25.0), Some(1), "outwards, the limit itself holds to the letter");
-    assert_ne!(bound_over_flat_ground::<Inwards>(25.0), Some(1), "inwards would pass for outwards");
+    assert_eq!(bound_over_flat_ground::<ForgetsTolerance>(25.0), Some(1), "outwards, the exact limit is still allowed");
+    assert_ne!(bound_over_flat_ground::<Inwards>(25.0), Some(1), "inward rounding must change the bound");
 }
 
 #[test]
-fn a_forgotten_tolerance_is_caught() {
-    // The search calls a hop what needs 1e-9 more speed than the limit, so 2e-9 more run.
+fn a_missing_tolerance_is_detected() {
+    // The search accepts a hop that needs 1e-9 more speed than the limit, so 2e-9 more run.
     let run_m = 25.0 * (1.0 + 1.9e-9);
     assert_eq!(bound_over_flat_ground::<Sound>(run_m), Some(1));
-    assert_eq!(bound_over_flat_ground::<ForgetsTolerance>(run_m), Some(2), "no tolerance would pass for the program's");
-    assert_eq!(bound_over_flat_ground::<Sound>(25.0 * (1.0 + 2.1e-9)), Some(2), "the proof gives away more than it says");
+    assert_eq!(bound_over_flat_ground::<ForgetsTolerance>(run_m), Some(2), "a missing tolerance must change the bound");
+    assert_eq!(bound_over_flat_ground::<Sound>(25.0 * (1.0 + 2.1e-9)), Some(2), "the proof relaxes limits by more than it states");
 }

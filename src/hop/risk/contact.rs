@@ -1,4 +1,4 @@
-//! The probability that the ground allows a contact whose place, angle and speed scatter.
+//! The probability that the ground allows a contact whose position, angle and speed scatter.
 
 use super::flight::normal;
 use crate::{
@@ -10,28 +10,28 @@ use crate::{
 /// A contact with its scatter.
 pub(super) struct ContactScatter {
     pub(super) contact: Contact,
-    /// How far from the planned place its mean is, in the direction of travel, m.
+    /// Offset of the mean position from the planned one, in the direction of travel, m.
     pub(super) shift_m: f64,
-    /// Standard deviation of its place along the chain, m.
+    /// Standard deviation of the position along the chain, m.
     pub(super) place_m: f64,
-    /// Direction of flight, radians above the direction of travel.
+    /// Direction of flight, radians from the direction of travel, positive upwards.
     pub(super) angle: f64,
-    /// How the angle turns with the place, in the direction of travel, radians per metre.
+    /// Derivative of the angle with respect to the position, in the direction of travel, radians per metre.
     pub(super) angle_per_m: f64,
-    /// Standard deviation of the angle at one place, radians.
+    /// Standard deviation of the angle at a fixed position, radians.
     pub(super) angle_sigma: f64,
     /// Speed, m/s.
     pub(super) speed_m_s: f64,
-    /// Its standard deviation, m/s.
+    /// Standard deviation of the speed, m/s.
     pub(super) speed_sigma_m_s: f64,
-    /// How far from the planned place it may be, m.
+    /// Allowed distance from the planned position, m.
     pub(super) tolerance_m: Option<f64>,
 }
 
-/// How many standard deviations of place are looked at: 2e-9 of the probability lies beyond, and counts as failed.
+/// The range of positions evaluated, in standard deviations: a probability of 2e-9 lies beyond and counts as failure.
 const DEVIATIONS: f64 = 6.0;
 
-/// The probability that a contact comes off, over all ground within [`DEVIATIONS`] and the tolerance.
+/// The probability that a contact succeeds, over all ground within [`DEVIATIONS`] and the tolerance.
 pub(super) fn contact_success(
     test: &HopTest,
     planned: &Station,
@@ -44,7 +44,7 @@ pub(super) fn contact_success(
         |rule: Option<&ContactRule>, from_mean_m: f64| rule.map_or(0.0, |rule| scatter.kept_by(rule, from_mean_m, friction_sigma));
     let mean_m = planned.point.x_m + direction.sign() * scatter.shift_m;
     if scatter.place_m == 0.0 {
-        // A flight as planned ends where it was planned, at a vertex under the rule of that vertex.
+        // An undisturbed flight ends at its planned position; at a vertex the rule of that vertex applies.
         let at = if scatter.shift_m.abs() <= 1e-9 * planned.point.x_m.abs().max(1.0) {
             *planned
         } else {
@@ -75,7 +75,8 @@ pub(super) fn contact_success(
 }
 
 impl ContactScatter {
-    /// The probability that a rule holds so far from the mean place, in the direction of travel.
+    /// The probability that a rule is satisfied at an offset from the mean position, in the direction of travel: that the angle lies
+    /// in the cone, times that the speed is within its limit.
     fn kept_by(&self, rule: &ContactRule, from_mean_m: f64, friction_sigma: f64) -> f64 {
         let angles = rule.angles();
         let angle = self.angle + self.angle_per_m * from_mean_m;
@@ -89,8 +90,8 @@ impl ContactScatter {
     }
 }
 
-/// The probability that a normal variable lies within two bounds; without spread, whether its mean does (a rounding beside a bound
-/// counts as on it).
+/// The probability that a normal variable lies within two bounds; without spread, whether its mean does (a mean within
+/// rounding of a bound counts as on it).
 fn probability_within(mean: f64, sigma: f64, low: f64, high: f64) -> f64 {
     const ROUNDING: f64 = 1e-9;
     if sigma > 0.0 {

@@ -1,4 +1,4 @@
-//! How a flight with another speed and another angle goes, and what it still scatters by.
+//! One flight with deviations of speed and angle, and the scatter that remains.
 
 use super::{ContactScatter, HopDeviations, PlannedHop};
 use crate::{
@@ -8,12 +8,12 @@ use crate::{
     world::{Contact, Direction},
 };
 
-/// The standard normal distribution function, through `libm`.
+/// The standard normal distribution function, `Phi(x) = erfc(-x / sqrt 2) / 2`.
 pub(super) fn normal(x: f64) -> f64 {
     0.5 * libm::erfc(-x * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// A cell of a normal deviation: its mean, its probability and the standard deviation inside it.
+/// A cell of a normal deviation: its mean, its probability, and the standard deviation inside the cell.
 #[derive(Clone, Copy)]
 pub(super) struct Cell {
     pub(super) mean: f64,
@@ -21,11 +21,11 @@ pub(super) struct Cell {
     pub(super) sigma: f64,
 }
 
-/// No deviation at all.
+/// The single cell of a deviation of zero.
 const ALL_IN_ONE: [Cell; 1] = [Cell { mean: 0.0, probability: 1.0, sigma: 0.0 }];
 
-/// The standard normal cut at 0, 0.5, 1 and 2 on either side. One cut is in the middle because a command on the very edge of a cone is the
-/// commonest of all: its take-off and its landing then fail on the same side.
+/// The standard normal distribution cut at 0, 0.5, 1 and 2 on either side. There is a cut at the mean because commands on the
+/// very edge of a cone are the most common: take-off and landing then fail on the same side.
 const CELLS: [Cell; 8] = [
     Cell { mean: -2.373_215_533, probability: 0.022_750_132, sigma: 0.338_051_920 },
     Cell { mean: -1.383_169_047, probability: 0.135_905_122, sigma: 0.269_708_891 },
@@ -37,17 +37,17 @@ const CELLS: [Cell; 8] = [
     Cell { mean: 2.373_215_533, probability: 0.022_750_132, sigma: 0.338_051_920 },
 ];
 
-/// The cells of a deviation; one where there is none.
+/// The cells of a deviation; a single cell if the deviation is zero.
 pub(super) fn cells(sigma: f64) -> impl Iterator<Item = Cell> {
     let all: &[Cell] = if sigma > 0.0 { &CELLS } else { &ALL_IN_ONE };
     all.iter().map(move |cell| Cell { mean: cell.mean * sigma, sigma: cell.sigma * sigma, ..*cell })
 }
 
-/// What all flights of a hop share.
+/// What all flights of a hop have in common.
 pub(super) struct Ground {
-    /// Its slope at the take-off, as the traveller sees it.
+    /// Slope of the ground at the take-off, along the direction of travel.
     takeoff: f64,
-    /// Its slope at the landing.
+    /// Slope of the ground at the landing.
     landing: f64,
 }
 
@@ -62,7 +62,7 @@ impl Ground {
     }
 }
 
-/// One flight with another speed and another angle, `z = m d - c d^2`, down to the straight ground about the planned landing.
+/// One flight with deviations of speed and angle, `z = m d - c d^2`, down to the straight ground around the planned landing.
 pub(super) struct Flight {
     angle: f64,
     slope: f64,
@@ -73,7 +73,7 @@ pub(super) struct Flight {
     pub(super) run_m: f64,
     landing_slope: f64,
     landing_speed_m_s: f64,
-    /// Standard deviation of where it comes down, m.
+    /// Standard deviation of the landing position, m.
     landing_sigma_m: f64,
     /// Standard deviation of the angle inside its cell, radians.
     angle_sigma: f64,
@@ -82,15 +82,15 @@ pub(super) struct Flight {
 }
 
 impl Flight {
-    /// The flight with these deviations of speed and angle; `None` where it does not come down there.
+    /// The flight with these deviations of speed and angle; `None` if it does not land on that ground.
     ///
     /// ```text
     ///     c d^2 - (m - s) d + (Z - s X) = 0, the larger root
     /// ```
     ///
-    /// with the slope `s` of the ground at the planned landing `(X, Z)`. About it the landing scatters by what is left of the
-    /// deviations: of place, `dz = (s_t - z'(d)) dx_t`, of height, and of speed and angle inside their cells,
-    /// `dz/dv = 2 c d^2 / v` and `dz/dtheta = (1 + m^2) d - 2 m c d^2`, each over the closing slope `s - z'(d)`.
+    /// with the slope `s` of the ground at the planned landing `(X, Z)`. The landing scatters around this root by the
+    /// remaining deviations: of position, `dz = (s_t - z'(d)) dx_t`, of height, and of speed and angle inside their cells,
+    /// `dz/dv = 2 c d^2 / v` and `dz/dtheta = (1 + m^2) d - 2 m c d^2`, each divided by the closing slope `s - z'(d)`.
     pub(super) fn new(
         deviations: &HopDeviations,
         test: &HopTest,
@@ -130,7 +130,13 @@ impl Flight {
         (closing > 0.0).then_some(flight)
     }
 
-    /// The standard deviation of the arc's height over the ground at a distance `d` from the take-off, m.
+    /// The standard deviation of the arc's height above the ground at a distance `d` from the take-off, m.
+    ///
+    /// The root of the sum of squares of four independent parts, with the derivatives of [`Self::new`]:
+    ///
+    /// ```text
+    ///     (2 c d^2 / v) sigma_v,   ((1 + m^2) d - 2 m c d^2) sigma_theta,   (s_t - z'(d)) sigma_x,   sigma_z
+    /// ```
     fn height_sigma_m(&self, deviations: &HopDeviations, ground: &Ground, d_m: f64) -> f64 {
         let fall_m = self.bend_per_m * d_m * d_m;
         let by_speed = 2.0 * fall_m * self.speed_sigma_m_s / self.speed_m_s;
@@ -139,9 +145,10 @@ impl Flight {
         [by_speed, by_angle, by_place, deviations.height_m].into_iter().fold(0.0, libm::hypot)
     }
 
-    /// The probability to strike the most critical vertex on the way.
+    /// The probability of striking the most critical vertex between take-off and landing, `Phi(-min(height / sigma))`; 0 without
+    /// such vertices.
     ///
-    /// Vertices within four deviations of either end are part of the ground there, which is checked as such.
+    /// Vertices within four standard deviations of either end belong to the ground of that contact, which is checked there.
     pub(super) fn strike_probability(&self, deviations: &HopDeviations, test: &HopTest, hop: &PlannedHop, ground: &Ground) -> f64 {
         let vertices = test.chain().geometry().vertices();
         let mut least = f64::INFINITY;
@@ -157,7 +164,7 @@ impl Flight {
         normal(-least)
     }
 
-    /// The take-off with its scatter.
+    /// The scatter of the take-off.
     pub(super) fn takeoff(&self, deviations: &HopDeviations) -> ContactScatter {
         ContactScatter {
             contact: Contact::Takeoff,
@@ -166,17 +173,18 @@ impl Flight {
             angle: self.angle,
             angle_per_m: 0.0,
             angle_sigma: self.angle_sigma,
-            // The actuator gives what it gives: its limit is a matter of planning.
+            // The actual take-off speed cannot exceed what the actuator gives: its limit is a limit for planning only.
             speed_m_s: 0.0,
             speed_sigma_m_s: 0.0,
             tolerance_m: None,
         }
     }
 
-    /// The landing with its scatter.
+    /// The scatter of the landing.
     ///
-    /// Its angle turns with the place, `d(slope)/dx = -2 c`; at one place it is off by `sigma_theta (1 + m^2) / (1 + l^2)`, since
-    /// `l = 2 b - m`.
+    /// ```text
+    ///     d(slope)/dx = -2 c,   sigma_landing = sigma_theta (1 + m^2) / (1 + l^2) at a fixed position, since l = 2 b - m
+    /// ```
     pub(super) fn landing(&self, hop: &PlannedHop) -> ContactScatter {
         let steepness = 1.0 + self.landing_slope * self.landing_slope;
         ContactScatter {

@@ -1,13 +1,14 @@
-//! The reliability of one hop: an estimate of its probability to fail, without a single draw.
+//! The reliability of one hop: a deterministic estimate of its probability to fail.
 //!
-//! Deviations of speed and angle are cut into eight cells each; in every pair of cells the hop is one parabola, whose landing scatters
-//! further by deviations of place and height through the flight's own derivatives. What ground lies within that scatter, and how wide
-//! its cones and speed limits are, gives the probability. The same hop always weighs the same, so paths can be compared.
+//! Deviations of speed and angle are divided into eight cells each. In every pair of cells the hop is one parabola, whose
+//! landing is further scattered by deviations of position and height through the derivatives of the flight. The probability
+//! follows from the ground within that scatter, and from the width of its cones and speed limits. The same hop always has the
+//! same weight, so paths can be compared.
 //!
-//! What it leaves out: errors of the hops before (right where a robot replans from where it really is, too bright where it flies an
-//! old plan), headings (a hop is flown in its plane), and how errors of friction and height, one draw for a whole traverse, bind its
-//! hops together. On the very edge of its cones it calls a hop up to 0.2 too risky. `chta simulate` counts instead; this estimate only
-//! has to rank hops.
+//! The estimate ignores errors of previous hops (correct for a robot that replans from its actual position, too optimistic
+//! for one that follows an old plan), errors of heading (a hop is flown in its plane), and the correlation between hops that
+//! share the errors of friction and height, drawn once per traverse. For a hop on the very edge of its cones, the estimated
+//! probability to fail is up to 0.2 too high. `chta simulate` counts failures instead; this estimate only has to rank hops.
 
 mod contact;
 mod flight;
@@ -22,49 +23,49 @@ use crate::{
 use contact::{ContactScatter, contact_success};
 use flight::{Flight, Ground, cells};
 
-/// Standard deviations of what a hop is flown with.
+/// Standard deviations of the quantities with which a hop is flown.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct HopDeviations {
     /// Take-off speed, m/s.
     pub takeoff_speed_m_s: f64,
-    /// Take-off speed, as a share of the commanded one.
+    /// Take-off speed, as a fraction of the commanded one.
     pub takeoff_speed_fraction: f64,
     /// Take-off angle.
     pub takeoff_angle: Angle,
-    /// Where along the chain it takes off, m: bounce-and-roll displacement after the landing before, and what it knows of its place.
+    /// Position of the take-off along the chain, m: bounce-and-roll displacement after the previous landing, and localisation
+    /// error.
     pub place_m: f64,
-    /// Friction coefficient, where the ground's cones are made of friction.
+    /// Friction coefficient, if the ground's cones are cones of friction.
     pub friction: f64,
     /// Height of the ground, m.
     pub height_m: f64,
 }
 
-/// What the probability to fail is estimated from.
+/// The source of the estimated probability to fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RiskModel {
     /// From the deviations of a scenario.
     Deviations(HopDeviations),
-    /// From the slack that the flown angle has to either end of its feasible set, as if it were off by one degree of standard
-    /// deviation.
+    /// The margin of the flown angle to either end of its feasible set, for an angle with one degree of standard deviation.
     Slack,
 }
 
-/// The deviation that [`RiskModel::Slack`] measures slack in: one degree. A larger one blurs the order of narrow sets, a smaller one
-/// that of wide ones.
+/// The standard deviation of the angle assumed by [`RiskModel::Slack`]: one degree. A larger value distinguishes narrow sets
+/// less well, a smaller value wide ones.
 const SLACK_SIGMA_DEG: f64 = 1.0;
 
-/// A hop as it would be flown.
+/// A hop as planned.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PlannedHop {
-    /// Where it takes off.
+    /// The take-off station.
     pub takeoff: Station,
-    /// Where it lands.
+    /// The landing station.
     pub landing: Station,
-    /// The flight between.
+    /// The arc between them.
     pub arc: Arc,
-    /// All feasible lofts between the two.
+    /// All feasible lofts between them.
     pub lofts: SlopeInterval,
-    /// How far from its landing it may come down, m, where that matters: the last hop to a goal.
+    /// Allowed distance of the landing from its plan, m, if it matters: for the last hop to a goal.
     pub tolerance_m: Option<f64>,
 }
 
@@ -72,15 +73,15 @@ impl RiskModel {
     /// The probability that a hop fails.
     ///
     /// ```text
-    ///     1 - P(take-off within its cone) P(no vertex struck on the way) P(landing within cone, speed and tolerance)
+    ///     1 - P(take-off within its cone) P(no vertex struck in flight) P(landing within cone, speed and tolerance)
     /// ```
     ///
-    /// Take-off and landing are averaged over the segments about them, each as probable as the place scatters; a segment that refuses the
-    /// contact, or the end of the chain, fails. With [`RiskModel::Slack`]: `P(lower slack) + P(upper slack)` of a normal deviation of
-    /// one degree.
+    /// Take-off and landing are averaged over the segments around them, weighted by the probability of each position; a
+    /// segment that refuses the contact, and the end of the chain, count as failure. With [`RiskModel::Slack`]: the
+    /// probability that a normal deviation of one degree exceeds the lower or the upper margin.
     ///
     /// # Returns
-    /// From 0 to 1; 0 for a sound hop without deviations.
+    /// From 0 to 1; 0 for a feasible hop without deviations.
     pub fn failure_probability(&self, test: &HopTest, hop: &PlannedHop) -> f64 {
         let success = match self {
             Self::Deviations(deviations) => deviations.success(test, hop),
@@ -89,9 +90,10 @@ impl RiskModel {
         (1.0 - success).clamp(0.0, 1.0)
     }
 
-    /// The weight of a hop in a search: `-ln(1 - p)`, which adds up over hops as probabilities multiply; at most some 28.
+    /// The weight of a hop in a search, `-ln(1 - p)`: its sum over hops is `-ln` of the product of their success
+    /// probabilities. At most some 28.
     pub fn weight(&self, test: &HopTest, hop: &PlannedHop) -> f64 {
-        // A certain failure stays comparable: fewer of them are better than more.
+        // A certain failure has a finite weight, so that paths with fewer of them are better.
         const LEAST_SUCCESS: f64 = 1e-12;
         -libm::log((1.0 - self.failure_probability(test, hop)).max(LEAST_SUCCESS))
     }
@@ -108,7 +110,8 @@ impl HopDeviations {
         let ground = Ground::of(test, hop, direction);
         let speed_sigma_m_s = self.speed_sigma_m_s(hop.arc.takeoff_speed_m_s());
         let mut success = 0.0;
-        // Speed and angle decide on take-off, way and landing together, so these are taken cell by cell; the rest scatters within.
+        // Speed and angle affect take-off, flight and landing together, so these are evaluated cell by cell; the other
+        // deviations scatter inside.
         for angle in cells(self.takeoff_angle.radians()) {
             for speed in cells(speed_sigma_m_s) {
                 let Some(flight) = Flight::new(self, test, hop, &ground, [speed, angle]) else { continue };
@@ -123,7 +126,7 @@ impl HopDeviations {
     }
 }
 
-/// By the slack of the flown angle alone.
+/// The success probability from the margin of the flown angle alone.
 fn slack_success(hop: &PlannedHop) -> f64 {
     let angle_deg = |loft: f64| Angle::from_slope(hop.arc.line_of_sight().slope() + loft).degrees();
     let flown_deg = angle_deg(hop.arc.loft());

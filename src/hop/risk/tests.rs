@@ -1,4 +1,4 @@
-//! The estimate beside counted flights, and where the answer is known.
+//! Compares the estimate with counted flights, and with cases that have a known result.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot build its chain should stop")]
 
@@ -30,7 +30,7 @@ fn planned(test: &HopTest, from_m: f64, to_m: f64, choice: TakeoffChoice) -> Pla
     PlannedHop { takeoff, landing, arc: Arc::new(sight, choice.loft(sight, lofts), test.gravity_m_s2()), lofts, tolerance_m: None }
 }
 
-/// Counts hops towards +x that fail, flown by stepping Newton's equations: knows nothing of slopes and derivatives.
+/// Counts hops towards +x that fail, flown by numerical integration of Newton's equations, without slopes or derivatives.
 fn counted(test: &HopTest, hop: &PlannedHop, deviations: &HopDeviations, flights: u32) -> f64 {
     let mut source = ChaCha8Rng::seed_from_u64(5);
     let mut normal = || {
@@ -102,8 +102,8 @@ fn the_estimate_agrees_with_counted_flights() {
             }
         }
     }
-    // On the very edge of both cones the estimate is too dark, since take-off and landing then fail together; a landing at a kink of the
-    // ground is checked on the straight ground before it.
+    // On the very edge of both cones the estimate is too pessimistic, since take-off and landing then fail together; a
+    // landing at a kink of the ground is evaluated on the straight ground before it.
     let worst = differences.iter().fold(0.0_f64, |worst, difference| worst.max(difference.abs()));
     #[expect(clippy::cast_precision_loss, reason = "some dozens")]
     let mean = differences.iter().map(|difference| difference.abs()).sum::<f64>() / differences.len() as f64;
@@ -111,7 +111,7 @@ fn the_estimate_agrees_with_counted_flights() {
 }
 
 #[test]
-fn no_deviations_no_risk_and_more_of_them_more_risk() {
+fn risk_is_zero_without_deviations_and_grows_with_them() {
     let chain = chain(&[(0.0, 0.0), (20.0, 1.0), (40.0, 0.0)], 0.8, 10.0);
     let test = HopTest::new(chain.clone());
     let hop = planned(&test, 3.0, 14.0, TakeoffChoice::MidRange);
@@ -133,7 +133,8 @@ fn no_deviations_no_risk_and_more_of_them_more_risk() {
 
 #[test]
 fn a_flat_hop_to_a_goal_misses_as_its_landing_spreads() {
-    // 45 degrees over flat ground with open cones: X = v^2 / g, so dX = 2 X dv / v; a tolerance of one deviation keeps 68.27 %.
+    // 45 degrees over flat ground with open cones: X = v^2 / g, so dX = 2 X dv / v; a tolerance of one standard deviation
+    // contains 68.27 %.
     let chain = chain(&[(0.0, 0.0), (60.0, 0.0)], 50.0, 20.0);
     let test = HopTest::new(chain.clone());
     let hop = PlannedHop { tolerance_m: Some(2.0 * 20.0 * 0.01), ..planned(&test, 10.0, 30.0, TakeoffChoice::LeastSpeed) };
@@ -143,7 +144,7 @@ fn a_flat_hop_to_a_goal_misses_as_its_landing_spreads() {
 }
 
 #[test]
-fn the_cells_are_those_of_the_normal_distribution() {
+fn the_cells_have_the_moments_of_the_normal_distribution() {
     let density = |x: f64| libm::exp(-0.5 * x * x) / std::f64::consts::TAU.sqrt();
     let ends = [-40.0, -2.0, -1.0, -0.5, 0.0, 0.5, 1.0, 2.0, 40.0_f64];
     let cells: Vec<_> = cells(1.0).collect();
@@ -162,7 +163,7 @@ fn the_cells_are_those_of_the_normal_distribution() {
 }
 
 #[test]
-fn slack_of_one_degree_on_either_side_is_one_deviation() {
+fn a_margin_of_one_degree_on_either_side_is_one_standard_deviation() {
     let chain = chain(&[(0.0, 0.0), (60.0, 0.0)], 50.0, 20.0);
     let test = HopTest::new(chain.clone());
     let hop = planned(&test, 10.0, 30.0, TakeoffChoice::LeastSpeed);

@@ -1,7 +1,7 @@
-//! The upper hull of the ground in slope space, as one take-off sees it.
+//! The upper hull of the ground in slope space, seen from one take-off.
 //!
 //! ```text
-//!   s                 divided by the distance d, the arc is a straight line s = m - c d, and the ground the points
+//!   s                 divided by the distance d, the arc is a straight line s = m - c d, and a vertex is the point
 //!   |  o               (d_p, s_p), s_p = (z_p + eps - z_t) / d_p;
 //!   |    \  o          the arc that just clears them and lands at (X, b) is the upper tangent from there:
 //!   |  o   `--o        its loft is the greatest s_p - t_p, and a point below the hull never is the greatest.
@@ -12,10 +12,11 @@
 
 use crate::quantity::ChainPoint;
 
-/// The vertices on the upper hull, nearest first: a monotone chain, each vertex pushed once, in the order of distance.
+/// The vertices on the upper hull, nearest first: a monotone chain, built by pushing each vertex once in the order of
+/// distance.
 ///
-/// A vertex leaves only where it is below the hull by more than rounding can tell, so that the greatest `s - t` over the hull is the
-/// greatest over all vertices, to the last bit.
+/// A vertex is removed only if it is below the hull by more than the rounding error, so that the greatest `s - t` over the
+/// hull is the greatest over all vertices, to the last bit.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Hull {
     /// Columns of equal length, at least `PADDING` longer than the hull.
@@ -24,32 +25,34 @@ pub(super) struct Hull {
     distance_m: Vec<f64>,
     seen: Vec<f64>,
     len: usize,
-    /// No vertex was seen, and no landing, at a steeper slope than this: rounding goes with it.
+    /// The steepest slope, of a vertex or of a landing seen from the take-off, that the margin for rounding allows for.
     steepest: f64,
 }
 
-/// How many vertices the tangent's inner loop takes at once.
+/// Number of vertices that the inner loop of the tangent evaluates at once.
 const PADDING: usize = 4;
 
-/// Up to so many vertices, looking at all is quicker than choosing.
+/// Up to this many vertices, evaluating all is faster than bisection.
 const SCANNED: usize = 32;
 
-/// A vertex is kept unless it is this far below the hull, times the steepest slope: 512 roundings, of which a tangent commits some 32.
+/// A vertex is kept unless it is below the hull by this factor times the steepest slope: 512 rounding errors, of which a
+/// tangent makes some 32.
 const KEPT: f64 = 256.0 * f64::EPSILON;
 
 impl Hull {
-    /// Forgets all vertices; keeps its memory. Slopes up to `steepest` will be told apart rightly.
+    /// Removes all vertices and keeps the memory. The margin for rounding holds for slopes up to `steepest`.
     pub(super) fn clear(&mut self, steepest: f64) {
         self.len = 0;
         self.steepest = steepest;
     }
 
-    /// The greatest slope that this hull was made for.
+    /// The steepest slope that this hull was made for.
     pub(super) const fn steepest(&self) -> f64 {
         self.steepest
     }
 
-    /// Adds a vertex beyond those before, at a distance from the take-off, seen at a slope (with the clearance).
+    /// Adds a vertex beyond the previous ones, at a distance from the take-off and with the slope from the take-off
+    /// (including clearance).
     pub(super) fn push(&mut self, point: ChainPoint, distance_m: f64, seen: f64) {
         while self.len >= 2 && self.hides_last(distance_m, seen) {
             self.len -= 1;
@@ -76,10 +79,11 @@ impl Hull {
         below > KEPT * self.steepest * span_m
     }
 
-    /// The greatest loft that any vertex asks of an arc to a landing, run `run_m` from the take-off; minus infinity for no vertex.
+    /// The greatest loft that any vertex requires of an arc to a landing at a distance `run_m` from the take-off; minus
+    /// infinity without vertices.
     pub(super) fn clearing_loft(&mut self, landing: ChainPoint, run_m: f64, clearance_m: f64) -> f64 {
         for spare in self.len..(self.len + PADDING).min(self.x_m.len()) {
-            // Asks for nothing, wherever the landing is.
+            // Requires no loft, for any landing.
             self.seen[spare] = f64::NEG_INFINITY;
             self.x_m[spare] = self.x_m[0];
             self.z_m[spare] = self.z_m[0];
@@ -90,7 +94,7 @@ impl Hull {
         self.tangent(landing, run_m, clearance_m)
     }
 
-    /// The greatest loft over a stretch of the hull (and at most `PADDING` more vertices).
+    /// The greatest loft over part of the hull (and at most `PADDING` vertices more).
     #[inline]
     fn greatest(&self, first: usize, end: usize, landing: ChainPoint, clearance_m: f64) -> f64 {
         let end = first + (end - first).next_multiple_of(PADDING);
@@ -105,13 +109,13 @@ impl Hull {
         best[0].max(best[1]).max(best[2].max(best[3]))
     }
 
-    /// The loft that one vertex of the hull asks for.
+    /// The loft that one vertex of the hull requires.
     fn loft(&self, i: usize, landing: ChainPoint, clearance_m: f64) -> f64 {
         self.seen[i] - ((landing.z_m - self.z_m[i]) - clearance_m) / (landing.x_m - self.x_m[i]).abs()
     }
 
-    /// The upper tangent of a long hull: by bisection, since the lofts rise and then fall along it, then by looking at all vertices
-    /// about the place found whose lofts rounding cannot tell apart.
+    /// The upper tangent of a long hull: bisection, since the lofts rise and then fall along it, then an evaluation of all
+    /// vertices around the result whose lofts are equal within rounding.
     fn tangent(&self, landing: ChainPoint, run_m: f64, clearance_m: f64) -> f64 {
         let (mut low, mut high) = (0, self.len - 1);
         while low < high {
@@ -124,7 +128,7 @@ impl Hull {
         }
         let (mut first, mut end) = (low.saturating_sub(SCANNED / 4), (low + SCANNED / 4).min(self.len));
         let mut best = self.greatest(first, end, landing, clearance_m);
-        // What rounding may have done to a vertex's loft.
+        // The possible rounding error of a vertex's loft.
         let blur = |i: usize| KEPT * self.steepest * run_m / (landing.x_m - self.x_m[i]).abs();
         let peak = blur(low);
         while first > 0 && self.loft(first, landing, clearance_m) + blur(first) + peak >= best {

@@ -1,9 +1,9 @@
-//! All limits but the terrain, for a block of landings at once.
+//! All limits except the terrain, evaluated for a block of landings at once.
 
 use super::table::{LandingRules, LandingTable};
 use crate::{ballistics::LineOfSight, hop::HopTest, quantity::SlopeInterval, world::Limit};
 
-/// What a take-off brings to every landing.
+/// The data of a take-off that all landings share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Departure {
     pub(super) x_m: f64,
@@ -14,26 +14,27 @@ pub(super) struct Departure {
     pub(super) cone: SlopeInterval,
 }
 
-/// The verdicts of the flight envelope over one block of landings: the formulas of [`HopTest::lofts`], operation by operation, so that every number
-/// is the same to the last bit; written so that the compiler can take several landings per instruction.
+/// The results of the flight envelope for one block of landings. The formulas are those of [`HopTest::lofts`], operation by
+/// operation, so that every number is the same to the last bit. They are written so that the compiler can vectorise over
+/// landings.
 #[derive(Clone, Debug)]
 pub(super) struct Lanes {
     /// Slope of the line of sight.
     slope: [f64; Self::COUNT],
-    /// By how much the take-off speed exceeds the least one; below 0: too slow (as ratios v^2 / (g X)).
+    /// The take-off speed limit minus the least take-off speed, as ratios v^2 / (g X); below 0 the hop is too slow.
     takeoff_excess: [f64; Self::COUNT],
-    /// The same of the landing speed.
+    /// The same for the landing speed.
     landing_excess: [f64; Self::COUNT],
     /// The lofts that both speeds allow.
     slowest: [f64; Self::COUNT],
     fastest: [f64; Self::COUNT],
-    /// The lofts that all limits but the terrain allow.
+    /// The lofts that all limits except the terrain allow.
     lower: [f64; Self::COUNT],
     upper: [f64; Self::COUNT],
 }
 
 impl Lanes {
-    /// How many landings one block has at most.
+    /// The greatest number of landings in one block.
     pub(super) const COUNT: usize = LandingTable::BLOCK;
 
     pub(super) const fn new() -> Self {
@@ -71,7 +72,8 @@ impl Lanes {
             let run_m = (x_m[i] - from.x_m).abs();
             let b = (z_m[i] - from.z_m) / run_m;
             let secant = (1.0 + b * b).sqrt();
-            // The two least speed ratios are each other's reciprocals; which one is the take-off's goes by the sign of b.
+            // The two least speed ratios are reciprocals of each other; the sign of b decides which one belongs to the
+            // take-off.
             let steep = secant + b.abs();
             let gentle = 1.0 / steep;
             let gravity_run = gravity * run_m;
@@ -88,7 +90,7 @@ impl Lanes {
             fastest[i] = larger;
             let least = smaller.max(cone.lower - b).max(b - cone_upper[i]);
             let greatest = larger.min(cone.upper - b).min(b - cone_lower[i]);
-            // No roots below excess 0: nothing is left.
+            // An excess below 0 has no roots: the interval is empty.
             lower[i] = least;
             upper[i] = if excess >= 0.0 { greatest } else { f64::NEG_INFINITY };
         }
@@ -101,14 +103,14 @@ impl Lanes {
         }
     }
 
-    /// The lofts of one lane; `None` where nothing is left.
+    /// The lofts of one lane; `None` if empty.
     #[inline]
     pub(super) fn lofts(&self, lane: usize) -> Option<SlopeInterval> {
         let lofts = SlopeInterval { lower: self.lower[lane], upper: self.upper[lane] };
         (lofts.lower <= lofts.upper && lofts.upper > 0.0).then_some(lofts)
     }
 
-    /// Which limit left nothing of a lane, in the order of [`HopTest::lofts`].
+    /// The limit that leaves no arc in a lane, in the order of [`HopTest::lofts`].
     pub(super) fn refusing(&self, test: &HopTest, from: &Departure, lane: usize, run_m: f64, landing_cone: SlopeInterval) -> Limit {
         for (excess, limit) in [(self.takeoff_excess[lane], Limit::TakeoffSpeed), (self.landing_excess[lane], Limit::LandingSpeed)]
         {

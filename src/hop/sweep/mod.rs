@@ -1,7 +1,8 @@
-//! One take-off against all landings, one direction at a time.
+//! One take-off tested against all landings in one direction.
 //!
-//! Three things make it quicker than pair by pair: all limits but the terrain are taken for blocks of landings at once; a bound spares
-//! most landings the terrain; and the terrain itself is one tangent to a hull instead of all vertices flown past.
+//! This is faster than testing pair by pair for three reasons: all limits except the terrain are evaluated for blocks of
+//! landings at once; a bound makes the terrain test unnecessary for most landings; and the terrain test is one tangent to a
+//! hull instead of a loop over all vertices flown over.
 
 mod hull;
 mod lanes;
@@ -20,22 +21,24 @@ use crate::{
     world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
 
-/// One take-off against many landings: all limits, with the verdicts of [`HopTest::lofts`](super::HopTest::lofts) at a fraction of its cost.
+/// Tests one take-off against many landings under all limits, with the results of [`HopTest::lofts`](super::HopTest::lofts)
+/// at a fraction of its cost.
 ///
-/// Holds the working memory, which one sweep hands to the next: make one per thread.
+/// Holds working memory that is reused from one sweep to the next: make one per thread.
 ///
 /// # Examples
 /// ```
-/// use chta::{ballistics::*, chain::*, quantity::*, world::*};
+/// use chta::{chain::*, hop::*, quantity::*, world::*};
 /// let points = (0..=20).map(|i| ChainPoint::new(f64::from(i), 0.0)).collect();
 /// let hopper = Hopper::with_speeds(4.0, 4.0).unwrap();
 /// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(1.0).unwrap())), rest: RestSlope::AsFrictionHolds };
 /// let chain = ConstrainedChain::new(PolygonalChain::bare(points).unwrap(), &hopper, Gravity::new(1.6).unwrap(), &surface).unwrap();
-/// let test = HopTest::new(chain.clone());
+/// let test = HopTest::new(chain);
+/// let chain = test.chain();
 /// let stations: Vec<_> = (0..=20).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
-/// let table = LandingTable::new(&test, &stations);
+/// let table = LandingTable::new(&test, stations.as_slice());
 /// let mut farthest = 0;
-/// Sweep::new(&table).landings(&stations[0], 0..21, Direction::Forward, |i, verdict| {
+/// Sweep::new(table).landings(&stations[0], 0..21, Direction::Forward, |i, verdict| {
 ///     assert_eq!(verdict, test.lofts(&stations[0], &stations[i]));
 ///     if verdict.is_ok() {
 ///         farthest = i;
@@ -51,7 +54,8 @@ pub struct Sweep {
     overflight: Overflight,
 }
 
-/// Two lofts closer than this share of their size are told apart by [`HopTest::lofts`](super::HopTest::lofts): far more than rounding, far less than matters.
+/// Two lofts closer than this fraction of their size are compared by [`HopTest::lofts`](super::HopTest::lofts): far more than
+/// rounding, far less than matters.
 const TOUCHING: f64 = 1e-11;
 
 impl Sweep {
@@ -64,13 +68,14 @@ impl Sweep {
 
     /// Evaluates every landing of a range of the table's stations that lies in a direction from the take-off, nearest first.
     ///
-    /// `visit` is given each one's index and the verdict of [`HopTest::lofts`](super::HopTest::lofts) for the pair: always the same one, of feasible or of the
-    /// limit that refuses, since where two limits touch within rounding that function itself is asked. The lofts are the same numbers
-    /// too, to the last bit; where vertices stand more than thirty times closer together than their neighbours, to some 1e-15.
+    /// `visit` gets the index of each landing and the result of [`HopTest::lofts`](super::HopTest::lofts) for the pair.
+    /// Feasibility and the refusing limit are always the same, since that function itself decides where two limits touch
+    /// within rounding. The lofts are equal to the last bit, or to some 1e-15 where vertices are more than thirty times
+    /// closer together than their neighbours.
     ///
     /// # Complexity
-    /// With W landings and S vertices flown past: O(W + S) where the bound spares the terrain, O(W log S + S) at worst, but for ground that
-    /// follows one parabola through the take-off to the last digit.
+    /// With W landings and S vertices flown over: O(W + S) where the bound decides without the terrain, O(W log S + S) at
+    /// worst. The exception is ground that follows one parabola through the take-off to the last digit.
     pub fn landings(
         &mut self,
         takeoff: &Station,
@@ -120,7 +125,7 @@ struct Landing<'s> {
 }
 
 impl Landing<'_> {
-    /// The verdict on a landing that its ground allows and that lies in its block's lane.
+    /// The result for a landing that its ground allows and whose lane of the block is evaluated.
     #[inline]
     fn verdict(
         self,
@@ -145,14 +150,14 @@ impl Landing<'_> {
     }
 }
 
-/// The indices of a range from the take-off's side.
+/// The indices of a range, ordered by distance from the take-off.
 #[inline]
 fn outwards(range: Range<usize>, direction: Direction) -> impl Iterator<Item = usize> {
     let (start, end) = (range.start, range.end);
     range.map(move |i| if direction == Direction::Forward { i } else { end - 1 - (i - start) })
 }
 
-/// Takes the nearest block off what is left: landings of one block of the table's indices.
+/// Removes the nearest block from the remaining range: landings of one block of the table's indices.
 fn next_block(left: &mut Range<usize>, direction: Direction) -> Range<usize> {
     match direction {
         Direction::Forward => {

@@ -1,4 +1,4 @@
-//! The landings of a set of stations, laid out for sweeps.
+//! The landings of a set of stations, stored for sweeps.
 
 use std::{ops::Range, sync::Arc};
 
@@ -10,12 +10,12 @@ use crate::{
     world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
 
-/// A set of stations from left to right, prepared as landings: built once, shared by every sweep over it, in any thread.
+/// A set of stations from left to right, prepared as landings: built once, shared by all sweeps and threads.
 ///
-/// Column by column, since a sweep reads a few numbers of many stations and not all that is known of one.
+/// Stored column by column, since a sweep reads few numbers of many stations.
 ///
 /// # Memory
-/// 66 bytes a station.
+/// 66 bytes per station.
 #[derive(Clone, Debug)]
 pub struct LandingTable {
     test: HopTest,
@@ -27,7 +27,7 @@ pub struct LandingTable {
     blocks: Vec<Block>,
 }
 
-/// The ends of height and speed over one block of stations.
+/// The extremes of height and speed over one block of stations.
 #[derive(Clone, Copy, Debug)]
 struct Block {
     lowest_m: f64,
@@ -36,7 +36,7 @@ struct Block {
     speed_squared: [f64; 2],
 }
 
-/// What the ground allows landings in one direction of travel, column by column.
+/// The limits of the ground on landings in one direction of travel, column by column.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LandingRules {
     /// The greatest landing speed with its tolerance, squared, m^2/s^2; 0 where the ground refuses.
@@ -45,12 +45,12 @@ pub(super) struct LandingRules {
     pub(super) cone_lower: Vec<f64>,
     /// The upper end of the landing cone.
     pub(super) cone_upper: Vec<f64>,
-    /// Why the ground refuses, where it does.
+    /// The limit by which the ground refuses the landing, if it does.
     pub(super) refusal: Vec<Option<Limit>>,
 }
 
 impl LandingTable {
-    /// The landings on stations that rise in x, no two at the same x.
+    /// The landings on stations in ascending order of x, no two at the same x.
     pub fn new(test: &HopTest, stations: impl Into<Arc<[Station]>>) -> Self {
         let stations = stations.into();
         let z_m: Vec<f64> = stations.iter().map(|station| station.point.z_m).collect();
@@ -69,15 +69,17 @@ impl LandingTable {
         Self { test: test.clone(), stations, x_m, z_m, rules, blocks }
     }
 
-    /// How many stations the sweep takes at once: those of one block of indices, so that what is known of the block holds.
+    /// Number of stations that a sweep evaluates at once: those of one block of indices, so that the bounds of the block
+    /// apply.
     pub(super) const BLOCK: usize = 64;
 
-    /// Whether no landing of a block of indices (or part of one) can be reached, and by which speed: the nearest, lowest place there lies
-    /// outside the parabola of safety of the take-off, or all places inside that one and outside the parabola of the landing.
+    /// Whether no landing of a block of indices (or part of one) can be reached, and by which speed limit: its nearest,
+    /// lowest position lies outside the parabola of safety of the take-off, or all positions inside that parabola lie outside
+    /// the parabola of the landing.
     ///
-    /// By more than rounding: what is close to a parabola is left to the formulas of the hop test.
+    /// A margin larger than rounding is required: positions close to a parabola are left to the formulas of the hop test.
     pub(super) fn out_of_reach(&self, from: &Departure, block: &Range<usize>, direction: Direction) -> Option<Limit> {
-        /// Much more than rounding.
+        /// Much larger than rounding.
         const CLEARLY: f64 = 1.0 + 1e-9;
         let ends = &self.blocks[block.start / Self::BLOCK];
         let landing_squared = ends.speed_squared[direction as usize];
@@ -94,7 +96,7 @@ impl LandingTable {
         (all_inside && landing > landing_squared * CLEARLY).then_some(Limit::LandingSpeed)
     }
 
-    /// The hop test behind the verdicts.
+    /// The hop test that gives the results.
     #[inline]
     pub const fn test(&self) -> &HopTest {
         &self.test
@@ -106,7 +108,7 @@ impl LandingTable {
         &self.stations
     }
 
-    /// What the ground allows in one direction.
+    /// The limits of the ground in one direction.
     pub(super) const fn rules(&self, direction: Direction) -> &LandingRules {
         &self.rules[direction as usize]
     }
@@ -133,7 +135,7 @@ impl LandingTable {
         self.within(takeoff, direction, self.test.landing_reach_m(takeoff, direction))
     }
 
-    /// Of a range of stations, those that lie in a direction from a take-off.
+    /// The part of a range of stations that lies in a direction from a take-off.
     pub(super) fn part_ahead(&self, takeoff: &Station, among: Range<usize>, direction: Direction) -> Range<usize> {
         let x_m = takeoff.point.x_m;
         let among = among.start.min(self.x_m.len())..among.end.min(self.x_m.len());
@@ -143,7 +145,7 @@ impl LandingTable {
         }
     }
 
-    /// A range of stations ahead of a take-off, cut into those in its plane of travel and those beyond a bend.
+    /// Divides a range of stations ahead of a take-off into those in its plane of travel and those beyond a bend.
     pub(super) fn split_at_bend(
         &self,
         takeoff: &Station,
@@ -168,7 +170,7 @@ impl LandingTable {
         }
     }
 
-    /// A range of stations ahead of a take-off, cut into those that share a segment with it and those beyond.
+    /// Divides a range of stations ahead of a take-off into those that share a segment with it and those beyond.
     pub(super) fn split_at_segment(
         &self,
         takeoff: &Station,
@@ -188,7 +190,7 @@ impl LandingTable {
         }
     }
 
-    /// The first station of a range at an x where something holds, which then holds for all to its right.
+    /// The first station of a range whose x satisfies a condition that all stations to its right also satisfy.
     fn first_where(&self, range: Range<usize>, holds: impl Fn(f64) -> bool) -> usize {
         range.start + self.x_m[range].partition_point(|&x| !holds(x))
     }

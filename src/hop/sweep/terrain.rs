@@ -1,4 +1,4 @@
-//! The terrain limit of one take-off, for landings that move outwards.
+//! The terrain limit of one take-off, for landings in the order of distance.
 
 use std::sync::Arc;
 
@@ -9,29 +9,29 @@ use crate::{
     world::Direction,
 };
 
-/// The ground that one take-off flies over, followed outwards.
+/// The ground below hops from one take-off, extended as the landings move outwards.
 #[derive(Clone, Debug)]
 pub(super) struct Overflight {
     chain: Arc<ConstrainedChain>,
     clearance_m: f64,
     takeoff: ChainPoint,
     direction: Direction,
-    /// The first vertex flown past.
+    /// The first vertex flown over.
     first: usize,
-    /// How many vertices the two bounds below cover.
+    /// Number of vertices that the bounds below cover.
     bounded: usize,
-    /// The steepest slope at which the take-off sees a vertex flown past, with the clearance.
+    /// The steepest slope from the take-off to a vertex flown over, including clearance.
     highest_seen: f64,
-    /// The same without regard to sign or to what cancels: rounding goes with it.
+    /// The same from absolute values, without cancellation: the rounding error is proportional to it.
     steepest_seen: f64,
-    /// The least slope of any segment between vertices flown past.
+    /// The least slope of any segment between vertices flown over.
     lowest_slope: f64,
-    /// How many vertices the hull covers.
+    /// Number of vertices that the hull covers.
     hulled: usize,
     hull: Hull,
 }
 
-/// More than all roundings of the bound that spares the hull, relative to its terms.
+/// A relative margin larger than all rounding errors of the bound that avoids the hull.
 const SLACK: f64 = 1e-12;
 
 impl Overflight {
@@ -51,13 +51,13 @@ impl Overflight {
         }
     }
 
-    /// Begins at a take-off.
+    /// Starts at a take-off.
     pub(super) fn begin(&mut self, takeoff: &Station, direction: Direction) {
         self.takeoff = takeoff.point;
         self.direction = direction;
         self.first = match (takeoff.site, direction) {
             (Site::Vertex(vertex), Direction::Forward) => vertex.index() + 1,
-            // At the chain's first vertex nothing lies behind, and nothing is asked.
+            // At the chain's first vertex there is nothing behind, and no landing to evaluate.
             (Site::Vertex(vertex), Direction::Reverse) => vertex.index().saturating_sub(1),
             (Site::Inside(segment), Direction::Forward) => segment.index() + 1,
             (Site::Inside(segment), Direction::Reverse) => segment.index(),
@@ -75,7 +75,7 @@ impl Overflight {
         self.chain.geometry()
     }
 
-    /// How many vertices lie strictly between the take-off and a landing.
+    /// The number of vertices strictly between the take-off and a landing.
     #[inline]
     fn flown_past(&self, landing: &Station) -> usize {
         match (landing.site, self.direction) {
@@ -86,7 +86,7 @@ impl Overflight {
         }
     }
 
-    /// A vertex flown past, counted from the take-off.
+    /// A vertex flown over, counted from the take-off.
     #[inline]
     fn vertex(&self, count: usize) -> ChainPoint {
         match self.direction {
@@ -95,7 +95,7 @@ impl Overflight {
         }
     }
 
-    /// The slope, as travelled, of the segment that ends at a vertex flown past after the first.
+    /// The slope, along the direction of travel, of the segment that ends at a vertex flown over (not the first).
     #[inline]
     fn slope_before(&self, count: usize) -> f64 {
         match self.direction {
@@ -104,7 +104,7 @@ impl Overflight {
         }
     }
 
-    /// The slope at which the take-off sees a vertex (with the clearance), and its distance: the terms of
+    /// The slope from the take-off to a vertex (including clearance), and its distance: the terms of
     /// [`clearing_loft`](crate::ballistics::limits::clearing_loft).
     #[inline]
     fn seen(&self, point: ChainPoint) -> (f64, f64) {
@@ -112,9 +112,10 @@ impl Overflight {
         (distance_m, ((point.z_m - self.takeoff.z_m) + self.clearance_m) / distance_m)
     }
 
-    /// The least loft, not below `lower`, that clears every vertex between the take-off and a landing seen at slope `sight_slope`.
+    /// The least loft, not below `lower`, that clears every vertex between the take-off and a landing at the slope
+    /// `sight_slope` from it.
     ///
-    /// Landings have to be asked for in the order of distance.
+    /// Landings have to be passed in the order of distance.
     #[inline]
     pub(super) fn lower_end(&mut self, landing: &Station, sight_slope: f64, lower: f64) -> f64 {
         let count = self.flown_past(landing);
@@ -124,14 +125,14 @@ impl Overflight {
         self.by_hull(landing.point, count, sight_slope).max(lower)
     }
 
-    /// An upper bound on the loft that the first `count` vertices ask for.
+    /// An upper bound on the loft that the first `count` vertices require.
     ///
     /// ```text
     ///     s_p - t_p <= max s - min t,   t_p >= min(min slope - eps / gap, t_last)
     /// ```
     ///
-    /// since the slope from any vertex on to the last is a mean of slopes of segments, and no clearance weighs more than over the gap
-    /// from the last vertex to the landing.
+    /// since the slope from any vertex to the last is a mean of segment slopes, and the clearance changes `t_p` most over the
+    /// gap from the last vertex to the landing.
     #[inline]
     fn bound(&mut self, landing: ChainPoint, count: usize) -> f64 {
         while self.bounded < count {
@@ -149,16 +150,16 @@ impl Overflight {
         let clearance = self.clearance_m * per_gap;
         let ahead = ((landing.z_m - last.z_m) - self.clearance_m) * per_gap;
         let lowest = if self.lowest_slope - clearance < ahead { self.lowest_slope - clearance } else { ahead };
-        // Every term's size: the highest slope seen may be one that cancelled.
+        // The size of every term; the highest slope may itself have suffered cancellation.
         let terms = self.steepest_seen + self.lowest_slope.abs().min(f64::MAX) + clearance + ahead.abs();
         self.highest_seen - lowest + SLACK * terms
     }
 
-    /// The greatest loft that the first `count` vertices ask for.
+    /// The greatest loft that the first `count` vertices require.
     fn by_hull(&mut self, landing: ChainPoint, count: usize, sight_slope: f64) -> f64 {
         let steepest = self.steepest_seen.max(sight_slope.abs());
         if steepest > self.hull.steepest() {
-            // Rounding grew beyond what the hull was made for: once more, for twice as much, so seldom.
+            // Rounding exceeds what the hull was made for: rebuild it for twice as much, so that this happens rarely.
             self.hull.clear(2.0 * steepest);
             self.hulled = 0;
         }

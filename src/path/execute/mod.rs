@@ -55,22 +55,24 @@ impl Execution {
 /// # Examples
 /// ```
 /// use chta::{ballistics::TakeoffChoice, chain::*, graph::*, hop::{HopTest, Split}, path::{execute, generate}, quantity::*, world::*};
-/// let hopper = Hopper::with_speeds(5.0, 5.0);
+/// let hopper = Hopper::with_speeds(5.0, 5.0).unwrap();
 /// let grip = Some(Grip::Friction(FrictionCone::new(1.0).unwrap()));
 /// let chain = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(20.0, 0.0)]).unwrap();
-/// let chain = ConstrainedChain::new(chain, &hopper, &Surface { grip, rest: RestSlope::AsFrictionHolds }).unwrap();
-/// let test = HopTest::new(&chain, &hopper, 1.0);
+/// let (gravity, surface) = (Gravity::new(1.0).unwrap(), SurfaceProperties { grip, rest: RestSlope::AsFrictionHolds });
+/// let chain = ConstrainedChain::new(chain, &hopper, gravity, &surface).unwrap();
+/// let test = HopTest::new(chain);
+/// let chain = test.chain();
 /// let (start, goal) = (chain.geometry().station(0.0).unwrap(), chain.geometry().station(20.0).unwrap());
 /// let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {}).unwrap();
 /// let Outcome::Path { legs, .. } = answer.outcome else { panic!() };
 /// let mut path = generate(&test, &legs, TakeoffChoice::LeastSpeed, Split::FullReach).unwrap();
 /// // 45 degrees over flat ground: v = sqrt(g X) = 4.472 m/s, and 5 m up.
-/// let execution = execute(&chain, &hopper, 1.0, &path, Some((start, goal)));
+/// let execution = execute(chain, &path, Some((start, goal)));
 /// assert!(execution.passes());
 /// assert!((execution.flights[0].as_ref().unwrap().apex_z_m - 5.0).abs() < 1e-12);
 /// // 1 % too slow: X = v^2 / g falls short by 2 %.
 /// path.hops[0].takeoff_speed_m_s *= 0.99;
-/// let execution = execute(&chain, &hopper, 1.0, &path, None);
+/// let execution = execute(chain, &path, None);
 /// assert!((execution.flights[0].as_ref().unwrap().contact.unwrap().x_m - 19.602).abs() < 1e-9);
 /// ```
 pub fn execute<S: Surface>(surface: &S, path: &HopPath, ends: Option<(S::Contact, S::Contact)>) -> Execution {

@@ -1,4 +1,4 @@
-//! Every operation against exact rational arithmetic, and a rounding that goes the wrong way, which must be caught.
+//! Checks every operation against exact rational arithmetic, and checks that wrong rounding is detected.
 
 use num_rational::BigRational;
 use num_traits::{FromPrimitive, Signed};
@@ -6,7 +6,7 @@ use num_traits::{FromPrimitive, Signed};
 use super::*;
 use crate::draw::Draw;
 
-/// The mutant: inwards.
+/// A planted fault: rounds inwards.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Inwards;
 
@@ -20,7 +20,7 @@ impl Rounding for Inwards {
     }
 }
 
-/// The mutant that does not round at all.
+/// A planted fault: does not round at all.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 struct Unrounded;
 
@@ -38,7 +38,7 @@ fn exact(number: f64) -> BigRational {
     BigRational::from_f64(number).unwrap()
 }
 
-/// Whether the interval holds this exact number.
+/// Whether the interval contains this exact number.
 fn holds<R: Rounding>(interval: Interval<R>, number: &BigRational) -> bool {
     (interval.lower == f64::NEG_INFINITY || exact(interval.lower) <= *number)
         && (interval.upper == f64::INFINITY || *number <= exact(interval.upper))
@@ -55,7 +55,7 @@ fn numbers(count: usize) -> impl Iterator<Item = f64> {
     .take(count)
 }
 
-/// How many results of all operations lie outside their interval.
+/// Counts the results of all operations that lie outside their interval.
 fn misses<R: Rounding>() -> usize {
     let drawn: Vec<_> = numbers(4000).collect();
     let mut missed = 0;
@@ -71,9 +71,9 @@ fn misses<R: Rounding>() -> usize {
                 missed += usize::from(!holds(first * second, &(&p * &q)));
                 missed += usize::from(!holds(first / second, &(&p / &q)));
                 missed += usize::from(!holds(first.squared(), &(&p * &p)));
-                assert!(away_from_zero || first / second == Interval::ALL, "a divisor around zero bounds nothing");
+                assert!(away_from_zero || first / second == Interval::ALL, "a divisor that contains zero sets no bound");
             }
-            // A root holds its number where the squares of its ends do.
+            // A root interval contains the root if the squares of its ends enclose the number.
             let root = Interval::<R>::point(x.abs()).sqrt();
             let square = |end: f64| exact(end) * exact(end);
             missed += usize::from(!(square(root.lower) <= exact(x).abs() && exact(x).abs() <= square(root.upper)));
@@ -88,13 +88,13 @@ fn every_operation_encloses_the_exact_result() {
 }
 
 #[test]
-fn rounding_the_wrong_way_and_not_rounding_are_both_caught() {
-    assert!(misses::<Inwards>() > 1000, "inwards passes the test above");
-    assert!(misses::<Unrounded>() > 1000, "unrounded passes the test above");
+fn rounding_inwards_and_not_rounding_are_both_detected() {
+    assert!(misses::<Inwards>() > 1000, "inward rounding must fail the test above");
+    assert!(misses::<Unrounded>() > 1000, "no rounding must fail the test above");
 }
 
 #[test]
-fn what_is_no_number_bounds_nothing() {
+fn a_nan_end_becomes_infinite() {
     let all = Interval::<Outwards>::ALL;
     assert_eq!(all - all, all);
     assert_eq!(Interval::point(0.0) * all, all);

@@ -131,6 +131,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(clippy::cast_precision_loss, clippy::cast_possible_wrap, reason = "small counts")]
     fn rows_and_metadata_are_read_back() {
         let file = tempfile::tempfile().unwrap();
         let words = [("seed", "7".to_owned()), ("scenario", "{}".to_owned())];

@@ -6,16 +6,16 @@ use std::io::{self, BufRead};
 use super::read::Problems;
 use super::tokens::{Token, Tokens};
 
-/// What stands for no elevation where the header does not say (the format's own definition).
+/// The no-data value if the header gives none (from the definition of the format).
 const DEFAULT_NO_DATA: f64 = -9999.0;
 
-/// Some editors put one before the first key.
+/// Some editors write a byte order mark before the first key.
 const BYTE_ORDER_MARK: char = '\u{feff}';
 
 const KEYS: [&str; 10] =
     ["ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value"];
 
-/// A header that holds together.
+/// A validated header.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Header {
     pub(super) rows: usize,
@@ -29,7 +29,8 @@ pub(super) struct Header {
 
 type Fields = BTreeMap<&'static str, Token>;
 
-/// Takes words in pairs up to the first that is a number, then checks them together. `None`: see `problems`.
+/// Reads pairs of key and value up to the first number in place of a key, then validates them together. `None` means that
+/// `problems` has the reasons.
 pub(super) fn read_header<R: BufRead>(tokens: &mut Tokens<R>, problems: &mut Problems) -> io::Result<Option<Header>> {
     let mut fields = Fields::new();
     while let Some(token) = tokens.peek()? {
@@ -40,7 +41,7 @@ pub(super) fn read_header<R: BufRead>(tokens: &mut Tokens<R>, problems: &mut Pro
         let lower = key.text.trim_start_matches(BYTE_ORDER_MARK).to_ascii_lowercase();
         let Some(known) = KEYS.into_iter().find(|known| *known == lower) else {
             problems.add(&key, &format!("the header key {}", quoted(&key.text)), &format!("one of {}", KEYS.join(", ")));
-            // A whole text of unknown words is no grid: twenty of them say enough.
+            // A text of unknown words is not a grid; it stops after the first twenty.
             if problems.are_many() {
                 return Ok(None);
             }
@@ -103,7 +104,7 @@ fn spacing(fields: &Fields, key: &'static str, place: (usize, usize), problems: 
     None
 }
 
-/// The south-west post's centre: a corner lies half a spacing outside it.
+/// The coordinate of the south-west post's centre: a corner lies half a spacing outside it.
 fn corner_or_centre(
     fields: &Fields,
     corner: &'static str,
@@ -150,12 +151,12 @@ fn number(fields: &Fields, key: &'static str, place: (usize, usize), problems: &
     value
 }
 
-/// What to write instead of a word that is no number.
+/// The expectation to print for a word that is not a number.
 pub(super) fn number_hint(text: &str) -> &'static str {
     if text.contains(',') { "a finite number with a decimal point (replace decimal commas by points)" } else { "a finite number" }
 }
 
-/// Words that begin like a number end the header, so that `1,5` is reported as a number gone wrong.
+/// Words that begin like a number end the header, so that `1,5` is reported as a malformed number.
 fn looks_like_number(text: &str) -> bool {
     let lower = text.to_ascii_lowercase();
     text.starts_with(|first: char| first.is_ascii_digit() || matches!(first, '-' | '+' | '.'))
@@ -163,7 +164,7 @@ fn looks_like_number(text: &str) -> bool {
         || lower.starts_with("inf")
 }
 
-/// The beginning of a word, printable, in quotes.
+/// The beginning of a word, in printable characters and quotes.
 pub(super) fn quoted(text: &str) -> String {
     let shown: String = text.chars().take(40).flat_map(char::escape_debug).collect();
     if text.chars().count() > 40 { format!("'{shown}...'") } else { format!("'{shown}'") }

@@ -1,4 +1,4 @@
-//! The ESRI ASCII grid: a header of keys and values, then one number per post from the north-west.
+//! The ESRI ASCII grid: a header of keys and values, then one number per post, starting in the north-west.
 
 mod header;
 mod read;

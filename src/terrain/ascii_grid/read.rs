@@ -1,4 +1,4 @@
-//! Reading an ASCII grid.
+//! Reads an ASCII grid.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -10,13 +10,13 @@ use crate::quantity::MapPoint;
 use crate::terrain::georeference::refuse_degrees;
 use crate::terrain::{AsciiProblem, Dem, DemReader, GeoReference, TerrainError};
 
-/// So many problems are listed, the rest counted.
+/// At most this many problems are listed; the others are counted.
 const LISTED_PROBLEMS: usize = 20;
 
-/// Posts that memory is set aside for before they are read: what the header promises beyond, the file has to show first.
+/// Number of posts to reserve memory for before reading: a header that promises more must be followed by the data first.
 const FIRST_RESERVE: usize = 1 << 20;
 
-/// The ESRI ASCII grid as a format.
+/// The reader of the ESRI ASCII grid format.
 pub(in crate::terrain) struct AsciiGridReader;
 
 impl DemReader for AsciiGridReader {
@@ -39,14 +39,14 @@ impl DemReader for AsciiGridReader {
     }
 }
 
-/// Reads an ESRI ASCII grid held in memory.
+/// Reads an ESRI ASCII grid from memory.
 ///
-/// Keys in any case and order; corner or centre form; `cellsize`, or `dx` and `dy`; rows wrapped over lines anyhow. Without
-/// `NODATA_value` it is -9999, as the format defines.
+/// Accepts keys in any case and order, corner or centre coordinates, `cellsize` or `dx` and `dy`, and any distribution of the
+/// values over lines. Without `NODATA_value` the no-data value is -9999, as the format defines.
 ///
 /// # Errors
-/// [`TerrainError::AsciiGrid`] with every problem found, each with its line and column; [`TerrainError::InvalidDem`] where the numbers
-/// make no raster; [`TerrainError::Unsuitable`] where they look like degrees.
+/// [`TerrainError::AsciiGrid`] with every problem found, each with its line and column; [`TerrainError::InvalidDem`] if the
+/// numbers do not form a raster; [`TerrainError::Unsuitable`] if the coordinates look like degrees.
 ///
 /// # Examples
 /// ```
@@ -71,7 +71,7 @@ fn read_text(source: impl BufRead, length: u64) -> Result<Dem, TerrainError> {
     if problems.count() > 0 {
         return Err(problems.into_error());
     }
-    // Rows count from the south in the file's header and from the north in ours.
+    // The file gives the southernmost row, a `Dem` the northernmost one.
     #[expect(clippy::cast_precision_loss, reason = "rows stay far below 2^53: each takes two bytes of the file")]
     let north = header.south_west[1] + (header.rows - 1) as f64 * header.dy_m;
     let georeference = GeoReference::local(MapPoint::new(header.south_west[0], north), header.dx_m, header.dy_m)?;
@@ -80,8 +80,8 @@ fn read_text(source: impl BufRead, length: u64) -> Result<Dem, TerrainError> {
     Ok(dem)
 }
 
-/// A post takes at least a digit and a space, so a header that promises more than the file can hold is refused before anything is
-/// allocated for it.
+/// A post takes at least a digit and a space, so a header that promises more than the file can hold is refused before memory
+/// is allocated.
 fn check_size<R: BufRead>(header: &Header, length: u64, tokens: &Tokens<R>, problems: &mut Problems) -> Option<usize> {
     let most = usize::try_from(length / 2 + 1).unwrap_or(usize::MAX);
     let posts = header.rows.checked_mul(header.cols).filter(|posts| *posts <= most);
@@ -136,13 +136,13 @@ fn read_elevations<R: BufRead>(
     Ok(elevations)
 }
 
-/// NaN for no-data, `None` for what is no elevation.
+/// NaN for no-data, `None` for an invalid elevation.
 fn parse_elevation(token: &Token, no_data: f64) -> Option<f64> {
     let value = token.text.parse::<f64>().ok()?;
     if value.is_nan() || value == no_data { Some(f64::NAN) } else { value.is_finite().then_some(value) }
 }
 
-/// Problems in the order found.
+/// Problems in the order in which they are found.
 #[derive(Debug, Default)]
 pub(in crate::terrain) struct Problems {
     listed: Vec<AsciiProblem>,

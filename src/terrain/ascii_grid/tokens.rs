@@ -1,11 +1,12 @@
-//! Words of a text with their places, one at a time, from any source, whatever the length of its lines.
+//! Reads the words of a text one by one with their positions, from any source and for lines of any length.
 
 use std::io::{self, BufRead};
 
-/// No number and no key is longer: what is longer is cut here and told so, so that a file of one endless word needs no memory.
+/// The longest word kept; keys and numbers are shorter. A longer word is truncated and reported, so that a file of one
+/// endless word needs little memory.
 const LONGEST_WORD: usize = 512;
 
-/// A word and where it stands.
+/// A word and its position.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Token {
     pub(super) text: String,
@@ -27,7 +28,7 @@ impl<R: BufRead> Tokens<R> {
         Self { source, line: 1, column: 1, word: Vec::new(), peeked: None }
     }
 
-    /// The next word without taking it.
+    /// The next word without consuming it.
     pub(super) fn peek(&mut self) -> io::Result<Option<&Token>> {
         if self.peeked.is_none() {
             self.peeked = self.read_word()?;
@@ -43,7 +44,7 @@ impl<R: BufRead> Tokens<R> {
         }
     }
 
-    /// Where reading has come to.
+    /// The current position: line and column.
     pub(super) fn place(&self) -> (usize, usize) {
         (self.line, self.column)
     }

@@ -1,19 +1,19 @@
-//! Writing an ASCII grid.
+//! Writes an ASCII grid.
 
 use std::io::Write;
 
 use crate::terrain::{Dem, GeoReference, TerrainError};
 
-/// Marks gaps; elevations that happen to have this value move it on.
+/// The no-data value; another one is chosen if some elevation has this value.
 const NO_DATA: f64 = -9999.0;
 
-/// Writes a DEM as an ESRI ASCII grid, in the centre form, with the shortest digits that give each number back exactly.
+/// Writes a DEM as an ESRI ASCII grid with centre coordinates, with the shortest digits that read back as the same numbers.
 ///
-/// The format holds no map projection: that of a GeoTIFF is lost. The north-west post comes back exactly where such a south-west post
-/// exists among the numbers, and within one unit in the last place where none does.
+/// The format has no map projection, so that of a GeoTIFF is lost. The north-west post reads back exactly if some double for
+/// the south-west post gives it, otherwise within one unit in the last place.
 ///
 /// # Errors
-/// [`TerrainError::Io`] where `out` refuses.
+/// [`TerrainError::Io`] if `out` cannot be written to.
 pub fn write_ascii_grid(dem: &Dem, out: impl Write) -> Result<(), TerrainError> {
     write_text(dem, out).map_err(TerrainError::writing)
 }
@@ -40,7 +40,8 @@ fn write_text(dem: &Dem, out: impl Write) -> std::io::Result<()> {
     out.flush()
 }
 
-/// The northing of the southernmost row, chosen so that the reader's way north ends at the very double it began from.
+/// The northing of the southernmost row, chosen so that the reader's sum gives back the original double for the northernmost
+/// row.
 fn south_of(map: &GeoReference, rows: usize) -> f64 {
     let south = map.post(rows - 1, 0).y;
     #[expect(clippy::cast_precision_loss, reason = "rows stay far below 2^53")]

@@ -1,19 +1,19 @@
-//! Which image of a TIFF holds the elevations, and whether it can be elevations at all.
+//! Selects the image of a TIFF that holds the elevations, and checks that it can hold elevations.
 
 use tiff_reader::{Ifd, RasterLayout, TiffFile};
 
 use super::tag;
 use crate::terrain::TerrainError;
 
-/// Bits of `NewSubfileType`: a smaller copy, a page of several, a transparency mask.
+/// Bits of `NewSubfileType`: a reduced image, a page of several, a transparency mask.
 const REDUCED: u32 = 1;
 const MASK: u32 = 4;
 
-/// The images that matter.
+/// The images that are used.
 pub(super) struct Images<'a> {
     pub(super) elevations: &'a Ifd,
     pub(super) layout: RasterLayout,
-    /// A mask of the same size: 0 where there is no elevation.
+    /// A mask of the same size: 0 means no elevation.
     pub(super) mask: Option<&'a Ifd>,
 }
 
@@ -49,7 +49,7 @@ fn kind(image: &Ifd) -> u32 {
     image.tag(tag::NEW_SUBFILE_TYPE).and_then(|tag| tag.value.as_u32()).unwrap_or(0)
 }
 
-/// One band of numbers is an elevation; colours, palettes and negatives are pictures.
+/// One band of numbers can be elevations; colours, palettes and negatives are pictures.
 fn refuse_colours(image: &Ifd) -> Result<(), TerrainError> {
     let bands = image.samples_per_pixel();
     let (found, mend) = match image.photometric_interpretation().unwrap_or(1) {

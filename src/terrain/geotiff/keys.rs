@@ -1,23 +1,23 @@
-//! The `GeoKeys` and the tags of the transform: where the posts lie, and in which units.
+//! The `GeoKeys` and the tags of the transform: the position of the posts, and their units.
 
 use super::{key, tag};
 use crate::quantity::MapPoint;
 use crate::terrain::georeference::mend_degrees;
 use crate::terrain::{CoordinateSystem, GeoReference, TerrainError, TransformTags};
 
-/// A rotation or shear below this share of the spacing is rounding of whoever wrote the file.
+/// A rotation or shear below this fraction of the spacing is attributed to rounding in the file.
 const STRAIGHT: f64 = 1.0e-9;
 
-/// Where the posts lie, and whether the rows of the file run from the south and must be turned round.
+/// The position of the posts, and whether the file stores the southernmost row first.
 #[derive(Debug)]
 pub(super) struct Placement {
     pub(super) georeference: GeoReference,
     pub(super) south_up: bool,
-    /// Whether the file says that its map is projected; otherwise its numbers must speak for themselves.
+    /// Whether the file states a projected map; if not, the units are judged by the numbers.
     pub(super) states_metres: bool,
 }
 
-/// The tags of one image, as far as they matter here.
+/// The tags of one image that are used here.
 #[derive(Debug, Default)]
 pub(super) struct GeoTags {
     pub(super) coordinate_system: CoordinateSystem,
@@ -25,7 +25,7 @@ pub(super) struct GeoTags {
 }
 
 impl GeoTags {
-    /// From the image's tags; what has another type than the standard says counts as absent.
+    /// Reads the image's tags; a tag of another type than the standard's counts as absent.
     pub(super) fn of(image: &tiff_reader::Ifd) -> Self {
         let doubles = |code| image.tag(code).and_then(|tag| tag.value.as_f64_vec()).unwrap_or_default();
         let text = |code| image.tag(code).and_then(|tag| tag.value.as_str()).map(str::to_owned);
@@ -47,10 +47,10 @@ impl GeoTags {
         }
     }
 
-    /// Checks units and transform, and places the raster's posts.
+    /// Checks units and transform, and computes the position of the raster's posts.
     ///
     /// # Errors
-    /// [`TerrainError::Unsuitable`] for degrees, other units than metres, rotated or mirrored transforms, or none at all.
+    /// [`TerrainError::Unsuitable`] for degrees, other units than metres, rotated or mirrored transforms, or no transform.
     pub(super) fn place(self, rows: usize) -> Result<Placement, TerrainError> {
         check_units(&self.coordinate_system)?;
         let states_metres = short_key(&self.coordinate_system, key::MODEL_TYPE) == Some(key::PROJECTED);
@@ -75,7 +75,7 @@ struct Lattice {
 }
 
 impl Lattice {
-    /// `half` is where in its pixel a post lies, as seen from the corner or post that the tags place.
+    /// `half` is the position of a post in its pixel, relative to the corner or post whose position the tags give.
     fn of(tags: &TransformTags, half: f64) -> Result<Self, TerrainError> {
         if let ([scale_x, scale_y, ..], [i, j, _, x, y, _, ..]) = (&tags.pixel_scale[..], &tags.tie_points[..]) {
             if !(*scale_x > 0.0 && *scale_y > 0.0) {
@@ -156,10 +156,10 @@ fn check_linear_units(system: &CoordinateSystem) -> Result<(), TerrainError> {
         Some(key::USER_DEFINED) => match double_key(system, key::LINEAR_UNIT_SIZE) {
             Some(1.0) => return Ok(()),
             Some(size_m) => format!("map units of {size_m} m"),
-            None => "map units that are not said".to_owned(),
+            None => "map units that are not stated".to_owned(),
         },
         Some(unit) => format!("map coordinates in {}", unit_name(unit)),
-        // Metres are the default; citations of maps in feet say so ("NAD83 / Texas Central (ftUS)").
+        // Metres are the default; the citations of maps in feet mention it ("NAD83 / Texas Central (ftUS)").
         None if system.description.as_deref().is_some_and(speaks_of_feet) => "map coordinates in feet".to_owned(),
         None => return Ok(()),
     };
@@ -183,12 +183,12 @@ fn unit_name(code: u16) -> String {
         9036 => "kilometres".to_owned(),
         9101 => "radians".to_owned(),
         9102 => "degrees".to_owned(),
-        key::USER_DEFINED => "a unit of the file's own".to_owned(),
+        key::USER_DEFINED => "a user-defined unit".to_owned(),
         other => format!("unit EPSG:{other}"),
     }
 }
 
-/// The entry of a key: location, count, value or offset.
+/// The entry of a key: location, count, and value or offset.
 fn entry(system: &CoordinateSystem, wanted: u16) -> Option<[u16; 3]> {
     let keys = system.key_directory.get(4..)?;
     keys.chunks_exact(4).find_map(|entry| match *entry {
@@ -232,7 +232,7 @@ fn description(system: &CoordinateSystem) -> Option<String> {
     cited.map(str::to_owned).or_else(epsg)
 }
 
-/// The directory with the raster type set, in the place that its order asks for.
+/// The directory with the raster type set, inserted in the required order of keys.
 pub(super) fn with_raster_type(directory: &[u16], raster_type: u16) -> Vec<u16> {
     let header = directory.get(..3).unwrap_or(&[1, 1, 0]);
     let mut entries: Vec<[u16; 4]> = directory
@@ -306,7 +306,7 @@ mod tests {
             (&[[1024, 0, 1, 3]], "geocentric"),
             (&[[1024, 0, 1, 1], [3076, 0, 1, 9003]], "US survey feet"),
             (&[[1024, 0, 1, 1], [3076, 0, 1, 9036]], "kilometres"),
-            (&[[1024, 0, 1, 1], [3076, 0, 1, 32767]], "not said"),
+            (&[[1024, 0, 1, 1], [3076, 0, 1, 32767]], "not stated"),
             (&[[1024, 0, 1, 1], [4099, 0, 1, 9002]], "elevations in feet"),
         ] {
             let message = place(entries, scaled()).unwrap_err().to_string();

@@ -1,8 +1,8 @@
-//! GDAL's own tags: the no-data text and the scale, offset and unit of the samples.
+//! GDAL's own tags: the no-data text, and the scale, offset and unit of the samples.
 
 use crate::terrain::TerrainError;
 
-/// From stored sample to elevation: z = scale * sample + offset.
+/// The conversion from stored sample to elevation: z = scale * sample + offset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Scaling {
     pub(super) scale: f64,
@@ -17,10 +17,10 @@ impl Scaling {
     }
 }
 
-/// Reads scale, offset and unit of the first band out of the XML of tag 42112.
+/// Reads scale, offset and unit of the first band from the XML of tag 42112.
 ///
 /// # Errors
-/// [`TerrainError::Unsuitable`] where one of them is there and is no number, a scale is 0, or the unit is not the metre.
+/// [`TerrainError::Unsuitable`] if scale or offset is not a number, the scale is 0, or the unit is not the metre.
 pub(super) fn read_scaling(xml: &str) -> Result<Scaling, TerrainError> {
     let mut scaling = Scaling::NONE;
     let mut rest = xml;
@@ -42,7 +42,7 @@ pub(super) fn read_scaling(xml: &str) -> Result<Scaling, TerrainError> {
     Ok(scaling)
 }
 
-/// Attributes and text of the next `<Item ...>text</Item>`, and what follows.
+/// Attributes and text of the next `<Item ...>text</Item>`, and the rest.
 fn next_item(xml: &str) -> Option<(&str, &str, &str)> {
     let (_, after) = xml.split_once("<Item")?;
     let (attributes, after) = after.split_once('>')?;
@@ -85,23 +85,23 @@ fn check_unit(unit: &str) -> Result<(), TerrainError> {
     })
 }
 
-/// The no-data value as text says it, before it is cast to the samples' type.
+/// The no-data value as text, before it is cast to the samples' type.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NoData {
     value: f64,
     whole: Option<i128>,
 }
 
-/// Beyond this a no-data mark is one of the "largest float" family, which programs print with as few as six digits.
+/// A no-data value beyond this belongs to the "largest float" family, which programs print with as few as six digits.
 const LARGEST_FLOAT_FAMILY: f64 = 1.0e30;
-/// Six digits tell numbers apart that differ by more than this share.
+/// Six digits distinguish numbers that differ by more than this fraction.
 const SIX_DIGITS: f64 = 1.0e-5;
 
 impl NoData {
-    /// From the text of tag 42113; `None` for an empty one.
+    /// Parses the text of tag 42113; `None` if it is empty.
     ///
     /// # Errors
-    /// [`TerrainError::Unsuitable`] where it is no number.
+    /// [`TerrainError::Unsuitable`] if it is not a number.
     pub(super) fn parse(text: &str) -> Result<Option<Self>, TerrainError> {
         let trimmed = text.trim_matches(|letter: char| letter == '\0' || letter.is_whitespace());
         if trimmed.is_empty() {
@@ -117,26 +117,26 @@ impl NoData {
         Ok(Some(Self { value, whole: trimmed.parse().ok() }))
     }
 
-    /// Whether the mark is a number: NaN is a gap anyway.
+    /// Whether the value is a number: NaN samples are gaps in any case.
     pub(super) fn is_a_number(self) -> bool {
         !self.value.is_nan()
     }
 
-    /// Whether a 64-bit sample is the mark.
+    /// Whether a 64-bit sample equals the no-data value.
     pub(super) fn is_double(self, sample: f64) -> bool {
         let relative = (sample - self.value).abs() / self.value.abs();
         sample == self.value || (self.value.abs() > LARGEST_FLOAT_FAMILY && relative < SIX_DIGITS)
     }
 
-    /// Whether a 32-bit sample is the mark, which was cast the same way when the file was written.
+    /// Whether a 32-bit sample equals the no-data value, which was cast the same way when the file was written.
     #[expect(clippy::cast_possible_truncation, reason = "the cast is the comparison meant")]
     pub(super) fn is_single(self, sample: f32) -> bool {
         sample == self.value as f32 || self.is_double(f64::from(sample))
     }
 
-    /// Whether a whole sample is the mark.
+    /// Whether an integer sample equals the no-data value.
     pub(super) fn is_whole(self, sample: i128) -> bool {
-        #[expect(clippy::cast_precision_loss, reason = "a mark that is no whole number is compared as the float it is")]
+        #[expect(clippy::cast_precision_loss, reason = "a value that is not an integer is compared as a float")]
         self.whole.map_or_else(|| sample as f64 == self.value, |whole| whole == sample)
     }
 }
@@ -157,7 +157,7 @@ mod tests {
     }
 
     #[test]
-    fn scales_that_are_no_numbers_and_units_that_are_not_metres_are_refused() {
+    fn invalid_scales_and_units_other_than_metres_are_refused() {
         for (text, role) in [("x", "scale"), ("0", "scale"), ("inf", "offset"), ("km", "unittype")] {
             let xml = format!("<Item name=\"N\" sample=\"0\" role=\"{role}\">{text}</Item>");
             assert!(read_scaling(&xml).unwrap_err().to_string().contains(text), "{xml}");

@@ -1,6 +1,6 @@
-//! GeoTIFF: `read` picks the image and checks it, `samples` decodes it, `keys` understands its map, `write` makes one.
+//! GeoTIFF: `read` selects and checks the image, `samples` decodes it, `keys` interprets its map, `write` writes files.
 //!
-//! The `tiff-reader` and `tiff-writer` crates are used here and nowhere else.
+//! Only this module uses the crates `tiff-reader` and `tiff-writer`.
 
 mod image;
 mod keys;
@@ -16,7 +16,7 @@ pub use read::read_geotiff_bytes;
 pub(super) use read::{Placed, place_by_tags};
 pub use write::{Band, ResultBands, geotiff_bytes, result_geotiff_bytes, write_geotiff};
 
-/// Numbers of the tags that are read or written by us (TIFF 6.0; OGC GeoTIFF 1.1, annex; GDAL's own).
+/// Numbers of the tags that are read or written here (TIFF 6.0; OGC GeoTIFF 1.1, annex; GDAL's own).
 mod tag {
     pub(super) const NEW_SUBFILE_TYPE: u16 = 254;
     pub(super) const PIXEL_SCALE: u16 = 33550;

@@ -1,4 +1,4 @@
-//! Reading a GeoTIFF.
+//! Reads a GeoTIFF.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ use crate::terrain::georeference::refuse_degrees;
 use crate::terrain::window::turn_round;
 use crate::terrain::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
 
-/// GeoTIFF as a format.
+/// The reader of the GeoTIFF format.
 pub(in crate::terrain) struct GeoTiffReader;
 
 impl DemReader for GeoTiffReader {
@@ -40,21 +40,24 @@ impl DemReader for GeoTiffReader {
     }
 }
 
-/// Reads a GeoTIFF held in memory.
+/// Reads a GeoTIFF from memory.
 ///
-/// One band of integers or floats, in strips or tiles, in the compressions and predictors that `tiff-reader` knows (deflate, LZW,
-/// `PackBits`, ZSTD, LERC); scale and offset applied; gaps from the no-data value, from a transparency mask, from NaN and from
-/// blocks that were never written. Rows stored from the south are turned round. A TIFF without a map projection is a local map in metres.
+/// Supports one band of integers or floats, in strips or tiles, with the compressions and predictors of `tiff-reader`
+/// (deflate, LZW, `PackBits`, ZSTD, LERC). Scale and offset are applied. Gaps come from the no-data value, a transparency
+/// mask, NaN, and blocks that were never written. Rows stored from the south are reversed. A TIFF without a map projection is
+/// a local map in metres.
 ///
 /// # Errors
-/// [`TerrainError::Damaged`] where the bytes are no whole TIFF; [`TerrainError::Unsuitable`] where they are, but hold colours, several
-/// bands or images, degrees, other units, a rotated map or none; [`TerrainError::InvalidDem`] where the numbers make no raster.
+/// [`TerrainError::Damaged`] if the bytes are not a complete TIFF; [`TerrainError::Unsuitable`] if it holds colours, several
+/// bands or images, degrees, other units, or a rotated map or none; [`TerrainError::InvalidDem`] if the numbers do not form a
+/// raster.
 pub fn read_geotiff_bytes(bytes: Vec<u8>) -> Result<Dem, TerrainError> {
     let options = whole_options(bytes.len() as u64);
     read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?)
 }
 
-/// Tighter than the defaults: a DEM has a handful of images, and nothing in it unpacks to more than its length can hold.
+/// Stricter limits than the defaults: a DEM has few images, and its data must not unpack to more than the file's length can
+/// justify.
 fn open_options(length: u64) -> OpenOptions {
     OpenOptions {
         parse_budgets: ParseBudgets { max_ifds: 256, max_ifd_entries: 1024, ..ParseBudgets::default() },
@@ -63,7 +66,7 @@ fn open_options(length: u64) -> OpenOptions {
     }
 }
 
-/// Read whole, no block is decoded twice: kept ones would only cost memory, and the time to ask the system for it.
+/// When the file is read as a whole, no block is decoded twice, so a cache would only cost memory and time.
 fn whole_options(length: u64) -> OpenOptions {
     OpenOptions { block_cache_bytes: 0, ..open_options(length) }
 }
@@ -95,7 +98,7 @@ fn read_tiff(file: &TiffFile) -> Result<Dem, TerrainError> {
     Ok(dem)
 }
 
-/// How the samples are meant and where they lie.
+/// The interpretation of the samples and their position.
 fn check_tags(file: &TiffFile, images: &Images<'_>) -> Result<(Decoder, Placement), TerrainError> {
     let tags = GeoTags::of(images.elevations);
     let no_data = tags.transform.no_data.as_deref().map(NoData::parse).transpose()?.flatten();
@@ -105,7 +108,7 @@ fn check_tags(file: &TiffFile, images: &Images<'_>) -> Result<(Decoder, Placemen
     Ok((Decoder::new(file, images, no_data, scaling)?, placement))
 }
 
-/// A GeoTIFF whose tiles or strips are decoded when they are asked for.
+/// A GeoTIFF whose tiles or strips are decoded on demand.
 struct OpenGeoTiff {
     file: TiffFile,
     decoder: Decoder,
@@ -113,7 +116,7 @@ struct OpenGeoTiff {
     south_up: bool,
 }
 
-/// Decoded blocks that are kept, in bytes and in blocks: a transect goes back to none but those beside it.
+/// The size of the cache of decoded blocks, in bytes and in blocks: a transect only returns to adjacent blocks.
 const KEPT_BYTES: usize = 8 << 20;
 const KEPT_BLOCKS: usize = 4;
 
@@ -125,7 +128,7 @@ fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
         let images = Images::of(&file)?;
         let (_, Placement { georeference, states_metres, .. }) = check_tags(&file, &images)?;
         let (rows, cols) = (images.layout.height, images.layout.width);
-        // Degrees show only in the relief of the whole.
+        // Degrees can only be detected from the relief of the whole raster.
         if !states_metres && georeference.bounds(rows, cols).may_be_degrees() {
             return Ok(Box::new(read_tiff(&file)?));
         }
@@ -139,7 +142,7 @@ fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
     Ok(Box::new(OpenGeoTiff { file, decoder, lattice, south_up }))
 }
 
-/// Bytes of a decoded tile or strip.
+/// Number of bytes of a decoded tile or strip.
 fn block_bytes(images: &Images<'_>) -> usize {
     let image = images.elevations;
     let whole = |value: u32| usize::try_from(value).unwrap_or(usize::MAX);
@@ -164,7 +167,7 @@ impl DemFile for OpenGeoTiff {
     }
 }
 
-/// Where the tags of a GeoTIFF place a raster of so many rows.
+/// The position that the tags of a GeoTIFF give a raster with a number of rows.
 #[cfg(feature = "gdal")]
 pub(in crate::terrain) struct Placed {
     pub(in crate::terrain) georeference: crate::terrain::GeoReference,
@@ -172,7 +175,7 @@ pub(in crate::terrain) struct Placed {
     pub(in crate::terrain) states_metres: bool,
 }
 
-/// Checks the tags alone, whatever the image.
+/// Checks the tags alone, without the image.
 #[cfg(feature = "gdal")]
 pub(in crate::terrain) fn place_by_tags(bytes: Vec<u8>, rows: usize) -> Result<Placed, TerrainError> {
     let options = open_options(bytes.len() as u64);

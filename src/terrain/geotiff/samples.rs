@@ -1,4 +1,4 @@
-//! Decoding the posts, a band of rows at a time.
+//! Decodes the posts, several rows at a time.
 
 use tiff_reader::{Ifd, RasterLayout, TiffFile, TiffSample};
 
@@ -6,34 +6,34 @@ use super::image::{Images, damaged};
 use super::metadata::{NoData, Scaling};
 use crate::terrain::{TerrainError, Window};
 
-/// Rows decoded at once, at least: enough for the decoder's threads, little beside the raster.
+/// The least number of rows decoded at once: enough work for the decoder's threads, little memory compared with the raster.
 const ROWS_AT_ONCE: usize = 256;
 
-/// A compressed file may hold this many times its own length, and in any case [`FREE_BYTES`]. Rough ground reaches 2 to 4, so more than this
-/// is a raster empty but for a sixtieth, or a trap for memory.
+/// The largest ratio of unpacked size to file length, beyond [`FREE_BYTES`]. Rough ground reaches 2 to 4, so a larger ratio
+/// means that all but a sixtieth of the raster is empty, or that the file is malicious.
 const LARGEST_RATIO: u64 = 256;
 const FREE_BYTES: u64 = 64 << 20;
 
-/// TIFF's number for no compression.
+/// TIFF's code for no compression.
 const UNCOMPRESSED: u16 = 1;
 
-/// Elevations as they come out of a file: NaN is a gap.
+/// Elevations as decoded from a file: NaN is a gap.
 pub(super) enum Elevations {
     Single(Vec<f32>),
     Double(Vec<f64>),
 }
 
-/// What turns the samples of an image into elevations.
+/// Converts the samples of an image to elevations.
 pub(super) struct Decoder {
     pub(super) no_data: Option<NoData>,
     pub(super) scaling: Scaling,
-    /// Rectangles of blocks that were never written, where they stand for gaps.
+    /// Rectangles of blocks that were never written, if they mean gaps.
     holes: Vec<Window>,
 }
 
 impl Decoder {
     /// # Errors
-    /// [`TerrainError::Damaged`] for a declared size that the file's length cannot back.
+    /// [`TerrainError::Damaged`] for a declared size that the file's length cannot justify.
     pub(super) fn new(
         file: &TiffFile,
         images: &Images<'_>,
@@ -41,7 +41,7 @@ impl Decoder {
         scaling: Scaling,
     ) -> Result<Self, TerrainError> {
         check_size(file, images)?;
-        // A block that was never written stands for the no-data value where there is one, for zeros where there is none.
+        // A block that was never written means the no-data value if there is one, and zeros otherwise.
         let holes = if no_data.is_some() { holes(images) } else { Vec::new() };
         Ok(Self { no_data, scaling, holes })
     }
@@ -53,7 +53,7 @@ impl Decoder {
         let step = rows_at_once(images.elevations, height);
         let mut bands = (0..height).step_by(step).map(|first| self.window(file, images, whole(step.min(height - first), first)));
         let mut posts = bands.next().unwrap_or_else(|| Err(damaged("it has no rows".to_owned())))?;
-        // Not before the first rows have shown that the file holds any.
+        // Only after the first rows have shown that the file holds data.
         posts.reserve(width * height)?;
         for band in bands {
             posts.append(band?);
@@ -65,7 +65,7 @@ impl Decoder {
         }
     }
 
-    /// The posts of a window in the file's own rows and columns.
+    /// The posts of a window, in rows and columns of the file.
     pub(super) fn window(&self, file: &TiffFile, images: &Images<'_>, window: Window) -> Result<Elevations, TerrainError> {
         let Self { no_data, scaling, .. } = *self;
         let read = Reading { file, image: images.elevations, window };
@@ -80,7 +80,10 @@ impl Decoder {
         }
         let scaled = |is_mark: bool, sample: f64| if is_mark { f64::NAN } else { scaling.apply(sample) };
         let marks_whole = |sample: i128| no_data.is_some_and(|mark| mark.is_whole(sample));
-        #[expect(clippy::cast_precision_loss, reason = "64-bit samples beyond 2^53 are no elevations and refused by their size")]
+        #[expect(
+            clippy::cast_precision_loss,
+            reason = "64-bit samples beyond 2^53 are not elevations and are refused as too large"
+        )]
         let mut posts = match (layout.sample_format, layout.bits_per_sample) {
             (1, ..=8) => read.map(|z: u8| scaled(marks_whole(z.into()), z.into())),
             (1, 9..=16) => read.map(|z: u16| scaled(marks_whole(z.into()), z.into())),
@@ -102,7 +105,8 @@ impl Decoder {
         Ok(Elevations::Double(posts))
     }
 
-    /// Blanks what the file leaves out otherwise than by its value: by a transparency mask (0: nothing there), by blocks never written.
+    /// Sets posts to NaN that are missing by other means than their value: a transparency mask (0: missing) or blocks never
+    /// written.
     fn blank_missing<T: Copy>(
         &self,
         file: &TiffFile,
@@ -149,7 +153,7 @@ impl Elevations {
         .map_err(|error| damaged(error.to_string()))
     }
 
-    /// Bands of one image are all of one kind.
+    /// All parts of one image have the same type.
     fn append(&mut self, band: Self) {
         match (self, band) {
             (Self::Single(posts), Self::Single(mut more)) => posts.append(&mut more),
@@ -167,12 +171,12 @@ impl Elevations {
     }
 }
 
-/// What a file of so many bytes may unpack to.
+/// The largest unpacked size accepted for a file of this length.
 pub(super) fn largest_unpacked(length: u64) -> u64 {
     length.saturating_mul(LARGEST_RATIO).max(FREE_BYTES)
 }
 
-/// Refuses a declared size that the file's length cannot back, before anything is allocated for it.
+/// Refuses a declared size that the file's length cannot justify, before memory is allocated.
 fn check_size(file: &TiffFile, images: &Images<'_>) -> Result<(), TerrainError> {
     let RasterLayout { width, height, bits_per_sample, .. } = images.layout;
     let length = file.source().len();
@@ -220,7 +224,7 @@ impl Reading<'_> {
     }
 }
 
-/// Whole blocks, so that none is decoded twice.
+/// A multiple of the block height, so that no block is decoded twice.
 fn rows_at_once(image: &Ifd, height: usize) -> usize {
     let block = image.tile_height().unwrap_or_else(|| image.rows_per_strip());
     let block = usize::try_from(block).unwrap_or(height).clamp(1, height.max(1));

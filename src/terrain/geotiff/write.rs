@@ -1,4 +1,4 @@
-//! Writing a GeoTIFF.
+//! Writes a GeoTIFF.
 
 use std::io::{Cursor, Write};
 
@@ -11,47 +11,47 @@ use super::{key, tag};
 use crate::terrain::dem::Posts;
 use crate::terrain::{Dem, GeoReference, TerrainError};
 
-/// Side of a tile, posts: the usual one, a multiple of 16 as the format asks.
+/// Side of a tile, posts: the usual size, and a multiple of 16 as the format requires.
 const TILE: usize = 256;
 
-/// Numbers of one kind for every post of a raster, one or several to a post.
+/// Numbers of one type for every post of a raster, one or several per post.
 struct Raster<'a, T> {
     rows: usize,
     cols: usize,
     bands: Vec<&'a [T]>,
-    /// Fills what sticks out of the raster in its last tiles.
+    /// The value for the parts of the last tiles outside the raster.
     filler: T,
-    /// How the file says what marks missing numbers.
+    /// The text that declares the no-data value.
     no_data: &'a str,
     predictor: Predictor,
-    /// What each band is, for people; none for a bare raster.
+    /// The names of the bands; empty for a raster of elevations.
     names: Vec<&'a str>,
     georeference: &'a GeoReference,
 }
 
-/// A band of a result raster: a name for people and a number for every post, row after row from the north.
+/// A band of a result raster: a name and a number for every post, row after row from the north.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band<'a, T> {
-    /// What the numbers are, with their unit.
+    /// What the numbers mean, with their unit.
     pub name: &'a str,
     /// The numbers.
     pub samples: &'a [T],
 }
 
-/// The numbers of a result raster, one or several bands of one kind.
+/// The numbers of a result raster: one or several bands of one type.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ResultBands<'a> {
-    /// Whole numbers, and the one that marks missing data.
+    /// Integers, and the no-data value.
     Int16(Vec<Band<'a, i16>>, i16),
-    /// Numbers, NaN where there is none.
+    /// Floats; NaN is no-data.
     Float32(Vec<Band<'a, f32>>),
 }
 
-/// A result for every post of a map as a GeoTIFF in memory: tiles of 256 posts, deflate, the map written back as it was read.
+/// Encodes a result for every post of a map as a GeoTIFF in memory: tiles of 256 posts, deflate, the map as it was read.
 ///
 /// # Errors
-/// [`TerrainError::InvalidDem`] where a band has not `rows * cols` numbers, there is no band, or the raster is beyond what TIFF can
-/// hold.
+/// [`TerrainError::InvalidDem`] if a band does not have `rows * cols` numbers, there is no band, or the raster exceeds the
+/// limits of TIFF.
 ///
 /// # Examples
 /// ```
@@ -93,14 +93,14 @@ pub fn result_geotiff_bytes(
     }
 }
 
-/// Writes a DEM as a GeoTIFF: tiles of 256 posts, deflate, float predictor, 32-bit floats where they hold every elevation exactly and
-/// 64-bit floats otherwise, gaps as NaN.
+/// Writes a DEM as a GeoTIFF: tiles of 256 posts, deflate, float predictor, 32-bit floats if they represent every elevation
+/// exactly, else 64-bit floats, gaps as NaN.
 ///
-/// The map projection is written back as it was read. So is the transform, unless the raster was turned round or moved: then the
-/// north-west post itself becomes the tie point (`PixelIsPoint`), which loses no digit.
+/// The map projection is written as it was read. So is the transform, unless the raster's rows were reversed or it was moved:
+/// then the north-west post becomes the tie point (`PixelIsPoint`), which loses no digit.
 ///
 /// # Errors
-/// [`TerrainError::Io`] where `out` refuses; [`TerrainError::InvalidDem`] where the raster is beyond what TIFF can hold.
+/// [`TerrainError::Io`] if `out` cannot be written to; [`TerrainError::InvalidDem`] if the raster exceeds the limits of TIFF.
 pub fn write_geotiff(dem: &Dem, mut out: impl Write) -> Result<(), TerrainError> {
     out.write_all(&geotiff_bytes(dem)?).and_then(|()| out.flush()).map_err(TerrainError::writing)
 }
@@ -126,7 +126,7 @@ pub fn geotiff_bytes(dem: &Dem) -> Result<Vec<u8>, TerrainError> {
     }
 }
 
-/// Elevations as a raster.
+/// A raster of elevations.
 fn bare<'a, T>(dem: &'a Dem, samples: &'a [T], filler: T) -> Raster<'a, T> {
     Raster {
         rows: dem.rows(),
@@ -150,7 +150,7 @@ fn raster_bytes<T: TiffWriteSample>(raster: &Raster<'_, T>) -> Result<Vec<u8>, T
             raster.cols
         )));
     }
-    let refused = |error: tiff_writer::Error| TerrainError::InvalidDem(format!("the raster does not go into a TIFF: {error}"));
+    let refused = |error: tiff_writer::Error| TerrainError::InvalidDem(format!("the raster cannot be stored in a TIFF: {error}"));
     let mut writer = TiffWriter::new(Cursor::new(Vec::new()), WriteOptions::auto()).map_err(refused)?;
     let handle = writer.add_image(image(raster)?).map_err(refused)?;
     let mut tile = vec![raster.filler; TILE * TILE * raster.bands.len()];
@@ -186,7 +186,7 @@ fn image<T: TiffWriteSample>(raster: &Raster<'_, T>) -> Result<ImageBuilder, Ter
     Ok(map_tags(raster.georeference, raster.rows).into_iter().fold(image, ImageBuilder::tag))
 }
 
-/// Names of bands as GDAL keeps them.
+/// The names of bands in GDAL's metadata.
 fn band_names(names: &[&str]) -> String {
     let item = |(band, name): (usize, &&str)| {
         let name = name.replace('&', "&amp;").replace('<', "&lt;");
@@ -195,7 +195,7 @@ fn band_names(names: &[&str]) -> String {
     format!("<GDALMetadata>{}</GDALMetadata>", names.iter().enumerate().map(item).collect::<String>())
 }
 
-/// The posts of a tile, all numbers of a post side by side.
+/// The posts of a tile, with the numbers of a post side by side.
 fn fill_tile<T: Copy>(tile: &mut [T], raster: &Raster<'_, T>, first_row: usize, first_col: usize) {
     tile.fill(raster.filler);
     let bands = raster.bands.len();
@@ -211,7 +211,7 @@ fn fill_tile<T: Copy>(tile: &mut [T], raster: &Raster<'_, T>, first_row: usize, 
     }
 }
 
-/// The tags of the map: as they were where they still say the same, else with the north-west post as the tie point.
+/// The tags of the map: the original ones if they still describe the raster, else the north-west post as the tie point.
 fn map_tags(map: &GeoReference, rows: usize) -> Vec<Tag> {
     let system = &map.coordinate_system;
     let old = GeoTags { coordinate_system: system.clone(), transform: map.transform_tags.clone() }.place(rows);

@@ -1,17 +1,17 @@
-//! What all readers fill: vertices and polygons, scaled, and cut into triangles.
+//! The builder that all mesh readers use: it scales vertices and divides polygons into triangles.
 
 use nalgebra::Point3;
 
 use super::model::{Mesh, normal_of};
 use crate::terrain::TerrainError;
 
-/// A mesh that is being read.
+/// A mesh under construction.
 #[derive(Debug)]
 pub(super) struct MeshBuilder {
     scale: f64,
     vertices: Vec<Point3<f64>>,
     triangles: Vec<[u32; 3]>,
-    /// Polygons of more than three corners.
+    /// Number of polygons with more than three corners.
     polygons: usize,
 }
 
@@ -20,10 +20,10 @@ impl MeshBuilder {
         Self { scale, vertices: Vec::new(), triangles: Vec::new(), polygons: 0 }
     }
 
-    /// Adds a vertex as it stands in the file.
+    /// Adds a vertex in the file's units.
     ///
     /// # Errors
-    /// What is wrong with it, for the reader to say where.
+    /// What is wrong with it; the reader adds the position in the file.
     pub(super) fn vertex(&mut self, x: f64, y: f64, z: f64) -> Result<u32, String> {
         if !(x.is_finite() && y.is_finite() && z.is_finite()) {
             return Err(format!("found the vertex ({x}, {y}, {z}), expected three finite numbers"));
@@ -33,15 +33,16 @@ impl MeshBuilder {
         Ok(index)
     }
 
-    /// How many vertices there are so far.
+    /// Number of vertices so far.
     pub(super) fn vertex_count(&self) -> usize {
         self.vertices.len()
     }
 
-    /// Adds a polygon, cut into a fan of triangles from its first corner.
+    /// Adds a polygon, divided into a fan of triangles from its first corner.
     ///
     /// # Errors
-    /// What is wrong with it: fewer than three corners, a vertex that does not exist (yet), or a fan that would fold over itself.
+    /// What is wrong with it: fewer than three corners, a vertex that is not defined (yet), or a fan that would fold over
+    /// itself.
     pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<(), String> {
         if let Some(corner) = corners.iter().find(|corner| **corner as usize >= self.vertices.len()) {
             return Err(format!("found a face with vertex {}, expected 1 to {}", u64::from(*corner) + 1, self.vertices.len()));
@@ -55,7 +56,7 @@ impl MeshBuilder {
         let fan = middle.iter().zip(&corners[2..]).map(|(second, third)| [*first, *second, *third]);
         if corners.len() > 3 {
             self.polygons += 1;
-            // The fan of a convex polygon turns one way all over.
+            // All triangles of the fan of a convex polygon have the same orientation.
             let normals: Vec<_> =
                 fan.clone().map(|corners| normal_of(corners.map(|corner| self.vertices[corner as usize]))).collect();
             let longest = normals.iter().max_by(|a, b| a.norm().total_cmp(&b.norm()));
@@ -73,7 +74,7 @@ impl MeshBuilder {
         Ok(())
     }
 
-    /// The mesh, and what its user should know.
+    /// The mesh, and warnings for the user.
     pub(super) fn finish(self) -> Result<(Mesh, Vec<String>), TerrainError> {
         let whole = self.triangles.len();
         let mesh = Mesh::new(self.vertices, self.triangles)?;
@@ -117,12 +118,12 @@ mod tests {
     }
 
     #[test]
-    fn faces_that_make_no_triangles_are_refused() {
+    fn faces_that_form_no_triangles_are_refused() {
         let mut builder = square();
         assert!(builder.polygon(&[0, 1]).unwrap_err().contains("2 corners"));
         assert!(builder.polygon(&[]).unwrap_err().contains("without corners"));
         assert!(builder.polygon(&[0, 1, 5]).unwrap_err().contains("vertex 6, expected 1 to 5"));
-        // An arrow head: seen from its wing, the fan folds over the notch.
+        // An arrow head: from its wing, the fan folds over the notch.
         assert!(builder.polygon(&[3, 0, 1, 4]).is_err_and(|reason| reason.contains("not convex")));
         assert!(builder.vertex(0.0, f64::NAN, 0.0).is_err());
     }

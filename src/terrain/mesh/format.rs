@@ -1,4 +1,4 @@
-//! The formats of meshes, told apart by content.
+//! The mesh formats, recognised by content.
 
 use std::fs::{self, File};
 use std::io::Read;
@@ -8,7 +8,7 @@ use super::build::MeshBuilder;
 use super::{Mesh, obj, ply, stl};
 use crate::terrain::TerrainError;
 
-/// How many bytes of a file are looked at to know whether it is a mesh: comments may stand before the first statement.
+/// Number of bytes of a file that are examined to recognise a mesh: comments may precede the first statement.
 const PROBE_BYTES: u64 = 1 << 16;
 
 /// Names of the formats and one line about each, for help texts.
@@ -18,12 +18,12 @@ pub const MESH_FORMATS: [(&str, &str); 3] = [
     ("PLY", "ascii, binary_little_endian or binary_big_endian, elements vertex (x, y, z) and face, z up"),
 ];
 
-/// A mesh with what its reader noticed.
+/// A mesh with the warnings of its reader.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshFile {
     /// The surface.
     pub mesh: Mesh,
-    /// What was dropped or cut, one sentence each.
+    /// What was dropped or divided, one sentence each.
     pub warnings: Vec<String>,
 }
 
@@ -36,7 +36,8 @@ enum MeshFormat {
 }
 
 impl MeshFormat {
-    /// The format of a file that begins like this and has this length. A binary STL may say `solid` in its title, so it goes first.
+    /// The format of a file with this beginning and length. The title of a binary STL may begin with `solid`, so it is tested
+    /// first.
     fn of(beginning: &[u8], length: u64) -> Option<Self> {
         if ply::recognises(beginning) {
             Some(Self::Ply)
@@ -52,7 +53,7 @@ impl MeshFormat {
     }
 }
 
-/// Whether a file is a mesh by its content. A file that cannot be read is none.
+/// Whether a file is a mesh by its content; false if it cannot be read.
 pub fn looks_like_mesh(path: &Path) -> bool {
     let Ok(file) = File::open(path) else { return false };
     let Ok(length) = file.metadata().map(|metadata| metadata.len()) else { return false };
@@ -60,19 +61,21 @@ pub fn looks_like_mesh(path: &Path) -> bool {
     file.take(PROBE_BYTES).read_to_end(&mut beginning).is_ok() && MeshFormat::of(&beginning, length).is_some()
 }
 
-/// Reads a mesh file, whatever its extension. `scale` is how many metres one unit of the file is.
+/// Reads a mesh file with any extension. `scale` is the number of metres per unit of the file.
 ///
 /// # Errors
-/// [`TerrainError::InFile`], around what is wrong: the file cannot be read, is of no known format, is damaged, or holds no sound surface.
+/// [`TerrainError::InFile`] with the cause: the file cannot be read, has no known format, is damaged, or holds no valid
+/// surface.
 pub fn read_mesh(path: &Path, scale: f64) -> Result<MeshFile, TerrainError> {
     let bytes = fs::read(path).map_err(|error| TerrainError::reading(error).in_file(path))?;
     read_mesh_bytes(&bytes, scale).map_err(|error| error.in_file(path))
 }
 
-/// Reads a whole mesh file held in memory. Memory stays within a small multiple of its length, whatever counts it claims.
+/// Reads a whole mesh file from memory. Memory use is a small multiple of its length, whatever counts the file declares.
 ///
 /// # Errors
-/// [`TerrainError`] with what was found, what was expected, and how to mend it; for a scale that is no finite number above 0 too.
+/// [`TerrainError`] with what was found, what was expected, and how to correct it; also if the scale is not a finite number
+/// above 0.
 ///
 /// # Examples
 /// ```
@@ -144,7 +147,7 @@ mod tests {
     }
 
     #[test]
-    fn scales_that_are_no_scales_are_refused() {
+    fn invalid_scales_are_refused() {
         for scale in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(read_mesh_bytes(b"v 0 0 0\n", scale).unwrap_err().to_string().contains("mesh_scale"));
         }

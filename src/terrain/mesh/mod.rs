@@ -1,8 +1,8 @@
-//! Triangulated surfaces, closed and overhanging ones too, and what is cut from them.
+//! Triangulated surfaces, including closed and overhanging ones, and their slices.
 //!
-//! A [`Mesh`] is read from OBJ, STL or PLY by content ([`read_mesh`]), z up, or built in memory. [`slice_mesh`] cuts it along a vertical
-//! plane into the same [`Profile`](super::Profile) that a DEM gives, and says where it had to choose: the upper of several surfaces, and
-//! walls.
+//! A [`Mesh`] is read from OBJ, STL or PLY, recognised by content ([`read_mesh`]), with z up, or built in memory.
+//! [`slice_mesh`] intersects it with a vertical plane and gives the same [`Profile`](super::Profile) as for a DEM. It reports
+//! where it had to choose: the upper of several surfaces, and walls.
 //!
 //! ```
 //! use chta::quantity::MapPoint;

@@ -5,14 +5,15 @@ use nalgebra::{Point3, Vector3};
 use crate::quantity::MapPoint;
 use crate::terrain::{ELEVATION_LIMIT_M, MapBounds, TerrainError};
 
-/// No vertex lies further than this from the map's origin, m, as no map point of a scenario does.
+/// The largest absolute x and y of a vertex, m, the same as for map points of a scenario.
 const COORDINATE_LIMIT_M: f64 = 1.0e12;
 
-/// A triangle is dropped where its least height is below this share of its longest edge: doubles then no longer know its normal.
+/// A triangle is dropped if its least height is below this fraction of its longest edge: its normal is then undefined in
+/// double precision.
 const FLATTEST: f64 = 1.0e-12;
 
-/// A surface of triangles, z up, in m. Nothing is asked of it but sound numbers: it may be open, closed, overhanging or in pieces, and
-/// its triangles may be turned either way.
+/// A surface of triangles, z up, in m. Only the numbers have to be valid: the surface may be open, closed, overhanging or in
+/// pieces, and its triangles may have either orientation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
     vertices: Vec<Point3<f64>>,
@@ -25,7 +26,7 @@ pub struct Mesh {
 /// The smallest box around a mesh.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshBounds {
-    /// On the map.
+    /// The rectangle on the map.
     pub map: MapBounds,
     /// Lowest vertex, m.
     pub low_m: f64,
@@ -36,11 +37,11 @@ pub struct MeshBounds {
 impl Mesh {
     /// A mesh from its vertices, m, and its triangles, each three indices of vertices from 0.
     ///
-    /// Triangles without area (two vertices in one place, or three on a line) are dropped and counted.
+    /// Triangles without area (two vertices at the same position, or three on a line) are dropped and counted.
     ///
     /// # Errors
-    /// [`TerrainError::InvalidMesh`] for an index beyond the vertices, a coordinate that is no finite number or lies beyond any terrain,
-    /// and where no triangle with an area is left.
+    /// [`TerrainError::InvalidMesh`] for an index beyond the vertices, for a coordinate that is not finite or too large, and
+    /// if no triangle with an area is left.
     ///
     /// # Examples
     /// ```
@@ -98,7 +99,7 @@ impl Mesh {
         Ok(())
     }
 
-    /// Half of the edges are at most this long; the scale of "nearly on" and "nearly the same".
+    /// The median length of the edges; the scale of the geometric tolerances.
     fn median_of_edges(&self) -> f64 {
         let edges = self.triangles().flat_map(|[a, b, c]| [b - a, c - b, a - c]);
         let mut lengths: Vec<f64> = edges.map(|edge| edge.norm()).collect();
@@ -106,7 +107,7 @@ impl Mesh {
         *lengths.select_nth_unstable_by(middle, f64::total_cmp).1
     }
 
-    /// The vertices, m; those of no triangle too.
+    /// The vertices, m, including those without a triangle.
     pub fn vertices(&self) -> &[Point3<f64>] {
         &self.vertices
     }
@@ -121,12 +122,12 @@ impl Mesh {
         self.triangles.iter().map(|corners| corners.map(|corner| self.vertices[corner as usize]))
     }
 
-    /// How many triangles there are.
+    /// Number of triangles.
     pub fn triangle_count(&self) -> usize {
         self.triangles.len()
     }
 
-    /// How many triangles had no area and were dropped.
+    /// Number of triangles without area that were dropped.
     pub fn dropped_triangles(&self) -> usize {
         self.dropped
     }
@@ -142,7 +143,7 @@ impl Mesh {
     }
 }
 
-/// The normal of a triangle, of twice its area, in the order of its corners.
+/// The normal of a triangle with a length of twice its area, oriented by the order of its corners.
 pub(super) fn normal_of([a, b, c]: [Point3<f64>; 3]) -> Vector3<f64> {
     (b - a).cross(&(c - a))
 }
@@ -181,7 +182,7 @@ mod tests {
 
     #[test]
     fn triangles_without_area_are_dropped_and_counted() {
-        // Doubled corner, three on a line, and a sound one.
+        // A repeated corner, three corners on a line, and a valid triangle.
         let mesh = Mesh::new(corners(), vec![[0, 0, 2], [0, 3, 1], [0, 1, 2]]).unwrap();
         assert_eq!((mesh.indices(), mesh.dropped_triangles()), (&[[0, 1, 2]][..], 2));
         assert_eq!((mesh.bounds().low_m, mesh.bounds().high_m), (-3.0, 1.0));
@@ -189,7 +190,7 @@ mod tests {
     }
 
     #[test]
-    fn unsound_meshes_are_refused_with_the_number_of_what_is_wrong() {
+    fn invalid_meshes_are_refused_with_the_index_of_the_fault() {
         let refusal = |vertices, triangles| Mesh::new(vertices, triangles).unwrap_err().to_string();
         assert!(refusal(corners(), vec![[0, 1, 2], [0, 1, 4]]).contains("triangle 2 names vertex 5, expected 1 to 4"));
         assert!(refusal(corners(), vec![[u32::MAX, 1, 2]]).contains("vertex 4294967296"));

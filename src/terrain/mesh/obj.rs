@@ -1,4 +1,4 @@
-//! Wavefront OBJ: the lines `v` and `f`; names, materials, normals and texture do not matter here.
+//! Wavefront OBJ: the lines `v` and `f`; names, materials, normals and texture are ignored.
 
 use super::build::MeshBuilder;
 use super::text::{in_line, lines, shown, three};
@@ -6,7 +6,7 @@ use crate::terrain::TerrainError;
 
 pub(super) const NAME: &str = "OBJ";
 
-/// Statements that carry no surface.
+/// Statements without surface geometry.
 const WITHOUT_SURFACE: [&str; 17] = [
     "vn",
     "vt",
@@ -27,7 +27,7 @@ const WITHOUT_SURFACE: [&str; 17] = [
     "bevel",
 ];
 
-/// Whether a text begins like an OBJ: its first line that is not empty or a comment is a statement.
+/// Whether a text begins like an OBJ: its first line, not counting empty lines and comments, is a statement.
 pub(super) fn recognises(beginning: &[u8]) -> bool {
     let first = lines(beginning).find(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     first.is_some_and(|(_, line)| {
@@ -41,7 +41,7 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Terrai
     let mut corners = Vec::new();
     let mut begun: Option<(usize, String)> = None;
     for (number, line) in lines(bytes) {
-        // A backslash at the end joins the next line to this one.
+        // A backslash at the end of a line joins it with the next one.
         let (number, line) = match begun.take() {
             Some((first, before)) => (first, format!("{before} {line}").into()),
             None => (number, line),
@@ -84,7 +84,7 @@ fn statement(line: &str, builder: &mut MeshBuilder, corners: &mut Vec<u32>) -> R
     }
 }
 
-/// The vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`: from 1, or from -1 backwards.
+/// Parses the vertex of `v`, `v/vt`, `v//vn` or `v/vt/vn`: counted from 1, or backwards from -1.
 fn corner(word: &str, count: usize) -> Result<u32, String> {
     let wrong = || format!("found the corner '{}', expected a vertex from 1 to {count}, or from -1 to -{count}", shown(word));
     let index: i64 = word.split('/').next().unwrap_or_default().parse().map_err(|_| wrong())?;
@@ -109,7 +109,7 @@ mod tests {
     const POINTS: &str = "v 0 0 0\nv 1 0 0 1.0\nv 1 1 0 0.5 0.5 0.5\nv 0 1e0 0\n";
 
     #[test]
-    fn all_ways_to_name_a_corner_are_read() {
+    fn all_forms_of_a_corner_are_read() {
         for face in
             ["f 1 2 3", "f 1/1 2/2 3/3 # face", "f 1//9 2//9 3//9", "f 1/4/9 2/4/9 3/4/9", "f -4 -3 -2", "f 1 \\\n 2 \\\n 3"]
         {
@@ -143,6 +143,6 @@ mod tests {
             assert!(message.contains("OBJ") && message.contains("line 5") && message.contains(expected), "{line}: {message}");
         }
         assert!(mesh(POINTS).unwrap_err().contains("no faces"));
-        assert!(mesh(&format!("f 1 2 3\n{POINTS}")).is_err(), "a face stands after its vertices");
+        assert!(mesh(&format!("f 1 2 3\n{POINTS}")).is_err(), "a face before its vertices must be refused");
     }
 }

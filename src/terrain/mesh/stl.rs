@@ -1,4 +1,4 @@
-//! STL, binary and text. The normals in the file are not used: the corners say more.
+//! STL, binary and text. The normals in the file are ignored: they follow from the corners.
 
 use super::build::MeshBuilder;
 use super::text::{in_line, lines, shown, three};
@@ -7,18 +7,18 @@ use crate::terrain::TerrainError;
 pub(super) const BINARY: &str = "binary STL";
 pub(super) const ASCII: &str = "ASCII STL";
 
-/// Title, then the count of triangles.
+/// The title, then the number of triangles.
 pub(super) const HEADER_BYTES: usize = 84;
-/// A normal and three corners in 32-bit floats, and two bytes of no meaning.
+/// A normal and three corners in 32-bit floats, and two unused bytes.
 pub(super) const TRIANGLE_BYTES: u64 = 50;
 
-/// The bytes that a binary STL of this header has; `None` where the header is cut short.
+/// The length of a binary STL with this header, bytes; `None` if the header is cut short.
 pub(super) fn binary_length(header: &[u8]) -> Option<u64> {
     let count = header.get(80..HEADER_BYTES)?.try_into().ok().map(u32::from_le_bytes)?;
     Some(HEADER_BYTES as u64 + TRIANGLE_BYTES * u64::from(count))
 }
 
-/// Whether a file of this beginning and whole length is a binary STL: its count of triangles and its length say the same.
+/// Whether a file with this beginning and length is a binary STL: its number of triangles and its length must agree.
 pub(super) fn recognises_binary(beginning: &[u8], length: u64) -> bool {
     binary_length(beginning) == Some(length)
 }
@@ -30,7 +30,7 @@ pub(super) fn recognises_ascii(beginning: &[u8]) -> bool {
     title && lines.next().is_none_or(|(_, line)| is_word(&line, "facet") || is_word(&line, "endsolid"))
 }
 
-/// Whether the first word of a line is this one, in small letters or capitals.
+/// Whether the first word of a line is this one, in either case.
 fn is_word(line: &str, word: &str) -> bool {
     line.split_ascii_whitespace().next().is_some_and(|first| first.eq_ignore_ascii_case(word))
 }
@@ -51,7 +51,7 @@ pub(super) fn read_binary(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(),
     Ok(())
 }
 
-/// Where in the text of an STL one is.
+/// The current level of nesting in an ASCII STL.
 #[derive(Clone, Copy, PartialEq)]
 enum Inside {
     File,

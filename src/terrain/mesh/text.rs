@@ -7,12 +7,12 @@ pub(super) fn in_line(format: &'static str, line: usize, problem: &str) -> Terra
     TerrainError::MeshText { format, line, problem: problem.to_owned() }
 }
 
-/// Lines with their numbers from 1. Bytes outside UTF-8, which occur in comments and names, are replaced.
+/// Lines with their numbers from 1. Bytes that are not UTF-8, which occur in comments and names, are replaced.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, str>)> {
     bytes.split(|&byte| byte == b'\n').enumerate().map(|(index, line)| (index + 1, String::from_utf8_lossy(line.trim_ascii())))
 }
 
-/// A word of the file as it can be shown.
+/// A word of the file for a message.
 pub(super) fn shown(word: &str) -> String {
     word.chars().take(40).flat_map(char::escape_default).collect()
 }

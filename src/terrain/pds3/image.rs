@@ -1,10 +1,10 @@
-//! The IMAGE object: how many samples, of which kind, and where in which file.
+//! The IMAGE object: number, type and position of the samples.
 
 use super::label::{Label, shown, unsuitable};
 use super::samples::{Mark, SampleType, mark};
 use crate::terrain::TerrainError;
 
-/// Keys whose values stand for no elevation.
+/// Keys whose values mean no elevation.
 const MARKS: [&str; 9] = [
     "MISSING_CONSTANT",
     "MISSING",
@@ -17,15 +17,15 @@ const MARKS: [&str; 9] = [
     "CORE_HIGH_REPR_SATURATION",
 ];
 
-/// Where the samples of an image lie and what they mean.
+/// The position and meaning of an image's samples.
 #[derive(Clone, Debug)]
 pub(super) struct ImageObject {
     pub(super) rows: usize,
     pub(super) cols: usize,
     pub(super) sample: SampleType,
-    /// The file with the samples; `None`: the label's own.
+    /// The file with the samples; `None` means the file of the label.
     pub(super) file: Option<String>,
-    /// Where the first line begins, its prefix included.
+    /// Offset of the first line, including its prefix.
     pub(super) start: u64,
     pub(super) prefix: usize,
     pub(super) suffix: usize,
@@ -37,7 +37,7 @@ pub(super) struct ImageObject {
 
 impl ImageObject {
     /// # Errors
-    /// [`TerrainError::Unsuitable`] with the first key that is missing or makes no elevations.
+    /// [`TerrainError::Unsuitable`] with the first key that is missing or does not describe elevations.
     pub(super) fn of(label: &Label) -> Result<Self, TerrainError> {
         if !label.has("IMAGE") {
             return Err(unsuitable("no IMAGE object", "one (tables, spectra and cubes hold no raster of elevations)"));
@@ -77,7 +77,7 @@ impl ImageObject {
         })
     }
 
-    /// Bytes from one line to the next, and the byte after the last; `None` beyond all files.
+    /// Number of bytes from one line to the next, and the offset after the last line; `None` if it overflows.
     pub(super) fn extent(&self) -> Option<(usize, u64)> {
         let line = self.cols.checked_mul(self.sample.bytes())?.checked_add(self.prefix)?.checked_add(self.suffix)?;
         let all = u64::try_from(line.checked_mul(self.rows)?).ok()?;
@@ -90,7 +90,7 @@ impl ImageObject {
     }
 }
 
-/// `^IMAGE`: a record or byte, from 1, of this file, or of one that it names.
+/// `^IMAGE`: a record or byte, counted from 1, of this file or of a named one.
 fn pointer(label: &Label) -> Result<(Option<String>, u64), TerrainError> {
     let values = label.values("", "^IMAGE")?.ok_or_else(|| unsuitable("no ^IMAGE", "where the image begins"))?;
     let (file, place) = match values {

@@ -1,11 +1,11 @@
-//! The label's language: `KEY = VALUE <UNIT>` in nested objects, up to `END`.
+//! The language of labels: `KEY = VALUE <UNIT>` in nested objects, up to `END`.
 
 use crate::terrain::TerrainError;
 
-/// No label is longer: what is longer is something else.
+/// The longest label; a longer text is not a label.
 pub(super) const LONGEST_LABEL: usize = 1 << 20;
 
-/// Objects inside objects, and parentheses inside parentheses, at most.
+/// The deepest nesting of objects and of parentheses.
 const DEEPEST: usize = 16;
 
 /// A label, statement by statement.
@@ -22,12 +22,12 @@ struct Statement {
     values: Vec<Value>,
 }
 
-/// One value; sequences and sets are several.
+/// One value; sequences and sets have several.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Value {
-    /// Without quotes.
+    /// The text without quotes.
     pub(super) text: String,
-    /// What stood in angle brackets after it, in capitals.
+    /// The unit in angle brackets, in capitals.
     pub(super) unit: Option<String>,
 }
 
@@ -35,7 +35,7 @@ impl Label {
     /// Reads the text up to its END.
     ///
     /// # Errors
-    /// [`TerrainError::Damaged`] with the line where the text is no label.
+    /// [`TerrainError::Damaged`] with the line where the text is not a label.
     pub(super) fn parse(bytes: &[u8]) -> Result<Self, TerrainError> {
         let mut reader = Reader { bytes, at: 0, line: 1 };
         reader.skip_envelope();
@@ -52,7 +52,7 @@ impl Label {
                         reader.values()?;
                     }
                     if objects.pop().is_none() {
-                        return Err(reader.damaged(&format!("{key} where nothing began")));
+                        return Err(reader.damaged(&format!("{key} without an open object")));
                     }
                     continue;
                 }
@@ -64,7 +64,7 @@ impl Label {
             let values = reader.values()?;
             if key == "OBJECT" || key == "GROUP" {
                 if objects.len() == DEEPEST {
-                    return Err(reader.damaged("objects inside objects without end"));
+                    return Err(reader.damaged("objects nested too deeply"));
                 }
                 objects.push(values.first().map(|value| value.text.to_ascii_uppercase()).unwrap_or_default());
             } else {
@@ -78,10 +78,10 @@ impl Label {
         self.statements.iter().any(|statement| statement.objects.iter().any(|name| name == object))
     }
 
-    /// The values of a key of an object (anywhere in the label), or outside of all objects but FILE ones where `object` is empty.
+    /// The values of a key in an object (anywhere in the label), or outside all objects except FILE if `object` is empty.
     ///
     /// # Errors
-    /// [`TerrainError::Unsuitable`] where the label gives it twice and differently.
+    /// [`TerrainError::Unsuitable`] if the label gives the key several times with different values.
     pub(super) fn values(&self, object: &str, key: &str) -> Result<Option<&[Value]>, TerrainError> {
         let of_object = |statement: &&Statement| match statement.objects.last() {
             None => object.is_empty(),
@@ -95,10 +95,10 @@ impl Label {
         Ok(first.map(|statement| statement.values.as_slice()))
     }
 
-    /// The one value of a key.
+    /// The single value of a key.
     ///
     /// # Errors
-    /// As [`Label::values`], and where there are several.
+    /// As [`Label::values`], and if there are several.
     pub(super) fn value(&self, object: &str, key: &str) -> Result<Option<&Value>, TerrainError> {
         match self.values(object, key)? {
             None => Ok(None),
@@ -107,10 +107,10 @@ impl Label {
         }
     }
 
-    /// A number of an object, finite.
+    /// A finite number of an object.
     ///
     /// # Errors
-    /// As [`Label::value`], and where it is no number.
+    /// As [`Label::value`], and if it is not a finite number.
     pub(super) fn number(&self, object: &str, key: &str) -> Result<Option<f64>, TerrainError> {
         let Some(value) = self.value(object, key)? else { return Ok(None) };
         match value.text.parse::<f64>() {
@@ -119,10 +119,10 @@ impl Label {
         }
     }
 
-    /// A count of an object.
+    /// A non-negative integer of an object.
     ///
     /// # Errors
-    /// As [`Label::value`], and where it is no whole number.
+    /// As [`Label::value`], and if it is not an integer.
     pub(super) fn count(&self, object: &str, key: &str) -> Result<Option<usize>, TerrainError> {
         let Some(value) = self.value(object, key)? else { return Ok(None) };
         let count = value.text.parse().map_err(|_| unsuitable(format!("{key} {}", shown(&value.text)), "a whole number"))?;
@@ -130,17 +130,17 @@ impl Label {
     }
 }
 
-/// A sound label of no use.
+/// The error for a valid label without usable elevations.
 pub(super) fn unsuitable(found: impl AsRef<str>, expected: &'static str) -> TerrainError {
     let found = found.as_ref();
     TerrainError::Unsuitable {
         found: format!("a PDS3 label with {found}"),
         expected,
-        mend: "correct a copy of the label, or gdal_translate label.lbl out.tif where GDAL reads it rightly".to_owned(),
+        mend: "correct a copy of the label, or gdal_translate label.lbl out.tif if GDAL reads it correctly".to_owned(),
     }
 }
 
-/// The beginning of a text, printable, in quotes.
+/// The beginning of a text, in printable characters and quotes.
 pub(super) fn shown(text: &str) -> String {
     let beginning: String = text.chars().take(40).flat_map(char::escape_debug).collect();
     if text.chars().count() > 40 { format!("'{beginning}...'") } else { format!("'{beginning}'") }
@@ -168,7 +168,7 @@ impl Reader<'_> {
         self.at += 1;
     }
 
-    /// Old labels begin with a line of their own kind ("CCSD3ZF...").
+    /// Old labels begin with a line of their own format ("CCSD3ZF...").
     fn skip_envelope(&mut self) {
         if self.bytes.starts_with(b"CCSD") {
             while self.peek().is_some_and(|byte| byte != b'\n') {
@@ -177,7 +177,7 @@ impl Reader<'_> {
         }
     }
 
-    /// White space and comments.
+    /// Skips white space and comments.
     fn skip_space(&mut self) {
         loop {
             while self.peek().is_some_and(|byte| byte.is_ascii_whitespace() || byte == 0) {
@@ -222,7 +222,7 @@ impl Reader<'_> {
                 Some(b'(' | b'{') => {
                     depth += 1;
                     if depth > DEEPEST {
-                        return Err(self.damaged("parentheses inside parentheses without end"));
+                        return Err(self.damaged("parentheses nested too deeply"));
                     }
                     self.step();
                 }
@@ -254,7 +254,7 @@ impl Reader<'_> {
         Ok(Value { text, unit })
     }
 
-    /// From the byte here to the next of a kind, both left out.
+    /// The text from the current byte to the next `end`, both excluded.
     fn enclosed(&mut self, end: u8) -> Result<String, TerrainError> {
         self.step();
         let start = self.at;
@@ -294,26 +294,26 @@ mod tests {
     }
 
     #[test]
-    fn texts_that_are_no_labels_are_refused_with_the_line() {
+    fn texts_that_are_not_labels_are_refused_with_the_line() {
         for (text, expected) in [
             ("A = 1\nB\nC = 2\nEND", "line 3"),
             ("A = 1\n", "no END"),
             ("A = \"open", "closing"),
             ("A = (1, 2", "within a value"),
             ("A = 5 <M", "closing >"),
-            ("END_OBJECT = X\nEND", "nothing began"),
+            ("END_OBJECT = X\nEND", "without an open object"),
             ("A = ,\nEND", "no value"),
         ] {
             let message = Label::parse(text.as_bytes()).unwrap_err().to_string();
             assert!(message.contains(expected), "{text}: {message}");
         }
         let deep = "OBJECT = A\n".repeat(40);
-        assert!(Label::parse(deep.as_bytes()).unwrap_err().to_string().contains("without end"));
+        assert!(Label::parse(deep.as_bytes()).unwrap_err().to_string().contains("nested too deeply"));
         assert!(Label::parse(format!("A = {}", "(".repeat(40)).as_bytes()).is_err());
     }
 
     #[test]
-    fn two_images_in_one_label_are_not_guessed_between() {
+    fn two_images_in_one_label_are_refused() {
         let text = "OBJECT = IMAGE\nLINES = 2\nEND_OBJECT\nOBJECT = IMAGE\nLINES = 3\nEND_OBJECT\nEND";
         let label = Label::parse(text.as_bytes()).unwrap();
         assert!(label.count("IMAGE", "LINES").unwrap_err().to_string().contains("more than once"));

@@ -1,6 +1,7 @@
-//! PDS3: a label in text (attached to its image, or beside it) and an image of plain samples.
+//! PDS3: a text label (attached to its image, or in a separate file) and an image of uncompressed samples.
 //!
-//! `label` reads the text, `image` understands the IMAGE object, `samples` the bytes, `projection` the `IMAGE_MAP_PROJECTION` object
+//! `label` reads the text, `image` interprets the IMAGE object, `samples` the bytes, `projection` the `IMAGE_MAP_PROJECTION`
+//! object
 //! (Planetary Data System Standards Reference 3.8, chapters 5, 12 and appendices A to C; data dictionary for the map keywords).
 
 mod image;

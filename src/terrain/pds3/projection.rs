@@ -1,4 +1,4 @@
-//! The `IMAGE_MAP_PROJECTION` object: where the posts lie, and on which map.
+//! The `IMAGE_MAP_PROJECTION` object: the position of the posts, and their map.
 
 use super::label::{Label, shown, unsuitable};
 use crate::quantity::MapPoint;
@@ -6,19 +6,21 @@ use crate::terrain::{CoordinateSystem, GeoReference, TerrainError};
 
 const OBJECT: &str = "IMAGE_MAP_PROJECTION";
 
-/// What a map may be turned by before it is not north up, degrees: rounding of whoever wrote the label.
+/// The largest rotation of a map that still counts as north up, degrees: rounding in the label.
 const STRAIGHT_DEG: f64 = 1.0e-9;
 
-/// Places the posts: `LINE_PROJECTION_OFFSET` and `SAMPLE_PROJECTION_OFFSET` count from the centre of the first post to the origin of the map,
+/// The position of the posts: `LINE_PROJECTION_OFFSET` and `SAMPLE_PROJECTION_OFFSET` count from the centre of the first post
+/// to the origin of the map,
 ///
 /// ```text
 /// x = (column - SAMPLE_PROJECTION_OFFSET) * MAP_SCALE,   y = (LINE_PROJECTION_OFFSET - row) * MAP_SCALE,   row and column from 0
 /// ```
 ///
-/// (PDS data dictionary; GDAL's PDS driver places the corner half a post outside the same centre).
+/// (PDS data dictionary; GDAL's PDS driver puts the corner half a post outside the same centre).
 ///
 /// # Errors
-/// [`TerrainError::Unsuitable`] where the object or one of its keys is missing, its scale is no length, or the map is turned.
+/// [`TerrainError::Unsuitable`] if the object or one of its keys is missing, its scale is not a length, or the map is
+/// rotated.
 pub(super) fn place(label: &Label) -> Result<GeoReference, TerrainError> {
     let missing = |key: &str| {
         unsuitable(
@@ -51,13 +53,13 @@ fn scale_m(label: &Label) -> Result<Option<f64>, TerrainError> {
     }
 }
 
-/// `GeoTIFF`'s numbers for a projection: its method, then key and value of each parameter in degrees.
+/// `GeoTIFF` codes of a projection: its method, then key and value in degrees of each parameter.
 struct Method {
     code: u16,
     parameters: Vec<(u16, f64)>,
 }
 
-/// The map as `GeoTIFF` keys, so that it goes on to every output; only a name where the projection or the radii are not known.
+/// The map as `GeoTIFF` keys, so that all outputs can carry it; only a name if the projection or the radii are not known.
 fn coordinate_system(label: &Label) -> Result<CoordinateSystem, TerrainError> {
     let Some(projection) = label.value(OBJECT, "MAP_PROJECTION_TYPE")? else { return Ok(CoordinateSystem::default()) };
     let name = projection.text.to_ascii_uppercase();
@@ -116,7 +118,7 @@ fn method(name: &str, latitude: f64, longitude: f64) -> Option<Method> {
     Some(Method { code, parameters })
 }
 
-/// A radius in m; labels give km unless they say otherwise.
+/// A radius in m; labels without a unit give km.
 fn radius_m(label: &Label, key: &str) -> Result<Option<f64>, TerrainError> {
     let (Some(value), Some(number)) = (label.value(OBJECT, key)?, label.number(OBJECT, key)?) else { return Ok(None) };
     match value.unit.as_deref().unwrap_or("KM") {

@@ -1,4 +1,4 @@
-//! Reading a PDS3 image, whole or in parts.
+//! Reads a PDS3 image, whole or in parts.
 
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -9,7 +9,7 @@ use super::label::{LONGEST_LABEL, Label, shown, unsuitable};
 use super::projection::place;
 use crate::terrain::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
 
-/// PDS3 as a format.
+/// The reader of the PDS3 format.
 pub(in crate::terrain) struct Pds3Reader;
 
 impl DemReader for Pds3Reader {
@@ -36,14 +36,16 @@ impl DemReader for Pds3Reader {
     }
 }
 
-/// Reads a PDS3 image with attached label held in memory.
+/// Reads a PDS3 image with attached label from memory.
 ///
-/// One band of integers or reals of any of the standard's byte orders, `SCALING_FACTOR`, OFFSET and UNIT (m, km) applied, gaps from
-/// `MISSING_CONSTANT` and its like. Where OFFSET is a radius, elevations are distances from the body's centre, as the label says.
+/// Supports one band of integers or reals in any byte order of the standard. `SCALING_FACTOR`, OFFSET and UNIT (m, km) are
+/// applied, and gaps come from `MISSING_CONSTANT` and similar keys. If OFFSET is a radius, elevations are distances from the
+/// body's centre, as the label states.
 ///
 /// # Errors
-/// [`TerrainError::Damaged`] where the label or the image is cut short; [`TerrainError::Unsuitable`] where the label points to another
-/// file, or describes no north-up map of elevations; [`TerrainError::InvalidDem`] where the numbers make no raster.
+/// [`TerrainError::Damaged`] if the label or the image is cut short; [`TerrainError::Unsuitable`] if the label points to
+/// another file, or does not describe a north-up map of elevations; [`TerrainError::InvalidDem`] if the numbers do not form a
+/// raster.
 pub fn read_pds3_bytes(bytes: Vec<u8>) -> Result<Dem, TerrainError> {
     let label = Label::parse(&bytes[..bytes.len().min(LONGEST_LABEL)])?;
     let image = ImageObject::of(&label)?;
@@ -69,7 +71,7 @@ fn open_file(path: &Path) -> Result<OpenPds3, TerrainError> {
     OpenPds3::new(&label, image, Source::File(file))
 }
 
-/// The file of a detached label: of that name in its folder, in the label's case, lower or upper case.
+/// The file of a detached label: a file of that name in the same folder, in the label's case, in lower or in upper case.
 fn beside(label: &Path, name: &str) -> Result<PathBuf, TerrainError> {
     if name.is_empty() || name.contains(['/', '\\']) || name == ".." {
         return Err(unsuitable(format!("^IMAGE in {}", shown(name)), "the plain name of a file beside the label"));
@@ -78,10 +80,10 @@ fn beside(label: &Path, name: &str) -> Result<PathBuf, TerrainError> {
     let found = candidates.iter().find(|path| path.is_file());
     found
         .cloned()
-        .ok_or_else(|| unsuitable(format!("its image in {}, which is not there", shown(name)), "the image beside its label"))
+        .ok_or_else(|| unsuitable(format!("its image in {}, which does not exist", shown(name)), "the image beside its label"))
 }
 
-/// Where the bytes come from.
+/// The source of the bytes.
 enum Source {
     File(File),
     Bytes(Vec<u8>),
@@ -95,7 +97,7 @@ impl Source {
         }
     }
 
-    /// Fills a buffer from a place.
+    /// Fills a buffer from an offset.
     fn read(&self, start: u64, buffer: &mut [u8]) -> Result<(), TerrainError> {
         match self {
             Self::File(file) => {
@@ -115,7 +117,7 @@ fn damaged(reason: String) -> TerrainError {
     TerrainError::Damaged { format: "PDS3 image", reason }
 }
 
-/// A PDS3 image whose lines are read when they are asked for.
+/// A PDS3 image whose lines are read on demand.
 struct OpenPds3 {
     image: ImageObject,
     line_bytes: usize,
@@ -150,7 +152,7 @@ impl OpenPds3 {
         Dem::new(rows, cols, posts, self.lattice.georeference().clone())
     }
 
-    /// The elevations of a part of a line.
+    /// Appends the elevations of part of a line.
     fn append(&self, row: usize, first_col: usize, cols: usize, posts: &mut Vec<f64>) -> Result<(), TerrainError> {
         let image = &self.image;
         let width = image.sample.bytes();

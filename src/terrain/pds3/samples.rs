@@ -1,9 +1,9 @@
-//! From the bytes of an image to elevations.
+//! Converts the bytes of an image to elevations.
 
 use super::label::{Value, shown, unsuitable};
 use crate::terrain::TerrainError;
 
-/// How a sample is kept.
+/// The encoding of a sample.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct SampleType {
     kind: Kind,
@@ -19,12 +19,12 @@ enum Kind {
     VaxReal,
 }
 
-/// Which stored numbers are gaps.
+/// A stored value that means a gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Mark {
-    /// The bits of a sample, as `16#FF7FFFFB#` gives them.
+    /// The bits of a sample, written as `16#FF7FFFFB#`.
     Bits(u64),
-    /// The number itself.
+    /// A number.
     Number(f64),
 }
 
@@ -32,7 +32,7 @@ impl SampleType {
     /// From `SAMPLE_TYPE` and `SAMPLE_BITS`.
     ///
     /// # Errors
-    /// [`TerrainError::Unsuitable`] for types that are no elevations, or none that is known.
+    /// [`TerrainError::Unsuitable`] for types that cannot be elevations or are not known.
     pub(super) fn of(name: &str, bits: usize) -> Result<Self, TerrainError> {
         let upper = name.to_ascii_uppercase();
         let (kind, little_endian) = match upper.as_str() {
@@ -65,12 +65,12 @@ impl SampleType {
         self.bytes
     }
 
-    /// The type whose lowest number usually stands for missing data, said or not.
+    /// The type whose lowest number usually means missing data, declared or not.
     pub(super) fn is_16_bit_signed(self) -> bool {
         self.kind == Kind::Signed && self.bytes == 2
     }
 
-    /// The sample's bits, in the low end.
+    /// The sample's bits, in the low bits.
     fn bits(self, sample: &[u8]) -> u64 {
         let append = |bits: u64, byte: &u8| (bits << 8) | u64::from(*byte);
         if self.little_endian { sample.iter().rev().fold(0, append) } else { sample.iter().fold(0, append) }
@@ -89,7 +89,7 @@ impl SampleType {
         }
     }
 
-    /// The stored number, NaN where it is a mark.
+    /// The stored number; NaN if it is a gap.
     #[expect(clippy::cast_possible_truncation, reason = "a mark is cast to the samples' type, as the writer did")]
     pub(super) fn decode(self, sample: &[u8], marks: &[Mark]) -> f64 {
         let bits = self.bits(sample);
@@ -103,9 +103,9 @@ impl SampleType {
     }
 }
 
-/// VAX F: words of 16 bits with the high one first, sign, exponent over 128, mantissa 0.1ffff.
+/// VAX F: 16-bit words with the high one first; sign, exponent with an offset of 128, mantissa 0.1ffff.
 ///
-/// `bits` is as from little-endian bytes. A clear exponent is zero, with a sign it is reserved: no number.
+/// `bits` is read from little-endian bytes. An exponent of zero means zero, or a reserved value (NaN) if the sign is set.
 fn vax_real(bits: u32) -> f64 {
     let word = bits.rotate_left(16);
     let exponent = (word >> 23) & 0xff;
@@ -120,10 +120,10 @@ fn vax_real(bits: u32) -> f64 {
     }
 }
 
-/// A mark out of the label: a number, or bits as `16#FF7FFFFB#`.
+/// A gap value from the label: a number, or bits such as `16#FF7FFFFB#`.
 ///
 /// # Errors
-/// [`TerrainError::Unsuitable`] where it is neither.
+/// [`TerrainError::Unsuitable`] if it is neither.
 pub(super) fn mark(key: &str, value: &Value) -> Result<Mark, TerrainError> {
     let text = value.text.as_str();
     let number = || text.parse::<f64>().ok().map(Mark::Number);
@@ -155,7 +155,7 @@ mod tests {
         assert_eq!(decoded("IEEE_REAL", 32, &(-1.5_f32).to_be_bytes()), -1.5);
         assert_eq!(decoded("PC_REAL", 32, &(-1.5_f32).to_le_bytes()), -1.5);
         assert_eq!(decoded("PC_REAL", 64, &0.1_f64.to_le_bytes()), 0.1);
-        // The VAX manual's 1.0 is 0x4080, its -6.25 0xC1C8; both with nothing in the second word.
+        // The VAX manual's 1.0 is 0x4080, its -6.25 is 0xC1C8; the second word of both is zero.
         assert_eq!(decoded("VAX_REAL", 32, &[0x80, 0x40, 0, 0]), 1.0);
         assert_eq!(decoded("VAX_REAL", 32, &[0xc8, 0xc1, 0, 0]), -6.25);
         assert_eq!(decoded("VAX_REAL", 32, &[0; 4]), 0.0);
@@ -163,7 +163,7 @@ mod tests {
     }
 
     #[test]
-    fn types_and_widths_that_are_no_elevations_are_refused() {
+    fn unsupported_types_and_widths_are_refused() {
         for (name, bits) in [("COMPLEX", 64), ("BIT_STRING", 8), ("IEEE_REAL", 16), ("LSB_INTEGER", 64), ("VAX_REAL", 64), ("", 8)]
         {
             assert!(SampleType::of(name, bits).unwrap_err().to_string().contains("PDS3 label"), "{name}");

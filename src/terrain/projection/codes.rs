@@ -36,7 +36,7 @@ pub(super) fn iau(code: u32) -> Option<Definition> {
     })
 }
 
-/// The code of the IAU (2015) that means just this projection, such as `IAU_2015:30135`: spheres only.
+/// The code of the IAU (2015) for exactly this projection, such as `IAU_2015:30135`; spheres only.
 pub(super) fn iau_code(definition: &Definition) -> Option<String> {
     let mut usual = *definition;
     if usual.longitude_deg == -180.0 {
@@ -75,7 +75,8 @@ pub(super) fn by_code(text: &str) -> Option<(String, Definition)> {
     }
 }
 
-/// What an EPSG code of a projected map means: UTM on WGS 84, ETRS89 and NAD83, the usual polar maps, and Europe's equal-area map.
+/// The definition of an EPSG code of a projected map: UTM on WGS 84, ETRS89 and NAD83, the usual polar maps, and Europe's
+/// equal-area map.
 pub(super) fn epsg(code: u16) -> Option<Definition> {
     let polar = |latitude_deg: f64, longitude_deg, parallel_deg| Definition {
         parallels_deg: [Some(parallel_deg), None],

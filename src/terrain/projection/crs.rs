@@ -281,7 +281,7 @@ mod tests {
         refused!("+proj=sinu +R=5 +datum=WGS84", CrsError::Contradiction { .. }, "several figures");
         refused!("+proj=sinu +a=5 +b=5 +f=0", CrsError::Contradiction { .. }, "+rf");
         refused!("+proj=tmerc +R=5 +k=0.9 +k_0=0.9", CrsError::Repeated { .. }, "+k_0 and +k");
-        refused!("+proj=sinu +R=nan", CrsError::NotANumber { .. }, "+R is no number");
+        refused!("+proj=sinu +R=nan", CrsError::NotANumber { .. }, "+R is not a number");
         refused!("+proj=sinu +R=-5", CrsError::Invalid { .. }, "radii of -5 m");
         refused!("+proj=sinu +R=5 +k=0.9", CrsError::Invalid { .. }, "scale of 0.9");
         refused!("+proj=stere +lat_0=90 +lat_ts=0 +R=5", CrsError::Invalid { .. }, "parallel at latitude 0");

@@ -16,7 +16,7 @@ pub enum CrsError {
     },
     /// A code of an authority that is not in the tables of this library.
     #[error(
-        "the code '{found}' is not known here, expected {expected}; give its PROJ string instead, which gdalsrsinfo -o proj4 {found} prints"
+        "the code '{found}' is not supported, expected {expected}; give its PROJ string instead, which gdalsrsinfo -o proj4 {found} prints"
     )]
     UnknownCode {
         /// The code.
@@ -47,7 +47,7 @@ pub enum CrsError {
     },
     /// A projection method that is not computed here.
     #[error(
-        "the projection method '{found}' is not known here, expected one of: {expected}; warp the raster to one of them with: gdalwarp -t_srs"
+        "the projection method '{found}' is not supported, expected one of: {expected}; warp the raster to one of them with: gdalwarp -t_srs"
     )]
     UnknownMethod {
         /// The method's name, as the text has it.
@@ -57,7 +57,7 @@ pub enum CrsError {
     },
     /// A parameter that is not known, or that this projection does not have. To ignore it would give another map.
     #[error(
-        "{item} is not known here or does not belong to this projection, expected {expected}; remove it if it has no effect on the map"
+        "{item} is not supported or does not belong to this projection, expected {expected}; remove it if it has no effect on the map"
     )]
     UnknownParameter {
         /// The parameter, as the text has it.
@@ -74,13 +74,13 @@ pub enum CrsError {
         expected: &'static str,
     },
     /// A parameter that is given twice, or by two names.
-    #[error("{item} stands twice, expected it once; remove one of them")]
+    #[error("{item} is given twice, expected it once; remove one of them")]
     Repeated {
         /// The parameter.
         item: String,
     },
     /// A parameter whose value is not a finite number.
-    #[error("{item} is no number: found '{found}', expected a finite number; correct it")]
+    #[error("{item} is not a number: found '{found}', expected a finite number; correct it")]
     NotANumber {
         /// The parameter.
         item: String,

@@ -1,15 +1,15 @@
-//! A map projection as numbers: method, parameters, ellipsoid; and the proj string that says the same.
+//! A map projection as numbers (method, parameters, ellipsoid), and its proj string.
 
 use std::fmt::Write;
 
-/// How longitude and latitude become a map.
+/// The method of a map projection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Method {
     /// Equidistant cylindrical: `eqc`.
     Equirectangular,
     /// Stereographic about a pole: `stere` with a latitude of origin of 90 or -90.
     PolarStereographic,
-    /// Stereographic about any other point: `stere`.
+    /// Stereographic around any other point: `stere`.
     ObliqueStereographic,
     /// Stereographic of the conformal sphere (EPSG 9809): `sterea`.
     DoubleStereographic,
@@ -32,7 +32,7 @@ pub enum Method {
 }
 
 impl Method {
-    /// All of them.
+    /// All methods.
     pub(super) const ALL: [Self; 12] = [
         Self::Equirectangular,
         Self::PolarStereographic,
@@ -48,7 +48,7 @@ impl Method {
         Self::AzimuthalEquidistant,
     ];
 
-    /// Its name in words.
+    /// The name of the method.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Equirectangular => "equirectangular",
@@ -72,7 +72,7 @@ impl Method {
         names.join(", ")
     }
 
-    /// The `+proj=` of it.
+    /// The value of `+proj=`.
     pub(super) const fn proj(self) -> &'static str {
         match self {
             Self::Equirectangular => "eqc",
@@ -88,7 +88,7 @@ impl Method {
         }
     }
 
-    /// Whether its map has a scale at the origin that may differ from 1.
+    /// Whether the method has a scale factor at the origin, which may differ from 1.
     pub(super) const fn has_scale(self) -> bool {
         matches!(
             self,
@@ -101,7 +101,7 @@ impl Method {
         )
     }
 
-    /// Whether its origin has a latitude of its own.
+    /// Whether the latitude of its origin is a parameter.
     pub(super) const fn has_latitude(self) -> bool {
         !matches!(self, Self::Sinusoidal | Self::Mercator)
     }
@@ -136,7 +136,7 @@ impl Ellipsoid {
         Self { semi_major_m: radius_m, semi_minor_m: radius_m }
     }
 
-    /// By equatorial radius, m, and inverse flattening, where 0 means a sphere.
+    /// An ellipsoid from its equatorial radius, m, and inverse flattening, where 0 means a sphere.
     pub fn with_inverse_flattening(semi_major_m: f64, inverse_flattening: f64) -> Self {
         let flattening = if inverse_flattening == 0.0 { 0.0 } else { 1.0 / inverse_flattening };
         Self { semi_major_m, semi_minor_m: semi_major_m * (1.0 - flattening) }
@@ -147,7 +147,7 @@ impl Ellipsoid {
         self.semi_major_m == self.semi_minor_m
     }
 
-    /// a / (a - b), or 0 for a sphere, as well-known text wants it.
+    /// a / (a - b), or 0 for a sphere, as well-known text requires.
     pub(super) fn inverse_flattening(&self) -> f64 {
         if self.is_sphere() { 0.0 } else { self.semi_major_m / (self.semi_major_m - self.semi_minor_m) }
     }
@@ -162,18 +162,18 @@ impl Ellipsoid {
     }
 }
 
-/// All numbers of a map projection. Latitudes are planetographic here, as projections want them.
+/// The parameters of a map projection. Latitudes are planetographic here, as projections require.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Definition {
-    /// How.
+    /// The method.
     pub method: Method,
-    /// Latitude of the origin, degrees; 0 where the method has none, 90 or -90 for a polar map.
+    /// Latitude of the origin, degrees; 0 if the method has none, 90 or -90 for a polar map.
     pub latitude_deg: f64,
     /// Longitude of the origin, degrees.
     pub longitude_deg: f64,
-    /// Standard parallels, degrees, where the method has them.
+    /// Standard parallels, degrees, if the method has them.
     pub parallels_deg: [Option<f64>; 2],
-    /// Scale at the origin; 1 where the method has none.
+    /// Scale at the origin; 1 if the method has none.
     pub scale: f64,
     /// Easting of the origin, m.
     pub false_easting_m: f64,
@@ -184,7 +184,7 @@ pub struct Definition {
 }
 
 impl Definition {
-    /// A projection about a point with scale 1 and no offsets.
+    /// A projection with its origin at a point, scale 1 and no offsets.
     pub const fn about(method: Method, latitude_deg: f64, longitude_deg: f64, ellipsoid: Ellipsoid) -> Self {
         Self {
             method,
@@ -228,7 +228,7 @@ impl Definition {
         text
     }
 
-    /// What makes no projection of it, if anything does.
+    /// Why the parameters do not define a projection; `None` if they do.
     pub(super) fn fault(&self) -> Option<String> {
         let Self { latitude_deg, longitude_deg, parallels_deg, scale, false_easting_m, false_northing_m, ellipsoid, method } = self;
         let Ellipsoid { semi_major_m, semi_minor_m } = ellipsoid;

@@ -1,4 +1,4 @@
-//! `GeoKeys` (OGC GeoTIFF 1.1) to a projection and back.
+//! Converts `GeoKeys` (OGC GeoTIFF 1.1) to a projection and back.
 
 use super::codes;
 use super::definition::{Definition, Ellipsoid, Method};
@@ -44,19 +44,19 @@ mod key {
     pub(super) const METRE: u16 = 9001;
 }
 
-/// What the keys say, or why that is no projection that is known here.
+/// The projection of the keys, or why it cannot be used.
 #[derive(Debug)]
 pub(super) enum Reading {
-    /// No projected map at all.
+    /// There is no projected map.
     Local,
     /// A projection.
     Known {
-        /// Its numbers.
+        /// Its parameters.
         definition: Definition,
-        /// The EPSG code, where the keys give one.
+        /// The EPSG code, if the keys give one.
         epsg: Option<u16>,
     },
-    /// One that is not known, and why.
+    /// An unsupported projection, and the reason.
     Unknown(String),
 }
 
@@ -70,7 +70,7 @@ pub(super) fn read(system: &CoordinateSystem) -> Reading {
     if let Some(code) = code {
         return match codes::epsg(code) {
             Some(definition) => Reading::Known { definition, epsg: Some(code) },
-            None => Reading::Unknown(format!("its EPSG code {code} is not among those known here")),
+            None => Reading::Unknown(format!("its EPSG code {code} is not supported")),
         };
     }
     if short_key(system, key::METHOD).is_none() && short_key(system, key::PROJECTION).is_none() {
@@ -102,7 +102,7 @@ pub(super) fn ellipsoid(system: &CoordinateSystem) -> Result<Ellipsoid, String> 
         .ok_or_else(|| "its keys give no radius of the body (2057) and no known ellipsoid (2056)".to_owned())
 }
 
-/// A projection spelled out key by key, with its EPSG code where it is a UTM zone of WGS 84.
+/// A projection with explicit parameters, with its EPSG code if it is a UTM zone of WGS 84.
 fn user_defined(system: &CoordinateSystem) -> Result<(Definition, Option<u16>), String> {
     match short_key(system, key::ANGULAR_UNITS) {
         None | Some(key::DEGREE) => {}
@@ -136,7 +136,7 @@ fn user_defined(system: &CoordinateSystem) -> Result<(Definition, Option<u16>), 
     Ok((definition, None))
 }
 
-/// What differs from method to method: standard parallels, and how a pole is said.
+/// Fills in what depends on the method: standard parallels, and the form in which a pole is given.
 fn resolve_definition(definition: &mut Definition, system: &CoordinateSystem) -> Result<(), String> {
     let parallel_1_deg = double_key(system, key::PARALLEL_1);
     match definition.method {
@@ -154,7 +154,7 @@ fn resolve_definition(definition: &mut Definition, system: &CoordinateSystem) ->
             }
             definition.parallels_deg = parallels_deg;
         }
-        // The latitude of a polar map is the one of true scale; the pole is the one on its side.
+        // The latitude of a polar map is that of true scale; the pole is the one in its hemisphere.
         Method::PolarStereographic => {
             let true_scale_deg = definition.latitude_deg;
             if true_scale_deg == 0.0 {
@@ -169,7 +169,7 @@ fn resolve_definition(definition: &mut Definition, system: &CoordinateSystem) ->
     Ok(())
 }
 
-/// The number that some of these keys give; all that do must agree.
+/// The number that some of these keys give; all given values must agree.
 fn one_of(system: &CoordinateSystem, keys: &[u16], what: &str) -> Result<Option<f64>, String> {
     let given: Vec<f64> = keys.iter().filter_map(|wanted| double_key(system, *wanted)).collect();
     match given.as_slice() {
@@ -183,7 +183,7 @@ fn utm_zone(zone: u16, south: bool, ellipsoid: Ellipsoid) -> (Definition, Option
     (codes::utm(zone, south, ellipsoid), epsg)
 }
 
-/// The method of a number of key 3075.
+/// The method with this number in key 3075.
 fn method(number: u16) -> Option<Method> {
     Method::ALL.into_iter().find(|method| method_number(*method) == number)
 }
@@ -206,7 +206,7 @@ const fn method_number(method: Method) -> u16 {
     }
 }
 
-/// The keys of latitude, longitude, easting and northing of the origin of a method, as GDAL writes them.
+/// The keys for latitude, longitude, easting and northing of the origin of a method, as written by GDAL.
 const fn origin_keys(method: Method) -> [u16; 4] {
     match method {
         Method::TransverseMercator | Method::Mercator | Method::LambertConformalOneParallel | Method::DoubleStereographic => {

@@ -1,14 +1,14 @@
-//! From map coordinates to longitude and latitude and back, on spheres and ellipsoids.
+//! Conversion between map coordinates and longitude and latitude, on spheres and ellipsoids.
 //!
-//! The projection of a DEM comes from its `GeoKeys` ([`MapProjection::of`]); the arithmetic is that of the crate `proj4rs`, which is used
-//! here and nowhere else. Latitudes at this module's edge are planetocentric, as missions to other bodies state them; inside,
-//! projections take planetographic ones. On a sphere the two are the same. With equatorial radius a and polar radius b
+//! The projection of a DEM comes from its `GeoKeys` ([`MapProjection::of`]). The projection equations are those of the crate
+//! `proj4rs`, which only this module uses. The public latitudes are planetocentric, as missions to other bodies state them;
+//! projections take planetographic ones internally. On a sphere both are equal. With equatorial radius a and polar radius b
 //!
 //! ```text
 //! tan(planetographic) = (a / b)^2 tan(planetocentric)
 //! ```
 //!
-//! which on Mars differs by up to 0.34 degrees (20 km), on the Earth by 0.19 degrees.
+//! The difference is up to 0.34 degrees (20 km) on Mars, and 0.19 degrees on the Earth.
 
 mod codes;
 mod crs;
@@ -33,7 +33,7 @@ pub use self::scale::{ScaleExtreme, ScaleMend, TransectScale, check_map_scale, c
 use super::{CoordinateSystem, MapBounds, TerrainError};
 use crate::quantity::MapPoint;
 
-/// A place on a body.
+/// A position on a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LonLat {
     /// Longitude, degrees, east positive.
@@ -48,7 +48,7 @@ impl fmt::Display for LonLat {
     }
 }
 
-/// A place as the analyst says it: on the map or on the body.
+/// A position as the user gives it: on the map or on the body.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MapPlace {
     /// Map coordinates, m.
@@ -58,7 +58,7 @@ pub enum MapPlace {
 }
 
 impl MapPlace {
-    /// The point in metres, where it was said so.
+    /// The point in metres, if it was given in metres.
     pub fn metres(&self) -> Option<MapPoint> {
         match self {
             Self::Metres(point) => Some(*point),
@@ -66,13 +66,13 @@ impl MapPlace {
         }
     }
 
-    /// Where it lies on the map.
+    /// The position on the map.
     ///
-    /// `which` names the place in errors; `bounds` are those of the DEM.
+    /// `which` names the point in errors; `bounds` are those of the DEM.
     ///
     /// # Errors
-    /// For longitude and latitude: [`TerrainError::NoProjection`] without a projection, [`TerrainError::LonLatOffTheMap`] where the
-    /// DEM does not cover it. Map coordinates are given back as they are: the slice checks them.
+    /// For longitude and latitude: [`TerrainError::NoProjection`] without a projection, [`TerrainError::LonLatOffTheMap`] if
+    /// the DEM does not cover the point. Map coordinates are returned unchecked: the slice checks them.
     pub fn on_map(
         &self,
         which: &'static str,
@@ -85,7 +85,7 @@ impl MapPlace {
         };
         let projection = projection.map_err(|reason| TerrainError::NoProjection { which, reason: reason.clone() })?;
         let at = projection.map_point(place);
-        // A place on the border may come out a rounding beyond it.
+        // Rounding may put a point on the border slightly outside.
         let onto_border = |at: MapPoint| {
             let inside = MapPoint::new(at.x.clamp(bounds.min.x, bounds.max.x), at.y.clamp(bounds.min.y, bounds.max.y));
             ((inside - at).norm() <= ROUNDING_M).then_some(inside)
@@ -94,12 +94,12 @@ impl MapPlace {
     }
 }
 
-/// Why a map has no known way to longitude and latitude.
+/// Why map coordinates cannot be converted to longitude and latitude.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum NoProjection {
     /// The file states no projection.
     Local,
-    /// It states one that is not known here.
+    /// The file states an unsupported projection.
     Unknown(String),
 }
 
@@ -107,15 +107,16 @@ impl fmt::Display for NoProjection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Local => f.write_str("the terrain states no map projection"),
-            Self::Unknown(reason) => write!(f, "the terrain's map projection is not known here ({reason})"),
+            Self::Unknown(reason) => write!(f, "the terrain's map projection is not supported ({reason})"),
         }
     }
 }
 
-/// How far beyond the border of a map a place on it may come out, m.
+/// How far beyond the border of a map rounding may put a point on it, m.
 const ROUNDING_M: f64 = 1.0e-6;
 
-/// An inverse projection that misses by more than this share of the radius has another place in mind, not a rough one.
+/// An inverse projection with a larger error, as a fraction of the radius, has found another point rather than an inaccurate
+/// one.
 const ROUGH_SHARE: f64 = 1.0e-6;
 
 /// The projection of a map in metres.
@@ -129,10 +130,10 @@ pub struct MapProjection {
 }
 
 impl MapProjection {
-    /// The projection that a file's `GeoKeys` state.
+    /// The projection that a file's `GeoKeys` define.
     ///
     /// # Errors
-    /// [`NoProjection`] where they state none, or one that is not known here.
+    /// [`NoProjection`] if they define none, or an unsupported one.
     pub fn of(system: &CoordinateSystem) -> Result<Self, NoProjection> {
         let (definition, epsg) = match geokeys::read(system) {
             Reading::Known { definition, epsg } => (definition, epsg),
@@ -146,10 +147,10 @@ impl MapProjection {
         Ok(projection)
     }
 
-    /// A projection by its numbers; without a name it gets one that says what it is. An IAU code is found where one means just this.
+    /// A projection from its parameters; without a name it gets a descriptive one. The IAU code is looked up.
     ///
     /// # Errors
-    /// [`NoProjection::Unknown`] where the numbers make none.
+    /// [`NoProjection::Unknown`] if the parameters do not define a projection.
     ///
     /// # Examples
     /// ```
@@ -179,7 +180,7 @@ impl MapProjection {
         &self.name
     }
 
-    /// Its numbers.
+    /// Its parameters.
     pub fn definition(&self) -> &Definition {
         &self.definition
     }
@@ -189,7 +190,7 @@ impl MapProjection {
         self.definition.proj_string()
     }
 
-    /// Authority and code, such as `EPSG:32633` or `IAU_2015:30135`, where one is known.
+    /// Authority and code, such as `EPSG:32633` or `IAU_2015:30135`, if known.
     pub fn code(&self) -> Option<&str> {
         self.code.as_deref()
     }
@@ -223,16 +224,16 @@ impl MapProjection {
         self
     }
 
-    /// Longitude and latitude of a point of the map; `None` for a point that no place of the body has.
+    /// Longitude and latitude of a map point; `None` if it corresponds to no point of the body.
     pub fn lon_lat(&self, at: MapPoint) -> Option<LonLat> {
         let (lon, lat) = self.inverse(at)?;
         let back = self.forward(lon, lat)?;
-        // A sinusoidal map, say, ends at the meridian opposite; what is beyond would be the same place twice.
+        // A sinusoidal map, for example, ends at the opposite meridian; a point beyond would show the same position twice.
         let same = (back - at).norm() <= 1.0e-9 * self.definition.ellipsoid.semi_major_m;
         same.then(|| LonLat { lon_deg: lon.to_degrees(), lat_deg: self.planetocentric(lat).to_degrees() })
     }
 
-    /// Where a place lies on the map, m; `None` where the map does not show it.
+    /// The map coordinates of a position, m; `None` if the map does not show it.
     pub fn map_point(&self, place: LonLat) -> Option<MapPoint> {
         let LonLat { lon_deg, lat_deg } = place;
         if !(lon_deg.abs() <= 540.0 && lat_deg.abs() <= 90.0) {
@@ -248,8 +249,9 @@ impl MapProjection {
 
     /// Longitude and planetographic latitude, radians.
     ///
-    /// Some inverse projections are cut-off series or loops that end early (some 1e-9 degrees); the forward ones are exact. So what the
-    /// way back misses is added to the point, and the inverse taken again.
+    /// Some inverse projections are truncated series or iterations that stop early (errors of some 1e-9 degrees), while the
+    /// forward projections are exact. The error of the forward projection of the result is therefore added to the point, and
+    /// the inverse is computed again.
     fn inverse(&self, at: MapPoint) -> Option<(f64, f64)> {
         let converged_m = 1.0e-14 * self.definition.ellipsoid.semi_major_m;
         let (mut target, mut place) = (at, self.rough_inverse(at)?);
@@ -278,7 +280,7 @@ impl MapProjection {
         (point.0.is_finite() && point.1.is_finite()).then(|| MapPoint::new(point.0, point.1))
     }
 
-    /// (a / b)^2.
+    /// `(a / b)^2`.
     fn squared_axis_ratio(&self) -> f64 {
         let ratio = self.definition.ellipsoid.semi_major_m / self.definition.ellipsoid.semi_minor_m;
         ratio * ratio
@@ -294,7 +296,7 @@ impl MapProjection {
         if self.definition.ellipsoid.is_sphere() { planetographic } else { libm::atan2(sin, cos * self.squared_axis_ratio()) }
     }
 
-    /// In three dimensions, m from the body's centre, of longitude and planetographic latitude, radians.
+    /// The position in three dimensions, m from the body's centre, for longitude and planetographic latitude in radians.
     fn position(&self, lon: f64, lat: f64) -> Vector3<f64> {
         let Ellipsoid { semi_major_m: a, semi_minor_m: b } = self.definition.ellipsoid;
         let ((sin_lat, cos_lat), (sin_lon, cos_lon)) = (libm::sincos(lat), libm::sincos(lon));
@@ -304,7 +306,7 @@ impl MapProjection {
     }
 }
 
-/// What the projection is; the arithmetic behind it adds nothing.
+/// Prints the definition only: the internal state follows from it.
 impl fmt::Debug for MapProjection {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("MapProjection")
@@ -321,17 +323,17 @@ impl PartialEq for MapProjection {
     }
 }
 
-/// The ellipsoid that a file's keys state for its longitudes and latitudes.
+/// The ellipsoid of a file's geographic coordinates.
 pub(super) fn stated_ellipsoid(system: &CoordinateSystem) -> Option<Ellipsoid> {
     geokeys::ellipsoid(system).ok()
 }
 
-/// The file's own name for its map, unless that is the word "unknown".
+/// The file's own name for its map, unless it is "unknown".
 fn named(system: &CoordinateSystem) -> Option<String> {
     system.description.clone().filter(|name| !name.eq_ignore_ascii_case("unknown") && !name.starts_with("GCS Name"))
 }
 
-/// What a projection is, in words.
+/// A description of a projection.
 fn spoken(definition: &Definition) -> String {
     let Ellipsoid { semi_major_m, semi_minor_m } = definition.ellipsoid;
     let figure = if definition.ellipsoid.is_sphere() {

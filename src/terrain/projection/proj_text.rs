@@ -7,10 +7,10 @@ use super::crs_error::CrsError;
 use super::{Definition, Ellipsoid, MapProjection, Method, NoProjection};
 
 impl MapProjection {
-    /// A projection from a proj string in metres and degrees, with the name and code that belong to it.
+    /// A projection from a proj string in metres and degrees, with its name and code.
     ///
     /// # Errors
-    /// [`NoProjection::Unknown`] with the first word that is not understood: a word passed over would be another map.
+    /// [`NoProjection::Unknown`] with the first unsupported parameter: ignoring it would give another map.
     ///
     /// # Examples
     /// ```

@@ -1,4 +1,4 @@
-//! How true to scale a map is along a transect.
+//! The scale of a map along a transect.
 
 use std::fmt;
 
@@ -8,35 +8,37 @@ use super::{Definition, LonLat, MapProjection, Method, NoProjection};
 use crate::quantity::MapPoint;
 use crate::terrain::{DemFile, MapBounds, TerrainError};
 
-/// How far a map's scale may be off along a transect before a slice of it is refused.
+/// The largest error of a map's scale along a transect for which a slice is made.
 const SCALE_TOLERANCE: f64 = 0.01;
-/// Steps along a transect: a projection's scale bends far more slowly than a 256th of any transect that a body has room for.
+/// Steps along a transect: the scale of a projection varies much more slowly than over a 256th of any transect on a body.
 const STEPS: u32 = 256;
-/// Half the base of the difference quotient, as a share of the body's radius: rounding (1e-16 R) and curvature (1e-10) both stay small.
+/// Half the step of the difference quotient, as a fraction of the body's radius: errors from rounding (1e-16 R) and curvature
+/// (1e-10) both stay small.
 const HALF_BASE: f64 = 1.0e-5;
-/// The longest transect that one stereographic map holds within the tolerance, as a share of the radius: 4 acos(1.01^-1/2) = 0.3987.
+/// The longest transect that one stereographic map shows within the tolerance, as a fraction of the radius: 4 acos(1.01^-1/2)
+/// = 0.3987.
 const LONGEST_LOCAL: f64 = 0.39;
 
-/// The place along a transect where a map's scale is most wrong.
+/// The point of a transect where the map's scale has its largest error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScaleExtreme {
-    /// Length on the map over length on the ground, in the direction of travel.
+    /// Scale factor: length on the map over length on the ground, in the direction of travel.
     pub factor: f64,
-    /// Where on the map.
+    /// Position on the map.
     pub at: MapPoint,
-    /// Where on the body.
+    /// Position on the body.
     pub place: LonLat,
-    /// How far along the transect, m of the map.
+    /// Distance along the transect, m on the map.
     pub distance_m: f64,
 }
 
 impl ScaleExtreme {
-    /// Whether it is too far from 1 to be passed over.
+    /// Whether the error exceeds the tolerance.
     pub fn is_off(&self) -> bool {
         (self.factor - 1.0).abs() > SCALE_TOLERANCE
     }
 
-    /// The factor along such a line and its place, in words.
+    /// A phrase with the factor along a line and its position.
     fn described(&self, line: &str) -> String {
         let Self { factor, at, place, distance_m } = self;
         format!(
@@ -47,21 +49,21 @@ impl ScaleExtreme {
     }
 }
 
-/// What a check of the scale found.
+/// The result of a scale check.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TransectScale {
-    /// A local map, which is taken as true to scale.
+    /// A local map, which is assumed to be true to scale.
     Local,
     /// True to scale within 1 %.
     True(ScaleExtreme),
-    /// Off by more, and accepted; along which line, in words.
+    /// The error is larger, and accepted; with the name of the line.
     Accepted(ScaleExtreme, &'static str),
-    /// The projection is not known, so nobody can tell.
+    /// The projection is not known, so the scale cannot be checked.
     Unknown(String),
 }
 
 impl TransectScale {
-    /// How far the factor is from 1; below zero where there is none.
+    /// The error of the factor, its distance from 1; negative if there is none.
     fn error(&self) -> f64 {
         match self {
             Self::Local => -1.0,
@@ -70,16 +72,16 @@ impl TransectScale {
         }
     }
 
-    /// What the analyst should know of it.
+    /// The warning for the user, if any.
     pub fn warning(&self) -> Option<String> {
         match self {
             Self::Local | Self::True(_) => None,
             Self::Accepted(extreme, line) => {
                 Some(format!("{}, which was accepted; distances along it and slopes are off by as much", extreme.described(line)))
             }
-            Self::Unknown(reason) => {
-                Some(format!("{reason}, so its scale was not checked; distances count as true, make sure that they are"))
-            }
+            Self::Unknown(reason) => Some(format!(
+                "{reason}, so its scale was not checked; distances are assumed to be true to scale: check that they are"
+            )),
         }
     }
 }
@@ -87,14 +89,15 @@ impl TransectScale {
 impl MapProjection {
     /// Length on the map over length on the ground at a point, in the direction `heading` (of length 1) of the map.
     ///
-    /// A central difference over 2e-5 of the body's radius, right to some 1e-9. The ground is the sphere or ellipsoid itself: heights
-    /// above it would change a length by height over radius (a kilometre on the Moon: 0.06 %), which is left out. `None` off the map.
+    /// Computed as a central difference over 2e-5 of the body's radius, with an error of some 1e-9. The ground is the sphere
+    /// or ellipsoid itself: a height above it would change a length by height over radius (a kilometre on the Moon: 0.06 %),
+    /// which is neglected. `None` off the map.
     ///
     /// ```
     /// use chta::quantity::MapPoint;
     /// use chta::terrain::{Definition, Ellipsoid, MapProjection, Method};
     /// use nalgebra::Vector2;
-    /// // Equirectangular with true scale at the equator: at 60 degrees a degree of longitude is drawn twice as long.
+    /// // Equirectangular with true scale at the equator: at 60 degrees latitude, a degree of longitude is drawn twice as long.
     /// let moon = Ellipsoid::sphere(1_737_400.0);
     /// let map = MapProjection::new(Definition::about(Method::Equirectangular, 0.0, 0.0, moon), None).unwrap();
     /// let at = MapPoint::new(0.0, 60_f64.to_radians() * 1_737_400.0);
@@ -109,7 +112,7 @@ impl MapProjection {
         (ground_m > 0.0).then(|| 2.0 * half_m / ground_m)
     }
 
-    /// The worst scale along a straight line of the map; `None` where a part of it lies off the body.
+    /// The scale with the largest error along a straight line of the map; `None` if part of the line is off the body.
     pub fn extreme_scale(&self, from: MapPoint, to: MapPoint) -> Option<ScaleExtreme> {
         let along = to - from;
         let length_m = libm::hypot(along.x, along.y);
@@ -126,7 +129,7 @@ impl MapProjection {
         worst
     }
 
-    /// A stereographic map of scale 1 about a point of this one.
+    /// A stereographic map of scale 1 around a point of this one.
     fn about(&self, middle: MapPoint) -> Option<Self> {
         let (lon, lat) = self.inverse(middle)?;
         let rounded = |radians: f64| libm::rint(radians.to_degrees() * 1.0e6) / 1.0e6;
@@ -136,13 +139,13 @@ impl MapProjection {
     }
 }
 
-/// Whether a slice of a DEM from one map point to another is true to scale.
+/// Checks that a slice of a DEM between two map points is true to scale.
 ///
-/// `accepted`: whether the analyst wants it in any case. `file`: the DEM's, for the command that mends it.
+/// `accepted`: whether the user accepts any scale. `file`: the file of the DEM, for the command in the error message.
 ///
 /// # Errors
-/// [`TerrainError::MapScale`] where the scale is off by more than 1 % and that was not accepted, with a `gdalwarp` line that makes a
-/// map that is true along this transect; [`TerrainError::OffTheBody`] where the line leaves the map of the body.
+/// [`TerrainError::MapScale`] if the scale is off by more than 1 % and this was not accepted, with a `gdalwarp` command for a
+/// map that is true to scale along this transect; [`TerrainError::OffTheBody`] if the line leaves the map of the body.
 pub fn check_scale(
     dem: &dyn DemFile,
     projection: Result<&MapProjection, &NoProjection>,
@@ -158,10 +161,11 @@ pub fn check_scale(
     check_line(dem, projection, [from, to], accepted, "the transect", &|| mend(dem, projection, [from, to], file))
 }
 
-/// Whether a DEM is true to scale from a point to the corners of its map, so that hops in any direction are; the worst of these lines.
+/// Checks that a DEM is true to scale from a point to the corners of its map, so that hops in all directions are; returns the
+/// line with the largest error.
 ///
 /// # Errors
-/// As [`check_scale`], with a `gdalwarp` line that makes a map about the point, which is true to scale all over.
+/// As [`check_scale`], with a `gdalwarp` command for a map around the point that is true to scale everywhere.
 pub fn check_map_scale(
     dem: &dyn DemFile,
     projection: Result<&MapProjection, &NoProjection>,
@@ -191,7 +195,7 @@ fn corners(dem: &dyn DemFile) -> [MapPoint; 4] {
     [min, MapPoint::new(max.x, min.y), max, MapPoint::new(min.x, max.y)]
 }
 
-/// What is to be said of the scale along a line, called so; `mend`: what else to do where it is off.
+/// Checks the scale along a line with the name `line`; `mend` gives the remedy if it is off.
 fn check_line(
     dem: &dyn DemFile,
     projection: &MapProjection,
@@ -200,7 +204,7 @@ fn check_line(
     line: &'static str,
     mend: &dyn Fn() -> Option<ScaleMend>,
 ) -> Result<TransectScale, TerrainError> {
-    // A line without a direction, or off the map, is the slice's to refuse.
+    // A line without direction, or off the map, is refused later by the slice.
     if from == to || ![from, to].iter().all(|end| dem.lattice().bounds().contains(*end)) {
         return Ok(TransectScale::Local);
     }
@@ -262,15 +266,15 @@ impl fmt::Display for ScaleMend {
     }
 }
 
-/// The command that makes a map about a point which is true to scale all over: as much of this one as that leaves.
+/// The command for a map around a point that is true to scale everywhere, covering as much of this map as possible.
 fn mend_map(dem: &dyn DemFile, projection: &MapProjection, from: MapPoint, file: &std::path::Path) -> Option<ScaleMend> {
     let local = projection.about(from)?;
     let start = projection.lon_lat(from)?;
-    // To its corners such a map is half as far as the longest transect over its middle.
+    // The corners of such a map may be half as far away as the longest transect through its centre.
     let most_m = libm::floor(0.5 * LONGEST_LOCAL * std::f64::consts::FRAC_1_SQRT_2 * projection.definition.ellipsoid.semi_major_m);
     let ends = corners(dem).map(|corner| projection.lon_lat(corner).and_then(|place| local.map_point(place)));
     let reach = |of: &dyn Fn(MapPoint) -> f64| {
-        // Where a corner shows nothing of the body, as far as the new map may go.
+        // If a corner shows no point of the body, as far as the new map may extend.
         let along = ends.iter().flatten().map(|end| of(*end));
         let known = ends.iter().all(Option::is_some);
         rounded_m(if known { along.fold(0.0, f64::max).min(most_m) } else { most_m })
@@ -290,7 +294,7 @@ fn mend_map(dem: &dyn DemFile, projection: &MapProjection, from: MapPoint, file:
     Some(ScaleMend::AboutStart { command, start, true_within_m: most_m })
 }
 
-/// The command that makes a map which is true to scale along a transect, or what else to do.
+/// The command for a map that is true to scale along a transect, or another remedy.
 fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2], file: &std::path::Path) -> Option<ScaleMend> {
     let local = projection.about(nalgebra::center(&from, &to))?;
     let place = |at| projection.lon_lat(at);
@@ -302,7 +306,7 @@ fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2]
     }
     let (ground_m, map_m) = ((ends[1] - ends[0]).norm(), (to - from).norm());
     let map = dem.lattice().georeference();
-    // The finer spacing, as long on the new map as it is on the ground.
+    // The finer of the two spacings, converted to the same length of ground on the new map.
     let spacing_m = rounded_m(map.dx_m().min(map.dy_m()) * ground_m / map_m);
     let margin_m = 10.0 * spacing_m;
     let low = |a: f64, b: f64| rounded_m(a.min(b) - margin_m);
@@ -321,12 +325,12 @@ fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2]
     Some(ScaleMend::AlongTransect { command, ends: [begin, end] })
 }
 
-/// To a ten-thousandth of a metre.
+/// Rounds to a ten-thousandth of a metre.
 fn rounded_m(length_m: f64) -> f64 {
     libm::rint(length_m * 1.0e4) / 1.0e4
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for a shell.
 fn shell_word(text: &str) -> String {
     let plain = |letter: char| letter.is_ascii_alphanumeric() || "._/-+".contains(letter);
     if text.chars().all(plain) { text.to_owned() } else { format!("'{}'", text.replace('\'', "'\\''")) }

@@ -3,7 +3,7 @@ use super::*;
 const MOON: Ellipsoid = Ellipsoid::sphere(1_737_400.0);
 const MARS: Ellipsoid = Ellipsoid { semi_major_m: 3_396_190.0, semi_minor_m: 3_376_200.0 };
 
-/// One projection of every method, with nothing left at its default.
+/// One projection of every method, with no parameter at its default.
 fn one_of_each() -> Vec<Definition> {
     Method::ALL
         .into_iter()
@@ -47,7 +47,7 @@ fn every_projection_survives_keys_and_proj_string() {
 }
 
 #[test]
-fn there_and_back_is_the_same_place_also_across_the_date_line() {
+fn a_round_trip_gives_the_same_position_also_across_the_date_line() {
     for definition in one_of_each() {
         let projection = MapProjection::new(definition, None).unwrap();
         let lat_deg = if definition.latitude_deg == -90.0 { -84.0 } else { 7.0 };
@@ -61,7 +61,7 @@ fn there_and_back_is_the_same_place_also_across_the_date_line() {
 }
 
 #[test]
-fn places_that_a_map_does_not_show_have_no_point_and_the_reverse() {
+fn positions_off_the_map_have_no_point_and_points_off_the_body_no_position() {
     let ortho = MapProjection::new(Definition::about(Method::Orthographic, 0.0, 0.0, MOON), None).unwrap();
     assert_eq!(ortho.map_point(LonLat { lon_deg: 120.0, lat_deg: 0.0 }), None);
     assert_eq!(ortho.lon_lat(MapPoint::new(1.8e6, 0.0)), None);
@@ -81,7 +81,7 @@ fn mars_latitudes_are_planetocentric() {
 }
 
 #[test]
-fn what_is_not_known_says_why() {
+fn an_unsupported_projection_has_a_reason() {
     let keys = |entries: &[[u16; 4]], double_parameters: Vec<f64>| CoordinateSystem {
         key_directory: [&[1, 1, 0, u16::try_from(entries.len()).unwrap()][..], &entries.concat()].concat(),
         double_parameters,
@@ -117,7 +117,7 @@ fn a_prime_meridian_moves_the_origin() {
 }
 
 #[test]
-fn codes_have_their_urn_and_other_maps_none() {
+fn maps_with_a_code_have_a_urn_and_others_have_none() {
     let urn = |definition| MapProjection::new(definition, None).unwrap().urn();
     assert_eq!(urn(Definition::about(Method::PolarStereographic, -90.0, 0.0, MOON)).unwrap(), "urn:ogc:def:crs:IAU:2015:30135");
     assert_eq!(urn(Definition::about(Method::PolarStereographic, -90.0, 1.0, MOON)), None);
@@ -133,11 +133,11 @@ fn codes_have_their_urn_and_other_maps_none() {
 }
 
 #[test]
-fn proj_strings_with_a_word_that_is_not_understood_are_refused() {
+fn proj_strings_with_unsupported_parameters_are_refused() {
     for (text, word) in [
         ("+proj=ob_tran +R=1000", "ob_tran"),
         ("+proj=sinu +R=1000 +units=km", "units"),
-        ("+proj=sinu +R=abc", "R is no number"),
+        ("+proj=sinu +R=abc", "R is not a number"),
         ("+proj=sinu", "+R or +a"),
         ("+proj=sinu +R=5 +R=6", "twice"),
         ("+proj=tmerc +R=5 +lat_ts=3", "lat_ts"),
@@ -150,13 +150,13 @@ fn proj_strings_with_a_word_that_is_not_understood_are_refused() {
 }
 
 #[test]
-fn the_scale_is_that_of_the_textbooks() {
+fn the_scale_agrees_with_textbook_formulas() {
     let east = nalgebra::Vector2::new(1.0, 0.0);
     let north = nalgebra::Vector2::new(0.0, 1.0);
     let map = |definition| MapProjection::new(definition, None).unwrap();
     let at = |map: &MapProjection, lon_deg, lat_deg| map.map_point(LonLat { lon_deg, lat_deg }).unwrap();
     let near = |found: Option<f64>, expected: f64| assert!((found.unwrap() - expected).abs() < 1e-8, "{found:?} {expected}");
-    // Stereographic, about a pole and about any point: 2 / (1 + cos c), c from the centre, in every direction.
+    // Stereographic, around a pole and around any point: 2 / (1 + cos c), c from the centre, in every direction.
     for (latitude_deg, lat_deg) in [(-90.0, -70.0), (35.0, 55.0)] {
         let stereographic = map(Definition::about(Method::ObliqueStereographic, latitude_deg, 10.0, MOON));
         let place = at(&stereographic, 10.0, lat_deg);
@@ -176,13 +176,13 @@ fn the_scale_is_that_of_the_textbooks() {
     let place = at(&equirectangular, 20.0, -60.0);
     near(equirectangular.scale(place, east), 2.0 * 40.0_f64.to_radians().cos());
     near(equirectangular.scale(place, north), 1.0);
-    // A conformal map of an ellipsoid has its scale at the origin there.
+    // A conformal map of an ellipsoid has its scale factor at the origin.
     let mars = map(Definition { scale: 0.9, ..Definition::about(Method::TransverseMercator, 20.0, 5.0, MARS) });
     near(mars.scale(at(&mars, 5.0, 20.0), nalgebra::Vector2::new(0.8, 0.6)), 0.9);
 }
 
 #[test]
-fn the_worst_scale_of_a_transect_is_found_where_it_is() {
+fn the_largest_scale_error_of_a_transect_is_found() {
     let polar = MapProjection::new(Definition::about(Method::PolarStereographic, 90.0, 0.0, MOON), None).unwrap();
     let extreme = polar.extreme_scale(MapPoint::new(-1.0e5, 0.0), MapPoint::new(4.0e5, 0.0)).unwrap();
     assert_eq!((extreme.at, extreme.distance_m), (MapPoint::new(4.0e5, 0.0), 5.0e5));

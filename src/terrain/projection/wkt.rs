@@ -1,4 +1,4 @@
-//! A projection as well-known text in ESRI's dialect of 1999, which every GIS reads from a `.prj` file.
+//! A projection as well-known text in ESRI's dialect of 1999, which all GIS programs read from a `.prj` file.
 
 use super::definition::{Definition, Method};
 
@@ -42,7 +42,7 @@ fn projection(definition: &Definition) -> (&'static str, Vec<(&'static str, f64)
         (Method::LambertAzimuthalEqualArea, _) => ("Lambert_Azimuthal_Equal_Area", vec![latitude]),
         (Method::AzimuthalEquidistant, _) => ("Azimuthal_Equidistant", vec![latitude]),
     };
-    // ESRI's equirectangular map begins at the equator.
+    // The origin of ESRI's equirectangular map is at the equator.
     let from_equator_m = match method {
         Method::Equirectangular => definition.ellipsoid.semi_major_m * latitude_deg.to_radians(),
         _ => 0.0,
@@ -56,12 +56,12 @@ fn projection(definition: &Definition) -> (&'static str, Vec<(&'static str, f64)
     (name, parameters)
 }
 
-/// A number with its decimal point.
+/// A number with a decimal point.
 fn decimal(value: f64) -> String {
     format!("{value:?}")
 }
 
-/// A name without what would end it.
+/// A name without characters that would end it.
 fn quoted(name: &str) -> String {
     name.replace(|letter: char| letter == '"' || letter.is_control(), "_")
 }

@@ -1,11 +1,11 @@
-//! Where a line on the map crosses the lines of the lattice.
+//! Intersections of a line on the map with the lines of the lattice.
 
 use nalgebra::Vector2;
 
 use super::facet::Ground;
 use crate::quantity::MapPoint;
 
-/// A vertex of the slice: where it is on the lattice, on the map, and along the way.
+/// A vertex of the slice: its position on the lattice, on the map, and along the transect.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Crossing {
     pub(super) x_m: f64,
@@ -14,7 +14,7 @@ pub(super) struct Crossing {
     rank: Rank,
 }
 
-/// Which of two vertices at the same place stays: the later one.
+/// Which of two vertices at the same position is kept: the one of higher rank.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
     Diagonal,
@@ -23,13 +23,13 @@ enum Rank {
     End,
 }
 
-/// Distances that the sum and difference of two doubles of the transect's length cannot tell apart, as a share of it.
+/// Distances that differ by less than the rounding of the transect's length, as a fraction of it.
 const SAME_PLACE: f64 = 4.0 * f64::EPSILON;
 
-/// All vertices from `from` to `to`, strictly apart.
+/// All vertices from `from` to `to`, at strictly increasing distances.
 ///
-/// They are found in one order of the two ends, whichever the direction of travel, so that the way back has the same ones. Each is
-/// solved from its own line's number, so that no error adds up.
+/// They are computed with the two ends in one order for both directions of travel, so that both give the same vertices. Each
+/// is computed from the number of its own line, so that errors do not accumulate.
 pub(super) fn crossings(ground: &Ground<'_>, from: MapPoint, to: MapPoint, length_m: f64) -> Vec<Crossing> {
     let backwards = (to.x, to.y) < (from.x, from.y);
     let (first, last) = if backwards { (to, from) } else { (from, to) };
@@ -53,9 +53,9 @@ pub(super) fn crossings(ground: &Ground<'_>, from: MapPoint, to: MapPoint, lengt
     vertices
 }
 
-/// Adds a vertex, or decides which of two at the same place stays.
+/// Adds a vertex, or decides which of two at the same position is kept.
 fn push_apart(vertices: &mut Vec<Crossing>, crossing: Crossing, closest_m: f64) {
-    // The first vertex, the start, stays whatever comes.
+    // The first vertex, the start, is always kept.
     while let Some(previous) = vertices.last() {
         if crossing.x_m - previous.x_m > closest_m {
             break;
@@ -85,14 +85,15 @@ struct Transect<'a> {
 
 impl<'a> Transect<'a> {
     fn new(ground: &'a Ground<'a>, first: MapPoint, last: MapPoint, length_m: f64) -> Self {
-        // Ends that are all but on a line are on it: else a line crossed at a flat angle would be crossed once more beside them.
+        // Ends within the tolerance of a line are moved onto it: otherwise a line crossed at a flat angle would have a second
+        // crossing next to them.
         let (start, end) = (ground.snapped(ground.lattice(first)), ground.snapped(ground.lattice(last)));
         let along = last - first;
         let heading = Vector2::new(along.x / length_m, along.y / length_m);
         Self { ground, start, end, step: end - start, origin: first, along, heading }
     }
 
-    /// Crossings with the lines `normal . (u, v) = whole number`.
+    /// Adds the intersections with the lines `normal . (u, v) = integer`.
     fn push_crossings(&self, found: &mut Vec<Crossing>, normal: Vector2<f64>) {
         let [begin, end] = [self.start, self.end].map(|place| self.ground.nearly_whole(normal.dot(&place)));
         let change = end - begin;
@@ -108,7 +109,7 @@ impl<'a> Transect<'a> {
         }
     }
 
-    /// The vertex on a line, moved onto the post where it is one.
+    /// The vertex on a line, moved onto a post if it is at one.
     fn crossing(&self, normal: Vector2<f64>, line: f64, share: f64) -> Crossing {
         let mut lattice = self.start + self.step * share;
         let mut map = self.origin + self.along * share;
@@ -125,7 +126,7 @@ impl<'a> Transect<'a> {
             lattice = near;
             rank = Rank::Post;
         } else if rank == Rank::Diagonal {
-            // u - v = k: the smaller coordinate carries the digits, the other follows it exactly.
+            // u - v = k: the smaller coordinate has more digits; the other is computed from it exactly.
             lattice.x = lattice.y + line;
         }
         let exact = self.ground.map_point(lattice);
@@ -138,7 +139,7 @@ impl<'a> Transect<'a> {
         Crossing { x_m: self.distance_m(lattice), lattice, map, rank }
     }
 
-    /// Along the transect, of the foot of a lattice point on it: exact along rows and columns from a post.
+    /// Distance along the transect of the projection of a lattice point on it: exact along rows and columns from a post.
     fn distance_m(&self, lattice: Vector2<f64>) -> f64 {
         let away = self.ground.metres(lattice - self.start);
         away.dot(&self.heading)

@@ -6,11 +6,11 @@ use crate::quantity::MapPoint;
 use crate::terrain::window::Posts;
 use crate::terrain::{GeoReference, MapBounds, ProfileFacet};
 
-/// Within so many post spacings a point is on a line of the lattice. Rounding of a division reaches 1e-12 on the largest rasters;
-/// a micrometre of ground is a thousand times more than this on a 1 m raster.
+/// A point within this many post spacings of a line of the lattice is on it. Rounding of a division reaches 1e-12 on the
+/// largest rasters; a micrometre of ground is a thousand times larger than this on a 1 m raster.
 const ON_THE_LINE: f64 = 1.0e-9;
 
-/// Posts seen as triangles over the lattice of its posts: u counts columns to the east, v rows to the south.
+/// The triangles of a raster, in lattice coordinates: u counts columns to the east, v rows to the south.
 pub(super) struct Ground<'a> {
     posts: &'a dyn Posts,
     map: &'a GeoReference,
@@ -18,7 +18,7 @@ pub(super) struct Ground<'a> {
     last: Vector2<f64>,
 }
 
-/// A square of four posts, by its north-west one.
+/// A square of four posts, identified by its north-west post.
 #[derive(Clone, Copy)]
 struct Square {
     row: usize,
@@ -30,7 +30,7 @@ impl<'a> Ground<'a> {
     pub(super) fn of(posts: &'a dyn Posts) -> Self {
         let lattice = posts.lattice();
         let (map, bounds) = (lattice.georeference(), lattice.bounds());
-        // Map coordinates themselves are only this fine: a post's own can miss it by one unit in the last place.
+        // The resolution of map coordinates: even a post's own coordinates can be off by one unit in the last place.
         let resolution_x = f64::EPSILON * bounds.min.x.abs().max(bounds.max.x.abs()) / map.dx_m();
         let resolution_y = f64::EPSILON * bounds.min.y.abs().max(bounds.max.y.abs()) / map.dy_m();
         Self {
@@ -61,31 +61,31 @@ impl<'a> Ground<'a> {
         self.map.north_west() + away
     }
 
-    /// A step on the lattice in m east and north.
+    /// A step on the lattice in metres east and north.
     pub(super) fn metres(&self, step: Vector2<f64>) -> Vector2<f64> {
         Vector2::new(step.x * self.map.dx_m(), -step.y * self.map.dy_m())
     }
 
-    /// Whether a point lies on the map, its outermost posts included.
+    /// Whether a point lies on the map, including the outermost posts.
     pub(super) fn covers(&self, lattice: Vector2<f64>) -> bool {
         let inside = |value: f64, last: f64| value >= -self.tolerance && value <= last + self.tolerance;
         inside(lattice.x, self.last.x) && inside(lattice.y, self.last.y)
     }
 
-    /// Coordinates that are nearly whole made whole, and kept on the map.
+    /// Coordinates rounded to integers if they nearly are, and clamped to the map.
     pub(super) fn snapped(&self, lattice: Vector2<f64>) -> Vector2<f64> {
         let snap = |value: f64, last: f64| self.nearly_whole(value).clamp(0.0, last);
         Vector2::new(snap(lattice.x, self.last.x), snap(lattice.y, self.last.y))
     }
 
-    /// The whole number that a coordinate nearly is, else the coordinate.
+    /// The nearest integer if the coordinate is within the tolerance, else the coordinate.
     pub(super) fn nearly_whole(&self, value: f64) -> f64 {
         let whole = value.round();
         if (value - whole).abs() <= self.tolerance { whole } else { value }
     }
 
-    /// Elevation of the ground: a post's own, between two posts on a line, and on the plane of three inside a facet. `None` where one
-    /// of those is missing.
+    /// Elevation of the ground: at a post its own, on a line between two posts interpolated, and inside a facet on the plane
+    /// through three posts. `None` if one of these is missing.
     pub(super) fn elevation(&self, lattice: Vector2<f64>) -> Option<f64> {
         let at = self.snapped(lattice);
         let square = self.square(at);
@@ -110,7 +110,8 @@ impl<'a> Ground<'a> {
         }
     }
 
-    /// The facet at a segment's middle; of several that touch it, the one with the largest cross-slope. `None` where it lacks a post.
+    /// The facet at the middle of a segment; of several that touch it, the one with the largest cross-slope. `None` if one of
+    /// its posts is missing.
     pub(super) fn facet(&self, middle: Vector2<f64>, heading: Vector2<f64>) -> Option<ProfileFacet> {
         let reach = Vector2::repeat(self.tolerance);
         let (low, high) = (self.square(middle - reach), self.square(middle + reach));
@@ -128,7 +129,7 @@ impl<'a> Ground<'a> {
         steepest
     }
 
-    /// Gradients (east, north) of those triangles of a square that touch a point and have all their posts.
+    /// Gradients (east, north) of the triangles of a square that touch a point and have all their posts.
     fn gradients_at(&self, square: Square, point: Vector2<f64>) -> [Option<Vector2<f64>>; 2] {
         let side = (point.x - as_coordinate(square.col)) - (point.y - as_coordinate(square.row));
         let [north_west, north_east, south_west, south_east] = self.corners(square);
@@ -140,14 +141,14 @@ impl<'a> Ground<'a> {
         [north_east_half, south_west_half]
     }
 
-    /// The posts that elevation and facet between two places may ask for: first and last row, first and last column.
+    /// The posts that elevations and facets between two positions may need: first and last row, first and last column.
     pub(super) fn reach(&self, a: Vector2<f64>, b: Vector2<f64>) -> [usize; 4] {
         let margin = Vector2::repeat(self.tolerance);
         let (low, high) = (self.square(a.inf(&b) - margin), self.square(a.sup(&b) + margin));
         [low.row, high.row + 1, low.col, high.col + 1]
     }
 
-    /// The square a point lies in; on the last row and column, the last square.
+    /// The square that contains a point; on the last row and column, the last square.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the raster first")]
     fn square(&self, lattice: Vector2<f64>) -> Square {
         let floor = |value: f64, last: f64| value.clamp(0.0, last - 1.0).floor() as usize;
@@ -165,7 +166,7 @@ fn as_coordinate(index: usize) -> f64 {
     index as f64
 }
 
-/// Between two posts, and exactly on each of them even where the other is missing.
+/// Interpolates between two posts; exact at each of them even if the other is missing.
 fn between(first: Option<f64>, second: Option<f64>, share: f64) -> Option<f64> {
     if share == 0.0 {
         first

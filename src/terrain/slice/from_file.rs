@@ -1,4 +1,4 @@
-//! Slicing a file without reading it whole.
+//! Slices a file without reading the whole raster.
 
 use std::path::Path;
 
@@ -8,14 +8,16 @@ use crate::quantity::MapPoint;
 use crate::terrain::window::Part;
 use crate::terrain::{DemFile, Profile, TerrainError, Window, open_dem};
 
-/// Posts read at once, at most (but for one segment's own): along a row some thousand columns, along a diagonal a square of 128.
+/// Number of posts read at once, at most (unless one segment needs more): along a row some thousand columns, along a diagonal
+/// a square of 128.
 const POSTS_AT_ONCE: usize = 1 << 14;
 
-/// Cuts a terrain file as [`slice`](super::slice()) cuts a DEM, to the same bits, reading only the tiles, strips or lines that the transect
-/// crosses where the format allows it ([`open_dem`]).
+/// Slices a terrain file with the same result, bit by bit, as [`slice`](super::slice()) for a DEM, but reads only the tiles,
+/// strips or lines that the transect crosses if the format allows it ([`open_dem`]).
 ///
 /// # Errors
-/// As [`open_dem`] and [`slice`](super::slice()), the file named. What is wrong with posts off the transect goes unnoticed.
+/// As [`open_dem`] and [`slice`](super::slice()), with the name of the file. Problems of posts off the transect are not
+/// detected.
 ///
 /// # Examples
 /// ```
@@ -33,17 +35,18 @@ pub fn slice_file(path: &Path, from: MapPoint, to: MapPoint) -> Result<Profile, 
     slice_parts(file.as_ref(), from, to, POSTS_AT_ONCE).map_err(|error| error.in_file(path))
 }
 
-/// Cuts an open terrain along a polyline: one slice for each leg, from `from` over the points between to `to`.
+/// Slices an open terrain along a polyline: one slice per leg, from `from` through the points `via` to `to`.
 ///
 /// # Errors
-/// As [`slice`](super::slice()), of the first leg that has one; two equal points in a row are [`TerrainError::SamePoint`].
+/// As [`slice`](super::slice()), for the first leg with an error; two equal consecutive points give
+/// [`TerrainError::SamePoint`].
 pub fn slice_legs(file: &dyn DemFile, from: MapPoint, via: &[MapPoint], to: MapPoint) -> Result<Vec<Profile>, TerrainError> {
     let ends = via.iter().copied().chain([to]);
     let begins = [from].into_iter().chain(via.iter().copied());
     begins.zip(ends).map(|(begin, end)| slice_parts(file, begin, end, POSTS_AT_ONCE)).collect()
 }
 
-/// Window after window along the transect.
+/// Slices window by window along the transect.
 pub(super) fn slice_parts(file: &dyn DemFile, from: MapPoint, to: MapPoint, posts_at_once: usize) -> Result<Profile, TerrainError> {
     let nothing = Part::none_of(file);
     let lattice = Ground::of(&nothing);
@@ -59,7 +62,7 @@ pub(super) fn slice_parts(file: &dyn DemFile, from: MapPoint, to: MapPoint, post
     Ok(profile)
 }
 
-/// As many vertices from `first` on as one window of so many posts serves, and that window.
+/// The end of the vertices from `first` on that one window of at most this many posts serves, and that window.
 fn next_window(lattice: &Ground<'_>, transect: &Transect, first: usize, posts_at_once: usize) -> (usize, Window) {
     let crossings = &transect.crossings;
     let mut from = first.saturating_sub(1);

@@ -1,7 +1,7 @@
-//! The exact cut of a vertical plane through the triangulated terrain.
+//! The exact intersection of a vertical plane with the triangulated terrain.
 //!
-//! Every square of four posts is two triangles, split from its north-west to its south-east post. In lattice coordinates (u columns
-//! east, v rows south) the terrain's lines are then u = i, v = j and u - v = k for whole i, j, k:
+//! Every square of four posts consists of two triangles, divided from its north-west to its south-east post. In lattice
+//! coordinates (u columns east, v rows south) the edges are u = i, v = j and u - v = k for integers i, j, k:
 //!
 //! ```text
 //!   (i, j) o-----o u
@@ -22,26 +22,27 @@ pub use self::from_file::{slice_file, slice_legs};
 use super::{Dem, Profile, ProfilePoint, TerrainError};
 use crate::quantity::MapPoint;
 
-/// Cuts the terrain along the straight map line from one point to another.
+/// Slices the terrain along the straight map line from one point to another.
 ///
-/// Every crossing of a row, column or diagonal of posts is a vertex, even where the slope does not change. At a post the elevation is the
-/// post's own; on a line between two posts, the interpolation of those two alone. Each segment takes the facet it lies in; where it runs
-/// along an edge (within 1e-9 post spacings at its middle), that of the edge's two facets with the larger cross-slope, which is the
-/// steeper one too since both contain the edge. On the DEM's border, and beside a facet without elevations, there is only one.
+/// Every crossing of a row, column or diagonal of posts is a vertex, even if the slope does not change. At a post the
+/// elevation is that of the post; on a line between two posts it is interpolated from these two alone. Each segment gets the
+/// facet that contains it. A segment along an edge (within 1e-9 post spacings at its middle) gets that of the two adjacent
+/// facets with the larger cross-slope, which is also the steeper one since both contain the edge. On the DEM's border, and
+/// next to a facet without elevations, there is only one.
 ///
 /// # Units
 /// Map coordinates in m; `x_m` is the horizontal distance from `from`.
 ///
 /// # Returns
-/// A profile from `from` at x = 0 to `to`. The way back has the same points and facets.
+/// A profile from `from` at x = 0 to `to`. The reversed transect has the same points and facets.
 ///
 /// # Degenerate
-/// Crossings closer to a post than 1e-9 post spacings (or than the resolution of the map coordinates, where that is coarser) are that
-/// post. A transect inside one facet has its two ends only.
+/// Crossings closer to a post than 1e-9 post spacings (or than the resolution of the map coordinates, if that is larger) are
+/// moved to that post. A transect inside one facet has only its two ends as vertices.
 ///
 /// # Errors
-/// [`TerrainError::SamePoint`], [`TerrainError::OffTheMap`] (also for coordinates that are not finite), and [`TerrainError::NoData`] with
-/// the first place where an elevation is missing.
+/// [`TerrainError::SamePoint`]; [`TerrainError::OffTheMap`] (also for coordinates that are not finite);
+/// [`TerrainError::NoData`] with the first position where an elevation is missing.
 ///
 /// # Examples
 /// ```
@@ -62,7 +63,7 @@ pub fn slice(dem: &Dem, from: MapPoint, to: MapPoint) -> Result<Profile, Terrain
     Ok(profile)
 }
 
-/// The straight way from one map point to another, with its vertices on the lattice.
+/// The straight line between two map points, with its vertices on the lattice.
 struct Transect {
     crossings: Vec<Crossing>,
     heading: Vector2<f64>,
@@ -90,7 +91,7 @@ impl Transect {
         Profile { points: Vec::with_capacity(vertices), facets: Vec::with_capacity(vertices), heading: self.heading }
     }
 
-    /// Adds the vertices `first..end` and the segments that end at them, but for a segment that ends at the first of all.
+    /// Adds the vertices `first..end` and the segments that end at them; the first vertex of the transect ends no segment.
     fn cut(&self, ground: &Ground<'_>, first: usize, end: usize, profile: &mut Profile) -> Result<(), TerrainError> {
         let mut previous = first.checked_sub(1).and_then(|before| self.crossings.get(before));
         for crossing in &self.crossings[first..end] {

@@ -1,4 +1,4 @@
-//! The slice against slower roads: exact rational arithmetic, and barycentric coordinates in brute force.
+//! Compares the slice with slower methods: exact rational arithmetic, and barycentric coordinates by brute force.
 #![expect(clippy::cast_precision_loss, reason = "small rasters")]
 
 use num_rational::BigRational;
@@ -17,12 +17,13 @@ fn local(dx_m: f64, dy_m: f64) -> GeoReference {
     GeoReference::local(MapPoint::new(0.0, 0.0), dx_m, dy_m).unwrap()
 }
 
-/// Bumps without any pattern.
+/// Irregular bumps.
 fn bumps(row: usize, col: usize) -> f64 {
     ((row * 7919 + col * 104_729) % 1009) as f64 / 64.0
 }
 
-/// Every sum a slice must keep: strictly increasing from 0 to the length, one facet fewer, unit normals.
+/// Checks the properties of every slice: x strictly increasing from 0 to the length, one facet fewer than points, unit
+/// normals.
 fn check_shape(profile: &Profile, from: MapPoint, to: MapPoint) {
     assert_eq!(profile.points[0].x_m, 0.0);
     assert_eq!(profile.length_m(), libm::hypot((to - from).x, (to - from).y));
@@ -32,7 +33,7 @@ fn check_shape(profile: &Profile, from: MapPoint, to: MapPoint) {
     assert!(profile.facets.iter().all(|facet| (facet.normal.norm() - 1.0).abs() < 1e-12 && facet.normal.z > 0.0));
 }
 
-/// Elevation by barycentric coordinates in the triangle that holds the point, found by trying each of its square.
+/// Elevation by barycentric coordinates in the triangle that contains the point, found by trying all triangles of its square.
 fn brute_elevation(dem: &Dem, at: MapPoint) -> f64 {
     let map = dem.georeference();
     let mut best = (f64::NEG_INFINITY, f64::NAN);
@@ -56,7 +57,7 @@ fn brute_elevation(dem: &Dem, at: MapPoint) -> f64 {
             }
         }
     }
-    assert!(best.0 > -1e-6, "no triangle holds ({}, {})", at.x, at.y);
+    assert!(best.0 > -1e-6, "no triangle contains ({}, {})", at.x, at.y);
     best.1
 }
 
@@ -84,7 +85,7 @@ fn random_slices_agree_with_brute_force_at_points_and_middles() {
             let tolerance = 1e-7;
             assert!((brute_elevation(&ground, pair[0].map) - pair[0].z_m).abs() < tolerance);
             assert!((brute_elevation(&ground, middle) - 0.5 * (pair[0].z_m + pair[1].z_m)).abs() < tolerance);
-            // The facet's own gradient along the heading is the segment's slope.
+            // The facet's gradient along the heading is the slope of the segment.
             let run = pair[1].x_m - pair[0].x_m;
             let along = -(facet.normal.x * profile.heading.x + facet.normal.y * profile.heading.y) / facet.normal.z;
             assert!((along * run - (pair[1].z_m - pair[0].z_m)).abs() < tolerance);
@@ -99,7 +100,8 @@ fn random_slices_agree_with_brute_force_at_points_and_middles() {
     }
 }
 
-/// Crossings of a transect between lattice points given as fractions, in exact arithmetic: (share of the way, elevation).
+/// Crossings of a transect between lattice points given as fractions, in exact arithmetic: (fraction of the transect,
+/// elevation).
 fn exact_profile(ground: &Dem, from: &[BigRational; 2], to: &[BigRational; 2]) -> Vec<(BigRational, BigRational)> {
     use num_traits::{One, Zero};
     let zero = BigRational::zero();
@@ -140,11 +142,11 @@ fn exact_profile(ground: &Dem, from: &[BigRational; 2], to: &[BigRational; 2]) -
 #[test]
 fn slices_between_lattice_fractions_have_the_exact_vertices() {
     use num_traits::ToPrimitive;
-    // Spacings and offsets are powers of two, so that map coordinates are exact and only the slice itself can round.
+    // Spacings and offsets are powers of two, so that map coordinates are exact and only the slice can round.
     let ground = dem(17, 17, GeoReference::local(MapPoint::new(-512.0, 1024.0), 0.5, 2.0).unwrap(), bumps);
     let mut random = ChaCha8Rng::seed_from_u64(5);
     for case in 0..600 {
-        // Posts, halves, quarters: coincidences everywhere.
+        // Posts, halves, quarters: many coincidences.
         let divisor = [1_i64, 1, 2, 4][case % 4];
         let mut fraction = || BigRational::new(random.random_range(0..=16 * divisor).into(), divisor.into());
         let (from, to) = ([fraction(), fraction()], [fraction(), fraction()]);
@@ -191,22 +193,22 @@ fn along_rows_columns_and_diagonals_only_posts_are_vertices_and_exact() {
             }
         }
     }
-    // The other diagonal crosses the split of every square in its middle.
+    // The other diagonal crosses the dividing line of every square in its middle.
     let profile = slice(&ground, post(8, 0), post(0, 8)).unwrap();
     assert_eq!(profile.points.len(), 17);
     assert_eq!(profile.points[1].z_m, bumps(7, 0) + 0.5 * (bumps(8, 1) - bumps(7, 0)));
 }
 
 #[test]
-fn on_an_edge_the_larger_cross_slope_of_its_two_facets_counts() {
-    // Flat to the north of the middle row, a side-slope of 45 degrees to the south of it.
+fn on_an_edge_the_larger_cross_slope_of_its_two_facets_is_used() {
+    // Flat to the north of the middle row, a slope of 45 degrees to the south of it.
     let roof = dem(3, 3, local(1.0, 1.0), |row, _| if row == 2 { -1.0 } else { 0.0 });
     let walk = |y_m: f64| slice(&roof, MapPoint::new(0.0, y_m), MapPoint::new(2.0, y_m)).unwrap();
     let on_edge = walk(-1.0);
     assert!(on_edge.facets.iter().all(|facet| (facet.cross_slope.degrees() - 45.0).abs() < 1e-12));
     assert!(walk(-1.0 + 5e-10).facets.iter().all(|facet| (facet.cross_slope.degrees() - 45.0).abs() < 1e-12));
     assert!(walk(-1.0 + 2e-9).facets.iter().all(|facet| facet.cross_slope.degrees() == 0.0));
-    // On the border, the one facet there is.
+    // On the border there is only one facet.
     assert!(walk(0.0).facets.iter().all(|facet| facet.cross_slope.degrees() == 0.0));
     assert!(walk(-2.0).facets.iter().all(|facet| (facet.cross_slope.degrees() - 45.0).abs() < 1e-12));
     // On the diagonal: flat in the south-west half, rising to the north-east post.
@@ -248,7 +250,7 @@ fn on_a_tilted_plane_every_facet_has_the_planes_normal() {
 }
 
 #[test]
-fn cones_and_bowls_are_met_at_their_crossings() {
+fn a_paraboloid_is_met_within_its_interpolation_error() {
     // A paraboloid's interpolation error on an edge of length h at share s is exactly h^2 s (1 - s) / 2 times its curvature.
     let bowl = dem(21, 21, local(1.0, 1.0), |row, col| ((col as f64 - 10.0).powi(2) + (row as f64 - 10.0).powi(2)) / 8.0);
     let profile = slice(&bowl, MapPoint::new(0.25, -10.0), MapPoint::new(19.75, -10.0)).unwrap();
@@ -276,7 +278,7 @@ fn inside_one_facet_there_are_two_ends_and_one_segment() {
 }
 
 #[test]
-fn what_cannot_be_cut_is_refused_with_places_and_numbers() {
+fn invalid_transects_are_refused_with_positions_and_numbers() {
     let mut elevations = vec![1.0; 25];
     elevations[12] = f64::NAN;
     let ground = Dem::new(5, 5, elevations, GeoReference::local(MapPoint::new(-10.0, 10.0), 5.0, 5.0).unwrap()).unwrap();
@@ -286,12 +288,12 @@ fn what_cannot_be_cut_is_refused_with_places_and_numbers() {
     let off = message(at(0.0, 0.0), at(11.0, 0.0));
     assert!(off.contains("to point (11 m, 0 m)") && off.contains("x from -10 to 10 m and y from -10 to 10 m"), "{off}");
     assert!(message(at(f64::NAN, 0.0), at(1.0, 0.0)).contains("from point"));
-    // The gap is the middle post: along its row the facet before it is already without elevation.
+    // The gap is the middle post: along its row, the facet before it already lacks an elevation.
     let gap = message(at(-10.0, 0.0), at(10.0, 0.0));
     assert!(gap.contains("meets no-data 7.500 m from the start, at map point (-2.500 m, 0.000 m)"), "{gap}");
     let back = message(at(10.0, 0.0), at(-10.0, 0.0));
     assert!(back.contains("7.500 m from the start, at map point (2.500 m"), "{back}");
-    // Beside it, and along the edge of a facet that has a gap, the ground is whole.
+    // Next to it, and along the edge of a facet with a gap, the ground is complete.
     assert!(slice(&ground, at(-10.0, 6.0), at(10.0, 6.0)).is_ok());
     assert!(slice(&ground, at(-10.0, 5.0), at(10.0, 5.0)).is_ok());
     assert!(slice(&ground, at(-9.0, 4.9), at(-8.9, 4.9)).is_ok_and(|profile| profile.points.len() == 2));
@@ -316,7 +318,8 @@ fn greatest_common_divisor(a: usize, b: usize) -> usize {
     if b == 0 { a } else { greatest_common_divisor(b, a % b) }
 }
 
-/// Vertices between two posts so many columns and rows apart: lines crossed, and each post on the way counted once instead of three times.
+/// Number of vertices between two posts that are this many columns and rows apart: lines crossed, with each post in between
+/// counted once instead of three times.
 fn count_vertices(col_step: i64, row_step: i64) -> usize {
     let [columns, rows, diagonals] = [col_step, row_step, col_step - row_step].map(|step| usize::try_from(step.abs()).unwrap());
     let inner = [columns, rows, diagonals].iter().map(|count| count.saturating_sub(1)).sum::<usize>();

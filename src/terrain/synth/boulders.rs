@@ -5,31 +5,32 @@ use super::options::{at_least, check_count, within};
 use super::random::{Draws, Layer};
 use crate::terrain::TerrainError;
 
-/// Steps of the table of counts by diameter, evenly spaced in log D: with 512 the count between two of them is smooth to 1e-4.
+/// Steps of the table of counts by diameter, evenly spaced in log D: with 512 steps the interpolation error is 1e-4.
 const TABLE_STEPS: usize = 512;
 
-/// Rocks as at the Viking and Pathfinder sites: the share of ground covered by rocks of diameter D (m) or more is
+/// Rocks as at the Viking and Pathfinder sites. The fraction of the ground covered by rocks of diameter D (m) or more is
 ///
 /// ```text
 /// F(D) = k exp(-q D),   q = 1.79 + 0.152 / k
 /// ```
 ///
-/// Source: Golombek and Rapp, Size-frequency distributions of rocks on Mars and Earth analog sites, J. Geophys. Res. 102 (1997) 4117, eqs. 1
-/// and 6; heights of half the diameter as in Golombek et al., J. Geophys. Res. 108 (2003) 8086. A rock is a hemisphere on the ground, sunk by `burial` times its radius.
+/// Source: Golombek and Rapp, Size-frequency distributions of rocks on Mars and Earth analog sites, J. Geophys. Res. 102
+/// (1997) 4117, eqs. 1 and 6; heights of half the diameter as in Golombek et al., J. Geophys. Res. 108 (2003) 8086. A rock is
+/// a hemisphere on the ground, sunk by `burial` times its radius.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Boulders {
-    /// k, the share of ground covered by rocks of any size: 0.05 sparse, 0.2 rough.
+    /// k, the fraction of the ground covered by rocks of any size: 0.05 sparse, 0.2 rough.
     pub rock_abundance: f64,
     /// Smallest diameter drawn, m; at least one post spacing.
     pub diameter_min_m: f64,
     /// Largest diameter drawn, m.
     pub diameter_max_m: f64,
-    /// Share of the radius below ground, 0 to 1.
+    /// Fraction of the radius below ground, 0 to 1.
     pub burial: f64,
 }
 
 impl Default for Boulders {
-    /// A rock abundance of 10 %, rocks of 1 to 4 m, a fifth sunk.
+    /// A rock abundance of 10 %, rocks of 1 to 4 m, one fifth of the radius below ground.
     fn default() -> Self {
         Self { rock_abundance: 0.1, diameter_min_m: 1.0, diameter_max_m: 4.0, burial: 0.2 }
     }
@@ -48,7 +49,7 @@ impl Boulders {
         let expected = per_m2 * (width_m + 2.0 * margin_m) * (height_m + 2.0 * margin_m);
         check_count("rock_abundance", expected)?;
         let mut draws = Draws::of(seed, Layer::Boulders);
-        // Where rocks touch, the higher one is the surface.
+        // Where rocks overlap, the higher one is the surface.
         let mut over_ground_m = vec![0.0_f64; heights_m.len()];
         for _ in 0..draws.count(expected) {
             let centre = [draws.between(-margin_m, width_m + margin_m), draws.between(-margin_m, height_m + margin_m)];
@@ -67,7 +68,7 @@ impl Boulders {
         Ok(())
     }
 
-    /// Pairs of a diameter and how many rocks per square metre lie between the smallest one and it: the integral of
+    /// A table of diameters with the number of rocks per square metre from the smallest diameter up to each: the integral of
     /// 4 k q exp(-q D) / (pi D^2), by the midpoint rule in log D.
     fn counts_per_m2(&self) -> Vec<[f64; 2]> {
         let k = self.rock_abundance;
@@ -88,7 +89,7 @@ impl Boulders {
     }
 }
 
-/// The diameter below which `count` rocks per square metre lie.
+/// The diameter below which there are `count` rocks per square metre.
 fn diameter_at(table: &[[f64; 2]], count: f64) -> f64 {
     let after = table.partition_point(|entry| entry[1] <= count).clamp(1, table.len() - 1);
     let ([low, before], [high, until]) = (table[after - 1], table[after]);
@@ -101,7 +102,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_rocks_drawn_cover_the_share_of_ground_that_the_law_says() {
+    fn the_rocks_drawn_cover_the_fraction_of_ground_given_by_the_law() {
         let boulders = Boulders { rock_abundance: 0.2, diameter_min_m: 0.5, diameter_max_m: 5.0, burial: 0.0 };
         let table = boulders.counts_per_m2();
         let total = table.last().unwrap()[1];
@@ -115,11 +116,11 @@ mod tests {
     }
 
     #[test]
-    fn a_lone_rock_rises_to_its_radius_less_what_is_buried() {
+    fn a_single_rock_rises_to_its_radius_minus_the_buried_part() {
         let canvas = Canvas { rows: 200, cols: 200, spacing_m: 0.05 };
         let boulders = Boulders { rock_abundance: 0.1, diameter_min_m: 1.0, diameter_max_m: 1.0, burial: 0.4 };
         let mut heights = vec![0.0; 200 * 200];
-        // One size only has no rocks in it: the law counts ranges.
+        // A single size contains no rocks: the law counts ranges of sizes.
         boulders.add(&mut heights, canvas, 1).unwrap();
         assert!(heights.iter().all(|height| *height == 0.0));
         let ranged = Boulders { diameter_max_m: 1.2, ..boulders };

@@ -5,15 +5,17 @@ use super::options::{at_least, check_count, within};
 use super::random::{Draws, Layer};
 use crate::terrain::TerrainError;
 
-/// Ejecta are drawn out to this many crater radii, where their thickness is a 125th of the rim's.
+/// Ejecta extend to this many crater radii, where their thickness is 1/125 of that at the rim.
 const EJECTA_REACH: f64 = 5.0;
 
 /// Depth of a fresh simple crater from rim to floor, by its rim-to-rim diameter D, both in km.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthLaw {
-    /// Moon: 0.196 D^1.010 (Pike, Size-dependence in the shape of fresh impact craters on the Moon, in Impact and Explosion Cratering, 1977).
+    /// Moon: 0.196 D^1.010 (Pike, Size-dependence in the shape of fresh impact craters on the Moon, in Impact and Explosion
+    /// Cratering, 1977).
     Moon,
-    /// Mars: 0.179 D^1.012 (Robbins and Hynek, A new global database of Mars impact craters >= 1 km: 2, J. Geophys. Res. 117, 2012, E06001).
+    /// Mars: 0.179 D^1.012 (Robbins and Hynek, A new global database of Mars impact craters >= 1 km: 2, J. Geophys. Res. 117,
+    /// 2012, E06001).
     Mars,
 }
 
@@ -33,32 +35,35 @@ impl DepthLaw {
     }
 }
 
-/// Height of a fresh simple crater's rim over its surroundings: 0.036 D^1.014, in km (Pike 1977, as above). Used on Mars too.
+/// Height of a fresh simple crater's rim above its surroundings: 0.036 D^1.014, in km (Pike 1977, as above). Also used for
+/// Mars.
 fn rim_height_m(diameter_m: f64) -> f64 {
     36.0 * libm::pow(diameter_m / 1000.0, 1.014)
 }
 
-/// A population of craters, placed at random, of diameters D with a power law: so many per area with at least D go as D^-b.
+/// A population of craters at random positions, with diameters from a power law: the number per area of at least diameter D
+/// is proportional to D^-b.
 ///
 /// ```text
 /// z(r) = rim - depth (1 - (r/R)^2)   for r <= R,      z(r) = rim (r/R)^-3   outside, out to 5 R
 /// ```
 ///
-/// A bowl of revolution inside; outside, the ejecta thickness of `McGetchin`, Settle and Head, Earth Planet. Sci. Lett. 20 (1973) 226. Age wears
-/// a crater down: depth and rim are both scaled by 1 - d, with d drawn evenly from 0 to `degradation_max`. Craters add to what is there.
+/// Inside, a paraboloid of revolution; outside, the ejecta thickness of `McGetchin`, Settle and Head, Earth Planet. Sci.
+/// Lett. 20 (1973) 226. Degradation scales depth and rim height by 1 - d, with d drawn uniformly from 0 to `degradation_max`.
+/// Craters are added to the existing terrain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Craters {
     /// Smallest diameter, m.
     pub diameter_min_m: f64,
     /// Largest diameter, m.
     pub diameter_max_m: f64,
-    /// How many per square kilometre between the two.
+    /// Number of craters per square kilometre between the two diameters.
     pub density_per_km2: f64,
-    /// b, of the cumulative counts: 3 for a young surface, 2 for one in equilibrium.
+    /// b, the exponent of the cumulative counts: 3 for a young surface, 2 for one in equilibrium.
     pub power_law_exponent: f64,
-    /// Depth of the fresh ones.
+    /// Depth of fresh craters.
     pub depth_law: DepthLaw,
-    /// 0: all fresh; 1: some worn to nothing.
+    /// 0: all craters are fresh; 1: some are completely levelled.
     pub degradation_max: f64,
 }
 
@@ -79,7 +84,7 @@ impl Default for Craters {
 impl Craters {
     pub(super) fn add(&self, heights_m: &mut [f64], canvas: Canvas, seed: u64) -> Result<(), TerrainError> {
         self.check(canvas)?;
-        // Craters whose centres lie off the map still reach into it.
+        // Craters with centres off the map can still extend into it.
         let margin_m = 0.5 * EJECTA_REACH * self.diameter_max_m;
         let [width_m, height_m] = canvas.extent_m();
         let area_km2 = (width_m + 2.0 * margin_m) * (height_m + 2.0 * margin_m) * 1.0e-6;
@@ -110,14 +115,14 @@ impl Craters {
         within("crater degradation_max", self.degradation_max, 0.0, 1.0, "")
     }
 
-    /// The diameter that a share `drawn` of the population exceeds no more: the cut-off power law inverted.
+    /// The diameter that a fraction `drawn` of the population does not exceed: the inverse of the truncated power law.
     fn diameter_at(&self, drawn: f64) -> f64 {
         let worn = 1.0 - libm::pow(self.diameter_min_m / self.diameter_max_m, self.power_law_exponent);
         self.diameter_min_m * libm::pow(1.0 - drawn * worn, -1.0 / self.power_law_exponent)
     }
 }
 
-/// One crater as drawn, all in m.
+/// One crater as drawn; lengths in m.
 struct Crater {
     radius: f64,
     depth: f64,
@@ -158,7 +163,7 @@ mod tests {
         let craters = Craters { diameter_min_m: 2.0, diameter_max_m: 200.0, power_law_exponent: 2.0, ..Craters::default() };
         assert_eq!(craters.diameter_at(0.0), 2.0);
         assert!((craters.diameter_at(1.0) - 200.0).abs() < 1e-6);
-        // Beyond D lies the share (D^-2 - Dmax^-2) / (Dmin^-2 - Dmax^-2).
+        // The fraction with a diameter above D is (D^-2 - Dmax^-2) / (Dmin^-2 - Dmax^-2).
         let share = (0.01 - 0.000_025) / (0.25 - 0.000_025);
         assert!((craters.diameter_at(1.0 - share) - 10.0).abs() < 1e-9);
     }

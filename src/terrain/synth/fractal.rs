@@ -5,25 +5,26 @@ use super::options::{at_least, within};
 use super::random::{Draws, Layer};
 use crate::terrain::TerrainError;
 
-/// Self-affine ground: the root mean square difference of heights a distance L apart is
+/// Self-affine ground: the root mean square difference of heights at a distance L is
 ///
 /// ```text
 /// nu(L) = rms_deviation_m (L / baseline_m)^hurst_exponent
 /// ```
 ///
-/// Source: Shepard et al., The roughness of natural terrain, J. Geophys. Res. 106 (2001) 32777, eqs. 3 and 5. Planetary surfaces have Hurst
-/// exponents of some 0.5 to 0.95 at metres to hundreds of metres.
+/// Source: Shepard et al., The roughness of natural terrain, J. Geophys. Res. 106 (2001) 32777, eqs. 3 and 5. Planetary surfaces
+/// have Hurst exponents of some 0.5 to 0.95 at metres to hundreds of metres.
 ///
-/// Method: independent complex normals over all wave vectors k of a periodic square, weighted by |k|^-(H + 1), and their inverse Fourier
-/// transform (Voss, in Peitgen and Saupe, The Science of Fractal Images, 1988, section 1.6). The weight is set so that the expected deviation
-/// is exact at the baseline, or at one post or a quarter of the square where the baseline is beyond those.
+/// Method: independent complex normal variables for all wave vectors k of a periodic square, weighted by |k|^-(H + 1), and
+/// their inverse Fourier transform (Voss, in Peitgen and Saupe, The Science of Fractal Images, 1988, section 1.6). The weight
+/// is scaled so that the expected deviation is exact at the baseline, limited to between one post and a quarter of the
+/// square.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FractalGround {
-    /// H, above 0 (rough at all scales) and below 1 (smooth close by).
+    /// H, the Hurst exponent, above 0 (rough at all scales) and below 1 (smooth at short distances).
     pub hurst_exponent: f64,
     /// Root mean square height difference at the baseline, m.
     pub rms_deviation_m: f64,
-    /// The distance that belongs to it, m.
+    /// The baseline: the distance for this deviation, m.
     pub baseline_m: f64,
 }
 
@@ -39,7 +40,7 @@ impl FractalGround {
         within("hurst_exponent", self.hurst_exponent, 0.01, 0.99, "")?;
         within("rms_deviation_m", self.rms_deviation_m, 0.0, 1.0e6, "m")?;
         at_least("baseline_m", self.baseline_m, 1.0e-6, "m")?;
-        // A margin of a quarter keeps the opposite edges of a periodic field from meeting on the map.
+        // A margin of a quarter keeps opposite edges of the periodic field from adjoining on the map.
         let side = (canvas.rows.max(canvas.cols) * 5).div_ceil(4).next_power_of_two();
         let spectrum = Spectrum { side, exponent: -(self.hurst_exponent + 1.0) };
         let mut draws = Draws::of(seed, Layer::Ground);
@@ -54,7 +55,7 @@ impl FractalGround {
         Ok(())
     }
 
-    /// Turns the unit field's deviation at a lag into the wanted one.
+    /// The factor from the unit field's deviation at a lag to the required one.
     fn amplitude(&self, spectrum: Spectrum, column_powers: &[f64], spacing_m: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "sides stay below 2^30")]
         let lag = (self.baseline_m / spacing_m).clamp(1.0, spectrum.side as f64 / 4.0);
@@ -76,7 +77,7 @@ struct Complex {
 }
 
 impl Spectrum {
-    /// Wave number along one axis: 0 up to half the side, then back from minus half.
+    /// Wave number along one axis: 0 up to half the side, then from minus half back to -1.
     #[expect(clippy::cast_precision_loss, reason = "sides stay below 2^30")]
     fn wave_number(self, index: usize) -> f64 {
         if index <= self.side / 2 { index as f64 } else { index as f64 - self.side as f64 }
@@ -88,7 +89,7 @@ impl Spectrum {
         if square == 0.0 { 0.0 } else { libm::pow(square, 0.5 * self.exponent) }
     }
 
-    /// The waves, and the sum of squared weights of each column of them.
+    /// The Fourier coefficients, and the sum of squared weights of each column.
     fn draw(self, draws: &mut Draws) -> (Vec<Complex>, Vec<f64>) {
         let mut column_powers = vec![0.0; self.side];
         let mut field = Vec::with_capacity(self.side * self.side);
@@ -103,8 +104,8 @@ impl Spectrum {
         (field, column_powers)
     }
 
-    /// Mean square of the difference `lag` posts apart along a row: sum of weight^2 |exp(2 pi i k lag / side) - 1|^2, since the real part
-    /// of a circular normal has half the variance of its square modulus, which is 2.
+    /// Mean square of the difference at `lag` posts along a row: sum of weight^2 |exp(2 pi i k lag / side) - 1|^2, since the
+    /// real part of a circular normal variable has half the variance of its modulus squared, which is 2.
     fn expected_square_deviation(self, column_powers: &[f64], lag: f64) -> f64 {
         #[expect(clippy::cast_precision_loss, reason = "sides stay below 2^30")]
         let unit = std::f64::consts::TAU * lag / self.side as f64;
@@ -117,7 +118,7 @@ impl Spectrum {
     }
 }
 
-/// Inverse Fourier transform of a square field, not normalised: rows, then columns by turning the square.
+/// Inverse Fourier transform of a square field, not normalised: rows, then columns by transposing.
 fn transform_square(field: &mut [Complex], side: usize) {
     let roots = roots_of_unity(side);
     for _ in 0..2 {
@@ -141,7 +142,7 @@ fn roots_of_unity(side: usize) -> Vec<Complex> {
     (0..side / 2).map(root).collect()
 }
 
-/// Cooley and Tukey's transform of a power of two, in place.
+/// The transform of Cooley and Tukey for a power of two, in place.
 fn transform_line(line: &mut [Complex], roots: &[Complex]) {
     let length = line.len();
     let shift = usize::BITS - length.trailing_zeros();
@@ -208,7 +209,8 @@ mod tests {
             }
             (sum / count).sqrt()
         };
-        // The baseline is two posts: set there, and H between it and 16 posts, within the scatter of six fields and a finite band.
+        // The baseline is two posts, where the deviation is set; H is measured between it and 16 posts, with the scatter of
+        // six fields and a finite band.
         assert!((deviation(2) / 0.5 - 1.0).abs() < 0.05, "{}", deviation(2));
         let slope = (deviation(16) / deviation(2)).ln() / 8.0_f64.ln();
         assert!((slope - 0.7).abs() < 0.08, "{slope}");

@@ -1,7 +1,7 @@
-//! Terrain made up from a seed: fractal ground, craters, a rille, boulders.
+//! Synthetic terrain from a seed: fractal ground, craters, a rille, boulders.
 //!
-//! The layers are added in that order, each with its own random stream of the seed, so that switching one off leaves the others as they
-//! were. All draws are serial and all functions come from `libm`: the same seed gives the same bytes everywhere.
+//! The layers are added in that order, each with its own random stream of the seed, so that removing one does not change the
+//! others. All draws are serial and all functions come from `libm`: the same seed gives the same bytes on every platform.
 
 mod boulders;
 mod craters;
@@ -19,27 +19,27 @@ use self::options::{at_least, within};
 use super::{Dem, GeoReference, TerrainError};
 use crate::quantity::{Angle, MapPoint};
 
-/// Most rows and columns that are made: the fractal's square then has 8192 posts a side, 1 GB of working memory.
+/// The greatest number of rows and columns: the fractal's square then has 8192 posts per side and takes 1 GB of memory.
 const LONGEST_SIDE: usize = 6553;
 
-/// What to make up. Layers that are `None` are left out.
+/// The layers and their parameters. Layers that are `None` are left out.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SyntheticTerrain {
     /// Number of rows, 2 to 6553.
     pub rows: usize,
     /// Number of columns, 2 to 6553.
     pub cols: usize,
-    /// Spacing of posts both ways, m.
+    /// Spacing of posts in both directions, m.
     pub spacing_m: f64,
     /// Map coordinates of the south-west post, m.
     pub south_west: MapPoint,
-    /// Elevation of the plane under everything, at the middle of the map, m.
+    /// Elevation of the base plane at the middle of the map, m.
     pub mean_elevation_m: f64,
-    /// Slope of that plane.
+    /// Slope of the base plane.
     pub tilt: Angle,
-    /// Towards where it rises, clockwise from grid north.
+    /// The direction in which it rises, clockwise from grid north.
     pub tilt_towards: Angle,
-    /// The same seed gives the same terrain.
+    /// The random seed: the same seed gives the same terrain.
     pub seed: u64,
     /// Rough ground.
     pub ground: Option<FractalGround>,
@@ -52,7 +52,7 @@ pub struct SyntheticTerrain {
 }
 
 impl Default for SyntheticTerrain {
-    /// A square of 256 m of rough ground, level, with small craters and neither rille nor boulders.
+    /// A square of 256 m of rough level ground, with small craters, and without rille and boulders.
     fn default() -> Self {
         Self {
             rows: 257,
@@ -71,7 +71,7 @@ impl Default for SyntheticTerrain {
     }
 }
 
-/// The lattice that the layers are drawn on, by row from the south, in m from the south-west post.
+/// The raster on which the layers are drawn: rows from the south, in m from the south-west post.
 #[derive(Clone, Copy, Debug)]
 struct Canvas {
     rows: usize,
@@ -90,7 +90,7 @@ impl Canvas {
         self.place(self.rows - 1, self.cols - 1)
     }
 
-    /// Calls `draw` with the index and place of every post within `reach_m` of a centre, as a square.
+    /// Calls `draw` with the index and position of every post within `reach_m` of a centre, in a square.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the raster first")]
     #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
     fn each_within(self, centre: [f64; 2], reach_m: f64, mut draw: impl FnMut(usize, [f64; 2])) {
@@ -107,12 +107,12 @@ impl Canvas {
     }
 }
 
-/// Makes a terrain up.
+/// Generates a terrain.
 ///
 /// Elevations are rounded to 32-bit floats, so that files hold them exactly.
 ///
 /// # Errors
-/// [`TerrainError::InvalidOption`] with the option, its value and what is allowed.
+/// [`TerrainError::InvalidOption`] with the option, its value and the allowed values.
 ///
 /// # Examples
 /// ```

@@ -24,17 +24,17 @@ pub(super) fn within(option: &'static str, value: f64, lowest: f64, highest: f64
     }
 }
 
-/// No more of them than a computer draws in a minute.
+/// The greatest number of craters or boulders, which a computer draws within a minute.
 const MOST_THINGS: f64 = 1.0e7;
 
-/// Refuses densities that mean more craters or boulders than that.
+/// Refuses densities that give more craters or boulders.
 pub(super) fn check_count(option: &'static str, count: f64) -> Result<(), TerrainError> {
     if count <= MOST_THINGS {
         return Ok(());
     }
     Err(TerrainError::InvalidOption {
         option,
-        found: format!("so much that the map holds {count:.3e} of them"),
+        found: format!("so large that the map would hold {count:.3e} of them"),
         expected: format!("at most {MOST_THINGS:e}; lower it, or raise the smallest diameter"),
     })
 }

@@ -1,9 +1,9 @@
-//! Random draws with the same bytes everywhere.
+//! Random draws with the same bytes on every platform.
 
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-/// The layers that draw, each from its own stream.
+/// The layers with random draws, each with its own stream.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Layer {
     Ground = 1,
@@ -24,7 +24,7 @@ impl Draws {
         Self { source }
     }
 
-    /// In [0, 1): 53 random bits.
+    /// Uniform in [0, 1), from 53 random bits.
     pub(super) fn uniform(&mut self) -> f64 {
         self.source.random::<f64>()
     }
@@ -33,14 +33,15 @@ impl Draws {
         low + (high - low) * self.uniform()
     }
 
-    /// Two independent standard normals (Box and Muller 1958), through `libm` so that no platform's own logarithm comes in.
+    /// Two independent standard normal variables (Box and Muller 1958), with `libm` so that the logarithm is the same on
+    /// every platform.
     pub(super) fn normal_pair(&mut self) -> [f64; 2] {
         let radius = libm::sqrt(-2.0 * libm::log(1.0 - self.uniform()));
         let (sine, cosine) = libm::sincos(std::f64::consts::TAU * self.uniform());
         [radius * cosine, radius * sine]
     }
 
-    /// `expected` rounded up or down at random, so that the mean is right.
+    /// `expected` rounded up or down at random, so that the mean is exact.
     pub(super) fn count(&mut self, expected: f64) -> usize {
         let whole = expected.floor();
         let extra = if self.uniform() < expected - whole { 1.0 } else { 0.0 };

@@ -6,26 +6,27 @@ use super::random::{Draws, Layer};
 use crate::quantity::Angle;
 use crate::terrain::TerrainError;
 
-/// A channel from the map's west edge to its east edge, meandering about the middle as a sine, with straight walls and a flat floor (V-shaped
-/// where the walls meet first).
+/// A channel from the map's west edge to its east edge, meandering around the middle as a sine, with straight walls and a
+/// flat floor (V-shaped if the walls meet above it).
 ///
 /// ```text
 /// depth at distance r from the centre line = min(depth, (width / 2 - r) tan(wall slope)), not below 0
 /// ```
 ///
-/// The distance is taken as the northing's difference times the cosine of the line's direction there: right to first order. Hadley Rille at
-/// Apollo 15 is some 1200 m wide and 370 m deep with walls of 25 to 30 degrees (Howard, Head and Swann, Proc. Lunar Sci. Conf. 3 (1972) 1).
+/// The distance is the difference in northing times the cosine of the centre line's direction there, which is correct to
+/// first order. Hadley Rille at Apollo 15 is some 1200 m wide and 370 m deep, with walls of 25 to 30 degrees (Howard, Head
+/// and Swann, Proc. Lunar Sci. Conf. 3 (1972) 1).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rille {
-    /// Between the upper edges, m.
+    /// Width between the upper edges, m.
     pub width_m: f64,
-    /// From the surroundings to the floor, m.
+    /// Depth of the floor below the surroundings, m.
     pub depth_m: f64,
-    /// Of both walls, above 0 and below 80 degrees.
+    /// Slope of both walls, above 0 and below 80 degrees.
     pub wall_slope: Angle,
-    /// How far the centre line swings to either side, m.
+    /// Amplitude of the centre line to either side, m.
     pub meander_amplitude_m: f64,
-    /// From one bend to the next of its kind, m.
+    /// Wavelength of the meanders, m.
     pub meander_length_m: f64,
 }
 

@@ -1,4 +1,4 @@
-//! Whole terrains made up.
+//! Whole synthetic terrains.
 
 use super::*;
 
@@ -15,7 +15,7 @@ fn everything() -> SyntheticTerrain {
     }
 }
 
-/// FNV-1a over the elevations' bits.
+/// FNV-1a hash of the elevations' bits.
 fn fingerprint(dem: &Dem) -> u64 {
     dem.elevations()
         .flatten()
@@ -30,14 +30,14 @@ fn the_same_seed_gives_the_same_bytes_and_another_seed_others() {
     let other = synthesise(&SyntheticTerrain { seed: 2, ..everything() }).unwrap();
     assert_ne!(first, other);
     assert!(first.is_single_precision());
-    // Frozen: shipped data are made with this, so a change of it must be on purpose.
+    // Frozen: the shipped data were generated with this code, so a change must be intended.
     assert_eq!(fingerprint(&first), FROZEN, "{:#x}", fingerprint(&first));
 }
 
 const FROZEN: u64 = 0x52a2_c242_fbca_621e;
 
 #[test]
-fn a_bare_plane_rises_where_it_is_told_to() {
+fn a_bare_plane_rises_in_the_given_direction() {
     let plane =
         SyntheticTerrain { ground: None, craters: None, rille: None, boulders: None, mean_elevation_m: 100.0, ..everything() };
     let dem = synthesise(&plane).unwrap();

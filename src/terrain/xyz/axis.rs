@@ -1,12 +1,12 @@
-//! The lattice of one coordinate.
+//! The lattice along one coordinate.
 
-/// Coordinates may miss their place on the lattice by this share of the spacing: what rounding to a few digits does.
+/// Coordinates may deviate from the lattice by this fraction of the spacing, from rounding to a few digits.
 pub(super) const OFF_PLACE: f64 = 0.02;
 
-/// Gaps this much smaller than the next larger ones are rounding, not spacing.
+/// Gaps smaller than the next larger ones by this factor come from rounding, not from the spacing.
 const JITTER: f64 = 0.05;
 
-/// Evenly spaced places: `first + index * step`.
+/// Equidistant positions: `first + index * step`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Axis {
     pub(super) first: f64,
@@ -15,21 +15,21 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// The lattice that finite coordinates suggest; `None` where they are all the same. Whether each of them is on it is for
-    /// [`Axis::place`] to say.
+    /// The lattice suggested by finite coordinates; `None` if they are all equal. Whether each coordinate is on it is tested
+    /// by [`Axis::place`].
     pub(super) fn of(mut coordinates: Vec<f64>) -> Option<Self> {
         coordinates.sort_unstable_by(f64::total_cmp);
         coordinates.dedup();
         let (first, last) = (*coordinates.first()?, *coordinates.last()?);
         let least = least_spacing(&coordinates)?;
-        // Counted from gap to gap, so that the rounding of the least gap does not add up.
+        // Summed from gap to gap, so that the rounding error of the least gap does not accumulate.
         let steps: f64 = coordinates.windows(2).map(|pair| ((pair[1] - pair[0]) / least).round()).sum();
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "positive; beyond usize it saturates")]
         let count = (steps as usize).saturating_add(1);
         Some(Self { first, step: short_step(first, last, steps), count })
     }
 
-    /// The number of a coordinate's place, and how far it is from there as a share of the spacing.
+    /// The index of the nearest lattice position, and the distance to it as a fraction of the spacing.
     pub(super) fn place(&self, coordinate: f64) -> (usize, f64) {
         let at = (coordinate - self.first) / self.step;
         let whole = at.round().max(0.0);
@@ -38,18 +38,19 @@ impl Axis {
     }
 }
 
-/// The smallest gap that is no rounding.
+/// The smallest gap that does not come from rounding.
 fn least_spacing(sorted: &[f64]) -> Option<f64> {
     let mut gaps: Vec<f64> = sorted.windows(2).map(|pair| pair[1] - pair[0]).collect();
     gaps.sort_unstable_by(f64::total_cmp);
-    // What the gaps would be were they all alike: a scale to tell rounding from.
+    // The mean gap: a scale that separates spacing from rounding.
     #[expect(clippy::cast_precision_loss, reason = "a scale")]
     let even = (sorted.last()? - sorted.first()?) / gaps.len() as f64;
     let jump = gaps.windows(2).rposition(|pair| pair[0] < JITTER * pair[1] && pair[0] < JITTER * even);
     gaps.get(jump.map_or(0, |at| at + 1)).copied()
 }
 
-/// The step of so many from first to last, in twelve digits where those reach the last coordinate: 0.1 rather than 0.09999999999999999.
+/// The step for a number of steps from first to last, with twelve digits if these reach the last coordinate: 0.1 instead of
+/// 0.09999999999999999.
 fn short_step(first: f64, last: f64, steps: f64) -> f64 {
     let exact = (last - first) / steps;
     let short: f64 = format!("{exact:.11e}").parse().unwrap_or(exact);
@@ -78,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_off_the_lattice_is_told_by_its_distance() {
+    fn points_off_the_lattice_are_recognised_by_their_distance() {
         let axis = Axis { first: 10.0, step: 2.0, count: 4 };
         assert_eq!(axis.place(14.0), (2, 0.0));
         assert_eq!(axis.place(14.5), (2, 0.25));

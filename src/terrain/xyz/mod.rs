@@ -1,6 +1,6 @@
-//! The XYZ grid: a text with one post per line, in any order; the lattice is found from the numbers.
+//! The XYZ grid: a text with one post per line, in any order; the lattice is derived from the coordinates.
 //!
-//! `rows` reads the lines, `axis` finds the spacing of one coordinate, `read` puts the posts in their places.
+//! `rows` reads the lines, `axis` finds the spacing of one coordinate, `read` arranges the posts in a raster.
 
 mod axis;
 mod read;

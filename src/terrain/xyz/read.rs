@@ -1,4 +1,4 @@
-//! Reading an XYZ grid.
+//! Reads an XYZ grid.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader};
@@ -11,12 +11,12 @@ use crate::terrain::ascii_grid::Problems;
 use crate::terrain::georeference::refuse_degrees;
 use crate::terrain::{Dem, DemReader, GeoReference, TerrainError};
 
-/// A lattice may have this many posts for each line, and in any case [`FREE_POSTS`]: a strip turned by 45 degrees is half empty, and what
-/// is emptier was scattered.
+/// The greatest number of lattice posts per line, beyond [`FREE_POSTS`]: the lattice of a strip rotated by 45 degrees is
+/// mostly empty, and an even emptier one comes from scattered points.
 const POSTS_PER_LINE: usize = 64;
 const FREE_POSTS: usize = 1 << 16;
 
-/// XYZ as a format.
+/// The reader of the XYZ format.
 pub(in crate::terrain) struct XyzReader;
 
 impl DemReader for XyzReader {
@@ -37,15 +37,16 @@ impl DemReader for XyzReader {
     }
 }
 
-/// Reads an XYZ grid held in memory.
+/// Reads an XYZ grid from memory.
 ///
-/// One post per line, in any order: x, y and z in m, separated by commas, semicolons or white space. A header is optional; with one,
-/// the columns may stand in any order and others beside them. Lines that begin with `#` are comments. Posts that no line gives, or whose
-/// z is `nan`, are gaps. Spacings are found from the coordinates, which may miss the lattice by a fiftieth of a spacing.
+/// One post per line, in any order: x, y and z in m, separated by commas, semicolons or white space. A header is optional;
+/// with a header, the columns may be in any order, and other columns are ignored. Lines that begin with `#` are comments.
+/// Posts without a line, or with a z of `nan`, are gaps. Spacings are derived from the coordinates, which may deviate from
+/// the lattice by a fiftieth of a spacing.
 ///
 /// # Errors
-/// [`TerrainError::AsciiGrid`] with every problem found, each with its line; [`TerrainError::InvalidDem`] where the numbers make no
-/// raster; [`TerrainError::Unsuitable`] where they look like degrees.
+/// [`TerrainError::AsciiGrid`] with every problem found, each with its line; [`TerrainError::InvalidDem`] if the numbers do
+/// not form a raster; [`TerrainError::Unsuitable`] if the coordinates look like degrees.
 ///
 /// # Examples
 /// ```
@@ -82,7 +83,7 @@ fn read_text(source: impl BufRead) -> Result<Dem, TerrainError> {
     Ok(dem)
 }
 
-/// Every post in its place, row after row from the north.
+/// The raster of all posts, row after row from the north.
 fn gather(rows: &[Row], x: Axis, y: Axis, problems: &mut Problems) -> Vec<f64> {
     for row in rows {
         for (name, coordinate, axis) in [("x", row.x, x), ("y", row.y, y)] {

@@ -4,14 +4,14 @@ use std::io::{self, BufRead, Read};
 
 use crate::terrain::ascii_grid::Problems;
 
-/// No line is longer.
+/// The longest line accepted.
 const LONGEST_LINE: u64 = 4096;
 
 const X_NAMES: [&str; 6] = ["x", "x_m", "east", "easting", "easting_m", "x_coord"];
 const Y_NAMES: [&str; 6] = ["y", "y_m", "north", "northing", "northing_m", "y_coord"];
 const Z_NAMES: [&str; 9] = ["z", "z_m", "elevation", "elevation_m", "height", "height_m", "altitude", "elev", "topography"];
 
-/// One post as the text has it; z is NaN for a gap.
+/// One post of the text; z is NaN for a gap.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
     pub(super) line: usize,
@@ -20,7 +20,7 @@ pub(super) struct Row {
     pub(super) z: f64,
 }
 
-/// Which columns hold the three numbers, of how many.
+/// The columns of the three numbers, and the number of columns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Columns {
     x: usize,
@@ -31,7 +31,7 @@ struct Columns {
 
 const PLAIN: Columns = Columns { x: 0, y: 1, z: 2, count: 3 };
 
-/// Fields of a line: parted by semicolons if there is one, else by commas, else by white space.
+/// Fields of a line: separated by semicolons if there are any, else by commas, else by white space.
 fn fields(line: &str) -> Vec<&str> {
     let separator = [';', ','].into_iter().find(|separator| line.contains(*separator));
     match separator {
@@ -40,12 +40,12 @@ fn fields(line: &str) -> Vec<&str> {
     }
 }
 
-/// What to leave out: empty lines and comments.
+/// Whether a line is empty or a comment.
 fn is_blank(line: &str) -> bool {
     line.trim().is_empty() || line.trim_start().starts_with('#')
 }
 
-/// The columns that a header names, or those of a line of three numbers.
+/// The columns named by a header, or the default columns of a line of three numbers, and whether the line is a header.
 fn columns(line: &str) -> Option<(Columns, bool)> {
     let fields = fields(line.trim_start_matches('\u{feff}'));
     let find = |names: &[&str]| fields.iter().position(|field| names.iter().any(|name| field.eq_ignore_ascii_case(name)));
@@ -56,13 +56,13 @@ fn columns(line: &str) -> Option<(Columns, bool)> {
     numbers.then_some((PLAIN, false))
 }
 
-/// Whether a text begins with a header of x, y and z or with three numbers.
+/// Whether a text begins with a header of x, y and z or with a line of three numbers.
 pub(super) fn begins_with_post(beginning: &[u8]) -> bool {
     let text = String::from_utf8_lossy(beginning);
     text.lines().find(|line| !is_blank(line)).is_some_and(|line| columns(line).is_some())
 }
 
-/// Reads all posts; what is wrong goes to `problems`.
+/// Reads all posts; problems are added to `problems`.
 pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> io::Result<Vec<Row>> {
     let mut rows = Vec::new();
     let mut layout: Option<Columns> = None;
@@ -88,7 +88,7 @@ pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> io
             continue;
         }
         rows.extend(row(&text, line, columns, problems));
-        // A whole text that goes wrong is something else.
+        // If the first lines have many problems, the text is not an XYZ grid.
         if rows.is_empty() && problems.are_many() {
             return Ok(rows);
         }

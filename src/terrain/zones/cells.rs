@@ -1,4 +1,4 @@
-//! The cells of a raster along a straight line, and whether two rasters lie on one map.
+//! The cells of a raster along a straight line, and the test whether two rasters have the same map.
 
 use nalgebra::Vector2;
 
@@ -8,13 +8,13 @@ use crate::{
     terrain::{CoordinateSystem, Dem, MapBounds},
 };
 
-/// The values of the cells that a part of a line lies in: one, or those on both sides where it runs along a border.
+/// The values of the cells that contain part of a line: one, or both sides' if it runs along a border.
 pub(super) type CellValues = Vec<Option<f64>>;
 
-/// The parts of a line from cell border to cell border, each with the values of its cells. A pixel's value holds all over its cell,
-/// half a spacing to every side of its post; no values at all beyond the raster's outermost cells.
+/// Divides a line at the cell borders; each part has the values of its cells. A pixel's value applies to its cell, half a
+/// spacing in every direction from its post; beyond the outermost cells there are no values.
 ///
-/// At the middle of a part, a border within the line's tolerance is run along.
+/// A border within the line's tolerance of the middle of a part counts as a border along the part.
 pub(super) fn cells_on(line: &Line, raster: &Dem) -> Vec<Stretch<CellValues>> {
     let map = raster.georeference();
     let steps = [map.dx_m(), map.dy_m()];
@@ -44,8 +44,8 @@ pub(super) fn cells_on(line: &Line, raster: &Dem) -> Vec<Stretch<CellValues>> {
         .collect()
 }
 
-/// The values of the cells that a place lies in: one, or those on both sides of a border (within a billionth of a cell); none off the
-/// raster.
+/// The values of the cells that contain a position: one, or those on both sides of a border (within 1e-9 of a cell); none off
+/// the raster.
 pub(super) fn cells_at(at: MapPoint, raster: &Dem) -> impl Iterator<Item = Option<f64>> + '_ {
     let map = raster.georeference();
     let place = [(at.x - map.north_west().x) / map.dx_m() + 0.5, (map.north_west().y - at.y) / map.dy_m() + 0.5];
@@ -57,16 +57,16 @@ pub(super) fn cells_at(at: MapPoint, raster: &Dem) -> impl Iterator<Item = Optio
     })
 }
 
-/// Within this share of a cell a place lies on its border.
+/// A position within this fraction of a cell of its border is on the border.
 const NEAR_A_BORDER: f64 = 1e-9;
 
-/// A whole number that is not negative as an index.
+/// A non-negative integer as an index.
 fn as_index(whole: f64) -> Option<usize> {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "not negative; the cast saturates")]
     (whole >= 0.0).then_some(whole as usize)
 }
 
-/// Where a coordinate that goes from `begin` to `end` crosses the borders 0, 1, .. `count` of cells, as shares of the way.
+/// The fractions of the way from `begin` to `end` at which a coordinate crosses the borders 0, 1, .. `count` of cells.
 fn border_shares(begin: f64, end: f64, count: usize) -> impl Iterator<Item = f64> {
     #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
     let last = count as f64;
@@ -77,19 +77,20 @@ fn border_shares(begin: f64, end: f64, count: usize) -> impl Iterator<Item = f64
     borders.map(move |border| ((border as f64 - begin) / (end - begin)).clamp(0.0, 1.0))
 }
 
-/// The cells, of so many, that a coordinate lies in: two on a border, none outside.
+/// The indices below `count` of the cells that contain a coordinate: two on a border, none outside.
 fn indices(place: f64, near: f64, count: usize) -> Vec<usize> {
     let border = place.round();
     let candidates = if (place - border).abs() <= near { vec![border - 1.0, border] } else { vec![place.floor()] };
     candidates.into_iter().filter_map(as_index).filter(|cell| *cell < count).collect()
 }
 
-/// Tells the border of every two neighbouring cells whose values differ by `of`; beyond the raster there is no value.
-pub(super) fn borders_of<T: PartialEq>(raster: &Dem, of: &dyn Fn(Option<f64>) -> T, tell: &mut dyn FnMut(MapBounds)) {
+/// Calls `visit` with the border of every two neighbouring cells with different values of `of`; beyond the raster there is no
+/// value.
+pub(super) fn borders_of<T: PartialEq>(raster: &Dem, of: &dyn Fn(Option<f64>) -> T, visit: &mut dyn FnMut(MapBounds)) {
     let map = raster.georeference();
     let cell = Vector2::new(map.dx_m(), map.dy_m());
     let (rows, cols) = (raster.rows(), raster.cols());
-    // The cell before the first of a row or a column, and the one after its last, have the numbers of nothing.
+    // The cell before the first of a row or column, and the one after its last, have no value.
     let value = |row: usize, col: usize| match (row.checked_sub(1), col.checked_sub(1)) {
         (Some(row), Some(col)) => of(raster.elevation(row, col)),
         _ => of(None),
@@ -97,13 +98,13 @@ pub(super) fn borders_of<T: PartialEq>(raster: &Dem, of: &dyn Fn(Option<f64>) ->
     for row in 0..=rows {
         for col in 0..=cols {
             let here = value(row, col);
-            // The corner that this cell shares with those to the east, south and south-east.
+            // The corner shared by this cell and those to the east, south and south-east.
             let corner = map.north_west() + Vector2::new(as_f64(col) * cell.x - 0.5 * cell.x, 0.5 * cell.y - as_f64(row) * cell.y);
             if here != value(row, col + 1) {
-                tell(MapBounds { min: corner, max: corner + Vector2::new(0.0, cell.y) });
+                visit(MapBounds { min: corner, max: corner + Vector2::new(0.0, cell.y) });
             }
             if here != value(row + 1, col) {
-                tell(MapBounds { min: corner - Vector2::new(cell.x, 0.0), max: corner });
+                visit(MapBounds { min: corner - Vector2::new(cell.x, 0.0), max: corner });
             }
         }
     }
@@ -114,12 +115,12 @@ fn as_f64(index: usize) -> f64 {
     index as f64
 }
 
-/// Whether any part of a line lies on a raster.
+/// Whether part of a line lies on a raster.
 pub(super) fn is_on(stretches: &[Stretch<CellValues>]) -> bool {
     stretches.iter().any(|stretch| !stretch.value.is_empty())
 }
 
-/// Whether a cell with data of a kind lies on a rectangle of the map.
+/// Whether some cell with data of a kind lies in a rectangle of the map.
 pub(super) fn has_cell(raster: &Dem, bounds: MapBounds, kind: &dyn Fn(f64) -> bool) -> bool {
     let map = raster.georeference();
     let half = Vector2::new(0.5 * map.dx_m(), 0.5 * map.dy_m());
@@ -137,17 +138,17 @@ pub(super) fn cell_bounds(raster: &Dem) -> MapBounds {
     MapBounds { min: min - half, max: max + half }
 }
 
-/// Keys of a GeoTIFF that two files on one map have in common: kind of coordinates, code of the projection, ellipsoid, method, unit and
-/// parameters of the projection (OGC GeoTIFF 1.1).
+/// Keys of a GeoTIFF that must agree for two files with the same map: kind of coordinates, code of the projection, ellipsoid,
+/// method, unit and parameters of the projection (OGC GeoTIFF 1.1).
 const KEYS_OF_A_MAP: [u16; 26] = [
     1024, 3072, 2057, 2058, 2059, 3075, 3076, 3077, 3078, 3079, 3080, 3081, 3082, 3083, 3084, 3085, 3086, 3087, 3088, 3089, 3090,
     3091, 3092, 3093, 3094, 3095,
 ];
 
-/// "User-defined", which says nothing.
+/// "User-defined", which carries no information.
 const USER_DEFINED: f64 = 32767.0;
 
-/// What two maps disagree about, in words; `None` where they agree in all that both state.
+/// The first difference between two maps, as a phrase; `None` if they agree in all keys that both state.
 pub(super) fn disagreement(of_zones: &CoordinateSystem, of_terrain: &CoordinateSystem) -> Option<String> {
     KEYS_OF_A_MAP.into_iter().find_map(|key| {
         let (found, expected) = (value_of(of_zones, key)?, value_of(of_terrain, key)?);
@@ -156,7 +157,7 @@ pub(super) fn disagreement(of_zones: &CoordinateSystem, of_terrain: &CoordinateS
     })
 }
 
-/// The number of a `GeoKey`; `None` where it is absent, no number or left open.
+/// The number of a `GeoKey`; `None` if it is absent, not a number or user-defined.
 fn value_of(system: &CoordinateSystem, wanted: u16) -> Option<f64> {
     let entry = system.key_directory.chunks_exact(4).skip(1).find(|entry| entry[0] == wanted)?;
     let value = match entry[1] {

@@ -13,7 +13,7 @@ use crate::{
     world::FrictionCone,
 };
 
-/// What the file is called in messages.
+/// The name of the file's role in messages.
 const WHAT: &str = "friction raster";
 
 /// A raster of friction coefficients on the terrain's map.
@@ -23,11 +23,12 @@ pub struct FrictionRaster {
     raster: Dem,
 }
 
-/// Reads a raster of friction coefficients (`GeoTIFF`, ESRI ASCII grid) on the terrain's map; `coordinates` is what the terrain says of
-/// that, where it says anything.
+/// Reads a raster of friction coefficients (`GeoTIFF`, ESRI ASCII grid) on the terrain's map; `coordinates` is the terrain's
+/// own description of its map, if it has one.
 ///
 /// # Errors
-/// [`TerrainError::Overlay`]: the file cannot be read, is no raster on a map in metres, lies on another map, or holds a negative number.
+/// [`TerrainError::Overlay`]: the file cannot be read, is not a raster on a map in metres, has another map, or contains a
+/// negative number.
 pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>) -> Result<FrictionRaster, TerrainError> {
     let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
     let raster = read_dem(path).map_err(|error| failed(of_raster(error)))?;
@@ -47,37 +48,40 @@ pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>)
 }
 
 impl FrictionRaster {
-    /// Tells rectangles that together hold all borders between different coefficients, those of the raster itself included.
-    pub(crate) fn borders(&self, tell: &mut dyn FnMut(MapBounds)) {
-        borders_of(&self.raster, &|value: Option<f64>| value, tell);
+    /// Calls `visit` with rectangles that together contain all borders between different coefficients, including the border of
+    /// the raster.
+    pub(crate) fn borders(&self, visit: &mut dyn FnMut(MapBounds)) {
+        borders_of(&self.raster, &|value: Option<f64>| value, visit);
     }
 
-    /// What to say where it has no data, on "the transect" or wherever else.
+    /// The warning if it has no data along `on`, such as "the transect".
     pub(crate) fn without_effect(&self, on: &str) -> String {
         let name = name_of(&self.path);
-        format!("{WHAT} '{name}' has no data on {on}, so that it has no effect there: friction_coefficient counts all over")
+        format!("{WHAT} '{name}' has no data on {on}, so it has no effect there: friction_coefficient applies everywhere")
     }
 
-    /// Whether it has data on a rectangle of the map.
+    /// Whether it has data in a rectangle of the map.
     pub(crate) fn covers(&self, bounds: MapBounds) -> bool {
         has_cell(&self.raster, bounds, &|_| true)
     }
 
-    /// The friction of a place: that of the pixel it lies in, the smaller one on a border; `None` where the raster has no data or does not
-    /// reach.
+    /// The friction at a position: that of its pixel, the smaller one on a border; `None` if the raster has no data there or
+    /// does not extend that far.
     pub fn at(&self, place: MapPoint) -> Option<FrictionCone> {
         let least = cells_at(place, &self.raster).flatten().reduce(f64::min)?;
         FrictionCone::new(least).ok()
     }
 
-    /// Gives every segment of a profile its friction, and puts vertices where its line crosses into a pixel of another one.
+    /// Gives every segment of a profile its friction, and adds vertices where its line enters a pixel with another
+    /// coefficient.
     ///
-    /// A segment has the coefficient of the pixel that covers its middle: a pixel's value holds for its cell, half a spacing to every
-    /// side of its centre, without interpolation. Along a border of two cells the smaller one counts. Where the raster has no data,
-    /// or does not reach, `constant` holds. Whether the raster has data for any of it.
+    /// A segment has the coefficient of the pixel at its middle: a pixel's value applies to its cell, half a spacing in every
+    /// direction from its centre, without interpolation. Along a border of two cells the smaller coefficient applies. Where
+    /// the raster has no data, or does not extend that far, `constant` applies. Returns whether the raster has data for any
+    /// part of the profile.
     ///
     /// # Errors
-    /// [`TerrainError::Overlay`] where there is neither data nor a constant, naming where.
+    /// [`TerrainError::Overlay`] with the position where there is neither data nor a constant.
     pub fn lay(&self, profile: &mut Profile, constant: Option<FrictionCone>) -> Result<bool, TerrainError> {
         let Some(line) = Line::of(profile) else { return Ok(false) };
         let mut stretches = Vec::new();

@@ -9,18 +9,18 @@ use crate::{
     terrain::{CoordinateSystem, MapBounds},
 };
 
-/// How zones in degrees become zones on the map.
+/// How to convert zones in degrees to the terrain's map.
 const MEND_DEGREES: &str = "bring the zones onto the terrain's map with: ogr2ogr -t_srs MAP.prj out.geojson in.geojson";
 
-/// The polygons of a file: a geometry, a feature or a collection of either.
+/// The polygons of a file, which holds a geometry, a feature or a collection of either.
 ///
 /// # Errors
-/// One sentence: which feature (from 1), what is wrong, how to mend it.
+/// One sentence: which feature (from 1), what is wrong, how to correct it.
 pub(super) fn polygons(bytes: &[u8], terrain: Option<&CoordinateSystem>, bounds: MapBounds) -> Result<Vec<Polygon>, String> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let root: Value = serde_json::from_slice(bytes).map_err(|error| {
         format!(
-            "this is no JSON ({error}), expected GeoJSON with polygons; export them with: ogr2ogr -f GeoJSON out.geojson in.shp"
+            "this is not JSON ({error}), expected GeoJSON with polygons; export them with: ogr2ogr -f GeoJSON out.geojson in.shp"
         )
     })?;
     if let Some(crs) = root.get("crs").filter(|crs| !crs.is_null()) {
@@ -44,7 +44,7 @@ pub(super) fn polygons(bytes: &[u8], terrain: Option<&CoordinateSystem>, bounds:
         }
     }
     if found.is_empty() {
-        return Err("found no polygon, expected at least one; leave keep_out away where nothing is kept out".to_owned());
+        return Err("found no polygon, expected at least one; leave out keep_out if nothing is kept out".to_owned());
     }
     check_place(&found, bounds)?;
     Ok(found)
@@ -64,7 +64,7 @@ fn add_feature(name: &str, feature: &Value, found: &mut Vec<Polygon>) -> Result<
 /// The polygons of a geometry.
 fn add_geometry(name: &str, geometry: &Value, found: &mut Vec<Polygon>) -> Result<(), String> {
     let geometry: Geometry = serde_json::from_value(geometry.clone()).map_err(|error| {
-        format!("{name} is no GeoJSON geometry ({error}), expected a Polygon or MultiPolygon; export the file again")
+        format!("{name} is not a GeoJSON geometry ({error}), expected a Polygon or MultiPolygon; export the file again")
     })?;
     add(name, geometry.value, found)
 }
@@ -113,7 +113,7 @@ fn polygon(name: &str, coordinates: &[Vec<geojson::Position>]) -> Result<Polygon
         ring.dedup();
         if !has_area(&ring) {
             return Err(format!(
-                "{name} encloses no area, expected at least three corners not on one line; draw it anew or remove it"
+                "{name} encloses no area, expected at least three corners not on one line; draw it again or remove it"
             ));
         }
         rings.push(ring);
@@ -129,7 +129,7 @@ fn has_area(ring: &[MapPoint]) -> bool {
     ring.iter().any(|point| edge.perp(&(point - first)) != 0.0)
 }
 
-/// Refuses a `crs` member (`GeoJSON` 2008) that names degrees, or another code than the terrain's.
+/// Refuses a `crs` member (`GeoJSON` 2008) that means degrees, or has another code than the terrain.
 fn check_crs(crs: &Value, terrain: Option<&CoordinateSystem>) -> Result<(), String> {
     let name = crs.pointer("/properties/name").and_then(Value::as_str).unwrap_or_default();
     let upper = name.to_uppercase();
@@ -137,7 +137,7 @@ fn check_crs(crs: &Value, terrain: Option<&CoordinateSystem>) -> Result<(), Stri
     if upper.contains("CRS84") || code.is_some_and(|code| (4001..=4999).contains(&code)) {
         return Err(format!("its crs is {name}, in degrees, expected the terrain's map in metres; {MEND_DEGREES}"));
     }
-    // ProjectedCRSGeoKey of the terrain; 32767: user-defined.
+    // 3072 is the ProjectedCRSGeoKey of the terrain; 32767 means user-defined.
     let own = terrain.and_then(|system| system.key_directory.chunks_exact(4).skip(1).find(|key| key[0] == 3072 && key[1] == 0));
     match (code, own.map(|key| key[3]).filter(|code| *code != 32767)) {
         (Some(found), Some(expected)) if found != expected => {
@@ -147,7 +147,7 @@ fn check_crs(crs: &Value, terrain: Option<&CoordinateSystem>) -> Result<(), Stri
     }
 }
 
-/// Refuses zones that lie wholly off the terrain: they would keep nothing out, and come from another map or in degrees.
+/// Refuses zones that all lie off the terrain: they would have no effect, and probably have another map or are in degrees.
 fn check_place(polygons: &[Polygon], terrain: MapBounds) -> Result<(), String> {
     let meets = |zone: MapBounds| {
         zone.min.x <= terrain.max.x && terrain.min.x <= zone.max.x && zone.min.y <= terrain.max.y && terrain.min.y <= zone.max.y

@@ -1,4 +1,4 @@
-//! Keep-out zones: polygons or a mask, where nothing takes off and nothing lands.
+//! Keep-out zones: polygons or a mask where take-off and landing are forbidden.
 
 use std::{
     fs,
@@ -16,13 +16,13 @@ use crate::{
     terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem},
 };
 
-/// What the file is called in messages.
+/// The name of the file's role in messages.
 const WHAT: &str = "keep-out zones";
 
-/// The largest GeoJSON read: zones drawn by hand take kilobytes, traced rasters megabytes.
+/// The largest GeoJSON read: zones drawn by hand take kilobytes, vectorised rasters megabytes.
 const LARGEST_BYTES: u64 = 1 << 30;
 
-/// Where nothing takes off and nothing lands. Flying over is allowed.
+/// The zones where take-off and landing are forbidden. Flying over is allowed.
 #[derive(Clone, Debug)]
 pub struct KeepOut {
     path: PathBuf,
@@ -35,16 +35,17 @@ enum Zones {
     Mask(Box<Dem>),
 }
 
-/// Reads keep-out zones for a terrain: a `GeoJSON` file of polygons in the terrain's map coordinates, or a raster (`GeoTIFF`, ESRI ASCII
-/// grid) on the same map whose non-zero pixels are kept out. The content decides which.
+/// Reads keep-out zones for a terrain: a `GeoJSON` file of polygons in the terrain's map coordinates, or a raster (`GeoTIFF`,
+/// ESRI ASCII grid) on the same map whose non-zero pixels are kept out. The format is recognised by content.
 ///
-/// `coordinates` is what the terrain says of its map, where it says anything, and `bounds` what it covers.
+/// `coordinates` is the terrain's own description of its map, if it has one; `bounds` is the area of the terrain.
 ///
-/// In a raster each pixel holds for its cell, half a spacing to every side of its centre, and no-data keeps nothing out.
+/// Each pixel of a raster applies to its cell, half a spacing in every direction from its centre; no-data pixels are not kept
+/// out.
 ///
 /// # Errors
-/// [`TerrainError::Overlay`]: the file cannot be read, holds no polygons, one that is broken (named by feature and ring), coordinates
-/// in degrees or on another map, or lies wholly off the terrain.
+/// [`TerrainError::Overlay`]: the file cannot be read, holds no polygons, holds an invalid one (named by feature and ring),
+/// has coordinates in degrees or on another map, or lies wholly off the terrain.
 pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds: MapBounds) -> Result<KeepOut, TerrainError> {
     let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
     let zones = if looks_like_json(path).map_err(|error| failed(unread(&error)))? {
@@ -65,7 +66,7 @@ pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds
 }
 
 impl KeepOut {
-    /// Whether a place lies in a zone, borders included; a mask keeps nothing out beyond its pixels.
+    /// Whether a position lies in a zone, including its border; beyond its pixels a mask has no zones.
     ///
     /// # Examples
     /// ```
@@ -86,16 +87,16 @@ impl KeepOut {
         }
     }
 
-    /// Marks the segments of a profile that lie in a zone, and puts vertices where its line crosses a border between kept out and not.
+    /// Marks the segments of a profile that lie in a zone, and adds vertices where its line crosses the border of a zone.
     ///
-    /// Zones are closed: a segment along a border, or along the border of a hole, lies inside. Each segment is then wholly inside or
-    /// outside; a vertex on a border obeys the segments that meet there, as everywhere. Zones met on less than a millionth of a millionth
-    /// of the map coordinates' size (0.1 micrometres at 100 km) are met at a point, which keeps nothing out.
+    /// Zones are closed: a segment along a border, including the border of a hole, lies inside. Each segment is then wholly
+    /// inside or outside; at a vertex on a border, the adjacent segments rule as at every vertex. A zone that overlaps the
+    /// line by less than 1e-12 of the map coordinates (0.1 micrometres at 100 km) touches it at a point, which has no effect.
     ///
-    /// Whether any of the profile lies in a zone.
+    /// Returns whether any part of the profile lies in a zone.
     ///
     /// # Errors
-    /// [`TerrainError::Overlay`] where a mask ends before the profile does.
+    /// [`TerrainError::Overlay`] if a mask does not cover the whole profile.
     ///
     /// # Examples
     /// ```
@@ -122,12 +123,12 @@ impl KeepOut {
         Ok(stretches.iter().any(|stretch| stretch.value))
     }
 
-    /// What to say where no zone meets "the transect", or whatever else.
+    /// The warning if no zone meets `on`, such as "the transect".
     pub(crate) fn without_effect(&self, on: &str) -> String {
-        format!("{WHAT} '{}': no zone meets {on}, so that none has an effect there", name_of(&self.path))
+        format!("{WHAT} '{}': no zone meets {on}, so none has an effect there", name_of(&self.path))
     }
 
-    /// Whether a zone, or the rectangle around its polygon, meets a rectangle of the map.
+    /// Whether a zone, or the rectangle around its polygon, intersects a rectangle of the map.
     pub(crate) fn meets(&self, bounds: MapBounds) -> bool {
         match &self.zones {
             Zones::Polygons(polygons) => polygons.iter().any(|polygon| polygon.bounds().meets(bounds)),
@@ -135,15 +136,16 @@ impl KeepOut {
         }
     }
 
-    /// Tells rectangles that together hold all borders between kept out and not, in pieces of polygons no longer than `longest_m`.
-    pub(crate) fn borders(&self, longest_m: f64, tell: &mut dyn FnMut(MapBounds)) {
+    /// Calls `visit` with rectangles that together contain all borders of zones; the edges of polygons are divided into pieces
+    /// of at most `longest_m`.
+    pub(crate) fn borders(&self, longest_m: f64, visit: &mut dyn FnMut(MapBounds)) {
         match &self.zones {
-            Zones::Polygons(polygons) => polygons.iter().for_each(|polygon| polygon.borders(longest_m, tell)),
-            Zones::Mask(mask) => borders_of(mask, &|value: Option<f64>| value.is_some_and(|value| value != 0.0), tell),
+            Zones::Polygons(polygons) => polygons.iter().for_each(|polygon| polygon.borders(longest_m, visit)),
+            Zones::Mask(mask) => borders_of(mask, &|value: Option<f64>| value.is_some_and(|value| value != 0.0), visit),
         }
     }
 
-    /// The parts of a line on pixels that are not 0.
+    /// The parts of a line on non-zero pixels.
     fn masked(&self, mask: &Dem, line: &Line) -> Result<Vec<(f64, f64)>, TerrainError> {
         let cells = cells_on(line, mask);
         if let Some(beyond) = cells.iter().find(|cell| cell.value.is_empty()) {
@@ -163,7 +165,7 @@ impl KeepOut {
     }
 }
 
-/// Whether a file begins as JSON does.
+/// Whether a file begins like JSON.
 fn looks_like_json(path: &Path) -> std::io::Result<bool> {
     use std::io::Read;
     let mut beginning = Vec::new();
@@ -173,17 +175,17 @@ fn looks_like_json(path: &Path) -> std::io::Result<bool> {
     Ok(matches!(first, Some(b'{' | b'[')))
 }
 
-/// A file's own name, for warnings: they stand in results, which are the same wherever the file lies.
+/// A file's name without folders, for warnings: results contain them and must not depend on the location of the file.
 pub(super) fn name_of(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// What the system says of a file, with what to do.
+/// The system's error for a file, with a remedy.
 pub(super) fn unread(error: &std::io::Error) -> String {
     format!("cannot be read ({error}): check the path and its permissions")
 }
 
-/// What is wrong with a raster, without its name.
+/// The problem of a raster, without the name of the file.
 pub(super) fn of_raster(error: TerrainError) -> String {
     match error {
         TerrainError::InFile { problem, .. } => problem.to_string(),

@@ -1,4 +1,4 @@
-//! The line of a slice on the map, and vertices put where something begins or ends on it.
+//! The line of a slice on the map, and vertices added where an overlay begins or ends on it.
 
 use nalgebra::Vector2;
 
@@ -7,7 +7,7 @@ use crate::{
     terrain::{Profile, ProfilePoint},
 };
 
-/// A part of a line, m from its beginning.
+/// A part of a line; distances in m from its beginning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Stretch<T> {
     pub(super) from_m: f64,
@@ -17,23 +17,23 @@ pub(super) struct Stretch<T> {
 
 /// The straight line of a profile on the map.
 ///
-/// Places on it are counted from that end which has the smaller map coordinates, whichever the direction of travel, so that the way
-/// back meets every border at the same place.
+/// Positions on it are measured from the end with the smaller map coordinates, for both directions of travel, so that the
+/// reversed transect meets every border at the same position.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Line {
-    /// The end that places are counted from.
+    /// The end from which positions are measured.
     pub(super) origin: MapPoint,
     /// The other end.
     pub(super) end: MapPoint,
-    /// From the origin to the other end, of length 1.
+    /// Unit vector from the origin to the other end.
     pub(super) heading: Vector2<f64>,
     pub(super) length_m: f64,
-    /// Places closer together than this are one: some thousand times the rounding of the map coordinates.
+    /// Positions closer than this are merged: some thousand times the rounding of the map coordinates.
     pub(super) tolerance_m: f64,
     backwards: bool,
 }
 
-/// The line's tolerance as a share of its largest map coordinate: 0.1 micrometres at 100 km.
+/// The line's tolerance as a fraction of its largest map coordinate: 0.1 micrometres at 100 km.
 const SAME_PLACE: f64 = 1e-12;
 
 impl Line {
@@ -56,31 +56,31 @@ impl Line {
         })
     }
 
-    /// A map point in the line's own frame: along it from the origin, and to the left of it, m.
+    /// A map point in the line's own frame: the distance along it from the origin, and to its left, m.
     pub(super) fn frame(&self, point: MapPoint) -> Vector2<f64> {
         let away = point - self.origin;
         Vector2::new(away.dot(&self.heading), self.heading.x * away.y - self.heading.y * away.x)
     }
 
-    /// The map point so far along, exactly an end at either end.
+    /// The map point at a distance along the line; exact at both ends.
     pub(super) fn map_point(&self, along_m: f64) -> MapPoint {
         let share = along_m / self.length_m;
         MapPoint::from(self.origin.coords * (1.0 - share) + self.end.coords * share)
     }
 
-    /// The profile's x of a place on the line, and back.
+    /// The profile's x of a position on the line. The same formula converts back.
     pub(super) fn profile_x_m(&self, along_m: f64) -> f64 {
         if self.backwards { self.length_m - along_m } else { along_m }
     }
 
-    /// Puts vertices where stretches of another value meet and tells every segment its value.
+    /// Adds vertices where stretches with different values meet, and passes every segment its value.
     ///
-    /// The stretches go from the line's beginning to its end without gaps. A border within the tolerance of a vertex is that vertex.
+    /// The stretches cover the line without gaps. A border within the tolerance of a vertex is moved to that vertex.
     pub(super) fn lay<T: Copy + PartialEq>(
         &self,
         profile: &mut Profile,
         stretches: &[Stretch<T>],
-        mut tell: impl FnMut(&mut Profile, usize, T),
+        mut visit: impl FnMut(&mut Profile, usize, T),
     ) {
         let mut stretches: Vec<Stretch<T>> = joined(stretches);
         if self.backwards {
@@ -97,12 +97,12 @@ impl Line {
                 current += 1;
             }
             if let Some(stretch) = stretches.get(current) {
-                tell(profile, segment, stretch.value);
+                visit(profile, segment, stretch.value);
             }
         }
     }
 
-    /// The x of the vertex at a place, which is put there if there is none.
+    /// The x of the vertex at a position, which is added if there is none.
     fn vertex_at(&self, profile: &mut Profile, x_m: f64) -> f64 {
         let next = profile.points.partition_point(|point| point.x_m < x_m).clamp(1, profile.points.len() - 1);
         let (before, after) = (profile.points[next - 1], profile.points[next]);
@@ -111,7 +111,7 @@ impl Line {
             return if since_m <= until_m { before.x_m } else { after.x_m };
         }
         let slope = (after.z_m - before.z_m) / (after.x_m - before.x_m);
-        // From the nearer vertex: its digits are the better ones.
+        // Computed from the nearer vertex, which keeps more digits.
         let z_m = if since_m <= until_m { before.z_m + slope * since_m } else { after.z_m - slope * until_m };
         profile.points.insert(next, ProfilePoint { x_m, z_m, map: self.map_point(self.profile_x_m(x_m)) });
         profile.facets.insert(next, profile.facets[next - 1]);
@@ -119,7 +119,7 @@ impl Line {
     }
 }
 
-/// Neighbours of one value made one.
+/// Merges neighbouring stretches with equal values.
 fn joined<T: Copy + PartialEq>(stretches: &[Stretch<T>]) -> Vec<Stretch<T>> {
     let mut found: Vec<Stretch<T>> = Vec::new();
     for stretch in stretches {
@@ -131,9 +131,9 @@ fn joined<T: Copy + PartialEq>(stretches: &[Stretch<T>]) -> Vec<Stretch<T>> {
     found
 }
 
-/// Parts of a line that are covered, in any order and overlapping, as stretches that say of the whole line whether it is.
+/// Converts covered parts of a line, in any order and overlapping, to stretches that cover the whole line.
 ///
-/// Parts no longer than the tolerance are places, not parts, and so are gaps between parts: those count as covered.
+/// Parts no longer than the tolerance are ignored, and gaps no longer than it are closed.
 pub(super) fn covered(line: &Line, mut parts: Vec<(f64, f64)>) -> Vec<Stretch<bool>> {
     for part in &mut parts {
         *part = (part.0.max(0.0), part.1.min(line.length_m));

@@ -1,7 +1,8 @@
-//! What lies over the terrain and changes what it allows: keep-out zones and a raster of friction.
+//! Overlays that change what the terrain allows: keep-out zones and a friction raster.
 //!
-//! Both are known along the straight line of a slice as stretches: `line` holds the slice's line on the map and puts vertices where a
-//! stretch ends, so that every segment is wholly inside or outside; `polygons` and `cells` find the stretches.
+//! Both are converted to stretches of the straight line of a slice. `line` holds the slice's line on the map and adds
+//! vertices where a stretch ends, so that every segment is wholly inside or outside; `polygons` and `cells` compute the
+//! stretches.
 //!
 //! ```text
 //!   map:      ...../####\.....         profile before:   o---------o------------o

@@ -1,25 +1,25 @@
-//! Polygons on the map, and where a straight line runs through them.
+//! Polygons on the map, and their intersection with a straight line.
 
 use nalgebra::Vector2;
 
 use super::line::Line;
 use crate::{quantity::MapPoint, terrain::MapBounds};
 
-/// A polygon: its rings, outer and holes alike, without the repeated last point.
+/// A polygon: its outer and inner rings, without the repeated last point.
 ///
-/// Inside is what an odd number of ring edges separates from far away: holes and rings that cross themselves need no special case.
-/// Border points belong to it, those of holes included.
+/// Points inside are those separated from infinity by an odd number of ring edges (even-odd rule), so holes and
+/// self-intersecting rings need no special case. Border points belong to the polygon, including those of holes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Polygon {
     rings: Vec<Vec<MapPoint>>,
     bounds: MapBounds,
 }
 
-/// The most pieces that an edge is cut into: one longer than the largest raster gets longer ones.
+/// The greatest number of pieces of an edge; an edge longer than the largest raster is divided into longer pieces.
 const MOST_PIECES: f64 = 1.0e5;
 
 impl Polygon {
-    /// A polygon of rings with finite points; `None` without any point.
+    /// A polygon from rings with finite points; `None` without points.
     pub(super) fn new(rings: Vec<Vec<MapPoint>>) -> Option<Self> {
         let first = *rings.first()?.first()?;
         let bounds = rings.iter().flatten().fold(MapBounds { min: first, max: first }, |bounds, point| MapBounds {
@@ -34,8 +34,8 @@ impl Polygon {
         self.bounds
     }
 
-    /// Tells the rectangle around every piece of its edges, no longer than `longest_m` each.
-    pub(super) fn borders(&self, longest_m: f64, tell: &mut dyn FnMut(MapBounds)) {
+    /// Calls `visit` with the rectangle around every piece of its edges, each at most `longest_m` long.
+    pub(super) fn borders(&self, longest_m: f64, visit: &mut dyn FnMut(MapBounds)) {
         for ring in &self.rings {
             for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
                 let pieces = ((b - a).norm() / longest_m).ceil().clamp(1.0, MOST_PIECES);
@@ -43,7 +43,7 @@ impl Polygon {
                 let mut piece = 0.0;
                 while piece < pieces {
                     let (from, to) = (at(piece), at(piece + 1.0));
-                    tell(MapBounds { min: from.inf(&to), max: from.sup(&to) });
+                    visit(MapBounds { min: from.inf(&to), max: from.sup(&to) });
                     piece += 1.0;
                 }
             }
@@ -52,10 +52,10 @@ impl Polygon {
 
     /// The parts of a line that lie in the polygon, m along it, in any order.
     ///
-    /// In the line's own frame every edge has its two ends to the left (above), to the right or on the line. An edge that has one end
-    /// above and one not is met once by the line moved up a hair, so that those places, sorted, are the ends of the parts just above the
-    /// line; the same just below. A place of the line that is on no edge has the same answer above and below. Edges on the line
-    /// are parts themselves: the border belongs to the zone.
+    /// In the line's own frame each end of an edge is to the left (above), to the right (below) or on the line. An edge with
+    /// one end above the line and one not above it crosses a line shifted slightly upwards exactly once, so these crossings,
+    /// sorted, are the ends of the parts just above the line; the same holds below. A point of the line on no edge has the
+    /// same result above and below. Edges on the line are parts themselves, since the border belongs to the zone.
     pub(super) fn parts_on(&self, line: &Line) -> Vec<(f64, f64)> {
         if !self.may_meet(line) {
             return Vec::new();
@@ -85,9 +85,9 @@ impl Polygon {
         parts
     }
 
-    /// Whether a place lies in the polygon; its border, within the rounding of its coordinates, belongs to it.
+    /// Whether a position lies in the polygon; its border, within the rounding of its coordinates, belongs to it.
     ///
-    /// Edges that a line eastward from the place meets are counted, each with its southern end and without its northern one.
+    /// Counts the edges that a ray to the east crosses; each edge includes its southern end and excludes its northern one.
     pub(super) fn contains(&self, at: MapPoint) -> bool {
         if !self.bounds.contains(at) {
             return false;
@@ -98,7 +98,7 @@ impl Polygon {
             for (a, b) in ring.iter().zip(ring.iter().cycle().skip(1)) {
                 let (edge, away) = (b - a, at - a);
                 let share = (away.dot(&edge) / edge.norm_squared()).clamp(0.0, 1.0);
-                // An edge of no length is its one point.
+                // An edge of zero length is a point.
                 let foot = if share.is_nan() { away } else { away - edge * share };
                 if foot.norm() <= near_m {
                     return true;
@@ -111,13 +111,13 @@ impl Polygon {
         inside
     }
 
-    /// The size of its largest coordinate.
+    /// Its largest absolute coordinate.
     fn largest_m(&self) -> f64 {
         let MapBounds { min, max } = self.bounds;
         [min.x, min.y, max.x, max.y].into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 
-    /// A ring's point in the line's frame, on the line where it is nearly so.
+    /// A ring's point in the line's frame, moved onto the line if it is within the tolerance.
     fn snapped(&self, line: &Line, point: MapPoint) -> Vector2<f64> {
         let frame = line.frame(point);
         let rounding_m = 8.0 * f64::EPSILON * self.largest_m();

@@ -58,7 +58,7 @@ fn walk(terrain: &Dem, zones: &KeepOut, from: (f64, f64), to: (f64, f64)) -> Vec
     flags(&profile)
 }
 
-/// Whether the point `at / scale` lies in a closed polygon by the even-odd rule, in whole numbers.
+/// Whether the point `at / scale` lies in a closed polygon by the even-odd rule, in integer arithmetic.
 fn contains(rings: &[Vec<(i64, i64)>], at: (i64, i64), scale: i64) -> bool {
     let mut odd = false;
     for ring in rings {
@@ -78,13 +78,13 @@ fn contains(rings: &[Vec<(i64, i64)>], at: (i64, i64), scale: i64) -> bool {
 }
 
 #[test]
-fn random_polygons_agree_with_whole_number_arithmetic_at_every_place() {
+fn random_polygons_agree_with_integer_arithmetic_at_every_position() {
     let terrain = plain(12);
     let mut random = ChaCha8Rng::seed_from_u64(11);
     let mut checked = [0_usize; 2];
     for _ in 0..400 {
         let mut corner = |low: i64, high: i64| (random.random_range(low..=high), random.random_range(low..=high));
-        // Rings that cross themselves and each other, with edges and corners on posts, rows and the transect itself.
+        // Self-intersecting and overlapping rings, with edges and corners on posts, rows and the transect itself.
         let polygons: Vec<Vec<Vec<(i64, i64)>>> =
             (0..2).map(|_| (0..2).map(|_| (0..5).map(|_| corner(-2, 14)).collect()).collect()).collect();
         let flat = |ring: &Vec<(i64, i64)>| {
@@ -121,7 +121,7 @@ fn random_polygons_agree_with_whole_number_arithmetic_at_every_place() {
             assert!(k % 7 != 0 || kept.keeps_out(place) == expected, "{text} at {place}");
             checked[usize::from(expected)] += 1;
         }
-        // Heights and facets stay those of the ground.
+        // Heights and facets of the ground are unchanged.
         for (pair, facet) in profile.points.windows(2).zip(&profile.facets) {
             let own = untouched.points.partition_point(|p| p.x_m <= pair[0].x_m) - 1;
             assert_eq!((facet.normal, facet.cross_slope), (untouched.facets[own].normal, untouched.facets[own].cross_slope));
@@ -141,7 +141,7 @@ fn random_polygons_agree_with_whole_number_arithmetic_at_every_place() {
 }
 
 #[test]
-fn the_cases_that_break_naive_code() {
+fn degenerate_zones_are_handled() {
     let terrain = plain(10);
     // A square with a hole, on posts.
     let holed = zones(
@@ -165,14 +165,14 @@ fn the_cases_that_break_naive_code() {
     assert_eq!(walk(&terrain, &holed, (0.0, 1.999), (10.0, 1.999)), [(0.0, 10.0, false)]);
     assert_eq!(walk(&terrain, &holed, (3.0, 3.0), (7.0, 3.0)), [(0.0, 4.0, true)], "both ends inside");
     assert_eq!(walk(&terrain, &holed, (4.5, 5.0), (5.5, 5.0)), [(0.0, 1.0, false)], "both ends in the hole");
-    // Two squares that touch at a corner, met in that corner.
+    // Two squares that touch at a corner, crossed at that corner.
     let corners = zones(
         r#"{"type":"GeometryCollection","geometries":[
             {"type":"Polygon","coordinates":[[[2,2],[5,2],[5,5],[2,5],[2,2]]]},
             {"type":"Polygon","coordinates":[[[5,5],[8,5],[8,8],[5,8],[5,5]]]}]}"#,
         &terrain,
     );
-    assert_eq!(walk(&terrain, &corners, (2.0, 8.0), (8.0, 2.0)), [(0.0, 72.0_f64.sqrt(), false)], "a touch keeps nothing out");
+    assert_eq!(walk(&terrain, &corners, (2.0, 8.0), (8.0, 2.0)), [(0.0, 72.0_f64.sqrt(), false)], "touching a zone has no effect");
     let diagonal = walk(&terrain, &corners, (1.0, 1.0), (9.0, 9.0));
     assert_eq!(diagonal.iter().map(|stretch| stretch.2).collect::<Vec<_>>(), [false, true, false], "{diagonal:?}");
     // A zone of 4 mm between two vertices, and a bow tie.
@@ -231,7 +231,7 @@ fn a_mask_is_the_union_of_its_pixels_cells() {
             })
             .collect();
         let drawn = zones(&format!(r#"{{"type":"MultiPolygon","coordinates":[{}]}}"#, cells.join(",")), &terrain);
-        // Half-integers put the line along cell borders and through their corners.
+        // Multiples of one half put the line along cell borders and through their corners.
         let mut place = || (0.5 * f64::from(random.random_range(0..=16)), 0.5 * f64::from(random.random_range(0..=16)));
         let (from, to) = (place(), place());
         if from == to {
@@ -286,7 +286,7 @@ fn friction_comes_from_the_pixel_over_the_middle_and_the_constant_fills_gaps() {
             && refused.contains("friction_coefficient"),
         "{refused}"
     );
-    // Along a border the smaller one counts.
+    // Along a border the smaller coefficient applies.
     let halves = Dem::new(2, 2, vec![0.4, 0.4, 0.7, 0.7], GeoReference::local(MapPoint::new(2.0, 6.0), 4.0, 4.0).unwrap()).unwrap();
     let (_folder, path) = grid_file(&halves);
     let mut along = slice(&terrain, MapPoint::new(0.0, 4.0), MapPoint::new(8.0, 4.0)).unwrap();
@@ -298,7 +298,7 @@ fn friction_comes_from_the_pixel_over_the_middle_and_the_constant_fills_gaps() {
 }
 
 #[test]
-fn files_that_hold_no_zones_are_refused_with_what_and_where() {
+fn files_without_valid_zones_are_refused_with_fault_and_position() {
     let bounds = MapBounds { min: MapPoint::new(1000.0, 1000.0), max: MapPoint::new(2000.0, 2000.0) };
     let square = "[[1100,1100],[1200,1100],[1200,1200],[1100,1100]]";
     let good = format!(r#"{{"type":"Feature","properties":{{}},"geometry":{{"type":"Polygon","coordinates":[{square}]}}}}"#);
@@ -306,7 +306,7 @@ fn files_that_hold_no_zones_are_refused_with_what_and_where() {
     let polygon = |rings: &str| second(&format!(r#"{{"type":"Feature","geometry":{{"type":"Polygon","coordinates":{rings}}}}}"#));
     let with_crs = |name: &str| good.replacen('{', &format!(r#"{{"crs":{{"type":"name","properties":{{"name":"{name}"}}}},"#), 1);
     let cases = [
-        ("{nonsense".to_owned(), "no JSON"),
+        ("{nonsense".to_owned(), "not JSON"),
         ("[1,2]".to_owned(), "no `type`"),
         (r#"{"type":"FeatureCollection"}"#.to_owned(), "`features`"),
         (r#"{"type":"FeatureCollection","features":[]}"#.to_owned(), "found no polygon"),
@@ -317,7 +317,7 @@ fn files_that_hold_no_zones_are_refused_with_what_and_where() {
         (polygon("[[[0,0],[1,1],[2,2],[0,0]]]"), "feature 2, ring 1 encloses no area"),
         (polygon("[]"), "feature 2 is an empty polygon"),
         (polygon("[[]]"), "feature 2, ring 1 is not closed"),
-        (polygon(r#"[[["a",0]]]"#), "feature 2 is no GeoJSON geometry"),
+        (polygon(r#"[[["a",0]]]"#), "feature 2 is not a GeoJSON geometry"),
         (good.replace("1100", "11").replace("1200", "12"), "look like degrees"),
         (good.replace("1100", "11000").replace("1200", "12000"), "off the terrain: they have x from 11000 to 12000"),
         (with_crs("urn:ogc:def:crs:OGC:1.3:CRS84"), "in degrees"),
@@ -337,7 +337,7 @@ fn files_that_hold_no_zones_are_refused_with_what_and_where() {
     let message = read_keep_out(&path, Some(&other), bounds).unwrap_err().to_string();
     assert!(message.contains("EPSG:32612") && message.contains("EPSG:32613"), "{message}");
     let (_folder, path) = file("x,y\n1,2\n");
-    assert!(read_keep_out(&path, None, bounds).unwrap_err().to_string().contains("no known elevation format"));
+    assert!(read_keep_out(&path, None, bounds).unwrap_err().to_string().contains("not a known elevation format"));
     assert!(
         read_keep_out(std::path::Path::new("absent.geojson"), None, bounds).unwrap_err().to_string().contains("absent.geojson")
     );

@@ -1,4 +1,4 @@
-//! Every refusal of the interval test, checked again at points of both cells in exact rational arithmetic.
+//! Checks every refusal of the interval test at points of both cells in exact rational arithmetic.
 
 use num_rational::BigRational;
 use num_traits::{FromPrimitive, One, Signed, Zero};
@@ -20,7 +20,7 @@ fn exact(number: f64) -> BigRational {
     BigRational::from_f64(number).unwrap()
 }
 
-/// A place on the chain, exactly: its x, its height on the straight line, and its site.
+/// A position on the chain in exact arithmetic: its x, its height on the straight line, and its site.
 struct Place {
     x: BigRational,
     z: BigRational,
@@ -42,8 +42,9 @@ impl Place {
     }
 }
 
-/// Whether any arc from one place to another keeps all limits, speeds with their tolerance: each limit bounds the loft, the two speeds by
-/// `n^2 - 2 h n + 1 + b^2 <= 0` with the smaller `h` of both, which a loft of the rest nearest to `h` satisfies or none does.
+/// Whether any arc from one position to another satisfies all limits, speeds with their tolerance. Each limit bounds the
+/// loft, the two speeds by `n^2 - 2 h n + 1 + b^2 <= 0` with the smaller `h` of both; of the lofts that the other limits
+/// allow it suffices to test the one nearest to `h`.
 fn is_hop(chain: &ConstrainedChain, hopper: &Hopper, g: f64, takeoff: &Place, landing: &Place) -> bool {
     let forward = takeoff.x < landing.x;
     let direction = if forward { Direction::Forward } else { Direction::Reverse };
@@ -98,7 +99,7 @@ fn is_hop(chain: &ConstrainedChain, hopper: &Hopper, g: f64, takeoff: &Place, la
     left && &nearest * &nearest - two * half_sum * &nearest + BigRational::one() + &b * &b <= BigRational::zero()
 }
 
-/// How many pairs of cells are refused, and how many of the refusals are wrong for some points of the two.
+/// The number of refused pairs of cells, and the number of refusals that are wrong for some pair of points.
 fn refusals(chains: usize) -> (usize, usize) {
     let draw = &mut Draw::seeded(71);
     let (mut refused, mut wrong) = (0, 0);
@@ -111,7 +112,7 @@ fn refusals(chains: usize) -> (usize, usize) {
         let (first, last) =
             (geometry.vertex_station(crate::quantity::VertexId(0)), geometry.station(geometry.extent_m().1).unwrap());
         let whole = partition::<Sound>(geometry, prover.slopes(), [&first, &last]);
-        // Stretches of all widths, some of them points.
+        // Stretches of all widths, some of them single points.
         let cells: Vec<_> = whole
             .iter()
             .flat_map(|cell| {
@@ -130,7 +131,7 @@ fn refusals(chains: usize) -> (usize, usize) {
                 continue;
             }
             refused += 1;
-            // Inside: a stretch's end may be a vertex, which the stretch does not speak of.
+            // Interior points only: an end of a stretch may be a vertex, which is a cell of its own.
             let point = |draw: &mut Draw, cell: &Cell<Outwards>| match (cell.from_m < cell.to_m, draw.below(3)) {
                 (false, _) => cell.from_m,
                 (true, 0) => cell.from_m.next_up(),
@@ -156,8 +157,8 @@ fn no_refusal_is_wrong_in_exact_arithmetic() {
 }
 
 #[test]
-fn what_is_refused_stays_refused_in_parts() {
-    // A hop of exactly one reach at 45 degrees, v^2 / g = 25 m, is a hop; one of a millionth more is none.
+fn a_refused_pair_of_cells_stays_refused_after_splitting() {
+    // A run of exactly one reach at 45 degrees, v^2 / g = 25 m, is feasible; a run longer by a millionth is not.
     let line = crate::chain::LineConstraints::from_cone(0.0, crate::quantity::Angle::from_degrees(60.0), 5.0, 5.0);
     let form = crate::chain::GroundForm::Explicit { forward: Some(line), reverse: Some(line) };
     let points = [(0.0, 0.0), (25.0, 0.0), (25.000_025, 0.0), (60.0, 0.0)].map(|(x, z)| crate::quantity::ChainPoint::new(x, z));

@@ -1,4 +1,4 @@
-//! Grids well and badly written.
+//! Valid and invalid grids.
 
 use super::*;
 
@@ -87,7 +87,7 @@ fn more_problems_than_twenty_are_counted() {
 }
 
 #[test]
-fn too_few_and_too_many_values_are_told_apart() {
+fn too_few_and_too_many_values_are_distinguished() {
     let few = only_problem(&format!("{HEADER}1 2 3\n4 5\n"));
     assert!(few.contains("end of the file after 5 values") && few.contains("6 (nrows 2 times ncols 3)"), "{few}");
     let many = only_problem(&format!("{HEADER}1 2 3\n4 5 6\n7 8\n"));
@@ -113,11 +113,11 @@ fn headers_that_contradict_themselves_are_refused() {
 }
 
 #[test]
-fn a_grid_in_degrees_is_refused_with_a_way_out() {
+fn a_grid_in_degrees_is_refused_with_a_remedy() {
     let header = "ncols 3\nnrows 2\nxllcorner -122.2\nyllcorner 38\ncellsize 0.000277\n";
     let message = read(&format!("{header}12 14 19\n10 16 30\n")).unwrap_err().to_string();
     assert!(message.contains("degrees") && message.contains("gdalwarp"), "{message}");
-    // A millimetre grid of a laboratory's sand box is no map in degrees.
+    // A millimetre grid of a laboratory sand box is not mistaken for a map in degrees.
     assert!(read("ncols 3\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 0.001\n0.001 0.002 0.001\n0 0 0.003\n").is_ok());
 }
 

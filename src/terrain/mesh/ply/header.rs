@@ -1,10 +1,10 @@
-//! The header: what the body holds, in which order and encoding.
+//! The header: the elements of the body, their order and encoding.
 
 use super::super::text::{in_line, shown};
 use super::{NAME, damaged};
 use crate::terrain::TerrainError;
 
-/// How the body is written.
+/// The encoding of the body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Text,
@@ -54,13 +54,13 @@ impl Kind {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Property {
     pub(super) name: String,
-    /// The type of the count, where this is a list.
+    /// The type of the count, if this is a list.
     pub(super) list: Option<Kind>,
     pub(super) kind: Kind,
 }
 
 impl Property {
-    /// The bytes that it takes at least: as text a digit and a blank, as a list its count.
+    /// The least number of bytes it takes: a digit and a blank as text, the count for a list.
     pub(super) fn least_bytes(&self, encoding: Encoding) -> u64 {
         match encoding {
             Encoding::Text => 2,
@@ -77,7 +77,7 @@ pub(super) struct Element {
     pub(super) properties: Vec<Property>,
 }
 
-/// All that stands before the body.
+/// The whole header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Header {
     pub(super) encoding: Encoding,
@@ -85,7 +85,7 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Reads the header, and finds the body behind it.
+    /// Reads the header and returns the body after it.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, &[u8]), TerrainError> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();

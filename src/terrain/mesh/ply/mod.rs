@@ -41,7 +41,7 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Terrai
     Ok(())
 }
 
-/// A count that the rest of the file cannot hold is refused before anything is made room for.
+/// Refuses a count that the rest of the file cannot hold, before memory is allocated.
 fn check_count(element: &Element, encoding: Encoding, bytes_left: usize) -> Result<(), TerrainError> {
     let least: u64 = element.properties.iter().map(|property| property.least_bytes(encoding)).sum();
     if element.count > 0 && least == 0 {
@@ -56,7 +56,7 @@ fn check_count(element: &Element, encoding: Encoding, bytes_left: usize) -> Resu
     Ok(())
 }
 
-/// Reads all rows of an element: hands over every value with the number of its property, and ends every row.
+/// Reads all rows of an element: passes on every value with the index of its property, and ends every row.
 fn read_rows(
     element: &Element,
     values: &mut Values<'_>,
@@ -124,7 +124,7 @@ fn read_faces(element: &Element, values: &mut Values<'_>, builder: &mut MeshBuil
     read_rows(element, values, &mut take, &mut end_row)
 }
 
-/// An index as PLY counts, from 0.
+/// A vertex index; PLY counts from 0.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "within the type's range, and whole")]
 fn vertex_index(value: f64) -> Result<u32, String> {
     if value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value) {

@@ -3,7 +3,7 @@
 use super::super::text::shown;
 use super::header::{Encoding, Kind};
 
-/// What is left of the body.
+/// The rest of the body.
 #[derive(Debug)]
 pub(super) struct Values<'a> {
     rest: &'a [u8],
@@ -27,10 +27,10 @@ impl<'a> Values<'a> {
         }
     }
 
-    /// The next number, which counts the values of a list.
+    /// The next number, as the count of a list.
     pub(super) fn next_count(&mut self, kind: Kind) -> Result<u64, String> {
         let value = self.next(kind)?;
-        // No list of this file is longer than the file.
+        // A list cannot be longer than the file.
         let most = self.rest.len();
         #[expect(clippy::cast_precision_loss, reason = "a file's length stays below 2^53")]
         let holds = value.fract() == 0.0 && (0.0..=most as f64).contains(&value);
@@ -53,7 +53,7 @@ impl<'a> Values<'a> {
     fn next_binary(&mut self, kind: Kind) -> Result<f64, String> {
         let Some((bytes, rest)) = self.rest.split_at_checked(kind.bytes()) else { return Err("the file ends".to_owned()) };
         self.rest = rest;
-        // Least significant byte first, in the low end of eight.
+        // Little-endian, in the low bytes of eight.
         let mut eight = [0; 8];
         for (place, byte) in bytes.iter().enumerate() {
             let at = if self.encoding == Encoding::LittleEndian { place } else { bytes.len() - 1 - place };

@@ -1,4 +1,4 @@
-//! Where the plane meets the triangles.
+//! The intersection of the plane with the triangles.
 
 use nalgebra::{Point3, Vector2};
 
@@ -19,11 +19,11 @@ pub(super) struct Plane {
 impl Plane {
     /// The map point at a distance along it.
     pub(super) fn map_point(&self, x_m: f64) -> MapPoint {
-        // From the nearer end, which is then exact itself.
+        // Computed from the nearer end, so that each end is exact.
         if 2.0 * x_m <= self.length_m { self.first + self.heading * x_m } else { self.last - self.heading * (self.length_m - x_m) }
     }
 
-    /// How far along and how far to the left a vertex lies; 0 to the left within the tolerance.
+    /// The distance along the plane and to its left of a vertex; the latter is 0 within the tolerance.
     fn place(&self, vertex: &Point3<f64>) -> Vector2<f64> {
         let away = vertex.xy() - self.first;
         let left = self.heading.perp(&away);
@@ -31,14 +31,14 @@ impl Plane {
     }
 }
 
-/// A station: a distance along the plane at which something begins or ends, and its map point.
+/// A station: a distance along the plane at which a segment begins or ends, and its map point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Station {
     pub(super) x_m: f64,
     pub(super) map: MapPoint,
 }
 
-/// What the plane cuts out of one triangle: a segment of the plane over two stations.
+/// The intersection of one triangle with the plane: a segment between two stations.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Segment {
     pub(super) x_m: [f64; 2],
@@ -47,7 +47,7 @@ pub(super) struct Segment {
 }
 
 impl Segment {
-    /// Elevation at a distance: at its ends their own, between them interpolated.
+    /// Elevation at a distance: the exact value at its ends, interpolated between them.
     pub(super) fn z_at(&self, x_m: f64) -> f64 {
         let ([x0, x1], [z0, z1]) = (self.x_m, self.z_m);
         if x_m == x0 {
@@ -60,7 +60,7 @@ impl Segment {
     }
 }
 
-/// What the plane cuts out of a triangle that stands across it: a range of heights at one station.
+/// The intersection of an upright triangle across the plane: a range of heights at one station.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Upright {
     pub(super) station: Station,
@@ -69,7 +69,7 @@ pub(super) struct Upright {
     pub(super) facet: ProfileFacet,
 }
 
-/// All that the plane cuts out of a mesh.
+/// The whole intersection of a mesh with the plane.
 #[derive(Debug)]
 pub(super) struct Cut {
     pub(super) segments: Vec<Segment>,
@@ -109,13 +109,13 @@ impl Cut {
         Self { segments, uprights, stations: stations.stations }
     }
 
-    /// The map point of a distance: that of its station, where it is one.
+    /// The map point of a distance; that of the station, if the distance is one.
     pub(super) fn map_point(&self, x_m: f64, plane: &Plane) -> MapPoint {
         let index = self.stations.partition_point(|station| station.x_m < x_m);
         self.stations.get(index).filter(|station| station.x_m == x_m).map_or_else(|| plane.map_point(x_m), |station| station.map)
     }
 
-    /// What stands across the plane at a station.
+    /// The upright triangles across the plane at a station.
     pub(super) fn uprights_at(&self, x_m: f64) -> &[Upright] {
         let begin = self.uprights.partition_point(|upright| upright.station.x_m < x_m);
         let end = self.uprights.partition_point(|upright| upright.station.x_m <= x_m);
@@ -123,7 +123,7 @@ impl Cut {
     }
 }
 
-/// Cuts every triangle whose box on the plane's line meets it, ends clipped to the transect.
+/// Intersects every triangle whose bounding interval across the plane contains it; ends are clipped to the transect.
 fn raw_segments(mesh: &Mesh, plane: &Plane) -> Vec<RawSegment> {
     let places: Vec<Vector2<f64>> = mesh.vertices().iter().map(|vertex| plane.place(vertex)).collect();
     let (lowest, highest) = (-plane.tolerance_m, plane.length_m + plane.tolerance_m);
@@ -141,7 +141,7 @@ fn raw_segments(mesh: &Mesh, plane: &Plane) -> Vec<RawSegment> {
     raw
 }
 
-/// Adds the segment of one triangle; of a triangle in the plane, its three edges.
+/// Adds the segment of one triangle; for a triangle in the plane, its three edges.
 fn cut_triangle(plane: &Plane, vertices: [Point3<f64>; 3], places: [Vector2<f64>; 3], raw: &mut Vec<RawSegment>) {
     let facet = ProfileFacet::from_normal(normal_of(vertices), plane.heading);
     let mut ends: Vec<End> = Vec::with_capacity(3);
@@ -164,7 +164,7 @@ fn cut_triangle(plane: &Plane, vertices: [Point3<f64>; 3], places: [Vector2<f64>
     raw.extend(pairs.iter().filter_map(|&(one, other)| clipped(plane, [ends[one], ends[other]], facet)));
 }
 
-/// Where an edge crosses the plane, the same from either of its triangles.
+/// The point where an edge crosses the plane, with the same result for both triangles of the edge.
 fn crossing(mut ends: [(&Point3<f64>, Vector2<f64>); 2]) -> End {
     let key = |vertex: &Point3<f64>| (vertex.x, vertex.y, vertex.z);
     if key(ends[1].0) < key(ends[0].0) {
@@ -175,7 +175,7 @@ fn crossing(mut ends: [(&Point3<f64>, Vector2<f64>); 2]) -> End {
     End { x_m: place_a.x + share * (place_b.x - place_a.x), z_m: a.z + share * (b.z - a.z), map: None }
 }
 
-/// The part of a segment between the transect's ends, from left to right; `None` where nothing is.
+/// The part of a segment between the transect's ends, from left to right; `None` if it is empty.
 fn clipped(plane: &Plane, [one, other]: [End; 2], facet: ProfileFacet) -> Option<RawSegment> {
     let (begin, end) = if (one.x_m, one.z_m) <= (other.x_m, other.z_m) { (one, other) } else { (other, one) };
     if end.x_m < -plane.tolerance_m || begin.x_m > plane.length_m + plane.tolerance_m {
@@ -193,14 +193,14 @@ fn clipped(plane: &Plane, [one, other]: [End; 2], facet: ProfileFacet) -> Option
     Some(RawSegment { ends: [clip(begin), clip(end)], facet })
 }
 
-/// Distances at which segments begin and end, those nearer than the tolerance made one.
+/// Distances at which segments begin and end; those closer than the tolerance are merged.
 struct Stations {
-    /// The least distance that belongs to each station.
+    /// The least distance merged into each station.
     begins: Vec<f64>,
     stations: Vec<Station>,
 }
 
-/// Which of several distances in one place stays: the greatest.
+/// Which of several merged distances is kept: the one of highest rank.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Rank {
     Crossing,
@@ -235,7 +235,7 @@ impl Stations {
         Self { begins, stations: kept.into_iter().map(|(_, station)| station).collect() }
     }
 
-    /// The station of a distance that was among those it was made of.
+    /// The station of a distance that was passed to [`Stations::of`].
     fn at(&self, x_m: f64) -> Station {
         let index = self.begins.partition_point(|begin| *begin <= x_m);
         self.stations[index.saturating_sub(1)]

@@ -1,8 +1,8 @@
-//! The upper (or lower) envelope of segments, by halves: O(n log n) but for the crossings.
+//! The upper (or lower) envelope of segments by divide and conquer: O(n log n) apart from the crossings.
 
 use super::cut::Segment;
 
-/// Which envelope.
+/// Upper or lower envelope.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     Upper,
@@ -13,13 +13,13 @@ pub(super) enum Side {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Piece {
     pub(super) x_m: [f64; 2],
-    /// Number of the segment.
+    /// Index of the segment.
     pub(super) segment: usize,
 }
 
 /// The outermost segment of each stretch, from left to right; stretches without a segment are left out.
 ///
-/// Of segments in the same place (within the tolerance at both ends of a stretch) the one with the larger cross-slope counts.
+/// Of coincident segments (within the tolerance at both ends of a stretch) the one with the larger cross-slope is used.
 pub(super) fn envelope(segments: &[Segment], side: Side, tolerance_m: f64) -> Vec<Piece> {
     let all: Vec<usize> = (0..segments.len()).collect();
     Envelope { segments, side, tolerance_m }.of(&all)
@@ -63,7 +63,7 @@ impl Envelope<'_> {
         merged
     }
 
-    /// Adds the outer of two segments over a stretch, or first one and then the other where they cross.
+    /// Adds the outer of two segments over a stretch, or one after the other if they cross.
     fn push_outer(&self, merged: &mut Vec<Piece>, [from, to]: [f64; 2], a: usize, b: usize) {
         let outward = if self.side == Side::Upper { 1.0 } else { -1.0 };
         let ahead = |x_m: f64| outward * (self.segments[a].z_at(x_m) - self.segments[b].z_at(x_m));
@@ -86,7 +86,7 @@ impl Envelope<'_> {
     }
 }
 
-/// Adds a piece, or lengthens the last one where that is of the same segment.
+/// Adds a piece, or extends the last one if it belongs to the same segment.
 fn push(pieces: &mut Vec<Piece>, piece: Piece) {
     match pieces.last_mut() {
         Some(last) if last.segment == piece.segment && last.x_m[1] == piece.x_m[0] => last.x_m[1] = piece.x_m[1],

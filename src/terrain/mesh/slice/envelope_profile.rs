@@ -1,4 +1,4 @@
-//! From the upper envelope to a profile: gaps refused, walls given a run, overlaps measured.
+//! Converts the upper envelope to a profile: refuses gaps, gives walls a run, and measures overlaps.
 
 use nalgebra::Vector3;
 
@@ -8,10 +8,10 @@ use super::{Layers, MeshSlice, WALL_RUN_M, Wall};
 use crate::quantity::Angle;
 use crate::terrain::{Profile, ProfileFacet, ProfilePoint, TerrainError};
 
-/// A wall's run is at most this share of the segment at its foot, which may have a wall at its other end too.
+/// The run of a wall as a fraction of the segment at its foot, at most; that segment may have a wall at its other end too.
 const LARGEST_RUN: f64 = 0.25;
 
-/// The first stretch of the transect without a triangle, as the traveller meets it.
+/// The first stretch of the transect without a triangle, in the direction of travel.
 pub(super) fn first_gap(pieces: &[Piece], plane: &Plane, backwards: bool) -> Option<TerrainError> {
     let begins = pieces.iter().map(|piece| piece.x_m[0]).chain([plane.length_m]);
     let ends = [0.0].into_iter().chain(pieces.iter().map(|piece| piece.x_m[1]));
@@ -31,7 +31,7 @@ pub(super) fn first_gap(pieces: &[Piece], plane: &Plane, backwards: bool) -> Opt
     })
 }
 
-/// Where the uppermost and the lowermost surface are apart.
+/// The stretches where the uppermost and the lowermost surface differ.
 pub(super) fn layers(segments: &[Segment], upper: &[Piece], lower: &[Piece], apart_m: f64) -> Layers {
     let mut layers = Layers { places: 0, length_m: 0.0 };
     let mut breaks: Vec<f64> = upper.iter().chain(lower).flat_map(|piece| piece.x_m).collect();
@@ -54,11 +54,11 @@ pub(super) fn layers(segments: &[Segment], upper: &[Piece], lower: &[Piece], apa
     layers
 }
 
-/// The profile along the upper envelope while it is built, from the plane's first end.
+/// The profile along the upper envelope under construction, from the plane's first end.
 pub(super) struct EnvelopeProfile<'a> {
     plane: &'a Plane,
     cut: &'a Cut,
-    /// A jump of more than this is a wall, m.
+    /// A larger jump is a wall, m.
     jump_m: f64,
     points: Vec<ProfilePoint>,
     facets: Vec<ProfileFacet>,
@@ -66,7 +66,7 @@ pub(super) struct EnvelopeProfile<'a> {
 }
 
 impl<'a> EnvelopeProfile<'a> {
-    /// Follows the pieces of the upper envelope, which leave no gap.
+    /// Follows the pieces of the upper envelope, which must have no gaps.
     pub(super) fn new(plane: &'a Plane, cut: &'a Cut, upper: &[Piece], jump_m: f64) -> Self {
         let mut profile = Self { plane, cut, jump_m, points: Vec::new(), facets: Vec::new(), walls: Vec::new() };
         let pieces = profile.split_at_spikes(upper);
@@ -81,7 +81,7 @@ impl<'a> EnvelopeProfile<'a> {
         profile
     }
 
-    /// Cuts a piece in two where something thin stands on it.
+    /// Divides a piece where a thin wall stands on it.
     fn split_at_spikes(&self, upper: &[Piece]) -> Vec<Piece> {
         let mut pieces = Vec::with_capacity(upper.len());
         for &piece in upper {
@@ -106,7 +106,7 @@ impl<'a> EnvelopeProfile<'a> {
         self.cut.segments[piece.segment].z_at(x_m)
     }
 
-    /// Adds the vertex between two pieces: the highest point there, with a foot on either side that lies lower.
+    /// Adds the vertex between two pieces: the highest point there, with a foot on each side that is lower.
     fn join(&mut self, left: Option<&Piece>, right: Option<&Piece>, x_m: f64) {
         let standing = self.cut.uprights_at(x_m);
         let heights = [left, right].map(|piece| piece.map(|piece| self.z_at(piece, x_m)));
@@ -138,12 +138,12 @@ impl<'a> EnvelopeProfile<'a> {
         self.walls.push(Wall { x_m, map, foot_m, top_m, run_m, closed });
     }
 
-    /// The facet of a wall from foot to top: of the triangles that stand there, the one with the largest cross-slope. Where they do not
-    /// reach from foot to top there is nothing to stand on: 90 degrees.
+    /// The facet of a wall from foot to top: of the upright triangles there, the one with the largest cross-slope. If they do
+    /// not reach from foot to top, nothing can stand there: 90 degrees.
     fn wall_facet(&self, standing: &[Upright], [foot_m, top_m]: [f64; 2]) -> (ProfileFacet, bool) {
         let mut reached_m = foot_m;
         let mut steepest: Option<ProfileFacet> = None;
-        // From the lowest.
+        // In ascending order of height.
         for upright in standing {
             let overlaps = upright.high_m > foot_m + self.jump_m && upright.low_m < top_m - self.jump_m;
             if upright.low_m > reached_m + self.jump_m || !overlaps {

@@ -1,4 +1,4 @@
-//! The exact cut of a vertical plane through a mesh, and its upper envelope.
+//! The exact intersection of a vertical plane with a mesh, and its upper envelope.
 //!
 //! ```text
 //!   z      ___c___                 every triangle that meets the plane gives a segment (cut.rs);
@@ -19,81 +19,83 @@ use super::Mesh;
 use crate::quantity::MapPoint;
 use crate::terrain::{Profile, TerrainError};
 
-/// A wall becomes a segment of this run, m, or of a quarter of the segment at its foot, where that is less. It lies on the wall's lower side:
-/// the upper envelope is never below the surface, and its upper edge stays where it is.
+/// The run of a segment that replaces a wall, m; at most a quarter of the segment at its foot. It lies on the lower side of
+/// the wall, so that the upper envelope is never below the surface and the upper edge does not move.
 pub const WALL_RUN_M: f64 = 1.0e-3;
 
-/// So many median edges apart, points are in the same place; the plane runs along an edge this near.
+/// Points closer than this many median edges are the same; the plane runs along an edge within this distance.
 const SAME_PLACE: f64 = 1.0e-9;
 
-/// So many units in the last place of the largest coordinate are in the same place, where that is coarser.
+/// A tolerance of this many units in the last place of the largest coordinate is used instead if it is larger.
 const RESOLUTION: f64 = 16.0;
 
-/// So many tolerances in height are no wall: surfaces that meet within the tolerance on a steep slope.
+/// A step of fewer tolerances in height is not a wall: surfaces that join within the tolerance on a steep slope have such
+/// steps.
 const NO_WALL: f64 = 100.0;
 
-/// How many walls a warning names one by one.
+/// The number of walls that a warning lists.
 const WALLS_LISTED: usize = 20;
 
-/// The upper envelope of a mesh along a vertical plane, and where it had to be chosen.
+/// The upper envelope of a mesh along a vertical plane, and where the surface is not a single sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeshSlice {
-    /// The ground, as a DEM gives it.
+    /// The ground, in the form of a DEM's profile.
     pub profile: Profile,
-    /// Where the plane meets several surfaces.
+    /// The stretches where the plane meets several surfaces.
     pub layers: Layers,
-    /// Where the upper envelope jumps, in the order of travel.
+    /// The jumps of the upper envelope, in the order of travel.
     pub walls: Vec<Wall>,
 }
 
-/// How much of a transect has several surfaces one above another.
+/// The extent of several surfaces one above another along a transect.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layers {
-    /// In how many separate places.
+    /// Number of separate stretches.
     pub places: usize,
-    /// Over which length in all, m.
+    /// Total length of these stretches, m.
     pub length_m: f64,
 }
 
 /// A wall: a vertical step of the upper envelope.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wall {
-    /// Where it stands along the transect, m: its upper edge.
+    /// Position of its upper edge along the transect, m.
     pub x_m: f64,
-    /// Where on the map.
+    /// Position on the map.
     pub map: MapPoint,
     /// Elevation at its foot, m.
     pub foot_m: f64,
     /// Elevation of its upper edge, m.
     pub top_m: f64,
-    /// The run that its segment got on the lower side, m.
+    /// The run of its segment, on the lower side, m.
     pub run_m: f64,
-    /// Whether triangles stand there all the way up. Where not, the upper surface juts out, and nothing can stand on the step: its segment
-    /// has a cross-slope of 90 degrees.
+    /// Whether triangles cover it from foot to top. If not, the upper surface overhangs and nothing can stand on the step:
+    /// its segment has a cross-slope of 90 degrees.
     pub closed: bool,
 }
 
-/// Cuts a mesh along the straight map line from one point to another and takes its upper envelope.
+/// Intersects a mesh with the vertical plane through two map points and returns its upper envelope.
 ///
-/// Every edge of the upper surface that the plane crosses is a vertex, and so is every place where another surface becomes the uppermost. A
-/// segment takes the facet under it, its normal turned upward; where the plane runs along an edge (within 1e-9 median edges of the
-/// mesh, or the resolution of its coordinates), that of the edge's triangles with the larger cross-slope. A triangle that stands in the plane
-/// has 90 degrees. Where the upper envelope jumps, at a wall or at the rim of an overhang, the step becomes a segment of [`WALL_RUN_M`] on its
-/// lower side, with the cross-slope of the wall's own triangles; a thin wall that stands on the ground becomes a spike.
+/// Every edge of the upper surface that the plane crosses gives a vertex, and so does every change of the uppermost surface.
+/// A segment gets the facet below it, with its normal turned upward; if the plane runs along an edge (within 1e-9 median
+/// edges of the mesh, or the resolution of its coordinates), the facet of the edge with the larger cross-slope. A triangle in
+/// the plane has 90 degrees. Where the upper envelope jumps, at a wall or at the rim of an overhang, the step becomes a
+/// segment of [`WALL_RUN_M`] on its lower side, with the cross-slope of the wall's own triangles; a thin wall on the ground
+/// becomes a spike.
 ///
 /// # Units
 /// Map coordinates in m; `x_m` is the horizontal distance from `from`.
 ///
 /// # Returns
-/// A profile from `from` at x = 0 to `to`. The way back has the same points, facets and walls. A mesh that triangulates a DEM as
-/// [`slice`](crate::terrain::slice()) does gives the slice of that DEM.
+/// A profile from `from` at x = 0 to `to`. The reversed transect has the same points, facets and walls. A mesh that
+/// triangulates a DEM as [`slice`](crate::terrain::slice()) does gives the slice of that DEM.
 ///
 /// # Degenerate
-/// Points nearer than the tolerance above are one. A plane that only touches a corner of a triangle does not meet it.
+/// Points closer than the tolerance above are merged. A plane that only touches a corner of a triangle does not intersect it.
 ///
 /// # Errors
-/// [`TerrainError::SamePoint`], [`TerrainError::OffTheMap`] for coordinates that are not finite, and [`TerrainError::MeshGap`] where the
-/// plane meets no triangle.
+/// [`TerrainError::SamePoint`]; [`TerrainError::OffTheMap`] for coordinates that are not finite; [`TerrainError::MeshGap`] if
+/// the plane meets no triangle over part of the transect.
 ///
 /// # Examples
 /// ```
@@ -115,7 +117,7 @@ pub fn slice_mesh(mesh: &Mesh, from: MapPoint, to: MapPoint) -> Result<MeshSlice
             return Err(TerrainError::OffTheMap { which, at, bounds: mesh.bounds().map });
         }
     }
-    // One order of the ends, whichever the direction of travel, so that the way back is the same.
+    // The ends are used in one order for both directions of travel, so that both give the same points.
     let backwards = (to.x, to.y) < (from.x, from.y);
     let (first, last) = if backwards { (to, from) } else { (from, to) };
     let tolerance_m = tolerance_m(mesh, first, last);
@@ -137,7 +139,7 @@ pub fn slice_mesh(mesh: &Mesh, from: MapPoint, to: MapPoint) -> Result<MeshSlice
     Ok(profile.oriented(&plane, backwards, layers))
 }
 
-/// Within this distance points are the same, m.
+/// Points within this distance are the same, m.
 fn tolerance_m(mesh: &Mesh, first: MapPoint, last: MapPoint) -> f64 {
     let map = mesh.bounds().map;
     let largest = [map.min, map.max, first, last].iter().map(|point| point.coords.amax()).fold(0.0, f64::max);
@@ -145,14 +147,14 @@ fn tolerance_m(mesh: &Mesh, first: MapPoint, last: MapPoint) -> f64 {
 }
 
 impl MeshSlice {
-    /// What a user of the profile should know, one sentence each; nothing where the mesh is one sheet.
+    /// Warnings for users of the profile, one sentence each; empty if the mesh is a single sheet.
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
         let length_m = self.profile.length_m();
         if self.layers.places > 0 {
             warnings.push(format!(
                 "the plane meets several surfaces of the mesh one above another in {} places, over {:.3} of {:.3} m ({:.1} %): the \
-                 uppermost counts there",
+                 uppermost is used there",
                 self.layers.places,
                 self.layers.length_m,
                 length_m,

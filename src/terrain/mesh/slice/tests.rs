@@ -1,4 +1,4 @@
-//! The cut against planes and solids whose upper envelope is known, and against a search through all triangles.
+//! Compares the slice with planes and solids of known upper envelope, and with a search through all triangles.
 
 use nalgebra::Point3;
 use rand::rngs::ChaCha8Rng;
@@ -53,7 +53,7 @@ fn close(found: &[(f64, f64)], expected: &[(f64, f64)]) {
     }
 }
 
-/// What every slice keeps, and the way back.
+/// Checks the properties of every slice, and the reversed transect.
 fn check(mesh: &Mesh, from: MapPoint, to: MapPoint) -> MeshSlice {
     let slice = slice_mesh(mesh, from, to).unwrap();
     let profile = &slice.profile;
@@ -100,20 +100,20 @@ fn a_block_on_a_floor_has_walls_on_its_lower_sides() {
     for (wall, x_m) in slice.walls.iter().zip([3.0, 7.0]) {
         assert_eq!(*wall, Wall { x_m, map: at(x_m, 5.25), foot_m: 0.0, top_m: 2.0, run_m: WALL_RUN_M, closed: true });
     }
-    // Met square on, a wall has no cross-slope.
+    // At a right angle to the plane, a wall has no cross-slope.
     assert!(slice.profile.facets.iter().all(|facet| facet.cross_slope.degrees() < 1e-12));
     let warnings = slice.warnings();
-    assert!(warnings[0].contains("in 1 places, over 4.000 of 10.000 m (40.0 %): the uppermost counts"), "{warnings:?}");
+    assert!(warnings[0].contains("in 1 places, over 4.000 of 10.000 m (40.0 %): the uppermost is used"), "{warnings:?}");
     assert!(
         warnings[1].contains("jumps in 2 places")
             && warnings[1].contains("wall of 2.000 m at x = 3.000 m, map (3.000, 5.250), from z = 0.000 m")
     );
-    // Met at 45 degrees, it has 45 degrees.
+    // At 45 degrees to the plane, it has 45 degrees.
     let aslant = check(&block, at(0.5, 2.5), at(8.0, 10.0));
     let walls: Vec<f64> =
         aslant.profile.facets.iter().map(|facet| facet.cross_slope.degrees()).filter(|degrees| *degrees > 1.0).collect();
     assert!(walls.len() == 2 && walls.iter().all(|degrees| (degrees - 45.0).abs() < 1e-9), "{walls:?}");
-    // Along the upper edge of a wall, the wall counts: 90 degrees.
+    // Along the upper edge of a wall, the wall's facet is used: 90 degrees.
     let edge = check(&block, at(3.0, 5.0), at(3.0, 5.5));
     assert!(edge.profile.points.iter().all(|point| point.z_m == 2.0));
     assert!(edge.profile.facets.iter().all(|facet| facet.cross_slope.degrees() == 90.0));
@@ -129,7 +129,7 @@ fn a_plate_in_the_air_ends_in_steps_that_nothing_stands_on() {
         slice.profile.facets.iter().map(|facet| facet.cross_slope.degrees()).filter(|degrees| *degrees > 0.0).collect();
     assert_eq!(steps, [90.0, 90.0]);
     assert!(slice.warnings()[1].contains("overhang of 1.000 m at x = 2.000 m"));
-    // Beside it there is nothing to say.
+    // Beside it there are no warnings.
     let beside = check(&table, at(1.0, 1.0), at(9.0, 1.0));
     assert!(beside.warnings().is_empty() && beside.layers == Layers { places: 0, length_m: 0.0 });
 }
@@ -191,7 +191,7 @@ fn jittered(random: &mut ChaCha8Rng, height: impl Fn(f64, f64) -> f64) -> Mesh {
     for row in 0..rows {
         for col in 0..cols {
             let [a, b] = [row * (cols + 1) + col, (row + 1) * (cols + 1) + col];
-            // Turned either way, split either way.
+            // Random orientation and random diagonal.
             triangles.extend(if random.random_bool(0.5) {
                 [[a, a + 1, b + 1], [a, b, b + 1]]
             } else {
@@ -221,7 +221,8 @@ fn planes_cones_and_paraboloids_give_their_own_profiles() {
             assert!((facet.normal - expected.normal).norm() < 1e-9);
             assert!((facet.cross_slope.radians() - expected.cross_slope.radians()).abs() < 1e-9);
         }
-        // On an edge of length h a paraboloid z = r^2 / 8 is missed by h^2 / 32 at most, a cone of slope 1/2 by h / 4; edges are under 1.2 m.
+        // On an edge of length h a paraboloid z = r^2 / 8 has an error of at most h^2 / 32, a cone of slope 1/2 of h / 4;
+        // edges are under 1.2 m.
         for (height, error_m) in [((|r| r * r / 8.0) as fn(f64) -> f64, 1.2 * 1.2 / 32.0), (|r| -0.5 * r, 0.3)] {
             let slice = check(&jittered(&mut random, |x, y| height(radius(x, y))), from, to);
             for point in &slice.profile.points {
@@ -233,7 +234,7 @@ fn planes_cones_and_paraboloids_give_their_own_profiles() {
     }
 }
 
-/// Elevation of the highest triangle over a point of the map; `None` where there is none. By barycentric coordinates.
+/// Elevation of the highest triangle at a map point, by barycentric coordinates; `None` if there is none.
 fn highest(mesh: &Mesh, place: MapPoint) -> Option<f64> {
     let over = |[a, b, c]: [Point3<f64>; 3]| {
         let cross = |p: Point3<f64>, q: Point3<f64>| (p.xy() - place).perp(&(q.xy() - place));
@@ -251,7 +252,7 @@ fn a_heap_of_random_triangles_has_the_upper_envelope_that_a_search_through_all_o
     let (mut compared, mut walls) = (0, 0);
     for case in 0..160 {
         let count = [1, 3, 12, 60][case % 4];
-        // Whole numbers half of the time: shared corners, upright triangles, edges along the plane.
+        // Integer coordinates half of the time: shared corners, upright triangles, edges along the plane.
         let mut coordinate = |whole: bool, low: f64, high: f64| {
             let value: f64 = random.random_range(low..high);
             if whole { value.round() } else { value }

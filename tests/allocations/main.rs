@@ -1,0 +1,21 @@
+//! Tests that count allocations. They have a process of their own, because the counter sees the whole process, and run one at a time.
+
+use std::{
+    alloc::System,
+    sync::{Mutex, MutexGuard, PoisonError},
+};
+
+use stats_alloc::{INSTRUMENTED_SYSTEM, StatsAlloc};
+
+mod fly_allocations;
+mod kernel_allocations;
+mod map_allocations;
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// Holds the other tests of this process back until the guard is dropped: their allocations would be counted too.
+fn alone() -> MutexGuard<'static, ()> {
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)
+}

@@ -1,0 +1,996 @@
+//! Every option of every command does something, or is refused; every help text says what it is good for, and its example runs.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
+#![allow(clippy::print_stderr, reason = "a skipped example says why")]
+
+use std::{
+    collections::{BTreeMap, BTreeSet},
+    path::Path,
+};
+
+use crate::desk::{CHAIN, Desk, FORWARD_ONLY, Ran};
+
+const COMMANDS: [&str; 12] =
+    ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "simulate", "synth", "bodies"];
+
+/// Options that need a projected map, tried in `maps_command.rs`.
+const ON_A_PROJECTED_MAP: [&str; 6] =
+    ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--start-lonlat", "--goal-lonlat", "--accept-map-scale"];
+
+/// Options that must change nothing but the time it takes, tried below and in `trade_compare.rs`.
+const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
+
+/// An option, a command line without it, and one with it.
+type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
+
+const RUN: [Trial; 4] = [
+    ("--output", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "elsewhere"]),
+    ("--format", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--format", "json"]),
+    ("--set", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--set", "body.name=moon"]),
+    (
+        "--quiet",
+        &["run", "scenario.toml", "-o", "out", "--set", "body.name=bennu"],
+        &["run", "scenario.toml", "-o", "out", "--set", "body.name=bennu", "--quiet"],
+    ),
+];
+
+const SLICE: [Trial; 8] = [
+    (
+        "--geojson",
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "--geojson", "line.geojson"],
+    ),
+    (
+        "--via",
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "--via", "9,1"],
+    ),
+    ("--from", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], &["slice", "ground.tif", "--from", "2,1", "--to", "9,9"]),
+    ("--to", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], &["slice", "ground.tif", "--from", "1,1", "--to", "9,8"]),
+    (
+        "--scenario",
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "--scenario", "scenario.toml"],
+    ),
+    (
+        "--mesh-scale",
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3"],
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3", "--mesh-scale", "2"],
+    ),
+    (
+        "--quiet",
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3"],
+        &["slice", "plate.obj", "--from", "1,1", "--to", "3,3", "--quiet"],
+    ),
+    (
+        "--output",
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"],
+        &["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "-o", "slice.csv"],
+    ),
+];
+
+const MAP: [Trial; 20] = [
+    (
+        "--start",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "6,5", "--scenario", "map.toml"],
+    ),
+    (
+        "--goal",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+    ),
+    (
+        "--stride",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--stride", "2"],
+    ),
+    (
+        "--effort",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--effort", "time"],
+    ),
+    (
+        "--return",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--return"],
+    ),
+    (
+        "--output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "-o", "hops.tif"],
+    ),
+    (
+        "--effort-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--effort"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--effort", "--effort-output", "e.tif"],
+    ),
+    (
+        "--return-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--return"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--return", "--return-output", "b.tif"],
+    ),
+    (
+        "--mobility",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--mobility", "m.tif"],
+    ),
+    (
+        "--paths",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--paths", "p.csv"],
+    ),
+    (
+        "--geojson",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--geojson", "p.geojson"],
+    ),
+    (
+        "--profiles",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--profiles", "p.svg"],
+    ),
+    (
+        "--plot",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--plot", "map.svg"],
+    ),
+    (
+        "--format",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--format", "json"],
+    ),
+    (
+        "--scenario",
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--body",
+            "mars",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=3",
+            "--set",
+            "hopper.landing_speed_max_m_s=3",
+            "--set",
+            "surface.friction_coefficient=0.5",
+        ],
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--body",
+            "mars",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=3",
+            "--set",
+            "hopper.landing_speed_max_m_s=3",
+            "--set",
+            "surface.friction_coefficient=0.5",
+            "--format",
+            "json",
+            "--scenario",
+            "map.toml",
+        ],
+    ),
+    (
+        "--set",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--set", "hopper.takeoff_speed_max_m_s=3"],
+    ),
+    (
+        "--body",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--body", "moon"],
+    ),
+    (
+        "--gravity-m-s2",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--gravity-m-s2", "2.5"],
+    ),
+    (
+        "--clearance-m",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--clearance-m", "2.5"],
+    ),
+    (
+        "--quiet",
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--goal",
+            "9,9",
+            "--scenario",
+            "map.toml",
+            "--body",
+            "bennu",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=0.02",
+            "--set",
+            "hopper.landing_speed_max_m_s=0.02",
+        ],
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--goal",
+            "9,9",
+            "--scenario",
+            "map.toml",
+            "--body",
+            "bennu",
+            "--set",
+            "hopper.takeoff_speed_max_m_s=0.02",
+            "--set",
+            "hopper.landing_speed_max_m_s=0.02",
+            "--quiet",
+        ],
+    ),
+];
+
+const HOP: [Trial; 9] = [
+    ("--from", &["hop", "scenario.toml", "--to", "30"], &["hop", "scenario.toml", "--to", "30", "--from", "10"]),
+    ("--to", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--to", "10"]),
+    ("--format", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--format", "json"]),
+    ("--scenario", &["hop", "chain.csv", "--body", "mars"], &["hop", "chain.csv", "--body", "mars", "--scenario", "scenario.toml"]),
+    ("--set", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--set", "hopper.apex_height_max_m=1"]),
+    ("--body", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--body", "moon"]),
+    ("--gravity-m-s2", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--gravity-m-s2", "1.5"]),
+    ("--clearance-m", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--clearance-m", "0.5"]),
+    ("--quiet", &["hop", "scenario.toml", "--body", "bennu"], &["hop", "scenario.toml", "--body", "bennu", "--quiet"]),
+];
+
+const CHECK: [Trial; 16] = [
+    ("--start", &["check", "scenario.toml"], &["check", "scenario.toml", "--start", "10"]),
+    ("--goal", &["check", "scenario.toml"], &["check", "scenario.toml", "--goal", "30"]),
+    ("--pairs", &["check", "scenario.toml"], &["check", "scenario.toml", "--pairs", "pairs.csv"]),
+    ("--prove", &["check", "scenario.toml"], &["check", "scenario.toml", "--prove"]),
+    ("--budget", &["check", "scenario.toml", "--prove"], &["check", "scenario.toml", "--prove", "--budget", "1"]),
+    ("--plot", &["check", "scenario.toml", "--prove"], &["check", "scenario.toml", "--prove", "--plot", "proof.svg"]),
+    ("--format", &["check", "scenario.toml"], &["check", "scenario.toml", "--format", "json"]),
+    ("--points-per-segment", &["check", "scenario.toml"], &["check", "scenario.toml", "--points-per-segment", "2"]),
+    ("--node-spacing-max-m", &["check", "scenario.toml"], &["check", "scenario.toml", "--node-spacing-max-m", "2"]),
+    ("--effort", &["check", "scenario.toml"], &["check", "scenario.toml", "--effort", "time"]),
+    (
+        "--scenario",
+        &["check", "chain.csv", "--body", "mars"],
+        &["check", "chain.csv", "--body", "mars", "--scenario", "scenario.toml"],
+    ),
+    ("--set", &["check", "scenario.toml"], &["check", "scenario.toml", "--set", "hopper.flight_time_max_s=1"]),
+    ("--body", &["check", "scenario.toml"], &["check", "scenario.toml", "--body", "moon"]),
+    ("--gravity-m-s2", &["check", "scenario.toml"], &["check", "scenario.toml", "--gravity-m-s2", "1.5"]),
+    ("--clearance-m", &["check", "scenario.toml"], &["check", "scenario.toml", "--clearance-m", "50"]),
+    ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
+];
+
+const PLAN: [Trial; 18] = [
+    ("--start", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--start", "10"]),
+    ("--goal", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--goal", "30"]),
+    ("--output", &["plan", "scenario.toml"], &["plan", "scenario.toml", "-o", "path.csv"]),
+    ("--geojson", &["plan", "map.toml"], &["plan", "map.toml", "--geojson", "path.geojson"]),
+    ("--plot", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--plot", "path.svg"]),
+    ("--prove", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--prove"]),
+    ("--budget", &["plan", "scenario.toml", "--prove"], &["plan", "scenario.toml", "--prove", "--budget", "1"]),
+    ("--verify", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--verify"]),
+    ("--format", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--format", "json"]),
+    ("--points-per-segment", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--points-per-segment", "2"]),
+    ("--node-spacing-max-m", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--node-spacing-max-m", "2"]),
+    ("--effort", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--effort", "peak-speed"]),
+    (
+        "--scenario",
+        &["plan", "chain.csv", "--body", "mars"],
+        &["plan", "chain.csv", "--body", "mars", "--scenario", "scenario.toml"],
+    ),
+    ("--set", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--set", "search.takeoff_angle=mid-range"]),
+    ("--body", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--body", "moon"]),
+    ("--gravity-m-s2", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--gravity-m-s2", "1.5"]),
+    ("--clearance-m", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--clearance-m", "50"]),
+    ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
+];
+
+/// A question that other options change.
+const REQUIRED: [&str; 10] =
+    ["require", "scenario.toml", "--vary", "surface.friction_coefficient", "--from", "0.03", "--to", "2", "--resolution", "0.05"];
+
+const REQUIRE: [Trial; 17] = [
+    (
+        "--start",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--start",
+            "10",
+        ],
+    ),
+    (
+        "--goal",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--goal",
+            "30",
+        ],
+    ),
+    ("--vary", &REQUIRED, &["require", "scenario.toml", "--vary", "surface.rest_slope_max_deg", "--resolution", "0.05"]),
+    (
+        "--from",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.04",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+        ],
+    ),
+    (
+        "--to",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "1",
+            "--resolution",
+            "0.05",
+        ],
+    ),
+    (
+        "--resolution",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.2",
+        ],
+    ),
+    (
+        "--budget",
+        &[
+            "require",
+            "pit.csv",
+            "--scenario",
+            "scenario.toml",
+            "--vary",
+            "hopper.takeoff_speed_max_m_s",
+            "--resolution",
+            "0.05",
+            "--from",
+            "1",
+        ],
+        &[
+            "require",
+            "pit.csv",
+            "--scenario",
+            "scenario.toml",
+            "--vary",
+            "hopper.takeoff_speed_max_m_s",
+            "--resolution",
+            "0.05",
+            "--from",
+            "1",
+            "--budget",
+            "1",
+        ],
+    ),
+    (
+        "--format",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--points-per-segment",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--points-per-segment",
+            "7",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--node-spacing-max-m",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--node-spacing-max-m",
+            "3",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--effort",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--effort",
+            "time",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--scenario",
+        &["require", "chain.csv", "--body", "mars", "--vary", "hopper.clearance_m"],
+        &[
+            "require",
+            "chain.csv",
+            "--body",
+            "mars",
+            "--vary",
+            "hopper.clearance_m",
+            "--resolution",
+            "0.05",
+            "--scenario",
+            "scenario.toml",
+        ],
+    ),
+    (
+        "--set",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--set",
+            "hopper.flight_time_max_s=2",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--body",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--body",
+            "moon",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--gravity-m-s2",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--gravity-m-s2",
+            "1.5",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--clearance-m",
+        &REQUIRED,
+        &[
+            "require",
+            "scenario.toml",
+            "--vary",
+            "surface.friction_coefficient",
+            "--from",
+            "0.03",
+            "--to",
+            "2",
+            "--resolution",
+            "0.05",
+            "--clearance-m",
+            "2",
+            "--format",
+            "json",
+        ],
+    ),
+    (
+        "--quiet",
+        &["require", "forward.csv", "--body", "mars", "--start", "0", "--goal", "10", "--vary", "hopper.takeoff_speed_max_m_s"],
+        &[
+            "require",
+            "forward.csv",
+            "--body",
+            "mars",
+            "--start",
+            "0",
+            "--goal",
+            "10",
+            "--vary",
+            "hopper.takeoff_speed_max_m_s",
+            "--quiet",
+        ],
+    ),
+];
+
+const VARY: &str = "hopper.takeoff_speed_max_m_s=6:9:2";
+
+const TRADE: [Trial; 17] = [
+    ("--start", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--start", "30"]),
+    ("--goal", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--goal", "10"]),
+    (
+        "--vary",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s=6:9:3"],
+    ),
+    ("--output", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "-o", "trade.csv"]),
+    ("--plot", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--plot", "trade.svg"]),
+    ("--format", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--format", "json"]),
+    ("--prove", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--prove"]),
+    (
+        "--budget",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove", "--budget", "1"],
+    ),
+    (
+        "--points-per-segment",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--points-per-segment", "2"],
+    ),
+    (
+        "--node-spacing-max-m",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--node-spacing-max-m", "2"],
+    ),
+    (
+        "--effort",
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--effort", "time"],
+    ),
+    (
+        "--scenario",
+        &["trade", "chain.csv", "--body", "mars", "--vary", VARY],
+        &["trade", "chain.csv", "--body", "mars", "--vary", VARY, "--scenario", "scenario.toml"],
+    ),
+    (
+        "--set",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", VARY, "--set", "hopper.flight_time_max_s=1"],
+    ),
+    ("--body", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--body", "moon"]),
+    (
+        "--gravity-m-s2",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", VARY, "--gravity-m-s2", "1.5"],
+    ),
+    (
+        "--clearance-m",
+        &["trade", "scenario.toml", "--vary", VARY],
+        &["trade", "scenario.toml", "--vary", VARY, "--clearance-m", "50"],
+    ),
+    (
+        "--quiet",
+        &["trade", "odd.csv", "--scenario", "scenario.toml", "--vary", VARY],
+        &["trade", "odd.csv", "--scenario", "scenario.toml", "--vary", VARY, "--quiet"],
+    ),
+];
+
+const COMPARE: [Trial; 7] = [
+    ("--output", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "-o", "compare.csv"]),
+    ("--plot", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--plot", "compare.svg"]),
+    ("--format", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--format", "json"]),
+    (
+        "--prove",
+        &["compare", "scenario.toml", "map.toml", "--format", "json"],
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove"],
+    ),
+    (
+        "--budget",
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove"],
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove", "--budget", "1"],
+    ),
+    ("--set", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--set", "body.name=moon"]),
+    (
+        "--quiet",
+        &["compare", "scenario.toml", "map.toml", "--set", "body.name=bennu"],
+        &["compare", "scenario.toml", "map.toml", "--set", "body.name=bennu", "--quiet"],
+    ),
+];
+
+/// Ground with all there is on it, small enough for a test.
+const SIMULATE: [Trial; 22] = [
+    ("--start", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--start", "10"]),
+    ("--goal", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--goal", "30"]),
+    ("--trials", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trials", "50"]),
+    ("--seed", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--seed", "9"]),
+    ("--policy", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--policy", "replan"]),
+    ("--compare", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--compare"]),
+    (
+        "--until-half-width",
+        &["simulate", "errors.toml", "--trials", "2000"],
+        &["simulate", "errors.toml", "--trials", "2000", "--until-half-width", "0.3"],
+    ),
+    ("--experiment", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--experiment", "worst-drift"]),
+    (
+        "--reading",
+        &["simulate", "errors.toml", "--experiment", "worst-drift"],
+        &["simulate", "errors.toml", "--experiment", "worst-drift", "--reading", "noise-in-flight"],
+    ),
+    ("--output", &["simulate", "errors.toml"], &["simulate", "errors.toml", "-o", "landings.csv"]),
+    ("--plot", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--plot", "trials.svg"]),
+    (
+        "--plot-map",
+        &["simulate", "map.toml", "--trials", "20"],
+        &["simulate", "map.toml", "--trials", "20", "--plot-map", "landings.svg"],
+    ),
+    ("--format", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--format", "json"]),
+    ("--points-per-segment", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--points-per-segment", "2"]),
+    ("--node-spacing-max-m", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--node-spacing-max-m", "2"]),
+    ("--effort", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--effort", "time"]),
+    (
+        "--scenario",
+        &["simulate", "chain.csv", "--start", "0", "--goal", "40", "--body", "mars"],
+        &["simulate", "chain.csv", "--start", "0", "--goal", "40", "--body", "mars", "--scenario", "errors.toml"],
+    ),
+    ("--set", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--set", "uncertainty.drift_along_sigma_m=0"]),
+    ("--body", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--body", "moon"]),
+    ("--gravity-m-s2", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--gravity-m-s2", "1.5"]),
+    ("--clearance-m", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--clearance-m", "50"]),
+    (
+        "--quiet",
+        &["simulate", "errors.toml", "--body", "bennu", "--trials", "10"],
+        &["simulate", "errors.toml", "--body", "bennu", "--trials", "10", "--quiet"],
+    ),
+];
+
+/// Errors for trials.
+const ERRORS: &str =
+    "\n[uncertainty]\ntakeoff_speed_sigma_fraction = 0.01\ndrift_along_sigma_m = 0.1\ngoal_tolerance_m = 2.0\ntrials = 200\n";
+
+const SYNTH: [&str; 30] = [
+    "synth",
+    "-o",
+    "new.asc",
+    "--rows",
+    "40",
+    "--cols",
+    "40",
+    "--rock-abundance",
+    "0.4",
+    "--tilt-deg",
+    "3",
+    "--craters",
+    "--crater-density-per-km2",
+    "5000",
+    "--crater-diameter-max-m",
+    "30",
+    "--rille",
+    "--rille-width-m",
+    "30",
+    "--rille-depth-m",
+    "4",
+    "--rille-meander-amplitude-m",
+    "10",
+    "--rille-meander-length-m",
+    "60",
+    "--boulders",
+    "--boulder-diameter-min-m",
+    "1.5",
+    "--boulder-diameter-max-m",
+    "6",
+];
+
+/// Values for the options of `synth`, each other than the one in [`SYNTH`] or the default.
+const SYNTH_OPTIONS: [(&str, &str); 26] = [
+    ("--output", "other.asc"),
+    ("--seed", "2"),
+    ("--rows", "30"),
+    ("--cols", "30"),
+    ("--spacing-m", "1.2"),
+    ("--south-west-m", "-10,20"),
+    ("--mean-elevation-m", "-3000"),
+    ("--tilt-deg", "5"),
+    ("--tilt-towards-deg", "-30"),
+    ("--ground-hurst", "0.6"),
+    ("--ground-rms-m", "0.2"),
+    ("--ground-baseline-m", "2"),
+    ("--crater-diameter-min-m", "5"),
+    ("--crater-diameter-max-m", "25"),
+    ("--crater-density-per-km2", "9000"),
+    ("--crater-power-law-exponent", "2"),
+    ("--crater-depth-law", "mars"),
+    ("--crater-degradation-max", "0.2"),
+    ("--rille-width-m", "20"),
+    ("--rille-depth-m", "3"),
+    ("--rille-wall-slope-deg", "20"),
+    ("--rille-meander-amplitude-m", "5"),
+    ("--rille-meander-length-m", "50"),
+    ("--rock-abundance", "0.2"),
+    ("--boulder-diameter-min-m", "2"),
+    ("--boulder-diameter-max-m", "3"),
+];
+
+fn desk() -> Desk {
+    let desk = Desk::with_dem();
+    desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
+    desk.write("forward.csv", FORWARD_ONLY);
+    desk.write("errors.toml", desk.read("scenario.toml") + ERRORS);
+    // Walls too steep to rest on around a pit: what it takes to cross it is found by splitting cells.
+    desk.write("pit.csv", "x_m,z_m\n0,0\n10,0\n11,-3\n20,-3\n21,0\n40,0\n");
+
+    desk.write(
+        "odd.csv",
+        CHAIN.replace("z_m", "z_m,colour").replace(",2\n", ",2,red\n").replace(",0\n", ",0,\n").replace(",1\n", ",1,\n"),
+    );
+    desk
+}
+
+/// What a user sees of a run: status, both streams, every file.
+fn seen(args: &[&str]) -> (Ran, BTreeMap<String, (u64, Vec<u8>)>) {
+    let desk = desk();
+    (desk.run(args), desk.files())
+}
+
+/// The long options that a command's help lists.
+fn options(command: &str) -> BTreeSet<String> {
+    let help = desk().run(&[command, "--help"]).stdout;
+    let long = |line: &str| {
+        let option = line.trim_start().trim_start_matches("-o, ").split([' ', ',']).next()?.to_owned();
+        (line.starts_with(' ') && option.starts_with("--")).then_some(option)
+    };
+    help.lines().filter_map(long).collect()
+}
+
+#[test]
+fn every_option_changes_what_one_sees() {
+    let all = [
+        ("run", &RUN[..]),
+        ("slice", &SLICE),
+        ("map", &MAP),
+        ("hop", &HOP),
+        ("check", &CHECK),
+        ("plan", &PLAN),
+        ("require", &REQUIRE),
+        ("trade", &TRADE),
+        ("compare", &COMPARE),
+        ("simulate", &SIMULATE),
+    ];
+    for (command, trials) in all {
+        let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
+        let elsewhere = |option: &str| ON_A_PROJECTED_MAP.contains(&option) || ON_THE_TIME_ALONE.contains(&option);
+        let here: BTreeSet<_> = options(command).into_iter().filter(|option| !elsewhere(option)).collect();
+        assert_eq!(tried, here, "{command}: an option without a trial, or the reverse");
+        for (option, without, with) in trials {
+            let (before, after) = (seen(without), seen(with));
+            assert_ne!(before.0.status, 101, "{without:?}");
+            assert!(after.0.status < 2, "{with:?}: {:?}", after.0);
+            assert!(before != after, "{command} {option} changes nothing: {:?}", after.0);
+        }
+    }
+    assert!(options("bodies").is_empty());
+}
+
+#[test]
+fn threads_change_nothing() {
+    for words in [
+        &["check", "scenario.toml"][..],
+        &["check", "scenario.toml", "--pairs", "pairs.csv", "--format", "json"],
+        &["plan", "scenario.toml", "--verify", "--plot", "path.svg"],
+        &["run", "scenario.toml", "-o", "out"],
+        &["simulate", "errors.toml", "--compare", "--plot", "trials.svg"],
+    ] {
+        let expected = seen(words);
+        assert_eq!(expected.0.status, 0, "{words:?}: {:?}", expected.0);
+        for threads in ["0", "1", "2", "7"] {
+            let (ran, files) = seen(&[words, &["--threads", threads]].concat());
+            assert_eq!(ran, expected.0, "{words:?} with {threads} threads");
+            assert!(files.keys().eq(expected.1.keys()), "{words:?} with {threads} threads");
+            assert!(files.values().map(|file| &file.1).eq(expected.1.values().map(|file| &file.1)), "{words:?}: {threads} threads");
+        }
+        assert_eq!(desk().run(&[words, &["--threads", "many"]].concat()).status, 2);
+    }
+}
+
+#[test]
+fn every_option_of_synth_changes_the_ground() {
+    let base = &SYNTH[..];
+    let switches = ["--craters", "--rille", "--boulders", "--no-ground", "--boulder-burial"];
+    let tried = SYNTH_OPTIONS.iter().map(|option| option.0).chain(switches);
+    assert_eq!(tried.map(str::to_owned).collect::<BTreeSet<_>>(), options("synth"));
+    let desk = desk();
+    let ground = |args: &[&str]| {
+        let ran = desk.run(args);
+        assert_eq!(ran, Ran { status: 0, stdout: String::new(), stderr: String::new() }, "{args:?}");
+        let name = if args.contains(&"other.asc") { "other.asc" } else { "new.asc" };
+        let bytes = desk.read(name);
+        std::fs::remove_file(desk.path().join(name)).unwrap();
+        (name.to_owned(), bytes)
+    };
+    let before = ground(base);
+    assert!(before == ground(base), "the same options give the same bytes");
+    for (option, value) in SYNTH_OPTIONS.into_iter().chain([("--boulder-burial", "0.6")]) {
+        let mut with = base.to_vec();
+        // In place of the value it has, or behind.
+        let short = if option == "--output" { "-o" } else { option };
+        match with.iter().position(|known| *known == short) {
+            Some(at) => with[at + 1] = value,
+            None => with.extend([option, value]),
+        }
+        assert!(before != ground(&with), "{option} changes nothing");
+    }
+    assert!(before != ground(&[base, &["--no-ground"]].concat()), "--no-ground changes nothing");
+    let bare = ["synth", "-o", "new.asc", "--rows", "40", "--cols", "40"];
+    for switch in ["--craters", "--rille", "--boulders"] {
+        assert!(ground(&bare) != ground(&[&bare[..], &[switch]].concat()), "{switch} changes nothing");
+    }
+    assert_eq!(desk.run(&["synth", "-o", "new.asc", "--quiet"]).status, 2);
+}
+
+#[test]
+fn every_help_text_shows_units_defaults_and_an_example() {
+    let desk = desk();
+    for command in COMMANDS {
+        let ran = desk.run(&[command, "--help"]);
+        assert_eq!((ran.status, ran.stderr.as_str()), (0, ""));
+        assert!(ran.stdout.contains("Example:\n  chta "), "{command}: no example");
+        // One block per option: its own line and all that is said below it.
+        let mut blocks: Vec<String> = Vec::new();
+        for paragraph in ran.stdout.split("\n\n").skip_while(|paragraph| !paragraph.starts_with("Options:")) {
+            let paragraph = paragraph.trim_start_matches("Options:\n");
+            match blocks.last_mut() {
+                Some(last) if !paragraph.trim_start().starts_with('-') => last.push_str(paragraph),
+                _ => blocks.push(paragraph.to_owned()),
+            }
+        }
+        assert!(command == "bodies" || blocks.len() > 3, "{command}: {blocks:?}");
+        for block in blocks {
+            let one_line = block.split_whitespace().collect::<Vec<_>>().join(" ");
+            let name = one_line.trim_start_matches("-o, ").split([' ', ',']).next().unwrap().to_owned();
+            let units = [("-m-s2", "m/s^2"), ("-km2", "square kilometre"), ("-deg", "degrees"), ("-m", " m ")];
+            if let Some((_, unit)) = units.into_iter().find(|(suffix, _)| name.ends_with(suffix)) {
+                assert!(format!("{one_line} ").contains(unit), "{command} {name} does not name its unit: {one_line}");
+            }
+            let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat", "--start-lonlat"]
+                .contains(&name.as_str())
+                || (command == "map" && name == "--start");
+            let takes_value =
+                one_line.contains('<') && !["--scenario", "--set", "--body", "--gravity-m-s2"].contains(&name.as_str());
+            let writes = [
+                "--geojson",
+                "--plot",
+                "--plot-map",
+                "--pairs",
+                "--effort-output",
+                "--return-output",
+                "--mobility",
+                "--paths",
+                "--profiles",
+            ]
+            .contains(&name.as_str());
+            assert!(
+                !takes_value || required || writes || one_line.contains("[default: "),
+                "{command} {name} tells no default: {one_line}"
+            );
+        }
+    }
+}
+
+/// The example of a command's help, as words.
+fn example(command: &str) -> Vec<String> {
+    let help = desk().run(&[command, "--help"]).stdout;
+    let line = help.split("Example:\n  chta ").nth(1).unwrap().lines().next().unwrap().to_owned();
+    line.split_whitespace().map(str::to_owned).collect()
+}
+
+#[cfg(unix)]
+#[test]
+fn every_example_runs() {
+    let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
+    for command in COMMANDS {
+        let words = example(command);
+        assert_eq!(words[0], command);
+        let missing = words.iter().find(|word| word.starts_with("data/") && !data.join(&word["data/".len()..]).exists());
+        if let Some(missing) = missing {
+            eprintln!("skipped: the example of chta {command} needs {missing}, which is not there");
+            continue;
+        }
+        let desk = desk();
+        if data.exists() {
+            std::os::unix::fs::symlink(&data, desk.path().join("data")).unwrap();
+        }
+        let ran = desk.run(&words.iter().map(String::as_str).collect::<Vec<_>>());
+        assert!(ran.status < 2 && !ran.stderr.contains("error"), "chta {}: {ran:?}", words.join(" "));
+    }
+}

@@ -1,0 +1,23 @@
+//! Tests that run the command `chta`.
+
+#[path = "../support/desk.rs"]
+mod desk;
+#[path = "../support/tower.rs"]
+mod tower;
+
+mod bends;
+mod cli_answers;
+mod cli_bad_input;
+mod cli_options;
+#[cfg(unix)]
+mod interrupt;
+mod map_command;
+mod maps_command;
+mod mesh_command;
+mod real_terrain;
+mod same_answers;
+mod sentences;
+mod shipped_scenarios;
+mod simulate_command;
+mod trade_compare;
+mod zones_and_fan;

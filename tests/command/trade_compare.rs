@@ -1,0 +1,230 @@
+//! `chta trade` and `chta compare`: every cell against a run of its own, files, threads, bad input.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
+
+use crate::desk::{Desk, FORWARD_ONLY, Ran};
+use serde_json::Value;
+
+fn json(desk: &Desk, args: &[&str]) -> Value {
+    let ran = desk.run(args);
+    assert!(ran.status < 2, "{args:?}: {ran:?}");
+    serde_json::from_str(&ran.stdout).unwrap()
+}
+
+/// What `check` says with the keys of a row set one by one.
+fn checked(desk: &Desk, target: &[&str], row: &Value, keys: &[&str], more: &[&str]) -> Value {
+    let settings: Vec<String> = keys.iter().map(|key| format!("{key}={}", row[*key].as_f64().unwrap())).collect();
+    let mut args = vec!["check", "--format", "json"];
+    args.extend(target);
+    args.extend(more);
+    for setting in &settings {
+        args.extend(["--set", setting]);
+    }
+    json(desk, &args)
+}
+
+/// A trade whose every row agrees with `check`; the verdicts it came to.
+fn agrees(desk: &Desk, target: &[&str], vary: &[(&str, &str)], more: &[&str]) -> Vec<String> {
+    let ranges: Vec<String> = vary.iter().map(|(key, range)| format!("{key}={range}")).collect();
+    let mut args = vec!["trade", "--format", "json", "--quiet"];
+    args.extend(target);
+    args.extend(more);
+    for range in &ranges {
+        args.extend(["--vary", range]);
+    }
+    let trade = json(desk, &args);
+    assert_eq!(trade["schema"], "chta/trade/1");
+    let keys: Vec<&str> = vary.iter().map(|(key, _)| *key).collect();
+    let rows = trade["rows"].as_array().unwrap();
+    let count = |range: &str| range.rsplit(':').next().unwrap().parse::<usize>().unwrap();
+    assert_eq!(rows.len(), vary.iter().map(|(_, range)| count(range)).product::<usize>());
+    for row in rows {
+        let check = checked(desk, target, row, &keys, more);
+        assert_eq!((&row["verdict"], &row["hops"]), (&check["verdict"], &check["hops"]), "{row}");
+        assert_eq!(row.get("lower_bound"), check.get("lower_bound"), "{row}");
+    }
+    rows.iter().map(|row| row["verdict"].as_str().unwrap().to_owned()).collect()
+}
+
+#[test]
+fn every_cell_is_what_check_says_with_its_values_set() {
+    let desk = Desk::with_dem();
+    let speeds = ("hopper.takeoff_speed_max_m_s", "3:9:3");
+    let grid = agrees(&desk, &["scenario.toml"], &[speeds, ("surface.friction_coefficient", "0.1:0.7:3")], &[]);
+    assert!(grid.iter().any(|verdict| verdict == "traversable") && grid.iter().any(|verdict| verdict != "traversable"), "{grid:?}");
+    // A slice carries its friction in the chain, which each value has to replace.
+    let sliced = agrees(&desk, &["map.toml"], &[("surface.friction_coefficient", "0.2:0.8:3")], &[]);
+    assert!(sliced.iter().any(|verdict| verdict == "traversable") && sliced.iter().any(|verdict| verdict != "traversable"));
+    for vary in [
+        ("body.gravity_m_s2", "1:9:3"),
+        ("hopper.clearance_m", "0:8:3"),
+        ("hopper.takeoff_angle_min_deg", "45:85:3"),
+        ("hopper.apex_height_max_m", "0.5:4:3"),
+        ("surface.rest_slope_max_deg", "5:20:3"),
+        ("search.points_per_segment", "0:2:3"),
+        ("terrain.goal_x_m", "10:40:4"),
+    ] {
+        agrees(&desk, &["scenario.toml"], &[vary], &[]);
+    }
+}
+
+#[test]
+fn with_a_proof_cells_are_what_check_proves() {
+    let desk = Desk::new();
+    let verdicts = agrees(&desk, &["scenario.toml"], &[("surface.friction_coefficient", "0.1:0.7:3")], &["--prove"]);
+    assert_eq!(verdicts.first().map(String::as_str), Some("untraversable"));
+    assert_eq!(verdicts.last().map(String::as_str), Some("traversable"));
+}
+
+#[test]
+fn of_explicit_limits_and_varied_ones_the_smaller_counts() {
+    let desk = Desk::new();
+    desk.write("forward.csv", FORWARD_ONLY);
+    let target = ["forward.csv", "--body", "mars", "--start", "0", "--goal", "10", "--set", "hopper.landing_speed_max_m_s=60"];
+    agrees(&desk, &target, &[("hopper.takeoff_speed_max_m_s", "1:41:5")], &[]);
+    let mut args = vec!["trade"];
+    args.extend(target);
+    let ran = desk.run(&[&args[..], &["--vary", "hopper.takeoff_speed_max_m_s=40:80:3"]].concat());
+    assert_eq!(ran.status, 2, "the chain allows 30 m/s at most");
+    assert!(ran.stderr.contains("no value from 40 to 80 changes anything"), "{}", ran.stderr);
+}
+
+#[test]
+fn threads_and_files_change_no_byte() {
+    let grid = ["--vary", "hopper.takeoff_speed_max_m_s=3:9:4", "--vary", "surface.friction_coefficient=0.3:0.9:3"];
+    let trade = |more: &[&str]| {
+        let desk = Desk::new();
+        let ran = desk.run(&[&["trade", "scenario.toml"][..], &grid, more].concat());
+        assert_eq!(ran.status, 0, "{ran:?}");
+        (ran.stdout, desk)
+    };
+    for format in ["text", "json"] {
+        let (one, _) = trade(&["--format", format, "--threads", "1"]);
+        for threads in ["2", "5"] {
+            assert_eq!(trade(&["--format", format, "--threads", threads]).0, one);
+        }
+    }
+    let (document, _) = trade(&["--format", "json"]);
+    let (csv, _) = trade(&["-o", "-"]);
+    let (_, desk) = trade(&["-o", "trade.JSON"]);
+    assert_eq!(desk.read("trade.JSON"), document);
+    let (_, desk) = trade(&["-o", "trade.csv", "--plot", "trade.svg"]);
+    assert_eq!(desk.read("trade.csv"), csv);
+    let (_, again) = trade(&["--plot", "trade.svg", "--threads", "1"]);
+    assert_eq!(desk.read("trade.svg"), again.read("trade.svg"));
+    assert!(desk.read("trade.svg").starts_with("<svg"));
+
+    // CSV and JSON say the same.
+    let mut lines = csv.lines();
+    assert_eq!(lines.next(), Some("hopper.takeoff_speed_max_m_s,surface.friction_coefficient,verdict,hops"));
+    let rows: Value = serde_json::from_str(&document).unwrap();
+    for (line, row) in lines.zip(rows["rows"].as_array().unwrap()) {
+        let fields: Vec<&str> = line.split(',').collect();
+        let number = |key: &str| row[key].as_f64().unwrap().to_string();
+        assert_eq!(fields[0], number("hopper.takeoff_speed_max_m_s"));
+        assert_eq!(fields[1], number("surface.friction_coefficient"));
+        assert_eq!(fields[2], row["verdict"]);
+        assert_eq!(fields[3], row["hops"].as_u64().map(|hops| hops.to_string()).unwrap_or_default());
+    }
+}
+
+#[test]
+fn what_cannot_be_varied_is_refused_in_one_sentence() {
+    let desk = Desk::with_dem();
+    let speed = "hopper.takeoff_speed_max_m_s";
+    for (vary, said) in [
+        (vec!["hopper.takeoff_speed_max_m_s=4:10:1"], "STEPS is 1, expected how many values to try, a whole number from 2 to 1000"),
+        (vec!["hopper.takeoff_speed_max_m_s=4:10:0"], "STEPS is 0"),
+        (vec!["hopper.takeoff_speed_max_m_s=4:10:-3"], "STEPS is -3"),
+        (vec!["hopper.takeoff_speed_max_m_s=4:10:2.5"], "STEPS is 2.5"),
+        (vec!["hopper.takeoff_speed_max_m_s=4:10:1001"], "STEPS is 1001"),
+        (vec!["hopper.takeoff_speed_max_m_s=10:4:3"], "found FROM 10 and TO 4, expected FROM below TO"),
+        (vec!["hopper.takeoff_speed_max_m_s=4:4:3"], "found FROM 4 and TO 4"),
+        (vec!["hopper.takeoff_speed_max_m_s=4:inf:3"], "expected FROM below TO, both finite"),
+        (vec!["hopper.takeoff_speed_max_m_s=nan:4:3"], "expected FROM below TO, both finite"),
+        (vec!["hopper.takeoff_speed_max_m_s=-4:4:3"], "a value is -4, expected a number from 1e-9 to 1e5"),
+        (vec!["hopper.takeoff_speed_max_m_s"], "found ``, expected FROM:TO:STEPS"),
+        (vec!["hopper.takeoff_speed_max_m_s=fast"], "found `fast`, expected FROM:TO:STEPS"),
+        (vec!["hopper.takeoff_speed_max_m_s=4:10"], "found `4:10`, expected FROM:TO:STEPS"),
+        (vec!["hopper.takeof_speed_max_m_s=4:10:3"], "the nearest known key is hopper.takeoff_speed_max_m_s"),
+        (vec!["takeoff_speed_max_m_s=4:10:3"], "the nearest known key is hopper.takeoff_speed_max_m_s"),
+        (vec!["=4:10:3"], "unknown key"),
+        (vec!["search.effort=1:2:2"], "takes one of takeoff-speed, energy, time, peak-speed, which cannot be varied"),
+        (vec!["body.name=1:2:2"], "takes a text in quotes, not empty, which cannot be varied"),
+        (vec!["surface.takeoff_from_slope_deg=1:2:2"], "which cannot be varied"),
+        (vec!["search.points_per_segment=0:3:3"], "a value is 1.5, expected a whole number"),
+        (vec!["surface.rest_slope_max_deg=0:100:3"], "expected an angle from 0 to 90 degrees"),
+        (vec!["hopper.mass_kg=1:2:2"], "no value from 1 to 2 changes anything here"),
+        (vec!["terrain.goal_x_m=30:50:3"], "with terrain.goal_x_m=50"),
+        (vec![&*format!("{speed}=4:10:3"), &*format!("{speed}=5:9:3")], "hopper.takeoff_speed_max_m_s is varied twice"),
+        (
+            vec![&*format!("{speed}=4:10:3"), "hopper.clearance_m=0:1:2", "body.gravity_m_s2=1:2:2"],
+            "found 3 keys to vary, expected one, or two for a grid",
+        ),
+        (
+            vec![&*format!("{speed}=4:10:1000"), "hopper.clearance_m=0:1:1000"],
+            "the grid has 1000000 cells, expected at most 100000",
+        ),
+    ] {
+        let mut args = vec!["trade", "scenario.toml"];
+        for one in &vary {
+            args.extend(["--vary", one]);
+        }
+        let Ran { status, stdout, stderr } = desk.run(&args);
+        let sentence = stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert_eq!((status, stdout.as_str()), (2, ""), "{vary:?}: {stderr}");
+        assert!(sentence.starts_with("error: --vary") && sentence.contains(said), "{vary:?}: {stderr}");
+        assert_eq!(sentence.matches("error").count(), 1, "{stderr}");
+    }
+    let vary = "hopper.takeoff_speed_max_m_s=4:10:3";
+    for (more, said) in [
+        (["-o", "trade.xlsx"], "-o trade.xlsx: expected a file that ends in .csv or .json, or -"),
+        (["--plot", "trade.pdf"], "'trade.pdf' does not end in .svg or .png"),
+        (["-o", "no/such/folder.csv"], "no/such/folder.csv: cannot be written"),
+    ] {
+        let ran = desk.run(&[&["trade", "scenario.toml", "--vary", vary][..], &more].concat());
+        assert_eq!(ran.status, 2);
+        assert!(ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ").contains(said), "{}", ran.stderr);
+    }
+    assert_eq!(desk.run(&["trade", "scenario.toml"]).status, 2, "nothing to vary");
+}
+
+#[test]
+fn compared_scenarios_are_what_plan_says_of_each() {
+    let desk = Desk::with_dem();
+    // Slopes of 0.2 on ice of 0.1.
+    desk.write("ice.toml", crate::desk::SCENARIO.replace("friction_coefficient = 0.6", "friction_coefficient = 0.1"));
+    let files = ["scenario.toml", "map.toml", "ice.toml"];
+    let all = json(&desk, &["compare", files[0], files[1], files[2], "--format", "json", "-o", "all.csv", "--plot", "all.svg"]);
+    assert_eq!(all["schema"], "chta/compare/1");
+    let rows = all["compared"].as_array().unwrap();
+    assert_eq!(rows.len(), files.len());
+    let mut speeds = Vec::new();
+    for (file, row) in files.into_iter().zip(rows) {
+        let plan = json(&desk, &["plan", file, "--format", "json"]);
+        for key in ["verdict", "hops", "start_x_m", "goal_x_m", "totals"] {
+            assert_eq!(row[key], plan[key], "{file}: {key}");
+        }
+        let hops = plan["path"].as_array().unwrap();
+        let least = |of: &dyn Fn(&Value) -> f64| hops.iter().map(of).reduce(f64::min);
+        let margin = least(&|hop| hop["speed_margin_m_s"].as_f64().unwrap());
+        assert_eq!(row["margins"]["speed_margin_least_m_s"].as_f64(), margin, "{file}");
+        let number = |hop: &Value, key: &str| hop[key].as_f64().unwrap();
+        let span = least(&|hop| number(hop, "takeoff_angle_max_deg") - number(hop, "takeoff_angle_min_deg"));
+        assert_eq!(row["margins"]["angle_span_least_deg"].as_f64(), span, "{file}");
+        speeds.push(row["totals"]["peak_takeoff_speed_m_s"].as_f64());
+    }
+    assert!(speeds[0].is_some() && speeds[2].is_none(), "{speeds:?}");
+    let table = desk.read("all.csv");
+    assert!(table.starts_with("file,name,start_x_m,goal_x_m,verdict,hops,flight_time_s,"), "{table}");
+    assert!(table.lines().nth(3).unwrap().starts_with("ice.toml,ice,0,40,no-path-found,,"), "{table}");
+    assert!(desk.read("all.svg").contains("traversable"));
+    let one_thread = json(&desk, &["compare", files[0], files[1], files[2], "--format", "json", "--threads", "1"]);
+    assert_eq!(one_thread, all);
+    let text = desk.run(&["compare", files[0], files[2]]);
+    assert_eq!((text.status, text.stderr.as_str()), (0, ""), "no path is no failure of a comparison");
+    assert!(text.stdout.contains("(2) ice.toml: ice") && text.stdout.contains("no-path-found"), "{}", text.stdout);
+    assert_eq!(desk.run(&["compare", files[0]]).status, 2, "one is no comparison");
+    let chain = desk.run(&["compare", "scenario.toml", "chain.csv"]);
+    assert!(chain.status == 2 && chain.stderr.contains("chain.csv: expected a scenario"), "{chain:?}");
+}

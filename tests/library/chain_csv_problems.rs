@@ -1,0 +1,317 @@
+//! Every kind of bad chain CSV, drawn: line, column, underlined text, and the words that matter.
+
+use chta::chain::csv::{CsvProblem, CsvProblems, read_chain_csv, read_pairs_csv};
+
+/// Line, column, underlined text, column name, and words of the message.
+type Expected<'a> = (u64, Option<u64>, &'a str, Option<&'a str>, &'a [&'a str]);
+
+fn problems_of(source: &[u8]) -> CsvProblems {
+    match read_chain_csv(source) {
+        Err(problems) => problems,
+        Ok(file) => panic!("{:?} was accepted: {file:?}", String::from_utf8_lossy(source)),
+    }
+}
+
+fn assert_problem(problem: &CsvProblem, (line, column, underlined, name, words): Expected<'_>) {
+    let told = problem.to_string();
+    assert_eq!((problem.line, problem.column), (line, column), "{told}");
+    assert_eq!(&problem.text[problem.span.clone()], underlined, "{told}");
+    assert_eq!(problem.name.as_deref(), name, "{told}");
+    for word in words {
+        assert!(told.contains(word), "`{word}` is missing in: {told}");
+    }
+    assert!(!told.contains('\n') && told.starts_with("line ") && !problem.help.is_empty(), "{told}");
+}
+
+fn assert_problems(source: &str, expected: &[Expected<'_>]) {
+    let CsvProblems { problems, more } = problems_of(source.as_bytes());
+    let told: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    assert_eq!((problems.len(), more), (expected.len(), 0), "{source:?} gave {told:#?}");
+    for (problem, &expected) in problems.iter().zip(expected) {
+        assert_problem(problem, expected);
+    }
+}
+
+const SIX: &str = "takeoff_min_deg,takeoff_max_deg,takeoff_speed_max_m_s,landing_min_deg,landing_max_deg,landing_speed_max_m_s";
+
+#[test]
+fn files_without_a_chain() {
+    assert_problems("", &[(1, None, "", None, &["an empty file", "x_m,z_m"])]);
+    assert_problems("\u{feff}\r\n", &[(1, None, "", None, &["an empty file"])]);
+    assert_problems("# a note\n", &[(1, None, "# a note", None, &["comments only", "x_m,z_m"])]);
+    assert_problems("x_m,z_m\n", &[(1, None, "x_m,z_m", None, &["no row below the header", "at least 2 vertices"])]);
+    assert_problems("x_m,z_m\n1,2", &[(2, None, "1,2", None, &["1 row below the header", "at least 2 vertices"])]);
+    assert_problems("0,0\n1,2\n", &[(1, None, "0,0", None, &["numbers in the first row", "a header", "x_m,z_m"])]);
+}
+
+#[test]
+fn headers_that_name_the_wrong_columns() {
+    assert_problems(
+        "x,elevation\n0,0\n1,1\n",
+        &[
+            (1, None, "x,elevation", None, &["without x_m", "is `x` meant? rename it to x_m"]),
+            (1, None, "x,elevation", None, &["without z_m", "name the column z_m"]),
+        ],
+    );
+    assert_problems(
+        "x_m,z_m, z_m\n0,0,0\n1,1,1\n",
+        &[(1, Some(10), "z_m", Some("z_m"), &["`z_m` twice", "field 2", "each column once", "remove"])],
+    );
+}
+
+#[test]
+fn other_separators_are_recognised() {
+    assert_problems("x_m;z_m\n0,5;1\n", &[(1, None, "x_m;z_m", None, &["semicolons", "expected commas", "1.5, not 1,5"])]);
+    assert_problems("\"x_m\"\t\"z_m\"\n0\t1\n", &[(1, None, "\"x_m\"\t\"z_m\"", None, &["tabs", "expected commas"])]);
+}
+
+#[test]
+fn fields_that_are_no_finite_numbers() {
+    assert_problems(
+        "# drawn\nx_m,z_m\n0,abc\n1,NaN\n2,-inf\n3,1e999\n4,\n5,5 m\n6,\"1,5\"\n7,0x10\n 8 , \"x\" \n",
+        &[
+            (3, Some(3), "abc", Some("z_m"), &["found `abc`", "a finite number", "such as 12.5"]),
+            (4, Some(3), "NaN", Some("z_m"), &["found `NaN`", "a finite number"]),
+            (5, Some(3), "-inf", Some("z_m"), &["found `-inf`", "a finite number"]),
+            (6, Some(3), "1e999", Some("z_m"), &["found `1e999`", "a finite number", "1.8e308"]),
+            (7, Some(3), "", Some("z_m"), &["found nothing", "a finite number"]),
+            (8, Some(3), "5 m", Some("z_m"), &["write the number alone, 5:", "unit"]),
+            (9, Some(3), "\"1,5\"", Some("z_m"), &["found `1,5`", "a decimal point, not a comma: 1.5"]),
+            (10, Some(3), "0x10", Some("z_m"), &["found `0x10`"]),
+            (11, Some(6), "\"x\"", Some("z_m"), &["found `x`"]),
+        ],
+    );
+}
+
+#[test]
+fn values_out_of_their_range() {
+    assert_problems(
+        "x_m,z_m,friction_coefficient,cross_slope_deg,keep_out\n0,0,-0.1,90.1,2\n1,0,inf,-1,yes\n2,0,,,\n",
+        &[
+            (2, Some(5), "-0.1", Some("friction_coefficient"), &["at least 0", "0.3 to 1.2"]),
+            (2, Some(10), "90.1", Some("cross_slope_deg"), &["0 to 90 degrees"]),
+            (2, Some(15), "2", Some("keep_out"), &["expected 0 or 1"]),
+            (3, Some(5), "inf", Some("friction_coefficient"), &["finite"]),
+            (3, Some(9), "-1", Some("cross_slope_deg"), &["0 to 90 degrees"]),
+            (3, Some(12), "yes", Some("keep_out"), &["expected 0 or 1", "such as"]),
+        ],
+    );
+    assert_problems(
+        &format!("x_m,z_m,{SIX}\n0,0,60,900,-5,-271,-60,inf\n1,0,,,,,,\n"),
+        &[
+            (2, Some(8), "900", Some("takeoff_max_deg"), &["-270 to 270 degrees", "angles are degrees"]),
+            (2, Some(12), "-5", Some("takeoff_speed_max_m_s"), &["at least 0 m/s", "without sign"]),
+            (2, Some(15), "-271", Some("landing_min_deg"), &["-270 to 270 degrees"]),
+            (2, Some(24), "inf", Some("landing_speed_max_m_s"), &["a finite speed", "never reached"]),
+        ],
+    );
+}
+
+#[test]
+fn vertices_out_of_order() {
+    assert_problems(
+        "x_m,z_m\n0,0\n2,1\n2.0,3\nx,0\n1,0\n3,0\n",
+        &[
+            (4, Some(1), "2.0", Some("x_m"), &["found `2.0`", "more than 2, the x_m of line 3"]),
+            (5, Some(1), "x", Some("x_m"), &["found `x`"]),
+            (6, Some(1), "1", Some("x_m"), &["found `1`", "more than 2.0, the x_m of line 4"]),
+        ],
+    );
+    assert_problems(
+        "x_m,z_m\n0,0\n1e-300,1e20\n1,0\n",
+        &[(3, Some(1), "1e-300", Some("x_m"), &["too near the x_m of line 2", "a slope", "apart"])],
+    );
+    // An invalid z gives no slope, and does not hide an invalid x.
+    assert_problems(
+        "x_m,z_m\n0,0\n1e-300,?\n0,1e20\n",
+        &[(3, Some(8), "?", Some("z_m"), &["found `?`"]), (4, Some(1), "0", Some("x_m"), &["more than 1e-300"])],
+    );
+}
+
+#[test]
+fn ragged_rows() {
+    assert_problems(
+        "x_m,z_m,keep_out\n0,0,1\n1,5,0,0\n2\n3,0,\n",
+        &[
+            (3, Some(7), "0", None, &["found 4 fields", "expected 3 as in the header", "decimal comma"]),
+            (4, None, "2", None, &["found 1 field,", "expected 3", "every comma"]),
+        ],
+    );
+}
+
+#[test]
+fn a_ragged_row_says_nothing_of_its_columns() {
+    // Neither that a column is filled, nor that both forms are.
+    let header = format!("x_m,z_m,friction_coefficient,{SIX}");
+    let words = &["found 2 fields", "expected 9 as in the header"];
+    assert_problems(&format!("{header}\n0,0,0.6,,,,,,\n1,0\n2,0,,,,,,,\n"), &[(3, None, "1,0", None, words)]);
+    assert_problems(&format!("{header}\n0,0,,,,,,,\n1,0,,,,,,,\n2,0\n"), &[(4, None, "2,0", None, words)]);
+}
+
+#[test]
+fn half_a_set_of_columns() {
+    assert_problems(
+        "x_m,z_m,landing_max_deg,takeoff_min_deg,takeoff_max_deg,map_x_m,landing_min_deg\n0,0,-60,10,90,5,\n1,0,,,,6,\n",
+        &[
+            (
+                1,
+                Some(25),
+                "takeoff_min_deg",
+                None,
+                &[
+                    "found takeoff_min_deg, takeoff_max_deg, landing_max_deg without",
+                    "all six columns for travel towards +x",
+                    "add takeoff_speed_max_m_s, landing_speed_max_m_s and fill landing_min_deg",
+                ],
+            ),
+            (1, Some(57), "map_x_m", None, &["map_x_m without map_y_m", "both map columns", "add map_y_m"]),
+        ],
+    );
+    assert_problems(
+        "x_m,z_m,reverse_takeoff_min_deg\n0,0,5\n1,0,\n",
+        &[(1, Some(9), "reverse_takeoff_min_deg", None, &["travel towards -x", "reverse_landing_speed_max_m_s"])],
+    );
+}
+
+#[test]
+fn both_forms() {
+    let header = format!("x_m,z_m,friction_coefficient,{SIX}");
+    assert_problems(
+        &format!("{header}\n0,0,0.6,60,90,5,-90,-60,5\n1,0,,,,,,,\n"),
+        &[(
+            2,
+            Some(9),
+            "60",
+            Some("takeoff_min_deg"),
+            &["both friction_coefficient and takeoff_min_deg in one row", "one per file"],
+        )],
+    );
+    assert_problems(
+        &format!("{header}\n0,0,0.6,,,,,,\n1,0,,60,90,5,-90,-60,5\n2,0,,,,,,,\n"),
+        &[(3, Some(6), "60", Some("takeoff_min_deg"), &["where line 2 has friction_coefficient", "one per file"])],
+    );
+}
+
+#[test]
+fn blanks_and_last_rows() {
+    assert_problems(
+        "x_m,z_m,friction_coefficient,map_x_m,map_y_m\n0,0,,0,0\n1,0,0.6,1,\n2,0,0.6,2,2\n3,0,,,3\n",
+        &[
+            (2, Some(5), "", Some("friction_coefficient"), &["found nothing", "as in line 3", "in every row, or in none"]),
+            (3, Some(11), "", Some("map_y_m"), &["found nothing", "as in line 2"]),
+            (5, Some(6), "", Some("map_x_m"), &["found nothing", "as in line 2"]),
+        ],
+    );
+    assert_problems(
+        "x_m,z_m,friction_coefficient,keep_out\n0,0,0.6,1\n1,0,0.7,0\n",
+        &[(
+            3,
+            Some(5),
+            "0.7",
+            Some("friction_coefficient"),
+            &["`0.7` in the last row", "no segment begins at the last vertex", "empty friction_coefficient, keep_out", "cut short"],
+        )],
+    );
+}
+
+#[test]
+fn cones_the_wrong_way_round() {
+    assert_problems(
+        &format!("x_m,z_m,{SIX}\n0,0,90,60,0,-60,-90,5\n1,0,,,,,,\n"),
+        &[
+            (2, Some(5), "90", Some("takeoff_min_deg"), &["found `90`", "at most 60, the takeoff_max_deg", "speed 0"]),
+            (2, Some(13), "-60", Some("landing_min_deg"), &["found `-60`", "at most -90, the landing_max_deg"]),
+        ],
+    );
+}
+
+#[test]
+fn files_that_are_no_text() {
+    for (source, line, words) in [
+        (&b"x_m,z_m\n0,0\n1,\xff\n"[..], 3, ["0xff at offset 14", "UTF-8"]),
+        (&b"x_m,z_m\r\n0,\0\r\n"[..], 2, ["0x00 at offset 11", "UTF-8"]),
+        (&b"\xff\xfex\0_\0m\0"[..], 1, ["UTF-16", "save the file as CSV UTF-8"]),
+        (&b"II*\0\x08\0\0\0"[..], 1, ["0x00 at offset 3", "a CSV file at all"]),
+    ] {
+        let CsvProblems { problems, more } = problems_of(source);
+        assert_eq!((problems.len(), more), (1, 0));
+        assert_problem(&problems[0], (line, None, "", None, &words));
+    }
+    assert_problems(
+        "x_m,z_m\n0,0\n1,\"2\n3,4\n",
+        &[(3, Some(3), "\"", None, &["a quote that is never closed", "close the quote"])],
+    );
+}
+
+#[test]
+fn a_line_without_end_is_refused_in_little_space() {
+    for source in [vec![b'7'; 64 << 20], [b"x_m,z_m\n0,0\n1,", &vec![b'7'; 64 << 20][..], b"\n"].concat()] {
+        let CsvProblems { problems, .. } = problems_of(&source);
+        assert!(problems[0].to_string().contains("a line of more than 65536 bytes"), "{}", problems[0]);
+        let size: usize = problems.iter().map(|p| p.text.len() + p.found.len() + p.expected.len() + p.help.len()).sum();
+        assert!(size < 2000, "the problems hold {size} bytes");
+    }
+    // Long, but not too long: the message holds a window of it.
+    let source = format!("x_m,z_m,note\n0,{},{}\n1,1,\n", "9".repeat(30_000), "n".repeat(30_000));
+    let CsvProblems { problems, .. } = problems_of(source.as_bytes());
+    assert_eq!((problems.len(), problems[0].column), (1, Some(3)));
+    assert!(problems[0].text.len() < 200 && problems[0].text[problems[0].span.clone()].starts_with("9999"));
+    assert!(problems[0].to_string().len() < 300, "{}", problems[0]);
+}
+
+#[test]
+fn the_list_of_problems_has_an_end() {
+    let source = format!("x_m,z_m\n{}", "a,b\n".repeat(1000));
+    let problems = problems_of(source.as_bytes());
+    assert_eq!((problems.problems.len(), problems.more), (50, 1950));
+    assert!(problems.to_string().ends_with("\nand 1950 more problems"));
+    assert_eq!(problems.to_string().lines().count(), 51);
+}
+
+#[test]
+fn messages_obey_no_terminal() {
+    let CsvProblems { problems, .. } = problems_of(b"x_m,z_m\n0,\x1b[31mred\n1,1\n");
+    assert!(problems[0].to_string().contains(r"\u{1b}[31mred"), "{}", problems[0]);
+}
+
+#[test]
+fn columns_nobody_knows_are_warned_of() {
+    let file = read_chain_csv(b"note,x_m,z_m,friction,,keep_out\n\"a, b\",0,0,1,,\n,1,1,,,\n").unwrap();
+    assert_eq!(
+        file.warnings,
+        [
+            "line 1: unknown column `note` is ignored",
+            "line 1: unknown column `friction` is ignored (the nearest known column is friction_coefficient)",
+            "line 1: column 5 without a name is ignored",
+            "column keep_out is empty in every row and is ignored",
+        ]
+    );
+    let many = format!("x_m,z_m{}\n0,0{}\n1,1{}\n", ",note".repeat(25), ",".repeat(25), ",".repeat(25));
+    let warnings = read_chain_csv(many.as_bytes()).unwrap().warnings;
+    assert_eq!((warnings.len(), warnings[20].as_str()), (21, "5 more unknown columns are ignored"));
+}
+
+#[test]
+fn one_direction_alone_is_warned_of() {
+    let forward = format!("x_m,z_m,{SIX}\n0,0,60,93.5,10,-93.5,-60,0\n1,0,,,,,,\n");
+    assert_eq!(read_chain_csv(forward.as_bytes()).unwrap().warnings, ["no hop goes towards -x: the chain has no reverse_ columns"]);
+    let reverse = forward.replace("takeoff", "reverse_takeoff").replace("landing", "reverse_landing");
+    assert_eq!(
+        read_chain_csv(reverse.as_bytes()).unwrap().warnings,
+        ["no hop goes towards +x: the chain has the reverse_ columns alone"]
+    );
+}
+
+#[test]
+fn problems_of_pairs_are_told_alike() {
+    let problems = read_pairs_csv(b"goal_x_m,start_x_m\n5,a\n,1\n").unwrap_err().problems;
+    assert_problem(&problems[0], (2, Some(3), "a", Some("start_x_m"), &["found `a`", "a finite number"]));
+    assert_problem(&problems[1], (3, Some(1), "", Some("goal_x_m"), &["found nothing"]));
+    let problems = read_pairs_csv(b"start_x_m,goal_x_m\n").unwrap_err().problems;
+    assert_problem(&problems[0], (1, None, "start_x_m,goal_x_m", None, &["no row", "at least 1 pair"]));
+    let problems = read_pairs_csv(b"start,goal_x_m\n1,2\n").unwrap_err().problems;
+    assert_problem(&problems[0], (1, None, "start,goal_x_m", None, &["without start_x_m", "is `start` meant"]));
+    let file = read_pairs_csv(b"# two\r\ngoal_x_m,note,start_x_m\r\n5,,1\r\n1,,5\r\n").unwrap();
+    assert_eq!(file.pairs.iter().map(|pair| (pair.start_x_m, pair.goal_x_m)).collect::<Vec<_>>(), [(1.0, 5.0), (5.0, 1.0)]);
+    assert_eq!(file.warnings, ["line 2: unknown column `note` is ignored"]);
+}

@@ -1,0 +1,184 @@
+//! The ladder of modules (docs in `src/lib.rs`): a module uses only those above it. Read from the sources, so that a new import
+//! upwards fails here with file and line.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot read the sources should stop")]
+
+use std::{fs, path::Path};
+
+/// The rungs, from the top. The last two share no rung with the library: the binary's own side comes after everything.
+const LADDER: [&str; 15] = [
+    "quantity",
+    "world",
+    "ballistics",
+    "terrain",
+    "chain",
+    "hop",
+    "ground",
+    "flight",
+    "graph",
+    "path",
+    "uncertainty",
+    "reach",
+    "report",
+    "scenario",
+    "cli",
+];
+
+/// One import that goes the wrong way.
+#[derive(Debug, PartialEq, Eq)]
+struct Upward {
+    line: usize,
+    from: String,
+    to: String,
+}
+
+fn rung(module: &str) -> Option<usize> {
+    LADDER.iter().position(|known| *known == module)
+}
+
+/// The modules that a line of source names after `crate::` or `chta::`, also inside `use crate::{a::b, c}` over several lines.
+fn named_modules(source: &str) -> Vec<(usize, String)> {
+    let mut named = Vec::new();
+    for prefix in ["crate::", "chta::"] {
+        for (start, _) in source.match_indices(prefix) {
+            let line = source[..start].matches('\n').count() + 1;
+            let line_start = source[..start].rfind('\n').map_or(0, |i| i + 1);
+            // Documentation may speak of any module.
+            if source[line_start..start].trim_start().starts_with("//") {
+                continue;
+            }
+            let rest = &source[start + prefix.len()..];
+            let word = |text: &str| text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+            let Some(group) = rest.strip_prefix('{') else {
+                named.push((line, word(rest)));
+                continue;
+            };
+            // The heads of a group at its own depth.
+            let (mut depth, mut head) = (1, true);
+            let mut newlines = 0;
+            for (i, c) in group.char_indices() {
+                match c {
+                    '{' => depth += 1,
+                    '}' => depth -= 1,
+                    ',' if depth == 1 => head = true,
+                    '\n' => newlines += 1,
+                    c if head && depth == 1 && c.is_alphanumeric() => {
+                        named.push((line + newlines, word(&group[i..])));
+                        head = false;
+                    }
+                    _ => {}
+                }
+                if depth == 0 {
+                    break;
+                }
+            }
+        }
+    }
+    named
+}
+
+fn upward_imports(module: &str, source: &str) -> Vec<Upward> {
+    let Some(own) = rung(module) else { return Vec::new() };
+    named_modules(source)
+        .into_iter()
+        .filter(|(_, to)| rung(to).is_some_and(|to| to > own))
+        .map(|(line, to)| Upward { line, from: module.to_owned(), to })
+        .collect()
+}
+
+fn sources(folder: &Path, found: &mut Vec<std::path::PathBuf>) {
+    for entry in fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+#[test]
+fn every_module_uses_only_those_above_it() {
+    let src = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&src, &mut files);
+    assert!(files.len() > 50, "only {} sources found", files.len());
+    let mut wrong = Vec::new();
+    for file in files {
+        let inside = file.strip_prefix(&src).unwrap();
+        let module = inside.components().next().unwrap().as_os_str().to_str().unwrap().trim_end_matches(".rs").to_owned();
+        assert!(
+            rung(&module).is_some() || ["lib", "main"].contains(&module.as_str()),
+            "{} belongs to no rung of the ladder",
+            inside.display()
+        );
+        for Upward { line, from, to } in upward_imports(&module, &fs::read_to_string(&file).unwrap()) {
+            wrong.push(format!("src/{}:{line}: {from} uses {to}, which stands below it", inside.display()));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_planted_upward_import_is_found() {
+    let planted = "//! crate::report is only spoken of here\nuse crate::{\n    chain::Station,\n    graph::{search, Answer},\n    world::Limit,\n};\n";
+    let found = upward_imports("hop", planted);
+    assert_eq!(found, [Upward { line: 4, from: "hop".to_owned(), to: "graph".to_owned() }]);
+    assert_eq!(upward_imports("ballistics", "fn f() { crate::chain::x() }").len(), 1, "a path in an expression counts");
+    assert_eq!(upward_imports("report", planted), [], "downwards is fine");
+}
+
+/// Modules that the independent checker may not use: it would state the physics with the same code as the plan.
+const CLOSED_TO_THE_CHECKER: [&str; 5] = ["ballistics", "hop", "flight", "graph", "terrain"];
+
+/// Items of `ground` that the checker may not use: it has [`Surface`](chta::ground::Surface) alone.
+const CLOSED_ITEMS: [&str; 8] =
+    ["Windows", "TakeoffWindows", "FirstContact", "ChainGround", "DemGround", "PostHops", "LiftoffVelocity", "TouchdownState"];
+
+/// What the checker's source names although it may not.
+fn forbidden_to_the_checker(source: &str) -> Vec<String> {
+    let modules = named_modules(source).into_iter().filter(|(_, module)| CLOSED_TO_THE_CHECKER.contains(&module.as_str()));
+    let mut found: Vec<String> = modules.map(|(line, module)| format!("{line}: {module}")).collect();
+    for (number, line) in source.lines().enumerate().filter(|(_, line)| !line.trim_start().starts_with("//")) {
+        let words = line.split(|c: char| !(c.is_alphanumeric() || c == '_'));
+        found.extend(words.filter(|word| CLOSED_ITEMS.contains(word)).map(|word| format!("{}: {word}", number + 1)));
+    }
+    found
+}
+
+#[test]
+fn the_checker_uses_surface_alone() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/path/execute");
+    let mut files = Vec::new();
+    sources(&folder, &mut files);
+    assert!(!files.is_empty(), "the checker has moved");
+    for file in files {
+        let forbidden = forbidden_to_the_checker(&fs::read_to_string(&file).unwrap());
+        assert!(forbidden.is_empty(), "{}: {forbidden:?}", file.display());
+    }
+}
+
+#[test]
+fn a_planted_import_into_the_checker_is_found() {
+    let planted =
+        "//! Windows and ballistics may be spoken of\nuse crate::{\n    ballistics::Arc,\n    ground::{Surface, Windows},\n};\n";
+    assert_eq!(forbidden_to_the_checker(planted), ["3: ballistics", "4: Windows"]);
+    assert_eq!(forbidden_to_the_checker("fn f(g: &crate::ground::DemGround) {}"), ["1: DemGround"]);
+    assert_eq!(forbidden_to_the_checker("use crate::ground::{ContactPoint, Element, Surface};"), Vec::<String>::new());
+}
+
+#[test]
+fn the_limits_name_no_trigonometric_function() {
+    let limits = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/ballistics/limits");
+    let mut read = 0;
+    for entry in fs::read_dir(limits).unwrap() {
+        let path = entry.unwrap().path();
+        let source = fs::read_to_string(&path).unwrap();
+        let code: String = source.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+        for function in ["sin(", "cos(", "tan(", "atan", "libm", "Angle", "Vec"] {
+            assert!(!code.contains(function), "{} calls {function}", path.display());
+        }
+        read += 1;
+    }
+    assert!(read >= 5, "only {read} limits found");
+}

@@ -1,0 +1,37 @@
+//! Tests of the library: what needs neither the command nor a process of its own.
+
+#[path = "../support/mod.rs"]
+mod support;
+#[path = "../support/tower.rs"]
+mod tower;
+
+mod ballistics_conflicts;
+mod ballistics_precision;
+mod ballistics_sampling;
+mod bends;
+mod chain_csv_problems;
+mod chain_csv_round_trip;
+mod docs_commands;
+mod execute;
+mod fly;
+mod formats_table;
+#[cfg(feature = "gdal")]
+mod gdal_feature;
+mod graph;
+mod layers;
+mod map_equality;
+mod map_projection;
+mod mesh_slices;
+mod mutations_chain_csv;
+mod mutations_mesh;
+mod mutations_scenario;
+mod mutations_terrain;
+mod paper;
+mod pds3;
+mod proof;
+mod proof_terrain;
+mod scenario_round_trip;
+mod segment_hops;
+mod slice_file;
+mod sweep;
+mod terrain_files;
