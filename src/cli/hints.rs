@@ -1,4 +1,4 @@
-//! The options that mend what the library reports: its sentences name keys and facts, and the command adds the options here.
+//! The options that mend an error of the library: its messages name keys and facts, and the command adds the options here.
 
 use std::{error::Error, path::Path};
 
@@ -12,7 +12,7 @@ use chta::{
 
 use super::help::takes;
 
-/// The sentence of an error, with the options that mend it.
+/// The message of an error, with the options that mend it.
 pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
     match of_terrain(error) {
         Some(TerrainError::MapScale { found, mend }) => map_scale(found, mend),
@@ -20,19 +20,19 @@ pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
     }
 }
 
-/// Whether an error names this file by itself.
+/// Whether the error's message already names this file.
 pub(crate) fn names(error: &(dyn Error + 'static), file: &Path) -> bool {
     let same = |path: &Path| path.file_name() == file.file_name();
     match (of_terrain(error), error.downcast_ref()) {
         (Some(TerrainError::InFile { path, .. } | TerrainError::Overlay { path, .. }), _)
         | (_, Some(PipelineError::Read { path, .. })) => same(path),
-        // Their commands do.
+        // The commands that use these add the name.
         (Some(TerrainError::MapScale { mend, .. }), _) => !matches!(mend, ScaleMend::Shorter { .. }),
         _ => false,
     }
 }
 
-/// What to add to the help of a scenario's problem.
+/// The addition to the help of a scenario's problem.
 pub(crate) fn of_problem(problem: &ScenarioProblem) -> &'static str {
     let ScenarioProblem { key, kind, .. } = problem;
     match kind {
@@ -45,12 +45,12 @@ pub(crate) fn of_problem(problem: &ScenarioProblem) -> &'static str {
     }
 }
 
-/// What can tell more than an answer does, by the options of the command that was called or else of another one.
+/// How to get a stronger answer, by the options of the command that was called or else of another one.
 pub(crate) fn further_means() -> FurtherMeans<'static> {
     FurtherMeans { budget: "--budget", proof: if takes("prove") { "--prove" } else { "chta check --prove" } }
 }
 
-/// The error of the terrain that another one passes on, or that it is.
+/// The terrain error that an error is or wraps.
 fn of_terrain<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a TerrainError> {
     let of_map = || match error.downcast_ref() {
         Some(MapError::Terrain(terrain)) => Some(terrain),
@@ -66,7 +66,7 @@ fn of_terrain<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a TerrainError> 
     }
 }
 
-/// What to add to the sentence of an error.
+/// The addition to the message of an error.
 fn hint(error: &(dyn Error + 'static)) -> String {
     if let Some(mut terrain) = of_terrain(error) {
         while let TerrainError::InFile { problem, .. } = terrain {
@@ -91,7 +91,7 @@ fn hint(error: &(dyn Error + 'static)) -> String {
     String::new()
 }
 
-/// What to do about a map whose scale is off.
+/// The remedy for a map whose scale is off.
 fn map_scale(found: &str, mend: &ScaleMend) -> String {
     let place = |place: &LonLat| format!("{:.9},{:.9}", place.lon_deg, place.lat_deg);
     let mend = match mend {
@@ -107,7 +107,7 @@ fn map_scale(found: &str, mend: &ScaleMend) -> String {
     };
     let accept = "terrain.accept_map_scale = true";
     let accept = if takes("accept-map-scale") { format!("--accept-map-scale ({accept})") } else { accept.to_owned() };
-    format!("{found}, expected 1 within 1 %; mend it with: {mend}; or take it as it is with {accept}")
+    format!("{found}, expected 1 within 1 %; mend it with: {mend}; or accept it as it is with {accept}")
 }
 
 #[cfg(test)]
@@ -118,7 +118,7 @@ mod tests {
     use super::*;
     use crate::cli::{args::Args, help::offers};
 
-    /// Each option that a sentence names, with the command that it is of: the last one named before it, or the one that says it.
+    /// Each option that a sentence names, with its command: the last one named before it, or the command that prints the sentence.
     fn options<'a>(sentence: &'a str, saying: &'a str) -> Vec<(&'a str, &'a str)> {
         let commands: Vec<String> = Args::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
         let (mut command, mut found) = (saying, Vec::new());
@@ -153,7 +153,7 @@ mod tests {
             (
                 "slice",
                 Box::new(scale(ScaleMend::AlongTransect { command: command(), ends: [place(), place()] })),
-                "then slice out.tif --from-lonlat 12.500000000,-3.250000000 --to-lonlat 12.500000000,-3.250000000; or take it as it is \
+                "then slice out.tif --from-lonlat 12.500000000,-3.250000000 --to-lonlat 12.500000000,-3.250000000; or accept it as it is \
                  with --accept-map-scale (terrain.accept_map_scale = true)",
             ),
             (

@@ -1,4 +1,4 @@
-//! The command's own side: arguments, one file per command, what is said on the terminal.
+//! The command line: arguments, one file per command, messages on the terminal.
 
 mod args;
 mod claims;
@@ -16,10 +16,10 @@ use std::process::ExitCode;
 use args::Command;
 pub(crate) use failure::Failure;
 
-/// What an analysis came to, as an exit status.
+/// The exit status of an analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// Done, and the answer is yes (or there was no question).
+    /// Done, and the answer is yes (or the command has no yes-or-no answer).
     Yes,
     /// Done, and the answer is no.
     No,

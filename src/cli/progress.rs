@@ -1,4 +1,4 @@
-//! Progress of work longer than a second, on a terminal and nowhere else; and its cancellation by an interrupt.
+//! Progress of computations longer than a second, shown only on a terminal, and their cancellation by an interrupt.
 
 use std::{
     io::{self, IsTerminal},
@@ -17,7 +17,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use super::interrupt;
 
-/// Shows what is being done, from the first second on, until it is dropped; cancels it after an interrupt.
+/// Shows the current stage from the first second on, until it is dropped; cancels the stage after an interrupt.
 #[derive(Debug)]
 pub(crate) struct Progress {
     doing: Arc<Mutex<String>>,
@@ -53,7 +53,7 @@ impl Progress {
         Self { doing, shown, stopped: AtomicBool::new(false) }
     }
 
-    /// Says what is being done now.
+    /// Sets the current stage.
     pub(crate) fn say(&self, doing: String) {
         if let Ok(mut said) = self.doing.lock() {
             *said = doing;

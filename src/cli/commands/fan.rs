@@ -19,7 +19,7 @@ use crate::cli::{
     progress::Progress,
 };
 
-/// What `auto` means here, where no single path answers.
+/// The meaning of `auto` here, where there is no single path to refine for.
 const POINTS_PER_SEGMENT: PointSpacing = PointSpacing::PerSegment(1);
 
 /// Analyses all directions.

@@ -23,7 +23,7 @@ use crate::cli::{
     progress::Progress,
 };
 
-/// What is wrong with a swept key.
+/// The failure for an invalid swept key.
 #[expect(clippy::needless_pass_by_value, reason = "as map_err gives it")]
 fn refused(error: TradeError) -> Failure {
     Failure::message(format!("--vary: {}", hints::sentence(&error)))
@@ -35,7 +35,7 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     let swept: Vec<_> = args.vary.iter().map(|text| SweptKey::parse(text)).collect::<Result<_, _>>().map_err(refused)?;
     let table = args.output.as_deref().map(TableFormat::of).transpose()?;
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
-    // Opened before the work, which may take long.
+    // Outputs are opened before the computation, which may take long.
     let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let ends = EndOptions::of_path(args.journey.start, args.journey.goal);
@@ -70,7 +70,7 @@ fn csv(answer: &TradeAnswer) -> Result<Vec<u8>, Failure> {
     Ok(csv)
 }
 
-/// The answer as one document; its scenario is that of the first row.
+/// The answer as one JSON document; its scenario is that of the first row.
 fn document(first: &Loaded, answer: &TradeAnswer) -> Result<String, Failure> {
     let warnings = first.warnings_with([]);
     let document = Document::new("trade", first.document.clone(), first.inputs.clone(), warnings, answer.clone());

@@ -15,20 +15,20 @@ use chta::{
 use super::listen::{Listener, RowFile, trials_line};
 use crate::cli::{Failure, load::Loaded, progress::Progress};
 
-/// How many trials are kept with all their hops, for the pictures.
+/// How many trials are recorded with all their hops, for the pictures.
 const KEPT_TRIALS: u64 = 300;
 
-/// A planned path, and all that its trials need.
+/// A planned path, with everything its trials need.
 pub(super) struct Flyer<'a> {
     pub(super) loaded: &'a Loaded,
     pub(super) test: &'a HopTest,
     pub(super) path: &'a HopPath,
-    /// The whole raster with what lies over it, for flights in three dimensions.
+    /// The whole raster with its overlays, for flights in three dimensions.
     ground: Option<DemGround>,
     to_go: Option<Arc<CostToGo>>,
 }
 
-/// What the trials of one policy came to.
+/// The results of the trials of one policy.
 pub(super) struct Flown {
     pub(super) summary: Summary,
 }
@@ -39,7 +39,7 @@ pub(super) fn on_dem(loaded: &Loaded) -> bool {
 }
 
 impl<'a> Flyer<'a> {
-    /// Reads the raster, and computes once what replanning needs.
+    /// Reads the raster, and computes the replanning policy once.
     pub(super) fn new(
         loaded: &'a Loaded,
         test: &'a HopTest,
@@ -64,7 +64,7 @@ impl<'a> Flyer<'a> {
             let nodes = NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::of(&error))?;
             let options = &loaded.scenario.search;
             let progress = Progress::new(quiet);
-            progress.say("ranking the ways on from every node".to_owned());
+            progress.say("ranking the successors of every node".to_owned());
             let to_go = match loaded.scenario.reliability() {
                 Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability, &progress),
                 None => CostToGo::of(test, nodes, options, &progress),
@@ -74,7 +74,7 @@ impl<'a> Flyer<'a> {
         Ok(Self { loaded, test, path, ground, to_go: to_go.transpose()? })
     }
 
-    /// The raster, where there is one.
+    /// The raster, if the terrain is one.
     pub(super) fn dem(&self) -> Option<&Dem> {
         self.ground.as_ref().map(|ground| ground.terrain().dem())
     }
