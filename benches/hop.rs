@@ -10,7 +10,8 @@ use std::sync::Arc;
 
 use chta::{
     chain::PolygonalChain,
-    hop::{HopTest, LandingTable, Sweep},
+    ground::{LandingTable, Sweep},
+    hop::HopTest,
     quantity::VertexId,
     world::{Direction, Hopper, HopperLimits},
 };

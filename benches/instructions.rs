@@ -21,7 +21,8 @@ use std::{hint::black_box, process::Command, sync::Arc};
 
 use chta::{
     chain::Station,
-    hop::{HopTest, LandingTable, Sweep},
+    ground::{LandingTable, Sweep},
+    hop::HopTest,
     quantity::VertexId,
     world::{Direction, Hopper, HopperLimits},
 };

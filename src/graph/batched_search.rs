@@ -22,7 +22,7 @@ use super::{
 };
 use crate::{
     chain::Station,
-    hop::{LandingTable, Sweep},
+    ground::{LandingTable, Sweep},
     progress::{Cancelled, Meter, PairCounter},
     quantity::{NodeId, SlopeInterval},
     world::{Direction, Limit},

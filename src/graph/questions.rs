@@ -11,7 +11,8 @@ use super::{
 };
 use crate::{
     chain::Station,
-    hop::{HopTest, LandingTable},
+    ground::LandingTable,
+    hop::HopTest,
     progress::Meter,
     quantity::NodeId,
     world::{Contact, Direction},

@@ -11,7 +11,8 @@ use super::{
 use crate::{
     ballistics::TakeoffChoice,
     chain::Station,
-    hop::{HopTest, LandingTable, Split},
+    ground::LandingTable,
+    hop::{HopTest, Split},
     progress::{Detail, Meter, Progress, Stage},
     quantity::NodeId,
     world::Limit,

@@ -109,7 +109,7 @@ impl Answer {
 ///
 /// # Complexity
 /// With V nodes, W of them in reach of each ahead of the nodes with equal hops, and S vertices flown over: about O(V W) time,
-/// as [`Sweep`](crate::hop::Sweep) evaluates one take-off; some 150 bytes of memory per node, and no stored edges.
+/// as [`Sweep`](crate::ground::Sweep) evaluates one take-off; some 150 bytes of memory per node, and no stored edges.
 pub fn search(
     test: &HopTest,
     start: Station,
