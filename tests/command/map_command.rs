@@ -310,7 +310,10 @@ fn no_file_is_written_over_another() {
         desk.refused(&[&MAP[..], &["-o", file]].concat(), &[file, "this command reads the file", "another file"]);
     }
     desk.refused(&[&MAP[..], &["-o", "x.tif", "--return", "--return-output", "./x.tif"]].concat(), &["./x.tif", "two answers"]);
-    desk.refused(&["slice", "walled.asc", "--from", "101,205", "--to", "110,205", "-o", "walled.asc"], &["walled.asc", "reads the file"]);
+    desk.refused(
+        &["slice", "walled.asc", "--from", "101,205", "--to", "110,205", "-o", "walled.asc"],
+        &["walled.asc", "reads the file"],
+    );
     desk.refused(&["plan", "scenario.toml", "--plot", "a.svg", "-o", "a.svg"], &["a.svg", "two answers"]);
     desk.refused(&["plan", "scenario.toml", "-o", "chain.csv"], &["chain.csv", "reads the file"]);
     // A run writes a chain.csv of its own; its result may be repeated into its own place.
