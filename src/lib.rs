@@ -1,8 +1,9 @@
-//! Constrained hopping traversability analysis: can a ballistic hopper get from here to there, in how few hops, with which commands?
+//! Constrained hopping traversability analysis: can a ballistic hopper get from here to there, in how few hops, with which
+//! commands?
 //!
 //! A hopper travels by ballistic hops over terrain. Friction cones limit its take-off and landing angles, the machine limits its
-//! take-off and landing speeds, and the terrain between must be cleared. This crate answers for a vertical slice of an elevation raster,
-//! for a given polygonal chain, and in any direction over a whole raster.
+//! take-off and landing speeds, and the terrain between must be cleared. This crate answers for a vertical slice of an elevation
+//! raster, for a given polygonal chain, and in any direction over a whole raster.
 //!
 //! # From a DEM to a path
 //!
@@ -65,10 +66,10 @@
 //!
 //! # Conventions
 //!
-//! SI units; degrees at the edges only, where names end in `_deg`. Inside, a direction is its slope. Angles are elevations above the
-//! direction of travel. "No" is an answer, not an error: a refusal names its limits. The equations are those of the paper that
-//! introduced constrained hopping traversability analysis on nonuniform polygonal chains (IEEE Access; "P" or "the CHTA paper" in the
-//! sources) and of Campana and Laumond, *Ballistic motion planning*, numbered as there.
+//! SI units; degrees at the edges only, where names end in `_deg`. Inside, a direction is its slope. Angles are elevations above
+//! the direction of travel. "No" is an answer, not an error: a refusal names its limits. The equations are those of the paper that
+//! introduced constrained hopping traversability analysis on nonuniform polygonal chains (IEEE Access; "P" or "the CHTA paper" in
+//! the sources) and of Campana and Laumond, *Ballistic motion planning*, numbered as there.
 //!
 //! # Features
 //!
