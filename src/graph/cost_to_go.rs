@@ -77,7 +77,7 @@ impl CostToGo {
     }
 
     /// The graph that defines the costs.
-    fn graph<'g>(&'g self, test: &'g HopTest) -> HopGraph<'g> {
+    fn graph(&self, test: &HopTest) -> HopGraph {
         HopGraph::new(test, &self.nodes, self.options.effort, self.options.takeoff, self.options.split)
     }
 
@@ -196,7 +196,7 @@ impl OneHop {
 }
 
 /// The least costs of all nodes, from Dijkstra's algorithm.
-fn costs_to_go(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
+fn costs_to_go(graph: &HopGraph) -> Vec<Option<Cost>> {
     let nodes = graph.nodes();
     let mut costs: Vec<Option<Cost>> = vec![None; nodes.stations().len()];
     let mut done = vec![false; nodes.stations().len()];

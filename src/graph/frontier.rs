@@ -40,7 +40,7 @@ impl Frontier {
     const EXPLAINED: usize = 200_000;
 
     /// The frontier of a graph without a path, given the nodes that were reached.
-    pub(super) fn of(graph: &HopGraph<'_>, reach: &LocalReach, reached: &[bool]) -> Self {
+    pub(super) fn of(graph: &HopGraph, reach: &LocalReach, reached: &[bool]) -> Self {
         let nodes = graph.nodes();
         let leads = leading_to_goal(graph, reach);
         let of = |flags: &[bool]| -> Vec<Station> {
@@ -65,7 +65,7 @@ impl Frontier {
 }
 
 /// The nodes that lead to the goal: breadth-first search against the direction of the hops.
-fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach) -> Vec<bool> {
+fn leading_to_goal(graph: &HopGraph, reach: &LocalReach) -> Vec<bool> {
     let nodes = graph.nodes();
     let mut leads = vec![false; nodes.stations().len()];
     let mut queue = VecDeque::from([nodes.goal()]);
@@ -83,7 +83,7 @@ fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach) -> Vec<bool> {
 }
 
 /// The refusals of the hops that leave a set of nodes, and the smallest gap among them.
-fn refusals_out_of(graph: &HopGraph<'_>, reached: &[bool]) -> (RefusalCounts, Option<NearestMiss>) {
+fn refusals_out_of(graph: &HopGraph, reached: &[bool]) -> (RefusalCounts, Option<NearestMiss>) {
     let stations = graph.nodes().stations();
     let mut counts = RefusalCounts::default();
     let mut explained = 0;

@@ -57,7 +57,7 @@ impl Goals {
     }
 
     /// Evaluates the hops from a set of take-offs to the goals.
-    pub(super) fn land_from(&mut self, graph: &HopGraph<'_>, takeoffs: &[Takeoff]) -> Tally {
+    pub(super) fn land_from(&mut self, graph: &HopGraph, takeoffs: &[Takeoff]) -> Tally {
         let mut tally = Tally::default();
         for takeoff in takeoffs {
             let in_reach = around(&self.stations, &takeoff.station, takeoff.reach_m);

@@ -36,7 +36,7 @@ pub struct Reachable {
 pub fn reachable(test: &HopTest, start: Station, spacing: PointSpacing) -> Result<Reachable, TooManyNodes> {
     let set = NodeSet::new(test.chain(), start, start, spacing)?;
     let graph = HopGraph::new(test, &set, Effort::default(), TakeoffChoice::default(), Split::default());
-    let table = Arc::new(LandingTable::new(test, set.stations()));
+    let table = Arc::new(LandingTable::new(test, set.shared_stations()));
     let reach = LocalReach::of(test);
     let mut batched = BatchedSearch::new(&graph, &table, &reach, Aim::Hops);
     batched.run(&start, &mut Goals::new(&[]));

@@ -143,7 +143,7 @@ type Labels = BTreeMap<u64, BTreeMap<usize, Label>>;
 
 impl Lattice {
     /// The edges out of every node within the budget, breadth first by hops; `None` if the goal is not reached.
-    fn within(graph: &HopGraph<'_>, extra: u64) -> Option<Self> {
+    fn within(graph: &HopGraph, extra: u64) -> Option<Self> {
         let nodes = graph.nodes();
         let count = nodes.stations().len();
         let (start, goal) = (nodes.start().index(), nodes.goal().index());
@@ -179,7 +179,7 @@ impl Lattice {
     }
 
     /// All labels from which the goal is still within the budget.
-    fn labelled(&self, graph: &HopGraph<'_>, options: &SearchOptions, reliability: &ReliabilityOptions) -> Labels {
+    fn labelled(&self, graph: &HopGraph, options: &SearchOptions, reliability: &ReliabilityOptions) -> Labels {
         let nodes = graph.nodes();
         let start = nodes.start().index();
         let mut weights: BTreeMap<(usize, usize), f64> = BTreeMap::new();
@@ -218,7 +218,7 @@ impl Lattice {
 }
 
 /// The edges out of one node.
-pub(super) fn steps_from(graph: &HopGraph<'_>, node: usize) -> Vec<Step> {
+pub(super) fn steps_from(graph: &HopGraph, node: usize) -> Vec<Step> {
     let nodes = graph.nodes();
     let takeoff = nodes.station(NodeId(node));
     let step = |target: usize| {
@@ -265,7 +265,7 @@ fn hops_to(goal: usize, steps: &[Vec<Step>]) -> Vec<u64> {
 
 /// The weight of an edge: the sum over its hops.
 pub(super) fn edge_weight(
-    graph: &HopGraph<'_>,
+    graph: &HopGraph,
     (from, to): (usize, usize),
     options: &SearchOptions,
     reliability: &ReliabilityOptions,
@@ -323,7 +323,7 @@ fn along_weight(
 }
 
 /// The path to the goal that ends with a label.
-fn path_to_goal(graph: &HopGraph<'_>, labels: &Labels, hops: u64, weight: f64) -> Option<ReliablePath> {
+fn path_to_goal(graph: &HopGraph, labels: &Labels, hops: u64, weight: f64) -> Option<ReliablePath> {
     let nodes = graph.nodes();
     let mut at = (hops, nodes.goal().index());
     let (mut legs, mut cost) = (Vec::new(), Cost::default());

@@ -44,12 +44,7 @@ impl ReliabilityPolicy {
     ///
     /// # Complexity
     /// With E edges on some path within the hop budget: E hop tests and risk estimates, `E (1 + extra)` additions.
-    pub(super) fn of(
-        graph: &HopGraph<'_>,
-        costs: &[Option<Cost>],
-        options: &SearchOptions,
-        reliability: &ReliabilityOptions,
-    ) -> Self {
+    pub(super) fn of(graph: &HopGraph, costs: &[Option<Cost>], options: &SearchOptions, reliability: &ReliabilityOptions) -> Self {
         let extra = u64::from(reliability.extra_hops_max);
         let fewest = |node: usize| costs[node].map(Cost::hops);
         let goal = graph.nodes().goal().index();
