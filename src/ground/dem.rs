@@ -61,7 +61,7 @@ pub enum SliceProblem {
     #[error(transparent)]
     Terrain(#[from] TerrainError),
     /// The slice is not a valid chain.
-    #[error("the slice makes no chain: {0}")]
+    #[error("the slice is not a valid chain: {0}")]
     Chain(#[from] InvalidChain),
     /// The constraints of a segment cannot be resolved.
     #[error(transparent)]
