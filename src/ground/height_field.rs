@@ -51,7 +51,6 @@ impl HeightField {
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_precision_loss, reason = "small counts")]
 mod tests {
     use super::*;
     use crate::draw::Draw;
@@ -68,9 +67,9 @@ mod tests {
         for _ in 0..count {
             let field = HeightField::drawn(|| draw.unit(), sigma_m, length_m);
             let here = field.at(0.0, 0.0) / sigma_m;
-            fourth += here.powi(4) / count as f64;
+            fourth += here.powi(4) / f64::from(count);
             for (sum, (x, y)) in sums.iter_mut().zip(places) {
-                *sum += here * field.at(x, y) / sigma_m / count as f64;
+                *sum += here * field.at(x, y) / sigma_m / f64::from(count);
             }
         }
         for (found, (x, y)) in sums.into_iter().zip(places) {
