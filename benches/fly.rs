@@ -1,7 +1,8 @@
-//! Flown hops a second: the simulation on one thread, on the shipped chain of 100 vertices and on the shipped crater field, with errors
-//! of speed, angle and drift (on the map of heading too); and what replanning costs beside open loop.
+//! Flown hops a second: the simulation on one thread, on the shipped chain of 100 vertices and on the shipped crater field, with
+//! errors of speed, angle and drift (on the map of heading too); and what replanning costs beside open loop.
 //!
-//! `cargo bench --bench fly`. Items are flown hops, so the throughput is hops a second a core. Compare lines of one run with each other.
+//! `cargo bench --bench fly`. Items are flown hops, so the throughput is hops a second a core. Compare lines of one run with each
+//! other.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
 #![allow(clippy::print_stdout, reason = "how the trials end belongs to the figures")]
@@ -68,12 +69,12 @@ fn fly(
     let (start, goal) = (station(first_m + 5.0), station(last_m - 10.0));
     let spacing = PointSpacing::AtMostM(spacing_m);
     let options = SearchOptions { spacing: Some(spacing), takeoff: TakeoffChoice::MidRange, ..SearchOptions::default() };
-    let answer = search(&test, start, goal, &options, &mut |_| {}).expect("few nodes");
+    let answer = search(&test, start, goal, &options, &()).expect("few nodes");
     let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path") };
     let path = generate(&test, &legs, options.takeoff, Split::FullReach).expect("few hops");
     let real = HopTest::new(chains[1].clone());
     let nodes = NodeSet::new(&chains[1], start, goal, spacing).expect("few nodes");
-    let to_go = Arc::new(CostToGo::of(&real, nodes, &options));
+    let to_go = Arc::new(CostToGo::of(&real, nodes, &options, &()).expect("not cancelled"));
     let mission = match dem {
         None => Mission::along_chain(real.clone(), path.clone(), start, goal),
         Some(dem) => {
@@ -84,8 +85,9 @@ fn fly(
         }
     };
     let simulation = Simulation::new(&mission.with_replanning(real, to_go), errors).expect("sound errors");
-    let trials = TrialOptions { trials: 1000, threads: 1, policy, goal_tolerance_m: 3.0, ..TrialOptions::default() };
-    let run = || simulation.run(black_box(&trials), &mut ()).expect("a simulation");
+    let trials = TrialOptions { trials: 1000, policy, goal_tolerance_m: 3.0, ..TrialOptions::default() };
+    let one = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread");
+    let run = || one.install(|| simulation.run(black_box(&trials), &mut (), &())).expect("a simulation");
     let summary = run();
     println!(
         "    {} hops planned; {} flown by 1000 trials; {}",

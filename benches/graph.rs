@@ -27,7 +27,7 @@ fn across(bencher: Bencher<'_, '_>, segments: usize, points: u32, speed_m_s: f64
     let (first_m, last_m) = chain.geometry().extent_m();
     let station = |x_m| chain.geometry().station(x_m).expect("an end of the chain");
     let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(points)), ..SearchOptions::default() };
-    bencher.bench_local(|| search(black_box(&test), station(first_m), station(last_m), &options, &mut |_| {}));
+    bencher.bench_local(|| search(black_box(&test), station(first_m), station(last_m), &options, &()));
 }
 
 /// Time against the number of segments, at 10 m/s and no points inside.

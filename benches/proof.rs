@@ -36,7 +36,7 @@ fn bounds_from_end_to_end(bencher: divan::Bencher<'_, '_>, segments: u32) {
     let test = HopTest::new(chain.clone());
     let (first_m, last_m) = chain.geometry().extent_m();
     let (start, goal) = (chain.geometry().station(first_m).unwrap(), chain.geometry().station(last_m).unwrap());
-    let prove = || -> Bounds { bounds(&test, start, goal, &BoundsOptions::default(), &mut |_| {}).unwrap() };
+    let prove = || -> Bounds { bounds(&test, start, goal, &BoundsOptions::default(), &()).unwrap() };
     assert!(prove().is_proved(), "a bench of proofs left open");
     bencher.bench(prove);
 }

@@ -18,7 +18,8 @@ use std::sync::Arc;
 
 use chta::{
     chain::Station,
-    hop::{HopTest, LandingTable, Sweep},
+    ground::{LandingTable, Sweep},
+    hop::HopTest,
     quantity::VertexId,
     world::{Direction, Hopper, HopperLimits, Limit},
 };

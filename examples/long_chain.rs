@@ -1,8 +1,8 @@
-//! A long chain of one-metre segments over fractal ground, as CSV: what `benches/scale.sh` and `benches/peers` measure on.
+//! Writes a long chain of one-metre segments over fractal ground as CSV: the input of `benches/scale.sh` and `benches/peers`.
 //!
 //! `cargo run --release --example long_chain -- --segments 100000 --seed 1 > chain.csv`
 //!
-//! The same numbers for the same seed, everywhere. Gravity, speeds and friction are the scenario's: see `benches/scale.sh`.
+//! The same seed gives the same numbers on every platform. Gravity, speeds and friction come from a scenario: see `benches/scale.sh`.
 
 #[path = "../benches/support/mod.rs"]
 mod support;

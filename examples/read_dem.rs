@@ -1,4 +1,4 @@
-//! Reads a DEM whole and says what it holds: `cargo run --release --example read_dem -- crater.tif`.
+//! Reads a whole DEM and prints its size, elevations and bounds: `cargo run --release --example read_dem -- crater.tif`.
 #![expect(clippy::print_stdout, reason = "a program that prints")]
 
 use std::error::Error;

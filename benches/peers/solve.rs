@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example peers_solve -- CHAIN SCENARIO POINTS_PER_SEGMENT REPEATS`
 //!
-//! From the left end of the chain to its right end. Counted as `benches/peers/all_pairs.py` counts its own: constraints of all segments,
-//! nodes, hops, search. `solve_s` is the least of the repeats, the first left out where there are more.
+//! From the left end of the chain to its right end. Counted as `benches/peers/all_pairs.py` counts its own: constraints of all
+//! segments, nodes, hops, search. `solve_s` is the least of the repeats, the first left out where there are more.
 
 #![expect(clippy::print_stdout, reason = "a program that prints")]
 
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let test = HopTest::new(chain.clone());
         let (first_m, last_m) = chain.geometry().extent_m();
         let (start, goal) = (chain.geometry().station(first_m)?, chain.geometry().station(last_m)?);
-        hops = black_box(search(&test, start, goal, &options, &mut |_| {})?).hops();
+        hops = black_box(search(&test, start, goal, &options, &())?).hops();
         if round > 0 || repeats == 0 {
             least_s = least_s.min(began.elapsed().as_secs_f64());
         }

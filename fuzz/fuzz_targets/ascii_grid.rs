@@ -1,4 +1,4 @@
-//! Any bytes as an ESRI ASCII grid: no panic, and what is accepted reads back equal after writing.
+//! Any bytes as an ESRI ASCII grid: no panic, and an accepted file reads back equal after writing.
 #![no_main]
 
 use chta::terrain::{read_ascii_grid_bytes, write_ascii_grid};

@@ -1,4 +1,4 @@
-//! Any bytes as a chain CSV: no panic, spans that fit their text, and what is accepted reads back equal after writing.
+//! Any bytes as a chain CSV: no panic, spans inside their text, and an accepted file reads back equal after writing.
 #![no_main]
 
 use chta::chain::csv::{read_chain_csv, write_chain_csv};

@@ -1,4 +1,4 @@
-//! Any bytes as a GeoTIFF: no panic, and what is accepted reads back equal after writing.
+//! Any bytes as a GeoTIFF: no panic, and an accepted file reads back equal after writing.
 #![no_main]
 
 use chta::terrain::{geotiff_bytes, read_geotiff_bytes};

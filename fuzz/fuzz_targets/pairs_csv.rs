@@ -1,4 +1,4 @@
-//! Any bytes as a CSV of pairs: no panic, and only finite numbers come out.
+//! Any bytes as a CSV of pairs: no panic, and accepted numbers are finite.
 #![no_main]
 
 use chta::chain::csv::read_pairs_csv;

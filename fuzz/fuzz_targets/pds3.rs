@@ -1,4 +1,4 @@
-//! Any bytes as a PDS3 image with attached label: no panic, and what is accepted reads back equal from a GeoTIFF of it.
+//! Any bytes as a PDS3 image with attached label: no panic, and an accepted file reads back equal through a GeoTIFF.
 #![no_main]
 
 use chta::terrain::{geotiff_bytes, read_geotiff_bytes, read_pds3_bytes};

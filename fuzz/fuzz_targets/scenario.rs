@@ -1,4 +1,4 @@
-//! Any bytes as a scenario (TOML), and as a result (JSON): no panic, places inside the text, and what is accepted reads back equal after
+//! Any bytes as a scenario (TOML), and as a result (JSON): no panic, positions inside the text, and an accepted one reads back equal after
 //! writing.
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Any bytes as an XYZ grid: no panic, and what is accepted reads back equal from a GeoTIFF of it.
+//! Any bytes as an XYZ grid: no panic, and an accepted file reads back equal through a GeoTIFF.
 #![no_main]
 
 use chta::terrain::{geotiff_bytes, read_geotiff_bytes, read_xyz_bytes};

@@ -1,4 +1,4 @@
-//! Which files a command reads and which it writes: never the same one, and no two answers into one file.
+//! The files that a command reads and writes. It never writes a file that it reads, nor two answers into one file.
 
 use std::{
     fs,
@@ -10,30 +10,30 @@ use same_file::Handle;
 
 use super::Failure;
 
-/// What this run reads. Handles, so that a link or another name for the same file is known too.
+/// The files that this run reads, as handles, so that links and other names of the same file are recognised.
 static READ: Mutex<Vec<Handle>> = Mutex::new(Vec::new());
 
-/// What this run writes, by folder and name.
+/// The files that this run writes, by folder and name.
 static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Notes a file that is read. One that cannot be opened is told of by whoever reads it.
+/// Records a file that is read. Errors on opening it are reported by its reader.
 pub(crate) fn reads(path: &Path) {
     if let Ok(handle) = Handle::from_path(path) {
         READ.lock().unwrap_or_else(PoisonError::into_inner).push(handle);
     }
 }
 
-/// Lets a file that was read be written after all: a result that is repeated into its own place.
+/// Permits writing a file that was read: a result that is repeated into its own folder.
 pub(crate) fn repeats(path: &Path) {
     if let Ok(handle) = Handle::from_path(path) {
         READ.lock().unwrap_or_else(PoisonError::into_inner).retain(|read| *read != handle);
     }
 }
 
-/// Notes a file that will be written.
+/// Records a file that will be written.
 ///
 /// # Errors
-/// Where this run reads it, or writes it already. A device or a pipe takes whatever is written to it.
+/// If this run reads the file or already writes it. Devices and pipes are exempt.
 pub(crate) fn writes(path: &Path) -> Result<(), Failure> {
     if fs::metadata(path).is_ok_and(|meta| !meta.is_file()) {
         return Ok(());
@@ -42,19 +42,19 @@ pub(crate) fn writes(path: &Path) -> Result<(), Failure> {
     let handle = Handle::from_path(path).ok();
     if handle.is_some_and(|handle| READ.lock().unwrap_or_else(PoisonError::into_inner).contains(&handle)) {
         return Err(Failure::message(format!(
-            "{name}: is read by this command and would be overwritten by it: choose another file to write"
+            "{name}: this command reads the file and would overwrite it: choose another file to write"
         )));
     }
     let place = place_of(path);
     let mut written = WRITTEN.lock().unwrap_or_else(PoisonError::into_inner);
     if written.contains(&place) {
-        return Err(Failure::message(format!("{name}: found as the file of two answers: give each a file of its own")));
+        return Err(Failure::message(format!("{name}: two answers would be written to this file: give each its own file")));
     }
     written.push(place);
     Ok(())
 }
 
-/// A path by its real folder, or by the real file where it is a link.
+/// A path with its folder resolved, or the target where the path is a link.
 fn place_of(path: &Path) -> PathBuf {
     if let Ok(file) = fs::canonicalize(path) {
         return file;

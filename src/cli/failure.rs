@@ -1,4 +1,4 @@
-//! Bad input and failures, told on standard error with the place underlined.
+//! Bad input and failures, reported on standard error with the position underlined.
 
 use std::{
     error::Error,
@@ -10,6 +10,7 @@ use std::{
 
 use chta::{
     chain::csv::{CsvFileError, CsvProblem},
+    progress::Cancelled,
     scenario::{PipelineError, ScenarioProblem, ScenarioProblems},
 };
 use miette::{
@@ -36,18 +37,18 @@ impl Failure {
         Self::Message(sentence.into())
     }
 
-    /// The sentence of an error of the library, with the options that mend it.
+    /// The message of a library error, with the options that mend it.
     pub(crate) fn of(error: &(dyn Error + 'static)) -> Self {
         Self::Message(hints::sentence(error))
     }
 
-    /// The same about a file, with whose name it begins unless the error names it itself.
+    /// The same for an error about a file: the message begins with the file's name unless the error already names it.
     pub(crate) fn about(file: &Path, error: &(dyn Error + 'static)) -> Self {
         let sentence = hints::sentence(error);
         Self::Message(if hints::names(error, file) { sentence } else { format!("{}: {sentence}", file.display()) })
     }
 
-    /// Tells it on standard error: one sentence a problem, with the line and the field underlined where there is one.
+    /// Reports it on standard error: one sentence for each problem, with the line and the field underlined where there is one.
     pub(crate) fn tell(&self) {
         let mut text = String::new();
         for pointed in self.pointed() {
@@ -56,11 +57,11 @@ impl Failure {
             let _ = handler().render_report(&mut report, &pointed);
             text.push_str(report.trim_start());
         }
-        // Nobody to tell where standard error is closed.
+        // An error on writing to standard error cannot be reported.
         let _ = io::stderr().write_all(text.as_bytes());
     }
 
-    /// Every problem with its place.
+    /// Every problem with its position.
     fn pointed(&self) -> Vec<Pointed> {
         match self {
             Self::Message(sentence) => vec![Pointed::bare(sentence.clone())],
@@ -93,28 +94,34 @@ impl From<serde_json::Error> for Failure {
     }
 }
 
+impl From<Cancelled> for Failure {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::of(&cancelled)
+    }
+}
+
 impl From<CsvFileError> for Failure {
     fn from(error: CsvFileError) -> Self {
         Self::Csv(error)
     }
 }
 
-/// How problems are drawn: as a terminal can show it, plainly elsewhere, no line broken.
+/// How problems are drawn: in colour on a terminal, plain elsewhere, without line wrapping.
 fn handler() -> GraphicalReportHandler {
     let mut theme = match (io::stderr().is_terminal(), std::env::var_os("NO_COLOR")) {
         (true, None) => GraphicalTheme::unicode(),
         (true, Some(_)) => GraphicalTheme::unicode_nocolor(),
         (false, _) => GraphicalTheme::none(),
     };
-    // The word that goes with `warning:` and with what clap says.
+    // The same prefix style as `warning:` and the errors of clap.
     "error:".clone_into(&mut theme.characters.error);
     GraphicalReportHandler::new_themed(theme).with_wrap_lines(false).with_break_words(false)
 }
 
-/// Longer lines are not shown: the sentence has their place, and a terminal has no room for them.
+/// Longer lines are not shown: the sentence gives their position, and a terminal has no room for them.
 const LONGEST_LINE: usize = 200;
 
-/// A span with the lines it stands on and one on either side, as they are shown.
+/// A span with the lines that contain it and one line on either side, as they are shown.
 fn around<'a>(source: &'a str, span: &Range<usize>) -> &'a str {
     let line_start = |end: usize| source.get(..end).and_then(|before| before.rfind('\n'));
     let line_end = |start: usize| source.get(start..).and_then(|after| after.find('\n')).map(|length| start + length);
@@ -123,7 +130,7 @@ fn around<'a>(source: &'a str, span: &Range<usize>) -> &'a str {
     source.get(first..last).unwrap_or(source)
 }
 
-/// One problem and the text it points into.
+/// One problem and the text that it points into.
 struct Pointed {
     sentence: String,
     source: Option<Box<dyn SourceCode>>,
@@ -179,7 +186,7 @@ impl Diagnostic for Pointed {
     }
 }
 
-/// One line of a file that is too large, or too strange, to be held whole.
+/// One line of a file that is too large, or not valid text, to be held in memory whole.
 #[derive(Debug)]
 struct LineOfFile {
     name: String,

@@ -1,4 +1,4 @@
-//! Help that is made from the program's own lists, so that it cannot fall behind them.
+//! Help generated from the program's own lists, so that it cannot become outdated.
 
 use std::{fmt::Write, sync::OnceLock};
 
@@ -25,7 +25,7 @@ pub(super) fn takes(option: &str) -> bool {
     CALLED.get().is_none_or(|command| offers(command, option))
 }
 
-/// The command line, parsed with those lists in its long help.
+/// The command line, parsed with these lists in its long help.
 pub(super) fn parsed() -> Args {
     let mut command = Args::command();
     let lists = [

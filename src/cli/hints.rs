@@ -1,4 +1,4 @@
-//! The options that mend what the library reports: its sentences name keys and facts, and the command adds the options here.
+//! The options that mend an error of the library: its messages name keys and facts, and the command adds the options here.
 
 use std::{error::Error, path::Path};
 
@@ -6,14 +6,13 @@ use chta::{
     path::TooManyHops,
     reach::{FanError, map::MapError},
     report::FurtherMeans,
-    scenario::{PipelineError, ProblemKind, ScenarioProblem, TradeError},
+    scenario::{PipelineError, ProblemKind, ScenarioProblem},
     terrain::{LonLat, ScaleMend, TerrainError},
-    uncertainty::SimulationError,
 };
 
 use super::help::takes;
 
-/// The sentence of an error, with the options that mend it.
+/// The message of an error, with the options that mend it.
 pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
     match of_terrain(error) {
         Some(TerrainError::MapScale { found, mend }) => map_scale(found, mend),
@@ -21,19 +20,19 @@ pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
     }
 }
 
-/// Whether an error names this file by itself.
+/// Whether the error's message already names this file.
 pub(crate) fn names(error: &(dyn Error + 'static), file: &Path) -> bool {
     let same = |path: &Path| path.file_name() == file.file_name();
     match (of_terrain(error), error.downcast_ref()) {
         (Some(TerrainError::InFile { path, .. } | TerrainError::Overlay { path, .. }), _)
         | (_, Some(PipelineError::Read { path, .. })) => same(path),
-        // Their commands do.
+        // The commands that use these add the name.
         (Some(TerrainError::MapScale { mend, .. }), _) => !matches!(mend, ScaleMend::Shorter { .. }),
         _ => false,
     }
 }
 
-/// What to add to the help of a scenario's problem.
+/// The addition to the help of a scenario's problem.
 pub(crate) fn of_problem(problem: &ScenarioProblem) -> &'static str {
     let ScenarioProblem { key, kind, .. } = problem;
     match kind {
@@ -46,12 +45,12 @@ pub(crate) fn of_problem(problem: &ScenarioProblem) -> &'static str {
     }
 }
 
-/// What can tell more than an answer does, by the options of the command that was called or else of another one.
+/// How to get a stronger answer, by the options of the command that was called or else of another one.
 pub(crate) fn further_means() -> FurtherMeans<'static> {
     FurtherMeans { budget: "--budget", proof: if takes("prove") { "--prove" } else { "chta check --prove" } }
 }
 
-/// The error of the terrain that another one passes on, or that it is.
+/// The terrain error that an error is or wraps.
 fn of_terrain<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a TerrainError> {
     let of_map = || match error.downcast_ref() {
         Some(MapError::Terrain(terrain)) => Some(terrain),
@@ -67,9 +66,8 @@ fn of_terrain<'a>(error: &'a (dyn Error + 'static)) -> Option<&'a TerrainError> 
     }
 }
 
-/// What to add to the sentence of an error.
+/// The addition to the message of an error.
 fn hint(error: &(dyn Error + 'static)) -> String {
-    const THREADS: &str = " with --threads";
     if let Some(mut terrain) = of_terrain(error) {
         while let TerrainError::InFile { problem, .. } = terrain {
             terrain = problem;
@@ -88,16 +86,12 @@ fn hint(error: &(dyn Error + 'static)) -> String {
     match error.downcast_ref() {
         Some(MapError::TooFar { stride, .. }) => return format!("; for that stride give --stride {stride}"),
         Some(MapError::TooManyHops { .. }) => return "; a greater stride is given with --stride".to_owned(),
-        Some(MapError::Threads(_)) => return THREADS.to_owned(),
         _ => {}
     }
-    let threads = matches!(error.downcast_ref(), Some(FanError::Threads(_)))
-        || matches!(error.downcast_ref(), Some(TradeError::Threads(_)))
-        || matches!(error.downcast_ref(), Some(SimulationError::Threads(_)));
-    if threads { THREADS.to_owned() } else { String::new() }
+    String::new()
 }
 
-/// What to do about a map whose scale is off.
+/// The remedy for a map whose scale is off.
 fn map_scale(found: &str, mend: &ScaleMend) -> String {
     let place = |place: &LonLat| format!("{:.9},{:.9}", place.lon_deg, place.lat_deg);
     let mend = match mend {
@@ -113,7 +107,7 @@ fn map_scale(found: &str, mend: &ScaleMend) -> String {
     };
     let accept = "terrain.accept_map_scale = true";
     let accept = if takes("accept-map-scale") { format!("--accept-map-scale ({accept})") } else { accept.to_owned() };
-    format!("{found}, expected 1 within 1 %; mend it with: {mend}; or take it as it is with {accept}")
+    format!("{found}, expected 1 within 1 %; mend it with: {mend}; or accept it as it is with {accept}")
 }
 
 #[cfg(test)]
@@ -124,7 +118,7 @@ mod tests {
     use super::*;
     use crate::cli::{args::Args, help::offers};
 
-    /// Each option that a sentence names, with the command that it is of: the last one named before it, or the one that says it.
+    /// Each option that a sentence names, with its command: the last one named before it, or the command that prints the sentence.
     fn options<'a>(sentence: &'a str, saying: &'a str) -> Vec<(&'a str, &'a str)> {
         let commands: Vec<String> = Args::command().get_subcommands().map(|command| command.get_name().to_owned()).collect();
         let (mut command, mut found) = (saying, Vec::new());
@@ -147,30 +141,19 @@ mod tests {
 
     #[test]
     fn every_option_of_a_hint_exists() {
-        let no_threads = || {
-            rayon::ThreadPoolBuilder::new()
-                .num_threads(2)
-                .spawn_handler(|_| Err(std::io::ErrorKind::Other.into()))
-                .build()
-                .unwrap_err()
-        };
         let command = || "gdalwarp in.tif out.tif".to_owned();
         let scale = |mend| TerrainError::MapScale { found: "the scale is 1.3".to_owned(), mend };
         let not_projected = TerrainError::NotProjected { found: "degrees".to_owned(), mend: command() };
         let in_file = TerrainError::InFile { path: "a.tif".into(), problem: Box::new(not_projected) };
-        let errors: [(&str, Box<dyn Error>, &str); 10] = [
+        let errors: [(&str, Box<dyn Error>, &str); 6] = [
             ("map", Box::new(MapError::TooFar { range_m: 9.0, posts: 9.0, offsets: 9, stride: 4 }), "--stride 4"),
             ("map", Box::new(MapError::TooManyHops { most: 9 }), "--stride"),
-            ("map", Box::new(MapError::from(no_threads())), "): ask for fewer with --threads"),
-            ("fan", Box::new(FanError::from(no_threads())), "): ask for fewer with --threads"),
-            ("trade", Box::new(TradeError::from(no_threads())), "): ask for fewer with --threads"),
-            ("simulate", Box::new(SimulationError::from(no_threads())), "): ask for fewer with --threads"),
             ("plan", Box::new(TooManyHops { hops: 9 }), "`chta check`"),
             ("plan", Box::new(PipelineError::from(in_file)), "map --start-lonlat"),
             (
                 "slice",
                 Box::new(scale(ScaleMend::AlongTransect { command: command(), ends: [place(), place()] })),
-                "then slice out.tif --from-lonlat 12.500000000,-3.250000000 --to-lonlat 12.500000000,-3.250000000; or take it as it is \
+                "then slice out.tif --from-lonlat 12.500000000,-3.250000000 --to-lonlat 12.500000000,-3.250000000; or accept it as it is \
                  with --accept-map-scale (terrain.accept_map_scale = true)",
             ),
             (

@@ -23,7 +23,7 @@ use super::{
     claims, hints, output,
 };
 
-/// A scenario with its chain, and what a result has to say of both.
+/// A scenario with its chain, and the records of both for a result.
 #[derive(Debug)]
 pub(crate) struct Loaded {
     /// The scenario as used.
@@ -36,11 +36,11 @@ pub(crate) struct Loaded {
     pub(crate) inputs: Vec<InputFile>,
     /// The folder that the scenario's paths start from.
     pub(crate) base: PathBuf,
-    /// How start and goal are given on the command line.
+    /// How the command line gives start and goal.
     ends: EndOptions,
 }
 
-/// The options for start and goal, which a command may have under its own names or not at all.
+/// The options for start and goal. Commands name them differently; some have none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EndOptions {
     names: Option<[&'static str; 2]>,
@@ -61,7 +61,7 @@ impl EndOptions {
         Self { names: Some(["--start", "--goal"]), x_m: [start, goal] }
     }
 
-    /// Where the value of an end came from.
+    /// The source of an end's value.
     fn place(&self, end: End) -> String {
         match (self.names, self.x_m[end as usize]) {
             (Some(names), Some(_)) => names[end as usize].to_owned(),
@@ -69,7 +69,7 @@ impl EndOptions {
         }
     }
 
-    /// What is missing where an end is given nowhere.
+    /// The failure for an end that is given nowhere.
     fn missing(&self, end: End) -> Failure {
         let name = end.name();
         Failure::message(match self.names {
@@ -90,14 +90,14 @@ impl Loaded {
         HopTest::new(Arc::clone(&self.prepared.chain))
     }
 
-    /// Start and goal, or what is missing.
+    /// Start and goal, or a failure that names the missing one.
     pub(crate) fn ends(&self) -> Result<(Station, Station), Failure> {
         let start = self.prepared.start.ok_or_else(|| self.ends.missing(End::Start))?;
         let goal = self.prepared.goal.ok_or_else(|| self.ends.missing(End::Goal))?;
         Ok((start, goal))
     }
 
-    /// What an analyst should know of the input and of an answer, each once.
+    /// The warnings about the input and an answer, without repetition.
     pub(crate) fn warnings_with(&self, more: impl IntoIterator<Item = String>) -> Vec<String> {
         let mut warnings = self.prepared.warnings.clone();
         for warning in more {
@@ -138,7 +138,7 @@ pub(crate) fn load_with(
     validate_and_prepare(target, source, common.quiet, ends, &mut prepare)
 }
 
-/// A scenario of which keys are varied: the first field, loaded, and what all the others are made from.
+/// A scenario of which keys are varied: the first cell, loaded, and the source of all other cells.
 #[derive(Debug)]
 pub(crate) struct ToVary {
     /// With the first value of every key.
@@ -198,14 +198,14 @@ fn typed(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: 
             }
         }
         source.entries.set_by_option("CHAIN", "terrain", "chain", target.to_string_lossy().into_owned().into());
-        // What is given beside the scenario starts from the working folder, as every path on the command line.
+        // A path on the command line is relative to the working folder.
         source.base = PathBuf::new();
     }
     apply_options(&mut source.entries, common, search, ends);
     Ok(source)
 }
 
-/// How a chain is prepared from a scenario and its terrain, whose paths start from a folder.
+/// Prepares a chain from a scenario and its terrain, whose paths start from the given folder.
 type Prepare<'a> = &'a mut dyn FnMut(&Scenario, &TerrainSource, &Path) -> Result<Prepared, PipelineError>;
 
 /// Validates keys and prepares their chain.
@@ -220,7 +220,7 @@ fn validate_and_prepare(
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
         let name = target.display();
-        // A result of its own terrain names it; those of maps and fans are about all headings from a place.
+        // Results of chains name their terrain; those of maps and fans cover all headings and have no chain.
         let is_result = target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
         Failure::message(if is_result {
             format!("{name}: found no terrain, as in results of `chta map` and `chta fan`: repeat those with their DEM and --scenario {name}")
@@ -230,7 +230,7 @@ fn validate_and_prepare(
     })?;
     let chain_name = target.to_string_lossy().into_owned();
     if !is_scenario(target) && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
-        // The name as it was given, should it be no UTF-8.
+        // The name as given, in case it is not UTF-8.
         terrain = TerrainSource::Chain { path: target.to_path_buf() };
         scenario.terrain = Some(terrain.clone());
     }
@@ -247,7 +247,7 @@ fn validate_and_prepare(
     Ok(Loaded { scenario, prepared, document, inputs, base, ends })
 }
 
-/// Why a terrain gives no chain, with the file or the option that says so.
+/// The failure for a terrain without a usable chain, with the file or option at fault.
 fn unprepared(error: PipelineError, file: &Path, ends: EndOptions) -> Failure {
     match error {
         PipelineError::Csv(error) => Failure::Csv(error),
@@ -256,7 +256,7 @@ fn unprepared(error: PipelineError, file: &Path, ends: EndOptions) -> Failure {
     }
 }
 
-/// A scenario without terrain, for a command that brings its own.
+/// A scenario without terrain, for a command that has its own.
 #[derive(Debug)]
 pub(crate) struct Bare {
     /// The scenario as used.
@@ -292,7 +292,7 @@ pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs) ->
     Ok(Bare { scenario, base: source.base, document })
 }
 
-/// The keys that hops over a DEM need, and how to give them.
+/// The failure for keys that hops over a DEM need, with how to give them.
 fn lacking_on_a_dem(keys: &[LackingKey]) -> String {
     let name = |LackingKey { key, instead, .. }: &LackingKey| match instead {
         [] => (*key).to_owned(),
@@ -301,7 +301,7 @@ fn lacking_on_a_dem(keys: &[LackingKey]) -> String {
     let names: Vec<_> = keys.iter().map(name).collect();
     let sets: Vec<_> = keys.iter().map(|LackingKey { key, example, .. }| format!("--set {key}={example}")).collect();
     format!(
-        "found no {}, expected in the scenario, since a DEM has no columns that say it: add it to the file of --scenario, or give, for \
+        "found no {}, expected in the scenario, since a DEM has no columns for it: add it to the file of --scenario, or give, for \
          example, {}",
         names.join(", no "),
         sets.join(" ")
@@ -314,14 +314,14 @@ pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
     Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
 }
 
-/// Reads a scenario alone, with the folder of its paths but without its terrain: for commands that bring their own.
+/// Reads a scenario with the folder of its paths but without its terrain, for commands that have their own.
 pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure> {
     let mut source = read_source(path)?;
     forget_terrain(&mut source.entries);
     Ok((validated(source.entries, &source.name, &source.text)?, source.base))
 }
 
-/// Forgets the terrain that a scenario names, where the command line brings another.
+/// Removes the scenario's terrain, where the command line gives another.
 fn forget_terrain(entries: &mut Entries) {
     let maps = [
         "dem",
@@ -340,7 +340,7 @@ fn forget_terrain(entries: &mut Entries) {
     }
 }
 
-/// Whether a file is a scenario or a result by its name; anything else is a chain CSV.
+/// Whether a file is a scenario or a result by its extension; any other file is a chain CSV.
 pub(crate) fn is_scenario(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml") || extension.eq_ignore_ascii_case("json"))
 }
@@ -357,7 +357,7 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
         return Err(unread(format!("{size} bytes"), "a scenario has some kilobytes; give a chain or DEM inside it"));
     }
     let mut bytes = Vec::new();
-    // Read with a bound of its own: what is no regular file has no size to ask for.
+    // Reading is bounded as well: the size of a pipe or device is not known in advance.
     let read = fs::File::open(path).and_then(|file| file.take(LARGEST).read_to_end(&mut bytes));
     read.map_err(|e| unread(e.to_string(), "check the path and its permissions"))?;
     let text = String::from_utf8(bytes).map_err(|e| unread(e.to_string(), "write it as TOML in UTF-8"))?;
@@ -368,7 +368,7 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
         let scenario = result
             .get("scenario")
             .ok_or_else(|| unread("it has no `scenario`".to_owned(), "give a result.json that chta wrote"))?;
-        // A result names its files from the folder that chta ran in.
+        // The paths in a result are relative to the folder in which chta ran.
         return Ok(Source { entries: Entries::from_json(scenario), name, text: String::new(), base: PathBuf::new() });
     }
     let mut entries = Entries::from_toml(&text);
@@ -376,10 +376,10 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
     Ok(Source { entries, name, text, base: folder })
 }
 
-/// Options win over the scenario: `--set` first, named options after it.
+/// Options override the scenario: `--set` first, then named options.
 fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) {
     let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, accept_map_scale, quiet: _ } = common;
-    // What an option stands in for is forgotten in the file, not in what the same command line sets.
+    // The keys that an option replaces are removed from the file's keys only, not from those set by the same command line.
     if body.is_some() {
         entries.forget("body", "gravity_m_s2");
         entries.forget("body", "radius_m");
@@ -423,7 +423,7 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
     }
 }
 
-/// Validates keys, with the file they came from in every problem.
+/// Validates keys; every problem names the file that they came from.
 fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failure> {
     Scenario::new(entries).map_err(|mut problems: Vec<ScenarioProblem>| {
         for problem in &mut problems {
@@ -435,7 +435,7 @@ fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failu
     })
 }
 
-/// The name of a file from the working folder, with `/` and without detours, so that a result reads the same everywhere.
+/// A file's path relative to the working folder, normalised and with `/`, so that results are the same on every platform.
 pub(crate) fn relative_name(path: &Path) -> String {
     let here = std::env::current_dir().unwrap_or_default();
     let absolute = normal(&here.join(path));

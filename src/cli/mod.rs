@@ -1,4 +1,4 @@
-//! The command's own side: arguments, one file per command, what is said on the terminal.
+//! The command line: arguments, one file per command, messages on the terminal.
 
 mod args;
 mod claims;
@@ -6,6 +6,7 @@ mod commands;
 mod failure;
 mod help;
 mod hints;
+mod interrupt;
 mod load;
 mod output;
 mod progress;
@@ -13,24 +14,20 @@ mod progress;
 use std::process::ExitCode;
 
 use args::Command;
-use chta::report::abandon_unfinished;
 pub(crate) use failure::Failure;
 
-/// What an analysis came to, as an exit status.
+/// The exit status of an analysis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Answer {
-    /// Done, and the answer is yes (or there was no question).
+    /// Done, and the answer is yes (or the command has no yes-or-no answer).
     Yes,
     /// Done, and the answer is no.
     No,
 }
 
-/// What a program ended by Ctrl-C gives its shell: 128 and the signal's number.
-const INTERRUPTED: i32 = 130;
-
 /// Runs the command line.
 pub(crate) fn run() -> ExitCode {
-    leave_nothing_on_interrupt();
+    interrupt::handle();
     let answer = match help::parsed().command {
         Command::Run(args) => commands::run::run(&args),
         Command::Slice(args) => commands::slice::run(&args),
@@ -49,19 +46,11 @@ pub(crate) fn run() -> ExitCode {
     match answer {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::from(1),
+        // Its files under way are gone with what held them.
+        Err(_) if interrupt::is_requested() => ExitCode::from(interrupt::STATUS),
         Err(failure) => {
             failure.tell();
             ExitCode::from(2)
         }
     }
-}
-
-/// On Ctrl-C (and where another program asks to end, or the terminal goes) no half file stays behind.
-fn leave_nothing_on_interrupt() {
-    // Where the system refuses a handler, an interrupt ends the program as ever; a temporary file may then stay.
-    let _ = ctrlc::set_handler(|| {
-        abandon_unfinished();
-        #[expect(clippy::exit, reason = "the work goes on in other threads and is not waited for")]
-        std::process::exit(INTERRUPTED);
-    });
 }

@@ -1,4 +1,4 @@
-//! Data to standard output or to files, talk to standard error.
+//! Data goes to standard output or to files, messages to standard error.
 
 use std::{
     fs::File,
@@ -14,10 +14,11 @@ use chta::{
     terrain::MapProjection,
 };
 
-use super::{Failure, claims};
+use super::{Failure, claims, interrupt};
 
-/// Writes data to standard output. A reader who closed the pipe is no error.
+/// Writes data to standard output. A closed pipe is not an error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
+    interrupt::check()?;
     let mut out = io::stdout().lock();
     match out.write_all(data).and_then(|()| out.flush()) {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(Failure::message(format!(
@@ -27,7 +28,7 @@ pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
     }
 }
 
-/// A file to be written at the end, opened before the work begins.
+/// A file to be written at the end, opened before the computation begins.
 #[derive(Debug)]
 pub(crate) struct Pending<'a> {
     path: &'a Path,
@@ -42,44 +43,45 @@ impl<'a> Pending<'a> {
         Ok(Self { path, file })
     }
 
-    /// Where it will be.
+    /// Its final path.
     pub(crate) const fn path(&self) -> &'a Path {
         self.path
     }
 
-    /// A handle for a writer that streams.
+    /// A handle for a streaming writer.
     pub(crate) fn handle(&self) -> Result<File, Failure> {
         self.file.handle().map_err(|error| unwritable(self.path, &error))
     }
 
-    /// Puts what was streamed in its place.
+    /// Renames the streamed file to its final path.
     pub(crate) fn keep(self) -> Result<(), Failure> {
+        interrupt::check()?;
         self.file.keep().map_err(|error| unwritable(self.path, &error))
     }
 }
 
-/// Opens the picture of an option before the work begins, where its name asks for a format that pictures have.
+/// Opens the picture file of an option before the computation begins, after checking its extension.
 pub(crate) fn begin_picture<'a>(option: &str, path: &'a Path) -> Result<Pending<'a>, Failure> {
     PictureFormat::of(path).map_err(|error| Failure::message(format!("{option}: {error}")))?;
     Pending::begin(path)
 }
 
-/// A drawn picture as the bytes of its file, in the format of the file's name.
+/// A picture as the bytes of its file, in the format of the file's extension.
 pub(crate) fn encoded(drawn: Result<Picture, FigureError>, file: &Path) -> Result<Vec<u8>, Failure> {
     drawn.and_then(|picture| picture.encoded_for(file)).map_err(|error| Failure::message(error.to_string()))
 }
 
-/// A table's format by its file name.
+/// The format of a table, by its file's extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum TableFormat {
-    /// Comma-separated values; also what goes to standard output in place of the answer.
+    /// Comma-separated values; also the format on standard output in place of the answer.
     Csv,
-    /// One document.
+    /// One JSON document.
     Json,
 }
 
 impl TableFormat {
-    /// By the ending, `.csv` or `.json`; `-`: CSV.
+    /// By the extension, `.csv` or `.json`; `-`: CSV.
     pub(crate) fn of(path: &Path) -> Result<Self, Failure> {
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         match ending.as_deref() {
@@ -91,8 +93,9 @@ impl TableFormat {
     }
 }
 
-/// Writes files all or none: every one beside its place first, then all into their places.
+/// Writes all files or none: first all as temporary files, then it renames them to their final paths.
 pub(crate) fn finish(mut files: Vec<(Pending<'_>, Vec<u8>)>) -> Result<(), Failure> {
+    interrupt::check()?;
     for (pending, bytes) in &mut files {
         pending.file.write(bytes).map_err(|error| unwritable(pending.path, &error))?;
     }
@@ -107,10 +110,10 @@ pub(crate) fn to_file(path: &Path, data: &[u8]) -> Result<(), Failure> {
     finish(vec![(Pending::begin(path)?, data.to_vec())])
 }
 
-/// Whether files can be made in a folder, or in the nearest one above it that exists: asked before long work.
+/// Checks before a long computation that files can be created in a folder, or in its nearest existing ancestor.
 pub(crate) fn check_folder(folder: &Path) -> Result<(), Failure> {
     let existing = folder.ancestors().find(|ancestor| ancestor.exists()).unwrap_or(Path::new("."));
-    // A file in the way is told when the folder is made.
+    // A file at that path is reported when the folder is created.
     if existing.is_file() {
         return Ok(());
     }
@@ -131,7 +134,7 @@ pub(crate) fn to_file_or_stdout(path: Option<&Path>, data: &[u8]) -> Result<(), 
     }
 }
 
-/// What stands in a `.prj` beside a GeoJSON: the reference system as well-known text, where no code of an authority says it.
+/// The content of a `.prj` beside a GeoJSON: the reference system as well-known text, where it has no authority code.
 pub(crate) fn prj(projection: Option<&MapProjection>) -> Option<Vec<u8>> {
     projection.filter(|known| known.code().is_none()).map(|known| (known.wkt() + "\n").into_bytes())
 }
@@ -146,10 +149,10 @@ pub(crate) fn to_geojson_file(path: &Path, geojson: &str, projection: Option<&Ma
     finish(files)
 }
 
-/// Says a warning on standard error.
+/// Prints a warning on standard error.
 pub(crate) fn warn(quiet: bool, warning: &str) {
     if !quiet {
-        // Nobody to tell where standard error is closed.
+        // An error on writing to standard error cannot be reported.
         let _ = writeln!(io::stderr(), "warning: {warning}");
     }
 }

@@ -1,22 +1,28 @@
-//! Progress of work longer than a second, on a terminal and nowhere else.
+//! Progress of computations longer than a second, shown only on a terminal, and their cancellation by an interrupt.
 
 use std::{
     io::{self, IsTerminal},
+    ops::ControlFlow,
     sync::{
         Arc, Mutex,
+        atomic::{AtomicBool, Ordering},
         mpsc::{self, RecvTimeoutError, Sender},
     },
     thread::{self, JoinHandle},
     time::Duration,
 };
 
+use chta::progress::{Detail, Stage, Step};
 use indicatif::{ProgressBar, ProgressStyle};
 
-/// Shows what is being done, from the first second on, until it is dropped.
+use super::interrupt;
+
+/// Shows the current stage from the first second on, until it is dropped; cancels the stage after an interrupt.
 #[derive(Debug)]
 pub(crate) struct Progress {
     doing: Arc<Mutex<String>>,
     shown: Option<(Sender<()>, JoinHandle<()>)>,
+    stopped: AtomicBool,
 }
 
 impl Progress {
@@ -44,15 +50,65 @@ impl Progress {
             });
             (done, thread)
         });
-        Self { doing, shown }
+        Self { doing, shown, stopped: AtomicBool::new(false) }
     }
 
-    /// Says what is being done now.
+    /// Sets the current stage.
     pub(crate) fn say(&self, doing: String) {
         if let Ok(mut said) = self.doing.lock() {
             *said = doing;
         }
     }
+
+    /// Cancels the work at its next report.
+    pub(crate) fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+
+    /// The same, with lines of one's own; `None` leaves the last line as it is.
+    pub(crate) const fn with_lines<F: Fn(&Step) -> Option<String> + Sync>(&self, line: F) -> Lines<'_, F> {
+        Lines { progress: self, line }
+    }
+}
+
+impl chta::progress::Progress for Progress {
+    fn report(&self, step: &Step) -> ControlFlow<()> {
+        self.with_lines(line).report(step)
+    }
+}
+
+/// Progress with lines of one's own.
+#[derive(Debug)]
+pub(crate) struct Lines<'a, F> {
+    progress: &'a Progress,
+    line: F,
+}
+
+impl<F: Fn(&Step) -> Option<String> + Sync> chta::progress::Progress for Lines<'_, F> {
+    fn report(&self, step: &Step) -> ControlFlow<()> {
+        if interrupt::is_requested() || self.progress.stopped.load(Ordering::Relaxed) {
+            return ControlFlow::Break(());
+        }
+        if self.progress.shown.is_some()
+            && let Some(line) = (self.line)(step)
+        {
+            self.progress.say(line);
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// The line of a step.
+fn line(step: &Step) -> Option<String> {
+    Some(match (step.stage, step.detail) {
+        (Stage::Search, Detail::PointsPerSegment(points)) => format!("searching with {points} points inside each segment"),
+        (Stage::Search, Detail::NodeSpacingM(spacing_m)) => format!("searching with nodes at most {spacing_m} m apart"),
+        (Stage::Proof, Detail::ProofRound { cells, round }) => format!("proving with {cells} cells, round {round}"),
+        (Stage::Trade, _) => format!("{} of {} fields", step.done, step.of?),
+        (Stage::Fan, _) => format!("{} of {} headings", step.done, step.of?),
+        (Stage::Reliability, _) => format!("estimating the reliability of hops: {} pairs", step.pairs),
+        _ => return None,
+    })
 }
 
 impl Drop for Progress {

@@ -6,7 +6,11 @@
 //! compared by cost, then by the index of the predecessor (the smaller one wins, the start before all). This is a total
 //! order, so the result does not depend on the order of evaluation.
 
-use std::{collections::BTreeMap, ops::Range, sync::Arc};
+use std::{
+    collections::BTreeMap,
+    ops::{ControlFlow, Range},
+    sync::Arc,
+};
 
 use rayon::prelude::*;
 
@@ -18,7 +22,8 @@ use super::{
 };
 use crate::{
     chain::Station,
-    hop::{LandingTable, Sweep},
+    ground::{LandingTable, Sweep},
+    progress::{Cancelled, Meter, PairCounter},
     quantity::{NodeId, SlopeInterval},
     world::{Direction, Limit},
 };
@@ -201,7 +206,10 @@ impl<'g> BatchedSearch<'g> {
     /// bound on the remaining ones (A*). Nodes with the same two numbers form one batch. The bound is consistent (along an
     /// edge it falls by at most the edge's hops), so a batch is complete when its turn comes, and every node on a best path
     /// has been settled before.
-    pub(super) fn run(&mut self, start: &Station, goals: &mut Goals) {
+    ///
+    /// # Errors
+    /// [`Cancelled`]; the next run begins anew.
+    pub(super) fn run(&mut self, start: &Station, goals: &mut Goals, meter: &Meter<'_>) -> Result<(), Cancelled> {
         let left = HopsLeft::to(self.reach, goals.stations());
         self.forget();
         if let Some(node) = self.graph.nodes().find(start) {
@@ -210,14 +218,15 @@ impl<'g> BatchedSearch<'g> {
         }
         goals.arrive_at(start);
         let first = Takeoff { station: *start, cost: Cost::of_hops(0), origin: Origin::START, reach_m: self.reach.at_m(start) };
-        self.settle(&mut [first], goals, left);
+        self.settle(&mut [first], goals, left, meter)?;
         while let Some(((least, hops), nodes)) = self.due.pop_first() {
             if least > goals.most_hops() {
                 break;
             }
             let mut batch = self.takeoffs(nodes, hops);
-            self.settle(&mut batch, goals, left);
+            self.settle(&mut batch, goals, left, meter)?;
         }
+        Ok(())
     }
 
     /// Resets the labels of the previous start.
@@ -250,12 +259,15 @@ impl<'g> BatchedSearch<'g> {
 
     /// Evaluates the edges out of a batch, given from left to right: to the goals, and to the nodes unless the goals' labels
     /// show that no path through them can be better.
-    fn settle(&mut self, batch: &mut [Takeoff], goals: &mut Goals, left: HopsLeft<'_>) {
-        self.tally += goals.land_from(self.graph, batch);
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn settle(&mut self, batch: &mut [Takeoff], goals: &mut Goals, left: HopsLeft<'_>, meter: &Meter<'_>) -> Result<(), Cancelled> {
+        self.tally += goals.land_from(self.graph, batch, meter)?;
         // A path through a landing of this batch takes at least two hops more.
-        let Some(takeoff) = batch.first() else { return };
+        let Some(takeoff) = batch.first() else { return Ok(()) };
         if takeoff.cost.hops() + 2 > goals.most_hops() {
-            return;
+            return Ok(());
         }
         let mut begin = 0;
         while begin < batch.len() {
@@ -266,9 +278,10 @@ impl<'g> BatchedSearch<'g> {
                 window = window.start.min(range.start)..window.end.max(range.end);
                 end += 1;
             }
-            self.sweep_stretch(&mut batch[begin..end], window, left);
+            self.sweep_stretch(&mut batch[begin..end], window, left, meter)?;
             begin = end;
         }
+        Ok(())
     }
 
     /// The nodes within reach of a take-off.
@@ -277,29 +290,41 @@ impl<'g> BatchedSearch<'g> {
     }
 
     /// Evaluates the edges from take-offs with equal hops to all nodes of a range that could get better labels from them.
-    fn sweep_stretch(&mut self, batch: &mut [Takeoff], window: Range<usize>, left: HopsLeft<'_>) {
-        let Some(hops) = batch.first().map(|takeoff| takeoff.cost.hops() + 1) else { return };
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn sweep_stretch(
+        &mut self,
+        batch: &mut [Takeoff],
+        window: Range<usize>,
+        left: HopsLeft<'_>,
+        meter: &Meter<'_>,
+    ) -> Result<(), Cancelled> {
+        let Some(hops) = batch.first().map(|takeoff| takeoff.cost.hops() + 1) else { return Ok(()) };
         let waits = |node: &usize| self.labels[*node].waits_for(hops, self.aim);
         let waiting: Vec<usize> = window.filter(waits).collect();
-        let (Some(&first), Some(&last)) = (waiting.first(), waiting.last()) else { return };
+        let (Some(&first), Some(&last)) = (waiting.first(), waiting.last()) else { return Ok(()) };
         #[cfg(test)]
         (self.arrange)(batch);
         let Self { graph, aim, .. } = *self;
         let stretch = Stretch { graph, aim, hops, first, waiting: &waiting, labels: &self.labels[first..=last] };
         let pairs = batch.len().saturating_mul(waiting.len());
         let threads = rayon::current_num_threads();
-        let found: Vec<(Vec<Label>, Tally)> = if pairs < self.shared_from_pairs || threads == 1 {
-            vec![stretch.offers(&mut self.sweep, batch)]
+        let found: Result<Vec<(Vec<Label>, Tally)>, Cancelled> = if pairs < self.shared_from_pairs || threads == 1 {
+            stretch.offers(&mut self.sweep, &mut meter.counter(), batch).map(|offers| vec![offers])
         } else {
             let pieces = batch.par_chunks(batch.len().div_ceil(threads * Self::PIECES_PER_THREAD));
-            pieces.map_init(|| Sweep::new(Arc::clone(self.table)), |sweep, piece| stretch.offers(sweep, piece)).collect()
+            let begin = || (Sweep::new(Arc::clone(self.table)), meter.counter());
+            pieces.map_init(begin, |(sweep, counter), piece| stretch.offers(sweep, counter, piece)).collect()
         };
-        for (offers, tally) in found {
+        meter.check()?;
+        for (offers, tally) in found? {
             self.tally += tally;
             for (node, offer) in (first..).zip(offers) {
                 self.take(node, &offer, left);
             }
         }
+        Ok(())
     }
 
     /// Accepts an offer to a node if it is better than the known path, and opens the node if it has fewer hops.
@@ -336,10 +361,19 @@ struct Stretch<'s> {
 
 impl Stretch<'_> {
     /// The best labels that a set of take-offs can offer.
-    fn offers(&self, sweep: &mut Sweep, takeoffs: &[Takeoff]) -> (Vec<Label>, Tally) {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn offers(
+        &self,
+        sweep: &mut Sweep,
+        counter: &mut PairCounter<'_>,
+        takeoffs: &[Takeoff],
+    ) -> Result<(Vec<Label>, Tally), Cancelled> {
         let mut labels = self.labels.to_vec();
         let mut tally = Tally::default();
         for takeoff in takeoffs {
+            counter.check()?;
             let range = around(self.graph.nodes().stations(), &takeoff.station, takeoff.reach_m);
             let place = |node: usize| self.waiting.partition_point(|&waiting| waiting < node);
             let in_reach = &self.waiting[place(range.start)..place(range.end)];
@@ -349,20 +383,28 @@ impl Stretch<'_> {
             for (landings, direction) in [(behind, Direction::Reverse), (ahead, Direction::Forward)] {
                 let waits = |node: &&usize| labels[**node - self.first].waits_for(self.hops, self.aim);
                 let (Some(&first), Some(&last)) = (landings.iter().find(waits), landings.iter().rfind(waits)) else { continue };
-                sweep.landings(&takeoff.station, first..last + 1, direction, |node, single| {
-                    self.evaluate(takeoff, node, single, &mut labels[node - self.first], &mut tally);
+                let swept = sweep.landings_while(&takeoff.station, first..last + 1, direction, |node, single| {
+                    let label = &mut labels[node - self.first];
+                    if !label.waits_for(self.hops, self.aim) {
+                        return ControlFlow::Continue(());
+                    }
+                    if let Err(cancelled) = counter.pair() {
+                        return ControlFlow::Break(cancelled);
+                    }
+                    self.evaluate(takeoff, node, single, label, &mut tally);
+                    ControlFlow::Continue(())
                 });
+                if let ControlFlow::Break(cancelled) = swept {
+                    return Err(cancelled);
+                }
             }
         }
-        (labels, tally)
+        Ok((labels, tally))
     }
 
     /// Offers a node the result of the hop test for one pair, if that could improve its label.
     #[inline]
     fn evaluate(&self, takeoff: &Takeoff, node: usize, single: Result<SlopeInterval, Limit>, label: &mut Label, tally: &mut Tally) {
-        if !label.waits_for(self.hops, self.aim) {
-            return;
-        }
         tally.pairs += 1;
         let landing = &self.graph.nodes().stations()[node];
         match self.graph.edge_of(&takeoff.station, landing, single) {
@@ -390,6 +432,7 @@ mod tests {
         chain::{ConstrainedChain, PolygonalChain},
         graph::{Effort, NodeSet, PointSpacing},
         hop::{HopTest, Split},
+        progress::Stage,
         quantity::{ChainPoint, VertexId},
         world::{FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
     };
@@ -437,7 +480,7 @@ mod tests {
                 let found = pool.install(|| {
                     let mut search = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
                     (search.arrange, search.shared_from_pairs) = (arrange, 0);
-                    search.run(&at(1), &mut goals);
+                    search.run(&at(1), &mut goals, &Meter::new(&(), Stage::Search)).unwrap();
                     (search.labels.clone(), search.tally, goals.labels())
                 });
                 assert!(found.2.iter().all(Option::is_some));
@@ -465,12 +508,13 @@ mod tests {
         let graph = HopGraph::new(&test, &nodes, Effort::Time, TakeoffChoice::MidRange, Split::Equal);
         let (table, reach) = (Arc::new(LandingTable::new(&test, nodes.stations())), LocalReach::of(&test));
         let at = |i| chain.geometry().vertex_station(VertexId(i));
+        let meter = Meter::new(&(), Stage::Search);
         let mut one = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
         for start in [0, 30, 59, 12] {
             let mut fresh = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);
             let (mut goals, mut same) = (Goals::new(&[at(20), at(45)]), Goals::new(&[at(20), at(45)]));
-            one.run(&at(start), &mut goals);
-            fresh.run(&at(start), &mut same);
+            one.run(&at(start), &mut goals, &meter).unwrap();
+            fresh.run(&at(start), &mut same, &meter).unwrap();
             assert_eq!((one.labels.clone(), one.tally, goals.labels()), (fresh.labels, fresh.tally, same.labels()));
         }
     }

@@ -9,6 +9,7 @@ use crate::{
     ballistics::{Arc, LineOfSight},
     chain::Station,
     hop::HopTest,
+    progress::{Cancelled, Detail, Meter, Progress, Stage},
     quantity::NodeId,
     world::{Direction, tolerant_speed_m_s},
 };
@@ -33,25 +34,39 @@ impl CostToGo {
     ///
     /// `options` defines the costs; its spacing is ignored, since the nodes are given.
     ///
+    /// # Errors
+    /// [`Cancelled`].
+    ///
     /// # Complexity
     /// With V nodes, W of them in reach of each and S vertices flown over: O(V W S + V W log V) time, O(V W) heap entries at
     /// worst.
-    pub fn of(test: &HopTest, nodes: NodeSet, options: &SearchOptions) -> Self {
-        let costs = costs_to_go(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split));
+    pub fn of(test: &HopTest, nodes: NodeSet, options: &SearchOptions, progress: &dyn Progress) -> Result<Self, Cancelled> {
+        let meter = Meter::new(progress, Stage::CostToGo);
+        meter.report(Detail::None)?;
+        let costs = costs_to_go(&HopGraph::new(test, &nodes, options.effort, options.takeoff, options.split), &meter)?;
         let mut in_order: Vec<NodeId> = (0..costs.len()).map(NodeId).filter(|node| costs[node.index()].is_some()).collect();
         in_order.sort_by_key(|node| (costs[node.index()], *node));
-        Self { nodes, options: options.clone(), costs, in_order, policy: None }
+        Ok(Self { nodes, options: options.clone(), costs, in_order, policy: None })
     }
 
     /// The same with a reliability policy: the successors of every node, sorted by the reliability of the rest of the path
     /// within the extra hops allowed, weighted as in [`most_reliable_paths`](super::most_reliable_paths).
     ///
+    /// # Errors
+    /// [`Cancelled`].
+    ///
     /// # Complexity
     /// That of [`of`](Self::of), plus a risk estimate for every edge on some path within the hop budget.
-    pub fn with_reliability(test: &HopTest, nodes: NodeSet, options: &SearchOptions, reliability: &ReliabilityOptions) -> Self {
-        let costs = Self::of(test, nodes, options);
-        let policy = ReliabilityPolicy::of(&costs.graph(test), &costs.costs, options, reliability);
-        Self { policy: Some(policy), ..costs }
+    pub fn with_reliability(
+        test: &HopTest,
+        nodes: NodeSet,
+        options: &SearchOptions,
+        reliability: &ReliabilityOptions,
+        progress: &dyn Progress,
+    ) -> Result<Self, Cancelled> {
+        let costs = Self::of(test, nodes, options, progress)?;
+        let policy = ReliabilityPolicy::of(&costs.graph(test), &costs.costs, options, reliability, progress)?;
+        Ok(Self { policy: Some(policy), ..costs })
     }
 
     /// Whether there is a reliability policy.
@@ -196,7 +211,8 @@ impl OneHop {
 }
 
 /// The least costs of all nodes, from Dijkstra's algorithm.
-fn costs_to_go(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
+fn costs_to_go(graph: &HopGraph<'_>, meter: &Meter<'_>) -> Result<Vec<Option<Cost>>, Cancelled> {
+    let mut counter = meter.counter();
     let nodes = graph.nodes();
     let mut costs: Vec<Option<Cost>> = vec![None; nodes.stations().len()];
     let mut done = vec![false; nodes.stations().len()];
@@ -214,6 +230,7 @@ fn costs_to_go(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
             if done[from] {
                 continue;
             }
+            counter.pair()?;
             let takeoff = nodes.station(NodeId(from));
             let Ok(edge) = graph.edge(takeoff, landing) else { continue };
             let total = graph.cost(takeoff, landing, edge) + cost;
@@ -223,7 +240,7 @@ fn costs_to_go(graph: &HopGraph<'_>) -> Vec<Option<Cost>> {
             }
         }
     }
-    costs
+    Ok(costs)
 }
 
 #[cfg(test)]
@@ -253,10 +270,10 @@ mod tests {
             let spacing = PointSpacing::PerSegment(1);
             let options = SearchOptions { spacing: Some(spacing), effort, ..SearchOptions::default() };
             let nodes = NodeSet::new(&chain, station(3.0), station(50.0), spacing).unwrap();
-            let to_go = CostToGo::of(&test, nodes, &options);
+            let to_go = CostToGo::of(&test, nodes, &options, &()).unwrap();
             let (mut reached, mut cut_off) = (0, 0);
             for (i, from) in to_go.nodes().stations().iter().enumerate().step_by(5) {
-                let answer = search(&test, *from, station(50.0), &options, &mut |_| {}).unwrap();
+                let answer = search(&test, *from, station(50.0), &options, &()).unwrap();
                 match (answer.outcome, to_go.of_node(NodeId(i))) {
                     (Outcome::Path { cost, .. }, Some(found)) => {
                         assert_eq!(cost.hops(), found.hops());
@@ -283,7 +300,7 @@ mod tests {
         for effort in Effort::ALL {
             let options = SearchOptions { spacing: Some(spacing), effort, ..SearchOptions::default() };
             let nodes = NodeSet::new(&chain, station(3.0), station(50.0), spacing).unwrap();
-            let to_go = CostToGo::of(&test, nodes, &options);
+            let to_go = CostToGo::of(&test, nodes, &options, &()).unwrap();
             let graph = to_go.graph(&test);
             let mut found = 0;
             for i in 0..200 {

@@ -3,7 +3,12 @@
 use std::collections::VecDeque;
 
 use super::{HopGraph, RefusalCounts, local_reach::LocalReach, nodes::around};
-use crate::{chain::Station, hop::Conflict, quantity::NodeId};
+use crate::{
+    chain::Station,
+    hop::Conflict,
+    progress::{Cancelled, Meter},
+    quantity::NodeId,
+};
 
 /// The nodes reached from the start and those that lead to the goal, over one graph, and the refusals between them.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,9 +45,12 @@ impl Frontier {
     const EXPLAINED: usize = 200_000;
 
     /// The frontier of a graph without a path, given the nodes that were reached.
-    pub(super) fn of(graph: &HopGraph<'_>, reach: &LocalReach, reached: &[bool]) -> Self {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn of(graph: &HopGraph<'_>, reach: &LocalReach, reached: &[bool], meter: &Meter<'_>) -> Result<Self, Cancelled> {
         let nodes = graph.nodes();
-        let leads = leading_to_goal(graph, reach);
+        let leads = leading_to_goal(graph, reach, meter)?;
         let of = |flags: &[bool]| -> Vec<Station> {
             nodes.stations().iter().zip(flags).filter(|(_, flag)| **flag).map(|(station, _)| *station).collect()
         };
@@ -52,20 +60,21 @@ impl Frontier {
             stations.iter().min_by(|a, b| away(a).total_cmp(&away(b))).copied()
         };
         let (start, goal) = (*nodes.station(nodes.start()), *nodes.station(nodes.goal()));
-        let (refusals, nearest_miss) = refusals_out_of(graph, reached);
-        Self {
+        let (refusals, nearest_miss) = refusals_out_of(graph, reached, meter)?;
+        Ok(Self {
             nearest_to_goal: nearest(&reached_stations, &goal).unwrap_or(start),
             nearest_to_start: nearest(&leads_stations, &start).unwrap_or(goal),
             reached: reached_stations,
             leads_to_goal: leads_stations,
             refusals,
             nearest_miss,
-        }
+        })
     }
 }
 
 /// The nodes that lead to the goal: breadth-first search against the direction of the hops.
-fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach) -> Vec<bool> {
+fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach, meter: &Meter<'_>) -> Result<Vec<bool>, Cancelled> {
+    let mut counter = meter.counter();
     let nodes = graph.nodes();
     let mut leads = vec![false; nodes.stations().len()];
     let mut queue = VecDeque::from([nodes.goal()]);
@@ -73,23 +82,33 @@ fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach) -> Vec<bool> {
     while let Some(landing) = queue.pop_front() {
         let landing = nodes.station(landing);
         for takeoff in around(nodes.stations(), landing, reach.at_m(landing)) {
-            if !leads[takeoff] && graph.edge(&nodes.stations()[takeoff], landing).is_ok() {
+            if leads[takeoff] {
+                continue;
+            }
+            counter.pair()?;
+            if graph.edge(&nodes.stations()[takeoff], landing).is_ok() {
                 leads[takeoff] = true;
                 queue.push_back(NodeId(takeoff));
             }
         }
     }
-    leads
+    Ok(leads)
 }
 
 /// The refusals of the hops that leave a set of nodes, and the smallest gap among them.
-fn refusals_out_of(graph: &HopGraph<'_>, reached: &[bool]) -> (RefusalCounts, Option<NearestMiss>) {
+fn refusals_out_of(
+    graph: &HopGraph<'_>,
+    reached: &[bool],
+    meter: &Meter<'_>,
+) -> Result<(RefusalCounts, Option<NearestMiss>), Cancelled> {
+    let mut counter = meter.counter();
     let stations = graph.nodes().stations();
     let mut counts = RefusalCounts::default();
     let mut explained = 0;
     let mut best: Option<(f64, NearestMiss)> = None;
     for (takeoff, _) in stations.iter().zip(reached).filter(|(_, reached)| **reached) {
         for j in graph.landings(takeoff).filter(|&j| !reached[j]) {
+            counter.pair()?;
             let landing = stations[j];
             let Err(limit) = graph.edge(takeoff, &landing) else { continue };
             counts.count(limit);
@@ -105,5 +124,5 @@ fn refusals_out_of(graph: &HopGraph<'_>, reached: &[bool]) -> (RefusalCounts, Op
             }
         }
     }
-    (counts, best.map(|(_, miss)| miss))
+    Ok((counts, best.map(|(_, miss)| miss)))
 }

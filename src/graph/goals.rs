@@ -5,7 +5,10 @@ use super::{
     batched_search::{Label, Takeoff, Tally},
     nodes::around,
 };
-use crate::chain::Station;
+use crate::{
+    chain::Station,
+    progress::{Cancelled, Meter},
+};
 
 /// The goals and the best known path to each.
 #[derive(Clone, Debug)]
@@ -57,7 +60,11 @@ impl Goals {
     }
 
     /// Evaluates the hops from a set of take-offs to the goals.
-    pub(super) fn land_from(&mut self, graph: &HopGraph<'_>, takeoffs: &[Takeoff]) -> Tally {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn land_from(&mut self, graph: &HopGraph<'_>, takeoffs: &[Takeoff], meter: &Meter<'_>) -> Result<Tally, Cancelled> {
+        let mut counter = meter.counter();
         let mut tally = Tally::default();
         for takeoff in takeoffs {
             let in_reach = around(&self.stations, &takeoff.station, takeoff.reach_m);
@@ -66,6 +73,7 @@ impl Goals {
                     continue;
                 }
                 tally.pairs += 1;
+                counter.pair()?;
                 match graph.edge(&takeoff.station, goal) {
                     Ok(edge) => label.offer(takeoff.cost + graph.cost(&takeoff.station, goal, edge), takeoff.origin),
                     Err(limit) => tally.refusals.count(limit),
@@ -75,7 +83,7 @@ impl Goals {
         if tally.pairs > 0 {
             self.count();
         }
-        tally
+        Ok(tally)
     }
 
     fn count(&mut self) {

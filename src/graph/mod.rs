@@ -32,5 +32,6 @@ pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use reliability::{ReliabilityOptions, ReliabilityUse, ReliablePath, most_reliable_paths, search_most_reliable};
-pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchOptions, search, search_pairs};
+pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchError, SearchOptions, search, search_pairs};
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};
+pub(crate) use {reachable::reachable_nodes, search::search_one};

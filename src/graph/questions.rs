@@ -3,7 +3,7 @@
 use std::{collections::HashMap, sync::Arc};
 
 use super::{
-    Answer, Cost, EndpointRefusal, Frontier, HopGraph, Leg, NodeSet, Outcome, PointSpacing, SearchOptions, TooManyNodes,
+    Answer, Cost, EndpointRefusal, Frontier, HopGraph, Leg, NodeSet, Outcome, PointSpacing, SearchError, SearchOptions,
     batched_search::{Aim, BatchedSearch, Label, Tally},
     endpoint_refusal,
     goals::Goals,
@@ -11,7 +11,9 @@ use super::{
 };
 use crate::{
     chain::Station,
-    hop::{HopTest, LandingTable},
+    ground::LandingTable,
+    hop::HopTest,
+    progress::Meter,
     quantity::NodeId,
     world::{Contact, Direction},
 };
@@ -112,7 +114,7 @@ impl Questions {
     ///
     /// # Errors
     /// [`TooManyNodes`] if adding the ends of a question without a path exceeds the limit.
-    pub(super) fn ask(&mut self, round: &Round<'_>) -> Result<(), TooManyNodes> {
+    pub(super) fn ask(&mut self, round: &Round<'_>, meter: &Meter<'_>) -> Result<(), SearchError> {
         let graph = round.graph(round.nodes);
         let table = Arc::new(LandingTable::new(round.test, round.nodes.stations()));
         let mut batched = BatchedSearch::new(&graph, &table, round.reach, Aim::HopsThenEffort);
@@ -124,16 +126,16 @@ impl Questions {
             let mut goals = Goals::new(&goals);
             if round.nodes.stations().len() >= SHARED_FROM_NODES {
                 // Run inside the pool: its threads notice work from one another sooner than from a thread outside.
-                rayon::scope(|_| batched.run(&start, &mut goals));
+                rayon::scope(|_| batched.run(&start, &mut goals, meter))?;
             } else {
-                batched.run(&start, &mut goals);
+                batched.run(&start, &mut goals, meter)?;
             }
             for (&i, label) in open.iter().zip(goals.labels()) {
                 let Question { ends, tally, answer } = &mut self.questions[i];
                 *tally += batched.tally();
                 let outcome = match label {
                     Some(label) => Some(path(&graph, &batched, ends, &label)),
-                    None if round.is_last => Some(Outcome::NoPath(Box::new(frontier(round, &batched, *ends)?))),
+                    None if round.is_last => Some(Outcome::NoPath(Box::new(frontier(round, &batched, *ends, meter)?))),
                     None => None,
                 };
                 *answer = outcome.map(|outcome| round.answer(ends, outcome, *tally));
@@ -169,7 +171,12 @@ fn path(graph: &HopGraph<'_>, batched: &BatchedSearch<'_>, (start, goal): &(Stat
 }
 
 /// Why a search finds no path, over the shared nodes and the two ends.
-fn frontier(round: &Round<'_>, batched: &BatchedSearch<'_>, (start, goal): (Station, Station)) -> Result<Frontier, TooManyNodes> {
+fn frontier(
+    round: &Round<'_>,
+    batched: &BatchedSearch<'_>,
+    (start, goal): (Station, Station),
+    meter: &Meter<'_>,
+) -> Result<Frontier, SearchError> {
     let nodes = NodeSet::new(round.test.chain(), start, goal, round.spacing)?;
     let mut shared = round.nodes.stations().iter().enumerate().peekable();
     let reached: Vec<bool> = nodes
@@ -180,5 +187,5 @@ fn frontier(round: &Round<'_>, batched: &BatchedSearch<'_>, (start, goal): (Stat
             None => station.point.x_m == start.point.x_m,
         })
         .collect();
-    Ok(Frontier::of(&round.graph(&nodes), round.reach, &reached))
+    Ok(Frontier::of(&round.graph(&nodes), round.reach, &reached, meter)?)
 }

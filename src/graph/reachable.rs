@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::{
-    Effort, HopGraph, NodeSet, PointSpacing, TooManyNodes,
+    Effort, HopGraph, NodeSet, PointSpacing, SearchError,
     batched_search::{Aim, BatchedSearch},
     goals::Goals,
     local_reach::LocalReach,
@@ -11,7 +11,9 @@ use super::{
 use crate::{
     ballistics::TakeoffChoice,
     chain::Station,
-    hop::{HopTest, LandingTable, Split},
+    ground::LandingTable,
+    hop::{HopTest, Split},
+    progress::{Detail, Meter, Progress, Stage},
     quantity::NodeId,
     world::Limit,
 };
@@ -29,17 +31,29 @@ pub struct Reachable {
 /// The fewest hops from a start to every node: the search without a goal.
 ///
 /// # Errors
-/// [`TooManyNodes`].
+/// [`SearchError`].
 ///
 /// # Complexity
 /// That of [`search`](super::search()), for the nodes that are reached.
-pub fn reachable(test: &HopTest, start: Station, spacing: PointSpacing) -> Result<Reachable, TooManyNodes> {
+pub fn reachable(test: &HopTest, start: Station, spacing: PointSpacing, progress: &dyn Progress) -> Result<Reachable, SearchError> {
+    let meter = Meter::new(progress, Stage::Reachability);
+    meter.report(Detail::None)?;
+    reachable_nodes(test, start, spacing, &meter)
+}
+
+/// The same as a part of another stage.
+pub(crate) fn reachable_nodes(
+    test: &HopTest,
+    start: Station,
+    spacing: PointSpacing,
+    meter: &Meter<'_>,
+) -> Result<Reachable, SearchError> {
     let set = NodeSet::new(test.chain(), start, start, spacing)?;
     let graph = HopGraph::new(test, &set, Effort::default(), TakeoffChoice::default(), Split::default());
     let table = Arc::new(LandingTable::new(test, set.stations()));
     let reach = LocalReach::of(test);
     let mut batched = BatchedSearch::new(&graph, &table, &reach, Aim::Hops);
-    batched.run(&start, &mut Goals::new(&[]));
+    batched.run(&start, &mut Goals::new(&[]), meter)?;
     let stations = set.stations();
     let nodes: Vec<_> = stations.iter().enumerate().map(|(i, station)| (*station, batched.hops(NodeId(i)))).collect();
     let farthest = nodes.iter().rposition(|(_, hops)| hops.is_some()).unwrap_or(0);

@@ -2,11 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use super::{Cost, Edge, HopGraph, Leg, NodeSet, Outcome, SearchOptions, TooManyNodes, search};
+use super::{Cost, Edge, HopGraph, Leg, NodeSet, Outcome, SearchError, SearchOptions, search};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
     chain::Station,
     hop::{HopTest, PlannedHop, RiskModel, SegmentHops, Split},
+    progress::{Cancelled, Detail, Meter, PairCounter, Progress, Stage},
     quantity::NodeId,
     world::Direction,
 };
@@ -67,6 +68,9 @@ pub struct ReliablePath {
 /// weight for each number of hops are found layer by layer (Bellman 1958, restricted to nodes from which the goal is still
 /// within the hop budget). Ties go to the path whose nodes come first.
 ///
+/// # Errors
+/// [`Cancelled`].
+///
 /// # Complexity
 /// With E edges within reach of the budget: E hop tests and E risk estimates, `E (1 + extra)` additions; 12 bytes for each edge.
 pub fn most_reliable_paths(
@@ -74,10 +78,15 @@ pub fn most_reliable_paths(
     nodes: &NodeSet,
     options: &SearchOptions,
     reliability: &ReliabilityOptions,
-) -> Vec<ReliablePath> {
+    progress: &dyn Progress,
+) -> Result<Vec<ReliablePath>, Cancelled> {
+    let meter = Meter::new(progress, Stage::Reliability);
+    meter.report(Detail::None)?;
+    let mut counter = meter.counter();
     let graph = HopGraph::new(test, nodes, options.effort, options.takeoff, options.split);
-    let Some(lattice) = Lattice::within(&graph, u64::from(reliability.extra_hops_max)) else { return Vec::new() };
-    let labels = lattice.labelled(&graph, options, reliability);
+    let extra = u64::from(reliability.extra_hops_max);
+    let Some(lattice) = Lattice::within(&graph, extra, &mut counter)? else { return Ok(Vec::new()) };
+    let labels = lattice.labelled(&graph, options, reliability, &mut counter)?;
     let mut least = f64::INFINITY;
     let mut paths = Vec::new();
     for (&hops, layer) in &labels {
@@ -85,28 +94,28 @@ pub fn most_reliable_paths(
         least = label.weight;
         paths.extend(path_to_goal(&graph, &labels, hops, label.weight));
     }
-    paths
+    Ok(paths)
 }
 
 /// Finds a path as [`search`] does, then replaces it by the most reliable path over the same nodes within the hop budget.
 ///
 /// # Errors
-/// [`TooManyNodes`].
+/// [`SearchError`].
 pub fn search_most_reliable(
     test: &HopTest,
     start: Station,
     goal: Station,
     options: &SearchOptions,
     reliability: &ReliabilityOptions,
-    progress: &mut dyn FnMut(super::PointSpacing),
-) -> Result<(super::Answer, Vec<ReliablePath>), TooManyNodes> {
+    progress: &dyn Progress,
+) -> Result<(super::Answer, Vec<ReliablePath>), SearchError> {
     let mut answer = search(test, start, goal, options, progress)?;
     let mut paths = Vec::new();
     if let Outcome::Path { legs, cost } = &mut answer.outcome
         && !legs.is_empty()
     {
         let nodes = NodeSet::new(test.chain(), start, goal, answer.spacing)?;
-        paths = most_reliable_paths(test, &nodes, options, reliability);
+        paths = most_reliable_paths(test, &nodes, options, reliability, progress)?;
         if let Some(best) = paths.last() {
             legs.clone_from(&best.legs);
             *cost = best.cost;
@@ -143,7 +152,7 @@ type Labels = BTreeMap<u64, BTreeMap<usize, Label>>;
 
 impl Lattice {
     /// The edges out of every node within the budget, breadth first by hops; `None` if the goal is not reached.
-    fn within(graph: &HopGraph<'_>, extra: u64) -> Option<Self> {
+    fn within(graph: &HopGraph<'_>, extra: u64, counter: &mut PairCounter<'_>) -> Result<Option<Self>, Cancelled> {
         let nodes = graph.nodes();
         let count = nodes.stations().len();
         let (start, goal) = (nodes.start().index(), nodes.goal().index());
@@ -162,7 +171,7 @@ impl Lattice {
                 if from_start[node] < hops {
                     continue;
                 }
-                steps[node] = steps_from(graph, node);
+                steps[node] = steps_from(graph, node, counter)?;
                 for step in &steps[node] {
                     let reached = hops + step.hops;
                     if reached < from_start[step.target] {
@@ -175,11 +184,17 @@ impl Lattice {
                 }
             }
         }
-        (from_start[goal] != u64::MAX).then(|| Self { to_goal: hops_to(goal, &steps), steps, budget })
+        Ok((from_start[goal] != u64::MAX).then(|| Self { to_goal: hops_to(goal, &steps), steps, budget }))
     }
 
     /// All labels from which the goal is still within the budget.
-    fn labelled(&self, graph: &HopGraph<'_>, options: &SearchOptions, reliability: &ReliabilityOptions) -> Labels {
+    fn labelled(
+        &self,
+        graph: &HopGraph<'_>,
+        options: &SearchOptions,
+        reliability: &ReliabilityOptions,
+        counter: &mut PairCounter<'_>,
+    ) -> Result<Labels, Cancelled> {
         let nodes = graph.nodes();
         let start = nodes.start().index();
         let mut weights: BTreeMap<(usize, usize), f64> = BTreeMap::new();
@@ -199,6 +214,7 @@ impl Lattice {
                     if reached.saturating_add(self.to_goal[step.target]) > self.budget {
                         continue;
                     }
+                    counter.pair()?;
                     let weight = label.weight
                         + *weights
                             .entry((node, step.target))
@@ -211,21 +227,27 @@ impl Lattice {
             }
             match labels.range(hops + 1..).next() {
                 Some((&next, _)) => hops = next,
-                None => return labels,
+                None => return Ok(labels),
             }
         }
     }
 }
 
 /// The edges out of one node.
-pub(super) fn steps_from(graph: &HopGraph<'_>, node: usize) -> Vec<Step> {
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn steps_from(graph: &HopGraph<'_>, node: usize, counter: &mut PairCounter<'_>) -> Result<Vec<Step>, Cancelled> {
     let nodes = graph.nodes();
     let takeoff = nodes.station(NodeId(node));
-    let step = |target: usize| {
-        let edge = graph.edge(takeoff, nodes.station(NodeId(target))).ok()?;
-        Some(Step { target, hops: hops_of(edge) })
-    };
-    graph.landings(takeoff).filter(|&target| target != node).filter_map(step).collect()
+    let mut steps = Vec::new();
+    for target in graph.landings(takeoff).filter(|&target| target != node) {
+        counter.pair()?;
+        if let Ok(edge) = graph.edge(takeoff, nodes.station(NodeId(target))) {
+            steps.push(Step { target, hops: hops_of(edge) });
+        }
+    }
+    Ok(steps)
 }
 
 const fn hops_of(edge: Edge) -> u64 {

@@ -6,7 +6,10 @@ use super::{
     Cost, HopGraph, ReliabilityOptions, SearchOptions,
     reliability::{edge_weight, steps_from},
 };
-use crate::quantity::NodeId;
+use crate::{
+    progress::{Cancelled, Detail, Meter, PairCounter, Progress, Stage},
+    quantity::NodeId,
+};
 
 /// The number of successors kept for each node. A robot near the node takes the first that is feasible from its actual
 /// position; if none of these is feasible, the remaining ones are unlikely to be more reliable than any feasible hop.
@@ -42,6 +45,9 @@ impl ReliabilityPolicy {
     ///
     /// for ascending `k` (Bellman 1958), from a node's fewest hops to the number that the options allow.
     ///
+    /// # Errors
+    /// [`Cancelled`].
+    ///
     /// # Complexity
     /// With E edges on some path within the hop budget: E hop tests and risk estimates, `E (1 + extra)` additions.
     pub(super) fn of(
@@ -49,20 +55,28 @@ impl ReliabilityPolicy {
         costs: &[Option<Cost>],
         options: &SearchOptions,
         reliability: &ReliabilityOptions,
-    ) -> Self {
+        progress: &dyn Progress,
+    ) -> Result<Self, Cancelled> {
+        let meter = Meter::new(progress, Stage::Reliability);
+        meter.report(Detail::None)?;
         let extra = u64::from(reliability.extra_hops_max);
         let fewest = |node: usize| costs[node].map(Cost::hops);
         let goal = graph.nodes().goal().index();
-        let edges = |node: usize| -> Vec<Successor> {
-            let Some(own) = fewest(node).filter(|_| node != goal) else { return Vec::new() };
+        let edges = |counter: &mut PairCounter<'_>, node: usize| -> Result<Vec<Successor>, Cancelled> {
+            counter.check()?;
+            let Some(own) = fewest(node).filter(|_| node != goal) else { return Ok(Vec::new()) };
             let of_use = |step: &super::reliability::Step| fewest(step.target).is_some_and(|rest| step.hops + rest <= own + extra);
+            let steps = steps_from(graph, node, counter)?;
             let weighed = |step: super::reliability::Step| {
+                counter.pair()?;
                 let weight = edge_weight(graph, (node, step.target), options, reliability);
-                Successor { target: step.target, hops: step.hops, weight }
+                Ok(Successor { target: step.target, hops: step.hops, weight })
             };
-            steps_from(graph, node).into_iter().filter(of_use).map(weighed).collect()
+            steps.into_iter().filter(of_use).map(weighed).collect()
         };
-        let edges: Vec<Vec<Successor>> = (0..costs.len()).into_par_iter().map(edges).collect();
+        let edges = (0..costs.len()).into_par_iter().map_init(|| meter.counter(), edges).collect::<Result<Vec<_>, _>>();
+        meter.check()?;
+        let edges = edges?;
         let mut table = Table::new(costs, extra);
         for allowed in 0..=table.most_hops {
             for node in (0..costs.len()).filter(|&node| node != goal) {
@@ -85,11 +99,11 @@ impl ReliabilityPolicy {
             onward.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
             onward.into_iter().take(KEPT).map(|(.., target)| NodeId(target)).collect()
         };
-        Self {
+        Ok(Self {
             successors: (0..costs.len()).map(ranked).collect(),
             #[cfg(test)]
             weights: (0..costs.len()).map(|node| fewest(node).map_or(f64::INFINITY, |own| table.at(node, own + extra))).collect(),
-        }
+        })
     }
 
     /// The successors of a node, the most reliable first; empty at the goal and if the goal cannot be reached from the node.
@@ -195,11 +209,11 @@ mod tests {
                 let mut with_fewer = f64::INFINITY;
                 for extra_hops_max in 0..=3 {
                     let reliability = ReliabilityOptions { model, extra_hops_max, goal_tolerance_m: Some(0.5) };
-                    let to_go = CostToGo::of(&test, nodes.clone(), &options);
+                    let to_go = CostToGo::of(&test, nodes.clone(), &options, &()).unwrap();
                     let costs: Vec<_> = (0..nodes.stations().len()).map(|node| to_go.of_node(NodeId(node))).collect();
                     let graph = HopGraph::new(&test, &nodes, options.effort, options.takeoff, options.split);
-                    let policy = ReliabilityPolicy::of(&graph, &costs, &options, &reliability);
-                    let path = most_reliable_paths(&test, &nodes, &options, &reliability).pop().expect("a path");
+                    let policy = ReliabilityPolicy::of(&graph, &costs, &options, &reliability, &()).unwrap();
+                    let path = most_reliable_paths(&test, &nodes, &options, &reliability, &()).unwrap().pop().expect("a path");
                     let weight = policy.weights[nodes.start().index()];
                     assert!(
                         (libm::exp(-weight) - path.success).abs() <= 1e-12 * path.success,
@@ -226,7 +240,7 @@ mod tests {
                 let nodes = NodeSet::new(&chain, station(2.0), station(34.0), SPACING).unwrap();
                 let (count, goal) = (nodes.stations().len(), nodes.goal());
                 let options = SearchOptions { spacing: Some(SPACING), ..SearchOptions::default() };
-                let to_go = CostToGo::with_reliability(&test, nodes, &options, &reliability);
+                let to_go = CostToGo::with_reliability(&test, nodes, &options, &reliability, &()).unwrap();
                 let mut arrived = 0;
                 for start in (0..count).map(NodeId) {
                     assert_eq!(
@@ -252,7 +266,7 @@ mod tests {
         let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         let nodes = NodeSet::new(&chain, station(2.3), station(34.0), SPACING).unwrap();
-        let to_go = CostToGo::of(&test, nodes, &SearchOptions::default());
+        let to_go = CostToGo::of(&test, nodes, &SearchOptions::default(), &()).unwrap();
         for i in -10..420 {
             let x_m = 0.1 * f64::from(i);
             let away_m = |node: NodeId| (to_go.nodes().station(node).point.x_m - x_m).abs();

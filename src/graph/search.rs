@@ -9,6 +9,7 @@ use crate::{
     ballistics::TakeoffChoice,
     chain::Station,
     hop::{HopTest, Split},
+    progress::{Cancelled, Detail, Meter, Progress, Stage},
 };
 
 /// The numbers of points per segment that "auto" tries; the first with a path gives the answer.
@@ -31,6 +32,18 @@ pub struct SearchOptions {
 }
 
 /// One edge of the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SearchError {
+    /// More nodes than fit.
+    #[error(transparent)]
+    TooManyNodes(#[from] TooManyNodes),
+    /// It was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
+}
+
+/// One edge of the path found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Leg {
     /// The take-off station of its first hop.
@@ -92,21 +105,31 @@ impl Answer {
 /// `progress` is called with each spacing before it is tried.
 ///
 /// # Errors
-/// [`TooManyNodes`].
+/// [`SearchError`].
 ///
 /// # Complexity
 /// With V nodes, W of them in reach of each ahead of the nodes with equal hops, and S vertices flown over: about O(V W) time,
-/// as [`Sweep`](crate::hop::Sweep) evaluates one take-off; some 150 bytes of memory per node, and no stored edges.
+/// as [`Sweep`](crate::ground::Sweep) evaluates one take-off; some 150 bytes of memory per node, and no stored edges.
 pub fn search(
     test: &HopTest,
     start: Station,
     goal: Station,
     options: &SearchOptions,
-    progress: &mut dyn FnMut(PointSpacing),
-) -> Result<Answer, TooManyNodes> {
-    let mut answers = search_pairs(test, &[(start, goal)], options, progress)?;
-    // One question has one answer.
-    answers.pop().ok_or(TooManyNodes { nodes: 0 })
+    progress: &dyn Progress,
+) -> Result<Answer, SearchError> {
+    search_one(test, (start, goal), options, &Meter::new(progress, Stage::Search))
+}
+
+/// The same as a part of another stage.
+pub(crate) fn search_one(
+    test: &HopTest,
+    ends: (Station, Station),
+    options: &SearchOptions,
+    meter: &Meter<'_>,
+) -> Result<Answer, SearchError> {
+    let mut answers = search_all(test, &[ends], options, meter)?;
+    // One question, one answer.
+    answers.pop().ok_or(SearchError::TooManyNodes(TooManyNodes { nodes: 0 }))
 }
 
 /// Answers several questions, each a start and a goal, with one search per start.
@@ -115,13 +138,22 @@ pub fn search(
 /// the shared search: goals are sinks, so they do not block each other.
 ///
 /// # Errors
-/// [`TooManyNodes`].
+/// [`SearchError`].
 pub fn search_pairs(
     test: &HopTest,
     pairs: &[(Station, Station)],
     options: &SearchOptions,
-    progress: &mut dyn FnMut(PointSpacing),
-) -> Result<Vec<Answer>, TooManyNodes> {
+    progress: &dyn Progress,
+) -> Result<Vec<Answer>, SearchError> {
+    search_all(test, pairs, options, &Meter::new(progress, Stage::Search))
+}
+
+fn search_all(
+    test: &HopTest,
+    pairs: &[(Station, Station)],
+    options: &SearchOptions,
+    meter: &Meter<'_>,
+) -> Result<Vec<Answer>, SearchError> {
     let automatic = AUTO_POINTS_PER_SEGMENT.map(PointSpacing::PerSegment);
     let spacings: &[PointSpacing] = match &options.spacing {
         Some(spacing) => std::slice::from_ref(spacing),
@@ -138,8 +170,11 @@ pub fn search_pairs(
         if questions.are_answered() {
             break;
         }
-        progress(spacing);
-        questions.ask(&round)?;
+        meter.report(match spacing {
+            PointSpacing::PerSegment(points) => Detail::PointsPerSegment(points),
+            PointSpacing::AtMostM(spacing_m) => Detail::NodeSpacingM(spacing_m),
+        })?;
+        questions.ask(&round, meter)?;
     }
     Ok(questions.into_answers())
 }

@@ -21,6 +21,11 @@ use crate::{
 /// ground just flown over and a take-off the ground ahead, even if a border runs through the contact itself.
 pub(super) const BESIDE_M: f64 = 1e-6;
 
+/// Distance along a line at which its facets are looked up, in units of the step to the side: a line at a smaller angle than one
+/// over this to an edge counts as running along the edge. Lines between posts up to some 500 apart are not that close to any other
+/// edge. With a larger value, a line that does not start at a post could get the next facet.
+const FACET_LOOK: f64 = 4096.0;
+
 /// Rounding error of a height or a coordinate, in units in the last place.
 const ULPS: f64 = 4.0;
 
@@ -310,13 +315,16 @@ impl Surface for DemGround {
 
     fn facets(&self, at: &MapPosition, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2] {
         let triangles = self.triangles();
-        let beside = match side {
-            Side::Ahead => at.at + heading * BESIDE_M,
-            Side::Behind => at.at - heading * BESIDE_M,
+        let towards = match side {
+            Side::Ahead => heading,
+            Side::Behind => -heading,
         };
-        // One point on each side of the line, farther from it than the tolerance of the lattice.
+        let beside = at.at + towards * BESIDE_M;
+        // One point on each side of the line, farther from it than the tolerance of the lattice, and far enough along it that a
+        // line which only starts next to an edge has left the edge.
+        let along = at.at + towards * BESIDE_M.max(FACET_LOOK * self.resolution_m);
         let across = Vector2::new(-heading.y, heading.x) * self.resolution_m;
-        let gradients = [beside + across, beside - across].map(|point| triangles.at(point, triangles.nominal()).map(|(_, g)| g));
+        let gradients = [along + across, along - across].map(|point| triangles.at(point, triangles.nominal()).map(|(_, g)| g));
         let [left, right] = gradients;
         let right = right.filter(|right| left != Some(*right));
         [left, right].map(|gradient| gradient.and_then(|gradient| self.facet(gradient, heading, beside)))

@@ -17,6 +17,7 @@ mod first_contact;
 mod height_field;
 mod posts;
 mod surface;
+mod sweep;
 
 pub(crate) use chain::heading_of;
 pub use chain_flight::{ChainGround, ChainPosition};
@@ -28,3 +29,4 @@ pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostRefusal};
 #[cfg(test)]
 pub(crate) use posts::{OffsetTable, Spacing};
 pub use surface::{ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Windows};
+pub use sweep::{LandingTable, Sweep};

@@ -93,7 +93,7 @@ impl fmt::Display for Conflict {
                 None => write!(f, "{} refuses every arc", limit.limit),
             },
             Self::Pair { lower, upper, gap_deg } => {
-                write!(f, "{} needs a take-off at least {gap_deg:.6} deg steeper than {} allows", lower.limit, upper.limit)?;
+                write!(f, "{} asks for a take-off at least {gap_deg:.6} deg steeper than {} allows", lower.limit, upper.limit)?;
                 match lower.vertex {
                     Some(vertex) => write!(f, ", over vertex {}", vertex.index() + 1),
                     None => Ok(()),

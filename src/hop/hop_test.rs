@@ -129,7 +129,7 @@ impl HopTest {
 
     /// The rule of a contact, or the limit by which the ground refuses it.
     #[inline]
-    pub(super) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&ContactRule, Limit> {
+    pub(crate) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&ContactRule, Limit> {
         let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
         segment.allowed(contact, direction).ok_or_else(|| match segment.check_contact(contact, direction) {
             Err(refusal) => refusal.limit(contact),
@@ -154,13 +154,13 @@ impl HopTest {
 
     /// The lofts that the hopper's greatest apex height and longest flight time allow.
     #[inline]
-    pub(super) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
+    pub(crate) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
         self.envelope.machine(sight)
     }
 
     /// Whether the hopper has a greatest apex height or a longest flight time.
     #[inline]
-    pub(super) const fn has_machine_limits(&self) -> bool {
+    pub(crate) const fn has_machine_limits(&self) -> bool {
         self.envelope.hopper().limits().apex_height_max_m.is_some() || self.envelope.hopper().limits().flight_time_max_s.is_some()
     }
 
@@ -179,7 +179,7 @@ impl HopTest {
     }
 
     /// The limit that leaves no arc of those that both speeds allow, when the limits are applied in order.
-    pub(super) fn refusing_after_speeds(
+    pub(crate) fn refusing_after_speeds(
         &self,
         sight: LineOfSight,
         speeds: SlopeInterval,

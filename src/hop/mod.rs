@@ -9,7 +9,6 @@ mod hop_test;
 mod reach;
 mod risk;
 mod segment_hops;
-mod sweep;
 mod takeoff_set;
 mod terrain;
 
@@ -17,7 +16,6 @@ pub use conflict::{Conflict, Shortfall};
 pub use hop_test::HopTest;
 pub use risk::{HopDeviations, PlannedHop, RiskModel};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
-pub use sweep::{LandingTable, Sweep};
 pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};
 pub(crate) use terrain::flown_past;
 pub use terrain::terrain_limit;

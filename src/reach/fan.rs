@@ -4,9 +4,10 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use crate::{
-    graph::{PointSpacing, TooManyNodes, reachable},
+    graph::{PointSpacing, SearchError, TooManyNodes, reachable_nodes},
     ground::{DemGround, SliceProblem},
     hop::HopTest,
+    progress::{Cancelled, Detail, Meter, Progress, Stage},
     quantity::MapPoint,
     terrain::{Profile, TerrainError, slice},
     world::Limit,
@@ -111,24 +112,21 @@ pub enum FanError {
         /// How many.
         problem: TooManyNodes,
     },
-    /// The thread pool cannot be started.
-    #[error("the threads cannot be started ({0}): ask for fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// The computation was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// Analyses slices in all directions from one point, in parallel; the result does not depend on the number of threads.
 ///
-/// A slice that leaves the map or meets no-data ends there.
-///
-/// # Arguments
-/// `threads`: the number of threads; 0: one per core.
+/// A slice that leaves the map or meets no-data ends there. Reports every heading.
 ///
 /// # Returns
 /// One ray for each heading, `360 k / headings` degrees for k = 0, 1, ..
 ///
 /// # Errors
 /// [`FanError`]; of several, the one of the least heading.
-pub fn fan(request: &FanRequest<'_>, threads: usize) -> Result<Vec<FanRay>, FanError> {
+pub fn fan(request: &FanRequest<'_>, progress: &dyn Progress) -> Result<Vec<FanRay>, FanError> {
     let FanRequest { headings, length_m, .. } = *request;
     let refused = |what, found: String, expected| Err(FanError::Request { what, found, expected });
     if headings == 0 || headings > 36_000 {
@@ -142,9 +140,16 @@ pub fn fan(request: &FanRequest<'_>, threads: usize) -> Result<Vec<FanRay>, FanE
     if !(inside(request.from.x, bounds.min.x, bounds.max.x) && inside(request.from.y, bounds.min.y, bounds.max.y)) {
         return Err(TerrainError::OffTheMap { which: "from", at: request.from, bounds }.into());
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-    let rays: Vec<Result<FanRay, FanError>> =
-        pool.install(|| (0..headings).into_par_iter().map(|number| ray(request, number)).collect());
+    let meter = Meter::with_total(progress, Stage::Fan, u64::from(headings));
+    meter.report(Detail::None)?;
+    let one = |number| -> Result<FanRay, FanError> {
+        meter.check()?;
+        let found = ray(request, number, &meter)?;
+        meter.complete_one()?;
+        Ok(found)
+    };
+    let rays: Vec<Result<FanRay, FanError>> = (0..headings).into_par_iter().map(one).collect();
+    meter.check()?;
     let rays: Vec<FanRay> = rays.into_iter().collect::<Result<_, _>>()?;
     // No direction has ground, so the start has none.
     if rays.iter().all(|ray| ray.length_m == 0.0 && ray.end == Some(SliceEnd::NoData)) {
@@ -165,7 +170,7 @@ pub fn heading_vector(number: u32, of: u32) -> Vector2<f64> {
 }
 
 /// One direction.
-fn ray(request: &FanRequest<'_>, number: u32) -> Result<FanRay, FanError> {
+fn ray(request: &FanRequest<'_>, number: u32, meter: &Meter<'_>) -> Result<FanRay, FanError> {
     let heading_deg = 360.0 * f64::from(number) / f64::from(request.headings);
     let (profile, end) = slice_ray(request, heading_vector(number, request.headings))?;
     let Some(profile) = profile else {
@@ -184,7 +189,10 @@ fn ray(request: &FanRequest<'_>, number: u32) -> Result<FanRay, FanError> {
     let chain = request.ground.chain_of(profile).map_err(|reason| FanError::Ground { heading_deg, reason: Box::new(reason) })?;
     let test = HopTest::new(chain);
     let start = test.chain().geometry().vertex_station(crate::quantity::VertexId(0));
-    let found = reachable(&test, start, request.spacing).map_err(|problem| FanError::TooManyNodes { heading_deg, problem })?;
+    let found = reachable_nodes(&test, start, request.spacing, meter).map_err(|error| match error {
+        SearchError::TooManyNodes(problem) => FanError::TooManyNodes { heading_deg, problem },
+        SearchError::Cancelled(cancelled) => FanError::Cancelled(cancelled),
+    })?;
     let farthest = found.nodes.iter().rev().find_map(|(station, hops)| Some((station.point.x_m, (*hops)?)));
     let (farthest_m, hops_to_farthest) = farthest.unwrap_or((0.0, 0));
     let nodes: Vec<(f64, Option<u64>)> = found.nodes.iter().map(|(station, hops)| (station.point.x_m, *hops)).collect();

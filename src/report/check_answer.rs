@@ -13,14 +13,14 @@ use crate::{
     hop::HopTest,
 };
 
-/// What `chta check` answers for one pair.
+/// The answer of `chta check` for one pair.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CheckAnswer {
     /// Start, m.
     pub start_x_m: f64,
     /// Goal, m.
     pub goal_x_m: f64,
-    /// `traversable`, `no-path-found`, or `untraversable` where that is proved.
+    /// `traversable`, `no-path-found`, or `untraversable` if that is proved.
     pub verdict: &'static str,
     /// The fewest hops over these nodes.
     pub hops: Option<u64>,
@@ -28,20 +28,20 @@ pub struct CheckAnswer {
     pub effort: Option<EffortRecord>,
     /// The greatest number of points inside one segment.
     pub points_per_segment: u32,
-    /// The greatest node spacing asked for, where it was asked for so.
+    /// The greatest node spacing, if the search was given one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_spacing_max_m: Option<f64>,
-    /// How many nodes there were.
+    /// The number of nodes.
     pub nodes: usize,
-    /// How many pairs were tested.
+    /// The number of tested pairs.
     pub pairs_tested: u64,
-    /// How many of them each limit refused.
+    /// The number of pairs refused by each limit.
     pub refusals: BTreeMap<&'static str, u64>,
-    /// Whether start or goal itself refuses, and why.
+    /// Start or goal, if no hop can take off or land there, with the reason.
     pub endpoint_refusals: Vec<EndpointRecord>,
-    /// Without a path: how far one gets over these nodes, and what stops it.
+    /// Without a path: how far one gets over these nodes, and which limits refuse to go on.
     pub frontier: Option<FrontierRecord>,
-    /// What is proved of it; absent where that was not asked for.
+    /// The bounds; absent if no proof was requested.
     #[serde(flatten)]
     pub proof: Option<ProofRecord>,
 }
@@ -49,38 +49,38 @@ pub struct CheckAnswer {
 /// An amount of effort.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EffortRecord {
-    /// Which effort.
+    /// The kind of effort.
     pub name: &'static str,
-    /// How much.
+    /// The amount.
     pub value: f64,
-    /// In which unit.
+    /// Its unit.
     pub unit: &'static str,
-    /// What it is, for reading.
+    /// A description for the reader.
     #[serde(skip)]
     pub total: &'static str,
 }
 
 impl EffortRecord {
-    /// So much of an effort.
+    /// An amount of the given effort.
     pub const fn new(effort: Effort, value: f64) -> Self {
         Self { name: effort.name(), value, unit: effort.unit(), total: effort.total() }
     }
 }
 
-/// A start or goal that refuses whatever the hop.
+/// A start or goal at which no hop at all can take off or land.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct EndpointRecord {
     /// `start` or `goal`.
     pub endpoint: &'static str,
     /// Where, m.
     pub x_m: f64,
-    /// Which limit refuses.
+    /// The limit that refuses.
     pub limit: &'static str,
-    /// By how many degrees, where it is one of angles.
+    /// By how many degrees, if it is a limit on an angle.
     pub excess_deg: Option<f64>,
-    /// The same in words.
+    /// The reason as a sentence.
     pub reason: String,
-    /// The nearest point of the chain that would do, m.
+    /// The nearest usable point of the chain, m.
     pub nearest_usable_x_m: Option<f64>,
 }
 
@@ -89,31 +89,31 @@ pub struct EndpointRecord {
 pub struct FrontierRecord {
     /// The reached node nearest to the goal, m.
     pub reached_x_m: f64,
-    /// How many nodes the start reaches, itself included.
+    /// The number of nodes reachable from the start, itself included.
     pub reached_nodes: usize,
     /// The node nearest to the start from which the goal can be reached, m.
     pub leads_to_goal_from_x_m: f64,
-    /// How many nodes lead to the goal, itself included.
+    /// The number of nodes from which the goal can be reached, itself included.
     pub leads_to_goal_nodes: usize,
-    /// What refused the hops out of the reached nodes.
+    /// The refusals of hops out of the reached nodes, by limit.
     pub refusals: BTreeMap<&'static str, u64>,
-    /// The refused hop that came closest.
+    /// The refused hop with the smallest violation.
     pub nearest_miss: Option<MissRecord>,
 }
 
 /// A refused hop.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MissRecord {
-    /// From here, m.
+    /// The take-off, m.
     pub from_x_m: f64,
-    /// To there, m.
+    /// The landing, m.
     pub to_x_m: f64,
-    /// Why not.
+    /// The reason.
     pub binding: BindingRecord,
 }
 
 impl CheckAnswer {
-    /// From the search's answer between two places.
+    /// From the search's answer between two stations.
     pub fn new(test: &HopTest, start_x_m: f64, goal_x_m: f64, answer: &Answer, effort: Effort) -> Self {
         let (endpoint_refusals, frontier) = match &answer.outcome {
             Outcome::Path { .. } => (Vec::new(), None),
@@ -144,7 +144,7 @@ impl CheckAnswer {
         }
     }
 
-    /// The same with what bounds prove, whose answer it was made from.
+    /// The same with the bounds of the proof that contains this search's answer.
     #[must_use]
     pub fn with_bounds(mut self, bounds: &Bounds, budget_cells: usize) -> Self {
         let proof = ProofRecord::new(bounds, budget_cells);
@@ -159,7 +159,7 @@ impl CheckAnswer {
     }
 }
 
-/// The verdict's name of a search alone, which proves no absence: "untraversable" is never said here.
+/// The verdict of a search alone. A search cannot prove that there is no path, so the verdict is never "untraversable".
 pub fn verdict_name(answer: &Answer) -> &'static str {
     if answer.hops().is_some() { "traversable" } else { "no-path-found" }
 }

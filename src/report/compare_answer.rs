@@ -10,10 +10,10 @@ use serde::Serialize;
 use super::TotalsRecord;
 use crate::path::HopPath;
 
-/// What `chta compare` answers.
+/// The answer of `chta compare`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CompareAnswer {
-    /// One for each scenario, in the order asked for.
+    /// One row for each scenario, in the order given.
     pub compared: Vec<CompareRow>,
 }
 
@@ -28,32 +28,32 @@ pub struct CompareRow {
     pub start_x_m: f64,
     /// Goal, m.
     pub goal_x_m: f64,
-    /// `traversable`, `no-path-found`, or `untraversable` where that is proved.
+    /// `traversable`, `no-path-found`, or `untraversable` if that is proved.
     pub verdict: &'static str,
     /// The fewest hops found.
     pub hops: Option<u64>,
-    /// With a proof: no path has fewer hops; null where there is none at all.
+    /// With a proof: no path has fewer hops; null if there is no path at all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<Option<u64>>,
-    /// What the hops add up to.
+    /// The totals of the hops.
     pub totals: Option<TotalsRecord>,
-    /// What is left to the limits.
+    /// The least margins to the limits.
     pub margins: Option<MarginsRecord>,
 }
 
-/// The least that the hops of a path leave to their limits.
+/// The least margins of a path's hops to their limits.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MarginsRecord {
-    /// To a speed limit, at take-off or landing.
+    /// The least margin to a speed limit, at take-off or landing.
     pub speed_margin_least_m_s: f64,
-    /// From the take-off angle to either end of the feasible ones; 0 where a hop is flown at an end.
+    /// The least margin from the take-off angle to either end of its feasible interval; 0 if a hop is flown at an end.
     pub angle_margin_least_deg: f64,
-    /// The narrowest set of feasible take-off angles.
+    /// The width of the narrowest interval of feasible take-off angles.
     pub angle_span_least_deg: f64,
 }
 
 impl MarginsRecord {
-    /// Those of a path; `None` where it has no hop.
+    /// The margins of a path; `None` if it has no hop.
     pub fn of(path: &HopPath) -> Option<Self> {
         let least = |of: &dyn Fn(&crate::path::Hop) -> f64| path.hops.iter().map(of).reduce(f64::min);
         Some(Self {
@@ -67,7 +67,7 @@ impl MarginsRecord {
     }
 }
 
-/// The columns that say numbers of a path.
+/// The columns with numbers of a path.
 const COLUMNS: [&str; 9] = [
     "flight_time_s",
     "energy_j_kg",
@@ -97,7 +97,7 @@ impl CompareRow {
         ]
     }
 
-    /// The hops with what is known of their least number.
+    /// The number of hops, with its lower bound if that is smaller.
     fn format_hops(&self) -> String {
         let hops = self.hops.map_or("-".to_owned(), |hops| hops.to_string());
         match self.lower_bound {
@@ -108,7 +108,7 @@ impl CompareRow {
 }
 
 impl CompareAnswer {
-    /// The table for reading: a line for each figure, a column for each scenario.
+    /// The table as text: a line for each quantity, a column for each scenario.
     pub fn text(&self) -> String {
         let mut text = String::new();
         let mut numbers = vec![String::new()];
@@ -143,10 +143,10 @@ impl CompareAnswer {
         std::iter::once(name.to_owned()).chain(self.compared.iter().map(of)).collect()
     }
 
-    /// A row for each scenario as CSV; what is absent is blank.
+    /// A row for each scenario as CSV; absent values are blank.
     ///
     /// # Errors
-    /// What the writer says.
+    /// An error of the writer.
     pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
         let mut writer = csv::Writer::from_writer(out);
         let proved = self.compared.iter().any(|row| row.lower_bound.is_some());

@@ -1,12 +1,12 @@
-//! The frame that every JSON result stands in.
+//! The envelope of every JSON result.
 
 use serde::Serialize;
 
 use crate::terrain::MapProjection;
 
-/// A result as one JSON document: what it is, what made it, from what, and the answer.
+/// A result as one JSON document: its kind, the program's version, the inputs and the answer.
 ///
-/// No clock and no absolute path, so that the same run gives the same bytes.
+/// It holds no time and no absolute path, so that the same run gives the same bytes.
 #[derive(Clone, Debug, Serialize)]
 pub struct Document<T: Serialize> {
     /// Kind and version of the document, such as `chta/plan/1`.
@@ -15,11 +15,11 @@ pub struct Document<T: Serialize> {
     pub chta_version: &'static str,
     /// The scenario as used, in SI units and degrees.
     pub scenario: serde_json::Value,
-    /// The files it was made from.
+    /// The input files.
     pub inputs: Vec<InputFile>,
-    /// What the analyst should know.
+    /// Warnings for the analyst.
     pub warnings: Vec<String>,
-    /// The reference system of the map; absent where the chain lies on no map of a known projection.
+    /// The reference system of the map; absent if the chain is not on a map of a known projection.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub crs: Option<CrsRecord>,
     /// The answer.
@@ -30,11 +30,11 @@ pub struct Document<T: Serialize> {
 /// The reference system of a map.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct CrsRecord {
-    /// Its name, for people.
+    /// Its name, for the reader.
     pub name: String,
     /// Its proj string.
     pub proj: String,
-    /// Authority and code, such as `IAU_2015:30135`; null where none is known.
+    /// Authority and code, such as `IAU_2015:30135`; null if no code is known.
     pub code: Option<String>,
 }
 
@@ -46,14 +46,14 @@ impl From<&MapProjection> for CrsRecord {
 }
 
 impl CrsRecord {
-    /// Comments that say the same at the head of a chain CSV.
+    /// The same as comments for the head of a chain CSV.
     pub fn comments(&self) -> Vec<String> {
         let code = self.code.as_ref().map(|code| format!("crs_code: {code}"));
         [format!("crs_name: {}", self.name), format!("crs_proj: {}", self.proj)].into_iter().chain(code).collect()
     }
 }
 
-/// A file that a result was made from.
+/// An input file of a result.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct InputFile {
     /// Its name, relative to the working folder.
@@ -63,7 +63,7 @@ pub struct InputFile {
 }
 
 impl<T: Serialize> Document<T> {
-    /// A document of a kind (`hop`, `check`, `plan`, `run`).
+    /// A document of the given kind (`hop`, `check`, `plan`, `run`).
     pub fn new(kind: &str, scenario: serde_json::Value, inputs: Vec<InputFile>, warnings: Vec<String>, answer: T) -> Self {
         Self {
             schema: format!("chta/{kind}/1"),
@@ -86,7 +86,7 @@ impl<T: Serialize> Document<T> {
     /// As indented JSON with a final line end.
     ///
     /// # Errors
-    /// What the serialiser says, which for plain data is nothing.
+    /// An error of the serialiser; plain data causes none.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self).map(|json| json + "\n")
     }

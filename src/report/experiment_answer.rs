@@ -1,4 +1,4 @@
-//! What the experiments came to, as plain data and for reading.
+//! The results of the experiments, as plain data and as text.
 
 use serde::Serialize;
 
@@ -11,12 +11,12 @@ use crate::{
     },
 };
 
-/// What `worst-drift` answers.
+/// The answer of `worst-drift`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct WorstDriftAnswer {
     /// The experiment's name.
     pub experiment: &'static str,
-    /// How the paper was read.
+    /// The interpretation of the paper.
     pub reading: &'static str,
     /// The seed of all draws.
     pub seed: u64,
@@ -33,18 +33,18 @@ pub struct WorstDriftAnswer {
 /// The landings of one hop of the experiment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct DriftRecord {
-    /// Which hop, from 1.
+    /// The hop's number, from 1.
     pub hop: usize,
-    /// How many flights came down.
+    /// The number of flights that landed.
     pub count: usize,
-    /// How many never came down.
+    /// The number of flights that never landed.
     pub lost: u32,
-    /// Of the distance in three dimensions from the planned landing.
+    /// Quantiles of the distance in three dimensions from the planned landing.
     #[serde(flatten)]
     pub error: ErrorRecord,
-    /// The landing that goes on, along the chain.
+    /// The landing from which the next hop starts: its position along the chain.
     pub farthest_x_m: f64,
-    /// The same, to the left of the plane of travel.
+    /// Its distance to the left of the plane of travel.
     pub farthest_y_m: f64,
 }
 
@@ -62,7 +62,7 @@ impl DriftRecord {
     }
 }
 
-/// Rows of errors for reading, under their header.
+/// Rows of errors as text, under their header.
 fn error_rows(sheet: &mut Sheet, rows: &[DriftRecord]) {
     sheet.line(format_args!(
         "{:>5}{:>10}{:>6}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}",
@@ -88,7 +88,7 @@ impl WorstDriftAnswer {
         }
     }
 
-    /// For reading.
+    /// The answer as text.
     pub fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!(
@@ -100,7 +100,7 @@ impl WorstDriftAnswer {
     }
 }
 
-/// What `cone-width` answers.
+/// The answer of `cone-width`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConeWidthAnswer {
     /// The experiment's name.
@@ -109,7 +109,7 @@ pub struct ConeWidthAnswer {
     pub seed: u64,
     /// Flights from each landing.
     pub flights: u32,
-    /// The horizontal speed at which the displacement with speed is as far as the paper says.
+    /// The horizontal speed at which the speed-dependent displacement equals the paper's.
     pub reference_horizontal_speed_m_s: f64,
     /// From the widest cones to the narrowest.
     pub widths: Vec<ConeWidthRecord>,
@@ -118,32 +118,32 @@ pub struct ConeWidthAnswer {
 /// One width of the cones.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ConeWidthRecord {
-    /// Share of every cone's own distance from the vertical.
+    /// Cone width as a fraction of the original distance from the vertical.
     pub cone_share: f64,
     /// Mean width of the segments' take-off cones.
     pub takeoff_cone_deg: f64,
-    /// Hops of the planned path; null where there is none.
+    /// Hops of the planned path; null without a path.
     pub hops: Option<usize>,
     /// Mean of the hops' take-off angles.
     pub mean_takeoff_angle_deg: Option<f64>,
     /// Mean of the hops' horizontal speeds.
     pub mean_horizontal_speed_m_s: Option<f64>,
-    /// Errors over all landings, displacement as the paper draws it, the same after every landing.
+    /// Errors over all landings, with the paper's displacement, equally distributed after every landing.
     pub all_landings_fixed: ErrorRecord,
-    /// Errors of the last landing alone.
+    /// Errors of the last landing only.
     pub last_landing_fixed: ErrorRecord,
     /// Root mean square spread of one hop's landings about their own mean, from the second hop on.
     pub landing_spread_fixed_m: Option<f64>,
-    /// Errors over all landings, displacement in proportion to the horizontal speed, as the paper argues.
+    /// Errors over all landings, with a displacement proportional to the horizontal speed, as the paper argues.
     pub all_landings_with_speed: ErrorRecord,
-    /// Errors of the last landing alone.
+    /// Errors of the last landing only.
     pub last_landing_with_speed: ErrorRecord,
     /// Root mean square spread of one hop's landings about their own mean, from the second hop on.
     pub landing_spread_with_speed_m: Option<f64>,
 }
 
 impl ConeWidthAnswer {
-    /// Nothing tried yet.
+    /// No width tried yet.
     pub fn new(numbers: &DriftExperiment, reference_horizontal_speed_m_s: f64) -> Self {
         Self {
             experiment: "cone-width",
@@ -172,7 +172,7 @@ impl ConeWidthAnswer {
         });
     }
 
-    /// A width with its path and the landings under both laws of bounce-and-roll displacement.
+    /// A width with its path, and the landings under both laws of bounce-and-roll displacement.
     pub fn add(
         &mut self,
         (cone_share, takeoff_cone_deg): (f64, f64),
@@ -187,7 +187,7 @@ impl ConeWidthAnswer {
             ErrorRecord::of(&errors)
         };
         let last = |landings: &[DriftLanding]| {
-            // A path of which no flight came down at some hop has no last landing.
+            // If no flight landed at some hop, there is no last landing.
             let reached = landings.last().filter(|_| landings.len() == hops.len());
             reached.map_or(ErrorRecord::default(), |landing| ErrorRecord::of(&landing.errors_m))
         };
@@ -213,7 +213,7 @@ impl ConeWidthAnswer {
         });
     }
 
-    /// For reading.
+    /// The answer as text.
     pub fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!(
@@ -247,7 +247,7 @@ impl ConeWidthAnswer {
     }
 }
 
-/// What `risk-trade` answers.
+/// The answer of `risk-trade`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RiskTradeAnswer {
     /// Trials flown along each path.
@@ -256,7 +256,7 @@ pub struct RiskTradeAnswer {
     pub seed: u64,
     /// The policy flown.
     pub policy: &'static str,
-    /// The path planned without regard to risk, then the most reliable for every number of hops that is more reliable than with fewer.
+    /// The path planned without regard to risk, then the most reliable path for each hop count that improves on all smaller ones.
     pub paths: Vec<RiskTradeRow>,
 }
 
@@ -267,7 +267,7 @@ pub struct RiskTradeRow {
     pub path: &'static str,
     /// Its hops.
     pub hops: usize,
-    /// The estimated probability that all hops come off.
+    /// The estimated probability that all hops succeed.
     pub estimated_success: Option<f64>,
     /// The share of its trials that reached the goal.
     pub success_rate: f64,
@@ -276,7 +276,7 @@ pub struct RiskTradeRow {
 }
 
 impl RiskTradeRow {
-    /// A path with what its trials came to.
+    /// A path with the results of its trials.
     pub fn new(path: &'static str, hops: usize, estimated_success: Option<f64>, summary: &Summary) -> Self {
         let success = &summary.success;
         Self { path, hops, estimated_success, success_rate: success.rate, success_rate_ci95: [success.low, success.high] }
@@ -284,7 +284,7 @@ impl RiskTradeRow {
 }
 
 impl RiskTradeAnswer {
-    /// For reading.
+    /// The answer as text.
     pub fn text(&self) -> String {
         let mut sheet = Sheet::default();
         sheet.line(format_args!("hops against success: {} trials each, {}, seed {}", self.trials, self.policy, self.seed));
@@ -325,7 +325,7 @@ mod figures {
     }
 
     impl ConeWidthAnswer {
-        /// Landing errors against the width of the cones, displacement with the horizontal speed.
+        /// Landing errors against the width of the cones, with the displacement proportional to horizontal speed.
         pub fn figure(&self, title: &str) -> ConeWidthFigure {
             let words = format!(
                 "both cones narrowed about the vertical; drift after a landing in proportion to its horizontal speed; {} flights from the \

@@ -12,19 +12,19 @@ use crate::{
     reach::{FanRay, HopBand},
 };
 
-/// What `chta fan` answers.
+/// The answer of `chta fan`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FanAnswer {
-    /// Where all slices begin, on the map, m.
+    /// The common start of all slices on the map, m.
     pub from_m: [f64; 2],
-    /// How many there are.
+    /// The number of headings.
     pub headings: usize,
-    /// How long they were to be, m.
+    /// The requested length of the slices, m.
     pub length_m: f64,
-    /// Points inside each segment, where they are counted so.
+    /// Points inside each segment, if the spacing was given so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points_per_segment: Option<u32>,
-    /// The greatest node spacing, where it was asked for so.
+    /// The greatest node spacing, if the spacing was given so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_spacing_max_m: Option<f64>,
     /// One for each direction.
@@ -36,9 +36,9 @@ pub struct FanAnswer {
 pub struct FanRecord {
     /// Clockwise from grid north.
     pub heading_deg: f64,
-    /// How long the slice is.
+    /// The length of the slice.
     pub length_m: f64,
-    /// What ends it before the length asked for: `border`, `no-data` or nothing.
+    /// Why it ends before the requested length: `border`, `no-data` or nothing.
     pub cut: Option<&'static str>,
     /// The farthest node that can be reached.
     pub farthest_m: f64,
@@ -46,36 +46,36 @@ pub struct FanRecord {
     pub hops_to_farthest: u64,
     /// The fewest hops to the slice's far end.
     pub hops_to_end: Option<u64>,
-    /// Which limit refuses the hop from the farthest node to the next one on.
+    /// The limit that refuses the hop from the farthest node to the next one.
     pub first_refusing_limit: Option<&'static str>,
     /// Hops by distance: `from_m`, `to_m`, `hops`.
     pub bands: Vec<BandRecord>,
 }
 
-/// A part of a slice whose nodes all need as many hops.
+/// A part of a slice whose nodes all have the same fewest hops.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BandRecord {
     /// Where it begins.
     pub from_m: f64,
     /// Where it ends.
     pub to_m: f64,
-    /// The hops; null: not reached.
+    /// The fewest hops; null: not reached.
     pub hops: Option<u64>,
 }
 
 impl FanAnswer {
-    /// Of the rays from a point; the caller says how they were filled with nodes.
+    /// The answer for the rays from a point; the caller adds the node spacing.
     pub fn new(from: MapPoint, length_m: f64, rays: &[FanRay]) -> Self {
         let rays: Vec<_> = rays.iter().map(FanRecord::new).collect();
         Self { from_m: [from.x, from.y], headings: rays.len(), length_m, points_per_segment: None, node_spacing_max_m: None, rays }
     }
 
-    /// How many directions lead to their far end.
+    /// The number of headings whose far end can be reached.
     pub fn reached_ends(&self) -> usize {
         self.rays.iter().filter(|ray| ray.hops_to_end.is_some()).count()
     }
 
-    /// The table for reading.
+    /// The table as text.
     pub fn text(&self) -> String {
         let mut text = format!(
             "{} headings from ({}, {}) m, at most {} m: {} lead to their far end\n\n",
@@ -105,10 +105,10 @@ impl FanAnswer {
         text
     }
 
-    /// The table as CSV; what is absent is blank.
+    /// The table as CSV; absent values are blank.
     ///
     /// # Errors
-    /// What the writer says.
+    /// An error of the writer.
     pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
         let mut writer = csv::Writer::from_writer(out);
         writer.write_record([

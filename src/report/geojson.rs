@@ -1,7 +1,8 @@
 //! Paths and slices in three dimensions as GeoJSON, in the coordinates of the map.
 //!
-//! The reference system stands in the `crs` member of the format's edition of 2008, which GIS programs still read: as the uniform resource
-//! name of an IAU or EPSG code where one is known, else as the proj string, which GDAL understands there, beside a `.prj` file.
+//! The reference system is written as the `crs` member of the format's 2008 edition, which GIS programs still read: as the uniform
+//! resource name of an IAU or EPSG code if one is known, else as a PROJ string, which GDAL accepts there, with a `.prj` file beside
+//! it.
 
 use geojson::{Feature, FeatureCollection, Geometry, GeometryValue, JsonObject, Position};
 
@@ -12,11 +13,11 @@ use crate::{
     terrain::{MapProjection, Profile},
 };
 
-/// Points drawn along each arc: under a thousandth of the hop's length off the true curve.
+/// Points along each arc: the polyline deviates from the curve by less than a thousandth of the hop's length.
 const POINTS_PER_ARC: u32 = 32;
 
-/// A path over a map as a feature collection: an arc (a line in three dimensions) for each hop with all its columns, and a point for
-/// each place that is touched. `None` where the chain lies on no map.
+/// A path over a map as a feature collection: an arc (a line in three dimensions) for each hop with all its columns, and a point
+/// for each contact. `None` if the chain is not on a map.
 ///
 /// Coordinates are easting, northing and height in metres of the input's map, not longitude and latitude; with a `projection`, the
 /// properties have those too.
@@ -24,8 +25,8 @@ pub fn path_geojson(path: &HopPath, gravity_m_s2: f64, projection: Option<&MapPr
     Some(document(path_features(path, None, gravity_m_s2, projection)?, projection))
 }
 
-/// The paths to several goals as one feature collection, as [`path_geojson`], each feature with the number of its `goal`, from 1, that is
-/// the path's place in the list.
+/// The paths to several goals as one feature collection, as [`path_geojson`]. Each feature has the number of its `goal`: the index
+/// of its path in the list, from 1.
 pub fn paths_geojson(paths: &[&HopPath], gravity_m_s2: f64, projection: Option<&MapProjection>) -> Option<String> {
     let mut features = Vec::new();
     for (index, path) in paths.iter().enumerate() {
@@ -34,7 +35,7 @@ pub fn paths_geojson(paths: &[&HopPath], gravity_m_s2: f64, projection: Option<&
     Some(document(features, projection))
 }
 
-/// Arcs and contacts of a path; `None` where it lies on no map.
+/// Arcs and contacts of a path; `None` if it is not on a map.
 fn path_features(
     path: &HopPath,
     goal: Option<usize>,
@@ -64,10 +65,10 @@ fn path_features(
     Some(features)
 }
 
-/// A slice, leg by leg, as one line in three dimensions, with the name of what was sliced and, with a `projection`, where its ends lie
-/// on the body.
+/// A slice, leg by leg, as one line in three dimensions, with the name of the sliced terrain and, with a `projection`, the
+/// longitude and latitude of its ends.
 pub fn slice_geojson(legs: &[Profile], source: &str, projection: Option<&MapProjection>) -> String {
-    // A leg begins where the one before ended.
+    // A leg begins at the end of the previous one.
     let further = legs.iter().skip(1).flat_map(|leg| leg.points.iter().skip(1));
     let points: Vec<_> = legs.first().into_iter().flat_map(|leg| &leg.points).chain(further).collect();
     let coordinates = points.iter().map(|point| Position::from([point.map.x, point.map.y, point.z_m])).collect();
@@ -95,7 +96,7 @@ fn document(features: Vec<Feature>, projection: Option<&MapProjection>) -> Strin
     geojson::GeoJson::from(collection).to_string() + "\n"
 }
 
-/// Longitude and latitude as properties, where the projection is known and the body has the place.
+/// Longitude and latitude as properties, if the projection is known and covers the point.
 fn insert_lon_lat(properties: &mut JsonObject, prefix: &str, at: MapPoint, projection: Option<&MapProjection>) {
     if let Some(place) = projection.and_then(|projection| projection.lon_lat(at)) {
         properties.insert(format!("{prefix}lon_deg"), tenth_digit(place.lon_deg).into());
@@ -103,7 +104,7 @@ fn insert_lon_lat(properties: &mut JsonObject, prefix: &str, at: MapPoint, proje
     }
 }
 
-/// A place that is touched after so many hops.
+/// The contact after the given number of hops.
 fn contact(after_hops: usize, at: MapPoint, z_m: f64, projection: Option<&MapProjection>) -> Feature {
     let mut properties = JsonObject::new();
     properties.insert("kind".to_owned(), "contact".into());

@@ -11,50 +11,50 @@ use crate::{
     world::Contact,
 };
 
-/// What `chta hop` answers.
+/// The answer of `chta hop`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HopAnswer {
-    /// Where the hop takes off, m.
+    /// The take-off, m.
     pub from_x_m: f64,
-    /// Where it lands, m.
+    /// The landing, m.
     pub to_x_m: f64,
     /// Direction of travel.
     pub direction: &'static str,
-    /// Whether one hop does it.
+    /// Whether a single hop is feasible.
     pub feasible: bool,
     /// The least feasible take-off angle.
     pub takeoff_angle_min_deg: Option<f64>,
     /// The greatest feasible take-off angle.
     pub takeoff_angle_max_deg: Option<f64>,
-    /// Straight distance.
+    /// Straight-line distance.
     pub line_of_sight_m: f64,
-    /// Its angle above the horizontal.
+    /// Elevation angle of the straight line.
     pub line_of_sight_angle_deg: f64,
-    /// Each limit by itself.
+    /// Each limit separately.
     pub limits: Vec<LimitRecord>,
-    /// What sets either end, or what conflicts.
+    /// The limits that set the two ends, or the limits that conflict.
     pub binding: BindingRecord,
-    /// The hop to fly, by the scenario's choice.
+    /// The hop to fly, by the scenario's choice of take-off angle.
     pub best: Option<BestRecord>,
-    /// The hops of all three choices; none where there is no hop.
+    /// The hops of all three choices; empty if no hop is feasible.
     pub choices: Vec<BestRecord>,
-    /// Hops along the segment that both points share, where they share one.
+    /// Hops along the segment, if both points lie on the same one.
     pub segment_hops: Option<SegmentHopsRecord>,
 }
 
-/// One limit by itself, as take-off angles.
+/// The take-off angles that one limit allows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LimitRecord {
     /// Its name.
     pub name: &'static str,
-    /// The least take-off angle it allows; null where it refuses every arc.
+    /// The least take-off angle it allows; null if it refuses every arc.
     pub min_deg: Option<f64>,
-    /// The greatest take-off angle it allows; null where it refuses every arc.
+    /// The greatest take-off angle it allows; null if it refuses every arc.
     pub max_deg: Option<f64>,
-    /// For the terrain: the vertex that decides.
+    /// For the terrain: the vertex that sets the limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertex: Option<VertexRecord>,
-    /// Why it refuses every arc, where it does.
+    /// The reason, if it refuses every arc.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refusal: Option<String>,
 }
@@ -64,39 +64,39 @@ pub struct LimitRecord {
 pub struct VertexRecord {
     /// Its number, from 1.
     pub number: usize,
-    /// Its place, m.
+    /// Its x, m.
     pub x_m: f64,
     /// Its height, m.
     pub z_m: f64,
 }
 
-/// What sets the ends of a feasible set, or why it is empty.
+/// The limits that set the ends of a feasible set, or the reason why it is empty.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum BindingRecord {
-    /// Feasible: which limit sets either end.
+    /// Feasible: the limit at either end.
     Ends {
-        /// Sets the least take-off angle.
+        /// The limit that sets the least take-off angle.
         lower: &'static str,
-        /// Sets the greatest take-off angle.
+        /// The limit that sets the greatest take-off angle.
         upper: &'static str,
-        /// For the terrain: the vertex that decides.
+        /// For the terrain: the vertex that sets the limit.
         #[serde(skip_serializing_if = "Option::is_none")]
         vertex: Option<VertexRecord>,
     },
-    /// Empty: which limits conflict, one alone or two with each other.
+    /// Empty: one limit that refuses every arc, or two that conflict.
     Conflict {
         /// Their names.
         conflict: Vec<&'static str>,
-        /// By how many degrees, where the limits are ones of angles.
+        /// By how many degrees, if the limits are on angles.
         gap_deg: Option<f64>,
-        /// By how many m/s a speed falls short, where it is one of speed.
+        /// By how many m/s a speed falls short, if the limit is on a speed.
         #[serde(skip_serializing_if = "Option::is_none")]
         gap_m_s: Option<f64>,
-        /// At which vertex.
+        /// The vertex.
         #[serde(skip_serializing_if = "Option::is_none")]
         vertex: Option<VertexRecord>,
-        /// The same in one sentence.
+        /// The conflict in one sentence.
         sentence: String,
     },
 }
@@ -104,7 +104,7 @@ pub enum BindingRecord {
 /// The hop to fly.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct BestRecord {
-    /// By which choice.
+    /// The choice of take-off angle.
     pub choice: &'static str,
     /// Take-off angle.
     pub takeoff_angle_deg: f64,
@@ -125,15 +125,15 @@ pub struct BestRecord {
 pub struct SegmentHopsRecord {
     /// The least number of hops.
     pub hops: u64,
-    /// The farthest that one hop carries along the slope.
+    /// The greatest range of one hop along the slope.
     pub reach_line_of_sight_m: f64,
     /// The same, horizontally.
     pub reach_horizontal_m: f64,
-    /// Take-off angle of that hop.
+    /// Take-off angle of the hop of greatest range.
     pub takeoff_angle_deg: f64,
     /// The same, over the slope of the ground.
     pub takeoff_over_slope_deg: f64,
-    /// Which limit ends the reach.
+    /// The limit that bounds the range.
     pub limit: &'static str,
 }
 
@@ -196,7 +196,7 @@ impl BindingRecord {
         }
     }
 
-    /// What conflicts.
+    /// The record of a conflict.
     pub fn of_conflict(test: &HopTest, conflict: &Conflict) -> Self {
         let sentence = conflict.to_string();
         match conflict {

@@ -12,55 +12,55 @@ use crate::{
     terrain::Dem,
 };
 
-/// What `chta map` answers.
+/// The answer of `chta map`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MapAnswer {
-    /// Every so many posts of the DEM is one of the map.
+    /// Every `stride`-th post of the DEM is a post of the map.
     pub stride: usize,
     /// Posts of the map.
     pub posts: usize,
     /// Of these, posts without elevation.
     pub no_data_posts: usize,
-    /// The post that all hops start from.
+    /// The post from which all paths start.
     pub start_m: [f64; 2],
-    /// How far that is from the place asked for.
+    /// Its distance from the requested position.
     pub start_offset_m: f64,
     /// Posts with a path from the start, itself included.
     pub reachable_posts: usize,
-    /// Their area, each post with that of its cell.
+    /// Their area, counting one cell for each post.
     pub reachable_area_m2: f64,
     /// Reachable posts on the border of the map: more may be reachable beyond.
     pub reachable_posts_at_border: usize,
-    /// Reachable posts beside one without elevation.
+    /// Reachable posts next to one without elevation.
     pub reachable_posts_at_no_data: usize,
     /// Hops to the farthest post.
     pub farthest_hops: i16,
     /// Posts by hops, from 0 on.
     pub hops_histogram: Vec<usize>,
-    /// The second criterion, where one was asked for.
+    /// The second criterion, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effort: Option<MapEffortRecord>,
-    /// The return journeys, where they were asked for.
+    /// The return journeys, if requested.
     #[serde(rename = "return", skip_serializing_if = "Option::is_none")]
     pub back: Option<ReturnRecord>,
-    /// Single hops from every post, where they were asked for.
+    /// Single hops from every post, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mobility: Option<MobilityRecord>,
-    /// One for each goal, as asked.
+    /// One record for each goal, in the order given.
     pub goals: Vec<GoalRecord>,
 }
 
 /// The least effort among paths of fewest hops.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MapEffortRecord {
-    /// Which.
+    /// The kind of effort.
     pub kind: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// What it is, for reading.
+    /// A description for the reader.
     #[serde(skip)]
     pub total: &'static str,
-    /// The greatest that a reachable post takes.
+    /// The greatest effort of any reachable post.
     pub greatest: f64,
 }
 
@@ -69,7 +69,7 @@ pub struct MapEffortRecord {
 pub struct ReturnRecord {
     /// Posts from which the start can be reached, itself included.
     pub return_posts: usize,
-    /// Of these, posts that can be reached too.
+    /// Of these, posts that are also reachable from the start.
     pub round_trip_posts: usize,
     /// The most hops that a path back takes.
     pub farthest_hops: i16,
@@ -78,66 +78,66 @@ pub struct ReturnRecord {
 /// Single hops from every post.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MobilityRecord {
-    /// The radius of the disc that shares are of.
+    /// The radius of the disc to which the shares refer.
     pub disc_radius_m: f64,
-    /// Into how many directions it is divided.
+    /// The number of directions into which it is divided.
     pub sectors: u8,
     /// The mean share over all posts.
     pub mean_share: f64,
     /// The greatest share.
     pub best_share: f64,
-    /// The first post, from the north-west, that has it.
+    /// The first post with that share, from the north-west.
     pub best_m: [f64; 2],
-    /// In how many directions hops lead from there.
+    /// The number of directions with a hop from there.
     pub best_directions: f64,
 }
 
 /// A goal.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GoalRecord {
-    /// The post nearest to the place asked for, easting.
+    /// The post nearest to the requested goal, easting.
     pub x_m: f64,
     /// And northing.
     pub y_m: f64,
-    /// How far that is from the place asked for.
+    /// Its distance from the requested position.
     pub offset_m: f64,
     /// Fewest hops; null: not reachable.
     pub hops: Option<i16>,
-    /// Fewest hops back; absent where that was not asked for, null: no path.
+    /// Fewest hops back; absent if not requested, null: no path.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub return_hops: Option<Option<i16>>,
-    /// The hops of one path of fewest (with an effort: of least), x along it.
+    /// The hops of one path of fewest hops (and of least effort, if an effort was requested), x along the path.
     pub path: Vec<HopRecord>,
-    /// What they add up to; null: not reachable.
+    /// Their totals; null: not reachable.
     pub totals: Option<TotalsRecord>,
     /// Whether the path was flown again over the DEM by the independent checker and broke no limit; null: not reachable.
     pub verified: Option<bool>,
-    /// How reliably the path is flown, where trials were asked for.
+    /// The results of the trials along the path, if requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub simulation: Option<SimulationRecord>,
 }
 
-/// What a map is summed up from.
+/// The inputs of a map's summary.
 #[derive(Clone, Copy, Debug)]
 pub struct MapSummary<'a> {
     /// The terrain.
     pub dem: &'a Dem,
     /// The nodes.
     pub lattice: NodeLattice,
-    /// The place asked for, and the node there.
+    /// The requested start, and its node.
     pub start: (MapPoint, Post),
-    /// From the start.
+    /// The search from the start.
     pub out: &'a HopMap,
-    /// To the start.
+    /// The search of return paths to the start.
     pub back: Option<&'a HopMap>,
     /// Single hops.
     pub mobility: Option<&'a Mobility>,
-    /// The effort that the map was made for.
+    /// The effort that the search minimised.
     pub effort: Option<Effort>,
 }
 
 impl MapAnswer {
-    /// Of maps; the caller adds the goals.
+    /// The summary of the maps; the caller adds the goals.
     pub fn new(summary: &MapSummary<'_>) -> Self {
         let MapSummary { dem, lattice, start: (asked, start), out, .. } = *summary;
         let map = dem.georeference().every(lattice.stride);
@@ -193,7 +193,7 @@ impl MapAnswer {
         self.goals.iter().all(|goal| goal.hops.is_some())
     }
 
-    /// For reading.
+    /// The answer as text.
     pub fn text(&self) -> String {
         let mut text = format!(
             "{} of {} posts reachable from ({:.3}, {:.3}) m, {:.6} km2, in at most {}\n",
@@ -242,7 +242,7 @@ impl MapAnswer {
             let hops = goal.hops.map_or("not reachable".to_owned(), format_hops);
             let back = match goal.return_hops {
                 Some(Some(hops)) => format!(", {} back", format_hops(hops)),
-                Some(None) => ", no way back".to_owned(),
+                Some(None) => ", no path back".to_owned(),
                 None => String::new(),
             };
             let _ = writeln!(
@@ -298,7 +298,7 @@ impl MobilityRecord {
     }
 }
 
-/// The eight posts around a post, those on the map.
+/// The neighbours of a post among the eight around it that lie on the map.
 fn neighbours(lattice: NodeLattice, post: Post) -> impl Iterator<Item = Post> {
     let around = |at: usize, count: usize| at.saturating_sub(1)..(at + 2).min(count);
     around(post.row, lattice.rows)

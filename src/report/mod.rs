@@ -1,4 +1,4 @@
-//! Results: plain data first; text, JSON, CSV, GeoJSON and the picture are views of it.
+//! Results as plain data; text, JSON, CSV, GeoJSON and pictures are views of it.
 
 mod check_answer;
 mod compare_answer;

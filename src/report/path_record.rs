@@ -17,11 +17,11 @@ pub struct HopRecord {
     pub hop: usize,
     /// Direction of travel.
     pub direction: &'static str,
-    /// Where it takes off, along the chain.
+    /// Take-off, x along the chain.
     pub takeoff_x_m: f64,
     /// Its height.
     pub takeoff_z_m: f64,
-    /// Where it lands, along the chain.
+    /// Landing, x along the chain.
     pub landing_x_m: f64,
     /// Its height.
     pub landing_z_m: f64,
@@ -35,13 +35,13 @@ pub struct HopRecord {
     pub landing_speed_m_s: f64,
     /// Flight time.
     pub flight_time_s: f64,
-    /// Height of the highest point of the flight.
+    /// Elevation of the highest point of the flight.
     pub apex_z_m: f64,
     /// The least feasible take-off angle.
     pub takeoff_angle_min_deg: f64,
     /// The greatest feasible take-off angle.
     pub takeoff_angle_max_deg: f64,
-    /// The smaller of the margins that take-off and landing speed leave.
+    /// The smaller of the margins of take-off and landing speed.
     pub speed_margin_m_s: f64,
     /// Which limits set the least and the greatest feasible angle, `lower/upper`.
     pub binding: String,
@@ -55,15 +55,15 @@ pub struct HopRecord {
 pub struct MapRecord {
     /// Direction of flight, clockwise from grid north.
     pub heading_deg: f64,
-    /// Where it takes off, easting.
+    /// Take-off, easting.
     pub takeoff_map_x_m: f64,
-    /// Where it takes off, northing.
+    /// Take-off, northing.
     pub takeoff_map_y_m: f64,
-    /// Where it lands, easting.
+    /// Landing, easting.
     pub landing_map_x_m: f64,
-    /// Where it lands, northing.
+    /// Landing, northing.
     pub landing_map_y_m: f64,
-    /// On a map of a known projection: the same places on the body.
+    /// On a map of a known projection: longitude and latitude of both ends.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub lon_lat: Option<LonLatRecord>,
 }
@@ -71,13 +71,13 @@ pub struct MapRecord {
 /// The columns of a hop on a map whose projection is known; planetocentric, east positive.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct LonLatRecord {
-    /// Where it takes off, longitude.
+    /// Take-off, longitude.
     pub takeoff_lon_deg: f64,
-    /// Where it takes off, latitude.
+    /// Take-off, latitude.
     pub takeoff_lat_deg: f64,
-    /// Where it lands, longitude.
+    /// Landing, longitude.
     pub landing_lon_deg: f64,
-    /// Where it lands, latitude.
+    /// Landing, latitude.
     pub landing_lat_deg: f64,
 }
 
@@ -94,12 +94,12 @@ impl LonLatRecord {
     }
 }
 
-/// Degrees to ten digits, some micrometres: what is beyond differs from one system's mathematics to the next.
+/// Degrees to ten digits (some micrometres on the ground): further digits differ between the mathematics libraries of platforms.
 pub(super) fn tenth_digit(degrees: f64) -> f64 {
     libm::rint(degrees * 1.0e10) / 1.0e10
 }
 
-/// What the hops of a path add up to.
+/// The totals of a path's hops.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct TotalsRecord {
     /// Time in flight.
@@ -110,16 +110,16 @@ pub struct TotalsRecord {
     pub peak_takeoff_speed_m_s: f64,
     /// The sum of horizontal distances.
     pub ground_distance_m: f64,
-    /// Energy, with a mass.
+    /// Energy, if the mass is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy_j: Option<f64>,
-    /// Flight and rest, with a rest time.
+    /// Time in flight and at rest, if the rest time is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mission_time_s: Option<f64>,
 }
 
 impl HopRecord {
-    /// The rows of a path; with a `projection`, places on a map get their longitude and latitude.
+    /// The rows of a path; with a `projection`, map positions get their longitude and latitude.
     pub fn rows(path: &HopPath, projection: Option<&MapProjection>) -> Vec<Self> {
         path.hops.iter().enumerate().map(|(i, hop)| Self::new(i + 1, hop, projection)).collect()
     }
@@ -167,7 +167,7 @@ impl From<&Totals> for TotalsRecord {
     }
 }
 
-/// The sum over no hop at all is a negative zero in floating point, and so is a level line of sight seen backwards; nobody wants to read that.
+/// A number without negative zero, which a sum over no hops or a reversed level line of sight gives in floating point.
 pub(super) fn unsigned_zero(number: f64) -> f64 {
     if number == 0.0 { 0.0 } else { number }
 }
@@ -192,13 +192,13 @@ const COLUMNS: [&str; 16] = [
     "binding",
 ];
 
-/// The further columns of a chain on a map.
+/// The additional columns of a chain on a map.
 const MAP_COLUMNS: [&str; 5] = ["heading_deg", "takeoff_map_x_m", "takeoff_map_y_m", "landing_map_x_m", "landing_map_y_m"];
 
-/// The further columns of a map whose projection is known.
+/// The additional columns of a map whose projection is known.
 const LON_LAT_COLUMNS: [&str; 4] = ["takeoff_lon_deg", "takeoff_lat_deg", "landing_lon_deg", "landing_lat_deg"];
 
-/// What is known of where a chain lies, which sets the columns of its path.
+/// How a chain is located on a map, which determines the columns of its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MapKnowledge {
     /// No map.
@@ -209,10 +209,10 @@ pub enum MapKnowledge {
     Projection,
 }
 
-/// Writes a path as CSV, the header also where there is no hop.
+/// Writes a path as CSV, with a header even without hops.
 ///
 /// # Errors
-/// What the writer says.
+/// An error of the writer.
 pub fn write_path_csv(rows: &[HopRecord], known: MapKnowledge, out: impl Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
     writer.write_record(columns(known))?;
@@ -222,10 +222,10 @@ pub fn write_path_csv(rows: &[HopRecord], known: MapKnowledge, out: impl Write) 
     writer.flush()
 }
 
-/// Writes paths to several goals as one CSV, a first column `goal` (from 1) before the columns of a path.
+/// Writes paths to several goals as one CSV, with a first column `goal` (from 1) before the columns of a path.
 ///
 /// # Errors
-/// What the writer says.
+/// An error of the writer.
 pub fn write_paths_csv<'a>(
     paths: impl IntoIterator<Item = &'a [HopRecord]>,
     known: MapKnowledge,
@@ -287,7 +287,7 @@ impl HopRecord {
     }
 }
 
-/// Numbers as fields, empty where there are none.
+/// Numbers as fields; an absent number is an empty field.
 fn texts<const N: usize>(numbers: Option<[f64; N]>) -> [String; N] {
     numbers.map_or_else(|| std::array::from_fn(|_| String::new()), |numbers| numbers.map(|number| number.to_string()))
 }

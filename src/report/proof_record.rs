@@ -1,4 +1,4 @@
-//! What a proof says, as plain data.
+//! The result of a proof, as plain data.
 
 use std::collections::BTreeMap;
 
@@ -7,66 +7,66 @@ use serde::Serialize;
 use super::check_answer::counts;
 use crate::graph::proof::{Bounds, Gap, ProofVerdict, Stretch};
 
-/// The bounds on the fewest hops, and what they took.
+/// The bounds on the fewest hops, and the work done for them.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ProofRecord {
-    /// No path has fewer hops, at any resolution; null where it is proved that there is none at all.
+    /// No path has fewer hops, at any resolution; null if it is proved that there is no path at all.
     pub lower_bound: Option<u64>,
-    /// The hops of the best path known; null where none is known.
+    /// The hops of the best known path; null if no path is known.
     pub upper_bound: Option<u64>,
-    /// Whether the two meet, or no path can exist.
+    /// Whether the two bounds meet, or no path can exist.
     pub proved: bool,
-    /// What it took.
+    /// The work done.
     pub proof: ProofSummaryRecord,
-    /// Neighbouring stretches of the chain by what is proved of them, from left to right.
+    /// Consecutive stretches of the chain by what is proved of them, from left to right.
     pub stretches: Vec<StretchRecord>,
-    /// Where no path can exist: how far one gets, and which limits refuse.
+    /// If no path can exist: how far one gets, and which limits refuse.
     pub gap: Option<GapRecord>,
 }
 
-/// What a proof took.
+/// The work done for a proof.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct ProofSummaryRecord {
-    /// Cells that the chain was cut into.
+    /// Cells that the chain was divided into.
     pub cells: usize,
-    /// How many of them it was allowed.
+    /// The greatest number of cells allowed.
     pub budget_cells: usize,
-    /// How many cells were split in two.
+    /// The number of cells that were halved.
     pub splits: u64,
-    /// How often the search over the cells was brought up to date.
+    /// The number of updates of the search over the cells.
     pub rounds: u32,
-    /// How many pairs of cells were tested.
+    /// The number of tested pairs of cells.
     pub pairs_tested: u64,
-    /// Whether the best path goes over points of the cells, not over those of the search.
+    /// Whether the best path uses points of the cells instead of the nodes of the search.
     pub path_over_cells: bool,
 }
 
 /// A stretch of the chain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct StretchRecord {
-    /// Where it begins, m.
+    /// Its left end, m.
     pub from_x_m: f64,
-    /// Where it ends, m.
+    /// Its right end, m.
     pub to_x_m: f64,
     /// `reachable` (a path to points of it was found), `unreachable` (proved) or `open`.
     pub class: &'static str,
-    /// Whether the goal may be reached from it; where not, that is proved.
+    /// Whether the goal may be reachable from it; `false` is proved.
     pub may_lead_to_goal: bool,
 }
 
-/// What keeps a journey from being possible.
+/// The gap that makes a journey impossible.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct GapRecord {
     /// No path from the start comes nearer to the goal, m.
     pub reached_x_m: f64,
-    /// No place nearer to the start leads to the goal, m.
+    /// The goal cannot be reached from any point nearer to the start, m.
     pub leads_to_goal_from_x_m: f64,
-    /// Pairs of cells within reach, the first of which may be reached and the second not, by the limit that refuses all hops.
+    /// Pairs of cells within reach, from a possibly reachable cell to an unreachable one, by the limit that refuses all hops.
     pub refusals: BTreeMap<&'static str, u64>,
 }
 
 impl ProofRecord {
-    /// Of bounds that were allowed so many cells.
+    /// The record of bounds that were allowed the given number of cells.
     pub fn new(bounds: &Bounds, budget_cells: usize) -> Self {
         let summary = bounds.summary;
         Self {
@@ -86,7 +86,7 @@ impl ProofRecord {
         }
     }
 
-    /// The verdict that the bounds allow: `untraversable` only where it is proved.
+    /// The verdict from the bounds: `untraversable` only if it is proved.
     pub const fn verdict(&self) -> &'static str {
         match (self.upper_bound, self.lower_bound) {
             (Some(_), _) => ProofVerdict::Traversable.name(),
@@ -97,13 +97,13 @@ impl ProofRecord {
 }
 
 impl GapRecord {
-    /// Of a gap.
+    /// The record of a gap.
     pub fn of(gap: &Gap) -> Self {
         Self { reached_x_m: gap.reached_x_m, leads_to_goal_from_x_m: gap.leads_to_goal_x_m, refusals: counts(&gap.refusals) }
     }
 }
 
-/// Neighbours of which the same is proved, as one.
+/// Merges neighbouring stretches of the same class.
 fn merged(stretches: &[Stretch]) -> Vec<StretchRecord> {
     let mut merged: Vec<StretchRecord> = Vec::new();
     for stretch in stretches {

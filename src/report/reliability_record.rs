@@ -8,11 +8,11 @@ use crate::graph::ReliablePath;
 /// The most reliable path of one hop count.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct ReliablePathRecord {
-    /// How many hops.
+    /// The number of hops.
     pub hops: u64,
-    /// The estimated probability that all of them come off.
+    /// The estimated probability that all of them succeed.
     pub estimated_success: f64,
-    /// The effort of the path, in the unit of the effort asked for.
+    /// The effort of the path, in the unit of the search's effort.
     pub effort: f64,
 }
 
@@ -26,12 +26,12 @@ impl ReliablePathRecord {
     }
 }
 
-/// The rows for reading; empty where there are none.
+/// The rows as text; empty without rows.
 pub fn reliable_paths_text(rows: &[ReliablePathRecord]) -> String {
     let mut sheet = Sheet::default();
     if !rows.is_empty() {
         sheet.line(format_args!(
-            "\nsurest path by hops (the last is the one above)\n{:>6}{:>20}{:>12}",
+            "\nmost reliable path by hops (the last is the one above)\n{:>6}{:>20}{:>12}",
             "hops", "estimated success", "effort"
         ));
     }

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{GapRecord, HopRecord, TotalsRecord};
 
-/// What `chta require` answers.
+/// The answer of `chta require`.
 #[derive(Clone, Debug, Serialize)]
 pub struct RequireAnswer {
     /// Start, m.
@@ -13,23 +13,23 @@ pub struct RequireAnswer {
     pub goal_x_m: f64,
     /// The scenario key that was varied.
     pub vary: String,
-    /// The most capable value at which it is proved that no path exists; null where that is proved at no value of the range.
+    /// The most capable value at which it is proved that no path exists; null if there is no such value in the range.
     pub unreachable_at: Option<f64>,
-    /// The least capable value at which a path was found; null where none was found at any value of the range.
+    /// The least capable value at which a path was found; null if no path was found in the range.
     pub reachable_at: Option<f64>,
     /// The least value of the range.
     pub from: f64,
     /// The greatest value of the range.
     pub to: f64,
-    /// Every value tried, in the order of trying.
+    /// Every value tried, in the order of the trials.
     pub tries: Vec<RequireTry>,
-    /// How many hops the path at `reachable_at` has.
+    /// The number of hops of the path at `reachable_at`.
     pub hops: Option<u64>,
-    /// That path; empty also where it has too many hops to list.
+    /// That path; empty if there is none or it has too many hops to list.
     pub path: Vec<HopRecord>,
-    /// What it adds up to.
+    /// Its totals.
     pub totals: Option<TotalsRecord>,
-    /// What stops the journey at `unreachable_at`.
+    /// The gap that stops the journey at `unreachable_at`.
     pub gap: Option<GapRecord>,
 }
 
@@ -40,8 +40,8 @@ pub struct RequireTry {
     pub value: f64,
     /// `traversable`, `untraversable` (proved) or `no-path-found`.
     pub verdict: &'static str,
-    /// No path has fewer hops; null where there is none.
+    /// No path has fewer hops; null if no path exists.
     pub lower_bound: Option<u64>,
-    /// The hops of the best path known.
+    /// The hops of the best known path.
     pub upper_bound: Option<u64>,
 }

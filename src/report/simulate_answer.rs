@@ -1,4 +1,4 @@
-//! What trials came to, as plain data and for reading.
+//! The results of trials, as plain data and as text.
 
 use serde::Serialize;
 
@@ -7,10 +7,10 @@ use crate::uncertainty::{
     ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
 };
 
-/// What the trials of one policy came to.
+/// The results of the trials of one policy.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SimulationRecord {
-    /// How many trials were flown.
+    /// The number of trials flown.
     pub trials: u64,
     /// The seed of all draws.
     pub seed: u64,
@@ -20,49 +20,49 @@ pub struct SimulationRecord {
     pub success_rate: f64,
     /// Its 95 % interval (Wilson).
     pub success_rate_ci95: [f64; 2],
-    /// How the trials ended; they add up to `trials`.
+    /// The outcomes of the trials; they add up to `trials`.
     pub outcomes: OutcomeRecord,
-    /// All hops flown, landed or not.
+    /// The number of hops flown, with or without a landing.
     pub hops_flown: u64,
-    /// The landings by number of hop: all planned ones, and what more were flown.
+    /// The landings by hop number: all planned hops, and any further hops flown.
     pub landings: Vec<LandingRecord>,
     /// The rate after each 1 000 trials, at most some hundred points, and at the end.
     pub convergence: Vec<RateRecord>,
 }
 
-/// Trials by the way they ended.
+/// Trials by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct OutcomeRecord {
-    /// Within the goal tolerance.
+    /// It stopped within the goal tolerance.
     pub reached: u64,
     /// It stopped elsewhere.
     pub missed: u64,
     /// A take-off left its cone.
     pub slid_at_takeoff: u64,
-    /// A landing left its cone, or came to rest where nothing rests.
+    /// A landing left its cone, or was on ground too steep to rest on.
     pub slid_at_landing: u64,
     /// A landing was too fast.
     pub damaged: u64,
-    /// It left the known ground, or came down in a keep-out zone.
+    /// It left the known ground, or landed in a keep-out zone.
     pub lost: u64,
-    /// No hop led on.
+    /// No further hop was feasible.
     pub stuck: u64,
-    /// It flew as many hops as allowed.
+    /// It flew the greatest number of hops allowed.
     pub hop_limit: u64,
 }
 
-/// The landings of one number of hop.
+/// The landings of one hop number.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LandingRecord {
-    /// Which hop, from 1.
+    /// The hop's number, from 1.
     pub hop: u32,
-    /// How many trials landed it.
+    /// The number of trials that landed this hop.
     pub count: u64,
-    /// Of the distance from the planned landing to the place of rest; null where none landed.
+    /// Quantiles of the distance from the planned landing to the rest position; null if no trial landed.
     #[serde(flatten)]
     pub error: ErrorRecord,
-    /// On a DEM: the ellipse that holds 95 % of the places of rest, as far as they are Gaussian. Replanned trials differ in what they plan
-    /// for a hop, so that there it is the spread of different plans about their common mean.
+    /// On a DEM: the 95 % ellipse of the rest positions, under a Gaussian fit. Replanned trials plan different landings for the
+    /// same hop number; there it is the spread of different plans about their common mean.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ellipse95: Option<EllipseRecord>,
 }
@@ -72,15 +72,15 @@ pub struct LandingRecord {
 pub struct ErrorRecord {
     /// Mean.
     pub mean_m: Option<f64>,
-    /// 5 % lie below.
+    /// The 5 % quantile.
     pub q05_m: Option<f64>,
-    /// A quarter lies below.
+    /// The 25 % quantile.
     pub q25_m: Option<f64>,
-    /// Half lie below.
+    /// The median.
     pub q50_m: Option<f64>,
-    /// Three quarters lie below.
+    /// The 75 % quantile.
     pub q75_m: Option<f64>,
-    /// 95 % lie below.
+    /// The 95 % quantile.
     pub q95_m: Option<f64>,
     /// The largest.
     pub max_m: Option<f64>,
@@ -101,10 +101,10 @@ pub struct EllipseRecord {
     pub orientation_deg: f64,
 }
 
-/// The rate after so many trials.
+/// The success rate after some number of trials.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RateRecord {
-    /// After how many.
+    /// The number of trials.
     pub trials: u64,
     /// The share that reached the goal.
     pub success_rate: f64,
@@ -112,7 +112,7 @@ pub struct RateRecord {
     pub success_rate_ci95: [f64; 2],
 }
 
-/// Points of the convergence that a result keeps: enough for a curve, few enough to read.
+/// The number of convergence points in a result: enough for a curve, few enough to read.
 const MOST_RATES: usize = 100;
 
 impl SimulationRecord {
@@ -138,12 +138,12 @@ impl SimulationRecord {
         }
     }
 
-    /// Whether every hop was planned anew from where the one before it ended.
+    /// Whether every hop was replanned from the end of the previous one.
     fn is_replanned(&self) -> bool {
         self.policy == Policy::Replan.name()
     }
 
-    /// What the distances of the landings are.
+    /// The meaning of the landing distances.
     fn distances(&self) -> &'static str {
         if self.is_replanned() {
             "distance from the landing planned for the hop at its take-off, planned anew before every hop"
@@ -152,7 +152,7 @@ impl SimulationRecord {
         }
     }
 
-    /// For reading: the rate, the outcomes, the landings.
+    /// The answer as text: the rate, the outcomes, the landings.
     pub fn text(&self) -> String {
         let mut sheet = Sheet::default();
         let [low, high] = self.success_rate_ci95;
@@ -179,7 +179,8 @@ impl SimulationRecord {
         for landing in self.landings.iter().filter(|landing| landing.count > 0) {
             let numbers: String =
                 landing.error.each().map(|number| number.map_or(format!("{:>10}", "-"), |n| format!("{n:>10.3}"))).concat();
-            // The places of one plan: under replanning landings of the same number belong to different plans, and their spread is no error.
+            // Only for a fixed plan: under replanning, landings of the same hop number belong to different plans, and their spread
+            // is not an error.
             let ellipse = landing.ellipse95.filter(|_| !self.is_replanned()).map_or(String::new(), |ellipse| {
                 format!(
                     "  95 % ellipse {:.2} x {:.2} m at {:.0} deg",
@@ -252,7 +253,7 @@ impl From<&ErrorSummary> for ErrorRecord {
 }
 
 impl ErrorRecord {
-    /// Of some distances, all kept: each quantile is the value of rank `share (count - 1)`, between two by their mixture.
+    /// The quantiles of a complete list of distances: each is the value of rank `share (count - 1)`, interpolated linearly.
     pub fn of(distances_m: &[f64]) -> Self {
         let mut sorted = distances_m.to_vec();
         sorted.sort_by(f64::total_cmp);

@@ -1,4 +1,4 @@
-//! The same answers for reading on a terminal.
+//! The answers as text for a terminal.
 
 use std::fmt::Write;
 
@@ -16,20 +16,20 @@ impl Sheet {
         self.0.push('\n');
     }
 
-    /// All of it.
+    /// The whole text.
     pub(super) fn into_text(self) -> String {
         self.0
     }
 }
 
-/// A place along the chain to the millimetre, without trailing zeros.
+/// An x along the chain to the millimetre, without trailing zeros.
 fn place(x_m: f64) -> String {
     let text = format!("{x_m:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// What `chta hop` prints.
+/// The text of `chta hop`.
 pub fn hop_text(answer: &HopAnswer) -> String {
     let mut sheet = Sheet::default();
     sheet.line(format_args!(
@@ -90,7 +90,7 @@ pub fn hop_text(answer: &HopAnswer) -> String {
     sheet.0
 }
 
-/// What sets the ends, or what conflicts, in one line.
+/// The limits that set the ends, or that conflict, in one line.
 fn binding_line(binding: &BindingRecord) -> String {
     match binding {
         BindingRecord::Ends { lower, upper, vertex } => {
@@ -101,7 +101,7 @@ fn binding_line(binding: &BindingRecord) -> String {
     }
 }
 
-/// What `chta require` prints.
+/// The text of `chta require`.
 pub fn require_text(answer: &RequireAnswer) -> String {
     let mut sheet = Sheet::default();
     let RequireAnswer { vary, .. } = answer;
@@ -127,7 +127,7 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     sheet.0
 }
 
-/// How far one gets, and what stops it there.
+/// How far one gets, and which limits refuse to go on.
 fn gap_lines(sheet: &mut Sheet, gap: &GapRecord) {
     sheet.line(format_args!(
         "no path comes nearer to the goal than x = {} m; no place nearer to the start than x = {} m leads to it",
@@ -139,7 +139,7 @@ fn gap_lines(sheet: &mut Sheet, gap: &GapRecord) {
     }
 }
 
-/// What is proved, in a few lines.
+/// The result of a proof, in a few lines.
 fn proof_lines(sheet: &mut Sheet, proof: &ProofRecord, means: FurtherMeans<'_>) {
     match (proof.lower_bound, proof.upper_bound) {
         (None, _) => sheet.line(format_args!("proved: no path exists, at any resolution")),
@@ -168,23 +168,23 @@ const fn plural(count: u64) -> &'static str {
     if count == 1 { "" } else { "s" }
 }
 
-/// The names of what can tell more than an answer does, as its reader can ask for them.
+/// The names of the means to get a stronger answer, in the reader's interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FurtherMeans<'a> {
-    /// How many cells a proof may use.
+    /// The budget of cells of a proof.
     pub budget: &'a str,
-    /// A proof that there is no path.
+    /// The search for a proof that there is no path.
     pub proof: &'a str,
 }
 
 impl Default for FurtherMeans<'_> {
-    /// As the library names them.
+    /// The library's names.
     fn default() -> Self {
         Self { budget: "budget of cells", proof: "a proof by bounds" }
     }
 }
 
-/// What `chta check` prints for one pair.
+/// The text of `chta check` for one pair.
 pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     let mut sheet = Sheet::default();
     let hops = answer.hops.map_or(String::new(), |hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" }));
@@ -248,7 +248,7 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     sheet.0
 }
 
-/// Counts by name, most first.
+/// Counts by name, in descending order.
 fn ranked(counts: &std::collections::BTreeMap<&'static str, u64>) -> String {
     let mut ranked: Vec<_> = counts.iter().collect();
     ranked.sort_by_key(|(name, count)| (std::cmp::Reverse(**count), **name));

@@ -12,24 +12,24 @@ use serde::Serialize;
 use super::figure::{Caption, TradeAxis, TradeCell, TradeFigure};
 use crate::graph::proof::ProofVerdict;
 
-/// What `chta trade` answers.
+/// The answer of `chta trade`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TradeAnswer {
-    /// What was varied: one key, or two.
+    /// The varied keys: one or two.
     pub vary: Vec<SweptKeyRecord>,
-    /// Whether a proof was asked for.
+    /// Whether a proof was requested.
     #[serde(skip)]
     pub proved: bool,
-    /// One for each cell; the last key changes fastest.
+    /// One row for each cell; the last key changes fastest.
     pub rows: Vec<TradeRow>,
 }
 
-/// One key that was varied.
+/// A varied key.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SweptKeyRecord {
     /// The scenario's key, `table.name`.
     pub key: String,
-    /// Its values, rising.
+    /// Its values, in ascending order.
     pub values: Vec<f64>,
 }
 
@@ -39,17 +39,17 @@ pub struct TradeRow {
     /// The value of each key.
     #[serde(flatten)]
     pub values: BTreeMap<String, f64>,
-    /// `traversable`, `no-path-found`, or `untraversable` where that is proved.
+    /// `traversable`, `no-path-found`, or `untraversable` if that is proved.
     pub verdict: &'static str,
     /// The fewest hops found.
     pub hops: Option<u64>,
-    /// With a proof: no path has fewer hops; null where there is none at all.
+    /// With a proof: no path has fewer hops; null if there is no path at all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<Option<u64>>,
 }
 
 impl TradeRow {
-    /// What a cell of a table or a picture says: the hops, `x` where it is proved that there is no path, `-` where none was found.
+    /// The text of a table cell: the hops, `x` if it is proved that there is no path, `-` if no path was found.
     fn sign(&self) -> String {
         match self.hops {
             Some(hops) => hops.to_string(),
@@ -74,7 +74,8 @@ impl TradeRow {
 }
 
 impl TradeAnswer {
-    /// The cells as a picture shows them, with a title and a line below it: the first key along the horizontal axis, the second along the vertical one.
+    /// The figure of the cells, with a title and a line below it: the first key along the horizontal axis, the second along the
+    /// vertical.
     #[cfg(feature = "plot")]
     pub fn figure(&self, title: impl Into<String>, line: impl Into<String>) -> TradeFigure {
         let axis = |v: &SweptKeyRecord| TradeAxis { name: with_unit(&v.key), values: v.values.clone() };
@@ -87,21 +88,21 @@ impl TradeAnswer {
         }
     }
 
-    /// The cells line by line: for each value of the second key those of all values of the first.
+    /// The cells row by row: for each value of the second key, those of all values of the first.
     fn by_lines(&self) -> impl Iterator<Item = impl Iterator<Item = &TradeRow>> {
         let down = self.vary.get(1).map_or(1, |second| second.values.len());
         (0..down).map(move |line| self.rows.iter().skip(line).step_by(down))
     }
 
-    /// How many cells have a path.
+    /// A summary: the number of cells with a path.
     fn summary(&self) -> String {
         let paths = self.rows.iter().filter(|row| row.hops.is_some()).count();
         let closed = self.rows.iter().filter(|row| row.is_closed()).count();
         let proved = if self.proved { format!(", in {closed} it is proved that there is none") } else { String::new() };
-        format!("{paths} of {} fields have a path{proved}", self.rows.len())
+        format!("{paths} of {} cells have a path{proved}", self.rows.len())
     }
 
-    /// The table for reading.
+    /// The table as text.
     pub fn text(&self) -> String {
         let mut text = format!("{}\n\n", self.summary());
         let columns: Vec<String> = self.vary.first().map(|v| v.values.iter().map(f64::to_string).collect()).unwrap_or_default();
@@ -134,10 +135,10 @@ impl TradeAnswer {
         text
     }
 
-    /// The rows as CSV; what is absent is blank.
+    /// The rows as CSV; absent values are blank.
     ///
     /// # Errors
-    /// What the writer says.
+    /// An error of the writer.
     pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
         let keys: Vec<&str> = self.vary.iter().map(|v| v.key.as_str()).collect();
         let mut writer = csv::Writer::from_writer(out);
@@ -153,7 +154,7 @@ impl TradeAnswer {
     }
 }
 
-/// A key with the unit that its name ends in, as an axis says it.
+/// The axis label of a key, with the unit from the end of its name.
 #[cfg(feature = "plot")]
 fn with_unit(key: &str) -> String {
     let units = [("_m_s2", "m/s²"), ("_m_s", "m/s"), ("_deg", "deg"), ("_kg", "kg"), ("_m", "m"), ("_s", "s")];

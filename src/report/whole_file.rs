@@ -1,4 +1,4 @@
-//! Files are written whole or not at all.
+//! Atomic file writes: a file is written completely or not at all.
 
 use std::{
     collections::BTreeSet,
@@ -8,13 +8,14 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-/// The temporary files that have not taken their places.
+/// The temporary files not yet renamed to their final paths.
 static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 
-/// A file being written, which takes its place whole or not at all: it is written beside its place first, then renamed into it.
+/// A file being written, which appears completely or not at all: it is written to a temporary file in the same folder and then
+/// renamed.
 ///
-/// A place that exists and is no regular file (a device, a pipe) is written to directly, since renaming would replace it; a symbolic
-/// link is followed. Dropped before [`keep`](Self::keep), nothing is left behind.
+/// An existing target that is not a regular file (a device, a pipe) is written to directly, since renaming would replace it; a
+/// symbolic link is followed. If it is dropped before [`keep`](Self::keep), nothing is left behind.
 #[derive(Debug)]
 pub struct WholeFile(Place);
 
@@ -24,7 +25,7 @@ enum Place {
     Beside { temporary: tempfile::NamedTempFile, target: PathBuf, listed: Listed },
 }
 
-/// A temporary file's entry among the unfinished, for as long as it lives.
+/// A temporary file's entry in the list of unfinished files, for as long as it exists.
 #[derive(Debug)]
 struct Listed(PathBuf);
 
@@ -35,27 +36,27 @@ impl Drop for Listed {
 }
 
 fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
-    // A set of names is whole whoever panicked beside it.
+    // A panic in another thread cannot leave the set of names inconsistent.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes what is left of every file under way, for a program that ends without returning (on an interrupt, say).
+/// Removes the temporary files of all unfinished writes, for a program that exits without returning, such as on an interrupt.
 ///
-/// No file can be begun or put in its place after that: whoever tries waits for the end of the program.
+/// No file can be opened or finished after that: any thread that tries waits for the end of the program.
 pub fn abandon_unfinished() {
     let names = unfinished();
     for name in names.iter() {
-        // Already in its place, or gone: nothing is left of it either way.
+        // Already renamed or removed: nothing is left behind either way.
         let _ = fs::remove_file(name);
     }
     std::mem::forget(names);
 }
 
 impl WholeFile {
-    /// Opens it, so that a place that cannot be written to is known before the work begins.
+    /// Opens it, so that a path that cannot be written is reported before the computation begins.
     ///
     /// # Errors
-    /// What the file system says.
+    /// An error of the file system.
     pub fn begin(path: &Path) -> io::Result<Self> {
         if fs::metadata(path).is_ok_and(|meta| !meta.is_file()) {
             return Ok(Self(Place::Direct(fs::OpenOptions::new().write(true).open(path)?)));
@@ -65,7 +66,7 @@ impl WholeFile {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        // Listed before anything else can happen to it: an interrupt waits here.
+        // It is listed before any other step can fail; an interrupt waits for this lock.
         let mut names = unfinished();
         let temporary = temporary_in(folder)?;
         names.insert(temporary.path().to_path_buf());
@@ -76,12 +77,13 @@ impl WholeFile {
     /// Writes its bytes.
     ///
     /// # Errors
-    /// What the file system says.
+    /// An error of the file system.
     pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         match &mut self.0 {
             Place::Direct(file) => file.write_all(bytes),
             Place::Beside { temporary, .. } => {
-                // The file itself: its errors do not name it, which would tell the user nothing and differ every time.
+                // Errors of the file itself do not contain the temporary name, which means nothing to the user and changes every
+                // time.
                 let file = temporary.as_file_mut();
                 file.write_all(bytes)?;
                 file.sync_all()
@@ -89,10 +91,10 @@ impl WholeFile {
         }
     }
 
-    /// A second handle on it, for a writer that streams; [`keep`](Self::keep) follows when that writer is done.
+    /// A second handle on it, for a streaming writer; call [`keep`](Self::keep) when that writer is done.
     ///
     /// # Errors
-    /// What the file system says.
+    /// An error of the file system.
     pub fn handle(&self) -> io::Result<fs::File> {
         match &self.0 {
             Place::Direct(file) => file.try_clone(),
@@ -100,10 +102,10 @@ impl WholeFile {
         }
     }
 
-    /// Puts it in its place.
+    /// Renames it to its final path.
     ///
     /// # Errors
-    /// What the file system says; a file that was there before stays as it was.
+    /// An error of the file system; an existing file is left unchanged.
     pub fn keep(self) -> io::Result<()> {
         match self.0 {
             Place::Direct(_) => Ok(()),
@@ -118,17 +120,17 @@ impl WholeFile {
     }
 }
 
-/// Writes a file whole or not at all, in one go.
+/// Writes a file completely or not at all, in one call.
 ///
 /// # Errors
-/// What the file system says; then no part of the file is left behind, and one that was there before stays as it was.
+/// An error of the file system; then no temporary file is left behind, and an existing file is unchanged.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut file = WholeFile::begin(path)?;
     file.write(bytes)?;
     file.keep()
 }
 
-/// A temporary file with the permissions that any new file would get. Where there is none, the system's own error, without its name.
+/// A temporary file with the default permissions of a new file; on failure the system's error, without the temporary name.
 fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
     let mut of_the_system = None;
     let open = |path: &Path| {
@@ -156,7 +158,7 @@ mod tests {
 
     #[cfg(unix)]
     #[test]
-    fn a_link_is_followed_and_a_file_given_up_leaves_nothing() {
+    fn a_link_is_followed_and_an_abandoned_file_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let (target, link) = (folder.path().join("target"), folder.path().join("link"));
         fs::write(&target, b"old").unwrap();

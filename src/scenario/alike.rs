@@ -1,12 +1,12 @@
-//! Whether a key's value matters.
+//! Whether a key's value affects the answer.
 
 use super::{Prepared, Scenario};
 use crate::world::{Hopper, HopperLimits};
 
-/// Whether two scenarios ask the same of every hop between the same ends over the same points: of the ground, the machine and gravity.
+/// Whether two scenarios put the same limits on every hop between the same ends over the same points: ground, hopper and gravity.
 ///
-/// Greatest speeds count as the segments allow them, so one beyond the chain's own limits changes nothing; mass and rest time weigh
-/// nothing.
+/// Speed limits are compared after the segments' own limits are applied, so one beyond the chain's limits makes no difference. Mass
+/// and rest time are ignored.
 pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &Prepared)) -> bool {
     let machine = |hopper: &Hopper| HopperLimits {
         takeoff_speed_max_m_s: 0.0,

@@ -1,4 +1,4 @@
-//! Every key that a scenario may have, with its kind, unit and meaning: one list for reading, help and hints.
+//! Every key that a scenario may have, with its kind, unit and meaning: the one list behind the reader, the help and the hints.
 
 use crate::{
     ballistics::TakeoffChoice,
@@ -7,7 +7,7 @@ use crate::{
     uncertainty::Policy,
 };
 
-/// What a key's value may be.
+/// The kind of value that a key takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kind {
     /// A number between two bounds, both included.
@@ -29,7 +29,7 @@ pub enum Kind {
     Flag,
     /// A list of points `[x, y]` on the map, in metres.
     MapPoints,
-    /// A list of places `[longitude, latitude]`, in degrees.
+    /// A list of positions `[longitude, latitude]`, in degrees.
     LonLats,
     /// A whole number, or `"auto"`.
     CountOrAuto,
@@ -53,7 +53,7 @@ pub struct Key {
     pub table: &'static str,
     /// Its name, which ends in its unit.
     pub name: &'static str,
-    /// What its value may be.
+    /// The kind of value that it takes.
     pub kind: Kind,
     /// What it means, in one line.
     pub help: &'static str,
@@ -72,7 +72,7 @@ impl Key {
 }
 
 impl Kind {
-    /// What is expected, for messages.
+    /// The expected value, for messages.
     pub fn expected(&self) -> String {
         match self {
             Self::Number { min, max } => format!("a number from {} to {}", bound(*min), bound(*max)),
@@ -81,7 +81,7 @@ impl Kind {
             Self::MapPoint => "two finite numbers in metres, [x, y]".to_owned(),
             Self::LonLat => "[longitude, latitude] in degrees, east positive, from -180 to 360 and from -90 to 90".to_owned(),
             Self::Flag => "true or false".to_owned(),
-            Self::LonLats => "a list of places, each [longitude, latitude] in degrees, [[lon, lat], ...]".to_owned(),
+            Self::LonLats => "a list of positions, each [longitude, latitude] in degrees, [[lon, lat], ...]".to_owned(),
             Self::MapPoints => "a list of points, each two finite numbers in metres, [[x, y], ...]".to_owned(),
             Self::CountOrAuto => "a whole number from 0 to 100000, or \"auto\"".to_owned(),
             Self::Count { min, max } if *max == MOST => format!("a whole number of at least {min}"),
@@ -92,7 +92,7 @@ impl Kind {
     }
 }
 
-/// A bound as people write it: with an exponent only where it has many zeros.
+/// A bound in the usual notation: with an exponent only where it has many zeros.
 fn bound(number: f64) -> String {
     if number == 0.0 || (1e-3..1e4).contains(&number.abs()) { number.to_string() } else { format!("{number:e}") }
 }
@@ -101,12 +101,12 @@ const fn key(table: &'static str, name: &'static str, kind: Kind, help: &'static
     Key { table, name, kind, help }
 }
 
-/// Lengths and speeds beyond these are slips of units, not missions.
+/// Lengths and speeds beyond these bounds are mistakes of units.
 const SPEED: Kind = Kind::Number { min: 1e-9, max: 1e5 };
 const LENGTH: Kind = Kind::Number { min: 1e-9, max: 1e9 };
 const FROM_ZERO: Kind = Kind::Number { min: 0.0, max: 1e9 };
 const COORDINATE: Kind = Kind::Number { min: -1e12, max: 1e12 };
-/// A deviation beyond these is no error of a machine that works.
+/// No working machine has a standard deviation beyond these bounds.
 const SHARE: Kind = Kind::Number { min: 0.0, max: 100.0 };
 const SIGMA_ANGLE: Kind = Kind::Number { min: 0.0, max: 180.0 };
 const ELEVATION_ANGLE: Kind = Kind::Number { min: -90.0, max: 90.0 };
@@ -124,7 +124,7 @@ const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 pub const CATALOGUE: [Key; 54] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
-    key("body", "radius_m", LENGTH, "mean radius, m, for the warning that constant gravity is a bad model"),
+    key("body", "radius_m", LENGTH, "mean radius, m, for the warning where constant gravity is a bad model"),
     key("hopper", "takeoff_speed_max_m_s", SPEED, "greatest take-off speed, m/s"),
     key("hopper", "landing_speed_max_m_s", SPEED, "greatest landing speed, m/s"),
     key("hopper", "clearance_m", FROM_ZERO, "height to keep over every vertex flown past, m; absent: 0"),
@@ -147,7 +147,7 @@ pub const CATALOGUE: [Key; 54] = [
         "surface",
         "friction_raster",
         Kind::Text,
-        "raster of friction coefficients on the dem's map, path from this file; wins where it has data",
+        "raster of friction coefficients on the dem's map, path from this file; overrides friction_coefficient where it has data",
     ),
     key(
         "surface",
@@ -163,14 +163,14 @@ pub const CATALOGUE: [Key; 54] = [
     key("terrain", "goal_m", Kind::MapPoint, "goal on the map, [x, y], m"),
     key("terrain", "start_lonlat_deg", Kind::LonLat, "instead: start as [longitude, planetocentric latitude], degrees"),
     key("terrain", "goal_lonlat_deg", Kind::LonLat, "instead: goal as [longitude, planetocentric latitude], degrees"),
-    key("terrain", "accept_map_scale", Kind::Flag, "take distances of a map whose scale is off by over 1 % as they are"),
+    key("terrain", "accept_map_scale", Kind::Flag, "accept a map whose scale is off by over 1 %, with its distances unchanged"),
     key(
         "terrain",
         "via_lonlat_deg",
         Kind::LonLats,
-        "instead: points between as [[longitude, planetocentric latitude], ...], degrees",
+        "instead: intermediate points as [[longitude, planetocentric latitude], ...], degrees",
     ),
-    key("terrain", "via_m", Kind::MapPoints, "points between, [[x, y], ...], m: the slice bends there, and no hop spans a bend"),
+    key("terrain", "via_m", Kind::MapPoints, "intermediate points, [[x, y], ...], m, where the slice bends; no hop spans a bend"),
     key("terrain", "start_x_m", COORDINATE, "start along the chain, m"),
     key("terrain", "goal_x_m", COORDINATE, "goal along the chain, m"),
     key(
@@ -179,7 +179,7 @@ pub const CATALOGUE: [Key; 54] = [
         Kind::CountOrAuto,
         "points inside each segment, or \"auto\": the first of 0, 1, 2, 3, 7, 15, 31 with a path",
     ),
-    key("search", "node_spacing_max_m", LENGTH, "instead: as many points as keep neighbours this close along the ground, m"),
+    key("search", "node_spacing_max_m", LENGTH, "instead: greatest spacing of neighbouring points along the ground, m"),
     key("search", "effort", Kind::Word(&EFFORTS), "second criterion after hops; absent: takeoff-speed"),
     key("search", "takeoff_angle", Kind::Word(&CHOICES), "which feasible take-off angle to fly; absent: least-speed"),
     key("search", "split", Kind::Word(&SPLITS), "how to divide many hops on a segment; absent: full-reach"),
@@ -187,24 +187,24 @@ pub const CATALOGUE: [Key; 54] = [
         "search",
         "risk",
         Kind::Word(&RELIABILITY_USES),
-        "how the probability to fail, or the slack, weighs: ignored; fewest-hops: the surest of the paths of fewest hops; traded: more hops for surety",
+        "how to weigh the probability to fail, or the slack: ignored; fewest-hops: the most reliable path of fewest hops; traded: more hops allowed",
     ),
     key(
         "search",
         "risk_extra_hops_max",
         Kind::Count { min: 1, max: 1000 },
-        "hops beyond the fewest that a surer path may take; absent: 3",
+        "hops beyond the fewest that a more reliable path may take; absent: 3",
     ),
     key("uncertainty", "takeoff_speed_sigma_m_s", FROM_ZERO, "standard deviation of the take-off speed, m/s"),
     key(
         "uncertainty",
         "takeoff_speed_sigma_fraction",
         SHARE,
-        "standard deviation of the take-off speed, as a share of the commanded one",
+        "standard deviation of the take-off speed, as a fraction of the commanded one",
     ),
     key("uncertainty", "takeoff_angle_sigma_deg", SIGMA_ANGLE, "standard deviation of the take-off angle, degrees"),
     key("uncertainty", "heading_sigma_deg", SIGMA_ANGLE, "standard deviation of the heading, degrees; on a dem only"),
-    key("uncertainty", "position_sigma_m", FROM_ZERO, "standard deviation of where the robot believes to be, m; felt by replan"),
+    key("uncertainty", "position_sigma_m", FROM_ZERO, "standard deviation of the position estimate, m; affects replan only"),
     key(
         "uncertainty",
         "drift_along_sigma_m",
@@ -214,7 +214,7 @@ pub const CATALOGUE: [Key; 54] = [
     key("uncertainty", "drift_across_sigma_m", FROM_ZERO, "the same to the side, m"),
     key("uncertainty", "friction_sigma", SHARE, "standard deviation of the friction coefficient, one draw per trial"),
     key("uncertainty", "height_sigma_m", FROM_ZERO, "standard deviation of the terrain's height, m, one random field per trial"),
-    key("uncertainty", "height_correlation_m", FROM_ZERO, "distance over which the height error stays alike, m"),
+    key("uncertainty", "height_correlation_m", FROM_ZERO, "correlation length of the height error, m"),
     key("uncertainty", "goal_tolerance_m", FROM_ZERO, "horizontal distance from the goal that counts as reached, m; absent: 0"),
     key(
         "uncertainty",
@@ -226,7 +226,7 @@ pub const CATALOGUE: [Key; 54] = [
         "uncertainty",
         "policy",
         Kind::Word(&POLICIES),
-        "planned commands from wherever it is, or replanned after every landing; absent: open-loop",
+        "open-loop: planned commands, wherever the robot is; replan: replanned after every landing; absent: open-loop",
     ),
     key("uncertainty", "trials", Kind::Count { min: 1, max: MOST }, "how many trials; absent: 10000"),
     key("uncertainty", "seed", Kind::Count { min: 0, max: MOST }, "seed of all draws; absent: 0"),
@@ -238,7 +238,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn bounds_are_written_as_people_write_them() {
+    fn bounds_are_written_in_the_usual_notation() {
         assert_eq!(ELEVATION_ANGLE.expected(), "a number from -90 to 90");
         assert_eq!(FROM_ZERO.expected(), "a number from 0 to 1e9");
         assert_eq!(SPEED.expected(), "a number from 1e-9 to 1e5");

@@ -1,4 +1,4 @@
-//! The scenario as it was used, ready to be written and read back.
+//! The scenario as used, as a document that reads back.
 
 use serde_json::{Map, Value, json};
 
@@ -10,8 +10,8 @@ use crate::{
     world::{Grip, RestSlope},
 };
 
-/// The scenario as used, defaults filled in, with the keys of [`CATALOGUE`](super::CATALOGUE): [`Entries::from_json`](super::Entries)
-/// reads it back as it was. Paths are `name`d by the caller, relative to the working folder.
+/// The scenario as used, defaults filled in, with the keys of [`CATALOGUE`](super::CATALOGUE):
+/// [`Entries::from_json`](super::Entries) reads it back as it was. Paths are `name`d by the caller, relative to the working folder.
 pub fn scenario_document(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> Value {
     let mut tables = Map::new();
     tables.insert("body".to_owned(), body(scenario));
@@ -30,7 +30,7 @@ fn object<const N: usize>(keys: [(&str, Option<Value>); N]) -> Value {
     Value::Object(keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect())
 }
 
-/// Degrees that read back as the same angle, for every angle that came from degrees.
+/// Degrees that read back as the same angle, for every angle that was given in degrees.
 fn degrees(angle: Angle) -> f64 {
     angle.shortest_degrees().unwrap_or_else(|| angle.degrees())
 }
@@ -109,7 +109,7 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         MapPlace::Metres(_) => None,
         MapPlace::LonLat(place) => Some(json!([place.lon_deg, place.lat_deg])),
     };
-    // All of one kind, as they were read.
+    // All points are of the first one's kind: the reader accepts no mixture.
     let list = |said: &dyn Fn(&MapPlace) -> Option<Value>| {
         let places: Vec<Value> = scenario.via.iter().filter_map(said).collect();
         (!places.is_empty()).then(|| places.into())

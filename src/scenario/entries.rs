@@ -1,4 +1,4 @@
-//! Keys and values as typed, each with its place, from a file, a result and the command line.
+//! Keys and values as typed, each with its source, from a file, a result or the command line.
 
 use std::{collections::BTreeMap, ops::Range};
 
@@ -6,35 +6,35 @@ use toml::de::{DeTable, DeValue};
 
 use super::{CATALOGUE, Key, KeyPath, Kind, ProblemKind, ScenarioProblem};
 
-/// Where a value was given.
+/// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Place {
     /// These bytes of the scenario file.
     File(Range<usize>),
-    /// Beside the file, under this name: an option, say.
+    /// Outside the file, under this name, such as an option.
     Option(String),
-    /// Nowhere in particular.
+    /// No particular position.
     Nowhere,
 }
 
-/// A value and its place.
+/// A value and its source.
 #[derive(Clone, Debug, PartialEq)]
 struct Entry {
     value: toml::Value,
     place: Place,
 }
 
-/// All keys given, later ones in place of earlier ones.
+/// All keys given; later ones replace earlier ones.
 #[derive(Clone, Debug, PartialEq, Default)]
 pub struct Entries {
     given: BTreeMap<(String, String), Entry>,
     problems: Vec<ScenarioProblem>,
-    /// The text could not be read at all, so what is absent tells nothing.
+    /// The text could not be parsed, so an absent key does not count as missing.
     unreadable: bool,
 }
 
 impl Entries {
-    /// The keys of a TOML text. Unknown keys and wrong syntax become problems, told by [`problems`](Self::problems).
+    /// The keys of a TOML text. Unknown keys and wrong syntax become problems, listed by [`problems`](Self::problems).
     pub fn from_toml(source: &str) -> Self {
         let mut entries = Self::default();
         let document = match DeTable::parse(source) {
@@ -104,8 +104,8 @@ impl Entries {
         entries
     }
 
-    /// Sets `table.key=value`; problems with it begin with the place, which is the caller's name for it, such as an option. A value
-    /// that is no TOML value counts as a text.
+    /// Sets `table.key=value`. Problems with it begin with `place`, the caller's name for the source, such as an option. A value
+    /// that is not valid TOML is taken as a text.
     pub fn set(&mut self, place: &str, assignment: &str) {
         let option = Place::Option(place.to_owned());
         let parsed = assignment.split_once('=').and_then(|(path, value)| Some((path.trim().split_once('.')?, value.trim())));
@@ -114,7 +114,7 @@ impl Entries {
                 let text = || toml::Value::String(value.to_owned());
                 let parsed = format!("v = {value}").parse::<toml::Table>().ok().filter(|table| table.len() == 1);
                 let typed = parsed.and_then(|mut table| table.remove("v")).unwrap_or_else(text);
-                // A title of digits is a title: no one quotes it for a shell.
+                // A title that consists of digits needs no quotes.
                 let takes_text = Key::find(table, name).is_some_and(|key| key.kind == Kind::Text);
                 let value = if takes_text && !typed.is_str() { text() } else { typed };
                 self.add(table, name, value, option.clone(), option);
@@ -129,13 +129,13 @@ impl Entries {
         }
     }
 
-    /// Gives a key its value by an option of its own.
+    /// Sets a key by its own option.
     pub fn set_by_option(&mut self, option: &str, table: &str, name: &str, value: toml::Value) {
         let place = Place::Option(option.to_owned());
         self.add(table, name, value, place.clone(), place);
     }
 
-    /// Forgets a key, where an option replaces it by another one; whether it was there.
+    /// Removes a key that an option replaces by another one. Returns whether it was there.
     pub fn forget(&mut self, table: &str, name: &str) -> bool {
         self.given.remove(&(table.to_owned(), name.to_owned())).is_some()
     }
@@ -152,23 +152,23 @@ impl Entries {
         }
     }
 
-    /// Whether the text could not be read at all.
+    /// Whether the text could not be parsed.
     pub(super) fn is_unreadable(&self) -> bool {
         self.unreadable
     }
 
-    /// What was wrong so far.
+    /// The problems found so far.
     pub fn problems(&self) -> &[ScenarioProblem] {
         &self.problems
     }
 
-    /// Adds a problem of a key, at the place where that key was given, if it was.
+    /// Adds a problem of a key, at the position where that key was given, if any.
     pub(super) fn problem(&mut self, key: (&str, &str), kind: ProblemKind, message: String, help: impl Into<String>) {
         let place = self.place(key.0, key.1).unwrap_or(Place::Nowhere);
         self.problem_at(place, key, kind, message, help);
     }
 
-    /// Adds a problem of a key at another place.
+    /// Adds a problem of a key at another position.
     pub(super) fn problem_at(
         &mut self,
         place: Place,
@@ -180,32 +180,32 @@ impl Entries {
         self.problems.push(ScenarioProblem { key: KeyPath::new(table, name), kind, place, message, help: help.into() });
     }
 
-    /// Whether one of these keys was given with a value that it does not take.
+    /// Whether one of these keys was given with an invalid value.
     pub(super) fn has_refused(&self, table: &str, names: &[&str]) -> bool {
         self.problems.iter().any(|problem| problem.kind == ProblemKind::Value && problem.key.is_one_of(table, names))
     }
 
-    /// Whether a table has a key that is not known, so that any key that is missing may be meant by it.
+    /// Whether a table has an unknown key, which may be a misspelling of a missing key.
     pub(super) fn has_unknown(&self, table: &str) -> bool {
         self.problems.iter().any(|problem| problem.kind == ProblemKind::Unknown && problem.key.table == table)
     }
 
-    /// Where a key was given; `None` where it was not.
+    /// The position of a key; `None` if it was not given.
     pub(super) fn place(&self, table: &str, name: &str) -> Option<Place> {
         self.given.get(&(table.to_owned(), name.to_owned())).map(|entry| entry.place.clone())
     }
 
-    /// The value of a key; `None` where it was not given.
+    /// The value of a key; `None` if it was not given.
     pub(super) fn value(&self, table: &str, name: &str) -> Option<&toml::Value> {
         self.given.get(&(table.to_owned(), name.to_owned())).map(|entry| &entry.value)
     }
 
-    /// A number; `None` where it was not given.
+    /// A number; `None` if it was not given.
     pub(super) fn number(&self, table: &str, name: &str) -> Option<f64> {
         self.value(table, name).and_then(number)
     }
 
-    /// A whole number; `None` where it was not given.
+    /// A whole number; `None` if it was not given.
     pub(super) fn count(&self, table: &str, name: &str) -> Option<u64> {
         self.value(table, name).and_then(count)
     }
@@ -215,27 +215,27 @@ impl Entries {
         self.given.keys().any(|(known, _)| known == table)
     }
 
-    /// A text; `None` where it was not given.
+    /// A text; `None` if it was not given.
     pub(super) fn text(&self, table: &str, name: &str) -> Option<&str> {
         self.value(table, name).and_then(toml::Value::as_str)
     }
 
-    /// A switch; `false` where it was not given.
+    /// A switch; `false` if it was not given.
     pub(super) fn flag(&self, table: &str, name: &str) -> bool {
         self.value(table, name).and_then(toml::Value::as_bool).unwrap_or(false)
     }
 
-    /// Two numbers; `None` where they were not given.
+    /// Two numbers; `None` if they were not given.
     pub(super) fn pair(&self, table: &str, name: &str) -> Option<[f64; 2]> {
         self.value(table, name).and_then(pair)
     }
 
-    /// Points; none where they were not given.
+    /// Points; empty if they were not given.
     pub(super) fn points(&self, table: &str, name: &str) -> Vec<[f64; 2]> {
         self.value(table, name).and_then(toml::Value::as_array).into_iter().flatten().filter_map(pair).collect()
     }
 
-    /// Checks a value against its key's kind and keeps it.
+    /// Checks a value against its key's kind and stores it.
     fn add(&mut self, table: &str, name: &str, value: toml::Value, place: Place, key_place: Place) {
         let Some(key) = Key::find(table, name) else { return self.unknown(table, name, key_place) };
         if fits(&value, key.kind) {
@@ -245,13 +245,13 @@ impl Entries {
         }
     }
 
-    /// Tells that a value is none that its key takes.
+    /// Reports a value of the wrong kind.
     fn misfit(&mut self, key: &Key, value: &str, place: Place) {
         let message = format!("{} is {}, expected {}", key.path(), shortened(value), key.kind.expected());
         self.problem_at(place, (key.table, key.name), ProblemKind::Value, message, format!("it means: {}", key.help));
     }
 
-    /// Names an unknown key or table and the nearest known one.
+    /// Reports an unknown key or table, with the nearest known one.
     fn unknown(&mut self, table: &str, name: &str, place: Place) {
         if table.is_empty() && tables().any(|known| known == name) {
             let help = format!("write [{name}] on a line of its own and its keys below");
@@ -270,10 +270,10 @@ impl Entries {
     }
 }
 
-/// What to say of the known key nearest to an unknown one: its name, or, where none is near, those of the table that was meant.
+/// The hint for an unknown key: the nearest known key or, where none is near, the keys of the intended table.
 ///
-/// Near is a name that differs from a known one, or from its beginning before an underscore, by a third of its letters at most (by one in
-/// short names). A right name counts in any table; otherwise the table that was given, or nearly given, goes first.
+/// A name is near if it differs from a known one, or from its part before an underscore, in at most a third of its letters (one in
+/// short names). An exact name counts in any table; otherwise keys of the given, or nearly given, table come first.
 pub(super) fn nearest_key(table: &str, name: &str) -> String {
     let meant = tables().find(|known| strsim::damerau_levenshtein(table, known) <= 2);
     let near = |key: &&Key| -> Option<(usize, bool)> {
@@ -282,17 +282,17 @@ pub(super) fn nearest_key(table: &str, name: &str) -> String {
             let distance = strsim::damerau_levenshtein(name, known);
             (distance <= (letters.min(known.chars().count()) / 3).max(1)).then_some(distance)
         };
-        // The whole name, or what stands before one of its underscores: `friction` is short for `friction_coefficient`, with a mark
-        // against it, so that a whole name as near goes first.
+        // The whole name, or its part before an underscore (`friction` for `friction_coefficient`), with a penalty so that a whole
+        // name at the same distance comes first.
         let beginnings =
             key.name.match_indices('_').filter_map(|(end, _)| apart(&key.name[..end]).map(|distance| 2 * distance + 1));
         let distance = apart(key.name).map(|distance| 2 * distance).into_iter().chain(beginnings).min()?;
         let own = meant == Some(key.table);
-        // Elsewhere only what is as good as right.
+        // In other tables only a nearly exact name counts.
         (own || meant.is_none() || distance <= 1).then_some((distance, !own))
     };
     let best = CATALOGUE.iter().filter_map(|key| Some((near(&key)?, key))).min_by_key(|((distance, elsewhere), _)| {
-        // A wrong table is as bad as two wrong letters.
+        // A wrong table counts like two wrong letters.
         (distance + 4 * usize::from(*elsewhere), *elsewhere)
     });
     match (best, meant) {
@@ -305,7 +305,7 @@ pub(super) fn nearest_key(table: &str, name: &str) -> String {
     }
 }
 
-/// A value as the user may have typed it: numbers without rows of zeros.
+/// A value in the notation of a user: numbers without rows of zeros.
 fn value_text(value: &toml::Value) -> String {
     match value {
         toml::Value::Float(number) if number.is_finite() && *number != 0.0 && !(1e-4..1e12).contains(&number.abs()) => {
@@ -316,7 +316,7 @@ fn value_text(value: &toml::Value) -> String {
     }
 }
 
-/// A piece of the user's text that is short enough for one sentence.
+/// A part of the user's text, short enough for one sentence.
 fn shortened(text: &str) -> String {
     const LONGEST: usize = 80;
     match text.char_indices().nth(LONGEST) {
@@ -325,7 +325,7 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// A JSON value as a TOML value; `None` for what no key takes.
+/// A JSON value as a TOML value; `None` for kinds that no key takes.
 fn from_json(value: &serde_json::Value) -> Option<toml::Value> {
     match value {
         serde_json::Value::String(text) => Some(toml::Value::String(text.clone())),
@@ -344,7 +344,7 @@ fn tables() -> impl Iterator<Item = &'static str> {
     CATALOGUE.iter().map(|key| key.table).filter(move |table| std::mem::replace(&mut last, table) != *table)
 }
 
-/// A TOML value without its spans; `None` for what no key takes.
+/// A TOML value without its spans; `None` for kinds that no key takes.
 fn plain(value: &DeValue<'_>) -> Option<toml::Value> {
     Some(match value {
         DeValue::String(text) => toml::Value::String(text.to_string()),

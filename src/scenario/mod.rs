@@ -1,4 +1,4 @@
-//! The scenario: TOML as typed, then validated, and the pipeline it wires from terrain to answer.
+//! The scenario: TOML as typed, then validated, and the pipeline from terrain to a chain ready for analysis.
 
 mod alike;
 mod catalogue;

@@ -1,4 +1,4 @@
-//! The pipeline: scenario, terrain, chain, constraints; ready for the hop test.
+//! The pipeline from a scenario over terrain, chain and constraints to a chain ready for the hop test.
 
 use std::{
     fmt::Write,
@@ -23,7 +23,7 @@ use crate::{
     world::{Body, FrictionCone, Grip},
 };
 
-/// A chain ready to be analysed, with start and goal where they are known.
+/// A chain ready to be analysed, with start and goal if known.
 #[derive(Clone, Debug)]
 pub struct Prepared {
     /// The chain with its constraints.
@@ -32,23 +32,23 @@ pub struct Prepared {
     pub start: Option<Station>,
     /// Where it ends.
     pub goal: Option<Station>,
-    /// The projection of the map that the chain lies on, where it lies on one of a known projection.
+    /// The projection of the chain's map, if it lies on a map of a known projection.
     pub projection: Option<MapProjection>,
-    /// What the reader of the terrain noticed.
+    /// The warnings of the terrain reader.
     pub warnings: Vec<String>,
 }
 
 /// One end of a journey.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum JourneyEnd {
-    /// Where it begins.
+    /// The start.
     Start,
-    /// Where it ends.
+    /// The goal.
     Goal,
 }
 
 impl JourneyEnd {
-    /// `start` or `goal`, with which the names of its keys begin.
+    /// `start` or `goal`, the prefix of its keys.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Start => "start",
@@ -67,8 +67,8 @@ pub enum PipelineError {
     /// The chain CSV.
     #[error(transparent)]
     Csv(#[from] csv::CsvFileError),
-    /// A slice that makes no chain.
-    #[error("the slice makes no chain: {0}")]
+    /// A slice that does not form a chain.
+    #[error("the slice does not form a chain: {0}")]
     Chain(#[from] InvalidChain),
     /// Segments without constraints.
     #[error(transparent)]
@@ -76,9 +76,9 @@ pub enum PipelineError {
     /// A start or goal off the chain.
     #[error("{}: {problem}", which.name())]
     OffChain {
-        /// Which of the two.
+        /// Start or goal.
         which: JourneyEnd,
-        /// Where, and where the chain is.
+        /// The position, and the extent of the chain.
         problem: OffChain,
     },
     /// A file that cannot be read.
@@ -86,12 +86,13 @@ pub enum PipelineError {
     Read {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// The reason.
         source: io::Error,
     },
 }
 
-/// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, resolves the constraints, finds start and goal on it.
+/// Builds the chain of a scenario: slices its DEM or mesh, or reads its chain, resolves the constraints, finds start and goal on
+/// it.
 ///
 /// `base` is the folder that the scenario's paths start from.
 ///
@@ -110,7 +111,7 @@ pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Resu
     resolved(scenario, geometry, ends, projection, warnings)
 }
 
-/// The terrain of a scenario, read and sliced once, from which chains are prepared for any hopper, grip and search.
+/// The terrain of a scenario, read and sliced once. Chains for any hopper, grip and search are prepared from it.
 #[derive(Clone, Debug)]
 pub struct Survey {
     ground: Surveyed,
@@ -118,17 +119,17 @@ pub struct Survey {
     warnings: Vec<String>,
 }
 
-/// What was read.
+/// The terrain that was read.
 #[derive(Clone, Debug)]
 enum Surveyed {
-    /// A slice, and what is laid over it.
+    /// A slice and its overlays.
     Slice { legs: Vec<Profile>, overlays: Box<Overlays> },
-    /// A chain as it was given.
+    /// A chain as given.
     Chain(PolygonalChain),
 }
 
 impl Survey {
-    /// Reads and slices what a scenario says of its terrain, its rasters and zones.
+    /// Reads and slices the terrain of a scenario, with its rasters and zones.
     ///
     /// `base` is the folder that the scenario's paths start from.
     ///
@@ -153,10 +154,10 @@ impl Survey {
         Ok(Self { ground, projection: transect.projection, warnings: transect.warnings })
     }
 
-    /// The chain under another scenario's hopper, grip, rest slope and ends. Its terrain keys and files are not looked at.
+    /// The chain under another scenario's hopper, grip, rest slope and ends. That scenario's terrain keys and files are ignored.
     ///
     /// # Errors
-    /// [`PipelineError`], where segments are left without constraints, or an end lies off the chain.
+    /// [`PipelineError`], if segments are left without constraints or an end lies off the chain.
     pub fn prepare(&self, scenario: &Scenario) -> Result<Prepared, PipelineError> {
         let mut warnings = self.warnings.clone();
         let (geometry, ends) = match &self.ground {
@@ -171,7 +172,7 @@ impl Survey {
     }
 }
 
-/// A chain, with its ends as start and goal where nothing else says them.
+/// A chain, with its ends as the default start and goal.
 fn whole(chain: PolygonalChain) -> (PolygonalChain, (Option<f64>, Option<f64>)) {
     let (first_m, last_m) = chain.extent_m();
     (chain, (Some(first_m), Some(last_m)))
@@ -194,24 +195,24 @@ fn resolved(
     Ok(Prepared { chain, start, goal, projection, warnings })
 }
 
-/// The ground along a journey, leg by leg, and what is known of its map.
+/// The ground along a journey, leg by leg, and its map.
 #[derive(Clone, Debug)]
 pub struct Transect {
     /// One slice for each leg.
     pub legs: Vec<Profile>,
-    /// What the terrain says of its map.
+    /// The terrain's statement of its map.
     pub coordinates: Option<CoordinateSystem>,
-    /// The map's projection, where it is known.
+    /// The map's projection, if known.
     pub projection: Option<MapProjection>,
-    /// What the terrain covers.
+    /// The extent of the terrain.
     pub bounds: MapBounds,
-    /// What the analyst should know.
+    /// Warnings for the analyst.
     pub warnings: Vec<String>,
 }
 
 impl Transect {
-    /// Slices an elevation raster from the first end to the second over the points between, reading only what the slices cross, once
-    /// the scale of its map along every leg is found right or accepted.
+    /// Slices an elevation raster from the first end over the intermediate points to the second, once the scale of its map along
+    /// every leg is within 1 % or accepted. Reads only the posts beside the slices.
     ///
     /// # Errors
     /// As [`open_dem`], [`MapPlace::on_map`], [`check_scale`] and [`slice_legs`].
@@ -234,7 +235,7 @@ impl Transect {
         Ok(Self { legs, coordinates, projection: projection.ok(), bounds, warnings })
     }
 
-    /// Slices a mesh from the first end to the second over the points between.
+    /// Slices a mesh from the first end over the intermediate points to the second.
     ///
     /// # Errors
     /// As [`read_mesh`] and [`slice_mesh`].
@@ -252,7 +253,7 @@ impl Transect {
     }
 }
 
-/// The overlays of a scenario on its terrain, read once, with the friction where no raster gives any.
+/// The overlays of a scenario on its terrain, read once, with the friction for ground without raster data.
 #[derive(Clone, Debug)]
 pub struct Overlays {
     constant: Option<FrictionCone>,
@@ -260,7 +261,7 @@ pub struct Overlays {
 }
 
 impl Overlays {
-    /// Reads the files that a scenario names, for a terrain that says this of its map and covers this.
+    /// Reads the overlay files of a scenario, for a terrain of the given map and extent.
     ///
     /// `base` is the folder that the scenario's paths start from.
     ///
@@ -284,12 +285,12 @@ impl Overlays {
         DemGround::new(terrain, &scenario.hopper, scenario.body.gravity, &scenario.surface)
     }
 
-    /// The files of a scenario that are read, from its folder.
+    /// The overlay files of a scenario, relative to its folder.
     pub fn files(scenario: &Scenario) -> impl Iterator<Item = &Path> {
         [&scenario.friction_raster, &scenario.keep_out].into_iter().filter_map(Option::as_deref)
     }
 
-    /// A sentence for each overlay without effect on a DEM of these bounds.
+    /// A warning for each overlay without effect on a DEM of these bounds.
     pub fn without_effect_on_dem(&self, bounds: MapBounds) -> Vec<String> {
         let raster =
             self.overlays.friction().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
@@ -297,16 +298,16 @@ impl Overlays {
         raster.into_iter().chain(keep_out).collect()
     }
 
-    /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones, and a sentence for each overlay without
-    /// effect on it.
+    /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones, and a warning for each overlay
+    /// without effect on it.
     ///
     /// # Errors
-    /// [`TerrainError::Overlay`] where a raster ends before the slice does.
+    /// [`TerrainError::Overlay`] if a raster ends before the slice does.
     pub fn chain_with_warnings(&self, legs: Vec<Profile>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
         self.laid(legs, self.constant)
     }
 
-    /// The same with this friction where no raster says it.
+    /// The same with this friction for ground without raster data.
     fn laid(&self, mut legs: Vec<Profile>, constant: Option<FrictionCone>) -> Result<(PolygonalChain, Vec<String>), PipelineError> {
         let mut effect = OverlayEffect::default();
         for leg in &mut legs {
@@ -320,7 +321,7 @@ impl Overlays {
     }
 }
 
-/// The friction that a scenario gives the whole ground.
+/// The friction of a scenario for the whole ground.
 pub fn friction(scenario: &Scenario) -> Option<FrictionCone> {
     match scenario.surface.grip {
         Some(Grip::Friction(cone)) => Some(cone),
@@ -351,7 +352,7 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
     }))
 }
 
-/// The largest figures of some hops, against which constant gravity is checked.
+/// The extremes of some hops, for the check whether constant gravity is a good model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Extremes {
     /// Greatest horizontal distance, m.
@@ -363,7 +364,7 @@ pub struct Extremes {
 }
 
 impl Extremes {
-    /// Those of planned hops.
+    /// The extremes of planned hops.
     pub fn of(hops: &[Hop]) -> Self {
         let largest = |of: fn(&Hop) -> f64| hops.iter().map(of).fold(0.0, f64::max);
         Self {
@@ -374,10 +375,10 @@ impl Extremes {
     }
 }
 
-/// Warnings where constant gravity over flat ground is a bad model, each with its numbers; empty where it is a good one.
+/// Warnings if constant gravity over flat ground is a bad model, each with its numbers; empty if it is a good one.
 ///
-/// A hop gives a warning where its range or its highest point above the take-off is over a hundredth of the body's radius, or a speed over
-/// a tenth of its escape speed `sqrt(2 g R)`. Nothing is said of a body of unknown radius.
+/// A hop gives a warning where its range or its highest point above the take-off is over a hundredth of the body's radius, or a
+/// speed over a tenth of its escape speed `sqrt(2 g R)`. A body of unknown radius gives no warning.
 pub fn constant_gravity_warnings(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
     let Some(radius_m) = body.radius_m else { return Vec::new() };
     let name = body.name.as_deref().unwrap_or("the body");

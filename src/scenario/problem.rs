@@ -1,4 +1,4 @@
-//! What is wrong with a scenario, with its place.
+//! The problems of a scenario, with their positions.
 
 use std::{fmt, ops::Range};
 
@@ -7,9 +7,9 @@ use super::Place;
 /// The key that a problem is about, as it was given, known or not.
 #[derive(Clone, Debug, PartialEq, Eq, Default)]
 pub struct KeyPath {
-    /// The table; empty where the key stands in none, and where the problem is about the whole text.
+    /// The table; empty if the key is outside any table, or if the problem concerns the whole text.
     pub table: String,
-    /// The name in that table; empty where the problem is about the whole table.
+    /// The name in that table; empty if the problem concerns the whole table.
     pub name: String,
 }
 
@@ -29,41 +29,41 @@ impl KeyPath {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ProblemKind {
-    /// The text is no scenario, or an assignment does not read as `table.key=value`.
+    /// The text is not a scenario, or an assignment is not of the form `table.key=value`.
     Syntax,
     /// There is no such key or table.
     Unknown,
-    /// The key does not take this value.
+    /// The value is not one that the key takes.
     Value,
     /// The key is absent and needed.
     Missing,
-    /// The key excludes another one that was given.
+    /// The key excludes another key that was given.
     Conflict,
-    /// The key has no meaning beside the others that were given.
+    /// The key has no meaning with the other keys that were given.
     Misplaced,
 }
 
-/// One thing that is wrong with a scenario.
+/// One problem of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioProblem {
-    /// The key that it is about. Decisions are made on it and on [`kind`](Self::kind), never on the message.
+    /// The key concerned. Decisions use it and [`kind`](Self::kind), never the message.
     pub key: KeyPath,
-    /// What kind of problem that key has.
+    /// The kind of problem.
     pub kind: ProblemKind,
-    /// Where: in the file, in what was set beside it, or nowhere in particular (something missing).
+    /// Its position: in the file, in a setting outside the file, or none (for a missing key).
     pub place: Place,
-    /// What was found and what was expected, in one sentence without a full stop.
+    /// The found and the expected value, in one sentence without a full stop.
     pub message: String,
     /// How to mend it.
     pub help: String,
 }
 
-/// All that is wrong with a scenario.
+/// All problems of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenarioProblems {
-    /// The file's name, as the user gave it; empty where there is none.
+    /// The file's name, as the user gave it; empty without a file.
     pub name: String,
-    /// The file's text, to point into; empty where there is none.
+    /// The file's text, into which problems point; empty without a file.
     pub source: String,
     /// The problems, in the order of the file.
     pub problems: Vec<ScenarioProblem>,
@@ -80,7 +80,7 @@ impl ScenarioProblems {
 }
 
 impl ScenarioProblems {
-    /// One problem as a sentence that begins with its place.
+    /// One problem as a sentence that begins with its position.
     pub fn sentence(&self, problem: &ScenarioProblem) -> String {
         let place = match &problem.place {
             Place::File(span) => {

@@ -1,4 +1,4 @@
-//! From keys as typed to a validated scenario in SI units.
+//! Reads keys as typed into a validated scenario in SI units.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +12,7 @@ use crate::{
     world::{Body, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES, RestSlope, SurfaceProperties},
 };
 
-/// Gravity, and the body it belongs to where that is known.
+/// Gravity, and its body if known.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodyChoice {
     /// The known body's name.
@@ -61,7 +61,7 @@ impl TerrainSource {
         }
     }
 
-    /// Where the slice begins and ends on the map; `None` where nothing is sliced.
+    /// The ends of the slice on the map; `None` for a chain.
     pub fn map_ends(&self) -> Option<[MapPlace; 2]> {
         match self {
             Self::Dem { start, goal, .. } => Some([*start, *goal]),
@@ -84,23 +84,23 @@ pub struct Scenario {
     pub friction_raster: Option<PathBuf>,
     /// Keep-out zones, from the scenario's folder.
     pub keep_out: Option<PathBuf>,
-    /// The terrain, where the scenario names it.
+    /// The terrain, if the scenario names one.
     pub terrain: Option<TerrainSource>,
-    /// Whether a map whose scale along the transect is off by over 1 % is taken as it is.
+    /// Whether a map whose scale along the transect is off by over 1 % is accepted.
     pub accept_map_scale: bool,
-    /// Points of the map between start and goal, where a slice bends.
+    /// Intermediate points on the map, where a slice bends.
     pub via: Vec<MapPlace>,
-    /// Start along the chain, m, where the scenario names it.
+    /// Start along the chain, m, if the scenario gives it.
     pub start_x_m: Option<f64>,
-    /// Goal along the chain, m, where the scenario names it.
+    /// Goal along the chain, m, if the scenario gives it.
     pub goal_x_m: Option<f64>,
     /// How to search.
     pub search: SearchOptions,
     /// How path choice weighs reliability.
     pub risk: ReliabilityUse,
-    /// Hops beyond the fewest that a more reliable path may take, where hops are traded for reliability.
+    /// Hops beyond the fewest that a more reliable path may take, if hops are traded for reliability.
     pub risk_extra_hops_max: u32,
-    /// What goes otherwise than planned, where the scenario says it.
+    /// The errors of the trials, if the scenario has `[uncertainty]`.
     pub uncertainty: Option<UncertaintyKeys>,
     /// Title of the picture.
     pub title: Option<String>,
@@ -154,7 +154,7 @@ impl Scenario {
 }
 
 impl Scenario {
-    /// The keys that are missing for hops over a DEM, which has no chain whose columns could give them.
+    /// The missing keys for hops over a DEM, which has no chain columns that could give them.
     pub fn lacks_on_a_dem(&self) -> Vec<LackingKey> {
         let no_grip = self.surface.grip.is_none() && self.friction_raster.is_none();
         let from_slope: &[_] = &["surface.takeoff_from_slope_deg", "surface.landing_from_slope_deg"];
@@ -173,15 +173,15 @@ impl Scenario {
 pub struct LackingKey {
     /// The key, `table.name`.
     pub key: &'static str,
-    /// Keys that together do in its place.
+    /// Keys that together can replace it.
     pub instead: &'static [&'static str],
-    /// A value that it may have.
+    /// An example value.
     pub example: f64,
 }
 
 /// Gravity and radius: from a known body, from numbers, or from both.
 fn body(entries: &mut Entries) -> Option<BodyChoice> {
-    // The catalogue's range lies within that of `Gravity`.
+    // The catalogue's range is within that of `Gravity`.
     let gravity = entries.number("body", "gravity_m_s2").and_then(|m_s2| Gravity::new(m_s2).ok());
     let radius = entries.number("body", "radius_m");
     let name = entries.text("body", "name").map(str::to_owned);
@@ -199,7 +199,7 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
         }
         (None, Some(gravity)) => Some(BodyChoice { name: None, gravity, radius_m: radius }),
         (None, None) => {
-            // A gravity or a body that was given but refused, or misspelt, is a problem of its own already.
+            // A gravity or body with an invalid value or a misspelt key is already reported.
             if !entries.has_unknown("body") && !entries.has_refused("body", &["name", "gravity_m_s2"]) {
                 let help = "add [body] with name = \"mars\" or gravity_m_s2 = 3.711";
                 entries.problem(("body", "gravity_m_s2"), ProblemKind::Missing, "found no gravity".to_owned(), help);
@@ -209,7 +209,7 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
     }
 }
 
-/// Tells that no known body has this name, and which comes nearest.
+/// Reports that no known body has this name, with the nearest name.
 fn unknown_body(entries: &mut Entries, name: &str) {
     let names: Vec<_> = KNOWN_BODIES.iter().map(|body| body.name).collect();
     let message = format!("body.name is \"{name}\", expected one of {}", names.join(", "));
@@ -219,7 +219,7 @@ fn unknown_body(entries: &mut Entries, name: &str) {
     entries.problem(("body", "name"), ProblemKind::Value, message, help);
 }
 
-/// The robot; what is absent does not limit.
+/// The robot; an absent key sets no limit.
 fn hopper(entries: &mut Entries) -> Hopper {
     let number = |name| entries.number("hopper", name);
     let limits = HopperLimits {
@@ -245,7 +245,7 @@ fn hopper(entries: &mut Entries) -> Hopper {
         entries.problem(("hopper", "takeoff_angle_min_deg"), ProblemKind::Conflict, message, help);
         return Hopper::UNLIMITED;
     }
-    // The catalogue's ranges lie within those of a hopper; should they ever not, the hopper's own words are the problem.
+    // The catalogue's ranges lie within those of a hopper; if they ever do not, the hopper's own message is reported.
     Hopper::new(limits).unwrap_or_else(|InvalidHopper(problems)| {
         for problem in problems {
             entries.problem(("hopper", problem.key), ProblemKind::Value, problem.to_string(), "give a value in that range");
@@ -310,7 +310,7 @@ fn overlays(entries: &mut Entries, surface: &SurfaceProperties, terrain: Option<
     own_columns.map(|(name, _)| entries.text("surface", name).map(PathBuf::from))
 }
 
-/// Where the ground comes from: one file at most.
+/// The source of the ground: at most one file.
 fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
     let kinds = ["dem", "mesh", "chain"];
     let given: Vec<(&str, PathBuf)> =
@@ -322,7 +322,7 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
     }
     match given.as_slice() {
         [] => {
-            // The file was given but refused, or may be what an unknown key of the terrain means: that is a problem of its own already.
+            // A file with an invalid value, or an unknown key that may be a misspelling of it, is already reported.
             if entries.has_unknown("terrain") || entries.has_refused("terrain", &kinds) {
                 return None;
             }
@@ -368,12 +368,12 @@ fn terrain(entries: &mut Entries) -> Option<TerrainSource> {
 
 /// Start and goal on the map, which a slice needs.
 fn map_ends(entries: &mut Entries, kind: &str) -> Option<[MapPlace; 2]> {
-    // Where both are missing, one sentence is enough.
+    // If both are missing, one sentence is enough.
     let start = map_place(entries, "start", kind)?;
     Some([start, map_place(entries, "goal", kind)?])
 }
 
-/// The points between start and goal, said in one of two ways.
+/// The intermediate points, given in one of two forms.
 fn via(entries: &mut Entries, terrain: Option<&TerrainSource>) -> Vec<MapPlace> {
     let metres = entries.points("terrain", "via_m").into_iter().map(|[x, y]| MapPlace::Metres(MapPoint::new(x, y)));
     let degrees = entries.points("terrain", "via_lonlat_deg");
@@ -413,7 +413,7 @@ fn refuse_map_points(entries: &mut Entries) {
     }
     for name in ["via_m", "via_lonlat_deg"] {
         if entries.value("terrain", name).is_some() {
-            let message = format!("terrain.{name} is of a slice, but terrain has a chain");
+            let message = format!("terrain.{name} bends a slice, but terrain has a chain");
             entries.problem(("terrain", name), ProblemKind::Misplaced, message, "give the chain a column bend instead");
         }
     }
@@ -463,7 +463,7 @@ fn search(entries: &mut Entries) -> SearchOptions {
     }
 }
 
-/// The variant of a name; the default where none is given.
+/// The variant with this name; the default if no name is given.
 pub(super) fn named<T: Copy + Default>(all: &[T], name: fn(T) -> &'static str, word: Option<&str>) -> T {
     all.iter().copied().find(|variant| Some(name(*variant)) == word).unwrap_or_default()
 }

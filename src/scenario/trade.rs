@@ -1,4 +1,4 @@
-//! One or two keys of a scenario varied over a grid, and the answer in every cell of it.
+//! Varies one or two keys of a scenario over a grid, with the answer in every cell.
 
 use std::path::Path;
 
@@ -11,50 +11,51 @@ use super::{
 use crate::{
     chain::Station,
     graph::{
-        SearchOptions, TooManyNodes,
-        proof::{BoundsOptions, ProofVerdict, bounds},
-        search,
+        SearchError, SearchOptions,
+        proof::{BoundsOptions, ProofVerdict, bounds_of},
+        search_one,
     },
     hop::HopTest,
+    progress::{Cancelled, Detail, Meter, Progress, Stage},
     report::{SweptKeyRecord, TradeAnswer, TradeRow},
 };
 
-/// A key of the scenario that is swept, and the values that it takes in turn.
+/// A swept key of the scenario, and its values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SweptKey {
     key: &'static Key,
     values: Vec<f64>,
 }
 
-/// Why a trade cannot be made.
+/// The reasons why a trade cannot be computed.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum TradeError {
-    /// No `TABLE.KEY=FROM:TO:STEPS`.
+    /// A text that is not of the form `TABLE.KEY=FROM:TO:STEPS`.
     #[error("{path}: found `{found}`, expected FROM:TO:STEPS, three numbers, such as hopper.takeoff_speed_max_m_s=4:10:7")]
     Malformed {
         /// The key, as typed.
         path: String,
-        /// What stands after it.
+        /// The text after it.
         found: String,
     },
-    /// A key that no scenario has.
+    /// An unknown key.
     #[error("{path}: unknown key; {nearest}")]
     UnknownKey {
         /// The key, as typed.
         path: String,
-        /// Which one may be meant, in words.
+        /// The hint that names the nearest key.
         nearest: String,
     },
-    /// A key that takes no single number.
+    /// A key that does not take a single number.
     #[error("{path}: takes {expected}, which cannot be varied: expected a key that takes a number")]
     NotANumber {
         /// The key.
         path: String,
-        /// What it takes.
+        /// The kind of value that it takes.
         expected: String,
     },
-    /// A range without extent.
+    /// An empty range.
     #[error("{path}: found FROM {from} and TO {to}, expected FROM below TO, both finite")]
     Range {
         /// The key.
@@ -64,22 +65,22 @@ pub enum TradeError {
         /// Where it ends.
         to: f64,
     },
-    /// Too few values, too many, or no whole number.
+    /// Too few values, too many, or not a whole number.
     #[error("{path}: STEPS is {found}, expected how many values to try, a whole number from 2 to {}", SweptKey::MOST)]
     Steps {
         /// The key.
         path: String,
-        /// What was given.
+        /// The given text.
         found: String,
     },
-    /// A value that the key does not take.
+    /// A value outside the key's range.
     #[error("{path}: a value is {value}, expected {expected}")]
     Value {
         /// The key.
         path: String,
         /// The value.
         value: f64,
-        /// What the key takes.
+        /// The expected value.
         expected: String,
     },
     /// The same key twice.
@@ -94,13 +95,13 @@ pub enum TradeError {
         /// How many.
         found: usize,
     },
-    /// More cells than make sense.
-    #[error("the grid has {cells} fields, expected at most {}: choose fewer STEPS", Trade::MOST_CELLS)]
+    /// Too many cells.
+    #[error("the grid has {cells} cells, expected at most {}: choose fewer STEPS", Trade::MOST_CELLS)]
     Cells {
         /// How many.
         cells: usize,
     },
-    /// A key on which nothing depends.
+    /// A key without effect on the answer.
     #[error(
         "{path}: no value from {from} to {to} changes anything here: no verdict depends on this key, or the chain's own limits or friction \
          rule"
@@ -118,19 +119,19 @@ pub enum TradeError {
     Cell {
         /// The keys with their values.
         cell: String,
-        /// Why it is refused.
+        /// The reason.
         problem: String,
     },
-    /// No threads to work with.
-    #[error("the threads cannot be started ({0}): ask for fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// It was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 impl SweptKey {
     /// The most values of one key.
     pub const MOST: usize = 1000;
 
-    /// Reads `TABLE.KEY=FROM:TO:STEPS`: as many values as STEPS says, evenly spread from FROM to TO, both included.
+    /// Reads `TABLE.KEY=FROM:TO:STEPS`: STEPS values, evenly spaced from FROM to TO, both included.
     ///
     /// # Errors
     /// [`TradeError`], in one sentence that begins with the key.
@@ -178,14 +179,14 @@ impl SweptKey {
         self.key
     }
 
-    /// The values, rising.
+    /// The values, in ascending order.
     pub fn values(&self) -> &[f64] {
         &self.values
     }
 }
 
-/// As many values from one to another. Those between are rounded to the twelfth digit of
-/// the greater end, so that steps of a tenth read so.
+/// The given number of evenly spaced values from one to another. Those between are rounded to the twelfth digit of the greater end,
+/// so that steps of a tenth are written as tenths.
 #[expect(clippy::cast_precision_loss, reason = "at most a thousand values")]
 fn spread(from: f64, to: f64, steps: usize) -> Vec<f64> {
     let last = (steps - 1) as f64;
@@ -210,7 +211,7 @@ fn spread(from: f64, to: f64, steps: usize) -> Vec<f64> {
         .collect()
 }
 
-/// A value as a scenario would state it.
+/// A value in the type that the scenario's key takes.
 fn typed(key: &Key, value: f64) -> toml::Value {
     match key.kind {
         #[expect(clippy::cast_possible_truncation, reason = "whole and within the range of counts, or refused as it is")]
@@ -219,38 +220,51 @@ fn typed(key: &Key, value: f64) -> toml::Value {
     }
 }
 
-/// The answer for one pair of ends: the verdict, the hops, and what no path undercuts where that was asked for.
+/// The answer for one pair of ends: the verdict, the hops and, with a proof, the lower bound of the hops.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Varied {
-    /// What is known: `Open` where no path was found and none excluded.
+    /// The verdict: `Open` if no path was found and none excluded.
     pub verdict: ProofVerdict,
     /// The fewest hops found.
     pub hops: Option<u64>,
-    /// With a proof: no path has fewer hops; `None` where there is none at all.
+    /// With a proof: no path has fewer hops; `None` if there is no path at all.
     pub lower_bound: Option<Option<u64>>,
 }
 
-/// The verdict over one chain, with a proof within a budget of cells where one is asked for.
+/// The verdict over one chain, with a proof within a budget of cells if one is given.
 ///
 /// # Errors
-/// [`TooManyNodes`].
+/// [`SearchError`].
 pub fn verdict(
     test: &HopTest,
-    (start, goal): (Station, Station),
+    ends: (Station, Station),
     options: &SearchOptions,
     proof_budget_cells: Option<usize>,
-) -> Result<Varied, TooManyNodes> {
+    progress: &dyn Progress,
+) -> Result<Varied, SearchError> {
+    let stage = if proof_budget_cells.is_some() { Stage::Proof } else { Stage::Search };
+    verdict_of(test, ends, options, proof_budget_cells, &Meter::new(progress, stage))
+}
+
+/// The same as a part of another stage.
+fn verdict_of(
+    test: &HopTest,
+    ends: (Station, Station),
+    options: &SearchOptions,
+    proof_budget_cells: Option<usize>,
+    meter: &Meter<'_>,
+) -> Result<Varied, SearchError> {
     let Some(budget_cells) = proof_budget_cells else {
-        let hops = search(test, start, goal, options, &mut |_| {})?.hops();
+        let hops = search_one(test, ends, options, meter)?.hops();
         let verdict = if hops.is_some() { ProofVerdict::Traversable } else { ProofVerdict::Open };
         return Ok(Varied { verdict, hops, lower_bound: None });
     };
     let options = BoundsOptions { budget_cells, search: options.clone(), ..BoundsOptions::default() };
-    let bounds = bounds(test, start, goal, &options, &mut |_| {})?;
+    let bounds = bounds_of(test, ends, &options, meter)?;
     Ok(Varied { verdict: bounds.verdict(), hops: bounds.upper(), lower_bound: Some(bounds.lower) })
 }
 
-/// A scenario, its terrain, and what is varied of it.
+/// A scenario, its terrain and its swept keys.
 #[derive(Clone, Debug)]
 pub struct Trade<'a> {
     entries: &'a Entries,
@@ -260,57 +274,48 @@ pub struct Trade<'a> {
 }
 
 impl<'a> Trade<'a> {
-    /// The most cells of a grid.
+    /// The greatest number of cells in a grid.
     pub const MOST_CELLS: usize = 100_000;
 
-    /// Of the keys as typed, over terrain that was read once; `base` is the folder that the scenario's paths start from.
+    /// A trade of the keys as typed, over terrain that was read once; `base` is the folder that the scenario's paths start from.
     ///
     /// # Errors
-    /// [`TradeError`], where the swept keys do not make a row or a grid.
+    /// [`TradeError`], if the swept keys do not define a row or a grid.
     pub fn new(entries: &'a Entries, base: &'a Path, survey: &'a Survey, swept: &'a [SweptKey]) -> Result<Self, TradeError> {
         checked(swept)?;
         Ok(Self { entries, base, survey, swept })
     }
 
-    /// How many cells there are.
+    /// The number of cells.
     pub fn cells(&self) -> usize {
         cells(self.swept)
     }
 
     /// The answer in every cell, in parallel; the same for any number of threads.
     ///
-    /// The last key changes fastest. `progress` is told after each cell.
-    ///
-    /// # Arguments
-    /// `threads`: how many; 0: one for each core.
+    /// The last key changes fastest. Reports every cell.
     ///
     /// # Errors
-    /// [`TradeError`]: a key on which nothing depends, or the first cell whose scenario is refused.
-    pub fn run(
-        &self,
-        proof_budget_cells: Option<usize>,
-        threads: usize,
-        progress: &(dyn Fn() + Sync),
-    ) -> Result<TradeAnswer, TradeError> {
+    /// [`TradeError`]: a key without effect, or the first cell whose scenario is refused.
+    pub fn run(&self, proof_budget_cells: Option<usize>, progress: &dyn Progress) -> Result<TradeAnswer, TradeError> {
+        let meter = Meter::with_total(progress, Stage::Trade, self.cells() as u64);
+        meter.report(Detail::None)?;
         for axis in 0..self.swept.len() {
-            self.check_effect(axis)?;
+            self.check_effect(axis, &meter)?;
         }
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build()?;
-        let rows: Vec<_> = pool.install(|| {
-            (0..self.cells())
-                .into_par_iter()
-                .map(|cell| {
-                    let row = self.row(&self.at(cell), proof_budget_cells);
-                    progress();
-                    row
-                })
-                .collect()
-        });
+        let row = |cell| -> Result<TradeRow, TradeError> {
+            meter.check()?;
+            let row = self.row(&self.at(cell), proof_budget_cells, &meter)?;
+            meter.complete_one()?;
+            Ok(row)
+        };
+        let rows: Vec<_> = (0..self.cells()).into_par_iter().map(row).collect();
+        meter.check()?;
         let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key.path(), values: v.values.clone() }).collect();
         Ok(TradeAnswer { vary, proved: proof_budget_cells.is_some(), rows: rows.into_iter().collect::<Result<_, _>>()? })
     }
 
-    /// The values of a cell by its number.
+    /// The values of a cell, from its number.
     fn at(&self, cell: usize) -> Vec<f64> {
         match self.swept {
             [one] => vec![one.values[cell]],
@@ -331,7 +336,7 @@ impl<'a> Trade<'a> {
     /// The scenario of a cell and its chain.
     fn prepared(&self, values: &[f64]) -> Result<(Scenario, Prepared), TradeError> {
         let scenario = self.scenario(values)?;
-        // The one number that changes what is read.
+        // The one number that changes how the terrain is read.
         let rereads = self.swept.iter().any(|v| (v.key.table, v.key.name) == ("terrain", "mesh_scale"));
         let prepared = match scenario.terrain.as_ref().filter(|_| rereads) {
             Some(source) => Survey::of(&scenario, source, self.base).and_then(|survey| survey.prepare(&scenario)),
@@ -341,14 +346,16 @@ impl<'a> Trade<'a> {
     }
 
     /// One cell.
-    fn row(&self, values: &[f64], proof_budget_cells: Option<usize>) -> Result<TradeRow, TradeError> {
+    fn row(&self, values: &[f64], proof_budget_cells: Option<usize>, meter: &Meter<'_>) -> Result<TradeRow, TradeError> {
         let (scenario, Prepared { chain, start, goal, .. }) = self.prepared(values)?;
         let Some(ends) = start.zip(goal) else {
             return Err(self.refused(values, "found no start or no goal, expected terrain.start_x_m and terrain.goal_x_m"));
         };
         let test = HopTest::new(chain);
-        let answer =
-            verdict(&test, ends, &scenario.search, proof_budget_cells).map_err(|error| self.refused(values, &error.to_string()))?;
+        let answer = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter).map_err(|error| match error {
+            SearchError::Cancelled(cancelled) => TradeError::Cancelled(cancelled),
+            SearchError::TooManyNodes(problem) => self.refused(values, &problem.to_string()),
+        })?;
         let keys = self.swept.iter().map(|v| v.key.path());
         Ok(TradeRow {
             values: keys.zip(values.iter().copied()).collect(),
@@ -358,8 +365,8 @@ impl<'a> Trade<'a> {
         })
     }
 
-    /// Whether anything depends on a key: cells next to each other along it are compared until two differ.
-    fn check_effect(&self, axis: usize) -> Result<(), TradeError> {
+    /// Whether any answer depends on a key: neighbouring cells along it are compared until two differ.
+    fn check_effect(&self, axis: usize, meter: &Meter<'_>) -> Result<(), TradeError> {
         let own = &self.swept[axis];
         let across: &[f64] = self.swept.iter().enumerate().find(|(i, _)| *i != axis).map_or(&[0.0], |(_, v)| &v.values);
         for &other in across {
@@ -370,6 +377,7 @@ impl<'a> Trade<'a> {
                     (_, 0) => vec![value, other],
                     _ => vec![other, value],
                 };
+                meter.report(Detail::None)?;
                 let (scenario, prepared) = self.prepared(&values)?;
                 if before.as_ref().is_some_and(|(s, p)| !ask_the_same((s, p), (&scenario, &prepared))) {
                     return Ok(());
@@ -381,7 +389,7 @@ impl<'a> Trade<'a> {
         Err(TradeError::NoEffect { path: own.key.path(), from, to })
     }
 
-    /// A cell's problem with the cell.
+    /// A problem of a cell, with the cell's values.
     fn refused(&self, values: &[f64], problem: &str) -> TradeError {
         let cell: Vec<_> = self.swept.iter().zip(values).map(|(v, value)| format!("{}={value}", v.key.path())).collect();
         TradeError::Cell { cell: cell.join(" and "), problem: problem.to_owned() }
@@ -389,8 +397,8 @@ impl<'a> Trade<'a> {
 }
 
 impl Trade<'_> {
-    /// The keys as typed with those of the first cell in place, for the terrain to be read by. Problems with them begin with `given_by`,
-    /// the caller's name for what varies them, and the key.
+    /// The keys as typed with the values of the first cell, for reading the terrain. Problems with them begin with `given_by`, the
+    /// caller's name for the source of the swept keys, and the key.
     ///
     /// # Errors
     /// As [`Trade::new`].
@@ -401,7 +409,7 @@ impl Trade<'_> {
     }
 }
 
-/// One key or two different ones, and not too many cells.
+/// Checks for one key or two different ones, and not too many cells.
 fn checked(swept: &[SweptKey]) -> Result<(), TradeError> {
     match swept {
         [first, second] if first.key == second.key => return Err(TradeError::Twice { path: first.key.path() }),
@@ -418,7 +426,7 @@ fn cells(swept: &[SweptKey]) -> usize {
     swept.iter().map(|v| v.values.len()).product()
 }
 
-/// The keys with values in place.
+/// The keys with these values set.
 fn varied(entries: &Entries, swept: &[SweptKey], values: &[f64], given_by: &str) -> Entries {
     let mut entries = entries.clone();
     for (SweptKey { key, .. }, &value) in swept.iter().zip(values) {
@@ -438,7 +446,7 @@ mod tests {
     use crate::scenario::CATALOGUE;
 
     #[test]
-    fn values_between_read_as_people_would_write_them() {
+    fn intermediate_values_are_rounded_to_the_usual_notation() {
         assert_eq!(spread(0.1, 0.7, 7), [0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7]);
         assert_eq!(spread(-1.0, 1.0, 3), [-1.0, 0.0, 1.0]);
         assert_eq!(spread(0.000_02, 0.000_08, 4), [0.000_02, 0.000_04, 0.000_06, 0.000_08]);

@@ -1,4 +1,4 @@
-//! `[uncertainty]`: what goes otherwise than planned, and how often it is tried.
+//! `[uncertainty]`: the errors of command, ground and position, and how many trials are flown.
 
 use super::{Entries, ProblemKind, Scenario, TerrainSource};
 use crate::{
@@ -9,18 +9,18 @@ use crate::{
     world::Grip,
 };
 
-/// The keys of `[uncertainty]`, what is absent filled in.
+/// The keys of `[uncertainty]`, with defaults for absent ones.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UncertaintyKeys {
-    /// The deviations.
+    /// The standard deviations.
     pub errors: Uncertainty,
     /// Horizontal distance from the goal that counts as reached, m.
     pub goal_tolerance_m: f64,
-    /// Hops of a trial at most; `None`: by the planned ones.
+    /// The greatest number of hops in a trial; `None`: derived from the planned ones.
     pub hop_limit: Option<u32>,
-    /// How the robot goes about its journey.
+    /// The policy: open loop or replanned.
     pub policy: Policy,
-    /// How many trials.
+    /// The number of trials.
     pub trials: u64,
     /// The seed of all draws.
     pub seed: u64,
@@ -41,7 +41,7 @@ impl Default for UncertaintyKeys {
 }
 
 impl UncertaintyKeys {
-    /// The trials they ask for.
+    /// The trials that they define.
     pub fn options(&self) -> TrialOptions {
         TrialOptions {
             trials: self.trials,
@@ -53,12 +53,12 @@ impl UncertaintyKeys {
         }
     }
 
-    /// A warning about them: no errors, so that the trials tell nothing, or a tolerance of nothing, which no trial with an error
-    /// meets.
+    /// A warning about them: without errors the trials carry no information, and a goal tolerance of 0 is met by no trial with an
+    /// error.
     pub fn warning(&self) -> Option<&'static str> {
         if self.errors == Uncertainty::NONE {
             Some(
-                "no errors are given, so that every trial flies the plan exactly and the rate tells nothing: give [uncertainty] a standard \
+                "no errors are given, so that every trial flies the plan exactly and the rate has no meaning: give [uncertainty] a standard \
                  deviation above 0, such as takeoff_speed_sigma_fraction = 0.01 and takeoff_angle_sigma_deg = 0.3, with goal_tolerance_m",
             )
         } else if self.goal_tolerance_m == 0.0 {
@@ -72,7 +72,7 @@ impl UncertaintyKeys {
     }
 }
 
-/// The keys as given; `None` where the scenario has none of them.
+/// The keys as given; `None` if the scenario has none of them.
 pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> Option<UncertaintyKeys> {
     if !entries.has_table("uncertainty") {
         return None;
@@ -106,14 +106,14 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
     Some(keys)
 }
 
-/// Whether risk weighs, and how many hops it may cost.
+/// How risk weighs, and how many extra hops it may cost.
 pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, u32) {
-    /// Hops beyond the fewest, where none are named: most of what hops buy is bought by the first few.
+    /// Default of the extra hops: the first few give most of the gain in reliability.
     const EXTRA_HOPS: u32 = 3;
     let risk = super::read::named(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
     if extra.is_some() && risk != ReliabilityUse::Traded {
-        let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which takes no hop more", risk.name());
+        let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which allows no extra hops", risk.name());
         entries.problem(
             ("search", "risk_extra_hops_max"),
             ProblemKind::Misplaced,
@@ -125,9 +125,9 @@ pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, u32) {
 }
 
 impl Scenario {
-    /// How path choice weighs reliability; `None` where it ignores it.
+    /// How path choice weighs reliability; `None` if it ignores it.
     ///
-    /// The probability of a hop to fail is estimated from `[uncertainty]`, or, where the scenario has none, the slack of its angle counts.
+    /// The failure probability of a hop is estimated from `[uncertainty]`; without `[uncertainty]` the slack of its angle is used.
     pub fn reliability(&self) -> Option<ReliabilityOptions> {
         let extra_hops_max = match self.risk {
             ReliabilityUse::Ignored => return None,
@@ -137,21 +137,21 @@ impl Scenario {
         Some(self.reliability_with(extra_hops_max))
     }
 
-    /// The same with so many hops more than the fewest, whatever the scenario says of it.
+    /// The same with a given number of extra hops, in place of the scenario's.
     pub fn reliability_with(&self, extra_hops_max: u32) -> ReliabilityOptions {
         let model = self.uncertainty.as_ref().map_or(RiskModel::Slack, |keys| RiskModel::Deviations(self.deviations(&keys.errors)));
         let goal_tolerance_m = self.uncertainty.as_ref().map(|keys| keys.goal_tolerance_m);
         ReliabilityOptions { model, extra_hops_max, goal_tolerance_m }
     }
 
-    /// The deviations that one hop feels.
+    /// The standard deviations that affect a single hop.
     fn deviations(&self, errors: &Uncertainty) -> HopDeviations {
         HopDeviations {
             takeoff_speed_m_s: errors.takeoff_speed_sigma_m_s,
             takeoff_speed_fraction: errors.takeoff_speed_sigma_fraction,
             takeoff_angle: errors.takeoff_angle_sigma,
             place_m: libm::hypot(errors.drift_along_sigma_m, errors.position_sigma_m),
-            // Cones that are stated as angles do not feel friction.
+            // Cones stated as angles do not depend on friction.
             friction: if matches!(self.surface.grip, Some(Grip::FromSlope { .. })) { 0.0 } else { errors.friction_sigma },
             height_m: errors.height_sigma_m,
         }

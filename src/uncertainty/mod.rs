@@ -29,7 +29,7 @@
 //! let test = HopTest::new(chain);
 //! let chain = test.chain();
 //! let (start, goal) = (chain.geometry().station(0.0)?, chain.geometry().station(40.0)?);
-//! let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {})?;
+//! let answer = search(&test, start, goal, &SearchOptions::default(), &())?;
 //! let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path") };
 //! let path = generate(&test, &legs, Default::default(), Split::FullReach)?;
 //!
@@ -37,7 +37,7 @@
 //! // One hop of 40 m at v = sqrt(g X) = 8 m/s: 1 % of speed is 2 % of range, 0.8 m. 1.6 m are two deviations: 95 % succeed.
 //! let errors = Uncertainty { takeoff_speed_sigma_fraction: 0.01, ..Uncertainty::NONE };
 //! let options = TrialOptions { trials: 5000, goal_tolerance_m: 1.6, ..TrialOptions::default() };
-//! let summary = Simulation::new(&mission, errors)?.run(&options, &mut ())?;
+//! let summary = Simulation::new(&mission, errors)?.run(&options, &mut (), &())?;
 //! assert!(summary.success.low < 0.954 && 0.954 < summary.success.high, "{:?}", summary.success);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
@@ -60,7 +60,7 @@ pub use crate::{
     ground::LiftoffVelocity,
 };
 pub use mission::Mission;
-pub use options::{Observer, Progress, SimulationError, TrialOptions};
+pub use options::{Observer, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
 pub use quantiles::QuantileSketch;
 pub use record::{HopRecord, Trajectory, TrialRecord};

@@ -1,8 +1,7 @@
-//! What to simulate, how many times, and the observer of a run.
+//! What to simulate, how many times, and the observer of the records.
 
-use std::ops::ControlFlow;
-
-use super::{HopRecord, OutcomeCounts, Policy, TrialRecord, UncertaintyProblem, Wilson};
+use super::{HopRecord, Policy, TrialRecord, UncertaintyProblem};
+use crate::progress::Cancelled;
 
 /// The number of trials, and how they are flown and checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -19,8 +18,6 @@ pub struct TrialOptions {
     pub goal_tolerance_m: f64,
     /// Stop once half the width of the success rate's 95 % interval is at most this; checked after every 1 000 trials.
     pub until_half_width: Option<f64>,
-    /// Number of threads; 0: one per core. The results do not depend on it.
-    pub threads: usize,
     /// The first trials, as many as this, are kept with all their hops.
     pub trajectories: u64,
 }
@@ -35,7 +32,6 @@ impl Default for TrialOptions {
             hop_limit: None,
             goal_tolerance_m: 1.0,
             until_half_width: None,
-            threads: 0,
             trajectories: 0,
         }
     }
@@ -104,28 +100,9 @@ pub enum SimulationError {
         /// North, m.
         y_m: f64,
     },
-    /// The thread pool cannot be started.
-    #[error("the threads cannot be started ({0}): ask for fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-    /// The observer asked to stop.
-    #[error("the simulation was stopped after {trials} trials")]
-    Stopped {
-        /// The number of trials done.
-        trials: u64,
-    },
-}
-
-/// The progress of a simulation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Progress {
-    /// Trials done.
-    pub done: u64,
-    /// Trials requested.
-    pub of: u64,
-    /// The outcomes so far.
-    pub outcomes: OutcomeCounts,
-    /// The success rate so far.
-    pub success: Wilson,
+    /// The computation was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }
 
 /// An observer of a simulation. All calls come from one thread, in the order of trials and hops, for any number of threads.
@@ -140,11 +117,6 @@ pub trait Observer {
 
     /// A trial ended; all its hops have been reported.
     fn trial(&mut self, _trial: &TrialRecord) {}
-
-    /// After each batch of 1 000 trials. A break ends the simulation with [`SimulationError::Stopped`].
-    fn progress(&mut self, _progress: &Progress) -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
 }
 
 /// An observer that ignores everything.

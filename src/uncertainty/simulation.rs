@@ -1,12 +1,12 @@
 //! Many trials of one mission.
 
-use std::{ops::ControlFlow, sync::Arc};
+use std::sync::Arc;
 
 use nalgebra::{Point2, Point3, Vector2};
 use rayon::prelude::*;
 
 use super::{
-    Mission, Observer, Policy, Progress, SimulationError, Summary, Trajectory, TrialOptions,
+    Mission, Observer, Policy, SimulationError, Summary, Trajectory, TrialOptions,
     mission::{MissionGround, Replanning},
     replan::{ChainReplan, MapReplan},
     tally::Tally,
@@ -18,6 +18,7 @@ use crate::{
         ChainGround, ChainPosition, ContactPoint, DemGround, FirstContact, LiftoffVelocity, MapPosition, Surface, heading_of,
     },
     path::Hop,
+    progress::{Detail, Meter, Progress, Stage},
 };
 
 /// The success rate is checked after this many trials.
@@ -73,15 +74,20 @@ impl Simulation {
     /// Flies the trials.
     ///
     /// Batches of 1 000 trials are distributed over the threads and added in the order of trials, so the results do not depend on
-    /// the number of threads. Memory does not grow with the number of trials.
+    /// the number of threads. Memory does not grow with the number of trials. Reports every batch.
     ///
     /// # Errors
-    /// [`SimulationError`]: invalid options, [`Policy::Replan`] without costs-to-go, no threads, or a stop by the observer.
-    pub fn run(&self, options: &TrialOptions, observer: &mut dyn Observer) -> Result<Summary, SimulationError> {
+    /// [`SimulationError`]: invalid options, [`Policy::Replan`] without costs-to-go, or cancelled.
+    pub fn run(
+        &self,
+        options: &TrialOptions,
+        observer: &mut dyn Observer,
+        progress: &dyn Progress,
+    ) -> Result<Summary, SimulationError> {
         self.check(options)?;
         match &self.course {
-            Course::Chain(ground, plan) => self.fly_all(ground, plan, options, observer),
-            Course::Map(ground, plan) => self.fly_all(ground, plan, options, observer),
+            Course::Chain(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
+            Course::Map(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
         }
     }
 
@@ -89,8 +95,13 @@ impl Simulation {
     ///
     /// # Errors
     /// As [`run`](Self::run).
-    pub fn compare(&self, options: &TrialOptions, observer: &mut dyn Observer) -> Result<[Summary; 2], SimulationError> {
-        let mut of = |policy| self.run(&TrialOptions { policy, ..*options }, observer);
+    pub fn compare(
+        &self,
+        options: &TrialOptions,
+        observer: &mut dyn Observer,
+        progress: &dyn Progress,
+    ) -> Result<[Summary; 2], SimulationError> {
+        let mut of = |policy| self.run(&TrialOptions { policy, ..*options }, observer, progress);
         let [open_loop, replan] = Policy::ALL;
         Ok([of(open_loop)?, of(replan)?])
     }
@@ -140,14 +151,16 @@ impl Simulation {
         plan: &Plan<G::Contact>,
         options: &TrialOptions,
         observer: &mut dyn Observer,
+        progress: &dyn Progress,
     ) -> Result<Summary, SimulationError> {
+        let meter = Meter::with_total(progress, Stage::Trials, options.trials);
+        meter.report(Detail::None)?;
         let rules = Rules {
             errors: Errors::new(self.uncertainty, options.policy == Policy::Replan),
             policy: options.policy,
             hop_limit: options.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(plan.hops.len())),
             goal_tolerance_m: options.goal_tolerance_m,
         };
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(options.threads).build()?;
         let keep_records = observer.wants_records();
         let mut tally = Tally::default();
         let mut trajectories = Vec::new();
@@ -165,7 +178,7 @@ impl Simulation {
                 }
                 flown
             };
-            let stretches: Vec<Flown> = pool.install(|| starts.into_par_iter().map(stretch).collect());
+            let stretches: Vec<Flown> = starts.into_par_iter().map(stretch).collect();
             for flown in &stretches {
                 add(flown, &mut tally, &mut trajectories, options.trajectories);
                 if keep_records {
@@ -174,11 +187,9 @@ impl Simulation {
             }
             done = end;
             tally.end_batch();
-            let progress = Progress { done, of: options.trials, outcomes: tally.outcomes, success: tally.success() };
-            if observer.progress(&progress) == ControlFlow::Break(()) {
-                return Err(SimulationError::Stopped { trials: done });
-            }
-            if options.until_half_width.is_some_and(|width| progress.success.half_width() <= width) {
+            meter.set_done(done, options.trials);
+            meter.report(Detail::Trials { reached_goal: tally.reached_goal() })?;
+            if options.until_half_width.is_some_and(|width| tally.success().half_width() <= width) {
                 break;
             }
         }

@@ -44,8 +44,13 @@ struct LandingTally {
 }
 
 impl Tally {
+    /// How many trials have reached the goal.
+    pub(super) fn reached_goal(&self) -> u64 {
+        self.outcomes.of(TrialOutcome::Reached)
+    }
+
     pub(super) fn success(&self) -> Wilson {
-        Wilson::of(self.outcomes.of(TrialOutcome::Reached), self.outcomes.total())
+        Wilson::of(self.reached_goal(), self.outcomes.total())
     }
 
     pub(super) fn trial(&mut self, outcome: TrialOutcome, hops: u32) {

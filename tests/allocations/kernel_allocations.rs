@@ -6,7 +6,8 @@ use std::sync::Arc;
 
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
-    hop::{HopTest, LandingTable, Sweep},
+    ground::{LandingTable, Sweep},
+    hop::HopTest,
     quantity::{ChainPoint, VertexId},
     world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };

@@ -5,9 +5,9 @@
 use std::{
     collections::BTreeSet,
     fs,
-    process::{Command, Stdio},
+    process::{Child, Command, Stdio},
     thread,
-    time::Duration,
+    time::{Duration, Instant},
 };
 
 use crate::desk::Desk;
@@ -36,11 +36,87 @@ fn interrupted_by(signal: &str) {
         assert_eq!(map.try_wait().unwrap(), None, "ended before it could be interrupted");
         thread::sleep(Duration::from_millis(5));
     }
-    // The shell's own kill: not every machine has a program of that name.
-    assert!(Command::new("sh").args(["-c", &format!("kill {signal} {}", map.id())]).status().unwrap().success());
+    send(signal, &map);
     assert_eq!(map.wait().unwrap().code(), Some(130));
     assert_eq!(names(&desk), before, "nothing new, nothing half");
     assert_eq!(desk.read("mobility.tif"), "of yesterday");
+}
+
+fn send(signal: &str, process: &Child) {
+    // The shell's own kill: not every machine has a program of that name.
+    assert!(Command::new("sh").args(["-c", &format!("kill {signal} {}", process.id())]).status().unwrap().success());
+}
+
+/// A command that waits for a reader of the pipe that it writes to: it reports nothing.
+fn waiting_for_a_reader(desk: &Desk) -> Child {
+    assert!(Command::new("mkfifo").arg("pipe.asc").current_dir(desk.path()).status().unwrap().success());
+    let waiting = Command::new(env!("CARGO_BIN_EXE_chta"))
+        .current_dir(desk.path())
+        .args(["synth", "--rows", "9", "--cols", "9", "-o", "pipe.asc"])
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    thread::sleep(Duration::from_millis(200));
+    waiting
+}
+
+#[test]
+fn an_interrupt_ends_work_that_reports_nothing() {
+    let desk = Desk::new();
+    let mut waiting = waiting_for_a_reader(&desk);
+    assert_eq!(waiting.try_wait().unwrap(), None, "nothing to wait for");
+    send("-INT", &waiting);
+    let begun = Instant::now();
+    assert_eq!(waiting.wait().unwrap().code(), Some(130));
+    assert!(begun.elapsed() < Duration::from_secs(20), "{:?} after the interrupt", begun.elapsed());
+}
+
+#[test]
+fn a_second_interrupt_ends_the_program_at_once() {
+    let desk = Desk::new();
+    let mut waiting = waiting_for_a_reader(&desk);
+    send("-INT", &waiting);
+    thread::sleep(Duration::from_millis(50));
+    // It may have ended of the first one where the machine is busy.
+    if waiting.try_wait().unwrap().is_none() {
+        send("-INT", &waiting);
+    }
+    assert_eq!(waiting.wait().unwrap().code(), Some(130));
+}
+
+/// Every command with a long stage: on an interrupt it ends with 130 and prints no answer.
+#[test]
+fn an_interrupted_command_prints_no_answer() {
+    let desk = Desk::new();
+    desk.write(
+        "long.toml",
+        "[body]\nname = \"moon\"\n[hopper]\ntakeoff_speed_max_m_s = 8.0\nlanding_speed_max_m_s = 8.0\n[surface]\n\
+         friction_coefficient = 0.6\n[terrain]\nchain = \"chain.csv\"\nstart_x_m = 1.0\ngoal_x_m = 3990.0\n[uncertainty]\n\
+         takeoff_speed_sigma_fraction = 0.001\ntrials = 100000000\ngoal_tolerance_m = 5.0\n",
+    );
+    let rows: Vec<_> = (0..=4000).map(|i| format!("{i},{}", f64::from(i * i % 7) * 0.05)).collect();
+    desk.write("chain.csv", format!("x_m,z_m\n{}\n", rows.join("\n")));
+    let commands: [&[&str]; 3] = [
+        &["simulate", "long.toml", "--format", "json"],
+        &["check", "long.toml", "--set", "search.points_per_segment=31", "--set", "hopper.takeoff_speed_max_m_s=60"],
+        &["trade", "long.toml", "--vary", "hopper.takeoff_speed_max_m_s=4:8:400", "--set", "search.points_per_segment=7"],
+    ];
+    for words in commands {
+        let command = Command::new(env!("CARGO_BIN_EXE_chta"))
+            .current_dir(desk.path())
+            .args(words)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        thread::sleep(Duration::from_millis(400));
+        send("-INT", &command);
+        let ended = command.wait_with_output().unwrap();
+        let told = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(130), "{words:?}: {told}");
+        assert_eq!((ended.stdout.len(), told.as_ref()), (0, ""), "{words:?}");
+    }
 }
 
 #[test]

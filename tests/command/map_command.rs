@@ -308,14 +308,17 @@ fn no_file_is_written_over_another() {
     let before = desk.read("walled.asc");
     fs::hard_link(desk.path().join("walled.asc"), desk.path().join("other.tif")).unwrap();
     for file in ["other.tif", "./other.tif"] {
-        desk.refused(&[&MAP[..], &["-o", file]].concat(), &[file, "read by this command", "another file"]);
+        desk.refused(&[&MAP[..], &["-o", file]].concat(), &[file, "this command reads the file", "another file"]);
     }
     desk.refused(&[&MAP[..], &["-o", "x.tif", "--return", "--return-output", "./x.tif"]].concat(), &["./x.tif", "two answers"]);
-    desk.refused(&["slice", "walled.asc", "--from", "101,205", "--to", "110,205", "-o", "walled.asc"], &["walled.asc", "read by"]);
+    desk.refused(
+        &["slice", "walled.asc", "--from", "101,205", "--to", "110,205", "-o", "walled.asc"],
+        &["walled.asc", "reads the file"],
+    );
     desk.refused(&["plan", "scenario.toml", "--plot", "a.svg", "-o", "a.svg"], &["a.svg", "two answers"]);
-    desk.refused(&["plan", "scenario.toml", "-o", "chain.csv"], &["chain.csv", "read by"]);
+    desk.refused(&["plan", "scenario.toml", "-o", "chain.csv"], &["chain.csv", "reads the file"]);
     // A run writes a chain.csv of its own; its result may be repeated into its own place.
-    desk.refused(&["run", "scenario.toml", "-o", "."], &["chain.csv", "read by"]);
+    desk.refused(&["run", "scenario.toml", "-o", "."], &["chain.csv", "reads the file"]);
     assert_eq!(desk.run(&["run", "scenario.toml", "-o", "out"]).status, 0);
     let result = desk.read("out/result.json");
     assert_eq!(desk.run(&["run", "out/result.json", "-o", "out"]).status, 0);

@@ -125,7 +125,7 @@ fn a_map_that_is_not_true_to_scale_is_refused_with_a_line_that_mends_it() {
     // Eastward 1 / cos 40 = 1.3054.
     assert!(told.contains("scale along the transect is 1.30") && told.contains("--accept-map-scale"), "{told}");
     let (_, mend) = told.split_once("mend it with: ").unwrap();
-    let (mend, _) = mend.split_once("; or take").unwrap();
+    let (mend, _) = mend.split_once("; or accept").unwrap();
     let (warp, again) = mend.split_once(", then slice ").unwrap();
     assert!(warp.starts_with("gdalwarp ") && warp.contains(" in.tif out.tif"), "{warp}");
     let (status, stretched_chain, warned) = chta(folder.path(), &[&slice[..], &["--accept-map-scale"]].concat());

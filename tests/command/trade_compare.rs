@@ -163,7 +163,7 @@ fn what_cannot_be_varied_is_refused_in_one_sentence() {
         ),
         (
             vec![&*format!("{speed}=4:10:1000"), "hopper.clearance_m=0:1:1000"],
-            "the grid has 1000000 fields, expected at most 100000",
+            "the grid has 1000000 cells, expected at most 100000",
         ),
     ] {
         let mut args = vec!["trade", "scenario.toml"];

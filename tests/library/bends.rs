@@ -69,9 +69,7 @@ fn the_checker_refuses_a_hop_that_spans_a_bend() {
     let planned = |chain: &ConstrainedChain| {
         let test = HopTest::new(chain.clone());
         let ends = [2.0, 14.0].map(|x_m| chain.geometry().station(x_m).unwrap());
-        let Outcome::Path { legs, .. } = search(&test, ends[0], ends[1], &options, &mut |_| {}).unwrap().outcome else {
-            panic!("no path")
-        };
+        let Outcome::Path { legs, .. } = search(&test, ends[0], ends[1], &options, &()).unwrap().outcome else { panic!("no path") };
         generate(&test, &legs, TakeoffChoice::LeastSpeed, Split::FullReach).unwrap()
     };
     let (over, around) = (planned(&straight), planned(&bent));

@@ -2,6 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod own_search;
+use std::{ops::ControlFlow, sync::Mutex};
+
 use crate::support::{Draw, explicit, line};
 use chta::{
     ballistics::TakeoffChoice,
@@ -11,6 +13,7 @@ use chta::{
         search,
     },
     hop::{Conflict, HopTest, Split},
+    progress::{Detail, Progress, Step},
     quantity::{ChainPoint, VertexId},
     world::{Contact, Direction, Gravity, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
@@ -156,7 +159,7 @@ fn options(draw: &mut Draw, k: u32) -> SearchOptions {
 }
 
 fn asked(test: &HopTest, start: Station, goal: Station, options: &SearchOptions) -> Answer {
-    search(test, start, goal, options, &mut |_| {}).unwrap()
+    search(test, start, goal, options, &()).unwrap()
 }
 
 fn node_set(chain: &ConstrainedChain, start: Station, goal: Station, options: &SearchOptions) -> NodeSet {
@@ -385,6 +388,19 @@ fn refusing_ends_are_named_with_a_usable_point_where_there_is_one() {
     assert!(starts > 100 && goals > 100 && nowhere > 10, "{starts} starts, {goals} goals, {nowhere} nowhere");
 }
 
+/// The spacings that a search reports.
+#[derive(Default)]
+struct Spacings(Mutex<Vec<PointSpacing>>);
+
+impl Progress for Spacings {
+    fn report(&self, step: &Step) -> ControlFlow<()> {
+        if let Detail::PointsPerSegment(points) = step.detail {
+            self.0.lock().unwrap().push(PointSpacing::PerSegment(points));
+        }
+        ControlFlow::Continue(())
+    }
+}
+
 #[test]
 fn automatic_spacing_answers_with_the_first_that_finds_a_path() {
     let draw = &mut Draw::seeded(36);
@@ -394,8 +410,9 @@ fn automatic_spacing_answers_with_the_first_that_finds_a_path() {
         let chain = world.chain();
         let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
-        let mut told = Vec::new();
-        let answer = search(&test, start, goal, &SearchOptions::default(), &mut |spacing| told.push(spacing)).unwrap();
+        let tried = Spacings::default();
+        let answer = search(&test, start, goal, &SearchOptions::default(), &tried).unwrap();
+        let told = tried.0.into_inner().unwrap();
         let single = |k: u32| {
             asked(&test, start, goal, &SearchOptions { spacing: Some(PointSpacing::PerSegment(k)), ..SearchOptions::default() })
         };

@@ -30,6 +30,7 @@ mod mutations_scenario;
 mod mutations_terrain;
 mod paper;
 mod pds3;
+mod progress;
 mod proof;
 mod proof_terrain;
 mod scenario_round_trip;

@@ -68,7 +68,7 @@ fn compare_maps(world: &World, start: Post, stride: usize, journeys: &[Journey],
             let found = pool.install(|| {
                 let hops = PostHops::new(world.ground(), stride).unwrap();
                 let start = Post { row: start.row / stride, col: start.col / stride };
-                search(&hops, start, Search { journey, effort: None }, &mut |_| {}).unwrap()
+                search(&hops, start, Search { journey, effort: None }, &()).unwrap()
             });
             assert_eq!(found.hops, expected, "{what}, {journey:?}, {threads} threads");
         }
@@ -111,7 +111,7 @@ fn compare_cut_outs(file: &str, hopper: Hopper, surface: SurfaceProperties, grav
             continue;
         }
         let hops = PostHops::new(world.ground(), 1).unwrap();
-        let map = search(&hops, start, Search::default(), &mut |_| {}).unwrap();
+        let map = search(&hops, start, Search::default(), &()).unwrap();
         let reached = map.hops.iter().filter(|&&hops| hops > 0).count();
         if !(SIDE * SIDE / 4..=SIDE * SIDE * 4 / 5).contains(&reached) {
             continue;
@@ -259,8 +259,7 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
             }
         }
         let post_hops = PostHops::new(world.ground(), 1).unwrap();
-        let map =
-            search(&post_hops, start, Search { journey: Journey::Outbound, effort: Some((effort, choice)) }, &mut |_| {}).unwrap();
+        let map = search(&post_hops, start, Search { journey: Journey::Outbound, effort: Some((effort, choice)) }, &()).unwrap();
         assert_eq!(map.hops, hops);
         for (index, (&found, &expected)) in map.effort.iter().zip(&expected).enumerate() {
             assert_eq!(found.is_nan(), expected.is_nan());
@@ -302,7 +301,7 @@ fn raising_a_speed_limit_never_makes_a_post_unreachable_nor_farther() {
             let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(speed, speed) }).unwrap();
             let world = World::new(dem.clone(), hopper, friction(0.9), 1.62);
             let hops = PostHops::new(world.ground(), 1).unwrap();
-            let map = search(&hops, start, Search::default(), &mut |_| {}).unwrap();
+            let map = search(&hops, start, Search::default(), &()).unwrap();
             for (&faster, &slower) in map.hops.iter().zip(before.iter().flatten()) {
                 assert!(slower < 0 || (0..=slower).contains(&faster), "{slower} hops became {faster} at {speed} m/s");
             }
@@ -326,7 +325,7 @@ fn planes_have_the_analytic_shape() {
         let surface = SurfaceProperties { rest: RestSlope::Unlimited, ..friction(mu) };
         let world = World::new(plane(slope), Hopper::with_speeds(speed, speed).unwrap(), surface, gravity);
         let hops = PostHops::new(world.ground(), 1).unwrap();
-        search(&hops, Post { row: 20, col: 20 }, Search::default(), &mut |_| {}).unwrap().hops
+        search(&hops, Post { row: 20, col: 20 }, Search::default(), &()).unwrap().hops
     };
     // The cone allows hops at atan(1 / mu) or steeper.
     let least = libm::atan(1.0 / mu);
@@ -346,7 +345,7 @@ fn planes_have_the_analytic_shape() {
     );
     let counted = |most: f64| disc.clone().filter(|&distance| distance > 0.0 && distance <= most).count() as f64;
     let world = World::new(plane(0.0), Hopper::with_speeds(speed, speed).unwrap(), friction(mu), gravity);
-    let mobile = mobility(&PostHops::new(world.ground(), 1).unwrap(), &|_, _| ()).unwrap();
+    let mobile = mobility(&PostHops::new(world.ground(), 1).unwrap(), &()).unwrap();
     assert!((mobile.disc_radius_m - within).abs() < 1e-6);
     assert!((f64::from(mobile.share[20 * 41 + 20]) - counted(reach) / counted(within)).abs() < 1e-6);
     assert_eq!(mobile.directions[20 * 41 + 20], f32::from(SECTORS));
@@ -387,7 +386,7 @@ fn a_cone_too_steep_to_rest_on_is_an_island() {
     let dem = Dem::new(side, side, heights, GeoReference::local(MapPoint::new(0.0, 0.0), 1.0, 1.0).unwrap()).unwrap();
     let world = World::new(dem, Hopper::with_speeds(3.0, 3.0).unwrap(), friction(0.6), 1.62);
     let hops = PostHops::new(world.ground(), 1).unwrap();
-    let map = search(&hops, Post { row: 1, col: 1 }, Search::default(), &mut |_| {}).unwrap();
+    let map = search(&hops, Post { row: 1, col: 1 }, Search::default(), &()).unwrap();
     for (index, &hops) in map.hops.iter().enumerate() {
         let (row, col) = (f64::from(u32::try_from(index / side).unwrap()), f64::from(u32::try_from(index % side).unwrap()));
         let distance = (row - middle).hypot(col - middle);

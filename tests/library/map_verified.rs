@@ -23,7 +23,7 @@ use chta::{
 const CHOICES: [TakeoffChoice; 3] = TakeoffChoice::ALL;
 
 fn map_from(hops: &PostHops, start: Post) -> HopMap {
-    search(hops, start, Search::default(), &mut |_| {}).unwrap()
+    search(hops, start, Search::default(), &()).unwrap()
 }
 
 fn path_to(hops: &PostHops, map: &HopMap, goal: Post, choice: TakeoffChoice) -> Option<HopPath> {
@@ -73,6 +73,29 @@ fn paths_over_random_grids_hold_when_flown_again() {
         }
     }
     assert!(flown > 10_000, "only {flown} hops");
+}
+
+/// Posts of millimetres and of kilometres, near the origin and far from it.
+#[test]
+fn paths_over_fine_and_coarse_posts_hold_when_flown_again() {
+    let mut draw = Draw::seeded(88);
+    let mut flown = 0;
+    for (spacing_m, origin_m) in [(1e-2, 0.0), (0.25, 3e4), (5.0, 7.5e4), (1600.0, 6e5)] {
+        for _ in 0..12 {
+            let heights = (0..196).map(|_| draw.unit() * 0.6 * spacing_m).collect();
+            let map =
+                GeoReference::local(MapPoint::new(origin_m, -origin_m), spacing_m, spacing_m * draw.uniform(0.6, 1.5)).unwrap();
+            let speed_m_s = (1.6 * 4.0 * spacing_m).sqrt();
+            let limits = HopperLimits {
+                clearance_m: 0.02 * spacing_m,
+                apex_height_max_m: Some(3.0 * spacing_m),
+                ..HopperLimits::with_speeds(speed_m_s, speed_m_s)
+            };
+            let ground = ground(Dem::new(14, 14, heights, map).unwrap(), limits, &friction(0.9), 1.6);
+            flown += all_hold(ground, Post { row: 7, col: 7 }, 1, 1, &format!("posts {spacing_m} m apart"));
+        }
+    }
+    assert!(flown > 5000, "only {flown} hops");
 }
 
 #[test]

@@ -41,7 +41,7 @@ fn with_points(points_per_segment: u32) -> SearchOptions {
 /// A search between two vertices, numbered from 0.
 fn between(test: &HopTest, from: usize, to: usize, options: &SearchOptions) -> Answer {
     let at = |i| test.chain().geometry().vertex_station(VertexId(i));
-    search(test, at(from), at(to), options, &mut |_| {}).unwrap()
+    search(test, at(from), at(to), options, &()).unwrap()
 }
 
 #[test]

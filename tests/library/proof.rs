@@ -107,13 +107,13 @@ impl Journey {
 
     fn bounds(&self, budget_cells: usize) -> Bounds {
         let options = BoundsOptions { budget_cells, ..BoundsOptions::default() };
-        bounds(&self.test(), self.start, self.goal, &options, &mut |_| {}).unwrap()
+        bounds(&self.test(), self.start, self.goal, &options, &()).unwrap()
     }
 
     /// The fewest hops with a number of points inside each segment.
     fn fewest(&self, points: u32) -> Option<u64> {
         let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(points)), ..SearchOptions::default() };
-        search(&self.test(), self.start, self.goal, &options, &mut |_| {}).unwrap().hops()
+        search(&self.test(), self.start, self.goal, &options, &()).unwrap().hops()
     }
 
     /// The upper bound's path must be valid: flown again, it violates nothing and joins start and goal in that many hops.

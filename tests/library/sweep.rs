@@ -6,7 +6,8 @@ use std::sync::Arc;
 use crate::support::{Draw, explicit, line, uniform};
 use chta::{
     chain::{ConstrainedChain, LineConstraints, PolygonalChain, Station},
-    hop::{HopTest, LandingTable, Sweep},
+    ground::{LandingTable, Sweep},
+    hop::HopTest,
     quantity::{Angle, ChainPoint, MapPoint, VertexId},
     terrain::slice,
     world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},

@@ -1,4 +1,4 @@
-//! The options of the commands that answer for a chain.
+//! The options of the commands that analyse a chain.
 
 use std::path::PathBuf;
 
@@ -14,15 +14,15 @@ pub(crate) struct RunArgs {
     /// Scenario (TOML), or a result.json to repeat
     #[arg(value_name = "SCENARIO")]
     pub(crate) scenario: PathBuf,
-    /// Folder for the results, made where it does not exist
+    /// Folder for the results, created if it does not exist
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
     #[command(flatten)]
     pub(crate) answer: AnswerArgs,
-    /// Set any scenario key; wins over the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
+    /// Set any scenario key; overrides the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
     #[arg(long, value_name = "TABLE.KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
     /// No warnings and no progress on standard error
@@ -30,7 +30,7 @@ pub(crate) struct RunArgs {
     pub(crate) quiet: bool,
 }
 
-/// Test one hop: every limit by itself, what sets either end of the feasible take-off angles, or which two conflict
+/// Test one hop: each limit separately, the limits that bound the feasible take-off angles, or the two that conflict
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json")]
 pub(crate) struct HopArgs {
@@ -56,12 +56,12 @@ pub(crate) struct HopArgs {
 pub(crate) struct CheckArgs {
     #[command(flatten)]
     pub(crate) journey: JourneyArgs,
-    /// Many questions at once: CSV with `start_x_m,goal_x_m`
+    /// Many pairs of start and goal: CSV with `start_x_m,goal_x_m`
     #[arg(long, value_name = "FILE", conflicts_with_all = ["start", "goal"])]
     pub(crate) pairs: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) answer: AnswerArgs,
-    /// Picture (SVG or PNG) to write of what is proved of each stretch of the chain
+    /// Picture (SVG or PNG) to write: which stretches of the chain are proved reachable or unreachable
     #[arg(long, value_name = "FILE", requires = "prove", conflicts_with = "pairs")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
@@ -84,10 +84,10 @@ pub(crate) struct PlanArgs {
     /// Path in three dimensions (GeoJSON) to write, for a chain on a map
     #[arg(long, value_name = "FILE")]
     pub(crate) geojson: Option<PathBuf>,
-    /// Picture (SVG) to write, also where there is no path
+    /// Picture (SVG) to write, with or without a path
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
-    /// Fly the path again by direct simulation and judge every limit
+    /// Fly the path again by direct simulation and check every limit
     #[arg(long)]
     pub(crate) verify: bool,
     #[command(flatten)]
@@ -100,7 +100,7 @@ pub(crate) struct PlanArgs {
     pub(crate) common: CommonArgs,
 }
 
-/// Fly the planned path many times under the errors of [uncertainty]: how surely, where the landings scatter, how trials end
+/// Fly the planned path many times under the errors of [uncertainty]: success rate, scatter of the landings, outcomes
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta simulate data/scenarios/rolling_surely.toml --trials 500 --compare")]
 pub(crate) struct SimulateArgs {
@@ -109,23 +109,24 @@ pub(crate) struct SimulateArgs {
     /// How many trials at most [default: the scenario's, or 10000]
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub(crate) trials: Option<i64>,
-    /// Seed of all draws; a trial's depend on it and on the trial's number alone [default: the scenario's, or 0]
+    /// Seed of all random draws; those of a trial depend only on the seed and the trial's number [default: the scenario's, or 0]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) seed: Option<i64>,
-    /// open-loop: planned commands from wherever it is; replan: the best next hop after every landing, by
+    /// open-loop: the planned commands, wherever the robot is; replan: the best next hop after every landing, by
     /// search.risk and search.effort [default: the scenario's]
     #[arg(long, value_name = "POLICY")]
     pub(crate) policy: Option<String>,
     /// Both policies on the same draws
     #[arg(long)]
     pub(crate) compare: bool,
-    /// Stop once half the 95 % interval of the success rate is no wider; asked after every 1000 trials [default: fly all trials]
+    /// Stop once the success rate's 95 % interval is at most 2 W wide; checked every 1000 trials [default: fly all trials]
     #[arg(long, value_name = "W", allow_negative_numbers = true)]
     pub(crate) until_half_width: Option<f64>,
-    /// Instead: worst-drift (the paper's), cone-width (its claim), risk-trade (what hops buy in surety) [default: none]
+    /// Experiment to run instead: worst-drift (the paper's), cone-width (the paper's claim), risk-trade (hops against
+    /// reliability) [default: none]
     #[arg(long, value_name = "NAME", conflicts_with_all = ["compare", "until_half_width"])]
     pub(crate) experiment: Option<String>,
-    /// How worst-drift reads the paper: noise-at-landing, noise-in-flight, farthest-from-goal [default: noise-at-landing]
+    /// How worst-drift interprets the paper: noise-at-landing, noise-in-flight, farthest-from-goal [default: noise-at-landing]
     #[arg(long, value_name = "NAME", requires = "experiment")]
     pub(crate) reading: Option<String>,
     /// One row per landing, .csv or .parquet; -: CSV to standard output, in place of the answer
@@ -145,7 +146,7 @@ pub(crate) struct SimulateArgs {
     pub(crate) common: CommonArgs,
 }
 
-/// The least capability with which the goal can be reached, between a value proved too little and one with a path
+/// The least capability with which the goal can be reached, between a value proved insufficient and a value with a path
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta require data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s")]
 pub(crate) struct RequireArgs {
@@ -160,10 +161,10 @@ pub(crate) struct RequireArgs {
     /// Greatest value to try, in the key's unit [default: by key]
     #[arg(long, value_name = "V", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
-    /// How close to bring the two values, as a share of them
+    /// How close to bring the two values, as a fraction of them
     #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
     pub(crate) resolution: f64,
-    /// The most cells that the chain is cut into at each value
+    /// Greatest number of cells that the chain is divided into at each value
     #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS / 5, value_parser = cell_count, allow_negative_numbers = true)]
     pub(crate) budget: usize,
     #[command(flatten)]
@@ -174,7 +175,7 @@ pub(crate) struct RequireArgs {
     pub(crate) common: CommonArgs,
 }
 
-/// One or two keys of the scenario varied: the fewest hops, or that there is no path, for every value or pair of values
+/// Vary one or two scenario keys: the fewest hops, or no path, for every value or pair of values
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta trade data/scenarios/simple_reduced.toml --vary hopper.takeoff_speed_max_m_s=2:6:9")]
 pub(crate) struct TradeArgs {
@@ -184,10 +185,10 @@ pub(crate) struct TradeArgs {
     /// hopper.takeoff_speed_max_m_s=4:10:7`]
     #[arg(long, value_name = "TABLE.KEY=FROM:TO:STEPS", required = true)]
     pub(crate) vary: Vec<String>,
-    /// Rows to write, .csv or .json by its name; -: CSV to standard output, in place of the answer
+    /// Rows to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Picture to write (.svg or .png): a heat map with every field's number
+    /// Picture to write (.svg or .png): a heat map with the number of every cell
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
@@ -207,7 +208,7 @@ pub(crate) struct CompareArgs {
     /// Scenarios (TOML) or results (JSON), two or more
     #[arg(value_name = "SCENARIO", required = true, num_args = 2..)]
     pub(crate) scenarios: Vec<PathBuf>,
-    /// Table to write, .csv or .json by its name; -: CSV to standard output, in place of the answer
+    /// Table to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
     /// Picture to write (.svg or .png): all paths overlaid
@@ -217,10 +218,10 @@ pub(crate) struct CompareArgs {
     pub(crate) answer: AnswerArgs,
     #[command(flatten)]
     pub(crate) prove: ProveArgs,
-    /// Set any scenario key in all of them; wins over the scenarios [example: `--set hopper.takeoff_speed_max_m_s=8`]
+    /// Set any scenario key in all of them; overrides the scenarios [example: `--set hopper.takeoff_speed_max_m_s=8`]
     #[arg(long, value_name = "TABLE.KEY=VALUE")]
     pub(crate) set: Vec<String>,
-    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
     /// No warnings and no progress on standard error

@@ -1,4 +1,4 @@
-//! The command line as typed: the commands, what several of them take, and how places and counts are read.
+//! The command line as typed: the commands, the options that several of them share, and the parsers of positions and counts.
 
 mod journeys;
 mod terrains;
@@ -50,13 +50,13 @@ pub(crate) enum Format {
     Json,
 }
 
-/// What all analyses take.
+/// Options of all analyses.
 #[derive(Clone, Debug, ClapArgs)]
 pub(crate) struct CommonArgs {
     /// Scenario (TOML) with body, hopper, surface and search
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
-    /// Set any scenario key; wins over the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
+    /// Set any scenario key; overrides the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
     #[arg(long, value_name = "TABLE.KEY=VALUE")]
     pub(crate) set: Vec<String>,
     /// Known body, which gives gravity and radius (`chta bodies` lists them)
@@ -68,7 +68,7 @@ pub(crate) struct CommonArgs {
     /// Height to keep over every vertex flown past, m [default: 0]
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub(crate) clearance_m: Option<f64>,
-    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
     /// No warnings and no progress on standard error
@@ -76,13 +76,13 @@ pub(crate) struct CommonArgs {
     pub(crate) quiet: bool,
 }
 
-/// What searches take.
+/// Options of commands that search.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct SearchArgs {
     /// Points inside each segment, or auto: the first of 0, 1, 2, 3, 7, 15, 31 that finds a path [default: auto]
     #[arg(long, value_name = "K|auto", allow_negative_numbers = true)]
     pub(crate) points_per_segment: Option<String>,
-    /// Instead: as many points as keep neighbours this close along the ground, m [default: by points per segment]
+    /// Instead: greatest spacing of neighbouring points along the ground, m [default: by points per segment]
     #[arg(long, value_name = "D", conflicts_with = "points_per_segment", allow_negative_numbers = true)]
     pub(crate) node_spacing_max_m: Option<f64>,
     /// Second criterion after hops: takeoff-speed, energy, time, peak-speed [default: takeoff-speed]
@@ -90,13 +90,13 @@ pub(crate) struct SearchArgs {
     pub(crate) effort: Option<String>,
 }
 
-/// What a proof takes.
+/// Options of a proof.
 #[derive(Clone, Copy, Debug, ClapArgs)]
 pub(crate) struct ProveArgs {
-    /// Bound the fewest hops from both sides, for every choice of points: "untraversable" is said where it is proved
+    /// Bound the fewest hops from below and above, for every choice of points; "untraversable" where no path is proved to exist
     #[arg(long)]
     pub(crate) prove: bool,
-    /// The most cells that the chain is cut into for the proof
+    /// Greatest number of cells that the chain is divided into for the proof
     #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS, value_parser = cell_count, requires = "prove", allow_negative_numbers = true)]
     pub(crate) budget: usize,
 }
@@ -115,7 +115,7 @@ pub(crate) struct JourneyArgs {
     pub(crate) goal: Option<f64>,
 }
 
-/// How an answer is worked out and written.
+/// How an answer is computed and written.
 #[derive(Clone, Copy, Debug, ClapArgs)]
 pub(crate) struct AnswerArgs {
     /// Threads to work with; the answer does not depend on it [default: one for each core]

@@ -1,4 +1,4 @@
-//! The options of the commands that take or make terrain.
+//! The options of the commands that read or generate terrain.
 
 use std::path::PathBuf;
 
@@ -29,7 +29,7 @@ pub(crate) struct SliceArgs {
     /// Metres per unit of the mesh: 1000 for one in kilometres [default: 1]
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     pub(crate) mesh_scale: Option<f64>,
-    /// A point between, map coordinates in m, where the slice bends; may be repeated, in the order of travel [default: none]
+    /// Intermediate point, map coordinates in m, where the slice bends; may be repeated, in the order of travel [default: none]
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true)]
     pub(crate) via: Vec<MapPoint>,
     /// Instead: longitude and planetocentric latitude, degrees, east positive; may be repeated [default: none]
@@ -38,7 +38,7 @@ pub(crate) struct SliceArgs {
     /// Scenario whose friction and keep-out zones go into the chain
     #[arg(long, value_name = "FILE")]
     pub(crate) scenario: Option<PathBuf>,
-    /// Take distances of a map whose scale along the transect is off by over 1 % as they are
+    /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
     /// Chain CSV to write; - or absent: standard output
@@ -69,10 +69,10 @@ pub(crate) struct FanArgs {
     /// Instead: longitude and planetocentric latitude, degrees, east positive
     #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "from")]
     pub(crate) from_lonlat: Option<LonLat>,
-    /// How many, equally spaced clockwise from grid north
+    /// Number of slices, equally spaced clockwise from grid north
     #[arg(long, value_name = "N", default_value_t = 36)]
     pub(crate) headings: u32,
-    /// How long each is, m; the map's border and no-data cut it
+    /// Length of each slice, m; the map's border and no-data shorten it
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     pub(crate) length: f64,
     /// Table (CSV) to write; -: to standard output, in place of the answer
@@ -91,8 +91,8 @@ pub(crate) struct FanArgs {
 
 /// Fewest hops from one post of a DEM to every other, in any direction
 ///
-/// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it. Of the terrain of --scenario (dem,
-/// mesh or chain, start, goal, points between) nothing is used: DEM, --start and --goal stand in its place.
+/// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it. The terrain keys of
+/// --scenario (dem, mesh or chain, start, goal, intermediate points) are ignored: DEM, --start and --goal replace them.
 #[derive(Debug, ClapArgs)]
 #[command(
     after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
@@ -101,39 +101,39 @@ pub(crate) struct MapArgs {
     /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
     #[arg(value_name = "DEM")]
     pub(crate) dem: PathBuf,
-    /// Where all hops start, map coordinates in m; the nearest post counts
+    /// Start of all paths, map coordinates in m; the nearest post is used
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, required_unless_present = "start_lonlat")]
     pub(crate) start: Option<MapPoint>,
     /// Instead: longitude and planetocentric latitude, degrees, east positive
     #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "start")]
     pub(crate) start_lonlat: Option<LonLat>,
-    /// A place to get to, map coordinates in m; may be repeated [default: none]
+    /// Goal, map coordinates in m; the nearest post is used; may be repeated [default: none]
     #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, group = "goals")]
     pub(crate) goal: Vec<MapPoint>,
     /// Instead: longitude and planetocentric latitude, degrees, east positive; may be repeated [default: none]
     #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "goal", group = "goals")]
     pub(crate) goal_lonlat: Vec<LonLat>,
-    /// Land only on every N-th post; the terrain in the way is always the full DEM
+    /// Land only on every N-th post; hops are always tested against the full DEM
     #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
     pub(crate) stride: u32,
-    /// Also the least effort among fewest hops: takeoff-speed, energy, time, peak-speed [default: not asked; alone: the scenario's]
+    /// Also least effort among paths of fewest hops: takeoff-speed, energy, time, peak-speed [default: none; alone: the scenario's]
     #[arg(long, value_name = "EFFORT", num_args = 0..=1)]
     #[expect(clippy::option_option, reason = "absent, given alone, or with a value")]
     pub(crate) effort: Option<Option<String>>,
-    /// Also from which posts the start can be reached again
+    /// Also find the posts from which the start can be reached again
     #[arg(long = "return")]
     pub(crate) back: bool,
     /// Hops (GeoTIFF) to write: int16, -1 unreachable, -32768 no-data
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Least effort (GeoTIFF) to write: float32, NaN where there is no way
+    /// Least effort (GeoTIFF) to write: float32, NaN where there is no path
     #[arg(long, value_name = "FILE", requires = "effort")]
     pub(crate) effort_output: Option<PathBuf>,
     /// Hops back to the start (GeoTIFF) to write
     #[arg(long, value_name = "FILE", requires = "back")]
     pub(crate) return_output: Option<PathBuf>,
-    /// Mobility (GeoTIFF) to work out and write: of the posts on the map within v^2/g of a post, v the smaller speed limit, the share that
-    /// one hop reaches, and in how many of 16 directions
+    /// Mobility (GeoTIFF) to write: the share of the posts within v^2/g of a post, v the smaller speed limit, that one hop from it
+    /// reaches, and in how many of 16 directions
     #[arg(long, value_name = "FILE")]
     pub(crate) mobility: Option<PathBuf>,
     /// Also fly the path to every goal many times under the errors of `[uncertainty]`, in three dimensions, open loop
@@ -157,7 +157,7 @@ pub(crate) struct MapArgs {
     pub(crate) common: CommonArgs,
 }
 
-/// Make terrain up from a seed: fractal ground, craters, a rille, boulders
+/// Generate terrain from a seed: fractal ground, craters, a rille, boulders
 ///
 /// The same options give the same bytes on every machine.
 #[derive(Debug, ClapArgs)]
@@ -188,7 +188,7 @@ pub(crate) struct SynthArgs {
     /// Slope of the plane under everything, degrees
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) tilt_deg: f64,
-    /// Towards where it rises, degrees clockwise from grid north
+    /// Direction in which the plane rises, degrees clockwise from grid north
     #[arg(long, default_value_t = 0.0, allow_negative_numbers = true)]
     pub(crate) tilt_towards_deg: f64,
     /// Without fractal ground
@@ -221,7 +221,7 @@ pub(crate) struct SynthArgs {
     /// Depth of fresh craters by diameter: moon (Pike 1977) or mars (Robbins and Hynek 2012)
     #[arg(long, value_enum, default_value = "moon", requires = "craters")]
     pub(crate) crater_depth_law: DepthLawArg,
-    /// 0: all fresh; 1: some worn to nothing
+    /// Degradation of craters, 0: all fresh; 1: some completely eroded
     #[arg(long, default_value_t = 0.8, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_degradation_max: f64,
     /// With a sinuous rille from west to east
@@ -259,7 +259,7 @@ pub(crate) struct SynthArgs {
     pub(crate) boulder_burial: f64,
 }
 
-/// Whose fresh craters.
+/// Depth law of fresh craters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum DepthLawArg {
     /// Pike 1977.

@@ -17,7 +17,7 @@ pub(crate) fn run() -> Result<Answer, Failure> {
     Ok(Answer::Yes)
 }
 
-/// Gravity to four significant digits, more than it changes by over any of these bodies, whatever its size.
+/// Gravity to four significant digits, finer than its variation over the surface of any of these bodies.
 fn figures(gravity_m_s2: f64) -> String {
     let rounded = format!("{gravity_m_s2:.3e}").parse().unwrap_or(gravity_m_s2);
     format_number(rounded)

@@ -1,4 +1,4 @@
-//! What stands above pictures: under which limits.
+//! Titles and captions of pictures: the limits that apply.
 
 use std::fmt;
 
@@ -6,7 +6,7 @@ use chta::{report::figure, scenario::Scenario, world::Hopper};
 
 use super::plan::format_ground;
 
-/// A greatest speed of the hopper's, in words.
+/// A speed limit of the hopper, in words.
 pub(super) struct SpeedLimit {
     /// The scenario's key for it.
     pub(super) key: &'static str,
@@ -15,7 +15,7 @@ pub(super) struct SpeedLimit {
 }
 
 impl SpeedLimit {
-    /// Of take-off and of landing.
+    /// The take-off and landing speed limits.
     pub(super) const fn of(hopper: &Hopper) -> [Self; 2] {
         [
             Self { key: "hopper.takeoff_speed_max_m_s", contact: "take-off", most_m_s: hopper.limits().takeoff_speed_max_m_s },
@@ -23,7 +23,7 @@ impl SpeedLimit {
         ]
     }
 
-    /// Those that limit anything: without one of the hopper's own the chain's hold.
+    /// The finite ones: where the hopper has no limit of its own, the chain's limits apply.
     pub(super) fn stated(hopper: &Hopper) -> impl Iterator<Item = Self> {
         Self::of(hopper).into_iter().filter(|limit| limit.most_m_s.is_finite())
     }
@@ -35,14 +35,14 @@ impl fmt::Display for SpeedLimit {
     }
 }
 
-/// All that an answer over a map assumes: body, gravity, the hopper's limits and the ground, as the pictures of plans say it.
+/// The assumptions of an answer over a map: body, gravity, hopper limits and ground, in the words of the pictures of plans.
 pub(super) fn conditions(scenario: &Scenario) -> String {
     let (hopper, body) = (&scenario.hopper, &scenario.body);
     let bounds_m_s = (hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s);
     figure::conditions(body.name.as_deref().unwrap_or_default(), body.gravity.m_s2(), hopper, bounds_m_s, &format_ground(scenario))
 }
 
-/// What a picture shows, and of which scenario where that has a name.
+/// The title of a picture: what it shows, and the scenario's title if it has one.
 pub(super) fn title(shown: &str, scenario: &Scenario) -> String {
     scenario.title.as_ref().map_or_else(|| shown.to_owned(), |name| format!("{shown}: {name}"))
 }

@@ -37,7 +37,7 @@ struct PairsAnswer {
 
 /// Checks one pair or many.
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
-    // Before the terrain is read, which starts the threads.
+    // Set before the terrain is read, since reading starts the threads.
     use_threads(args.answer.threads)?;
     let loaded =
         load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
             stations(&loaded, path, &file.pairs)?
         }
     };
-    // Opened before the work, which may take long.
+    // Outputs are opened before the computation, which may take long.
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let (answers, pictures) = answers(&loaded, &pairs, args, &mut warnings)?;
     output::finish(plot.into_iter().zip(pictures).collect())?;
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     Ok(verdict)
 }
 
-/// The ends of all pairs, or the first that is off the chain.
+/// The stations of all pairs, or an error for the first that lies off the chain.
 fn stations(loaded: &Loaded, file: &Path, pairs: &[StartGoal]) -> Result<Vec<(Station, Station)>, Failure> {
     let geometry = loaded.prepared.chain.geometry();
     let mut stations = Vec::with_capacity(pairs.len());
@@ -77,7 +77,7 @@ fn stations(loaded: &Loaded, file: &Path, pairs: &[StartGoal]) -> Result<Vec<(St
     Ok(stations)
 }
 
-/// The answers for all pairs, the warnings about their paths, and the picture of the proof where one is asked for.
+/// The answers for all pairs, the warnings about their paths, and the picture of the proof if requested.
 fn answers(
     loaded: &Loaded,
     pairs: &[(Station, Station)],
@@ -107,7 +107,7 @@ fn answers(
     Ok((answers, drawn))
 }
 
-/// What is proved along the chain, encoded as the file's name asks.
+/// The picture of what is proved along the chain, in the format of the file's extension.
 fn picture(
     loaded: &Loaded,
     ends: (Station, Station),

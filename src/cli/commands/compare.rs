@@ -27,11 +27,11 @@ struct Compared {
     warnings: Vec<String>,
 }
 
-/// Answers every scenario by itself and shows them together.
+/// Answers each scenario separately and shows the answers side by side.
 pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
     let table = args.output.as_deref().map(TableFormat::of).transpose()?;
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
-    // Opened before the work, which may take long.
+    // Outputs are opened before the computation, which may take long.
     let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     use_threads(args.answer.threads)?;
@@ -106,7 +106,7 @@ impl Compared {
         Ok(Self { loaded, row, path, warnings })
     }
 
-    /// What the picture shows of it.
+    /// The scenario as the picture shows it.
     fn drawn(&self) -> ComparedScenario {
         let Loaded { prepared, .. } = &self.loaded;
         let geometry = prepared.chain.geometry();
@@ -123,7 +123,7 @@ impl Compared {
     }
 }
 
-/// All paths over one another.
+/// The picture with all paths overlaid.
 fn figure(compared: &[Compared]) -> CompareFigure {
     let words = |one: &Compared| {
         let hops = one.row.hops.map(|hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" })).unwrap_or_default();
@@ -141,7 +141,7 @@ fn csv(answer: &CompareAnswer) -> Result<Vec<u8>, Failure> {
     Ok(csv)
 }
 
-/// The answer as one document, with the list of all scenarios as used.
+/// The answer as one JSON document, with all scenarios as used.
 fn document(compared: &[Compared], answer: &CompareAnswer) -> Result<String, Failure> {
     let scenarios = compared.iter().map(|one| one.loaded.document.clone()).collect();
     let mut inputs = Vec::new();

@@ -10,15 +10,16 @@ use chta::{
 };
 use nalgebra::Vector2;
 
-use super::{captions::conditions, slice::place};
+use super::{captions::conditions, search::use_threads, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, FanArgs, Format},
     load::{Bare, input_file, load_bare},
     output,
+    progress::Progress,
 };
 
-/// What `auto` means here, where no single path answers.
+/// The meaning of `auto` here, where there is no single path to refine for.
 const POINTS_PER_SEGMENT: PointSpacing = PointSpacing::PerSegment(1);
 
 /// Analyses all directions.
@@ -35,6 +36,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         search,
         common,
     } = args;
+    use_threads(*threads)?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let Bare { scenario, base, document } = load_bare(file, common, search)?;
     let dem = read_dem(file).map_err(|e| failed(&e))?;
@@ -46,7 +48,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let ground = overlays.ground(dem, &scenario);
     let dem = ground.terrain().dem();
     let request = FanRequest { ground: &ground, from, headings: *headings, length_m: *length, spacing };
-    let rays = fan(&request, *threads).map_err(|e| failed(&e))?;
+    let rays = fan(&request, &Progress::new(common.quiet)).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     let mut warnings = overlays.without_effect_on_dem(dem.bounds());
     for ray in &rays {

@@ -6,10 +6,11 @@ use chta::{
     graph::Effort,
     ground::DemGround,
     path::{Execution, HopPath},
+    progress::{Detail, Step},
     quantity::MapPoint,
     reach::map::{
-        HopMap, Journey, LayerProgress, MapError, MapHop, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, joined,
-        mobility, path_hops, search, verify,
+        HopMap, Journey, MapError, MapHop, Mobility, NO_GROUND, NodeLattice, Post, PostHops, Search, joined, mobility, path_hops,
+        search, verify,
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, SimulationRecord, TotalsRecord,
@@ -20,10 +21,10 @@ use chta::{
     terrain::{
         Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
-    uncertainty::{Mission, Policy, Simulation, SimulationError, TrialOptions},
+    uncertainty::{Mission, Policy, Simulation, SimulationError},
 };
 
-use super::{captions::conditions, map_profiles, plan::passed, slice::place};
+use super::{captions::conditions, map_profiles, plan::passed, search::use_threads, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
@@ -32,7 +33,7 @@ use crate::cli::{
     progress::Progress,
 };
 
-/// The terrain of a map and what is known of it.
+/// The terrain of a map, its projection and the scenario.
 struct Ground {
     ground: DemGround,
     projection: Result<MapProjection, NoProjection>,
@@ -49,7 +50,7 @@ impl Ground {
     }
 }
 
-/// A place asked for, and the post nearest to it.
+/// A requested position and the post nearest to it.
 #[derive(Clone, Copy)]
 struct Spot {
     asked: MapPoint,
@@ -57,22 +58,23 @@ struct Spot {
     at: MapPoint,
 }
 
-/// All maps that were asked for.
+/// All requested maps.
 struct Maps {
     out: HopMap,
     back: Option<HopMap>,
     mobility: Option<Mobility>,
-    /// Of each goal, where it is reachable.
+    /// The path to each goal; `None` if unreachable.
     goal_hops: Vec<Option<Vec<MapHop>>>,
     paths: Vec<Option<HopPath>>,
-    /// Of each goal, where it is reachable and trials were asked for.
+    /// The trials for each goal; `None` if unreachable or not requested.
     trials: Vec<Option<SimulationRecord>>,
     /// Of start and goals.
     warnings: Vec<String>,
 }
 
-/// Makes the map.
+/// Computes and writes the map.
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
+    use_threads(args.answer.threads)?;
     let (ground, start, goals) = prepared(args)?;
     check_extensions(args)?;
     let begun = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;
@@ -164,7 +166,7 @@ fn prepared(args: &MapArgs) -> Result<(Ground, Spot, Vec<Spot>), Failure> {
     Ok((Ground { ground, projection, scenario, lattice, document, inputs, warnings }, start, goals))
 }
 
-/// Checks that positions at different posts map to different nodes: with a stride that merges them one answer would stand for both.
+/// Checks that positions at different posts map to different nodes: a stride that merges them would give one answer for both.
 fn check_distinct_nodes(dem: &Dem, stride: u32, spots: &[Spot]) -> Result<(), String> {
     let every_post = NodeLattice::new(dem, 1);
     for (i, spot) in spots.iter().enumerate() {
@@ -184,7 +186,7 @@ fn named(start: Spot, goals: &[Spot]) -> impl Iterator<Item = (&'static str, Spo
     std::iter::once(("start", start)).chain(goals.iter().map(|goal| ("goal", *goal)))
 }
 
-/// What to say of start and goals whose ground takes no hop and gives none.
+/// Warnings for start and goals at which no hop can take off or land.
 fn refusals(hops: &PostHops, start: Spot, goals: &[Spot]) -> Vec<String> {
     named(start, goals)
         .filter_map(|(which, spot)| {
@@ -205,26 +207,25 @@ fn refusals(hops: &PostHops, start: Spot, goals: &[Spot]) -> Vec<String> {
         .collect()
 }
 
-/// Searches, with progress on a terminal.
+/// Searches, with progress on the terminal.
 fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
     let Ground { scenario, lattice, .. } = ground;
     let failed = |error: &MapError| Failure::about(&args.dem, error);
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(args.answer.threads).build().map_err(|e| failed(&e.into()))?;
     let progress = Progress::new(args.common.quiet);
     let began = std::time::Instant::now();
-    let maps = pool.install(|| -> Result<(Maps, Vec<Option<Execution>>), MapError> {
+    // From inside the pool, whose threads hear of each other sooner than of one outside.
+    let maps = rayon::scope(|_| -> Result<(Maps, Vec<Option<Execution>>), MapError> {
         let hops = PostHops::new(ground.ground.clone(), lattice.stride)?;
-        let tell = |what: &str, found: LayerProgress| progress.say(format_layer(what, found, began.elapsed().as_secs_f64()));
+        let layers = |what: &'static str| progress.with_lines(move |step| format_layer(what, step, began.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
-        let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &mut |found| tell("there", found))?;
-        let back = args.back.then(|| {
-            search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &mut |found| tell("back", found))
-        });
+        let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &layers("outbound"))?;
+        let back =
+            args.back.then(|| search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &layers("return")));
         let begun = std::time::Instant::now();
         let mobile = args
             .mobility
             .as_ref()
-            .map(|_| mobility(&hops, &|done, of| progress.say(format_share("mobility", done, of, begun.elapsed().as_secs_f64()))));
+            .map(|_| mobility(&hops, &progress.with_lines(|step| format_share("mobility", step, begun.elapsed().as_secs_f64()))));
         let hops_to = |goal: &Spot| {
             let nodes = out.path(&hops, goal.post);
             nodes.map(|nodes| path_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
@@ -245,7 +246,7 @@ fn mapped(args: &MapArgs, ground: &Ground, start: Spot, goals: &[Spot]) -> Resul
     Ok(maps)
 }
 
-/// The errors and trials that `--simulate` asks for.
+/// The errors and trials for `--simulate`.
 fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
     let keys = scenario.uncertainty.unwrap_or_default();
     if keys.policy == Policy::Replan {
@@ -264,27 +265,28 @@ fn simulated(
     keys: &UncertaintyKeys,
 ) -> Result<Vec<Option<SimulationRecord>>, Failure> {
     let failed = |error: SimulationError| Failure::about(&args.dem, &error);
-    let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
+    let options = keys.options();
+    let progress = Progress::new(true);
     let fly = |path: &HopPath| {
         let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
         let mission = Mission::over_dem(ground.ground.clone(), path.clone(), first.takeoff, last.landing);
-        let summary = Simulation::new(&mission, keys.errors).map_err(failed)?.run(&options, &mut ()).map_err(failed)?;
+        let summary = Simulation::new(&mission, keys.errors).map_err(failed)?.run(&options, &mut (), &progress).map_err(failed)?;
         Ok(Some(SimulationRecord::new(&summary, path.hops.len())))
     };
     maps.paths.iter().map(|path| path.as_ref().map_or(Ok(None), fly)).collect()
 }
 
-/// What is being done, how far it is, and how long it may still take.
-fn format_layer(what: &str, found: LayerProgress, elapsed_s: f64) -> String {
-    let all = found.reached + found.open;
-    format!("hops {what}, front {}: {}", found.layer, format_share("posts", found.reached, all, elapsed_s))
+/// A progress line: the stage, the share done and the time left.
+fn format_layer(what: &str, step: &Step, elapsed_s: f64) -> Option<String> {
+    let Detail::Layer { hops } = step.detail else { return None };
+    Some(format!("{what} hops, layer {hops}: {}", format_share("posts", step, elapsed_s)?))
 }
 
 #[expect(clippy::cast_precision_loss, reason = "a share for reading")]
-fn format_share(what: &str, done: usize, all: usize, elapsed_s: f64) -> String {
-    let share = done as f64 / all.max(1) as f64;
+fn format_share(what: &str, step: &Step, elapsed_s: f64) -> Option<String> {
+    let share = step.done as f64 / step.of?.max(1) as f64;
     let left_s = elapsed_s * (1.0 - share) / share.max(1.0e-3);
-    format!("{what} {:.0} % done, at most {left_s:.0} s left", 100.0 * share)
+    Some(format!("{what} {:.0} % done, at most {left_s:.0} s left", 100.0 * share))
 }
 
 /// Checks that each output has an extension that its readers recognise.
@@ -306,13 +308,13 @@ fn check_extensions(args: &MapArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// All files that the options name.
+/// All output files named by the options.
 fn outputs(args: &MapArgs) -> impl Iterator<Item = &Path> {
     let MapArgs { output, effort_output, return_output, mobility, paths, geojson, profiles, plot, .. } = args;
     [output, effort_output, return_output, mobility, paths, geojson, profiles, plot].into_iter().filter_map(Option::as_deref)
 }
 
-/// What is said of a goal.
+/// The record of a goal.
 fn goal_record(ground: &Ground, maps: &Maps, goal: &Spot, index: usize) -> GoalRecord {
     let node = ground.lattice.index(goal.post);
     let reached = |map: &HopMap| Some(map.hops[node]).filter(|&hops| hops >= 0);
@@ -325,13 +327,13 @@ fn goal_record(ground: &Ground, maps: &Maps, goal: &Spot, index: usize) -> GoalR
         return_hops: maps.back.as_ref().map(reached),
         path: path.map(|path| HopRecord::rows(path, ground.projection.as_ref().ok())).unwrap_or_default(),
         totals: path.map(|path| TotalsRecord::from(&path.totals)),
-        // A path that does not pass never gets here.
+        // A path that fails the check has already ended the command with an error.
         verified: path.map(|_| true),
         simulation: maps.trials[index].clone(),
     }
 }
 
-/// Writes what the options name, all or none, into the files begun for it.
+/// Writes the requested outputs, all or none, into the files opened for them.
 fn write_files<'a>(
     mut begun: Vec<Pending<'a>>,
     args: &'a MapArgs,
@@ -391,17 +393,17 @@ fn write_files<'a>(
     output::finish(pending)
 }
 
-/// What a raster of effort holds.
+/// The band description of an effort raster.
 fn effort_name(effort: Effort) -> String {
     format!("least {} among fewest hops, {}", effort.total(), effort.unit())
 }
 
-/// The name of the terrain in titles.
+/// The terrain's name for titles.
 fn name_of(args: &MapArgs) -> String {
     args.dem.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// The map as a picture, in the format of the file's name.
+/// The map as a picture, in the format of the file's extension.
 fn picture(
     args: &MapArgs,
     ground: &Ground,
@@ -441,7 +443,7 @@ fn kept_out(ground: &Ground, zones: &KeepOut) -> Vec<bool> {
     (0..rows * cols).map(|index| zones.keeps_out(nodes.post(index / cols, index % cols))).collect()
 }
 
-/// What the map assumes and what came of it, under the title of the picture.
+/// The subtitle of the picture: the map's assumptions and a summary of its result.
 fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> Vec<String> {
     let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
     let found = format!(

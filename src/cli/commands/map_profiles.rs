@@ -12,7 +12,7 @@ use chta::{
 use super::captions::conditions;
 use crate::cli::{Failure, output};
 
-/// The sheet of all hops to all goals, encoded as the file's name asks.
+/// The sheet of all hops to all goals, in the format of the file's extension.
 pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<MapHop>>], file: &Path) -> Result<Vec<u8>, Failure> {
     let mut profiles = Vec::new();
     for (goal, hops) in goal_hops.iter().enumerate() {
@@ -32,7 +32,7 @@ pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<Map
     output::encoded(draw_hop_profiles(&figure), file)
 }
 
-/// One hop over its slice, flown again for the place where it passes lowest.
+/// One hop over its slice, flown again to find its least clearance.
 fn profile(hop: &MapHop, name: String) -> Option<HopProfile> {
     let flown = execute(hop.test.chain(), &hop.path, None);
     let least = flown.flights.first().and_then(|flight| flight.as_ref()?.least_clearance);

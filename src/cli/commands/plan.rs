@@ -27,12 +27,12 @@ use crate::cli::{
     output::{self, Pending},
 };
 
-/// What a plan answers: the check, the path, its totals.
+/// The answer of a plan: the check, the path, its totals.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct PlanAnswer {
     #[serde(flatten)]
     check: CheckAnswer,
-    /// Whether the path was flown again and passed; absent where that was not asked for.
+    /// Whether the path was flown again and passed; absent if not requested.
     #[serde(skip_serializing_if = "Option::is_none")]
     verified: Option<bool>,
     path: Vec<HopRecord>,
@@ -42,7 +42,7 @@ pub(super) struct PlanAnswer {
     reliable_paths: Vec<ReliablePathRecord>,
 }
 
-/// A plan with all that is drawn and written of it.
+/// A plan with everything needed to draw and write it.
 #[derive(Debug)]
 pub(super) struct Planned {
     pub(super) found: graph::Answer,
@@ -52,7 +52,7 @@ pub(super) struct Planned {
 }
 
 impl Planned {
-    /// Searches (and proves where asked), generates the path, and flies it again where asked.
+    /// Searches (and proves if requested), generates the path, and flies it again if requested.
     pub(super) fn new(
         loaded: &Loaded,
         test: &HopTest,
@@ -91,7 +91,7 @@ impl Planned {
         &self.answer.check
     }
 
-    /// Yes with a path, no without.
+    /// The exit status: yes with a path, no without.
     pub(super) fn verdict(&self) -> Answer {
         if self.path.is_some() { Answer::Yes } else { Answer::No }
     }
@@ -110,7 +110,7 @@ impl Planned {
         text
     }
 
-    /// The path as CSV; only the header where there is none.
+    /// The path as CSV; only the header without a path.
     pub(super) fn csv(&self, loaded: &Loaded) -> Result<Vec<u8>, Failure> {
         let mut csv = Vec::new();
         let known = match (loaded.prepared.chain.geometry().map_points(), &loaded.prepared.projection) {
@@ -122,13 +122,13 @@ impl Planned {
         Ok(csv)
     }
 
-    /// The path over the map; `None` without a path or a map.
+    /// The path as GeoJSON over the map; `None` without a path or a map.
     pub(super) fn geojson(&self, loaded: &Loaded) -> Option<String> {
         loaded.prepared.chain.geometry().map_points()?;
         path_geojson(self.path.as_ref()?, loaded.scenario.body.gravity.m_s2(), loaded.prepared.projection.as_ref())
     }
 
-    /// The result as one document of a kind.
+    /// The result as one JSON document of the given kind.
     pub(super) fn document(&self, kind: &str, loaded: &Loaded) -> Result<String, Failure> {
         let document = loaded.document.clone();
         let document = Document::new(kind, document, loaded.inputs.clone(), self.warnings.clone(), self.answer.clone());
@@ -154,7 +154,7 @@ impl Planned {
     }
 }
 
-/// The ground's grip, what it may be rested on and what covers it, in a few words.
+/// The ground in a few words: grip, rest slope and overlays.
 pub(super) fn format_ground(scenario: &Scenario) -> String {
     let surface = &scenario.surface;
     let mut parts = Vec::new();
@@ -188,7 +188,7 @@ fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result
     passed(&execute(loaded.prepared.chain.as_ref(), path, Some(ends)))
 }
 
-/// A path that breaks a limit when it is flown again is a failure of the program, and reported as such.
+/// Reports a path that breaks a limit when it is flown again as a defect of the program.
 pub(super) fn passed(execution: &Execution) -> Result<(), Failure> {
     if execution.passes() {
         return Ok(());
@@ -211,7 +211,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
         return Err(Failure::message("--geojson: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"));
     }
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
-    // Opened before the search, which may take long.
+    // Outputs are opened before the search, which may take long.
     let plot = args.plot.as_deref().map(Pending::begin).transpose()?;
     let geojson = args.geojson.as_deref().map(Pending::begin).transpose()?;
     let prj_text = output::prj(loaded.prepared.projection.as_ref());

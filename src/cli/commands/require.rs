@@ -16,9 +16,10 @@ use crate::cli::{
     args::{Format, RequireArgs},
     load::{EndOptions, Loaded, load},
     output,
+    progress::Progress,
 };
 
-/// A scenario key that makes a hopper more or less capable, with the range of values that is tried unless another is asked for.
+/// A scenario key that makes a hopper more or less capable, with its default range of values.
 #[derive(Clone, Copy)]
 struct Capability {
     path: &'static str,
@@ -32,7 +33,7 @@ const fn capability(path: &'static str, more_is_more: bool, from: f64, to: f64) 
     Capability { path, more_is_more, from, to }
 }
 
-/// All keys of which a more capable value never takes a hop away.
+/// All keys for which a more capable value never removes a feasible hop.
 const CAPABILITIES: [Capability; 10] = [
     capability("hopper.takeoff_speed_max_m_s", true, 0.01, 100.0),
     capability("hopper.landing_speed_max_m_s", true, 0.01, 100.0),
@@ -46,7 +47,7 @@ const CAPABILITIES: [Capability; 10] = [
     capability("body.gravity_m_s2", false, 0.001, 30.0),
 ];
 
-/// The chain at one value, and what the bounds say of it.
+/// The chain at one value, with its bounds.
 struct Tried {
     value: f64,
     loaded: Loaded,
@@ -74,13 +75,13 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     let last = with_value(args, weakest, true)?;
     if ask_the_same((&first.scenario, &first.prepared), (&last.scenario, &last.prepared)) {
         return Err(Failure::message(format!(
-            "--vary {}: no value from {from} to {to} changes anything here: the chain's own limits or friction rule, or the range lies \
+            "--vary {}: no value from {from} to {to} changes anything here: the chain's own limits or friction decide, or the range lies \
              beyond them",
             args.vary
         )));
     }
     let mut tries: Vec<Tried> = Vec::new();
-    let threshold = least_capability(range, &mut |value| -> Result<_, Failure> {
+    let mut tried = |value| -> Result<_, Failure> {
         let loaded = with_value(args, value, true)?;
         let options = BoundsOptions {
             budget_cells: args.budget,
@@ -92,7 +93,9 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
         let verdict = bounds.verdict();
         tries.push(Tried { value, loaded, bounds });
         Ok(verdict)
-    })?;
+    };
+    // Each proof shows its own.
+    let threshold = least_capability(range, &mut tried, &Progress::new(true))?;
     let at = |value: Option<f64>| tries.iter().find(|tried| Some(tried.value) == value);
     let mut answer = RequireAnswer {
         start_x_m: ends.0.point.x_m,
@@ -112,7 +115,7 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     if let Some(tried) = reached {
         tried.add_path(&mut answer);
     }
-    // With the value that the path needs, so that `chta run` on the result flies it.
+    // The scenario gets the value that the path needs, so that `chta run` on the result flies that path.
     let shown = reached.map_or(&first, |tried| &tried.loaded);
     output::to_stdout(written(args, shown, &answer)?.as_bytes())?;
     Ok(if reached.is_some() { Answer::Yes } else { Answer::No })
@@ -136,7 +139,7 @@ impl Tried {
         Ok(bounds.gap.as_ref().map(GapRecord::of))
     }
 
-    /// The path that was found here; its hops are only counted where they are too many to list.
+    /// The path found at this value; only its hop count where it has too many hops to list.
     fn add_path(&self, answer: &mut RequireAnswer) {
         let options = &self.loaded.scenario.search;
         if let Outcome::Path { legs, .. } = &self.bounds.answer.outcome {
@@ -150,12 +153,12 @@ impl Tried {
     }
 }
 
-/// The key and the range that are asked for.
+/// The requested key and range.
 fn asked(args: &RequireArgs) -> Result<(Capability, [f64; 2]), Failure> {
     let Some(capability) = CAPABILITIES.iter().find(|capability| capability.path == args.vary) else {
         let known: Vec<_> = CAPABILITIES.iter().map(|capability| capability.path).collect();
         return Err(Failure::message(format!(
-            "--vary {}: found no key by which a hopper gets more capable, expected one of {}",
+            "--vary {}: found no key that makes a hopper more capable, expected one of {}",
             args.vary,
             known.join(", ")
         )));
@@ -182,7 +185,7 @@ fn asked(args: &RequireArgs) -> Result<(Capability, [f64; 2]), Failure> {
     Ok((*capability, [from, to]))
 }
 
-/// The machine's other angle, which the varied one may not pass.
+/// The opposite mechanical angle limit, which the varied one may not cross.
 fn other_angle_deg(capability: Capability, loaded: &Loaded) -> Option<f64> {
     let hopper = &loaded.scenario.hopper;
     let other = match capability.path {
@@ -193,10 +196,10 @@ fn other_angle_deg(capability: Capability, loaded: &Loaded) -> Option<f64> {
     other.map(|angle| angle.shortest_degrees().unwrap_or_else(|| angle.degrees()))
 }
 
-/// The chain with the key at a value.
+/// The chain with the key set to a value.
 fn with_value(args: &RequireArgs, value: f64, quiet: bool) -> Result<Loaded, Failure> {
     let mut common = args.common.clone();
-    // A named option would win over the value.
+    // A named option would override the value.
     match args.vary.as_str() {
         "body.gravity_m_s2" => common.gravity_m_s2 = None,
         "hopper.clearance_m" => common.clearance_m = None,

@@ -13,7 +13,7 @@ use crate::cli::{
     output::{self, Pending},
 };
 
-/// The answer, which repeats itself when it is run.
+/// The kind of the answer, which `run` accepts as input to repeat it.
 const RESULT: &str = "result.json";
 
 /// Runs a scenario and writes its results into a folder.
@@ -50,7 +50,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         files.push(("path.geojson", geojson.into_bytes()));
         files.extend(output::prj(projection).map(|text| ("path.prj", text)));
     }
-    let simulate::RunTrials { text: trials_text, files: of_trials } = simulate::of_run(&loaded, &test, &planned, *threads, *quiet)?;
+    let simulate::RunTrials { text: trials_text, files: of_trials } = simulate::of_run(&loaded, &test, &planned, *quiet)?;
     files.extend(of_trials);
     fs::create_dir_all(folder).map_err(|error| {
         Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
@@ -61,7 +61,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let pending: Result<Vec<_>, Failure> =
         paths.iter().zip(files).map(|(path, (_, bytes))| Ok((Pending::begin(path)?, bytes))).collect();
     output::finish(pending?)?;
-    // Of an earlier run that had a path, trials or another map: it would speak of another one.
+    // Files left by an earlier run that had a path, trials or another map would contradict this one.
     for stale in ["path.geojson", "path.prj"].into_iter().chain(simulate::RUN_FILES) {
         if !names.contains(&stale) {
             let _ = fs::remove_file(folder.join(stale));

@@ -3,8 +3,8 @@
 use chta::{
     chain::Station,
     graph::{
-        self, PointSpacing, ReliablePath,
-        proof::{Bounds, BoundsOptions, ProofSummary, bounds},
+        self, ReliablePath,
+        proof::{Bounds, BoundsOptions, bounds},
         search_most_reliable,
     },
     hop::HopTest,
@@ -14,7 +14,7 @@ use chta::{
 
 use crate::cli::{Failure, args::ProveArgs, progress::Progress};
 
-/// What a search came to, with bounds where a proof was asked for.
+/// The result of a search, with bounds if a proof was requested.
 #[derive(Debug)]
 pub(super) struct Searched {
     pub(super) found: graph::Answer,
@@ -24,7 +24,7 @@ pub(super) struct Searched {
 }
 
 impl Searched {
-    /// Searches, and proves where that is asked for.
+    /// Searches, and proves if requested.
     pub(super) fn new(
         test: &HopTest,
         ends: (Station, Station),
@@ -38,7 +38,7 @@ impl Searched {
                 Ok(Self { found, reliable_paths, proof: None })
             }
             Some(_) if scenario.reliability().is_some() => Err(Failure::message(format!(
-                "--prove bounds the fewest hops, but search.risk is \"{}\", which asks for the surest path: leave --prove away, or add \
+                "--prove bounds the fewest hops, but search.risk is \"{}\", which selects the most reliable path: omit --prove, or add \
                  --set search.risk=ignored",
                 scenario.risk.name()
             ))),
@@ -66,7 +66,7 @@ impl Searched {
         Ok(found.into_iter().map(|found| Self { found, reliable_paths: Vec::new(), proof: None }).collect())
     }
 
-    /// The bounds, where a proof was asked for.
+    /// The bounds, if a proof was requested.
     pub(super) fn bounds(&self) -> Option<&Bounds> {
         self.proof.as_ref().map(|(bounds, _)| bounds)
     }
@@ -81,10 +81,10 @@ impl Searched {
     }
 }
 
-/// Makes as many threads as asked for; 0: one for each core.
+/// Sets the number of threads; 0: one for each core.
 pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
     if threads == 0 {
-        // As it is anyway, and small searches never start them.
+        // This is the default, and small searches never start the threads.
         return Ok(());
     }
     rayon::ThreadPoolBuilder::new()
@@ -93,7 +93,7 @@ pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
         .map_err(|error| Failure::message(format!("the threads cannot be started ({error}): ask for fewer with --threads")))
 }
 
-/// Searches for one pair, for the most reliable path where the scenario asks for it, and shows what is being tried on a terminal.
+/// Searches for one pair, for the most reliable path if the scenario requests it, and shows progress on the terminal.
 pub(super) fn search(
     test: &HopTest,
     (start, goal): (Station, Station),
@@ -101,14 +101,15 @@ pub(super) fn search(
     quiet: bool,
 ) -> Result<(graph::Answer, Vec<ReliablePath>), Failure> {
     let options = &scenario.search;
+    let progress = Progress::new(quiet);
     let found = match scenario.reliability() {
-        None => graph::search(test, start, goal, options, &mut progress_printer(quiet)).map(|answer| (answer, Vec::new())),
-        Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &mut progress_printer(quiet)),
+        None => graph::search(test, start, goal, options, &progress).map(|answer| (answer, Vec::new())),
+        Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &progress),
     };
     found.map_err(|error| Failure::of(&error))
 }
 
-/// Searches for many pairs, once from each start; pair by pair where the most reliable paths are asked for.
+/// Searches for many pairs, once from each start; pair by pair where the most reliable paths are requested.
 fn search_pairs(
     test: &HopTest,
     pairs: &[(Station, Station)],
@@ -118,28 +119,15 @@ fn search_pairs(
     if scenario.reliability().is_some() {
         return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
     }
-    graph::search_pairs(test, pairs, &scenario.search, &mut progress_printer(quiet)).map_err(|error| Failure::of(&error))
+    graph::search_pairs(test, pairs, &scenario.search, &Progress::new(quiet)).map_err(|error| Failure::of(&error))
 }
 
-/// Prints on a terminal what is being tried.
-fn progress_printer(quiet: bool) -> impl FnMut(PointSpacing) {
-    let progress = Progress::new(quiet);
-    move |spacing| {
-        progress.say(match spacing {
-            PointSpacing::PerSegment(points) => format!("searching with {points} points inside each segment"),
-            PointSpacing::AtMostM(spacing_m) => format!("searching with nodes at most {spacing_m} m apart"),
-        });
-    }
-}
-
-/// Bounds the fewest hops, and shows how far the proof is on a terminal.
+/// Bounds the fewest hops, and shows the progress of the proof on the terminal.
 pub(super) fn proved(
     test: &HopTest,
     (start, goal): (Station, Station),
     options: &BoundsOptions,
     quiet: bool,
 ) -> Result<Bounds, Failure> {
-    let progress = Progress::new(quiet);
-    let mut tell = |summary: ProofSummary| progress.say(format!("proving with {} cells, round {}", summary.cells, summary.rounds));
-    bounds(test, start, goal, options, &mut tell).map_err(|error| Failure::of(&error))
+    bounds(test, start, goal, options, &Progress::new(quiet)).map_err(|error| Failure::of(&error))
 }

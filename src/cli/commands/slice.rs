@@ -20,7 +20,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
         && lays_nothing(scenario)
     {
         let name = path.display();
-        let reason = "has no friction_coefficient, so none goes into the chain: give the scenario again where the chain is used";
+        let reason = "has no friction_coefficient, so the chain gets no friction: give the scenario again when the chain is used";
         output::warn(*quiet, &format!("--scenario {name} {reason}"));
     }
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(terrain, error);
@@ -62,7 +62,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     Ok(Answer::Yes)
 }
 
-/// Whether a scenario has nothing that goes into a chain.
+/// Whether a scenario has nothing to add to a chain.
 fn lays_nothing(scenario: &Scenario) -> bool {
     friction(scenario).is_none() && Overlays::files(scenario).next().is_none()
 }
@@ -72,7 +72,7 @@ fn name_of(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// The ground along the slice, and what its user should know.
+/// The ground along the slice, with the warnings about it.
 fn read_transect(args: &SliceArgs, accept_map_scale: bool) -> Result<Transect, Failure> {
     let SliceArgs { terrain, via, via_lonlat, mesh_scale, .. } = args;
     let from = place("from", args.from, args.from_lonlat)?;
@@ -92,14 +92,14 @@ fn read_transect(args: &SliceArgs, accept_map_scale: bool) -> Result<Transect, F
     let between: Vec<MapPlace> =
         via.iter().copied().map(MapPlace::Metres).chain(via_lonlat.iter().copied().map(MapPlace::LonLat)).collect();
     let transect = match Transect::of_dem(terrain, [&from, &to], &between, accept_map_scale) {
-        // A damaged mesh is told by the readers of meshes, who know why.
+        // A damaged mesh is reported by the mesh readers, which know the reason.
         Err(_) if named_as_mesh(terrain) => return of_mesh(),
         transect => transect.map_err(failed)?,
     };
     if let Some(scale) = mesh_scale {
         let name = terrain.display();
         return Err(Failure::message(format!(
-            "--mesh-scale {scale}: {name} is an elevation raster, expected a mesh; leave the option away"
+            "--mesh-scale {scale}: {name} is an elevation raster, expected a mesh; omit the option"
         )));
     }
     Ok(transect)
@@ -111,13 +111,13 @@ fn named_as_mesh(path: &Path) -> bool {
     ["obj", "stl", "ply"].iter().any(|mesh| extension.eq_ignore_ascii_case(mesh))
 }
 
-/// One of the two ways to say a place; the command line asks for one.
+/// A position given in one of the two forms; the command line requires one.
 pub(super) fn place(which: &str, point: Option<MapPoint>, place: Option<LonLat>) -> Result<MapPlace, Failure> {
     let missing = || Failure::message(format!("found no --{which}, expected --{which} X,Y or --{which}-lonlat LON,LAT"));
     point.map(MapPlace::Metres).or(place.map(MapPlace::LonLat)).ok_or_else(missing)
 }
 
-/// Where a slice begins and ends, for its comments.
+/// The ends of a slice, for its comments.
 fn ends(legs: &[Profile]) -> Option<String> {
     let (from, to) = (legs.first()?.points.first()?.map, legs.last()?.points.last()?.map);
     Some(format!("from ({}, {}) m to ({}, {}) m on the map", from.x, from.y, to.x, to.y))

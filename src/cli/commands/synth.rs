@@ -1,4 +1,4 @@
-//! `chta synth`: terrain made up from a seed.
+//! `chta synth`: synthetic terrain from a seed.
 
 use chta::{
     quantity::Angle,
@@ -11,7 +11,7 @@ use crate::cli::{
     output,
 };
 
-/// Makes terrain up and writes it.
+/// Generates terrain and writes it.
 pub(crate) fn run(args: &SynthArgs) -> Result<Answer, Failure> {
     let ascii = match args.output.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase()).as_deref() {
         Some("tif" | "tiff") => false,

@@ -1,9 +1,6 @@
 //! `chta trade`: one or two keys of the scenario varied.
 
-use std::{
-    path::Path,
-    sync::atomic::{AtomicUsize, Ordering},
-};
+use std::path::Path;
 
 use chta::{
     report::{
@@ -13,7 +10,10 @@ use chta::{
     scenario::{SweptKey, Trade, TradeError},
 };
 
-use super::captions::{SpeedLimit, title};
+use super::{
+    captions::{SpeedLimit, title},
+    search::use_threads,
+};
 use crate::cli::{
     Answer, Failure,
     args::{Format, TradeArgs},
@@ -23,7 +23,7 @@ use crate::cli::{
     progress::Progress,
 };
 
-/// What is wrong with a swept key.
+/// The failure for an invalid swept key.
 #[expect(clippy::needless_pass_by_value, reason = "as map_err gives it")]
 fn refused(error: TradeError) -> Failure {
     Failure::message(format!("--vary: {}", hints::sentence(&error)))
@@ -31,21 +31,19 @@ fn refused(error: TradeError) -> Failure {
 
 /// Answers every cell.
 pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
+    use_threads(args.answer.threads)?;
     let swept: Vec<_> = args.vary.iter().map(|text| SweptKey::parse(text)).collect::<Result<_, _>>().map_err(refused)?;
     let table = args.output.as_deref().map(TableFormat::of).transpose()?;
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
-    // Opened before the work, which may take long.
+    // Outputs are opened before the computation, which may take long.
     let rows = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let ends = EndOptions::of_path(args.journey.start, args.journey.goal);
     let ToVary { first, survey, entries, base } = load_to_vary(&args.journey.chain, &args.common, &args.search, ends, &swept)?;
     first.ends()?;
     let trade = Trade::new(&entries, &base, &survey, &swept).map_err(refused)?;
-    let progress = Progress::new(args.common.quiet);
-    let (cells, done) = (trade.cells(), AtomicUsize::new(0));
-    let tell = || progress.say(format!("{} of {cells} fields", done.fetch_add(1, Ordering::Relaxed) + 1));
-    let answer = trade.run(args.prove.prove.then_some(args.prove.budget), args.answer.threads, &tell).map_err(refused)?;
-    drop(progress);
+    let budget = args.prove.prove.then_some(args.prove.budget);
+    let answer = trade.run(budget, &Progress::new(args.common.quiet)).map_err(refused)?;
     let mut files = Vec::new();
     if let Some(file) = rows {
         let bytes = if table == Some(TableFormat::Json) { document(&first, &answer)?.into_bytes() } else { csv(&answer)? };
@@ -72,7 +70,7 @@ fn csv(answer: &TradeAnswer) -> Result<Vec<u8>, Failure> {
     Ok(csv)
 }
 
-/// The answer as one document; its scenario is that of the first row.
+/// The answer as one JSON document; its scenario is that of the first row.
 fn document(first: &Loaded, answer: &TradeAnswer) -> Result<String, Failure> {
     let warnings = first.warnings_with([]);
     let document = Document::new("trade", first.document.clone(), first.inputs.clone(), warnings, answer.clone());

@@ -8,8 +8,9 @@ use super::{
 };
 use crate::{
     chain::Station,
-    graph::{AUTO_POINTS_PER_SEGMENT, Answer, Outcome, PointSpacing, SearchOptions, TooManyNodes, search},
+    graph::{AUTO_POINTS_PER_SEGMENT, Answer, Outcome, PointSpacing, SearchError, SearchOptions, search_one},
     hop::HopTest,
+    progress::{Cancelled, Detail, Meter, Progress, Stage},
 };
 
 /// The default limit on the number of cells; a cell takes some 200 bytes.
@@ -120,10 +121,10 @@ impl Bounds {
 
 /// Bounds the fewest hops from start to goal from both sides, for every choice of points.
 ///
-/// `progress` is called with the state of each round: the two bounds and the number of cells.
+/// Reports the cells of each round.
 ///
 /// # Errors
-/// [`TooManyNodes`] from the search for a first path.
+/// [`SearchError`]: cancelled, or too many nodes for the search for a first path.
 ///
 /// # Complexity
 /// Memory grows only with the budget of cells. A round tests each cell against the cells one may-hop nearer to start or goal
@@ -143,10 +144,10 @@ impl Bounds {
 /// let chain = test.chain();
 /// let at = |x| chain.geometry().station(x).unwrap();
 /// // A hop at 45 degrees covers v^2 / g = 25 m: 60 m take three, and no path takes two.
-/// let there = bounds(&test, at(0.0), at(60.0), &BoundsOptions::default(), &mut |_| {}).unwrap();
+/// let there = bounds(&test, at(0.0), at(60.0), &BoundsOptions::default(), &()).unwrap();
 /// assert_eq!((there.lower, there.upper()), (Some(3), Some(3)));
 /// // At 5 m/s no arc rises over a 50 m wall: v^2 / (2 g) = 12.5 m.
-/// let up = bounds(&test, at(0.0), at(70.0), &BoundsOptions::default(), &mut |_| {}).unwrap();
+/// let up = bounds(&test, at(0.0), at(70.0), &BoundsOptions::default(), &()).unwrap();
 /// assert_eq!(up.verdict(), ProofVerdict::Untraversable);
 /// ```
 pub fn bounds(
@@ -154,20 +155,30 @@ pub fn bounds(
     start: Station,
     goal: Station,
     options: &BoundsOptions,
-    progress: &mut dyn FnMut(ProofSummary),
-) -> Result<Bounds, TooManyNodes> {
-    bounds_with::<Sound>(test, start, goal, options, progress)
+    progress: &dyn Progress,
+) -> Result<Bounds, SearchError> {
+    bounds_of(test, (start, goal), options, &Meter::new(progress, Stage::Proof))
+}
+
+/// The same as a part of another stage.
+pub(crate) fn bounds_of(
+    test: &HopTest,
+    ends: (Station, Station),
+    options: &BoundsOptions,
+    meter: &Meter<'_>,
+) -> Result<Bounds, SearchError> {
+    bounds_with::<Sound>(test, ends, options, meter)
 }
 
 /// The same with faults that a test selects.
 pub(super) fn bounds_with<F: Faults>(
     test: &HopTest,
-    start: Station,
-    goal: Station,
+    (start, goal): (Station, Station),
     options: &BoundsOptions,
-    progress: &mut dyn FnMut(ProofSummary),
-) -> Result<Bounds, TooManyNodes> {
-    let answer = first_path(test, start, goal, &options.search)?;
+    meter: &Meter<'_>,
+) -> Result<Bounds, SearchError> {
+    meter.report(Detail::None)?;
+    let answer = first_path(test, (start, goal), &options.search, meter)?;
     if answer.hops() == Some(0) {
         let nothing = ProofSummary::default();
         return Ok(Bounds { lower: Some(0), answer, summary: nothing, stretches: Vec::new(), gap: None });
@@ -180,19 +191,19 @@ pub(super) fn bounds_with<F: Faults>(
         path_over_cells: false,
         tried_cells: 0,
     };
-    let lower = closing.close(progress);
+    let lower = closing.close(meter)?;
     let (mut stretches, mut gap) = (Vec::new(), None);
     if options.explain {
-        stretches = closing.refinement.stretches();
-        gap = lower.is_none().then(|| closing.refinement.gap());
+        stretches = closing.refinement.stretches(meter)?;
+        gap = lower.is_none().then(|| closing.refinement.gap(meter)).transpose()?;
     }
     Ok(Bounds { lower, summary: closing.summary(), answer: closing.answer, stretches, gap })
 }
 
 /// The first path, over the points requested, or over the first spacings of "auto" while they are few.
-fn first_path(test: &HopTest, start: Station, goal: Station, options: &SearchOptions) -> Result<Answer, TooManyNodes> {
+fn first_path(test: &HopTest, ends: (Station, Station), options: &SearchOptions, meter: &Meter<'_>) -> Result<Answer, SearchError> {
     let spacing = options.spacing.unwrap_or(PointSpacing::PerSegment(AUTO_POINTS_PER_SEGMENT[0]));
-    search(test, start, goal, &SearchOptions { spacing: Some(spacing), ..options.clone() }, &mut |_| {})
+    search_one(test, ends, &SearchOptions { spacing: Some(spacing), ..options.clone() }, meter)
 }
 
 /// The state of the refinement of both bounds.
@@ -208,28 +219,31 @@ struct Closing<'a, 'o, F: Faults> {
 
 impl<F: Faults> Closing<'_, '_, F> {
     /// Refines until the bounds meet, the goal is proved unreachable, or the budget ends; returns the lower bound.
-    fn close(&mut self, progress: &mut dyn FnMut(ProofSummary)) -> Option<u64> {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn close(&mut self, meter: &Meter<'_>) -> Result<Option<u64>, Cancelled> {
         loop {
             let upper = self.answer.hops().map(|hops| u32::try_from(hops).unwrap_or(CUT_OFF));
-            let lower = self.refinement.settle_from_start(upper.unwrap_or(CUT_OFF));
+            let lower = self.refinement.settle_from_start(upper.unwrap_or(CUT_OFF), meter)?;
             self.rounds += 1;
-            progress(self.summary());
+            meter.report(Detail::ProofRound { cells: self.refinement.cells.len(), round: self.rounds })?;
             if lower == CUT_OFF {
-                return None;
+                return Ok(None);
             }
             let decided = upper.is_some() && self.options.until == Until::Decided;
             if decided || upper.is_some_and(|upper| lower >= upper) {
-                return Some(u64::from(lower));
+                return Ok(Some(u64::from(lower)));
             }
             // Only may-paths shorter than the best path can change the result.
             let shorter = upper.map_or(CUT_OFF - 1, |upper| upper - 1);
-            self.refinement.settle_to_goal(shorter);
-            if self.try_points(shorter) {
+            self.refinement.settle_to_goal(shorter, meter)?;
+            if self.try_points(shorter, meter)? {
                 continue;
             }
             let breadth = if upper.is_none() { lower.saturating_add(lower / Self::BREADTH) } else { lower };
             if !self.refinement.split(breadth, self.options.budget_cells) {
-                return Some(u64::from(lower));
+                return Ok(Some(u64::from(lower)));
             }
         }
     }
@@ -239,14 +253,17 @@ impl<F: Faults> Closing<'_, '_, F> {
     const BREADTH: u32 = 2;
 
     /// Searches for a path of at most this many hops over points of the cells; returns whether there is one.
-    fn try_points(&mut self, at_most: u32) -> bool {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn try_points(&mut self, at_most: u32, meter: &Meter<'_>) -> Result<bool, Cancelled> {
         self.tried_cells = self.refinement.cells.len();
-        let tried = try_points(&self.refinement, Scope::Paths(at_most));
+        let tried = try_points(&self.refinement, Scope::Paths(at_most), meter)?;
         let test = self.refinement.prover.test();
-        let Some((cost, legs)) = tried.path(test, &self.options.search) else { return false };
+        let Some((cost, legs)) = tried.path(test, &self.options.search) else { return Ok(false) };
         self.answer.outcome = Outcome::Path { legs, cost };
         self.path_over_cells = true;
-        true
+        Ok(true)
     }
 
     /// The work done so far.

@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use rayon::prelude::*;
 
 use super::{Faults, Prover, cell::Cell};
+use crate::progress::{Cancelled, Meter, PairCounter};
 
 /// No may-path joins the cell to this end.
 pub(super) const CUT_OFF: u32 = u32::MAX;
@@ -62,7 +63,16 @@ impl Depths {
     }
 
     /// Settles all depths up to a limit; deeper cells are only known to be deeper.
-    pub(super) fn settle<F: Faults>(&mut self, prover: &Prover<'_, F>, cells: &[Cell<F::Rounding>], limit: u32) {
+    ///
+    /// # Errors
+    /// [`Cancelled`]; then the depths are of no further use.
+    pub(super) fn settle<F: Faults>(
+        &mut self,
+        prover: &Prover<'_, F>,
+        cells: &[Cell<F::Rounding>],
+        limit: u32,
+        meter: &Meter<'_>,
+    ) -> Result<(), Cancelled> {
         let reach_m = prover.greatest_reach_m();
         let mut by_depth: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
         for (i, &depth) in (0u32..).zip(&self.depth) {
@@ -88,7 +98,10 @@ impl Depths {
             }
             // Only cells within reach of the level above can have a parent there.
             let looking: Vec<u32> = waiting.range(within_reach(cells, &above, reach_m)).copied().collect();
-            let found: Vec<Found> = looking.par_iter().map(|&cell| self.look(prover, cells, cell, level, &above)).collect();
+            let look = |counter: &mut PairCounter<'_>, &cell: &u32| self.look(prover, cells, cell, (level, &above), counter);
+            let found = looking.par_iter().map_init(|| meter.counter(), look).collect::<Result<Vec<Found>, _>>();
+            meter.check()?;
+            let found = found?;
             for (&cell, found) in looking.iter().zip(&found) {
                 self.pairs_tested += found.pairs_tested;
                 let i = cell as usize;
@@ -112,6 +125,7 @@ impl Depths {
                 *depth = CUT_OFF;
             }
         }
+        Ok(())
     }
 
     /// Whether the known parent still gives a cell this depth.
@@ -126,23 +140,35 @@ impl Depths {
 
     /// Looks for a cell of the level above from which (or to which) a hop may lead: first the known parent, then the nearest
     /// cells.
-    fn look<F: Faults>(&self, prover: &Prover<'_, F>, cells: &[Cell<F::Rounding>], cell: u32, level: u32, above: &[u32]) -> Found {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn look<F: Faults>(
+        &self,
+        prover: &Prover<'_, F>,
+        cells: &[Cell<F::Rounding>],
+        cell: u32,
+        (level, above): (u32, &[u32]),
+        counter: &mut PairCounter<'_>,
+    ) -> Result<Found, Cancelled> {
+        counter.check()?;
         let i = cell as usize;
         let known = self.parent[i];
         let mut pairs_tested = 0;
         let mut may = |other: u32| {
+            counter.pair()?;
             pairs_tested += 1;
             let (own, other) = (&cells[i], &cells[other as usize]);
-            match self.root {
+            Ok(match self.root {
                 Root::Start => prover.may(other, own).is_ok(),
                 Root::Goal => prover.may(own, other).is_ok(),
-            }
+            })
         };
         if known != NONE {
             // A parent that was split is replaced by its halves.
             for candidate in [known, known + 1] {
-                if candidate != cell && self.is_above(candidate, level) && may(candidate) {
-                    return Found { parent: Some(candidate), pairs_tested };
+                if candidate != cell && self.is_above(candidate, level) && may(candidate)? {
+                    return Ok(Found { parent: Some(candidate), pairs_tested });
                 }
             }
         }
@@ -150,8 +176,14 @@ impl Depths {
             Root::Start => prover.reach_to_m(&cells[i]),
             Root::Goal => prover.reach_from_m(&cells[i]),
         };
-        let parent = nearest_cells(cells, cell, reach_m, above).find(|&other| may(other));
-        Found { parent, pairs_tested }
+        let mut parent = None;
+        for other in nearest_cells(cells, cell, reach_m, above) {
+            if may(other)? {
+                parent = Some(other);
+                break;
+            }
+        }
+        Ok(Found { parent, pairs_tested })
     }
 
     /// Updates the depths after a split: `halves` holds, for each old cell, the index of its first new cell and their number.

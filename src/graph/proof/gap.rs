@@ -2,7 +2,10 @@
 //! them.
 
 use super::{Faults, Prover, cell::Cell, depths::CUT_OFF, points::try_points, refine::Refinement};
-use crate::graph::RefusalCounts;
+use crate::{
+    graph::RefusalCounts,
+    progress::{Cancelled, Meter},
+};
 
 /// What is proved for a stretch of the chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,10 +60,13 @@ pub struct Gap {
 
 impl<F: Faults> Refinement<'_, F> {
     /// Every cell with what is proved for it; settles all depths.
-    pub(super) fn stretches(&mut self) -> Vec<Stretch> {
-        self.settle_from_start(CUT_OFF);
-        self.settle_to_goal(CUT_OFF);
-        let reached = try_points(self, super::points::Scope::FromStart).reached_x_m();
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn stretches(&mut self, meter: &Meter<'_>) -> Result<Vec<Stretch>, Cancelled> {
+        self.settle_from_start(CUT_OFF, meter)?;
+        self.settle_to_goal(CUT_OFF, meter)?;
+        let reached = try_points(self, super::points::Scope::FromStart, meter)?.reached_x_m();
         let class = |i: usize, cell: &Cell<F::Rounding>| {
             if self.from_start.of(i) == CUT_OFF {
                 StretchClass::Unreachable
@@ -76,13 +82,16 @@ impl<F: Faults> Refinement<'_, F> {
             class: class(i, cell),
             may_lead_to_goal: self.to_goal.of(i) != CUT_OFF,
         };
-        self.cells.iter().enumerate().map(stretch).collect()
+        Ok(self.cells.iter().enumerate().map(stretch).collect())
     }
 
     /// The gap, once the goal is proved unreachable; settles all depths.
-    pub(super) fn gap(&mut self) -> Gap {
-        self.settle_from_start(CUT_OFF);
-        self.settle_to_goal(CUT_OFF);
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn gap(&mut self, meter: &Meter<'_>) -> Result<Gap, Cancelled> {
+        self.settle_from_start(CUT_OFF, meter)?;
+        self.settle_to_goal(CUT_OFF, meter)?;
         let of =
             |depths: &super::depths::Depths| -> Vec<usize> { (0..self.cells.len()).filter(|&i| depths.of(i) != CUT_OFF).collect() };
         let (reached, leading) = (of(&self.from_start), of(&self.to_goal));
@@ -92,13 +101,13 @@ impl<F: Faults> Refinement<'_, F> {
             let nearest_points = cells.iter().map(|&i| to_m.clamp(self.cells[i].from_m, self.cells[i].to_m));
             nearest_points.min_by(|a, b| (a - to_m).abs().total_cmp(&(b - to_m).abs()))
         };
-        Gap {
+        Ok(Gap {
             reached_x_m: nearest(&reached, goal_m).unwrap_or(start_m),
             leads_to_goal_x_m: nearest(&leading, start_m).unwrap_or(goal_m),
             reached_cells: reached.len(),
             leading_cells: leading.len(),
-            refusals: refusals_between(&self.prover, &self.cells, &reached, &unreached),
-        }
+            refusals: refusals_between(&self.prover, &self.cells, &reached, &unreached, meter)?,
+        })
     }
 }
 
@@ -113,7 +122,9 @@ fn refusals_between<F: Faults>(
     cells: &[Cell<F::Rounding>],
     reached: &[usize],
     others: &[usize],
-) -> RefusalCounts {
+    meter: &Meter<'_>,
+) -> Result<RefusalCounts, Cancelled> {
+    let mut counter = meter.counter();
     let within = |from: usize, to: usize| {
         let (from, to) = (&cells[from], &cells[to]);
         (to.from_m - from.to_m).max(from.from_m - to.to_m) <= prover.reach_from_m(from)
@@ -122,10 +133,11 @@ fn refusals_between<F: Faults>(
     let mut counts = RefusalCounts::default();
     for &from in reached.iter().step_by(step) {
         for &to in others.iter().filter(|&&to| within(from, to)) {
+            counter.pair()?;
             if let Err(limit) = prover.may(&cells[from], &cells[to]) {
                 counts.count(limit);
             }
         }
     }
-    counts
+    Ok(counts)
 }

@@ -29,6 +29,7 @@ mod points;
 mod refine;
 mod require;
 
+pub(crate) use bounds::bounds_of;
 pub use bounds::{Bounds, BoundsOptions, DEFAULT_BUDGET_CELLS, ProofSummary, ProofVerdict, Until, bounds};
 pub use gap::{Gap, Stretch, StretchClass};
 use may::Prover;

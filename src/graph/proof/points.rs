@@ -14,6 +14,7 @@ use crate::{
     chain::Station,
     graph::{Cost, Edge, Leg, SearchOptions},
     hop::HopTest,
+    progress::{Cancelled, Meter, PairCounter},
     quantity::SlopeInterval,
 };
 
@@ -57,7 +58,10 @@ pub(super) enum Scope {
 /// Tries the middles and ends of cells, level by level from the start.
 ///
 /// As cells are split, their points become denser exactly where a path may lead.
-pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope) -> Tried {
+///
+/// # Errors
+/// [`Cancelled`].
+pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope, meter: &Meter<'_>) -> Result<Tried, Cancelled> {
     let test = refinement.prover.test();
     let mut tried = Tried::over(refinement, scope);
     let at_most = if let Scope::Paths(at_most) = scope { at_most } else { CUT_OFF };
@@ -77,7 +81,10 @@ pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope
         for i in late {
             open.remove(&i);
         }
-        let found: Vec<_> = within.par_iter().map(|&i| tried.first_hop(test, reach_m, &frontier, i)).collect();
+        let first_hop = |counter: &mut PairCounter<'_>, &i: &usize| tried.first_hop(test, reach_m, &frontier, i, counter);
+        let found = within.par_iter().map_init(|| meter.counter(), first_hop).collect::<Result<Vec<_>, _>>();
+        meter.check()?;
+        let found = found?;
         frontier.clear();
         for (&i, by) in within.iter().zip(&found) {
             if by.is_some() {
@@ -87,7 +94,7 @@ pub(super) fn try_points<F: Faults>(refinement: &Refinement<'_, F>, scope: Scope
             }
         }
     }
-    tried
+    Ok(tried)
 }
 
 impl Tried {
@@ -152,13 +159,28 @@ impl Tried {
     }
 
     /// The nearest point of an ascending frontier from which one hop leads to a point.
-    fn first_hop(&self, test: &HopTest, reach_m: f64, frontier: &[usize], to: usize) -> Option<(usize, SlopeInterval)> {
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    fn first_hop(
+        &self,
+        test: &HopTest,
+        reach_m: f64,
+        frontier: &[usize],
+        to: usize,
+        counter: &mut PairCounter<'_>,
+    ) -> Result<Option<(usize, SlopeInterval)>, Cancelled> {
+        counter.check()?;
         let x_m = |i: usize| self.candidates[i].station.point.x_m;
         let around = frontier.partition_point(|&i| i < to);
-        let mut nearest = nearest_first(frontier, around..around, |i| (x_m(i) - x_m(to)).abs(), reach_m);
-        nearest.find_map(|from| {
-            test.lofts(&self.candidates[from].station, &self.candidates[to].station).ok().map(|lofts| (from, lofts))
-        })
+        let nearest = nearest_first(frontier, around..around, |i| (x_m(i) - x_m(to)).abs(), reach_m);
+        for from in nearest {
+            counter.pair()?;
+            if let Ok(lofts) = test.lofts(&self.candidates[from].station, &self.candidates[to].station) {
+                return Ok(Some((from, lofts)));
+            }
+        }
+        Ok(None)
     }
 
     /// The path to the goal with its cost, if the goal was reached.

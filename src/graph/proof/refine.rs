@@ -5,7 +5,10 @@ use super::{
     cell::{Cell, partition, stretch},
     depths::{CUT_OFF, Depths, Root},
 };
-use crate::chain::{Site, Station};
+use crate::{
+    chain::{Site, Station},
+    progress::{Cancelled, Meter},
+};
 
 /// The may-graph between two stations at its current refinement.
 #[derive(Debug)]
@@ -33,14 +36,20 @@ impl<'a, F: Faults> Refinement<'a, F> {
 
     /// Settles the depths from the start up to a limit and returns the depth of the goal: every path has at least this many
     /// hops (if it does not exceed the limit). [`CUT_OFF`] means that there is no path.
-    pub(super) fn settle_from_start(&mut self, limit: u32) -> u32 {
-        self.from_start.settle(&self.prover, &self.cells, limit);
-        self.from_start.of(self.goal)
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn settle_from_start(&mut self, limit: u32, meter: &Meter<'_>) -> Result<u32, Cancelled> {
+        self.from_start.settle(&self.prover, &self.cells, limit, meter)?;
+        Ok(self.from_start.of(self.goal))
     }
 
     /// Settles the depths to the goal up to a limit.
-    pub(super) fn settle_to_goal(&mut self, limit: u32) {
-        self.to_goal.settle(&self.prover, &self.cells, limit);
+    ///
+    /// # Errors
+    /// [`Cancelled`].
+    pub(super) fn settle_to_goal(&mut self, limit: u32, meter: &Meter<'_>) -> Result<(), Cancelled> {
+        self.to_goal.settle(&self.prover, &self.cells, limit, meter)
     }
 
     /// The least number of may-hops from start to goal through a cell, as far as settled; `None` if it is on no may-path.

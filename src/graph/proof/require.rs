@@ -1,6 +1,7 @@
 //! The least capability that makes a journey possible, bracketed by a value proved insufficient and one proved sufficient.
 
 use super::ProofVerdict;
+use crate::progress::{Cancelled, Detail, Meter, Progress, Stage};
 
 /// Bounds on the least capability.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,26 +49,36 @@ impl CapabilityRange {
 /// A more capable value never makes a journey impossible, so a verdict at one value holds for all values on its side. If a
 /// value in between stays open, both bounds are refined separately.
 ///
+/// Reports before the first value and after every value.
+///
 /// # Errors
-/// The error of `verdict_at` at a value.
+/// The error of `verdict_at` at a value, or [`Cancelled`].
 ///
 /// # Examples
 /// ```
-/// use chta::graph::proof::{CapabilityRange, ProofVerdict, least_capability};
+/// use chta::{graph::proof::{CapabilityRange, ProofVerdict, least_capability}, progress::Cancelled};
 /// // Possible from 3 on; the verdict between 2.9 and 3.1 is open.
-/// let mut verdict_at = |value: f64| Ok::<_, ()>(match value {
+/// let mut verdict_at = |value: f64| Ok::<_, Cancelled>(match value {
 ///     v if v < 2.9 => ProofVerdict::Untraversable,
 ///     v if v > 3.1 => ProofVerdict::Traversable,
 ///     _ => ProofVerdict::Open,
 /// });
 /// let range = CapabilityRange { weakest: 0.1, strongest: 100.0, resolution: 1e-3 };
-/// let found = least_capability(range, &mut verdict_at).unwrap();
+/// let found = least_capability(range, &mut verdict_at, &()).unwrap();
 /// assert!((found.unreachable_at.unwrap() - 2.9).abs() < 0.01 && (found.reachable_at.unwrap() - 3.1).abs() < 0.01);
 /// ```
-pub fn least_capability<E>(
+pub fn least_capability<E: From<Cancelled>>(
     range: CapabilityRange,
     verdict_at: &mut dyn FnMut(f64) -> Result<ProofVerdict, E>,
+    progress: &dyn Progress,
 ) -> Result<Threshold, E> {
+    let meter = Meter::new(progress, Stage::Requirement);
+    meter.report(Detail::None)?;
+    let mut verdict_at = |value: f64| {
+        let verdict = verdict_at(value)?;
+        meter.complete_one()?;
+        Ok::<_, E>(verdict)
+    };
     let strongest = verdict_at(range.strongest)?;
     if strongest == ProofVerdict::Untraversable {
         return Ok(Threshold { unreachable_at: Some(range.strongest), reachable_at: None });
@@ -124,13 +135,13 @@ mod tests {
         let rising = range.weakest < range.strongest;
         let mut verdict_at = |value: f64| {
             asked += 1;
-            Ok::<_, ()>(match value {
+            Ok::<_, Cancelled>(match value {
                 v if (v <= proved_to) == rising && v != proved_to || v == proved_to => ProofVerdict::Untraversable,
                 v if (v >= found_from) == rising && v != found_from || v == found_from => ProofVerdict::Traversable,
                 _ => ProofVerdict::Open,
             })
         };
-        (least_capability(range, &mut verdict_at).unwrap(), asked)
+        (least_capability(range, &mut verdict_at, &()).unwrap(), asked)
     }
 
     #[test]

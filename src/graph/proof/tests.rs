@@ -6,6 +6,7 @@ use crate::{
     draw::Draw,
     graph::{PointSpacing, SearchOptions, search},
     hop::HopTest,
+    progress::{Meter, Stage},
     quantity::{AngleInterval, ChainPoint, Inwards, VertexId},
     world::{Gravity, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
@@ -91,10 +92,10 @@ fn contradictions<F: Faults>(journeys: usize) -> usize {
         let test = HopTest::new(chain.clone());
         let mut end = || chain.geometry().vertex_station(VertexId(draw.below(chain.segments().len() + 1)));
         let (start, goal) = (end(), end());
-        let lower = bounds_with::<F>(&test, start, goal, &options, &mut |_| {}).unwrap().lower;
+        let lower = bounds_with::<F>(&test, (start, goal), &options, &Meter::new(&(), Stage::Proof)).unwrap().lower;
         let fewest = [0, 2, 7].into_iter().filter_map(|points| {
             let spacing = Some(PointSpacing::PerSegment(points));
-            search(&test, start, goal, &SearchOptions { spacing, ..SearchOptions::default() }, &mut |_| {}).unwrap().hops()
+            search(&test, start, goal, &SearchOptions { spacing, ..SearchOptions::default() }, &()).unwrap().hops()
         });
         contradicted += usize::from(fewest.min().is_some_and(|hops| lower.is_none_or(|lower| lower > hops)));
     }
@@ -129,7 +130,7 @@ fn bound_over_flat_ground<F: Faults>(run_m: f64) -> Option<u64> {
     let chain = ConstrainedChain::new(geometry, &Hopper::UNLIMITED, Gravity::new(1.0).unwrap(), &surface).unwrap();
     let test = HopTest::new(chain.clone());
     let at = |i| chain.geometry().vertex_station(VertexId(i));
-    bounds_with::<F>(&test, at(0), at(1), &BoundsOptions::default(), &mut |_| {}).unwrap().lower
+    bounds_with::<F>(&test, (at(0), at(1)), &BoundsOptions::default(), &Meter::new(&(), Stage::Proof)).unwrap().lower
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Why the hops of a map cannot be computed.
 
-use crate::{ground::SliceProblem, quantity::MapPoint, terrain::TerrainError};
+use crate::{ground::SliceProblem, progress::Cancelled, quantity::MapPoint, terrain::TerrainError};
 
 /// Why there is no hop map.
 #[derive(Debug, thiserror::Error)]
@@ -48,7 +48,7 @@ pub enum MapError {
         /// The largest hop count.
         most: i16,
     },
-    /// The thread pool cannot be started.
-    #[error("the threads cannot be started ({0}): ask for fewer")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
+    /// The computation was cancelled.
+    #[error(transparent)]
+    Cancelled(#[from] Cancelled),
 }

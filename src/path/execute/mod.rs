@@ -63,7 +63,7 @@ impl Execution {
 /// let test = HopTest::new(chain);
 /// let chain = test.chain();
 /// let (start, goal) = (chain.geometry().station(0.0).unwrap(), chain.geometry().station(20.0).unwrap());
-/// let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {}).unwrap();
+/// let answer = search(&test, start, goal, &SearchOptions::default(), &()).unwrap();
 /// let Outcome::Path { legs, .. } = answer.outcome else { panic!() };
 /// let mut path = generate(&test, &legs, TakeoffChoice::LeastSpeed, Split::FullReach).unwrap();
 /// // 45 degrees over flat ground: v = sqrt(g X) = 4.472 m/s, and 5 m up.

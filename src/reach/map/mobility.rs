@@ -6,6 +6,7 @@ use super::{MapError, Post, PostHops};
 use crate::{
     ballistics::safety_range_m,
     ground::{Offset, Surface},
+    progress::{Detail, Meter, PairCounter, Progress, Stage},
     world::tolerant_speed_m_s,
 };
 
@@ -24,14 +25,14 @@ pub struct Mobility {
     pub directions: Vec<f32>,
 }
 
-/// Tests every hop from every node within the disc and reports progress by blocks (done, total); the result does not depend on the
-/// number of threads.
+/// Tests every hop from every node within the disc and reports every block of nodes; the result does not depend on the number of
+/// threads.
 ///
 /// The disc is that of level ground, `v^2 / g` for the smaller of both speed limits, so that different terrains are comparable.
 ///
 /// # Errors
 /// [`MapError`]; of several, the one of the first block.
-pub fn mobility(hops: &PostHops, tell: &(dyn Fn(usize, usize) + Sync)) -> Result<Mobility, MapError> {
+pub fn mobility(hops: &PostHops, progress: &dyn Progress) -> Result<Mobility, MapError> {
     let lattice = hops.lattice();
     let limits = hops.ground().hopper().limits();
     let range_m = |speed_m_s: f64| safety_range_m(0.0, tolerant_speed_m_s(speed_m_s), hops.ground().gravity_m_s2());
@@ -40,21 +41,28 @@ pub fn mobility(hops: &PostHops, tell: &(dyn Fn(usize, usize) + Sync)) -> Result
         hops.offsets().iter().enumerate().take_while(|(_, offset)| offset.run_m <= disc_radius_m).collect();
     let sectors: Vec<u16> = disc.iter().map(|(_, offset)| 1 << sector(offset)).collect();
     let (down, across) = lattice.blocks();
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let meter = Meter::with_total(progress, Stage::Mobility, (down * across) as u64);
+    meter.report(Detail::None)?;
     let blocks: Vec<Result<Vec<OfNode>, MapError>> = (0..down * across)
         .into_par_iter()
-        .map(|block| {
-            let found = lattice
-                .nodes_of(block)
-                .filter(|&node| hops.has_ground(node))
-                .map(|node| {
-                    from_node(hops, node, &disc, &sectors).map(|(share, directions)| (lattice.index(node), share, directions))
-                })
-                .collect();
-            tell(done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1, down * across);
-            found
-        })
+        .map_init(
+            || meter.counter(),
+            |counter, block| {
+                meter.check()?;
+                let found = lattice
+                    .nodes_of(block)
+                    .filter(|&node| hops.has_ground(node))
+                    .map(|node| {
+                        from_node(hops, node, (&disc, &sectors), counter)
+                            .map(|(share, directions)| (lattice.index(node), share, directions))
+                    })
+                    .collect::<Result<Vec<OfNode>, MapError>>()?;
+                meter.complete_one()?;
+                Ok(found)
+            },
+        )
         .collect();
+    meter.check()?;
     let mut map = Mobility { disc_radius_m, share: vec![f32::NAN; lattice.count()], directions: vec![f32::NAN; lattice.count()] };
     for block in blocks {
         for (node, share, directions) in block? {
@@ -69,7 +77,12 @@ pub fn mobility(hops: &PostHops, tell: &(dyn Fn(usize, usize) + Sync)) -> Result
 type OfNode = (usize, f32, f32);
 
 /// Fraction and directions of one node.
-fn from_node(hops: &PostHops, node: Post, disc: &[(usize, &Offset)], sectors: &[u16]) -> Result<(f32, f32), MapError> {
+fn from_node(
+    hops: &PostHops,
+    node: Post,
+    (disc, sectors): (&[(usize, &Offset)], &[u16]),
+    counter: &mut PairCounter<'_>,
+) -> Result<(f32, f32), MapError> {
     let usable = hops.usable(node);
     let (mut there, mut reached, mut directions) = (0u32, 0u32, 0u16);
     for (&(number, offset), sector) in disc.iter().zip(sectors) {
@@ -78,7 +91,11 @@ fn from_node(hops: &PostHops, node: Post, disc: &[(usize, &Offset)], sectors: &[
             continue;
         }
         there += 1;
-        if usable && hops.usable(landing) && hops.lofts_where(node, offset, |_, _| true)?.is_some() {
+        if !usable || !hops.usable(landing) {
+            continue;
+        }
+        counter.pair()?;
+        if hops.lofts_where(node, offset, |_, _| true)?.is_some() {
             reached += 1;
             directions |= sector;
         }

@@ -11,4 +11,4 @@ mod search;
 pub use crate::ground::{MapError, NodeLattice, Post, PostHops, PostRefusal};
 pub use mobility::{Mobility, SECTORS, mobility};
 pub use paths::{MapHop, joined, path_hops, verify};
-pub use search::{HopMap, Journey, LayerProgress, NO_GROUND, Search, UNREACHED, search};
+pub use search::{HopMap, Journey, NO_GROUND, Search, UNREACHED, search};

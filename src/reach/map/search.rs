@@ -13,6 +13,7 @@ use super::{
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     graph::Effort,
+    progress::{Detail, Meter, PairCounter, Progress, Stage},
     quantity::SlopeInterval,
 };
 
@@ -44,17 +45,6 @@ pub struct Search {
     pub effort: Option<(Effort, TakeoffChoice)>,
 }
 
-/// The progress of a search.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LayerProgress {
-    /// Hop count of the last complete layer.
-    pub layer: i16,
-    /// Posts reached.
-    pub reached: usize,
-    /// Posts that may still be reached.
-    pub open: usize,
-}
-
 /// Fewest hops between the start and every node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HopMap {
@@ -76,19 +66,26 @@ struct Found {
     effort: f64,
 }
 
-/// The fewest hops between a start and every node, layer by layer, with progress after each; the result does not depend on the
-/// number of threads.
+/// The fewest hops between a start and every node, layer by layer; the result does not depend on the number of threads.
+///
+/// Reports every complete layer, with the number of posts reached and the number of posts reached or still open.
 ///
 /// # Errors
 /// [`MapError`]; of several, the one of the first block.
-pub fn search(hops: &PostHops, start: Post, asked: Search, tell: &mut dyn FnMut(LayerProgress)) -> Result<HopMap, MapError> {
+pub fn search(hops: &PostHops, start: Post, asked: Search, progress: &dyn Progress) -> Result<HopMap, MapError> {
+    let meter = Meter::new(progress, Stage::MapLayers);
+    meter.report(Detail::None)?;
     let mut state = State::new(hops, start, asked);
     let mut layer: i16 = 0;
     loop {
-        tell(LayerProgress { layer, reached: state.reached, open: state.open.iter().map(|&count| count as usize).sum() });
+        let open: u64 = state.open.iter().copied().map(u64::from).sum();
+        meter.set_done(state.reached as u64, state.reached as u64 + open);
+        meter.report(Detail::Layer { hops: layer })?;
         let pull = Pull { hops, map: &state.map, asked, layer, nodes: &state.layer };
         let near = blocks_near(hops, &state.layer_blocks, &state.open);
-        let found: Vec<Result<Vec<Found>, MapError>> = near.par_iter().map(|&block| pull.block(block)).collect();
+        let found: Vec<Result<Vec<Found>, MapError>> =
+            near.par_iter().map_init(|| meter.counter(), |counter, &block| pull.block(block, counter)).collect();
+        meter.check()?;
         let found = found.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
         if found.is_empty() {
             return Ok(state.map);
@@ -182,7 +179,8 @@ struct Pull<'a> {
 
 impl Pull<'_> {
     /// The nodes of a block that a hop joins to the layer.
-    fn block(&self, block: usize) -> Result<Vec<Found>, MapError> {
+    fn block(&self, block: usize, counter: &mut PairCounter<'_>) -> Result<Vec<Found>, MapError> {
+        counter.check()?;
         let lattice = self.hops.lattice();
         let steps = &self.hops.node_steps()[..self.hops.within_reach(block)];
         let disc = Disc::of(&self.hops.offsets()[..steps.len()]);
@@ -190,7 +188,7 @@ impl Pull<'_> {
         for node in lattice.nodes_of(block) {
             let open = self.map.hops[lattice.index(node)] == UNREACHED && self.hops.usable(node);
             if open && self.nodes.any_in(&disc, node) {
-                found.extend(self.pulled(node, steps, disc.is_inside(lattice, node))?);
+                found.extend(self.pulled(node, steps, disc.is_inside(lattice, node), counter)?);
             }
         }
         Ok(found)
@@ -213,12 +211,13 @@ impl Pull<'_> {
     }
 
     /// The hop that joins a node to the layer: the shortest, or the one with the least total effort.
-    fn pulled(&self, node: Post, steps: &[isize], inside: bool) -> Result<Option<Found>, MapError> {
+    fn pulled(&self, node: Post, steps: &[isize], inside: bool, counter: &mut PairCounter<'_>) -> Result<Option<Found>, MapError> {
         let lattice = self.hops.lattice();
         let index = lattice.index(node);
         let mut best: Option<Found> = None;
         for (number, &step) in steps.iter().enumerate() {
             let Some(other) = self.on_layer(node, index, (number, step), inside) else { continue };
+            counter.pair()?;
             let offset = &self.hops.offsets()[number];
             let from = if self.asked.journey == Journey::Outbound { other } else { node };
             #[expect(clippy::cast_possible_truncation, reason = "the table of offsets is far smaller")]

@@ -1,4 +1,4 @@
-//! The second panel of a path: each hop's feasible take-off angles, the one chosen, and what sets the two ends.
+//! The second panel of a path: each hop's feasible take-off angles, the chosen one, and the limits that set the two ends.
 
 use super::{
     axes::{BELOW_MM, Panel},
@@ -8,11 +8,11 @@ use super::{
     ticks::{Ticks, one_in},
 };
 
-/// Height of the bars' own part of the panel.
+/// Height of the area with the bars.
 const BARS_MM: f64 = 30.0;
 /// Room left and right of the bars.
 const SIDE_MM: f64 = 2.0;
-/// Least range of angles shown.
+/// Smallest range of angles shown.
 const LEAST_RANGE_DEG: f64 = 8.0;
 
 /// Draws the panel below a height; returns where it ends.
@@ -26,18 +26,18 @@ pub(super) fn draw(sheet: &mut Sheet, hops: &Thinned<HopFigure>, top_mm: f64) ->
     layout.panel.bottom + BELOW_MM
 }
 
-/// Where everything lies.
+/// The layout of the panel.
 struct Layout {
     panel: Panel,
     /// Width for one hop.
     slot_mm: f64,
-    /// Limit names lie along the axis or stand upright.
+    /// Whether limit names are written horizontally or upright.
     upright: bool,
-    /// Every how many hops names and numbers are written.
+    /// Names and numbers are written for every n-th hop.
     every: usize,
     /// Room for names above and below the bars.
     names_mm: f64,
-    /// Lowest and highest angle of any bar, with least range.
+    /// Lowest and highest angle of any bar, at least the smallest range apart.
     range_deg: (f64, f64),
 }
 
@@ -87,7 +87,7 @@ impl Layout {
         self.panel.x_axis(sheet, &numbers, "hop number", false);
         let (low, high) = self.range_deg;
         let beyond = self.names_mm * (high - low) / BARS_MM;
-        // Directions ahead end at the vertical: the room for names above it bears no angles.
+        // Take-off angles end at 90 degrees: the room for names above it has no tick marks.
         let (from, to) = ((low - beyond).max(-90.0), (high + beyond).min(90.0));
         let ticks = Ticks::round(from, to, (self.y(from) - self.y(to)) / 8.0);
         let angles: Vec<_> = ticks.values.iter().map(|&deg| (self.y(deg), ticks.text(deg))).collect();
@@ -108,7 +108,7 @@ impl Layout {
             return;
         }
         let [lower, upper] = names(hop);
-        // Names of a few hops stand at their bars; of many they keep clear of the bars in between.
+        // With few hops the names are at their bars; with many they are placed clear of the bars in between.
         let (low, high) = self.range_deg;
         let (top, bottom) = if self.every > 1 { (self.y(high), self.y(low)) } else { (top, bottom) };
         let (above, below) = ((x, top - 1.2), (x, bottom + 1.2));
@@ -130,6 +130,6 @@ fn chosen(sheet: &mut Sheet, (x, y): (f64, f64), half: f64) {
     sheet.area(vec![(x - r, y), (x, y - r), (x + r, y), (x, y + r)], BLACK, 1.0);
 }
 
-/// What the panel shows, as its caption.
+/// The caption of the panel.
 pub(super) const CAPTION: &str =
     "Bars: feasible take-off angles above the horizontal and the limits at their ends; diamond: angle chosen.";

@@ -29,7 +29,7 @@ impl Panel {
         self.bottom - self.top
     }
 
-    /// Grid and numbers at places along the lower edge, and what they mean; no name where that is empty.
+    /// Grid and numbers at positions along the lower edge, with the axis name unless it is empty.
     pub(super) fn x_axis(&self, sheet: &mut Sheet, ticks: &[(f64, String)], name: &str, grid: bool) {
         for (x, text) in ticks {
             if grid {
@@ -46,7 +46,7 @@ impl Panel {
         sheet.label(Label::new(name, (middle, self.bottom + 5.2), TEXT_MM).hung(Anchor::Middle, Hang::Below));
     }
 
-    /// Grid and numbers at places along the left edge, and what they mean; no name where that is empty.
+    /// Grid and numbers at positions along the left edge, with the axis name unless it is empty.
     pub(super) fn y_axis(&self, sheet: &mut Sheet, ticks: &[(f64, String)], name: &str, grid: bool) {
         let mut widest: f64 = 0.0;
         for (y, text) in ticks {
@@ -64,7 +64,7 @@ impl Panel {
         sheet.label(Label::new(name, at, TEXT_MM).hung(Anchor::Middle, Hang::Through).turned());
     }
 
-    /// The outline, drawn over what touches it.
+    /// The outline, drawn over marks that touch it.
     pub(super) fn outline(&self, sheet: &mut Sheet) {
         let corners = [(self.left, self.top), (self.right, self.top), (self.right, self.bottom), (self.left, self.bottom)];
         sheet.line(corners.into_iter().chain([corners[0]]).collect(), AXIS_PEN);

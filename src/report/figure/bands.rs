@@ -1,8 +1,8 @@
-//! Colours of numbers of hops and of other rising numbers.
+//! Colour scales for hop counts and other ordered values.
 
 use plotters::style::RGBColor;
 
-/// Few hops light, many dark (viridis, which colour-blind readers and grey printers tell apart).
+/// Few hops light, many dark (viridis, which colour-blind readers can distinguish and which prints well in grey).
 const BANDS: [RGBColor; 6] = [
     RGBColor(253, 231, 37),
     RGBColor(122, 209, 81),
@@ -12,33 +12,33 @@ const BANDS: [RGBColor; 6] = [
     RGBColor(68, 1, 84),
 ];
 
-/// The most classes of even width: more shades than these are mistaken for each other under a hillshade.
+/// The greatest number of classes of equal width: more shades cannot be distinguished under a hillshade.
 const MOST_EVEN: u64 = 8;
 
-/// Classes of hops: the most hops of each, rising.
+/// Classes of hop counts: the greatest count of each, in ascending order.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct HopClasses(pub(super) Vec<u64>);
 
 impl HopClasses {
-    /// For hops up to a number: one class for each count up to six, else classes whose ends rise by a common factor.
+    /// For hop counts up to `most`: one class for each count up to six, else classes whose ends grow by a common factor.
     pub(super) fn up_to(most: u64) -> Self {
         Self(classes(most))
     }
 
-    /// For hops up to a number over an area, of which far hops take the most: one class for each count up to eight, else eight classes
-    /// as even as whole numbers allow.
+    /// For hop counts up to `most` over an area, most of which has high counts: one class for each count up to eight, else eight
+    /// classes as equal in width as whole numbers allow.
     pub(super) fn even(most: u64) -> Self {
         let count = most.min(MOST_EVEN);
-        // i / count of the most, rounded up, without leaving 64 bits.
+        // most * i / count, rounded up, without overflow of 64 bits.
         Self((1..=count).map(|i| most / count * i + (most % count * i).div_ceil(count)).collect())
     }
 
-    /// The class of a number of hops.
+    /// The class of a hop count.
     pub(super) fn of(&self, hops: u64) -> usize {
         self.0.iter().position(|&most| hops <= most).unwrap_or(self.0.len().saturating_sub(1))
     }
 
-    /// The colour of a class: the classes there are, spread over all colours.
+    /// The colour of a class; the classes are spread over the whole colour scale.
     pub(super) fn colour(&self, class: usize) -> RGBColor {
         let steps = self.0.len().max(2) - 1;
         if steps >= BANDS.len() {
@@ -48,7 +48,7 @@ impl HopClasses {
         BANDS[(class * (BANDS.len() - 1) / steps).min(BANDS.len() - 1)]
     }
 
-    /// What the legend says of each class.
+    /// The legend texts of the classes.
     pub(super) fn texts(&self) -> Vec<String> {
         let mut least = 1;
         let text = |&most: &u64| {
@@ -60,7 +60,7 @@ impl HopClasses {
     }
 }
 
-/// The most hops of each class.
+/// The greatest hop count of each class.
 fn classes(most: u64) -> Vec<u64> {
     let count = BANDS.len() as u64;
     if most <= count {
@@ -86,7 +86,7 @@ fn classes(most: u64) -> Vec<u64> {
     ends
 }
 
-/// A colour between the first and the last band, for 0 to 1.
+/// The colour for a value from 0 (first band) to 1 (last band).
 pub(super) fn ramp(share: f64) -> RGBColor {
     let last = BANDS.len() - 1;
     #[expect(clippy::cast_precision_loss, reason = "a handful of colours")]
@@ -98,7 +98,7 @@ pub(super) fn ramp(share: f64) -> RGBColor {
     mixed(BANDS[below], BANDS[below + 1], part)
 }
 
-/// A colour between two, 0 to 1 of the way.
+/// Linear interpolation between two colours, for a fraction from 0 to 1.
 pub(super) fn mixed(from: RGBColor, to: RGBColor, share: f64) -> RGBColor {
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the cast saturates to a byte")]
     let mix = |a: u8, b: u8| (f64::from(a) + (f64::from(b) - f64::from(a)) * share).round() as u8;
@@ -122,7 +122,7 @@ mod tests {
     }
 
     #[test]
-    fn every_number_of_hops_has_its_class_and_text() {
+    fn every_hop_count_has_its_class_and_text() {
         let classes = HopClasses::up_to(100);
         for hops in 1..=100 {
             let class = classes.of(hops);

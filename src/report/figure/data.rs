@@ -1,4 +1,4 @@
-//! What the picture shows, as plain data in metres: the drawing adds nothing to it.
+//! The data of the picture, in metres; drawing adds no information.
 
 use super::{
     FigureError, FigureInput,
@@ -13,23 +13,23 @@ use crate::{
     world::{Contact, Direction, Limit},
 };
 
-/// The most hops drawn; of longer paths every n-th is, and the picture says so.
+/// The greatest number of hops drawn; longer paths are thinned to every n-th hop, and the picture says so.
 pub const MOST_HOPS_DRAWN: usize = 300;
-/// The most nodes drawn.
+/// The greatest number of nodes drawn.
 const MOST_NODES_DRAWN: usize = 150;
-/// Room beside the journey, over its length.
+/// Margin beside the journey, as a fraction of its length.
 const MARGIN: f64 = 0.06;
-/// A journey over this share of the chain or more shows the whole chain.
+/// A journey over at least this fraction of the chain shows the whole chain.
 const WHOLE_CHAIN: f64 = 0.6;
 
-/// One analysis as the picture shows it.
+/// The data of one analysis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FigureData {
     /// The range of x shown, m.
     pub view_x_m: (f64, f64),
     /// The range of the chain, m.
     pub chain_x_m: (f64, f64),
-    /// What the ground allows, over the range shown.
+    /// The stretches of ground by allowed contacts, over the range shown.
     pub spans: Vec<GroundSpan>,
     /// Nodes of the search within the range shown.
     pub nodes: Thinned<ChainPoint>,
@@ -37,22 +37,22 @@ pub struct FigureData {
     pub start: ChainPoint,
     /// Where it should end.
     pub goal: ChainPoint,
-    /// What came of it.
+    /// The result.
     pub subject: Subject,
 }
 
-/// Every n-th of many.
+/// A sequence thinned to every n-th item.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Thinned<T> {
-    /// Those shown.
+    /// The items shown.
     pub shown: Vec<T>,
-    /// One of how many is shown.
+    /// Every n-th item is shown.
     pub every: usize,
-    /// How many there are.
+    /// The number of all items.
     pub of: usize,
 }
 
-/// What came of the search.
+/// The result of the search.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Subject {
     /// A path.
@@ -64,20 +64,20 @@ pub enum Subject {
     },
     /// No path over these nodes.
     Stopped(Box<StoppedFigure>),
-    /// Start, goal or both refuse whatever the hop.
+    /// No hop at all can take off or land at start, goal or both.
     EndpointsRefuse(Vec<EndpointRefusal>),
 }
 
 /// One hop as drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HopFigure {
-    /// Its place in the path, from 1.
+    /// Its number in the path, from 1.
     pub number: usize,
-    /// All that is known of it.
+    /// Its record.
     pub hop: Hop,
     /// Its flight.
     pub arc: Arc,
-    /// The take-off cone at its take-off, and the landing cone at its landing, where the ground allows them.
+    /// The take-off cone at its take-off and the landing cone at its landing; `None` if the ground allows no contact.
     pub cones: [Option<Cone>; 2],
 }
 
@@ -90,27 +90,27 @@ pub struct Cone {
     pub contact: Contact,
     /// Direction of travel.
     pub direction: Direction,
-    /// Slopes of flight as the traveller sees them, cut to the directions ahead.
+    /// Slopes of flight in the direction of travel, limited to forward directions.
     pub slopes: SlopeInterval,
 }
 
-/// What stops a journey, as drawn.
+/// The obstacle of a journey, as drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StoppedFigure {
-    /// Stretches over neighbouring nodes that the start reaches, as ranges of x, m.
+    /// Runs of neighbouring nodes reachable from the start, as ranges of x, m.
     pub reached_x_m: Vec<(f64, f64)>,
-    /// Stretches over neighbouring nodes from which the goal can be reached.
+    /// Runs of neighbouring nodes from which the goal can be reached.
     pub leads_to_goal_x_m: Vec<(f64, f64)>,
-    /// The reached node nearest to the goal, and the node nearest to the start that leads to the goal.
+    /// The reached node nearest to the goal, and the node nearest to the start from which the goal can be reached.
     pub gap: (ChainPoint, ChainPoint),
-    /// What refused, most first.
+    /// The refusals by limit, in descending order.
     pub refusals: Vec<(Limit, u64)>,
-    /// The refused hop that came closest: from, to, why not.
+    /// The refused hop with the smallest violation: take-off, landing, reason.
     pub nearest_miss: Option<(ChainPoint, ChainPoint, String)>,
 }
 
 impl HopFigure {
-    /// The point of the flight at a share of its horizontal distance, 0 to 1.
+    /// The point of the flight at a fraction of its horizontal distance, 0 to 1.
     pub fn point_at(&self, share: f64) -> ChainPoint {
         let distance_m = self.arc.line_of_sight().run_m() * share;
         let from = self.hop.takeoff.in_profile();
@@ -119,7 +119,7 @@ impl HopFigure {
 }
 
 impl Cone {
-    /// A unit vector (x, z) from the apex along which the hopper leaves, or from which it comes in, at a slope of flight.
+    /// The unit vector (x, z) from the cone's apex in which the hopper departs, or from which it arrives, at a slope of flight.
     pub fn ray(&self, slope: f64) -> (f64, f64) {
         let sign = self.direction.sign();
         let (along, up) = if slope.is_infinite() {
@@ -135,7 +135,7 @@ impl Cone {
 }
 
 impl<T> Thinned<T> {
-    /// Of a sequence of known length, at most `most`.
+    /// Thins a sequence of known length to at most `most` items.
     fn of(all: impl ExactSizeIterator<Item = T>, most: usize) -> Self {
         let of = all.len();
         let every = of.div_ceil(most).max(1);
@@ -144,10 +144,10 @@ impl<T> Thinned<T> {
 }
 
 impl FigureData {
-    /// Gathers what the picture shows.
+    /// Collects the data of the picture.
     ///
     /// # Errors
-    /// [`FigureError::NoHops`] where the answer is a path and none was given; [`FigureError::TooManyNodes`].
+    /// [`FigureError::NoHops`] if the answer is a path whose hops were not given; [`FigureError::TooManyNodes`].
     pub fn new(input: &FigureInput<'_>) -> Result<Self, FigureError> {
         let chain = input.test.chain();
         let nodes = NodeSet::new(chain, input.start, input.goal, input.answer.spacing)?;
@@ -172,7 +172,7 @@ impl FigureData {
         })
     }
 
-    /// Whether the chain goes on beyond the range shown.
+    /// Whether the chain continues beyond the range shown.
     pub fn is_cut(&self) -> bool {
         self.view_x_m != self.chain_x_m
     }
@@ -202,13 +202,13 @@ fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
     HopFigure {
         number,
         hop: *hop,
-        // From the flight time, n = g T^2 / (2 X): tangents of steep angles lose digits.
+        // The loft from the flight time, n = g T^2 / (2 X), since tangents of steep angles lose digits.
         arc: Arc::new(sight, 0.5 * gravity_m_s2 * hop.flight_time_s * (hop.flight_time_s / sight.run_m()), gravity_m_s2),
         cones: [cone(hop.takeoff.station, Contact::Takeoff), cone(hop.landing.station, Contact::Landing)],
     }
 }
 
-/// How far one gets, and what stops it.
+/// How far one gets, and which limits refuse to go on.
 fn stopped(frontier: &Frontier, nodes: &NodeSet) -> StoppedFigure {
     StoppedFigure {
         reached_x_m: runs(&frontier.reached, nodes.stations()),
@@ -219,7 +219,7 @@ fn stopped(frontier: &Frontier, nodes: &NodeSet) -> StoppedFigure {
     }
 }
 
-/// Runs of neighbouring nodes of which all belong to a set, both sorted by x, as ranges of x.
+/// Runs of consecutive nodes that belong to a set, as ranges of x; nodes and set are sorted by x.
 fn runs(set: &[Station], nodes: &[Station]) -> Vec<(f64, f64)> {
     let mut found: Vec<(f64, f64)> = Vec::new();
     let mut members = set.iter().map(|station| station.point.x_m).peekable();
@@ -236,7 +236,7 @@ fn runs(set: &[Station], nodes: &[Station]) -> Vec<(f64, f64)> {
     found
 }
 
-/// The range of x to show: the journey with some room, or the whole chain where the journey is most of it.
+/// The range of x to show: the journey with a margin, or the whole chain if the journey covers most of it.
 fn view(input: &FigureInput<'_>, chain_x_m: (f64, f64)) -> (f64, f64) {
     let mut seen = vec![input.start.point.x_m, input.goal.point.x_m];
     match &input.answer.outcome {

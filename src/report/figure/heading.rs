@@ -14,7 +14,7 @@ use crate::{
     world::{Contact, Hopper},
 };
 
-/// Title, what was asked under which limits, and the verdict; returns where they end.
+/// Title, question, limits and verdict; returns where they end.
 pub(super) fn above(sheet: &mut Sheet, input: &FigureInput<'_>, data: &FigureData) -> f64 {
     let (test, title) = (input.test, &input.title);
     let words = conditions(&title.body, test.gravity_m_s2(), test.hopper(), test.chain().speed_bounds_m_s(), &title.ground);
@@ -27,7 +27,7 @@ pub(super) fn above(sheet: &mut Sheet, input: &FigureInput<'_>, data: &FigureDat
     paragraph(sheet, &(journey + &verdict(input.answer, data)), TEXT_MM, true, y) + 1.5
 }
 
-/// What the panels leave to words; returns where it ends.
+/// The text below the panels; returns where it ends.
 pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
     let mut y = top_mm;
     for text in remarks(data) {
@@ -36,9 +36,10 @@ pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
     y
 }
 
-/// What an analysis assumes, as its pictures say it: body, gravity, the hopper's limits and the ground's grip.
+/// The assumptions of an analysis, as stated in its pictures: body, gravity, the hopper's limits and the ground's grip.
 ///
-/// `speed_bounds_m_s` are the greatest speeds of take-off and landing that the ground itself allows: told where the hopper has no limit.
+/// `speed_bounds_m_s` are the greatest speeds of take-off and landing that the ground itself allows. They are stated if the hopper
+/// has no limit.
 ///
 /// # Examples
 /// ```
@@ -54,7 +55,7 @@ pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m
         ("take-off speed", hopper.limits().takeoff_speed_max_m_s, speed_bounds_m_s.0),
         ("landing speed", hopper.limits().landing_speed_max_m_s, speed_bounds_m_s.1),
     ] {
-        // Without a limit of the hopper's own the chain's explicit ones hold.
+        // If the hopper has no limit of its own, the chain's explicit limits apply.
         let most = if limit.is_finite() { limit } else { bound };
         parts.push(format!("{name} ≤ {} m/s", short(most)));
     }
@@ -98,7 +99,7 @@ const fn end_name(contact: Contact) -> &'static str {
     }
 }
 
-/// Totals, or what stops the journey.
+/// Totals, or the obstacle of the journey.
 fn remarks(data: &FigureData) -> Vec<String> {
     match &data.subject {
         Subject::Path { hops, totals } => {
@@ -119,7 +120,7 @@ fn remarks(data: &FigureData) -> Vec<String> {
     }
 }
 
-/// What the hops add up to.
+/// The totals of the hops.
 fn total(totals: &Totals) -> String {
     let mut parts = vec![
         format!("distance {} m", short(totals.ground_distance_m)),
@@ -132,7 +133,7 @@ fn total(totals: &Totals) -> String {
     format!("Totals: {}.", parts.join(", "))
 }
 
-/// Why start or goal refuses, and where to go instead.
+/// Why no hop can take off or land at start or goal, and the nearest usable point.
 fn endpoint(refusal: &EndpointRefusal) -> String {
     let contact = match refusal.contact {
         Contact::Takeoff => "take-off",
@@ -150,7 +151,7 @@ fn endpoint(refusal: &EndpointRefusal) -> String {
     }
 }
 
-/// A place along the chain: more digits than a quantity, since places are looked up.
+/// An x along the chain, with more digits than other quantities, so that the point can be found in the data.
 fn place(x_m: f64) -> String {
     let rounded = format!("{x_m:.3}");
     if x_m != 0.0 && x_m.abs() < 1.0 { short(x_m) } else { rounded.trim_end_matches('0').trim_end_matches('.').to_owned() }

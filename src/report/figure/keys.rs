@@ -1,4 +1,4 @@
-//! Legends of maps and diagrams: a sample and a text each, in rows.
+//! Legends of maps and diagrams: rows of entries, each a sample with a text.
 
 use plotters::style::RGBColor;
 
@@ -7,11 +7,11 @@ use super::{
     sheet::{Label, Mark, Pen, Place, Sheet, text_width_mm},
 };
 
-/// Where rows begin.
+/// Left end of the rows.
 const LEFT_MM: f64 = 6.0;
 /// Width of a sample.
 const SAMPLE_MM: f64 = 6.0;
-/// Distance of rows.
+/// Spacing of rows.
 const ROW_MM: f64 = 4.6;
 /// Half the height of a filled sample.
 const HALF_MM: f64 = 1.5;
@@ -23,7 +23,7 @@ pub(super) enum Swatch {
     Fill(RGBColor),
     /// A colour under stripes.
     Striped(RGBColor),
-    /// A colour under stripes both ways.
+    /// A colour under crossed stripes.
     Crossed(RGBColor),
     /// A colour under dots.
     Dotted(RGBColor),
@@ -31,11 +31,11 @@ pub(super) enum Swatch {
     Line(Pen),
     /// A dashed line, with its dashes and gaps.
     Dashed(Pen, f64, f64),
-    /// A symbol, around a place.
+    /// A symbol, around a position.
     Symbol(fn(&mut Sheet, Place)),
 }
 
-/// Draws entries in rows, the first around a height; returns where they end.
+/// Draws entries in rows, the first centred on a height; returns where they end.
 pub(super) fn draw(sheet: &mut Sheet, entries: &[(Swatch, String)], top_mm: f64) -> f64 {
     let mut at = (LEFT_MM, top_mm);
     for (swatch, text) in entries {
@@ -70,7 +70,7 @@ fn sample(sheet: &mut Sheet, swatch: Swatch, (x, y): Place) {
         stripes(sheet, (x, top), (end, bottom), 1.2, pen);
     }
     if matches!(swatch, Swatch::Crossed(_)) {
-        // Upside down the same stripes fall to the right.
+        // Mirrored vertically, the same stripes fall to the right.
         let from = sheet.marks.len();
         stripes(sheet, (x, top), (end, bottom), 1.2, pen);
         for mark in &mut sheet.marks[from..] {

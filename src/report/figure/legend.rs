@@ -1,4 +1,4 @@
-//! The legend: one entry for each kind of symbol that the picture holds.
+//! The legend: one entry for each kind of symbol in the picture.
 
 use super::{
     data::{FigureData, Subject, Thinned},
@@ -11,7 +11,7 @@ use crate::world::{Contact, Direction};
 
 /// Width of a sample.
 const SAMPLE_MM: f64 = 6.5;
-/// Distance of rows.
+/// Spacing of rows.
 const ROW_MM: f64 = 4.2;
 
 /// A kind of symbol.
@@ -74,7 +74,7 @@ pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
     found
 }
 
-/// A name, and how many of it are shown where not all are.
+/// A name, with the thinning if not all items are shown.
 fn thinned_text<T>(name: &str, thinned: &Thinned<T>) -> String {
     if thinned.every == 1 { name.to_owned() } else { format!("{name} (1 in {} of {} shown)", thinned.every, thinned.of) }
 }

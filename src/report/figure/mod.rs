@@ -13,9 +13,9 @@
 //!   totals, or the nearest miss
 //! ```
 //!
-//! [`FigureData`] is what the picture shows, in metres; [`draw`] puts it on the sheet. Heights are drawn at true scale where that is
-//! readable, else exaggerated by a round factor that the axis states; cones and flights follow the same scale. No kind of mark is told
-//! by its colour alone.
+//! [`FigureData`] holds the data of the picture, in metres; [`draw`] puts it on the sheet. Heights are drawn at true scale if that
+//! is readable, else exaggerated by a round factor that the axis states; cones and flights have the same scale. No kind of mark is
+//! distinguished by colour alone.
 
 mod angle_panel;
 mod axes;
@@ -72,65 +72,65 @@ use crate::{
 };
 use sheet::Sheet;
 
-/// All that a picture is drawn from.
+/// The input of a picture.
 #[derive(Clone, Debug)]
 pub struct FigureInput<'a> {
     /// The chain, the hopper and the gravity.
     pub test: &'a HopTest,
-    /// What the search answered.
+    /// The answer of the search.
     pub answer: &'a Answer,
-    /// The hops, where the answer is a path.
+    /// The hops, if the answer is a path.
     pub path: Option<&'a HopPath>,
     /// Where the journey begins.
     pub start: Station,
     /// Where it should end.
     pub goal: Station,
-    /// What the figure cannot know of itself.
+    /// The texts of the title.
     pub title: FigureTitle,
 }
 
-/// Words for the title that are not in the analysis; what is empty is left out.
+/// Texts for the title that the analysis does not contain; empty ones are omitted.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct FigureTitle {
     /// The name of the scenario.
     pub name: String,
-    /// The body hopped on.
+    /// The name of the body.
     pub body: String,
     /// The ground's grip, such as `friction coefficient 0.6`.
     pub ground: String,
 }
 
-/// What keeps a figure from being drawn.
+/// The reasons why a figure cannot be drawn.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FigureError {
-    /// A path to draw, and no hops.
+    /// A path without its hops.
     #[error("the answer is a path, but its hops were not given: generate them and pass them with the answer")]
     NoHops,
-    /// The nodes of the search cannot be laid out again.
+    /// The nodes of the search cannot be generated again.
     #[error(transparent)]
     TooManyNodes(#[from] TooManyNodes),
-    /// A raster, or the cells of a trade, of the wrong size.
+    /// A raster or the cells of a trade have the wrong size.
     #[error("the {what} has {found} values, expected {rows} rows times {cols} columns")]
     RasterSize {
-        /// What was to be drawn.
+        /// The figure's content.
         what: &'static str,
-        /// How many numbers it has.
+        /// The number of values found.
         found: usize,
-        /// Rows there should be.
+        /// The expected number of rows.
         rows: usize,
-        /// Columns there should be.
+        /// The expected number of columns.
         cols: usize,
     },
-    /// No ground to draw.
+    /// The ground has too few points.
     #[error("the ground of {what} has {points} points, expected at least 2")]
     NoGround {
-        /// Whose ground.
+        /// The owner of the ground.
         what: String,
-        /// How many points it has.
+        /// The number of points.
         points: usize,
     },
-    /// The file's ending names no format.
+    /// The file's extension is not that of a picture format.
     #[error("'{file}' does not end in .svg or .png, the two formats of pictures")]
     UnknownFormat {
         /// The file's name.
@@ -143,7 +143,8 @@ pub enum FigureError {
 
 /// Draws the picture of one analysis as SVG.
 ///
-/// The same input gives the same bytes. A path of more than [`MOST_HOPS_DRAWN`] hops is thinned to every n-th, which the legend says.
+/// The same input gives the same bytes. A path of more than [`MOST_HOPS_DRAWN`] hops is thinned to every n-th, which the legend
+/// says.
 ///
 /// # Errors
 /// [`FigureError`].
@@ -157,7 +158,7 @@ pub enum FigureError {
 /// let chain = ConstrainedChain::new(ground, &hopper, Gravity::new(3.711)?, &surface)?;
 /// let test = HopTest::new(chain.clone());
 /// let (start, goal) = (chain.geometry().station(0.0)?, chain.geometry().station(60.0)?);
-/// let answer = search(&test, start, goal, &SearchOptions::default(), &mut |_| {})?;
+/// let answer = search(&test, start, goal, &SearchOptions::default(), &())?;
 /// let Outcome::Path { legs, .. } = &answer.outcome else { panic!("no path") };
 /// let path = generate(&test, legs, TakeoffChoice::LeastSpeed, Split::FullReach)?;
 /// let title = FigureTitle { body: "Mars".into(), ..FigureTitle::default() };
@@ -170,7 +171,7 @@ pub fn draw(input: &FigureInput<'_>) -> Result<String, FigureError> {
     sheet.to_svg(palette::PAGE_WIDTH_MM, height_mm)
 }
 
-/// Everything on the sheet, and the sheet's height.
+/// The sheet with all its marks, and its height.
 fn laid_out(input: &FigureInput<'_>, data: &FigureData) -> (Sheet, f64) {
     let mut sheet = Sheet::default();
     let top = heading::above(&mut sheet, input, data);

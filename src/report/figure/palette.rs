@@ -1,4 +1,4 @@
-//! Colours that colour-blind readers tell apart (Okabe and Ito 2008), and the sizes of lines and letters on a 170 mm page.
+//! Colours that colour-blind readers can distinguish (Okabe and Ito 2008), and the sizes of lines and letters on a 170 mm page.
 
 use plotters::style::RGBColor;
 
@@ -21,9 +21,9 @@ pub(super) const AXIS: RGBColor = RGBColor(60, 60, 60);
 
 /// Width of the page.
 pub(super) const PAGE_WIDTH_MM: f64 = 170.0;
-/// Where the panels begin, axis numbers left of it.
+/// Left edge of the panels; axis numbers are left of it.
 pub(super) const LEFT_MM: f64 = 17.0;
-/// Where they end.
+/// Right edge of the panels.
 pub(super) const RIGHT_MM: f64 = 166.0;
 
 /// 11 points.

@@ -1,4 +1,4 @@
-//! A finished picture, its words on top, and the two ways to write it.
+//! A finished picture with its caption, and the two formats to write it in.
 
 use std::path::Path;
 
@@ -8,19 +8,19 @@ use super::{
     sheet::{Anchor, Hang, Label, Sheet, wrapped},
 };
 
-/// Where texts begin.
+/// Left edge of texts.
 pub(super) const MARGIN_MM: f64 = 4.0;
-/// Distance of lines over their size.
+/// Line spacing as a multiple of the letter size.
 const LEADING: f64 = 1.4;
-/// Bold letters are wider than the estimate says.
+/// Lines of bold letters, which are wider than estimated, are wrapped at this fraction of the width.
 const BOLD: f64 = 0.88;
 
-/// The words above a picture.
+/// The caption above a picture.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Caption {
-    /// In bold, such as the scenario's name; empty: none.
+    /// The title in bold, such as the scenario's name; empty for none.
     pub title: String,
-    /// Below it, a paragraph each: what was asked, under which limits, and what came of it.
+    /// Paragraphs below it: the question, the limits and the result.
     pub lines: Vec<String>,
 }
 
@@ -30,7 +30,7 @@ impl Caption {
         Self { title: title.into(), lines: vec![line.into()] }
     }
 
-    /// Puts the words on top of a sheet; returns where they end.
+    /// Draws the caption at the top of a sheet; returns where it ends.
     pub(super) fn draw(&self, sheet: &mut Sheet) -> f64 {
         let mut y = 3.0;
         if !self.title.is_empty() {
@@ -43,7 +43,7 @@ impl Caption {
     }
 }
 
-/// A text over as many lines as it needs; returns where it ends.
+/// Draws a text, wrapped into lines; returns where it ends.
 pub(super) fn paragraph(sheet: &mut Sheet, text: &str, size_mm: f64, bold: bool, top_mm: f64) -> f64 {
     let mut y = top_mm;
     let width = (RIGHT_MM - MARGIN_MM) * if bold { BOLD } else { 1.0 };
@@ -58,17 +58,17 @@ pub(super) fn paragraph(sheet: &mut Sheet, text: &str, size_mm: f64, bold: bool,
 /// A format of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
-    /// Lines and letters.
+    /// Vector graphics.
     Svg,
-    /// Pixels.
+    /// Raster graphics.
     Png,
 }
 
 impl PictureFormat {
-    /// The format that a file name asks for: `.svg` or `.png`, in small or capital letters.
+    /// The format of a file's extension: `.svg` or `.png`, in lower or upper case.
     ///
     /// # Errors
-    /// [`FigureError::UnknownFormat`] for any other ending.
+    /// [`FigureError::UnknownFormat`] for any other extension.
     pub fn of(file: &Path) -> Result<Self, FigureError> {
         let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         match ending.as_deref() {
@@ -93,24 +93,24 @@ impl Picture {
         Self { sheet, width_mm: PAGE_WIDTH_MM, height_mm }
     }
 
-    /// The picture as SVG, 170 mm wide, sheets of many panels wider. The same picture gives the same bytes.
+    /// The picture as SVG, 170 mm wide, or wider for sheets of many panels. The same picture gives the same bytes.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`] with what plotters says.
+    /// [`FigureError::Drawing`] with the error of plotters.
     pub fn to_svg(&self) -> Result<String, FigureError> {
         self.sheet.to_svg(self.width_mm, self.height_mm)
     }
 
-    /// The picture as PNG at 300 dots an inch, a page of 170 mm 2008 pixels wide. The same picture gives the same bytes on every machine: the letters are
-    /// built in.
+    /// The picture as PNG at 300 dots an inch: a page of 170 mm is 2008 pixels wide. The same picture gives the same bytes on every
+    /// machine, since the font is built in.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`] where the picture is too large for the format.
+    /// [`FigureError::Drawing`] if the picture is too large for the format.
     pub fn to_png(&self) -> Result<Vec<u8>, FigureError> {
         bitmap::render(&self.sheet, self.width_mm, self.height_mm)
     }
 
-    /// The picture in the format that a file name asks for: `.svg` or `.png`, in small or capital letters.
+    /// The picture in the format of a file's extension: `.svg` or `.png`, in lower or upper case.
     ///
     /// # Errors
     /// As [`PictureFormat::of`], [`Picture::to_svg`] and [`Picture::to_png`].

@@ -12,16 +12,16 @@ use super::{
 };
 use crate::report::FanAnswer;
 
-/// Ground that is not reached.
+/// Colour of ground that is not reached.
 const BLOCKED: RGBColor = RGBColor(200, 200, 200);
 
 /// Radius of the rose.
 const RADIUS_MM: f64 = 62.0;
 
-/// The widest piece of an arc that is drawn straight, degrees: under 0.01 mm off.
+/// The largest angle of an arc drawn as one straight piece, degrees: the error is below 0.01 mm.
 const ARC_STEP_DEG: f64 = 2.0;
 
-/// Draws the rose of a fan as SVG, 170 mm wide, north up; `title` and `subtitle` stand above it.
+/// Draws the rose of a fan as SVG, 170 mm wide, north up, below `title` and `subtitle`.
 ///
 /// # Errors
 /// [`FigureError::Drawing`].
@@ -61,13 +61,13 @@ impl<'a> Rose<'a> {
         Self { answer, centre, mm_per_m: RADIUS_MM / longest_m, classes: HopClasses::up_to(most) }
     }
 
-    /// A place on the page from a distance and a heading.
+    /// A position on the page from a distance and a heading.
     fn place(&self, distance_m: f64, heading_deg: f64) -> Place {
         let (angle, radius_mm) = (heading_deg.to_radians(), distance_m * self.mm_per_m);
         (self.centre.0 + radius_mm * libm::sin(angle), self.centre.1 - radius_mm * libm::cos(angle))
     }
 
-    /// Places along an arc about the start.
+    /// Points along an arc about the start.
     fn arc(&self, distance_m: f64, from_deg: f64, to_deg: f64) -> Vec<Place> {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 180 steps")]
         let steps = ((to_deg - from_deg).abs() / ARC_STEP_DEG).ceil().max(1.0) as u32;
@@ -95,7 +95,7 @@ impl<'a> Rose<'a> {
         }
     }
 
-    /// Neighbouring bands of one class made one: (from, to, class).
+    /// Neighbouring bands of one class merged: (from, to, class).
     fn drawn_bands(&self, bands: &[crate::report::BandRecord]) -> Vec<(f64, f64, Option<usize>)> {
         let mut found: Vec<(f64, f64, Option<usize>)> = Vec::new();
         for band in bands {
@@ -133,7 +133,7 @@ impl<'a> Rose<'a> {
         sheet.dot(self.centre, 0.8, BLACK);
     }
 
-    /// What the colours and lines mean; returns where it ends.
+    /// The legend; returns where it ends.
     fn legend(&self, sheet: &mut Sheet, top_mm: f64) -> f64 {
         let bands = self.classes.texts().into_iter().enumerate();
         let mut entries: Vec<_> = bands.map(|(class, text)| (Swatch::Fill(self.classes.colour(class)), text)).collect();

@@ -1,4 +1,4 @@
-//! What the tests of all pictures share: one check of a picture as a whole, the real terrain, and a folder to look at pictures in.
+//! Shared by the tests of all pictures: a general check of a picture, real terrain, and a folder for viewing pictures.
 
 use std::path::PathBuf;
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::terrain::{Dem, read_dem};
 
-/// Tags that open and close in pairs, attributes quoted, no bare special letters.
+/// Checks that tags are balanced, attributes are quoted and special characters are escaped.
 pub(super) fn check_well_formed(svg: &str) {
     let mut open = Vec::new();
     let mut rest = svg;
@@ -34,20 +34,20 @@ pub(super) fn check_well_formed(svg: &str) {
     assert!(open.is_empty() && rest.trim().is_empty(), "{open:?} left open");
 }
 
-/// A picture that is whole: well-formed, small, the same twice, its texts on the page and off each other, no number that is none.
-/// With `CHTA_FIGURES_TO=folder` it is also written there as SVG and PNG, to be looked at.
+/// Checks that a picture is well-formed, small and reproducible, that its texts are on the page without overlap, and that it
+/// contains no NaN. With `CHTA_FIGURES_TO=folder` it is also written there as SVG and PNG, for viewing.
 pub(super) fn check_picture(name: &str, draw: impl Fn() -> Picture) -> Picture {
     let picture = draw();
     let svg = picture.to_svg().unwrap();
     check_well_formed(&svg);
     assert!(svg.len() < 500_000, "{name}: {} bytes", svg.len());
-    // The letters of an image may spell anything.
+    // The base64 text of an image may contain any letters.
     let without_images =
         svg.split("base64,").enumerate().map(|(i, part)| if i == 0 { part } else { &part[part.find('"').unwrap()..] });
     let numbers: String = without_images.collect();
     assert!(!numbers.contains("NaN") && !numbers.contains("inf\""), "{name}");
     let again = draw();
-    assert_eq!(picture, again, "{name} is not the same twice");
+    assert_eq!(picture, again, "{name} is not reproducible");
     assert_eq!(svg, again.to_svg().unwrap());
     assert!(picture.height_mm.is_finite() && picture.height_mm < 400.0, "{name}: {} mm", picture.height_mm);
     if let Some(folder) = std::env::var_os("CHTA_FIGURES_TO").map(PathBuf::from) {
@@ -74,12 +74,12 @@ pub(super) fn labels(picture: &Picture) -> Vec<Label> {
     picture.sheet.marks.iter().filter_map(label).collect()
 }
 
-/// The texts of a picture, a line each.
+/// The texts of a picture, one on each line.
 pub(super) fn texts(picture: &Picture) -> String {
     labels(picture).into_iter().map(|label| label.text).collect::<Vec<_>>().join("\n")
 }
 
-/// A DEM of `../shared/dem`; prints why where there is none.
+/// A DEM of `../shared/dem`; prints a reason if it is absent.
 #[expect(clippy::print_stderr, reason = "says why a test has nothing to look at")]
 pub(super) fn real_dem(name: &str) -> Option<Dem> {
     let file = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(name);

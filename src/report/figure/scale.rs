@@ -1,15 +1,15 @@
-//! From metres to the sheet, with one scale for both axes or an exaggeration that is a round number.
+//! The transformation from metres to the sheet, with one scale for both axes or a round exaggeration of heights.
 
 use super::sheet::Place;
 use crate::quantity::ChainPoint;
 
-/// Less height than this on the sheet and heights are exaggerated, mm.
+/// If the drawn height is below this, heights are exaggerated, mm.
 const FLAT_MM: f64 = 14.0;
-/// The most height on the sheet, mm.
+/// The greatest drawn height, mm.
 const TALL_MM: f64 = 76.0;
-/// The least share of the panel's width that the ground may take where its height decides the scale.
+/// The smallest fraction of the panel's width that the ground may take if its height sets the scale.
 const NARROW: f64 = 0.3;
-/// The exaggerations there are.
+/// The available exaggerations.
 const ROUND: [f64; 10] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0];
 
 /// The scale of the terrain panel.
@@ -17,22 +17,23 @@ const ROUND: [f64; 10] = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 
 pub struct Scale {
     /// Sheet mm per m along x.
     pub mm_per_m: f64,
-    /// Heights are drawn this many times larger; below 1 smaller.
+    /// Factor of heights; below 1 they are reduced.
     pub exaggeration: f64,
     /// Height of the drawn ground and flights on the sheet, mm.
     pub height_mm: f64,
 }
 
 impl Scale {
-    /// The scale for ground and flights of some extent on a panel of some width.
+    /// The scale for ground and flights of a given extent on a panel of a given width.
     ///
-    /// True where that leaves the height between readable and a third of a page; else the least round exaggeration that does. Heights
-    /// far larger than the length narrow the drawing, and below a third of the width they are drawn smaller.
+    /// True scale if the drawn height is then readable and at most a third of a page; else the least round exaggeration with that
+    /// property. For heights far larger than the length the drawing gets narrower, and below a third of the width heights are
+    /// reduced.
     pub fn new(length_m: f64, rise_m: f64, width_mm: f64) -> Self {
         Self::within(length_m, rise_m, width_mm, (FLAT_MM, TALL_MM))
     }
 
-    /// The same where other heights than on a page's panel are readable: the least and the most, mm.
+    /// The same with other bounds of the drawn height: the least and the greatest, mm.
     pub(super) fn within(length_m: f64, rise_m: f64, width_mm: f64, (flat_mm, tall_mm): (f64, f64)) -> Self {
         let wide = width_mm / length_m;
         let true_mm = rise_m * wide;
@@ -46,7 +47,7 @@ impl Scale {
         Self { mm_per_m: wide, exaggeration, height_mm: true_mm * exaggeration }
     }
 
-    /// What the axis says.
+    /// The statement on the axis.
     pub fn text(&self) -> String {
         if self.exaggeration == 1.0 {
             "heights at true scale".to_owned()
@@ -58,7 +59,7 @@ impl Scale {
     }
 }
 
-/// A scale set on the sheet.
+/// A scale with its origin on the sheet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Frame {
     pub(super) scale: Scale,
@@ -76,12 +77,12 @@ impl Frame {
         )
     }
 
-    /// The x drawn at a place of the sheet, m.
+    /// The x at a horizontal position of the sheet, m.
     pub(super) fn x_m(&self, x_mm: f64) -> f64 {
         self.origin.x_m + (x_mm - self.place.0) / self.scale.mm_per_m
     }
 
-    /// The height drawn at a place of the sheet, m.
+    /// The height at a vertical position of the sheet, m.
     pub(super) fn z_m(&self, y_mm: f64) -> f64 {
         self.origin.z_m + (self.place.1 - y_mm) / (self.scale.mm_per_m * self.scale.exaggeration)
     }

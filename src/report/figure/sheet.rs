@@ -1,7 +1,7 @@
 //! The sheet: a list of marks in millimetres, and its rendering through plotters.
 //!
-//! plotters rounds every coordinate of an SVG to a whole unit, so the sheet counts in hundredths of a millimetre and the root element
-//! gets its size in millimetres afterwards: curves then move in steps of 0.01 mm.
+//! plotters rounds every coordinate of an SVG to a whole unit, so the sheet counts in hundredths of a millimetre and the root
+//! element gets its size in millimetres afterwards: curves then move in steps of 0.01 mm.
 
 use plotters::{
     drawing::DrawingAreaErrorKind,
@@ -19,20 +19,20 @@ use super::{
     bitmap::{Pixels, base64},
 };
 
-/// A place on the sheet, mm from the left and from the top.
+/// A position on the sheet, mm from the left and from the top.
 pub(super) type Place = (f64, f64);
 
 /// Units of the SVG per mm.
 const UNITS_PER_MM: f64 = 100.0;
 
-/// One thing on the sheet.
+/// One mark on the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Mark {
     /// A line.
     Line { points: Vec<Place>, pen: Pen },
     /// A filled outline.
     Area { points: Vec<Place>, colour: RGBColor, opacity: f64 },
-    /// A circle, filled or not.
+    /// A circle, filled or open.
     Dot { centre: Place, radius_mm: f64, pen: Pen, filled: bool },
     /// A text.
     Label(Label),
@@ -45,7 +45,7 @@ pub(super) struct Pen {
     pub(super) width_mm: f64,
 }
 
-/// Where a text hangs on its place, horizontally.
+/// Horizontal anchor of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
     Start,
@@ -53,7 +53,7 @@ pub(super) enum Anchor {
     End,
 }
 
-/// Where a text hangs on its place, vertically.
+/// Vertical anchor of a text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Hang {
     Below,
@@ -76,7 +76,7 @@ pub(super) struct Label {
 }
 
 impl Label {
-    /// A black text that begins at a place.
+    /// A black text that begins at a position.
     pub(super) fn new(text: impl Into<String>, at: Place, size_mm: f64) -> Self {
         Self {
             text: text.into(),
@@ -90,7 +90,7 @@ impl Label {
         }
     }
 
-    /// The same text, hung differently.
+    /// The same text with other anchors.
     pub(super) fn hung(self, anchor: Anchor, hang: Hang) -> Self {
         Self { anchor, hang, ..self }
     }
@@ -129,7 +129,7 @@ pub(super) fn text_width_mm(text: &str, size_mm: f64) -> f64 {
     ems.sum::<f64>() * size_mm
 }
 
-/// A text broken between words into lines of at most a width.
+/// A text wrapped between words into lines of at most a given width.
 pub(super) fn wrapped(text: &str, size_mm: f64, width_mm: f64) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -154,7 +154,7 @@ pub(super) struct SheetImage {
     pub(super) pixels: Pixels,
 }
 
-/// The sheet of one figure, marks from back to front.
+/// The sheet of one figure, with marks from back to front.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Sheet {
     /// Rasters; they lie under all marks.
@@ -195,7 +195,7 @@ impl Sheet {
         self.marks.push(Mark::Label(label));
     }
 
-    /// Whether a text overlaps one that is there already.
+    /// Whether a text overlaps one already on the sheet.
     pub(super) fn is_taken(&self, label: &Label) -> bool {
         let (left, top, right, bottom) = label.bounds_mm();
         self.marks.iter().any(|mark| match mark {
@@ -210,9 +210,9 @@ impl Sheet {
     /// The sheet as SVG, its height rounded up to whole millimetres.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`] with what plotters says.
+    /// [`FigureError::Drawing`] with the error of plotters.
     pub(super) fn to_svg(&self, width_mm: f64, height_mm: f64) -> Result<String, FigureError> {
-        // Whole millimetres, which need no digits behind the point.
+        // Whole millimetres, written without decimals.
         let height_mm = height_mm.ceil();
         let (width, height) = (units(width_mm).unsigned_abs(), units(height_mm).unsigned_abs());
         let mut svg = String::new();
@@ -240,7 +240,7 @@ impl Sheet {
         self.with_images(svg)
     }
 
-    /// An SVG with the rasters behind its first element, the white page: plotters itself would draw them as rectangles.
+    /// An SVG with the rasters inserted after its first element, the white page: plotters itself would draw them as rectangles.
     fn with_images(&self, svg: String) -> Result<String, FigureError> {
         let Some(page_end) = svg.find("<rect").and_then(|at| svg[at..].find("/>").map(|end| at + end + 2)) else { return Ok(svg) };
         let mut out = svg[..page_end].to_owned();
@@ -258,7 +258,7 @@ impl Sheet {
     }
 }
 
-/// What plotters says went wrong.
+/// The error of plotters as a figure error.
 fn failed(error: &DrawingAreaErrorKind<std::io::Error>) -> FigureError {
     FigureError::Drawing(error.to_string())
 }
@@ -301,8 +301,8 @@ fn text_style(label: &Label) -> TextStyle<'_> {
     TextStyle::from(font).color(&label.colour).pos(Pos::new(horizontal, vertical))
 }
 
-/// Font sizes rounded to whole units: the division by 1.24 leaves sixteen digits. Quotes in texts are escaped, so that the attribute's
-/// name with its quote is found in attributes alone.
+/// Rounds font sizes to whole units, since the division by 1.24 leaves sixteen digits. Quotes in texts are escaped, so the
+/// attribute's name with its quote occurs only in attributes.
 fn with_short_font_sizes(svg: &str) -> String {
     const NAME: &str = "font-size=\"";
     let mut out = String::with_capacity(svg.len());
@@ -353,7 +353,7 @@ pub(super) fn dashes(points: &[Place], dash_mm: f64, gap_mm: f64) -> Vec<Vec<Pla
     found
 }
 
-/// Places along a line every so many mm, the first half a step in, each with the line's direction there; at least one.
+/// Positions along a line at a given step in mm, the first after half a step, each with the line's direction; at least one.
 pub(super) fn steps_along(points: &[Place], step_mm: f64) -> Vec<(Place, Place)> {
     let lengths: Vec<f64> = points.windows(2).map(|p| libm::hypot(p[1].0 - p[0].0, p[1].1 - p[0].1)).collect();
     let total: f64 = lengths.iter().sum();
@@ -371,7 +371,7 @@ pub(super) fn steps_along(points: &[Place], step_mm: f64) -> Vec<(Place, Place)>
     found
 }
 
-/// The place at a fraction of the way from one to another.
+/// The position at a fraction of the distance from one to another.
 pub(super) fn between(a: Place, b: Place, fraction: f64) -> Place {
     (a.0 + (b.0 - a.0) * fraction, a.1 + (b.1 - a.1) * fraction)
 }
@@ -390,7 +390,7 @@ mod tests {
     }
 
     #[test]
-    fn steps_along_a_line_keep_their_distance_and_short_lines_get_one() {
+    fn steps_along_a_line_have_equal_spacing_and_short_lines_get_one() {
         let steps = steps_along(&[(0.0, 0.0), (10.0, 0.0)], 2.0);
         assert_eq!(steps.iter().map(|(p, _)| p.0).collect::<Vec<_>>(), [1.0, 3.0, 5.0, 7.0, 9.0]);
         assert_eq!(steps_along(&[(0.0, 0.0), (0.1, 0.0)], 2.0).len(), 1);

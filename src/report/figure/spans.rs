@@ -1,4 +1,4 @@
-//! Stretches of ground by what they allow.
+//! Stretches of ground by the contacts that they allow.
 
 use crate::{
     chain::{ConstrainedChain, GroundRefusal, SegmentConstraints},
@@ -6,14 +6,14 @@ use crate::{
     world::{Contact, Direction},
 };
 
-/// Why nothing takes off from a stretch of ground nor lands on it.
+/// Why a stretch of ground allows neither take-off nor landing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Closure {
     /// A keep-out zone.
     KeepOut,
     /// Too steep to rest on.
     RestSlope,
-    /// Cones without a direction of travel: the plane misses the friction cone, or the cone lies beyond the vertical.
+    /// The cones contain no direction of travel: the plane misses the friction cone, or the cone lies beyond the vertical.
     Cones,
     /// A speed limit of zero.
     SpeedZero,
@@ -22,10 +22,10 @@ pub enum Closure {
 }
 
 impl Closure {
-    /// Every closure, in the order of the legend.
+    /// All closures, in the order of the legend.
     pub const ALL: [Self; 5] = [Self::KeepOut, Self::RestSlope, Self::Cones, Self::SpeedZero, Self::NoLimits];
 
-    /// What the legend says.
+    /// The legend text.
     pub const fn text(self) -> &'static str {
         match self {
             Self::KeepOut => "no contact: keep-out",
@@ -47,7 +47,7 @@ impl Closure {
     }
 }
 
-/// What a stretch of ground allows, in whichever direction of travel.
+/// The contacts that a stretch of ground allows in any direction of travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum GroundUse {
     /// Take-off and landing.
@@ -56,23 +56,23 @@ pub enum GroundUse {
     LandingOnly,
     /// Take-off, but no landing.
     TakeoffOnly,
-    /// Neither, and why.
+    /// Neither, with the reason.
     Closed(Closure),
 }
 
-/// A stretch of ground of one use.
+/// A stretch of ground with the same use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroundSpan {
-    /// Where it begins, m.
+    /// Its left end, m.
     pub from_x_m: f64,
-    /// Where it ends, m.
+    /// Its right end, m.
     pub to_x_m: f64,
-    /// What it allows.
+    /// Its use.
     pub allows: GroundUse,
 }
 
-/// What one segment allows; for a closed one the reason told is that of the journey's direction, unless the chain just states nothing
-/// for that direction.
+/// The use of one segment. The reason of a closed one is that for the journey's direction, unless the chain states no limits for
+/// that direction.
 fn use_of(segment: &SegmentConstraints, towards: Direction) -> GroundUse {
     let allowed = |contact| Direction::BOTH.into_iter().any(|direction| segment.allowed(contact, direction).is_some());
     match (allowed(Contact::Takeoff), allowed(Contact::Landing)) {
@@ -89,7 +89,7 @@ fn use_of(segment: &SegmentConstraints, towards: Direction) -> GroundUse {
     }
 }
 
-/// The stretches of ground within a range of x, from left to right, neighbours of one use joined.
+/// The stretches of ground within a range of x, from left to right; neighbours of the same use are merged.
 pub(super) fn spans(chain: &ConstrainedChain, (from_x_m, to_x_m): (f64, f64), towards: Direction) -> Vec<GroundSpan> {
     let vertices = chain.geometry().vertices();
     let mut found: Vec<GroundSpan> = Vec::new();

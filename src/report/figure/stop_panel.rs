@@ -1,4 +1,4 @@
-//! The second panel where there is no path: what refused, how often, and the nearest miss.
+//! The second panel if there is no path: the refusals counted by limit, and the nearest miss.
 
 use super::{
     axes::{BELOW_MM, Panel},
@@ -8,7 +8,7 @@ use super::{
     ticks::Ticks,
 };
 
-/// Distance of the bars.
+/// Spacing of the bars.
 const ROW_MM: f64 = 5.0;
 /// Thickness of a bar.
 const BAR_MM: f64 = 2.8;
@@ -31,7 +31,7 @@ pub(super) fn bars(sheet: &mut Sheet, counts: &[(&str, u64)], axis: &str, top_mm
     let names_mm = counts.iter().map(|(name, _)| text_width_mm(name, SMALL_MM)).fold(0.0, f64::max);
     let rows = counts.len() as f64;
     let panel = Panel { left: 6.0 + names_mm, top: top_mm, right: RIGHT_MM, bottom: top_mm + rows * ROW_MM + 1.5 };
-    // Room for the number behind the longest bar.
+    // Space for the number after the longest bar.
     let numbers_mm = text_width_mm(&most.to_string(), SMALL_MM) + 3.0;
     let per_refusal = (panel.width() - numbers_mm) / most as f64;
     let widest_mm = numbers_mm.max(panel.width() / 6.0);

@@ -1,4 +1,4 @@
-//! The symbols of the picture, drawn alike in the panels and in the legend.
+//! The symbols of the picture, the same in the panels and in the legend.
 
 use plotters::style::RGBColor;
 
@@ -18,9 +18,9 @@ use crate::{
 pub(super) const SURFACE_PEN: Pen = Pen { colour: SURFACE, width_mm: 0.3 };
 /// Flights.
 const ARC_PEN: Pen = Pen { colour: BLUE, width_mm: 0.35 };
-/// The refused hop that came closest.
+/// The refused hop with the smallest violation.
 const MISS_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.3 };
-/// Rays of a drawn cone, less one.
+/// Number of sectors of a drawn cone.
 const RAYS: u32 = 16;
 
 /// A flight: a solid line forward, a dashed one in reverse.
@@ -31,7 +31,7 @@ pub(super) fn flight(sheet: &mut Sheet, points: Vec<Place>, direction: Direction
     }
 }
 
-/// A cone as a wedge of some length, solid outline for take-off, dashed for landing.
+/// A cone as a wedge of a given length, with a solid outline for take-off and a dashed one for landing.
 pub(super) fn cone(sheet: &mut Sheet, frame: &Frame, cone: &Cone, length_mm: f64) {
     let apex = frame.place(cone.apex);
     let Some(angles) = cone.slopes.angles() else { return };
@@ -71,7 +71,7 @@ pub(super) fn node(sheet: &mut Sheet, at: Place) {
     sheet.dot(at, 0.32, SURFACE);
 }
 
-/// A point that refuses.
+/// A start or goal without any feasible hop.
 pub(super) fn cross(sheet: &mut Sheet, (x, y): Place) {
     let pen = Pen { colour: VERMILION, width_mm: 0.5 };
     sheet.line(vec![(x - 1.4, y - 1.4), (x + 1.4, y + 1.4)], pen);
@@ -83,12 +83,12 @@ pub(super) fn usable(sheet: &mut Sheet, at: Place) {
     sheet.ring(at, 1.3, Pen { colour: GREEN, width_mm: 0.45 });
 }
 
-/// The refused hop that came closest.
+/// The refused hop with the smallest violation.
 pub(super) fn nearest_miss(sheet: &mut Sheet, points: &[Place]) {
     sheet.dashed(points, 1.2, 0.8, MISS_PEN);
 }
 
-/// Ground that the start reaches (solid), or that leads to the goal (dashed).
+/// Ground reachable from the start (solid), or from which the goal can be reached (dashed).
 pub(super) fn band(sheet: &mut Sheet, points: &[Place], from_start: bool) {
     let raised: Vec<Place> = points.iter().map(|&(x, y)| (x, y - 1.1)).collect();
     if from_start {
@@ -98,10 +98,10 @@ pub(super) fn band(sheet: &mut Sheet, points: &[Place], from_start: bool) {
     }
 }
 
-/// How a closed stretch is hatched.
+/// The hatching of a closed stretch.
 struct Hatch {
     colour: RGBColor,
-    /// Lean of the strokes from the normal of the surface, as tangents.
+    /// Slant of the strokes from the surface normal, as tangents.
     leans: &'static [f64],
     step_mm: f64,
     length_mm: f64,
@@ -117,7 +117,7 @@ const fn hatch(closure: Closure) -> Hatch {
     }
 }
 
-/// A stretch of ground that is not free for both contacts: strokes into the ground where closed, a dashed or dotted line else.
+/// A stretch of ground not open for both contacts: strokes into the ground if closed, else a dashed or dotted line.
 pub(super) fn ground(sheet: &mut Sheet, points: &[Place], allows: GroundUse) {
     match allows {
         GroundUse::Both => {}
@@ -128,7 +128,7 @@ pub(super) fn ground(sheet: &mut Sheet, points: &[Place], allows: GroundUse) {
             sheet.line(points.to_vec(), Pen { colour, width_mm: 0.55 });
             for ((x, y), (ax, ay)) in steps_along(points, step_mm) {
                 for lean in leans {
-                    // Into the ground: the surface's direction turned clockwise on the sheet.
+                    // Into the ground: the surface's direction rotated clockwise on the sheet.
                     let (dx, dy) = (-ay + lean * ax, ax + lean * ay);
                     let length = libm::hypot(dx, dy) / length_mm;
                     sheet.line(vec![(x, y), (x + dx / length, y + dy / length)], Pen { colour, width_mm: 0.2 });

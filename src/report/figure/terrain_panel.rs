@@ -1,4 +1,4 @@
-//! The first panel: the ground, the hops over it, or what stops them.
+//! The first panel: the ground with the hops over it, or with the obstacle of the journey.
 
 use super::{
     axes::{BELOW_MM, Panel, left_room_mm},
@@ -18,14 +18,14 @@ const ABOVE_MM: f64 = 8.0;
 const DEPTH_MM: f64 = 9.5;
 /// Room beside an end of the chain.
 pub(super) const BESIDE_MM: f64 = 3.0;
-/// Least distance of the numbers of the height axis.
+/// Smallest spacing of the numbers of the height axis.
 const TICK_MM: f64 = 6.5;
-/// Columns within which only the lowest and the highest ground can be seen.
+/// Width of the columns in which only the lowest and the highest ground are drawn.
 const COLUMN_MM: f64 = 0.08;
-/// How far a drawn flight may leave the parabola.
+/// Greatest deviation of a drawn flight from the parabola.
 const FLATNESS_MM: f64 = 0.008;
 
-/// The panel: where it lies on the sheet, and the scale within.
+/// The panel: its position on the sheet and its scale.
 pub(super) struct TerrainPanel<'a> {
     data: &'a FigureData,
     chain: &'a ConstrainedChain,
@@ -34,16 +34,16 @@ pub(super) struct TerrainPanel<'a> {
 }
 
 impl<'a> TerrainPanel<'a> {
-    /// Lays the panel out below a height of the sheet.
+    /// Lays out the panel below a height of the sheet.
     pub(super) fn new(data: &'a FigureData, chain: &'a ConstrainedChain, top_mm: f64) -> Self {
-        // Beside the ends of the chain there is room for what stands on them.
+        // A margin beyond the ends of the chain leaves room for markers at the ends.
         let beside = |seen: f64, end: f64| if seen == end { BESIDE_MM } else { 0.0 };
         let sides_mm = (beside(data.view_x_m.0, data.chain_x_m.0), beside(data.view_x_m.1, data.chain_x_m.1));
         let (panel, frame) = laid_out(data.view_x_m, heights(data, chain), sides_mm, top_mm);
         Self { data, chain, panel, frame }
     }
 
-    /// Draws it; returns where it ends, axis included.
+    /// Draws it; returns where it ends, including the axis.
     pub(super) fn draw(&self, sheet: &mut Sheet) -> f64 {
         self.axes(sheet);
         self.ground(sheet);
@@ -65,7 +65,7 @@ impl<'a> TerrainPanel<'a> {
         self.panel.bottom + BELOW_MM
     }
 
-    /// Axes with the scale's statement.
+    /// Axes with the statement of the scale.
     fn axes(&self, sheet: &mut Sheet) {
         let (from, to) = self.data.chain_x_m;
         let cut =
@@ -73,7 +73,7 @@ impl<'a> TerrainPanel<'a> {
         axes(sheet, &self.panel, &self.frame, &format!("distance along the chain, x (m){cut}"), "height, z (m)");
     }
 
-    /// The profile, its nodes and what it allows.
+    /// The profile with its nodes and the uses of its stretches.
     fn ground(&self, sheet: &mut Sheet) {
         let surface = self.surface(self.data.view_x_m.0, self.data.view_x_m.1);
         if let (Some(&first), Some(&last)) = (surface.first(), surface.last()) {
@@ -89,7 +89,7 @@ impl<'a> TerrainPanel<'a> {
         }
     }
 
-    /// The ground between two x on the sheet, without what no eye can see.
+    /// The ground between two x on the sheet, thinned to the drawing resolution.
     fn surface(&self, from_x_m: f64, to_x_m: f64) -> Vec<Place> {
         thinned(&stretch(self.chain, from_x_m, to_x_m).into_iter().map(|point| self.frame.place(point)).collect::<Vec<_>>())
     }
@@ -117,7 +117,7 @@ impl<'a> TerrainPanel<'a> {
         }
     }
 
-    /// The number of a hop over its highest point, or beside it where another stands there; left out where there is no room.
+    /// The number of a hop above its highest point, or beside it if that position is taken; omitted without room.
     fn number(&self, sheet: &mut Sheet, hop: &HopFigure) {
         let apex = (0.5 * hop.arc.takeoff_slope() / hop.arc.loft()).clamp(0.1, 0.9);
         let free = [apex, apex - 0.12, apex + 0.12, apex - 0.25, apex + 0.25].into_iter().find_map(|share| {
@@ -130,7 +130,7 @@ impl<'a> TerrainPanel<'a> {
         }
     }
 
-    /// What is reached from either end, the gap and the nearest miss.
+    /// The stretches reachable from the start or leading to the goal, the gap and the nearest miss.
     fn stop(&self, sheet: &mut Sheet, stop: &StoppedFigure) {
         for (runs, from_start) in [(&stop.leads_to_goal_x_m, false), (&stop.reached_x_m, true)] {
             for &(from_x_m, to_x_m) in runs {
@@ -173,11 +173,11 @@ impl<'a> TerrainPanel<'a> {
     }
 }
 
-/// Panel and scale for a range of x, a range of heights, and free room at the two sides, below a height of the sheet.
+/// Panel and scale for a range of x, a range of heights and margins at the two sides, below a height of the sheet.
 pub(super) fn laid_out(view_x_m: (f64, f64), heights_m: (f64, f64), sides_mm: (f64, f64), top_mm: f64) -> (Panel, Frame) {
     let ((low_m, high_m), (before, after)) = (heights_m, sides_mm);
     let length_m = view_x_m.1 - view_x_m.0;
-    // The numbers of the axis decide where the panel begins, and depend themselves on its scale: a first guess is enough.
+    // The width of the axis numbers sets the panel's left edge, and depends on the panel's scale: one estimate of it is enough.
     let guess = Scale::new(length_m, high_m - low_m, RIGHT_MM - LEFT_MM);
     let left = LEFT_MM.max(1.0 + left_room_mm(&height_ticks(&guess, low_m, high_m)));
     let scale = Scale::new(length_m, high_m - low_m, RIGHT_MM - left - before - after);
@@ -223,8 +223,8 @@ pub(super) fn gap(sheet: &mut Sheet, panel: &Panel, [a, b]: [Place; 2], gap_m: f
     sheet.label(Label::new(text, (x, y - 1.2), SMALL_MM).hung(Anchor::Middle, Hang::Above));
 }
 
-/// Start or goal: a pin in the ground with its name below or, where the ground falls away, beside it; without it where all
-/// places are taken.
+/// Start or goal: a pin in the ground with its name below or, where the ground falls away, beside it; without a name if there is no
+/// room.
 pub(super) fn pin(sheet: &mut Sheet, panel: &Panel, (x, y): Place, name: &str, is_buried: impl Fn(&Label) -> bool) {
     sheet.area(vec![(x, y + 0.4), (x - 1.2, y + 3.0), (x + 1.2, y + 3.0)], BLACK, 1.0);
     let half = 0.5 * text_width_mm(name, SMALL_MM) + 0.8;
@@ -265,7 +265,8 @@ fn flight(frame: &Frame, hop: &HopFigure) -> Vec<Place> {
     parabola(frame, hop.arc.loft() * hop.arc.line_of_sight().run_m(), |share| hop.point_at(share))
 }
 
-/// A parabola on the sheet, with as many points as its curvature needs: its loft times its length, m, and its point at a share of it.
+/// A parabola on the sheet, with as many points as its curvature needs. Given are its loft times its length, m, and a function for
+/// its point at a fraction of the length.
 pub(super) fn parabola(frame: &Frame, lift_m: f64, point_at: impl Fn(f64) -> ChainPoint) -> Vec<Place> {
     // The sagitta of one of N pieces of the parabola is n X / (4 N^2).
     let bow_mm = 0.25 * lift_m * frame.scale.mm_per_m * frame.scale.exaggeration;
@@ -279,7 +280,7 @@ pub(super) fn parabola(frame: &Frame, lift_m: f64, point_at: impl Fn(f64) -> Cha
     points
 }
 
-/// A line from left to right with only the first, lowest, highest and last of the points in each narrow column.
+/// A line from left to right, reduced to the first, lowest, highest and last point in each narrow column.
 pub(super) fn thinned(points: &[Place]) -> Vec<Place> {
     let mut kept: Vec<Place> = Vec::new();
     let column = |place: &Place| (place.0 / COLUMN_MM).floor();

@@ -1,4 +1,4 @@
-//! The figure of many journeys: what it shows, what it says, and that it can be read.
+//! The figures of many journeys: contents, texts and legibility.
 
 use super::{
     samples::check_well_formed,
@@ -39,7 +39,7 @@ impl Case {
         let test = HopTest::new(self.chain.clone());
         let at = |x_m| self.chain.geometry().station(x_m).unwrap();
         let (start, goal) = (at(self.ends_m.0), at(self.ends_m.1));
-        let answer = search(&test, start, goal, &self.options, &mut |_| {}).unwrap();
+        let answer = search(&test, start, goal, &self.options, &()).unwrap();
         let path = match &answer.outcome {
             Outcome::Path { legs, .. } => Some(generate(&test, legs, self.options.takeoff, Split::FullReach).unwrap()),
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
@@ -82,7 +82,7 @@ fn paper() -> Case {
     Case { name: "The paper's 76 m case", ground: "cones 60 to 90 deg over the slope", chain, ends_m: (0.0, 76.0), options }
 }
 
-/// Walls, a keep-out zone, a side-slope, a stretch without speed, a stretch without limits, one for landing only.
+/// Walls, a keep-out zone, a cross-slope, a stretch with a speed limit of 0, one without stated limits, one for landing only.
 fn closed() -> Case {
     let points = [
         (0.0, 0.0),
@@ -123,7 +123,7 @@ fn impossible() -> Case {
     Case::new("A rille too wide", bare(points), Hopper::with_speeds(7.0, 8.0).unwrap(), 3.711, (2.0, 98.0))
 }
 
-/// The cones ask for steep hops, and these fall a metre short.
+/// The cones require steep hops, whose range is a metre too short.
 fn nearly() -> Case {
     let points = [(0.0, 0.0), (15.0, 0.4), (30.0, 0.0), (42.0, -22.0), (55.0, 0.1), (85.0, 1.0), (100.0, 0.5)];
     Case::new("A rille a metre too wide", bare(points), Hopper::with_speeds(10.0, 10.0).unwrap(), 3.711, (90.0, 10.0))
@@ -218,7 +218,7 @@ fn flights_follow_the_commanded_speed_and_angle_from_point_to_point() {
             let (from, to) = (hop.hop.takeoff.in_profile(), hop.hop.landing.in_profile());
             let run_m = (to.x_m - from.x_m).abs();
             let tolerance_m = 1e-9 * (run_m + hop.hop.apex_z_m - from.z_m);
-            // Newton's parabola from the commands alone.
+            // The parabola from the commands alone, by Newton's equations.
             let (v, angle) = (hop.hop.takeoff_speed_m_s, hop.hop.takeoff_angle.radians());
             for share in [0.0, 0.1, 0.5, 0.77, 1.0] {
                 let point = hop.point_at(share);
@@ -230,11 +230,11 @@ fn flights_follow_the_commanded_speed_and_angle_from_point_to_point() {
             flown += 1;
         }
     }
-    assert!(flown > 200, "{flown} hops looked at");
+    assert!(flown > 200, "only {flown} hops were checked");
 }
 
 #[test]
-fn cones_hold_the_flights_that_leave_and_enter_them() {
+fn cones_contain_the_flights_at_their_ends() {
     for case in cases() {
         let data = case.with(|input| FigureData::new(input).unwrap());
         for hop in hops(&data) {
@@ -252,13 +252,13 @@ fn cones_hold_the_flights_that_leave_and_enter_them() {
             assert!(x * dx + z * dz > 0.0 && sine.abs() < 1e-3, "{} hop {}: {sine}", case.name, hop.number);
             assert_eq!(x > 0.0, hop.hop.direction == Direction::Forward);
             let (x, _) = landing.ray(hop.arc.landing_slope());
-            assert_eq!(x < 0.0, hop.hop.direction == Direction::Forward, "the landing cone opens to where the hopper comes from");
+            assert_eq!(x < 0.0, hop.hop.direction == Direction::Forward, "the landing cone opens towards the incoming flight");
         }
     }
 }
 
 #[test]
-fn spans_tell_of_every_place_what_it_allows() {
+fn spans_state_the_use_of_every_point() {
     for case in cases() {
         let data = case.with(|input| FigureData::new(input).unwrap());
         assert_eq!((data.spans[0].from_x_m, data.spans[data.spans.len() - 1].to_x_m), data.view_x_m, "{}", case.name);
@@ -338,7 +338,7 @@ fn a_path_shows_every_hop_number_limit_and_unit() {
 }
 
 #[test]
-fn an_impossible_journey_shows_how_far_one_gets_and_why_no_farther() {
+fn a_journey_without_a_path_shows_how_far_one_gets_and_which_limits_refuse() {
     let case = nearly();
     let (data, frontier) = case.with(|input| {
         let Outcome::NoPath(frontier) = &input.answer.outcome else { panic!("a path over the rille") };
@@ -360,9 +360,9 @@ fn an_impossible_journey_shows_how_far_one_gets_and_why_no_farther() {
     }
 }
 
-/// With `CHTA_FIGURES_TO=folder` it also writes the pictures there, to be looked at.
+/// With `CHTA_FIGURES_TO=folder` it also writes the pictures there, for viewing.
 #[test]
-fn every_svg_is_well_formed_small_and_the_same_twice() {
+fn every_svg_is_well_formed_small_and_reproducible() {
     let folder = std::env::var_os("CHTA_FIGURES_TO").map(std::path::PathBuf::from);
     for case in cases() {
         let svg = case.with(|input| draw(input).unwrap());
@@ -379,7 +379,7 @@ fn every_svg_is_well_formed_small_and_the_same_twice() {
 }
 
 #[test]
-fn names_with_special_letters_are_escaped() {
+fn names_with_special_characters_are_escaped() {
     let svg = paper().with(|input| {
         let title = FigureTitle { name: "a < b & \"c\" font-size=\"7.5\"".to_owned(), ..FigureTitle::default() };
         draw(&FigureInput { title, ..input.clone() }).unwrap()
@@ -395,7 +395,7 @@ fn curves_are_finer_than_pixels() {
     let width: f64 = svg.split("viewBox=\"0 0 ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     let units_per_pixel = width / (170.0 / 25.4 * 96.0);
     assert!(units_per_pixel > 4.0, "{units_per_pixel} units a pixel");
-    // The four flights are the longest lines of the paper's case, on straight ground; their steps change smoothly.
+    // On the straight ground of the paper's case the four flights are the lines with the most points; their steps change smoothly.
     let lines = svg.split("points=\"").skip(1).map(|part| part.split('"').next().unwrap());
     let longest = lines.max_by_key(|line| line.len()).unwrap();
     let points: Vec<(f64, f64)> = longest

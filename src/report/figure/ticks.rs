@@ -3,7 +3,7 @@
 /// Round numbers within a range.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ticks {
-    /// Where.
+    /// Their values.
     pub(super) values: Vec<f64>,
     decimals: usize,
 }
@@ -19,7 +19,7 @@ impl Ticks {
         let mut values = Vec::new();
         let mut i = 0.0;
         while (first + i) * step <= to + 1e-9 * step && i < 200.0 {
-            // + 0.0 turns -0 into 0.
+            // Adding 0.0 turns -0 into 0.
             values.push((first + i) * step + 0.0);
             i += 1.0;
         }
@@ -31,20 +31,20 @@ impl Ticks {
         format!("{value:.*}", self.decimals)
     }
 
-    /// The longest number, in letters.
+    /// The number of characters of the longest number.
     pub(super) fn longest(&self) -> String {
         self.values.iter().map(|&v| self.text(v)).max_by_key(String::len).unwrap_or_default()
     }
 }
 
-/// The least of 1, 2, 5 times a power of ten that is no smaller.
+/// The least of 1, 2, 5 times a power of ten that is at least the given value.
 fn round_step(least: f64) -> f64 {
     let least = if least.is_finite() && least > 0.0 { least } else { 1.0 };
     let power = libm::pow(10.0, libm::floor(libm::log10(least)));
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|m| m * power).find(|&step| step >= least * (1.0 - 1e-9)).unwrap_or(10.0 * power)
 }
 
-/// The least of 1, 2, 5, 10, 20, ... that is no smaller: one in how many is written.
+/// The least of 1, 2, 5, 10, 20, ... that is at least the given value, as n for writing every n-th number.
 pub(super) fn one_in(least: f64) -> usize {
     [1, 2, 5, 10, 20, 50, 100, 200].into_iter().find(|&n| f64::from(n) >= least).map_or(500, |n: u16| n.into())
 }
@@ -67,7 +67,7 @@ pub(super) fn short(value: f64) -> String {
     trimmed(&format!("{value:.decimals$}")).to_owned()
 }
 
-/// Without zeros at the end of a fraction.
+/// A number without trailing zeros of its fraction.
 fn trimmed(digits: &str) -> &str {
     if digits.contains('.') { digits.trim_end_matches('0').trim_end_matches('.') } else { digits }
 }

@@ -4,17 +4,17 @@ use std::io::{self, Write};
 
 use super::{FIRST_COLUMNS, LandingRow, LandingWriter, number_columns};
 
-/// Landings as CSV, the header also where there is no landing.
+/// Landings as CSV, with a header even without landings.
 #[derive(Debug)]
 pub struct CsvLandings<W: Write> {
     writer: csv::Writer<W>,
 }
 
 impl<W: Write> CsvLandings<W> {
-    /// Begins with the header.
+    /// Begins a file with the header.
     ///
     /// # Errors
-    /// What the file system says.
+    /// An error of the file system.
     pub fn begin(out: W, on_a_map: bool) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(out);
         writer.write_record(FIRST_COLUMNS.iter().chain(number_columns(on_a_map)))?;

@@ -14,37 +14,37 @@ use crate::{
     world::Direction,
 };
 
-/// A writer of landings that takes them one by one, so that memory does not grow with their number.
+/// A writer that takes landings one by one, so that memory does not grow with their number.
 pub trait LandingWriter {
     /// Writes one landing.
     ///
     /// # Errors
-    /// What the file system says.
+    /// An error of the file system.
     fn write(&mut self, row: &LandingRow) -> io::Result<()>;
 
-    /// Writes what is left; nothing may follow.
+    /// Writes the buffered rest and ends the file.
     ///
     /// # Errors
-    /// What the file system says.
+    /// An error of the file system.
     fn finish(&mut self) -> io::Result<()>;
 }
 
 /// One landing of one trial.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LandingRow {
-    /// Which trial, from 0.
+    /// The trial's number, from 0.
     pub trial: u64,
-    /// Which hop of it, from 1.
+    /// The hop's number within the trial, from 1.
     pub hop: u32,
     /// The policy flown.
     pub policy: &'static str,
-    /// How the trial ended, where it ended with this landing; else empty.
+    /// The outcome of the trial, if it ended with this landing; else empty.
     pub outcome: &'static str,
     /// The numbers, in the order of [`number_columns`].
     pub numbers: [f64; NUMBERS],
 }
 
-/// How many numbers a row has.
+/// The number of numeric columns in a row.
 const NUMBERS: usize = 16;
 
 /// The columns before the numbers.
@@ -96,7 +96,7 @@ pub const fn number_columns(on_a_map: bool) -> &'static [&'static str; NUMBERS] 
 }
 
 impl LandingRow {
-    /// From a flown hop; `None` where it did not land.
+    /// The row of a flown hop; `None` if it did not land.
     pub fn new(record: &HopRecord, policy: Policy, on_a_map: bool) -> Option<Self> {
         let direction = if on_a_map {
             let degrees = libm::atan2(record.heading.x, record.heading.y).to_degrees();

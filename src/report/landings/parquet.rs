@@ -15,10 +15,10 @@ use parquet::{
 
 use super::{FIRST_COLUMNS, LandingRow, LandingWriter, NUMBERS, number_columns};
 
-/// Rows of one group: some 10 MB in memory before they are written.
+/// Rows of one row group: some 10 MB in memory before they are written.
 const ROWS_PER_GROUP: usize = 1 << 16;
 
-/// Landings as Parquet: the columns of the CSV, `outcome` null where the trial goes on.
+/// Landings as Parquet: the columns of the CSV, `outcome` null if the trial continues.
 pub struct ParquetLandings<W: io::Write + Send> {
     writer: SerializedFileWriter<W>,
     waiting: Vec<LandingRow>,
@@ -31,10 +31,10 @@ impl<W: io::Write + Send> std::fmt::Debug for ParquetLandings<W> {
 }
 
 impl<W: io::Write + Send> ParquetLandings<W> {
-    /// Begins a file that carries these words in its key-value metadata.
+    /// Begins a file with the given key-value metadata.
     ///
     /// # Errors
-    /// What the file system says.
+    /// An error of the file system.
     pub fn begin(out: W, on_a_map: bool, words: &[(&str, String)]) -> io::Result<Self> {
         let words = words.iter().map(|(key, value)| KeyValue::new((*key).to_owned(), value.clone())).collect();
         let properties = WriterProperties::builder()
@@ -47,7 +47,7 @@ impl<W: io::Write + Send> ParquetLandings<W> {
         Ok(Self { writer, waiting: Vec::new() })
     }
 
-    /// Writes the rows that wait as one group.
+    /// Writes the buffered rows as one row group.
     fn write_group(&mut self) -> io::Result<()> {
         if self.waiting.is_empty() {
             return Ok(());
@@ -83,7 +83,7 @@ impl<W: io::Write + Send> LandingWriter for ParquetLandings<W> {
     }
 }
 
-/// Writes the next column of a group.
+/// Writes the next column of a row group.
 fn column<W: io::Write + Send, T: DataType>(
     group: &mut SerializedRowGroupWriter<'_, W>,
     values: &[T::T],
@@ -132,7 +132,7 @@ mod tests {
 
     #[test]
     #[expect(clippy::cast_precision_loss, clippy::cast_possible_wrap, reason = "small counts")]
-    fn rows_and_words_are_read_back() {
+    fn rows_and_metadata_are_read_back() {
         let file = tempfile::tempfile().unwrap();
         let words = [("seed", "7".to_owned()), ("scenario", "{}".to_owned())];
         let mut writer = ParquetLandings::begin(file.try_clone().unwrap(), false, &words).unwrap();

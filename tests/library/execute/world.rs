@@ -98,7 +98,7 @@ impl World {
     /// The planned path; `None` if there is none, or if it has too many hops for a test.
     pub(crate) fn plan(&self, test: &HopTest) -> Option<HopPath> {
         let (start, goal) = self.ends(test.chain());
-        match search(test, start, goal, &self.options, &mut |_| {}).unwrap().outcome {
+        match search(test, start, goal, &self.options, &()).unwrap().outcome {
             Outcome::Path { legs, cost } if cost.hops() <= 60 => {
                 Some(generate(test, &legs, self.options.takeoff, self.options.split).unwrap())
             }

@@ -1,12 +1,13 @@
 //! Every outcome, in a scene that causes it; early stopping; bad input.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, sync::Mutex};
 
 use chta::{
     chain::{ConstrainedChain, PolygonalChain},
+    progress::{Cancelled, Detail, Progress, Stage, Step},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
     terrain::{Dem, GeoReference, KeepOut, Overlays, read_keep_out},
-    uncertainty::{Mission, Observer, Policy, Progress, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty},
+    uncertainty::{Mission, Policy, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty},
     world::{Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
@@ -28,7 +29,6 @@ const HUNDRED: TrialOptions = TrialOptions {
     hop_limit: None,
     goal_tolerance_m: 0.5,
     until_half_width: None,
-    threads: 1,
     trajectories: 0,
 };
 
@@ -124,7 +124,7 @@ fn zones_gaps_and_borders_lose_the_robot() {
     let lost = |mission: Mission, uncertainty| {
         let options = TrialOptions { trials: 200, goal_tolerance_m: 8.0, ..HUNDRED };
         let mut listener = Listener::default();
-        let summary = Simulation::new(&mission, uncertainty).unwrap().run(&options, &mut listener).unwrap();
+        let summary = Simulation::new(&mission, uncertainty).unwrap().run(&options, &mut listener, &()).unwrap();
         (summary.outcomes.of(TrialOutcome::Lost), listener)
     };
     let robot = (&scene.hopper, &scene.surface);
@@ -199,13 +199,15 @@ fn a_map_needs_grip_and_the_path_must_lie_on_it() {
     assert!(matches!(error, SimulationError::NotOnMap { hop: 1 }), "{error}");
 }
 
-/// Stops the run after the second batch.
-struct Impatient(Vec<Progress>);
+/// Cancels after the second batch; the first report is made at the start.
+#[derive(Default)]
+struct Impatient(Mutex<Vec<Step>>);
 
-impl Observer for Impatient {
-    fn progress(&mut self, progress: &Progress) -> ControlFlow<()> {
-        self.0.push(*progress);
-        if self.0.len() == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+impl Progress for Impatient {
+    fn report(&self, step: &Step) -> ControlFlow<()> {
+        let mut steps = self.0.lock().unwrap();
+        steps.push(*step);
+        if steps.len() == 3 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
@@ -214,13 +216,13 @@ fn what_makes_no_sense_is_refused_by_name() {
     let scene = Scene::flat();
     let planned = scene.planned();
     let simulation = planned.simulation(Uncertainty::NONE);
-    let refused = |options: TrialOptions| simulation.run(&options, &mut ()).unwrap_err().to_string();
+    let refused = |options: TrialOptions| simulation.run(&options, &mut (), &()).unwrap_err().to_string();
     assert!(refused(TrialOptions { trials: 0, ..HUNDRED }).contains("trials is 0"));
     assert!(refused(TrialOptions { hop_limit: Some(0), ..HUNDRED }).contains("hop_limit"));
     assert!(refused(TrialOptions { goal_tolerance_m: f64::NAN, ..HUNDRED }).contains("goal_tolerance_m"));
     assert!(refused(TrialOptions { until_half_width: Some(0.5), ..HUNDRED }).contains("0.5"));
     let without = planned.without_replanning(planned.test.clone(), planned.path.clone());
-    let error = Simulation::new(&without, Uncertainty::NONE).unwrap().run(&REPLAN, &mut ()).unwrap_err();
+    let error = Simulation::new(&without, Uncertainty::NONE).unwrap().run(&REPLAN, &mut (), &()).unwrap_err();
     assert!(matches!(error, SimulationError::NoCostsToGo));
     let refused = |uncertainty: Uncertainty| Simulation::new(&planned.mission(), uncertainty).unwrap_err().to_string();
     let none = Uncertainty::NONE;
@@ -232,8 +234,9 @@ fn what_makes_no_sense_is_refused_by_name() {
     assert!(refused(Uncertainty { height_correlation_m: 3.0, ..none }).contains("height_correlation_m is 3 m"));
     assert!(refused(Uncertainty { height_sigma_m: 3.0, ..none }).contains("height_sigma_m is 3 m"));
     assert!(refused(Uncertainty { heading_sigma: Angle::from_degrees(2.0), ..none }).contains("heading_sigma_deg"));
-    let mut impatient = Impatient(Vec::new());
-    let error = simulation.run(&TrialOptions { trials: 9000, ..HUNDRED }, &mut impatient).unwrap_err();
-    assert!(matches!(error, SimulationError::Stopped { trials: 2000 }));
-    assert_eq!((impatient.0[1].done, impatient.0[1].of, impatient.0[1].outcomes.total()), (2000, 9000, 2000));
+    let impatient = Impatient::default();
+    let error = simulation.run(&TrialOptions { trials: 9000, ..HUNDRED }, &mut (), &impatient).unwrap_err();
+    assert!(matches!(error, SimulationError::Cancelled(Cancelled { stage: Stage::Trials, done: 2000, .. })));
+    let last = impatient.0.into_inner().unwrap()[2];
+    assert_eq!((last.done, last.of, last.detail), (2000, Some(9000), Detail::Trials { reached_goal: 2000 }));
 }

@@ -28,7 +28,7 @@ impl Observer for Listener {
 pub(crate) fn exactly_planned(planned: &Planned<'_>, policy: Policy) {
     let mut listener = Listener::default();
     let options = TrialOptions { trials: 3, policy, goal_tolerance_m: 0.0, ..TrialOptions::default() };
-    let summary = planned.simulation(Uncertainty::NONE).run(&options, &mut listener).unwrap();
+    let summary = planned.simulation(Uncertainty::NONE).run(&options, &mut listener, &()).unwrap();
     assert_eq!(summary.outcomes.of(TrialOutcome::Reached), 3, "{:?} {:?}", summary.outcomes, listener.hops.last());
     let hops = planned.path.hops.len();
     assert!(hops >= 1);
@@ -95,9 +95,10 @@ fn any_number_of_threads_gives_the_same() {
         // Open loop over more than one batch; replanning on a map takes longer, so fewer trials.
         for (policy, trials) in [(Policy::OpenLoop, 1100), (Policy::Replan, 120)] {
             let run = |threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
                 let mut listener = Listener::default();
-                let options = TrialOptions { threads, trajectories: 7, ..options(trials, policy) };
-                let summary = planned.simulation(several()).run(&options, &mut listener).unwrap();
+                let options = TrialOptions { trajectories: 7, ..options(trials, policy) };
+                let summary = pool.install(|| planned.simulation(several()).run(&options, &mut listener, &())).unwrap();
                 (format!("{summary:?}"), format!("{:?} {:?}", listener.hops, listener.trials))
             };
             let one = run(1);
@@ -128,7 +129,7 @@ fn a_trial_depends_on_seed_and_number_alone() {
     let trials = |count, seed| {
         let mut listener = Listener::default();
         let options = TrialOptions { seed, ..options(count, Policy::OpenLoop) };
-        planned.simulation(several()).run(&options, &mut listener).unwrap();
+        planned.simulation(several()).run(&options, &mut listener, &()).unwrap();
         listener.trials
     };
     let (few, many, other) = (trials(60, 1), trials(1500, 1), trials(60, 2));
@@ -143,7 +144,7 @@ fn replanning_makes_up_for_drift() {
         let drift = Uncertainty { drift_along_sigma_m: 0.5, drift_across_sigma_m: 0.5, ..Uncertainty::NONE };
         let [open_loop, replan]: [Summary; 2] = planned
             .simulation(drift)
-            .compare(&TrialOptions { goal_tolerance_m: 3.0, ..options(300, Policy::OpenLoop) }, &mut ())
+            .compare(&TrialOptions { goal_tolerance_m: 3.0, ..options(300, Policy::OpenLoop) }, &mut (), &())
             .unwrap();
         assert_eq!((open_loop.policy, replan.policy), (Policy::OpenLoop, Policy::Replan));
         assert!(replan.success.low > open_loop.success.high, "{:?} {:?}", open_loop.success, replan.success);
@@ -158,7 +159,7 @@ fn the_robot_does_not_know_what_ground_it_drew() {
         let position = Uncertainty { position_sigma_m: 0.5, ..Uncertainty::NONE };
         let first_hops = |uncertainty| {
             let mut listener = Listener::default();
-            planned.simulation(uncertainty).run(&options(60, Policy::Replan), &mut listener).unwrap();
+            planned.simulation(uncertainty).run(&options(60, Policy::Replan), &mut listener, &()).unwrap();
             listener.hops.into_iter().filter(|hop| hop.hop == 1).collect::<Vec<_>>()
         };
         let nominal = first_hops(position);

@@ -107,11 +107,11 @@ impl Scene {
         let test = HopTest::new(self.chain.clone());
         let station = |x_m| self.chain.geometry().station(x_m).unwrap();
         let (start, goal) = (station(self.ends_m.0), station(self.ends_m.1));
-        let answer = search(&test, start, goal, &self.options, &mut |_| {}).unwrap();
+        let answer = search(&test, start, goal, &self.options, &()).unwrap();
         let Outcome::Path { legs, .. } = answer.outcome else { panic!("no path: {:?}", answer.outcome) };
         let path = generate(&test, &legs, self.options.takeoff, Split::FullReach).unwrap();
         let nodes = NodeSet::new(&self.chain, start, goal, answer.spacing).unwrap();
-        let to_go = Arc::new(CostToGo::of(&test, nodes, &self.options));
+        let to_go = Arc::new(CostToGo::of(&test, nodes, &self.options, &()).unwrap());
         Planned { scene: self, test, path, to_go, start, goal }
     }
 }
@@ -157,7 +157,7 @@ impl Planned<'_> {
     }
 
     pub(crate) fn run(&self, uncertainty: Uncertainty, options: &TrialOptions) -> Summary {
-        self.simulation(uncertainty).run(options, &mut ()).unwrap()
+        self.simulation(uncertainty).run(options, &mut (), &()).unwrap()
     }
 }
 

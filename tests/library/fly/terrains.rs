@@ -36,7 +36,8 @@ fn holds(file: &Path, body: &str, ends: [(f64, f64); 2], spacing_m: f64) {
         }
         let chain_alone = planned.chain_mission();
         let options = TrialOptions { trials: 1, goal_tolerance_m: 0.0, ..TrialOptions::default() };
-        let summary = chta::uncertainty::Simulation::new(&chain_alone, Uncertainty::NONE).unwrap().run(&options, &mut ()).unwrap();
+        let summary =
+            chta::uncertainty::Simulation::new(&chain_alone, Uncertainty::NONE).unwrap().run(&options, &mut (), &()).unwrap();
         assert_eq!(summary.outcomes.of(TrialOutcome::Reached), 1, "{takeoff:?} along the chain: {:?}", summary.outcomes);
     }
 }

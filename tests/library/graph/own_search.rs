@@ -81,7 +81,7 @@ fn petgraph_reaches_the_same_nodes_in_as_many_hops() {
         let nodes = node_set(&chain, start, start, &options);
         let graph = graph(&test, &nodes, &options);
         let theirs = algo::dijkstra(&graph, nodes.start(), None, |edge| edge.weight().hops());
-        let found = reachable(&test, start, options.spacing.unwrap()).unwrap();
+        let found = reachable(&test, start, options.spacing.unwrap(), &()).unwrap();
         assert_eq!(found.nodes.len(), nodes.stations().len());
         for (i, (station, hops)) in found.nodes.iter().enumerate() {
             assert_eq!(*station, nodes.stations()[i]);
@@ -116,8 +116,8 @@ fn any_number_of_threads_gives_the_same_answer() {
         let with = |threads: usize| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
-                let alone = search(&test, pairs[0].0, pairs[0].1, &options, &mut |_| {}).unwrap();
-                (alone, search_pairs(&test, &pairs, &options, &mut |_| {}).unwrap())
+                let alone = search(&test, pairs[0].0, pairs[0].1, &options, &()).unwrap();
+                (alone, search_pairs(&test, &pairs, &options, &()).unwrap())
             })
         };
         let one = with(1);
@@ -144,7 +144,7 @@ fn many_questions_have_the_answers_of_one_by_one() {
         if draw.chance(0.2) {
             options.spacing = None;
         }
-        let together = search_pairs(&test, &pairs, &options, &mut |_| {}).unwrap();
+        let together = search_pairs(&test, &pairs, &options, &()).unwrap();
         assert_eq!(together.len(), pairs.len());
         for ((start, goal), found) in pairs.iter().zip(&together) {
             let alone = asked(&test, *start, *goal, &options);
@@ -171,7 +171,7 @@ fn questions_of_one_start_share_their_work() {
     let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(1)), ..SearchOptions::default() };
     let goals = [290.0, 270.5, 250.0, 280.0];
     let pairs = goals.map(|x_m| (station(1.0), station(x_m)));
-    let together = search_pairs(&test, &pairs, &options, &mut |_| {}).unwrap();
+    let together = search_pairs(&test, &pairs, &options, &()).unwrap();
     let alone = asked(&test, pairs[0].0, pairs[0].1, &options);
     assert!(together.iter().all(|answer| answer.hops().is_some()));
     assert!(together[0].pairs_tested < alone.pairs_tested * 3 / 2, "{} against {}", together[0].pairs_tested, alone.pairs_tested);

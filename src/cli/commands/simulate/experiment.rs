@@ -9,7 +9,7 @@ use chta::{
         figure::{draw_cone_width, draw_landing_errors},
     },
     uncertainty::{
-        Policy, TrialOptions,
+        Policy,
         experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
     },
     world::Direction,
@@ -26,6 +26,7 @@ use crate::cli::{
     hints,
     load::Loaded,
     output,
+    progress::Progress,
 };
 
 /// Runs an experiment by its name.
@@ -72,7 +73,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
     Ok(Answer::Yes)
 }
 
-/// The variant of a name, or a sentence with the nearest.
+/// The variant with this name, or an error that suggests the nearest.
 fn named<T: Copy>(all: &[T], name: fn(T) -> &'static str, given: &str, option: &str) -> Result<T, Failure> {
     all.iter().copied().find(|variant| name(*variant) == given).ok_or_else(|| {
         let names: Vec<_> = all.iter().map(|variant| name(*variant)).collect();
@@ -81,7 +82,7 @@ fn named<T: Copy>(all: &[T], name: fn(T) -> &'static str, given: &str, option: &
     })
 }
 
-/// Refuses options that the experiment has no use for.
+/// Refuses options without effect on the experiment.
 fn refuse_without_effect(args: &SimulateArgs, experiment: Experiment) -> Result<(), Failure> {
     let trades = experiment == Experiment::RiskTrade;
     let without_effect = [
@@ -94,7 +95,7 @@ fn refuse_without_effect(args: &SimulateArgs, experiment: Experiment) -> Result<
     ];
     match without_effect.into_iter().find(|(_, given)| *given) {
         Some((option, _)) => {
-            Err(Failure::message(format!("{option} has no effect on the experiment {}: leave it away", experiment.name())))
+            Err(Failure::message(format!("{option} has no effect on the experiment {}: omit it", experiment.name())))
         }
         None => Ok(()),
     }
@@ -122,7 +123,7 @@ fn written<T: Serialize>(
     }
 }
 
-/// Plans and flies with ever narrower cones, on the same draws.
+/// Plans and flies with successively narrower cones, on the same draws.
 fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) -> Result<ConeWidthAnswer, Failure> {
     let scenario = &loaded.scenario;
     let numbers = DriftExperiment::of_the_paper(DriftReading::default(), seed);
@@ -149,7 +150,7 @@ fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) 
     Ok(answer)
 }
 
-/// Mean width of the take-off cones that the segments state for travel towards +x, degrees; 0 where none does.
+/// Mean width of the segments' take-off cones for travel towards +x, degrees; 0 if no segment has one.
 #[expect(clippy::cast_precision_loss, reason = "at most a million segments")]
 fn mean_takeoff_width_deg(chain: &ConstrainedChain) -> f64 {
     let stated = chain.segments().iter().filter_map(|segment| segment.stated(Direction::Forward));
@@ -168,24 +169,25 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     };
     if keys.policy == Policy::Replan {
         return Err(Failure::message(
-            "--experiment: risk-trade compares planned paths, but the policy is replan, which keeps to none of them: add --policy open-loop",
+            "--experiment: risk-trade compares planned paths, but the policy is replan, which does not follow a planned path: add --policy open-loop",
         ));
     }
     let test = loaded.hop_test();
     let (start, goal) = loaded.ends()?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| failed(&error))?;
+    let progress = Progress::new(args.common.quiet);
     let reliable_paths =
-        most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max));
-    // What would be planned without regard to risk, over the same nodes.
+        most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max), &progress)?;
+    // The path planned without regard to risk, over the same nodes.
     let without_risk = SearchOptions { spacing: Some(planned.found.spacing), ..scenario.search.clone() };
-    let found = graph::search(&test, start, goal, &without_risk, &mut |_| {}).map_err(|error| failed(&error))?;
+    let found = graph::search(&test, start, goal, &without_risk, &progress).map_err(|error| failed(&error))?;
     let Outcome::Path { legs, .. } = &found.outcome else {
         return Err(Failure::message("there is no nominal path to compare with"));
     };
     let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
     let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy), args.common.quiet)?;
-    let options = TrialOptions { threads: args.answer.threads, ..keys.options() };
+    let options = keys.options();
     let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
     for candidate in &reliable_paths {
         let path =

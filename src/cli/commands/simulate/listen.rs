@@ -1,21 +1,21 @@
-//! Who listens to the trials: the file of landings, and the terminal.
+//! The listener of the trials: it writes the file of landings and shows progress on the terminal.
 
 use std::{
     io::{self, BufWriter},
-    ops::ControlFlow,
     path::Path,
     time::Instant,
 };
 
 use chta::{
+    progress::{Detail, Step},
     report::landings::{CsvLandings, LandingRow, LandingWriter},
-    uncertainty::{HopRecord, Observer, Policy, Progress as Done},
+    uncertainty::{HopRecord, Observer, Policy},
 };
 
 use super::trials::on_dem;
 use crate::cli::{Failure, load::Loaded, output::Pending, progress::Progress};
 
-/// The file of landings, written as they come.
+/// The file of landings, written while the trials run.
 pub(super) struct RowFile<'a> {
     writer: Box<dyn LandingWriter>,
     /// `None` for standard output.
@@ -24,7 +24,7 @@ pub(super) struct RowFile<'a> {
 }
 
 impl<'a> RowFile<'a> {
-    /// Opens it, by the ending of its name.
+    /// Opens it in the format of its extension.
     pub(super) fn begin(path: &'a Path, loaded: &Loaded) -> Result<Self, Failure> {
         let on_a_map = on_dem(loaded);
         let unwritten = |error: io::Error| Failure::message(format!("{}: cannot be written ({error})", path.display()));
@@ -52,7 +52,7 @@ impl<'a> RowFile<'a> {
         Ok(Self { writer, pending: Some(pending), on_a_map })
     }
 
-    /// Puts it in its place.
+    /// Finishes the file and renames it to its final name.
     fn keep(mut self) -> Result<(), Failure> {
         match self.writer.finish() {
             Err(error) if self.pending.is_none() && error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
@@ -83,42 +83,41 @@ fn parquet<'a>(path: &'a Path, loaded: &Loaded, on_a_map: bool) -> Result<(Pendi
     Ok((pending, Box::new(writer)))
 }
 
-/// This program cannot.
+/// Parquet without the feature `parquet`: always an error.
 #[cfg(not(feature = "parquet"))]
 fn parquet<'a>(path: &'a Path, _loaded: &Loaded, _on_a_map: bool) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
     Err(Failure::message(format!(
-        "--output: '{}' is to be Parquet, which this chta was built without: build it with `cargo install --path . --features parquet`, or \
+        "--output: '{}' is a Parquet file, but this chta was built without Parquet: build it with `cargo install --path . --features parquet`, or \
          give a name that ends in .csv",
         path.display()
     )))
 }
 
-/// Writes landings and shows how far the trials are.
+/// Writes landings as they are flown.
 pub(super) struct Listener<'a> {
     rows: Option<RowFile<'a>>,
     policy: Policy,
     failed: Option<io::Error>,
-    progress: Progress,
-    begun: Instant,
+    progress: &'a Progress,
 }
 
 impl<'a> Listener<'a> {
-    pub(super) fn new(rows: Option<RowFile<'a>>, policy: Policy, quiet: bool) -> Self {
-        Self { rows, policy, failed: None, progress: Progress::new(quiet), begun: Instant::now() }
+    pub(super) fn new(rows: Option<RowFile<'a>>, policy: Policy, progress: &'a Progress) -> Self {
+        Self { rows, policy, failed: None, progress }
     }
 
     /// The trials of another policy follow.
-    pub(super) fn begin(&mut self, policy: Policy) {
-        (self.policy, self.begun) = (policy, Instant::now());
+    pub(super) const fn begin(&mut self, policy: Policy) {
+        self.policy = policy;
     }
 
-    /// What kept it from writing, in place of the simulation's own word that it was stopped.
+    /// The write error, which replaces the simulation's error that it was stopped.
     pub(super) fn failure(&mut self) -> Option<Failure> {
         let error = self.failed.take()?;
         Some(Failure::message(format!("the landings cannot be written ({error}): free some space")))
     }
 
-    /// Puts the file in its place.
+    /// Finishes the file.
     pub(super) fn finish(mut self) -> Result<(), Failure> {
         if let Some(failure) = self.failure() {
             return Err(failure);
@@ -137,49 +136,48 @@ impl Observer for Listener<'_> {
         if let Some(row) = LandingRow::new(hop, self.policy, rows.on_a_map)
             && let Err(error) = rows.writer.write(&row)
         {
-            // A reader who closed the pipe has enough.
+            // A closed pipe is success: the reader needs no more.
             if rows.pending.is_none() && error.kind() == io::ErrorKind::BrokenPipe {
                 self.rows = None;
             } else {
                 self.failed = Some(error);
+                self.progress.stop();
             }
         }
     }
+}
 
-    fn progress(&mut self, done: &Done) -> ControlFlow<()> {
-        if self.failed.is_some() {
-            return ControlFlow::Break(());
+/// The lines of the trials of a policy, which begin now.
+pub(super) fn trials_line(policy: Policy) -> impl Fn(&Step) -> Option<String> + Sync {
+    let begun = Instant::now();
+    move |step| match (step.detail, step.of) {
+        (Detail::Trials { reached_goal }, Some(of)) => {
+            Some(progress_text(policy, (step.done, of), reached_goal, begun.elapsed().as_secs_f64()))
         }
-        self.progress.say(progress_text(self.policy, done, self.begun.elapsed().as_secs_f64()));
-        ControlFlow::Continue(())
+        _ => None,
     }
 }
 
-/// The line of progress: how far the trials are, how fast they go, and how long they take still.
+/// The progress line: trials done, trials per second and time left.
 #[expect(clippy::cast_precision_loss, reason = "for reading")]
-fn progress_text(policy: Policy, done: &Done, elapsed_s: f64) -> String {
-    let rate = done.done as f64 / elapsed_s.max(1e-9);
-    let left_s = (done.of - done.done.min(done.of)) as f64 / rate.max(1e-9);
+fn progress_text(policy: Policy, (done, of): (u64, u64), reached_goal: u64, elapsed_s: f64) -> String {
+    let rate = done as f64 / elapsed_s.max(1e-9);
+    let left_s = (of - done.min(of)) as f64 / rate.max(1e-9);
     format!(
-        "{}: {} of {} trials, {rate:.0} a second, {left_s:.0} s left at most, {:.4} reach the goal",
+        "{}: {done} of {of} trials, {rate:.0} a second, {left_s:.0} s left at most, {:.4} reach the goal",
         policy.name(),
-        done.done,
-        done.of,
-        done.success.rate
+        reached_goal as f64 / done.max(1) as f64
     )
 }
 
 #[cfg(test)]
 mod tests {
-    use chta::uncertainty::{OutcomeCounts, Wilson};
-
     use super::*;
 
     #[test]
     fn progress_has_rate_and_time_left() {
-        let done = Done { done: 3000, of: 9000, outcomes: OutcomeCounts::default(), success: Wilson::of(1500, 3000) };
         assert_eq!(
-            progress_text(Policy::Replan, &done, 2.0),
+            progress_text(Policy::Replan, (3000, 9000), 1500, 2.0),
             "replan: 3000 of 9000 trials, 1500 a second, 4 s left at most, 0.5000 reach the goal"
         );
     }

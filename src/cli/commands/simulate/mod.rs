@@ -27,21 +27,21 @@ use listen::RowFile;
 use pictures::{landing_map, sheet};
 use trials::Flyer;
 
-/// What a simulation answers: the check, and where there is a path, what became of its trials.
+/// The answer of a simulation: the check and, with a path, the results of its trials.
 #[derive(Clone, Debug, Serialize)]
 struct SimulateAnswer {
     #[serde(flatten)]
     check: CheckAnswer,
     #[serde(flatten)]
     simulation: Option<SimulationRecord>,
-    /// Both policies on the same draws, where that was asked for.
+    /// Both policies on the same draws, if requested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     compare: Vec<SimulationRecord>,
 }
 
 /// Simulates.
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
-    // Before the terrain is read, which starts the threads.
+    // Set before the terrain is read, since reading starts the threads.
     use_threads(args.answer.threads)?;
     let loaded = load_with(
         &args.journey.chain,
@@ -53,7 +53,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     if let Some(name) = &args.experiment {
         return experiment::run(args, &loaded, name);
     }
-    // Everything that can be refused is, before the search, which may take long.
+    // All options are checked before the search, which may take long.
     let keys = loaded.scenario.uncertainty.unwrap_or_default();
     if let Some(half_width) = args.until_half_width.filter(|half_width| !(*half_width > 0.0 && *half_width < 0.5)) {
         return Err(Failure::message(format!(
@@ -117,23 +117,17 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
 
 /// The trials of a whole run.
 pub(super) struct RunTrials {
-    /// For reading; empty where the scenario asks for no trials, or no path was found to fly.
+    /// The text answer; empty if the scenario has no [uncertainty], or no path was found.
     pub(super) text: String,
     /// Names and contents of its files.
     pub(super) files: Vec<(&'static str, Vec<u8>)>,
 }
 
-/// All files that a run may leave of its trials.
+/// All files that a run may write for its trials.
 pub(super) const RUN_FILES: [&str; 3] = ["simulation.json", "trials.svg", "landings.svg"];
 
-/// Flies and draws what the scenario's `[uncertainty]` asks for, beside the plan of a run.
-pub(super) fn of_run(
-    loaded: &Loaded,
-    test: &HopTest,
-    planned: &Planned,
-    threads: usize,
-    quiet: bool,
-) -> Result<RunTrials, Failure> {
+/// Flies and draws the trials of the scenario's `[uncertainty]` for the plan of a run.
+pub(super) fn of_run(loaded: &Loaded, test: &HopTest, planned: &Planned, quiet: bool) -> Result<RunTrials, Failure> {
     let mut trials = RunTrials { text: String::new(), files: Vec::new() };
     let (Some(keys), Some(path)) = (loaded.scenario.uncertainty, &planned.path) else { return Ok(trials) };
     let warnings: Vec<String> = keys.warning().map(str::to_owned).into_iter().collect();
@@ -142,7 +136,7 @@ pub(super) fn of_run(
     }
     let policies = std::slice::from_ref(&keys.policy);
     let flyer = Flyer::new(loaded, test, path, &planned.found, policies, quiet)?;
-    let flown = flyer.fly(policies, &TrialOptions { threads, ..keys.options() }, None, quiet)?;
+    let flown = flyer.fly(policies, &keys.options(), None, quiet)?;
     let [answer, sheet_name, map_name] = RUN_FILES;
     let Some(record) = flown.first().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())) else { return Ok(trials) };
     trials.text = format!("\n{}", record.text());
@@ -153,7 +147,7 @@ pub(super) fn of_run(
     Ok(trials)
 }
 
-/// The answer where there is nothing to fly.
+/// The answer without a path to fly.
 fn no_path(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result<Answer, Failure> {
     let text = match args.answer.format {
         Format::Text => check_text(planned.check(), further_means()) + "nothing to simulate: there is no nominal path\n",
@@ -173,7 +167,7 @@ fn document<T: Serialize>(loaded: &Loaded, warnings: Vec<String>, answer: T) -> 
     Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
 }
 
-/// What the options of trials set in the scenario, which is checked and written as if it had said so itself.
+/// The scenario keys set by the options of trials; they are checked and written as keys of the scenario.
 fn trial_options(args: &SimulateArgs) -> Vec<(&'static str, &'static str, &'static str, toml::Value)> {
     let trials = args.trials.map(|trials| ("--trials", "uncertainty", "trials", trials.into()));
     let seed = args.seed.map(|seed| ("--seed", "uncertainty", "seed", seed.into()));
@@ -181,7 +175,7 @@ fn trial_options(args: &SimulateArgs) -> Vec<(&'static str, &'static str, &'stat
     [trials, seed, policy].into_iter().flatten().collect()
 }
 
-/// The trials that scenario and options ask for.
+/// The trials that scenario and options define.
 fn trials_asked(args: &SimulateArgs, keys: &UncertaintyKeys) -> TrialOptions {
-    TrialOptions { until_half_width: args.until_half_width, threads: args.answer.threads, ..keys.options() }
+    TrialOptions { until_half_width: args.until_half_width, ..keys.options() }
 }

@@ -15,7 +15,7 @@ use nalgebra::Vector2;
 use super::trials::{Flown, Flyer};
 use crate::cli::{Failure, load::Loaded, output};
 
-/// Everything of the trials on one sheet.
+/// The sheet with all panels of the trials.
 pub(super) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Vec<u8>, Failure> {
     let summaries = || flown.iter().map(|flown| &flown.summary);
     let figure = SimulationFigure {
@@ -37,7 +37,7 @@ pub(super) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Re
     output::encoded(draw_landing_map(&figure), file).map(Some)
 }
 
-/// The words above: what was flown, under which errors, and what came of it.
+/// The caption: what was flown, under which errors, and the success rates.
 fn caption<'a>(loaded: &Loaded, summaries: impl Iterator<Item = &'a Summary>) -> Caption {
     let keys = loaded.scenario.uncertainty.unwrap_or_default();
     let mut lines =
@@ -66,7 +66,7 @@ fn format_errors(errors: &Uncertainty) -> String {
     if words.is_empty() { "no errors".to_owned() } else { format!("standard deviations: {}", words.join(", ")) }
 }
 
-/// A number without the digits that a conversion of angles adds.
+/// A number without the rounding digits that a conversion of angles adds.
 fn shortest(number: f64) -> String {
     let text = format!("{number:.6}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
@@ -105,7 +105,7 @@ fn bars(summary: &Summary) -> OutcomeBars {
     }
 }
 
-/// The kept trials over the profile; on a map as seen from the side, and only where the way has no bend.
+/// The recorded trials over the profile; on a map in side view, and only where the transect has no bend.
 fn bundle(flyer: &Flyer<'_>, summary: &Summary) -> Option<FlownFigure> {
     let geometry = flyer.test.chain().geometry();
     if !geometry.bends().is_empty() {
@@ -124,7 +124,7 @@ fn bundle(flyer: &Flyer<'_>, summary: &Summary) -> Option<FlownFigure> {
     })
 }
 
-/// The plane that flights are seen in.
+/// The vertical plane on which flights are projected.
 struct Side {
     origin: Vector2<f64>,
     along: Vector2<f64>,
@@ -142,7 +142,7 @@ impl Side {
         Some(Self { origin: first.coords, along: (last - first).try_normalize(0.0)?, first_x_m })
     }
 
-    /// A flown hop as seen from the side; `None` for one across the plane.
+    /// A flown hop in side view; `None` for a hop perpendicular to the plane.
     fn flight(&self, hop: &HopRecord) -> Option<Flight> {
         let seen = |place: nalgebra::Point3<f64>| {
             ChainPoint::new(self.first_x_m + (place.coords.xy() - self.origin).dot(&self.along), place.z)

@@ -12,23 +12,23 @@ use chta::{
     uncertainty::{Mission, Policy, Simulation, Summary, TrialOptions},
 };
 
-use super::listen::{Listener, RowFile};
+use super::listen::{Listener, RowFile, trials_line};
 use crate::cli::{Failure, load::Loaded, progress::Progress};
 
-/// How many trials are kept with all their hops, for the pictures.
+/// How many trials are recorded with all their hops, for the pictures.
 const KEPT_TRIALS: u64 = 300;
 
-/// A planned path, and all that its trials need.
+/// A planned path, with everything its trials need.
 pub(super) struct Flyer<'a> {
     pub(super) loaded: &'a Loaded,
     pub(super) test: &'a HopTest,
     pub(super) path: &'a HopPath,
-    /// The whole raster with what lies over it, for flights in three dimensions.
+    /// The whole raster with its overlays, for flights in three dimensions.
     ground: Option<DemGround>,
     to_go: Option<Arc<CostToGo>>,
 }
 
-/// What the trials of one policy came to.
+/// The results of the trials of one policy.
 pub(super) struct Flown {
     pub(super) summary: Summary,
 }
@@ -39,7 +39,7 @@ pub(super) fn on_dem(loaded: &Loaded) -> bool {
 }
 
 impl<'a> Flyer<'a> {
-    /// Reads the raster, and computes once what replanning needs.
+    /// Reads the raster, and computes the replanning policy once.
     pub(super) fn new(
         loaded: &'a Loaded,
         test: &'a HopTest,
@@ -64,16 +64,17 @@ impl<'a> Flyer<'a> {
             let nodes = NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::of(&error))?;
             let options = &loaded.scenario.search;
             let progress = Progress::new(quiet);
-            progress.say("ranking the ways on from every node".to_owned());
-            Ok(Arc::new(match loaded.scenario.reliability() {
-                Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability),
-                None => CostToGo::of(test, nodes, options),
-            }))
+            progress.say("ranking the successors of every node".to_owned());
+            let to_go = match loaded.scenario.reliability() {
+                Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability, &progress),
+                None => CostToGo::of(test, nodes, options, &progress),
+            };
+            Ok(Arc::new(to_go?))
         });
         Ok(Self { loaded, test, path, ground, to_go: to_go.transpose()? })
     }
 
-    /// The raster, where there is one.
+    /// The raster, if the terrain is one.
     pub(super) fn dem(&self) -> Option<&Dem> {
         self.ground.as_ref().map(|ground| ground.terrain().dem())
     }
@@ -104,12 +105,13 @@ impl<'a> Flyer<'a> {
     ) -> Result<Vec<Flown>, Failure> {
         let errors = self.loaded.scenario.uncertainty.unwrap_or_default().errors;
         let simulation = Simulation::new(&self.mission(self.path)?, errors).map_err(|error| Failure::of(&error))?;
-        let mut listener = Listener::new(rows, policies.first().copied().unwrap_or_default(), quiet);
+        let progress = Progress::new(quiet);
+        let mut listener = Listener::new(rows, policies.first().copied().unwrap_or_default(), &progress);
         let mut flown = Vec::new();
         for &policy in policies {
             listener.begin(policy);
             let options = TrialOptions { policy, trajectories: KEPT_TRIALS, ..*options };
-            match simulation.run(&options, &mut listener) {
+            match simulation.run(&options, &mut listener, &progress.with_lines(trials_line(policy))) {
                 Ok(summary) => flown.push(Flown { summary }),
                 Err(error) => return Err(listener.failure().unwrap_or_else(|| Failure::of(&error))),
             }
@@ -122,6 +124,6 @@ impl<'a> Flyer<'a> {
     pub(super) fn fly_along(&self, path: &HopPath, options: &TrialOptions) -> Result<Summary, Failure> {
         let errors = self.loaded.scenario.uncertainty.unwrap_or_default().errors;
         let failed = |error: chta::uncertainty::SimulationError| Failure::of(&error);
-        Simulation::new(&self.mission(path)?, errors).map_err(failed)?.run(options, &mut ()).map_err(failed)
+        Simulation::new(&self.mission(path)?, errors).map_err(failed)?.run(options, &mut (), &Progress::new(true)).map_err(failed)
     }
 }

@@ -1,5 +1,5 @@
-//! Letters as outlines: `DejaVu` Sans, cut down to Latin, Greek, Cyrillic and signs (`data/fonts`), so that a PNG is the same on every
-//! machine whatever fonts it has. A letter outside is drawn as the font's box for missing ones.
+//! Glyph outlines from `DejaVu` Sans, reduced to Latin, Greek, Cyrillic and signs (`data/fonts`), so that a PNG is the same on
+//! every machine, independent of installed fonts. Other characters are drawn as the font's box for missing glyphs.
 
 use ttf_parser::{Face, OutlineBuilder};
 
@@ -10,10 +10,10 @@ use super::super::{
 
 const PLAIN: &[u8] = include_bytes!("../../../../data/fonts/DejaVuSans-subset.ttf");
 const BOLD: &[u8] = include_bytes!("../../../../data/fonts/DejaVuSans-Bold-subset.ttf");
-/// Straight pieces for each curve of a letter: at 300 dots an inch under a tenth of a pixel off.
+/// Line segments for each curve of a glyph: at 300 dots an inch the error is below a tenth of a pixel.
 const PIECES: u8 = 5;
 
-/// The two faces.
+/// The two font faces, plain and bold.
 pub(super) struct Letters {
     plain: Face<'static>,
     bold: Face<'static>,
@@ -21,13 +21,13 @@ pub(super) struct Letters {
 
 impl Letters {
     /// # Errors
-    /// [`FigureError::Drawing`] where a font is damaged.
+    /// [`FigureError::Drawing`] if a font is damaged.
     pub(super) fn new() -> Result<Self, FigureError> {
         let face = |bytes| Face::parse(bytes, 0).map_err(|error| FigureError::Drawing(format!("the built-in font: {error}")));
         Ok(Self { plain: face(PLAIN)?, bold: face(BOLD)? })
     }
 
-    /// The outlines of a text on the sheet, mm; hung as in an SVG of plotters.
+    /// The outlines of a text on the sheet, mm; anchored as in an SVG of plotters.
     pub(super) fn outlines(&self, label: &Label) -> Vec<Vec<Place>> {
         let face = if label.bold { &self.bold } else { &self.plain };
         let mm_per_unit = label.size_mm / f64::from(face.units_per_em());
@@ -48,7 +48,7 @@ impl Letters {
         let mut found = Vec::new();
         for glyph in glyphs {
             let mut outline = Outline::default();
-            // A letter without an outline, such as a space, only moves on.
+            // A glyph without an outline, such as a space, only advances.
             face.outline_glyph(glyph, &mut outline);
             let place = |(x, y): Place| {
                 let (right, down) = (along_mm + x * mm_per_unit, down_mm - y * mm_per_unit);
@@ -61,7 +61,7 @@ impl Letters {
     }
 }
 
-/// Contours in units of the font.
+/// Contours in font units.
 #[derive(Default)]
 struct Outline {
     contours: Vec<Vec<Place>>,
@@ -78,7 +78,7 @@ impl Outline {
         }
     }
 
-    /// Straight pieces of a Bezier curve by de Casteljau's rule.
+    /// Line segments of a Bezier curve, by de Casteljau's algorithm.
     fn curve(&mut self, points: &[Place]) {
         for piece in 1..=PIECES {
             let share = f64::from(piece) / f64::from(PIECES);

@@ -1,7 +1,7 @@
-//! The sheet as pixels: the same marks as in the SVG, with smooth edges, letters included.
+//! The sheet as pixels: the same marks as in the SVG, antialiased, including text.
 //!
-//! Every mark becomes closed outlines, and `ab_glyph_rasterizer` tells how much of each pixel they cover. Nothing depends on fonts or
-//! libraries of the machine, so the bytes are the same everywhere. A renderer of SVG (resvg) would do the same with 60 crates more.
+//! Every mark becomes closed outlines, and `ab_glyph_rasterizer` computes their coverage of each pixel. Nothing depends on fonts or
+//! libraries of the machine, so the bytes are the same everywhere. An SVG renderer (resvg) would add 60 crates for the same result.
 
 mod letters;
 mod png;
@@ -18,9 +18,9 @@ use letters::Letters;
 
 /// 300 dots an inch.
 const PIXELS_PER_MM: f64 = 300.0 / 25.4;
-/// The same for the file's header.
+/// The same resolution for the file's header, in pixels per metre.
 const PIXELS_PER_M: u32 = 11_811;
-/// Lines thinner than this many pixels need no round joints.
+/// Lines thinner than this many pixels get no round joints.
 const JOINT: f64 = 1.5;
 
 /// Renders a sheet as PNG at 300 dots an inch.
@@ -55,7 +55,7 @@ fn whole(pixels: f64) -> usize {
     pixels.round().max(1.0) as usize
 }
 
-/// A polygon around a circle's centre, fine enough for its size.
+/// A circle as a polygon, fine enough for its size.
 fn disc(centre: Place, radius_mm: f64) -> Vec<Place> {
     let corners: u8 = if radius_mm < 0.3 { 12 } else { 32 };
     let corner = |i| {
@@ -65,8 +65,8 @@ fn disc(centre: Place, radius_mm: f64) -> Vec<Place> {
     (0..corners).map(corner).collect()
 }
 
-/// A line as outlines of one sense of rotation, so that where they overlap they cover once: a rectangle for each piece, and a disc for
-/// each joint of a line wide enough to show it.
+/// A polyline as outlines of the same orientation, so that overlaps count once: a rectangle for each piece, and a disc for each
+/// joint if the line is wide enough.
 fn stroke(points: &[Place], pen: Pen) -> Vec<Vec<Place>> {
     let half = 0.5 * pen.width_mm;
     let mut found = Vec::new();
@@ -84,7 +84,7 @@ fn stroke(points: &[Place], pen: Pen) -> Vec<Vec<Place>> {
     found
 }
 
-/// Pixels to paint on.
+/// The pixel buffer.
 struct Canvas {
     pixels: Pixels,
     ink: Rasterizer,
@@ -97,7 +97,7 @@ impl Canvas {
         Self { pixels, ink: Rasterizer::new(0, 0) }
     }
 
-    /// Copies an image, each pixel of the page from the image's pixel at its middle.
+    /// Copies an image; each page pixel gets the image pixel at its centre.
     #[expect(clippy::cast_precision_loss, reason = "pixels of a page")]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the cast saturates, and the places are clipped")]
     fn image(&mut self, image: &SheetImage) {
@@ -116,7 +116,7 @@ impl Canvas {
         }
     }
 
-    /// Paints closed outlines, given in mm.
+    /// Fills closed outlines, given in mm.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -125,7 +125,7 @@ impl Canvas {
     )]
     fn fill(&mut self, outlines: &[Vec<Place>], colour: RGBColor, opacity: f64) {
         let (wide, high) = (self.pixels.width as f64, self.pixels.height as f64);
-        // A page around the page is kept, so that what hangs over the edge is cut and not bent into sight.
+        // A margin of one page on each side is kept, so that outlines beyond the edge are clipped and not deformed.
         let pixel = |&(x, y): &Place| ((x * PIXELS_PER_MM).clamp(-wide, 2.0 * wide), (y * PIXELS_PER_MM).clamp(-high, 2.0 * high));
         let (mut low, mut top) = ((f64::INFINITY, f64::INFINITY), (f64::NEG_INFINITY, f64::NEG_INFINITY));
         for (x, y) in outlines.iter().flatten().map(pixel) {

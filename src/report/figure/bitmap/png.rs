@@ -1,4 +1,4 @@
-//! PNG (W3C, third edition) of rows of pixels, and base64 (RFC 4648) to put one into an SVG.
+//! PNG encoder (W3C, third edition), and base64 (RFC 4648) to embed a PNG in an SVG.
 
 use std::io::Write as _;
 
@@ -6,25 +6,25 @@ use flate2::{Compression, Crc, write::ZlibEncoder};
 
 use super::super::FigureError;
 
-/// Rows of pixels from the top, each from the left.
+/// Pixels, row by row from the top, each row from the left.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in super::super) struct Pixels {
     /// Columns.
     pub(in super::super) width: usize,
     /// Rows.
     pub(in super::super) height: usize,
-    /// What the bytes mean.
+    /// The pixel format.
     pub(in super::super) form: Form,
     /// One or three bytes for each pixel.
     pub(in super::super) bytes: Vec<u8>,
 }
 
-/// What the bytes of pixels mean.
+/// The format of the pixel bytes.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(in super::super) enum Form {
     /// Red, green, blue.
     Rgb,
-    /// A place in a table of at most 256 colours: a third of the bytes, and far better to compress.
+    /// An index into a table of at most 256 colours: a third of the bytes, and better compression.
     Palette(Vec<[u8; 3]>),
 }
 
@@ -36,7 +36,7 @@ impl Form {
         }
     }
 
-    /// Colour type of the header.
+    /// The colour type for the header.
     fn code(&self) -> u8 {
         match self {
             Self::Rgb => 2,
@@ -63,13 +63,13 @@ impl Pixels {
     /// The pixels as a PNG file; the same pixels give the same bytes.
     ///
     /// # Errors
-    /// [`FigureError::Drawing`] where the sides do not fit 32 bits or the compressor fails.
+    /// [`FigureError::Drawing`] if the sides do not fit 32 bits or the compressor fails.
     pub(in super::super) fn to_png(&self, pixels_per_m: Option<u32>) -> Result<Vec<u8>, FigureError> {
         let side = |length: usize| u32::try_from(length).map_err(|_| failed(format!("{length} pixels are too many for a PNG")));
         let mut header = Vec::with_capacity(13);
         header.extend(side(self.width)?.to_be_bytes());
         header.extend(side(self.height)?.to_be_bytes());
-        // 8 bits, the form, and the only methods there are of compression, filtering and interlacing.
+        // 8 bits, the colour type, the only defined compression and filter methods, no interlacing.
         header.extend([8, self.form.code(), 0, 0, 0]);
         let mut out = b"\x89PNG\r\n\x1a\n".to_vec();
         chunk(&mut out, *b"IHDR", &header)?;
@@ -85,7 +85,8 @@ impl Pixels {
         Ok(out)
     }
 
-    /// The rows, each with the filter that leaves the smallest numbers (none for a table of colours, whose numbers mean nothing).
+    /// The rows, each with the filter that leaves the smallest numbers (no filter for palette indices, whose differences are
+    /// meaningless).
     fn compressed(&self) -> std::io::Result<Vec<u8>> {
         let step = self.form.bytes_per_pixel();
         let mut encoder = ZlibEncoder::new(Vec::new(), Compression::new(6));
@@ -103,7 +104,7 @@ impl Pixels {
     }
 }
 
-/// A row behind its filter's number: 0 as it is, 1 less the pixel to the left, 2 less the pixel above.
+/// A row after its filter type: 0 unchanged, 1 minus the pixel to the left, 2 minus the pixel above.
 fn filtered(filter: u8, row: &[u8], above: &[u8], step: usize) -> Vec<u8> {
     let less = |i: usize| match filter {
         1 if i >= step => row[i - step],
@@ -166,7 +167,7 @@ mod tests {
         assert_eq!(base64(&[0xfb, 0xff, 0xfe]), "+//+");
     }
 
-    /// Reads a PNG of filters 0 to 2 again, checksums included.
+    /// Decodes a PNG with filters 0 to 2 and checks its checksums.
     pub(super) fn read(png: &[u8]) -> (usize, usize, Vec<u8>) {
         assert_eq!(&png[..8], b"\x89PNG\r\n\x1a\n");
         let (mut rest, mut size, mut packed, mut step) = (&png[8..], (0, 0), Vec::new(), 0);
@@ -204,7 +205,7 @@ mod tests {
     }
 
     #[test]
-    fn a_png_holds_its_pixels() {
+    fn a_png_decodes_to_its_pixels() {
         let rgb: Vec<u8> = (0..7 * 5 * 3u32).map(|i| (i * i % 251) as u8).collect();
         let pixels = Pixels { width: 7, height: 5, form: Form::Rgb, bytes: rgb.clone() };
         assert_eq!(read(&pixels.to_png(Some(11_811)).unwrap()), (7, 5, rgb));

@@ -1,4 +1,4 @@
-//! Marks as pixels: what is covered, how much, and in which colour.
+//! Marks as pixels: position, coverage and colour.
 
 use super::*;
 use crate::report::figure::{
@@ -6,7 +6,7 @@ use crate::report::figure::{
     sheet::{Anchor, Hang, Label},
 };
 
-/// The rows of a small page after some marks, as shares of black.
+/// The rows of a small page after drawing some marks, as shares of black.
 fn shares(canvas: &Canvas) -> Vec<f64> {
     canvas.pixels.bytes.chunks(3).map(|rgb| 1.0 - f64::from(rgb[0]) / 255.0).collect()
 }
@@ -16,7 +16,7 @@ fn mm(pixels: f64) -> f64 {
 }
 
 #[test]
-fn areas_cover_what_they_measure() {
+fn areas_cover_their_measure() {
     let mut canvas = Canvas::new(40, 30);
     let (l, t, r, b) = (mm(4.25), mm(3.5), mm(20.75), mm(17.25));
     canvas.fill(&[vec![(l, t), (r, t), (r, b), (l, b)]], BLACK, 1.0);
@@ -35,13 +35,13 @@ fn lines_are_as_dark_at_their_joints_and_crossings_as_elsewhere() {
     let pen = Pen { colour: BLACK, width_mm: mm(4.0) };
     canvas.fill(&stroke(&line, pen), BLACK, 1.0);
     let covered: f64 = shares(&canvas).iter().sum();
-    // 45 + 25 + 20 + 50 long and 4 wide; the crossing counts once, three outer corners are quarters of a disc.
+    // 45 + 25 + 20 + 50 long and 4 wide; the crossing counts once, the three outer corners are quarter discs.
     let expected = 4.0 * (45.0 + 25.0 + 20.0 + 50.0) - 16.0 - 3.0 * (4.0 - std::f64::consts::PI);
     assert!((covered - expected).abs() < 3.0, "{covered}, expected {expected}");
 }
 
 #[test]
-fn what_hangs_over_the_edge_is_cut() {
+fn marks_beyond_the_edge_are_clipped() {
     let mut canvas = Canvas::new(20, 20);
     canvas.fill(&[vec![(mm(-900.0), mm(5.0)), (mm(900.0), mm(5.0)), (mm(900.0), mm(9.0)), (mm(-900.0), mm(9.0))]], BLACK, 0.5);
     let all = shares(&canvas);
@@ -51,7 +51,7 @@ fn what_hangs_over_the_edge_is_cut() {
 }
 
 #[test]
-fn letters_have_their_width_place_and_sense() {
+fn letters_have_their_width_position_and_direction() {
     let letters = Letters::new().unwrap();
     let label = |text: &str| Label::new(text, (100.0, 50.0), 10.0);
     let box_of = |label: &Label| {
@@ -75,7 +75,7 @@ fn letters_have_their_width_place_and_sense() {
 }
 
 #[test]
-fn images_lie_where_they_should() {
+fn images_are_at_their_position() {
     let mut canvas = Canvas::new(40, 20);
     let pixels = Pixels { width: 2, height: 1, form: Form::Palette(vec![[0, 0, 0], [255, 0, 0]]), bytes: vec![0, 1] };
     let image = SheetImage { left_mm: mm(10.0), top_mm: mm(5.0), width_mm: mm(20.0), height_mm: mm(10.0), pixels };

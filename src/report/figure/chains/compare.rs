@@ -1,4 +1,4 @@
-//! Several scenarios over one another.
+//! The paths of several scenarios, overlaid.
 
 use plotters::style::RGBColor;
 
@@ -14,7 +14,7 @@ use super::{
 };
 use crate::quantity::ChainPoint;
 
-/// Colours, and the dash and gap of each, mm; scenarios beyond the last begin again with the next marks.
+/// Colours, with the dash and gap of each, mm; further scenarios repeat the colours with the next marker shapes.
 const LINES: [(RGBColor, Option<(f64, f64)>); 7] = [
     (BLUE, None),
     (VERMILION, Some((2.4, 0.8))),
@@ -26,15 +26,16 @@ const LINES: [(RGBColor, Option<(f64, f64)>); 7] = [
 ];
 /// Length of a sample in the legend.
 const SAMPLE_MM: f64 = 10.0;
-/// Distance of the legend's rows.
+/// Spacing of the legend's rows.
 const ROW_MM: f64 = 4.6;
 
-/// Draws the paths of several scenarios over one another, each with its own colour, dashes and mark at its landings.
+/// Draws the paths of several scenarios overlaid, each with its own colour, dashes and landing marker.
 ///
-/// On one common ground they are drawn where they are; on several, each from its own start, the ground a thin line of the scenario's colour.
+/// On a common ground they are drawn at their positions. On different grounds each is drawn from its own start, with the ground as
+/// a thin line in the scenario's colour.
 ///
 /// # Errors
-/// [`FigureError::NoGround`] where there is no scenario, or one whose ground has fewer than two points.
+/// [`FigureError::NoGround`] if there is no scenario, or one whose ground has fewer than two points.
 pub fn draw_compare(figure: &CompareFigure) -> Result<Picture, FigureError> {
     let Some(first) = figure.scenarios.first() else {
         return Err(FigureError::NoGround { what: "the comparison, which has no scenario,".to_owned(), points: 0 });
@@ -79,12 +80,12 @@ struct Drawn<'a> {
     start: ChainPoint,
     goal: ChainPoint,
     flights: Vec<Flight>,
-    /// One of how many flights is shown.
+    /// Every n-th flight is shown.
     every: usize,
 }
 
 impl<'a> Drawn<'a> {
-    /// Where it is, or moved so that it starts at the origin.
+    /// A point at its position, or moved so that the scenario starts at the origin.
     fn new(scenario: &'a ComparedScenario, index: usize, in_place: bool) -> Self {
         let origin = if in_place { ChainPoint::new(0.0, 0.0) } else { scenario.start };
         let moved = |point: ChainPoint| ChainPoint::new(point.x_m - origin.x_m, point.z_m - origin.z_m);
@@ -114,7 +115,7 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// The scenario's mark of a landing: its corners tell it from others whatever the colour.
+    /// The scenario's landing marker: its number of corners identifies it without colour.
     fn mark(&self, sheet: &mut Sheet, (x, y): Place) {
         let (colour, r) = (self.colour(), 0.75);
         match (self.index + self.index / LINES.len()) % LINES.len() {
@@ -132,7 +133,7 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// Its flights with their landings, and its own ground.
+    /// Its flights with their landings, and its ground if that is not common.
     fn draw(&self, sheet: &mut Sheet, profile: &Profile, own_ground: bool) {
         if own_ground {
             let pen = Pen { colour: self.colour(), width_mm: 0.2 };
@@ -146,7 +147,7 @@ impl<'a> Drawn<'a> {
         }
     }
 
-    /// What the legend says.
+    /// The legend text.
     fn text(&self) -> String {
         let hops = match self.scenario.hops {
             Some(1) => ", 1 hop".to_owned(),
@@ -161,11 +162,11 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// Where the legend's samples and texts begin.
+/// Left ends of the legend's samples and texts.
 const LEFT_MM: f64 = 6.0;
 const TEXT_LEFT_MM: f64 = LEFT_MM + SAMPLE_MM + 1.5;
 
-/// Start and goal: those that all share with their name, others with the number of their scenario.
+/// Start and goal: common ones by name, others with the number of their scenario.
 fn ends(sheet: &mut Sheet, profile: &Profile, drawn: &[Drawn<'_>]) {
     let Some(first) = drawn.first() else { return };
     let mut pinned: Vec<ChainPoint> = Vec::new();
@@ -184,10 +185,10 @@ fn ends(sheet: &mut Sheet, profile: &Profile, drawn: &[Drawn<'_>]) {
     }
 }
 
-/// Most ends named one by one.
+/// The greatest number of ends that are named one by one.
 const MOST_NAMED: usize = 8;
 
-/// A row for each scenario; returns where they end.
+/// A legend row for each scenario; returns where they end.
 fn legend(sheet: &mut Sheet, drawn: &[Drawn<'_>], top_mm: f64) -> f64 {
     let mut y = top_mm;
     for one in drawn {

@@ -1,9 +1,9 @@
-//! What these pictures show, as plain data.
+//! The data of these pictures.
 
 use super::super::Caption;
 use crate::quantity::ChainPoint;
 
-/// A flight in the plane of a chain: the parabola from one point to another with a slope of take-off.
+/// A flight in the plane of a chain: the parabola from one point to another with a given take-off slope.
 ///
 /// ```text
 ///            . - .
@@ -16,100 +16,100 @@ pub struct Flight {
     pub from: ChainPoint,
     /// First contact with the ground, or landing.
     pub to: ChainPoint,
-    /// Tangent of the take-off angle as the traveller sees it (rise over distance gone, whichever direction that is).
+    /// Tangent of the take-off angle in the direction of travel (rise over horizontal distance travelled).
     pub takeoff_slope: f64,
 }
 
-/// What is proved of a stretch of chain.
+/// The proved class of a stretch of chain.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ProofClass {
     /// A path to it exists.
     Reachable,
     /// No path to it exists, at any resolution.
     Unreachable,
-    /// Neither is known yet.
+    /// Neither is known.
     Open,
 }
 
-/// A stretch of chain of one class; of zero length it is a single point.
+/// A stretch of chain of one class; with zero length it is a single point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ProofStretch {
-    /// Where it begins, m.
+    /// Its left end, m.
     pub from_x_m: f64,
-    /// Where it ends, m.
+    /// Its right end, m.
     pub to_x_m: f64,
-    /// What is proved.
+    /// Its class.
     pub class: ProofClass,
 }
 
 /// The gap that stops a journey.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ProofGap {
-    /// The farthest that one gets from the start, m.
+    /// The farthest point that may be reached from the start, m.
     pub reached_x_m: f64,
-    /// The nearest from where the goal could be reached, m.
+    /// The point nearest to the start from which the goal may be reached, m.
     pub leads_to_goal_x_m: f64,
-    /// Which limits refuse in between, counted, most first.
+    /// The limits that refuse in between with their counts, in descending order.
     pub refusals: Vec<(String, u64)>,
 }
 
 /// A proof along a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ProofFigure {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
     /// The ground, from left to right.
     pub ground: Vec<ChainPoint>,
-    /// What is proved of it; what no stretch covers is drawn as bare ground.
+    /// Its proved stretches; ground outside any stretch is drawn bare.
     pub stretches: Vec<ProofStretch>,
-    /// Boundaries of the cells, m; drawn where they are few enough to be told apart.
+    /// Boundaries of the cells, m; drawn if they are few enough to be distinguished.
     pub cell_boundaries_x_m: Vec<f64>,
     /// Where the journey begins.
     pub start: ChainPoint,
     /// Where it should end.
     pub goal: ChainPoint,
-    /// The path behind the upper bound, where there is one.
+    /// The path behind the upper bound, if any.
     pub path: Vec<Flight>,
-    /// No path has fewer hops; `None` where it is proved that there is none at all.
+    /// No path has fewer hops; `None` if it is proved that there is no path.
     pub lower_bound: Option<u64>,
-    /// Hops of the best path known.
+    /// Hops of the best known path.
     pub upper_bound: Option<u64>,
-    /// Cells at the end.
+    /// The final number of cells.
     pub cells: u64,
-    /// What stops the journey, where something does.
+    /// The gap that stops the journey, if any.
     pub gap: Option<ProofGap>,
 }
 
 /// One capability of a trade.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TradeAxis {
-    /// What is varied, with its unit, such as `hopper.takeoff_speed_max_m_s (m/s)`.
+    /// The varied key with its unit, such as `hopper.takeoff_speed_max_m_s (m/s)`.
     pub name: String,
-    /// The values, rising.
+    /// The values, in ascending order.
     pub values: Vec<f64>,
 }
 
 /// One cell of a trade.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TradeCell {
-    /// A path with so many hops.
+    /// A path with this number of hops.
     Hops(u64),
-    /// Proved: no path.
+    /// No path, proved.
     Untraversable,
-    /// No path found, and none excluded.
+    /// No path found, but not excluded either.
     Open,
 }
 
 /// Hops over one or two capabilities.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct TradeFigure {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
     /// Varied along the horizontal axis.
     pub x: TradeAxis,
     /// Varied along the vertical axis; `None`: a single row.
     pub y: Option<TradeAxis>,
-    /// The fields: for the first value of `y` every value of `x`, then for the second, and so on.
+    /// The cells: for the first value of `y` every value of `x`, then for the second, and so on.
     pub cells: Vec<TradeCell>,
 }
 
@@ -118,9 +118,9 @@ pub struct TradeFigure {
 pub struct ComparedScenario {
     /// Its name.
     pub name: String,
-    /// What came of it, such as `traversable`.
+    /// Its verdict, such as `traversable`.
     pub verdict: String,
-    /// Its hops, where there is a path.
+    /// Its number of hops, if there is a path.
     pub hops: Option<u64>,
     /// Its ground, from left to right.
     pub ground: Vec<ChainPoint>,
@@ -132,10 +132,11 @@ pub struct ComparedScenario {
     pub flights: Vec<Flight>,
 }
 
-/// Several scenarios, their paths overlaid. On one common ground they are drawn where they are; on several, each from its own start.
+/// Several scenarios with their paths overlaid. On a common ground they are drawn at their positions, otherwise each from its own
+/// start.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CompareFigure {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
     /// The scenarios.
     pub scenarios: Vec<ComparedScenario>,

@@ -1,4 +1,4 @@
-//! A sheet of the single hops of paths over a map: a grid of small profiles, each with its numbers.
+//! A sheet with the profiles of all hops of paths over a map: a grid of small panels, each with its numbers.
 
 use super::{
     super::{
@@ -20,59 +20,59 @@ use crate::{path::Hop, quantity::ChainPoint};
 /// One hop of the sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HopProfile {
-    /// Which hop, such as `goal 1, hop 3 of 26`.
+    /// The title, such as `goal 1, hop 3 of 26`.
     pub name: String,
-    /// The ground from take-off to landing and as far beyond as is known.
+    /// The ground from take-off to landing, and beyond as far as it is known.
     pub ground: Vec<ChainPoint>,
-    /// The hop; its ends on the map are told where it has them.
+    /// The hop; its map coordinates are printed if it has them.
     pub hop: Hop,
-    /// Where the flight passes lowest over a vertex, x and how high over it, m; `None` where there is none between the ends.
+    /// The least clearance of the flight over a vertex: x and height above it, m; `None` if there is no vertex between the ends.
     pub least_clearance_m: Option<(f64, f64)>,
 }
 
 /// The sheet of all hops.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HopProfilesFigure {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
-    /// How high over the ground a flight has to stay, m; 0: it must not touch it.
+    /// The required clearance over vertices, m; 0: the flight must only not touch the ground.
     pub clearance_m: f64,
     /// The hops, row by row.
     pub hops: Vec<HopProfile>,
 }
 
-/// A hop's cell with its words, its panel and free room around.
+/// Width and height of a hop's cell, with text, panel and the space around.
 const CELL_MM: (f64, f64) = (82.0, 62.0);
-/// Free room right of a cell.
+/// Space right of a cell.
 const GAP_MM: f64 = 5.0;
 /// Height of the panel.
 const PANEL_MM: f64 = 32.0;
-/// Free room over what is drawn, below it and at its sides.
+/// Space above the drawing, below it and at its sides.
 const ABOVE_MM: f64 = 4.0;
 const BELOW_MM: f64 = 5.0;
 const BESIDE_MM: f64 = 3.0;
-/// Heights less than this are exaggerated.
+/// Drawn heights below this are exaggerated.
 const FLAT_MM: f64 = 6.0;
-/// Distance of the lines of words.
+/// Spacing of the text lines.
 const LINE_MM: f64 = 3.6;
-/// Around the whole grid.
+/// Margin around the grid.
 const MARGIN_MM: f64 = 4.0;
-/// The sheet is no higher than this many times its width.
+/// Greatest ratio of the sheet's height to its width.
 const SLENDER: f64 = 1.95;
 
 const FLIGHT_PEN: Pen = Pen { colour: BLUE, width_mm: 0.35 };
 const REQUIRED_PEN: Pen = Pen { colour: GREEN, width_mm: 0.25 };
 const LEAST_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.35 };
-/// Dashes and gaps of the line of the required clearance.
+/// Dash and gap of the line of the required clearance.
 const DASHES_MM: (f64, f64) = (1.2, 0.7);
 
-/// Draws the profiles of hops as a grid: for each its number, where it begins and ends on the map, its distance and heading, speeds and
-/// angles at both ends, and the flight over the ground with the place where it passes lowest.
+/// Draws the profiles of hops as a grid: for each its number, its ends on the map, distance and heading, speeds and angles at both
+/// ends, and the flight over the ground with the point of least clearance.
 ///
-/// As many columns as keep the sheet no higher than about twice its width. A sheet of one or two columns is a page of 170 mm wide.
+/// The number of columns keeps the sheet no higher than about twice its width. A sheet of one or two columns is 170 mm wide.
 ///
 /// # Errors
-/// [`FigureError::NoGround`] for a hop over a ground of fewer than two points.
+/// [`FigureError::NoGround`] if the ground of a hop has fewer than two points.
 pub fn draw_hop_profiles(figure: &HopProfilesFigure) -> Result<Picture, FigureError> {
     let mut sheet = Sheet::default();
     let head_mm = figure.caption.draw(&mut sheet);
@@ -92,7 +92,7 @@ const fn float(count: usize) -> f64 {
     count as f64
 }
 
-/// The least number of columns that keeps the sheet from becoming slender, and the sheet's width.
+/// The least number of columns that keeps the sheet within its greatest ratio of height to width, and the sheet's width.
 fn columns(hops: usize, head_mm: f64) -> (usize, f64) {
     let width_mm = |columns: usize| PAGE_WIDTH_MM.max((2.0 * MARGIN_MM + float(columns) * CELL_MM.0).ceil());
     let is_slender = |columns: usize| head_mm + float(hops.div_ceil(columns)) * CELL_MM.1 > SLENDER * width_mm(columns);
@@ -100,7 +100,7 @@ fn columns(hops: usize, head_mm: f64) -> (usize, f64) {
     (columns, width_mm(columns))
 }
 
-/// The legend: what occurs on the sheet.
+/// The legend, with the symbols that occur on the sheet.
 fn entries(figure: &HopProfilesFigure) -> Vec<(Swatch, String)> {
     let mut found = vec![
         (Swatch::Line(FLIGHT_PEN), "flight".to_owned()),
@@ -117,7 +117,7 @@ fn entries(figure: &HopProfilesFigure) -> Vec<(Swatch, String)> {
     found
 }
 
-/// The numbers of a hop, a line each.
+/// The numbers of a hop, as text lines.
 fn words(profile: &HopProfile) -> Vec<String> {
     let hop = &profile.hop;
     let run_m = short(hop.run_m());
@@ -142,7 +142,7 @@ fn words(profile: &HopProfile) -> Vec<String> {
     found
 }
 
-/// One hop below and right of a place.
+/// One hop, with the given upper left corner.
 fn cell(sheet: &mut Sheet, profile: &HopProfile, clearance_m: f64, (left_mm, top_mm): Place) {
     let width_mm = CELL_MM.0 - GAP_MM;
     let title = fitted(&profile.name, TEXT_MM, 0.9 * width_mm);
@@ -184,21 +184,21 @@ fn panel(sheet: &mut Sheet, profile: &HopProfile, clearance_m: f64, ends_mm: (f6
     drawn.panel.outline(sheet);
 }
 
-/// The scale in as few words as a small panel has room for.
+/// The scale, worded briefly for a small panel.
 fn brief(scale: &Scale) -> String {
     if scale.exaggeration < 1.0 { format!("heights at 1/{:.0}", 1.0 / scale.exaggeration) } else { scale.text() }
 }
 
-/// A panel of fixed height with everything in it at one scale, or at one that its axis states.
+/// A panel of fixed height, with equal scales on both axes or an exaggeration that its axis states.
 fn laid_out(ground: &[ChainPoint], flight: &Flight, (left_mm, right_mm): (f64, f64), top_mm: f64) -> Profile {
     let heights = ground.iter().map(|point| point.z_m).chain([flight.apex_z_m()]);
     let (low_m, high_m) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)));
     let (from_m, to_m) = (flight.from.x_m.min(flight.to.x_m), flight.from.x_m.max(flight.to.x_m));
-    // A hop straight up still has a scale.
+    // A vertical hop still needs a scale.
     let length_m = if to_m > from_m { to_m - from_m } else { 1.0 };
     let tall_mm = PANEL_MM - ABOVE_MM - BELOW_MM;
     let scale = |left_mm: f64| Scale::within(length_m, high_m - low_m, right_mm - left_mm - 2.0 * BESIDE_MM, (FLAT_MM, tall_mm));
-    // The numbers of the axis decide where the panel begins, and depend themselves on its scale: a first guess is enough.
+    // The width of the axis numbers sets the panel's left edge, and depends on the panel's scale: one estimate of it is enough.
     let guess = scale(left_mm + 12.0);
     let per_mm = 1.0 / (guess.mm_per_m * guess.exaggeration);
     let ticks = Ticks::round(low_m - BELOW_MM * per_mm, high_m + ABOVE_MM * per_mm, PANEL_MM / 6.5);

@@ -1,4 +1,4 @@
-//! What the picture of a proof shows, taken from the bounds and the chain.
+//! The data of a proof's picture, from the bounds and the chain.
 
 use super::{super::Caption, Flight, ProofClass, ProofFigure, ProofGap, ProofStretch};
 use crate::{
@@ -31,7 +31,7 @@ impl From<&Gap> for ProofGap {
 }
 
 impl ProofFigure {
-    /// Of bounds that were explained, with the best path known where its hops are wanted in the picture.
+    /// The figure of explained bounds, with the best known path if it is to be drawn.
     pub fn of(
         caption: Caption,
         chain: &PolygonalChain,

@@ -1,4 +1,4 @@
-//! The panel that proofs and comparisons share: ground and flights at one scale.
+//! The panel shared by proofs and comparisons: ground and flights at one scale.
 
 use super::{
     super::{
@@ -14,14 +14,13 @@ use super::{
 use crate::quantity::ChainPoint;
 
 impl Flight {
-    /// Rise per distance gone that the parabola has at take-off beyond that of the straight line, times the distance, m; 0 for a flight
-    /// of no length.
+    /// The loft (take-off slope minus the slope of the chord) times the horizontal distance, m; 0 for a flight of zero length.
     fn lift_m(&self) -> f64 {
         let run_m = (self.to.x_m - self.from.x_m).abs();
         if run_m > 0.0 { (self.takeoff_slope * run_m - (self.to.z_m - self.from.z_m)).max(0.0) } else { 0.0 }
     }
 
-    /// The point at a share of the distance.
+    /// The point at a fraction of the distance.
     pub(super) fn point_at(&self, share: f64) -> ChainPoint {
         let (run_m, rise_m) = (self.to.x_m - self.from.x_m, self.to.z_m - self.from.z_m);
         let lifted_m = self.lift_m() * share * (1.0 - share);
@@ -36,19 +35,19 @@ impl Flight {
     }
 }
 
-/// Every n-th of a path's flights where there are too many to be told apart, and that n.
+/// Every n-th flight of a path if there are too many to be distinguished, with n.
 pub(super) fn shown(flights: &[Flight]) -> (Vec<Flight>, usize) {
     let every = flights.len().div_ceil(MOST_HOPS_DRAWN).max(1);
     (flights.iter().step_by(every).copied().collect(), every)
 }
 
-/// Whether there is ground to draw.
+/// Checks that there is ground to draw.
 pub(super) fn check_ground(what: &str, ground: &[ChainPoint]) -> Result<(), FigureError> {
     let points = ground.len();
     if points < 2 { Err(FigureError::NoGround { what: what.to_owned(), points }) } else { Ok(()) }
 }
 
-/// The panel: where it lies on the sheet, and the scale within.
+/// The panel: its position on the sheet and its scale.
 pub(super) struct Profile {
     pub(super) panel: Panel,
     pub(super) frame: Frame,
@@ -65,7 +64,7 @@ impl Profile {
             heights = wider(heights, flight.apex_z_m());
         }
         if along.0 == along.1 {
-            // Points above one another still have a scale.
+            // Points at the same x still need a scale.
             along = (along.0 - 0.5, along.1 + 0.5);
         }
         let (panel, frame) = terrain_panel::laid_out(along, heights, (BESIDE_MM, BESIDE_MM), top_mm);
@@ -77,12 +76,12 @@ impl Profile {
         terrain_panel::axes(sheet, &self.panel, &self.frame, x_name, y_name);
     }
 
-    /// Where the panel with its axis ends.
+    /// The lower end of the panel with its axis.
     pub(super) fn end_mm(&self) -> f64 {
         self.panel.bottom + BELOW_MM
     }
 
-    /// A line on the sheet without what no eye can see.
+    /// A line on the sheet, thinned to the drawing resolution.
     pub(super) fn line(&self, points: &[ChainPoint]) -> Vec<Place> {
         thinned(&points.iter().map(|&point| self.frame.place(point)).collect::<Vec<_>>())
     }
@@ -92,7 +91,7 @@ impl Profile {
         terrain_panel::parabola(&self.frame, flight.lift_m(), |share| flight.point_at(share))
     }
 
-    /// Start or goal, named where the ground has room for it.
+    /// Start or goal, with its name if there is room in the drawn ground.
     pub(super) fn pin(&self, sheet: &mut Sheet, ground: &[ChainPoint], at: ChainPoint, name: &str) {
         let inside = |label: &Label| {
             let (left, top, right, _) = label.bounds_mm();
@@ -103,7 +102,7 @@ impl Profile {
     }
 }
 
-/// The ground at an x, which beyond its ends is that of the end.
+/// The ground at an x; beyond an end, the ground at that end.
 pub(super) fn at_x(ground: &[ChainPoint], x_m: f64) -> ChainPoint {
     let after = ground.partition_point(|point| point.x_m < x_m);
     match (after.checked_sub(1).and_then(|before| ground.get(before)), ground.get(after)) {
@@ -121,7 +120,7 @@ pub(super) fn part(ground: &[ChainPoint], from_x_m: f64, to_x_m: f64) -> Vec<Cha
     std::iter::once(ends[0]).chain(ground[first..end].iter().copied()).chain([ends[1]]).collect()
 }
 
-/// A text cut to a width, with dots where something is missing.
+/// A text truncated to a width, with an ellipsis.
 pub(super) fn fitted(text: &str, size_mm: f64, width_mm: f64) -> String {
     if text_width_mm(text, size_mm) <= width_mm {
         return text.to_owned();
@@ -136,5 +135,5 @@ pub(super) fn fitted(text: &str, size_mm: f64, width_mm: f64) -> String {
     kept + "..."
 }
 
-/// The width that a text may take on the page.
+/// The width available for a text on the page.
 pub(super) const TEXT_WIDTH_MM: f64 = RIGHT_MM - 8.0;

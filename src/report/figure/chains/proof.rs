@@ -1,4 +1,4 @@
-//! The proof along a chain: what is reachable, what is proved not to be, what is open.
+//! The proof along a chain: reachable, proved unreachable and open stretches.
 
 use plotters::style::RGBColor;
 
@@ -16,28 +16,28 @@ use super::{
     profile::{self, Profile},
 };
 
-/// The least length of a stretch on the sheet: a point is drawn so long.
+/// The smallest length of a stretch on the sheet; a point is drawn with this length.
 const LEAST_MM: f64 = 0.5;
-/// More stretches than this and only columns of [`LEAST_MM`] are told apart, each by the class that most of it has.
+/// Above this number of stretches the chain is drawn in columns of [`LEAST_MM`], each in the class of its longest part.
 const MOST_STRETCHES: usize = 300;
-/// Least mean distance of drawn cell boundaries.
+/// Smallest mean distance at which cell boundaries are drawn.
 const BOUNDARY_MM: f64 = 0.4;
-/// Most limits told one by one.
+/// The greatest number of limits listed one by one.
 const MOST_LIMITS: usize = 10;
-/// Boundaries of cells.
+/// Line of cell boundaries.
 const BOUNDARY_PEN: Pen = Pen { colour: BLACK, width_mm: 0.1 };
 
 /// The three classes in the order of the legend.
 const CLASSES: [ProofClass; 3] = [ProofClass::Reachable, ProofClass::Unreachable, ProofClass::Open];
 
-/// Draws a chain by what is proved of it: reachable (a solid line over light ground), proved unreachable (a line with strokes into the
-/// ground), open (a dotted line over dots). Below: the gap that stops the journey, with the limits that refuse, counted.
+/// Draws a chain by what is proved of it: reachable (a solid line over light ground), proved unreachable (a line with strokes into
+/// the ground), open (a dotted line over dots). Below: the gap that stops the journey, with the refusals counted by limit.
 ///
-/// Stretches too short to be seen are drawn half a millimetre long; of more than 300, and of cell boundaries closer than 0.4 mm, only what
-/// can be told apart is drawn. The legend tells the length of each class.
+/// Stretches too short to be seen are drawn half a millimetre long. More than 300 stretches are merged into columns, and cell
+/// boundaries closer than 0.4 mm are omitted. The legend states the length of each class.
 ///
 /// # Errors
-/// [`FigureError::NoGround`] where the ground has fewer than two points.
+/// [`FigureError::NoGround`] if the ground has fewer than two points.
 pub fn draw_proof(figure: &ProofFigure) -> Result<Picture, FigureError> {
     profile::check_ground("the proof", &figure.ground)?;
     let mut sheet = Sheet::default();
@@ -60,7 +60,7 @@ pub fn draw_proof(figure: &ProofFigure) -> Result<Picture, FigureError> {
 /// Flights of the best path.
 const FLIGHT_PEN: Pen = Pen { colour: BLACK, width_mm: 0.3 };
 
-/// What the two bounds come to, in a sentence.
+/// The meaning of the two bounds, in a sentence.
 fn bounds(figure: &ProofFigure) -> String {
     let hops = |count: u64| if count == 1 { "1 hop".to_owned() } else { format!("{count} hops") };
     let said = match (figure.lower_bound, figure.upper_bound) {
@@ -96,7 +96,7 @@ fn joined(figure: &ProofFigure) -> Vec<ProofStretch> {
     found
 }
 
-/// The stretches as far as columns of a width can tell them apart: each column has the class of its longest part.
+/// The stretches resolved into columns of a width: each column has the class of its longest part.
 pub(super) fn in_columns(stretches: &[ProofStretch], column_m: f64) -> Vec<ProofStretch> {
     let mut found: Vec<ProofStretch> = Vec::new();
     let (Some(first), Some(last)) = (stretches.first(), stretches.last()) else { return found };
@@ -118,7 +118,7 @@ pub(super) fn in_columns(stretches: &[ProofStretch], column_m: f64) -> Vec<Proof
             }
         }
         if right <= left {
-            // A column below the spacing of floating-point numbers.
+            // A column narrower than the spacing of floating-point numbers.
             break;
         }
         left = right;
@@ -150,7 +150,7 @@ const fn colour(class: ProofClass) -> RGBColor {
     }
 }
 
-/// One stretch along a line of the sheet, its strokes and dots so many times farther apart than on smooth ground.
+/// One stretch along a line of the sheet; `spread` multiplies the spacing of its strokes and dots.
 fn stretch(sheet: &mut Sheet, points: &[Place], class: ProofClass, spread: f64) {
     let colour = colour(class);
     match class {
@@ -158,7 +158,7 @@ fn stretch(sheet: &mut Sheet, points: &[Place], class: ProofClass, spread: f64) 
         ProofClass::Unreachable => {
             sheet.line(points.to_vec(), Pen { colour, width_mm: 0.5 });
             for ((x, y), (ax, ay)) in steps_along(points, 1.1 * spread) {
-                // Into the ground, leaning back.
+                // Strokes into the ground, slanting to the left.
                 let (dx, dy) = (-ay - ax, ax - ay);
                 let length = libm::hypot(dx, dy) / 2.2;
                 sheet.line(vec![(x, y), (x + dx / length, y + dy / length)], Pen { colour, width_mm: 0.2 });
@@ -195,7 +195,7 @@ fn boundary_sample(sheet: &mut Sheet, (x, y): Place) {
     }
 }
 
-/// The panel with what it shows.
+/// The panel with its data.
 struct Drawing<'a> {
     figure: &'a ProofFigure,
     profile: Profile,
@@ -212,7 +212,7 @@ impl Drawing<'_> {
             let base = [(last.0, profile.panel.bottom), (first.0, profile.panel.bottom)];
             sheet.area(surface.iter().copied().chain(base).collect(), GROUND, 1.0);
         }
-        // A surface that goes up and down far more than along would drown in strokes.
+        // On a surface far longer than its horizontal extent, strokes at the usual spacing would merge.
         let length_mm: f64 = surface.windows(2).map(|p| libm::hypot(p[1].0 - p[0].0, p[1].1 - p[0].1)).sum();
         let spread = (length_mm / (4.0 * profile.panel.width())).max(1.0);
         sheet.line(surface, symbols::SURFACE_PEN);
@@ -227,7 +227,7 @@ impl Drawing<'_> {
         } else {
             &self.stretches
         };
-        // Those that are drawn longer than they are come last, over their neighbours.
+        // Stretches drawn longer than they are come last, over their neighbours.
         let is_short = |s: &&ProofStretch| (s.to_x_m - s.from_x_m) * mm_per_m < LEAST_MM;
         for s in drawn.iter().filter(|s| !is_short(s)).chain(drawn.iter().filter(is_short)) {
             let spare_m = (0.5 * (LEAST_MM / mm_per_m - (s.to_x_m - s.from_x_m))).max(0.0);
@@ -236,7 +236,7 @@ impl Drawing<'_> {
         }
     }
 
-    /// Where cells end, as far as the eye can tell them apart.
+    /// The ends of cells, if far enough apart to be distinguished.
     fn boundaries_mm(&self) -> Vec<f64> {
         let (profile, ground) = (&self.profile, &self.figure.ground);
         let place = |x_m: f64| profile.frame.place(profile::at_x(ground, x_m)).0;
@@ -264,7 +264,7 @@ impl Drawing<'_> {
         profile.panel.outline(sheet);
     }
 
-    /// The legend: the classes that there are with their lengths, then what else is drawn.
+    /// The legend: the classes present with their lengths, then the other symbols.
     fn keys(&self, every: usize) -> Vec<(Swatch, String)> {
         let samples: [fn(&mut Sheet, Place); 3] = [reachable_sample, unreachable_sample, open_sample];
         let mut found = Vec::new();
@@ -288,7 +288,7 @@ impl Drawing<'_> {
     }
 }
 
-/// What the gap is and what refuses there; returns where it ends.
+/// The gap and the limits that refuse there; returns where it ends.
 fn draw_gap_text(sheet: &mut Sheet, gap: &ProofGap, top_mm: f64) -> f64 {
     let text = format!(
         "Proved: no path from the start comes nearer to the goal than x = {} m; no place nearer to the start than x = {} m leads to \

@@ -1,4 +1,4 @@
-//! Proofs, trades and comparisons: what they show, what they say, and that they can be read.
+//! Proofs, trades and comparisons: contents, texts and legibility.
 
 use plotters::style::RGBColor;
 
@@ -88,7 +88,7 @@ fn assert_says(picture: &Picture, words: &[&str]) {
 }
 
 #[test]
-fn a_proof_of_no_path_tells_classes_gap_and_limits() {
+fn a_proof_of_no_path_states_classes_gap_and_limits() {
     let figure = stopped_proof();
     let picture = check_picture("proof-stopped", || draw_proof(&figure).unwrap());
     assert_says(
@@ -119,7 +119,7 @@ fn a_proof_of_no_path_tells_classes_gap_and_limits() {
 }
 
 #[test]
-fn a_proof_with_a_path_tells_both_bounds() {
+fn a_proof_with_a_path_states_both_bounds() {
     let mut figure = stopped_proof();
     figure.gap = None;
     figure.path = flights(&figure.ground, 5.0, 9.0, 10);
@@ -151,7 +151,7 @@ fn long_proofs_with_many_stretches_and_hops_stay_small() {
     figure.gap = Some(ProofGap { reached_x_m: 3.0, leads_to_goal_x_m: 29_000.0, refusals });
     let picture = check_picture("proof-long", || draw_proof(&figure).unwrap());
     assert_says(&picture, &["1 hop in 10 of 3000 shown", "all others"]);
-    assert!(!texts(&picture).contains("ends of cells"), "too close to be told apart");
+    assert!(!texts(&picture).contains("ends of cells"), "too close to be distinguished");
 }
 
 #[test]
@@ -165,7 +165,7 @@ fn columns_take_the_class_of_their_longest_part_and_leave_bare_ground_bare() {
 }
 
 #[test]
-fn proofs_of_odd_grounds_are_whole() {
+fn proofs_of_degenerate_grounds_are_drawn() {
     let point = ChainPoint::new(3.0, 2.0);
     let empty = ProofFigure {
         ground: Vec::new(),
@@ -243,11 +243,11 @@ fn a_trade_has_its_number_in_every_cell() {
 fn trades_too_fine_for_numbers_say_so_and_stay_small() {
     let figure = trade(100, 90, 4000);
     let picture = check_picture("trade-fine", || draw_trade(&figure).unwrap());
-    assert_says(&picture, &["90 x 100 fields: too small for a number each"]);
+    assert_says(&picture, &["90 x 100 cells: too small for a number each"]);
 }
 
 #[test]
-fn odd_trades_are_whole() {
+fn degenerate_trades_are_drawn() {
     let mut huge = trade(6, 3, u64::MAX - 1);
     huge.x.name = "an & axis <of words> ".repeat(20);
     huge.x.values = (0..6).map(|i| 1.0e4 + 1.0e-3 * f64::from(i)).collect();
@@ -261,7 +261,7 @@ fn odd_trades_are_whole() {
     one.cells.clear();
     let wrong = draw_trade(&one).unwrap_err();
     assert_eq!(wrong, FigureError::RasterSize { what: "trade", found: 0, rows: 1, cols: 1 });
-    assert_says(&check_picture("trade-empty", || draw_trade(&TradeFigure::default()).unwrap()), &["There are no fields."]);
+    assert_says(&check_picture("trade-empty", || draw_trade(&TradeFigure::default()).unwrap()), &["There are no cells."]);
 }
 
 fn scenario(name: &str, ground: Vec<ChainPoint>, hop_m: f64, hops: usize) -> ComparedScenario {
@@ -298,7 +298,7 @@ fn comparisons_name_every_scenario_with_verdict_and_hops() {
 }
 
 #[test]
-fn odd_comparisons_are_whole() {
+fn degenerate_comparisons_are_drawn() {
     let empty = draw_compare(&CompareFigure::default()).unwrap_err();
     assert!(empty.to_string().contains("no scenario"), "{empty}");
     let mut one = scenario("One", waves(0.0, 101, 3.0), 6.0, 15);
@@ -353,7 +353,7 @@ fn hop_profile(i: usize, hops: usize) -> HopProfile {
 }
 
 #[test]
-fn sheets_of_hops_are_grids_that_stay_in_shape() {
+fn sheets_of_hops_are_grids_within_their_aspect_ratio() {
     for (hops, clearance_m) in [(0, 0.0), (1, 0.5), (3, 0.0), (36, 0.5), (300, 0.0)] {
         let caption = Caption::new("Hop by hop", "Moon, g = 1.624 m/s²");
         let figure = HopProfilesFigure { caption, clearance_m, hops: (0..hops).map(|i| hop_profile(i, hops)).collect() };

@@ -21,22 +21,22 @@ use super::{
 const WIDEST_MM: f64 = 26.0;
 /// Highest cell, and the most height of all cells together.
 const HIGHEST_MM: (f64, f64) = (11.0, 190.0);
-/// The largest number in a cell, and the smallest that is still read.
+/// The largest size of a number in a cell, and the smallest legible one.
 const NUMBER_MM: (f64, f64) = (3.2, 1.1);
-/// No path: grey, which no number of hops has.
+/// No path: grey, which is not a colour of any hop count.
 const CLOSED: RGBColor = RGBColor(190, 190, 190);
-/// Edges of cells.
+/// Lines between cells.
 const EDGE_PEN: Pen = Pen { colour: WHITE, width_mm: 0.2 };
-/// Most samples of hops in the legend.
+/// The greatest number of hop samples in the legend.
 const MOST_SAMPLES: usize = 8;
 
-/// Draws the fewest hops over a grid of two capabilities, or over a row of one, each cell with its number.
+/// Draws the fewest hops over a grid of two capabilities, or over a row of one, with the number in every cell.
 ///
-/// Few hops are light, many dark, on a logarithmic scale from the fewest to the most; grey with a cross: proved that there is no path;
-/// white with a question mark: no path found. Numbers too small to be read are left out, and the picture says so.
+/// Few hops are light, many dark, on a logarithmic scale from the fewest to the most; grey with a cross: proved that there is no
+/// path; white with a question mark: no path found. Numbers too small to be read are omitted, and the picture says so.
 ///
 /// # Errors
-/// [`FigureError::RasterSize`] where there is not one cell for every pair of values.
+/// [`FigureError::RasterSize`] if there is not one cell for every pair of values.
 pub fn draw_trade(figure: &TradeFigure) -> Result<Picture, FigureError> {
     let (rows, cols) = (figure.y.as_ref().map_or(1, |y| y.values.len()), figure.x.values.len());
     let found = figure.cells.len();
@@ -46,7 +46,7 @@ pub fn draw_trade(figure: &TradeFigure) -> Result<Picture, FigureError> {
     let mut sheet = Sheet::default();
     let top_mm = figure.caption.draw(&mut sheet);
     if found == 0 {
-        let end_mm = paragraph(&mut sheet, "There are no fields.", TEXT_MM, false, top_mm);
+        let end_mm = paragraph(&mut sheet, "There are no cells.", TEXT_MM, false, top_mm);
         return Ok(Picture::page(sheet, end_mm + 2.0));
     }
     let shades = Shades::of(&figure.cells);
@@ -57,15 +57,15 @@ pub fn draw_trade(figure: &TradeFigure) -> Result<Picture, FigureError> {
     let end_mm = if grid.number_mm.is_some() {
         end_mm
     } else {
-        let text = format!("{rows} x {cols} fields: too small for a number each; the table of the answer has them.");
+        let text = format!("{rows} x {cols} cells: too small for a number each; the table of the answer has them.");
         paragraph(&mut sheet, &text, SMALL_MM, false, end_mm + 0.5)
     };
     Ok(Picture::page(sheet, end_mm + 2.0))
 }
 
-/// The colours of numbers of hops.
+/// The colours of hop counts.
 struct Shades {
-    /// The numbers there are, rising.
+    /// The hop counts present, in ascending order.
     hops: Vec<u64>,
 }
 
@@ -91,7 +91,7 @@ impl Shades {
         }
     }
 
-    /// Samples of the numbers there are, the fewest and the most among them, then the signs of cells without a path.
+    /// Samples of the hop counts present, including the fewest and the most, then the symbols of cells without a path.
     fn keys(&self, cells: &[TradeCell]) -> Vec<(Swatch, String)> {
         let last = self.hops.len().saturating_sub(1);
         let samples = last.min(MOST_SAMPLES - 1);
@@ -128,24 +128,24 @@ fn cross(sheet: &mut Sheet, (x, y): Place, r: f64) {
     sheet.line(vec![(x - r, y + r), (x + r, y - r)], pen);
 }
 
-/// Black or white, whichever is read better on a colour.
+/// Black or white, whichever has more contrast on a colour.
 fn ink(RGBColor(r, g, b): RGBColor) -> RGBColor {
     if 0.3 * f64::from(r) + 0.59 * f64::from(g) + 0.11 * f64::from(b) > 125.0 { BLACK } else { WHITE }
 }
 
-/// What stands at the values of an axis: four digits, or all where four do not tell neighbours apart.
+/// The labels of an axis: four digits, or all digits if four do not distinguish neighbours.
 fn numbers(axis: &TradeAxis) -> Vec<String> {
     let four: Vec<String> = axis.values.iter().map(|&value| short(value)).collect();
     let same = four.windows(2).any(|pair| pair[0] == pair[1]);
     if same { axis.values.iter().map(|value| (value + 0.0).to_string()).collect() } else { four }
 }
 
-/// Where the cells lie.
+/// The layout of the cells.
 struct Grid {
     panel: Panel,
     rows: usize,
     cols: usize,
-    /// Size of the numbers; `None`: too small to be read.
+    /// Size of the numbers; `None` if they would be too small to read.
     number_mm: Option<f64>,
 }
 
@@ -157,7 +157,7 @@ impl Grid {
         let left = LEFT_MM.max(numbers_mm + TEXT_MM + 5.5);
         let wide = ((RIGHT_MM - left) / cols as f64).min(WIDEST_MM);
         let high = (HIGHEST_MM.1 / rows as f64).min(HIGHEST_MM.0).min(if rows == 1 { HIGHEST_MM.0 } else { 1.2 * wide });
-        // A name that is longer than the axis stands above the panel.
+        // A name longer than the axis is placed above the panel.
         let above = figure.y.as_ref().map_or(0.0, |y| if fits(&y.name, high * rows as f64) { 0.0 } else { 1.6 * TEXT_MM });
         let top = top_mm + 0.5 + above;
         let panel = Panel { left, top, right: left + wide * cols as f64, bottom: top + high * rows as f64 };
@@ -195,7 +195,7 @@ impl Grid {
                 sheet.label(Label::new(name, (4.0, self.panel.top - 1.2), TEXT_MM).hung(Anchor::Start, Hang::Above));
             }
         }
-        // The x axis of a narrow panel has a name wider than the panel: it begins further left, over several lines where need be.
+        // A name wider than a narrow panel begins further left, on several lines if needed.
         let mut y_mm = self.panel.bottom + 5.2;
         for line in wrapped(&figure.x.name, TEXT_MM, RIGHT_MM - 8.0) {
             let line = fitted(&line, TEXT_MM, RIGHT_MM - 8.0);
@@ -207,7 +207,7 @@ impl Grid {
         y_mm + 0.5
     }
 
-    /// Colours, neighbours of one colour in a row as one area, then the numbers.
+    /// Colours (neighbours of the same colour in a row as one area), then the numbers.
     fn cells(&self, sheet: &mut Sheet, cells: &[TradeCell], shades: &Shades) {
         for (row, cells) in cells.chunks(self.cols).enumerate() {
             let mut col = 0;
@@ -241,7 +241,7 @@ impl Grid {
     }
 }
 
-/// What stands in a cell.
+/// The text of a cell.
 fn sign(cell: TradeCell) -> String {
     match cell {
         TradeCell::Hops(hops) => hops.to_string(),
@@ -250,7 +250,7 @@ fn sign(cell: TradeCell) -> String {
     }
 }
 
-/// Whether a name has room along an upright axis.
+/// Whether a name fits along a vertical axis.
 fn fits(name: &str, height_mm: f64) -> bool {
     text_width_mm(name, TEXT_MM) <= height_mm + 4.0
 }

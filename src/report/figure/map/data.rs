@@ -1,14 +1,14 @@
-//! What the maps show, as plain data.
+//! The data of the maps.
 
 use super::super::Caption;
 use crate::{quantity::MapPoint, terrain::Dem};
 
-/// A post that no path reaches, in [`HopMapFigure::hops`] and in the GeoTIFF.
+/// The value of an unreachable post, in [`HopMapFigure::hops`] and in the GeoTIFF.
 pub const HOPS_UNREACHABLE: i16 = -1;
-/// A post without an elevation, in [`HopMapFigure::hops`] and in the GeoTIFF.
+/// The value of a post without an elevation, in [`HopMapFigure::hops`] and in the GeoTIFF.
 pub const HOPS_NO_DATA: i16 = i16::MIN;
 
-/// The posts of a DEM that a map speaks of: every `stride`-th of every `stride`-th row, from the north-west post on.
+/// The posts of a DEM that are nodes of a map: every `stride`-th post of every `stride`-th row, from the north-west post on.
 ///
 /// ```text
 ///   o . o . o     stride 2 of 3 rows and 5 columns: 2 rows and 3 columns of posts,
@@ -17,14 +17,14 @@ pub const HOPS_NO_DATA: i16 = i16::MIN;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct MapPosts<'a> {
-    /// The terrain, drawn as a hillshade whatever the stride.
+    /// The terrain, drawn as a hillshade at full resolution.
     pub dem: &'a Dem,
     /// 1 for every post; 0 counts as 1.
     pub stride: usize,
 }
 
 impl MapPosts<'_> {
-    /// Rows and columns of the posts that the map speaks of.
+    /// Rows and columns of the map's posts.
     ///
     /// A DEM of 256 x 256 posts with stride 3 has 86 x 86 of them, the last at row and column 255.
     pub fn size(&self) -> (usize, usize) {
@@ -32,20 +32,20 @@ impl MapPosts<'_> {
         (self.dem.rows().div_ceil(stride), self.dem.cols().div_ceil(stride))
     }
 
-    /// The place, in a raster of these posts, of the one nearest to a post of the DEM; beyond the last one the last.
+    /// The index, in a raster of these posts, of the one nearest to a post of the DEM; the last one beyond the end.
     pub(super) fn index(&self, row: usize, col: usize) -> usize {
         let (rows, cols) = self.size();
         let nearest = |post: usize, count: usize| ((post + self.stride / 2) / self.stride.max(1)).min(count.saturating_sub(1));
         nearest(row, rows) * cols + nearest(col, cols)
     }
 
-    /// Whether the post at a place of such a raster has no elevation.
+    /// Whether the post at an index of such a raster has no elevation.
     pub(super) fn is_gap(&self, index: usize) -> bool {
         let (stride, cols) = (self.stride.max(1), self.size().1.max(1));
         self.dem.elevation(index / cols * stride, index % cols * stride).is_none()
     }
 
-    /// How many of the posts have no elevation.
+    /// The number of posts without elevation.
     pub(super) fn gaps(&self) -> usize {
         let (rows, cols) = self.size();
         (0..rows * cols).filter(|&index| self.is_gap(index)).count()
@@ -55,28 +55,28 @@ impl MapPosts<'_> {
 /// A goal on a map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GoalMark {
-    /// Where.
+    /// Its position.
     pub at: MapPoint,
-    /// Fewest hops to it; `None` where it is not reached.
+    /// Fewest hops to it; `None` if unreachable.
     pub hops: Option<u64>,
 }
 
 /// A hop map.
 #[derive(Clone, Debug)]
 pub struct HopMapFigure<'a> {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
     /// Terrain and posts.
     pub posts: MapPosts<'a>,
-    /// Fewest hops to each post, row-major from the north-west; [`HOPS_UNREACHABLE`] and [`HOPS_NO_DATA`] where there are none.
+    /// Fewest hops to each post, row-major from the north-west; [`HOPS_UNREACHABLE`] or [`HOPS_NO_DATA`] for other posts.
     pub hops: &'a [i16],
-    /// From which posts the start can be reached again, in the same order; `None`: not asked.
+    /// Whether the start can be reached again from each post, in the same order; `None` if not requested.
     pub can_return: Option<&'a [bool]>,
-    /// Which posts lie in keep-out zones, in the same order; `None`: there are no zones.
+    /// Whether each post lies in a keep-out zone, in the same order; `None` without zones.
     pub kept_out: Option<&'a [bool]>,
-    /// Where the journeys begin.
+    /// The start.
     pub start: MapPoint,
-    /// Where they should end.
+    /// The goals.
     pub goals: Vec<GoalMark>,
     /// Paths to goals: the start and every landing, in order.
     pub paths: Vec<Vec<MapPoint>>,
@@ -85,56 +85,56 @@ pub struct HopMapFigure<'a> {
 /// A map of one number for each post.
 #[derive(Clone, Debug)]
 pub struct ValueMapFigure<'a> {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
     /// Terrain and posts.
     pub posts: MapPosts<'a>,
-    /// The numbers, row-major from the north-west; NaN where there is none.
+    /// The values, row-major from the north-west; NaN for absent values.
     pub values: &'a [f64],
-    /// What the numbers are, with their unit, such as `least total effort (m/s)`.
+    /// The name of the values with their unit, such as `least total effort (m/s)`.
     pub value_name: String,
-    /// What NaN on a post with an elevation means, such as `unreachable`.
+    /// The meaning of NaN at a post with an elevation, such as `unreachable`.
     pub none_name: String,
-    /// Where the journeys begin, where there is one start.
+    /// The start, if there is one.
     pub start: Option<MapPoint>,
-    /// Where they should end.
+    /// The goals.
     pub goals: Vec<GoalMark>,
     /// Paths to goals: the start and every landing, in order.
     pub paths: Vec<Vec<MapPoint>>,
 }
 
-/// Where trials of one hop landed, on a DEM.
+/// The landings of one hop's trials on a DEM.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LandingCloud {
     /// The hop's number in the planned path, from 1.
     pub hop: usize,
-    /// Where it should land.
+    /// The planned landing.
     pub planned: MapPoint,
-    /// Some or all of the landings; more than fit are thinned, which the legend says.
+    /// Some or all of the landings; if there are too many they are thinned, which the legend says.
     pub landings: Vec<MapPoint>,
-    /// How many landings there were in all.
+    /// The number of all landings.
     pub count: u64,
-    /// The 95 % ellipse, where there were landings enough.
+    /// The 95 % ellipse, if there are enough landings.
     pub ellipse: Option<LandingEllipse>,
 }
 
 /// An ellipse on the map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandingEllipse {
-    /// Its middle.
+    /// Its centre.
     pub centre: MapPoint,
-    /// Half of its longer axis, m.
+    /// Its semi-major axis, m.
     pub semi_major_m: f64,
-    /// Half of its shorter axis, m.
+    /// Its semi-minor axis, m.
     pub semi_minor_m: f64,
-    /// Direction of the longer axis, clockwise from grid north.
+    /// Heading of the major axis, clockwise from grid north.
     pub heading_deg: f64,
 }
 
 /// Landings of a whole path on a DEM.
 #[derive(Clone, Debug)]
 pub struct LandingMapFigure<'a> {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
     /// The terrain.
     pub dem: &'a Dem,

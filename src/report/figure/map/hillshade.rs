@@ -10,7 +10,7 @@ const SUN: (f64, f64, f64) = (-0.5, 0.5, std::f64::consts::FRAC_1_SQRT_2);
 /// The brightness of level ground, which is sin 45 degrees.
 pub(super) const LEVEL: f64 = SUN.2;
 
-/// The brightness of the ground at a post, 0 (turned away from the sun) to 1 (facing it); `None` where it has no elevation.
+/// The brightness of the ground at a post, 0 (facing away from the sun) to 1 (facing it); `None` without an elevation.
 ///
 /// ```text
 ///     a b c     p = ((c + 2 f + i) - (a + 2 d + g)) / (8 dx)    rise towards east
@@ -18,9 +18,9 @@ pub(super) const LEVEL: f64 = SUN.2;
 ///     g h i     brightness = max(0, (sun . (-p, -q, 1)) / sqrt(1 + p^2 + q^2))
 /// ```
 ///
-/// Slopes by Horn, "Hill shading and the reflectance map", Proc. IEEE 69 (1981) 14-47, as `gdaldem` has them; brightness by Lambert's
-/// cosine law. A missing neighbour (border, no-data) is replaced by
-/// the ground carried on straight from the one opposite, or at a corner from the two beside it.
+/// Slopes by Horn, "Hill shading and the reflectance map", Proc. IEEE 69 (1981) 14-47, as in `gdaldem`; brightness by Lambert's
+/// cosine law. A missing neighbour (border, no-data) is replaced by linear extrapolation from the opposite one, or at a corner from
+/// the two beside it.
 pub(super) fn brightness(dem: &Dem, row: usize, col: usize) -> Option<f64> {
     let centre = dem.elevation(row, col)?;
     let at = |down: isize, right: isize| dem.elevation(row.checked_add_signed(down)?, col.checked_add_signed(right)?);
@@ -51,7 +51,7 @@ mod tests {
     fn planes_are_as_bright_as_the_cosine_of_their_normal_with_the_sun_border_included() {
         for (east, north) in [(0.0, 0.0), (1.0, -1.0), (-0.7, 0.2), (0.5, 0.5), (3.0, -3.0), (-3.0, 3.0)] {
             let dem = plane(east, north);
-            // The second road: angles, as in the manual of gdaldem.
+            // Independent computation: by angles, as in the manual of gdaldem.
             let slope = f64::hypot(east, north).atan();
             let aspect = (-east).atan2(-north);
             let (zenith, azimuth) = (45.0f64.to_radians(), 315.0f64.to_radians());

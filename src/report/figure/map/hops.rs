@@ -17,25 +17,26 @@ use super::{
     raster::{self, Pattern, Window, tone},
 };
 
-/// Posts that are not reached: grey, which no band is.
+/// Posts that are not reached: grey, which is not a colour of any band.
 pub(super) const NOT_REACHED: RGBColor = RGBColor(205, 205, 205);
 const KEEP_OUT: &str = "keep-out, not reached";
-const NO_WAY_BACK: &str = "reached, no way back to the start";
-/// No-data in a legend: the white of the page in a thin frame.
+const NO_WAY_BACK: &str = "reached, no path back to the start";
+/// The legend symbol of no-data: white in a thin frame.
 pub(super) fn no_data_symbol(sheet: &mut Sheet, (x, y): (f64, f64)) {
     let corners = keys::rectangle((x - 3.0, y - 1.5), (x + 3.0, y + 1.5));
     let pen = super::super::sheet::Pen { colour: NOT_REACHED, width_mm: 0.15 };
     sheet.line(corners.iter().copied().chain([corners[0]]).collect(), pen);
 }
 
-/// Draws a hop map: where the hopper gets, in how few hops, over a hillshade with the sun in the north-west.
+/// Draws a hop map: the fewest hops to every post, over a hillshade with the sun in the north-west.
 ///
-/// Bands of one count each, or of several where there are more than eight; grey: not reached; white: no data. With
-/// [`HopMapFigure::can_return`], stripes: reached, but the start cannot be reached from there; dots: the other way round. With [`HopMapFigure::kept_out`], crossed stripes: keep-out zones. A DEM of
-/// more than 2 000 rows or columns is drawn with every n-th post, and the map says so.
+/// Bands of one count each, or of several if there are more than eight; grey: not reached; white: no data. With
+/// [`HopMapFigure::can_return`], stripes: reached, but the start cannot be reached from there; dots: not reached, but the start can
+/// be reached from there. With [`HopMapFigure::kept_out`], crossed stripes: keep-out zones. A DEM of more than 2 000 rows or
+/// columns is drawn with every n-th post, and the map says so.
 ///
 /// # Errors
-/// [`FigureError::RasterSize`] where a raster does not have one number for every post.
+/// [`FigureError::RasterSize`] if a raster does not have one value for every post.
 pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     check_size("hop map", &figure.posts, figure.hops.len())?;
     if let Some(can_return) = figure.can_return {
@@ -69,12 +70,12 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     Ok(Picture::page(sheet, height_mm))
 }
 
-/// What the raster is; returns where the words end.
+/// Draws the description of the raster; returns where it ends.
 pub(super) fn notes(sheet: &mut Sheet, posts: &MapPosts<'_>, window: &Window, top_mm: f64) -> f64 {
     paragraph(sheet, &about_raster(posts, window), SMALL_MM, false, top_mm)
 }
 
-/// What the raster is: its posts, which of them have answers, and which are drawn.
+/// The description of the raster: its posts, which of them have answers, and which are drawn.
 pub(super) fn about_raster(posts: &MapPosts<'_>, window: &Window) -> String {
     let map = posts.dem.georeference();
     let spacing = |stride: usize| {
@@ -96,12 +97,12 @@ pub(super) fn about_raster(posts: &MapPosts<'_>, window: &Window) -> String {
     text
 }
 
-/// The class of a number of hops; `None` where there is none. The start, which needs no hop, has the colour of the first.
+/// The class of a post's hop count; `None` without one. The start, with no hop, has the colour of the first class.
 fn class_of(classes: &HopClasses, hops: i16) -> Option<usize> {
     u64::try_from(hops).ok().map(|hops| classes.of(hops))
 }
 
-/// What is drawn over a post's colour.
+/// The pattern over a post's colour.
 fn pattern_of(figure: &HopMapFigure<'_>, at: usize) -> Pattern {
     let hops = figure.hops[at];
     let is_kept_out = figure.kept_out.is_some_and(|kept_out| kept_out[at]);
@@ -113,7 +114,7 @@ fn pattern_of(figure: &HopMapFigure<'_>, at: usize) -> Pattern {
     }
 }
 
-/// How many posts there are of each kind.
+/// The number of posts of each kind.
 struct Counts {
     classes: HopClasses,
     start: u64,
@@ -129,7 +130,7 @@ struct Counts {
 impl Counts {
     fn of(figure: &HopMapFigure<'_>) -> Self {
         let most = figure.hops.iter().filter_map(|&hops| u64::try_from(hops).ok()).max();
-        // A start alone, without a hop, still has a band.
+        // A start without any reachable post still has a band.
         let classes = HopClasses::even(most.map_or(0, |most| most.max(1)));
         let bands = vec![0; classes.0.len()];
         let asks_return = figure.can_return.is_some();
@@ -163,10 +164,10 @@ impl Counts {
             (Swatch::Crossed(NOT_REACHED), KEEP_OUT, self.kept_out),
             (Swatch::Symbol(no_data_symbol), "no data", self.no_data),
             (Swatch::Striped(tones[0]), NO_WAY_BACK, self.one_way),
-            (Swatch::Dotted(NOT_REACHED), "not reached, but a way to the start", self.back_only),
+            (Swatch::Dotted(NOT_REACHED), "not reached, but with a path to the start", self.back_only),
         ];
         let start = (Swatch::Symbol(start_symbol), "start", self.start);
-        // That every reached post has a way back is an answer too, where it was asked.
+        // A count of 0 posts without a return path is shown too, if return paths were requested.
         let is_told = |&(_, text, count): &(Swatch, &str, u64)| count > 0 || (self.asks_return && text == NO_WAY_BACK);
         let all = std::iter::once(start).chain(bands).chain(rest).filter(is_told);
         all.map(|(swatch, text, count)| (swatch, format!("{text}: {count} post{}", if count == 1 { "" } else { "s" }))).collect()

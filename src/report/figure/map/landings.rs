@@ -1,4 +1,4 @@
-//! Where the hops of a path really landed, on a map.
+//! The scattered landings of a path's hops, on a map.
 
 use plotters::style::RGBColor;
 
@@ -19,25 +19,25 @@ use super::{
 };
 use crate::quantity::MapPoint;
 
-/// The ground, which has no classes here.
+/// The ground, a single class here.
 const GROUND: RGBColor = RGBColor(205, 202, 196);
-/// The most landings drawn; of more every n-th of each hop is.
+/// The greatest number of landings drawn; more are thinned to every n-th of each hop.
 const MOST_DOTS: usize = 2500;
-/// Corners of a drawn ellipse: on the largest map under 0.1 mm off the curve.
+/// Corners of a drawn ellipse: on the largest map the error is below 0.1 mm.
 const CORNERS: u8 = 72;
-/// More hops than this are told in the legend by the range of their ellipses.
+/// Above this number of hops the legend states only the range of their ellipses.
 const MOST_LISTED: usize = 12;
 const ELLIPSE_PEN: Pen = Pen { colour: VERMILION, width_mm: 0.45 };
 const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.95 };
 
-/// Draws where the hops of a path really landed: scattered landings and 95 % ellipses around the planned path, over a hillshade.
+/// Draws the scattered landings of a path's hops and their 95 % ellipses around the planned path, over a hillshade.
 ///
-/// The map is cut to path, landings and ellipses; of more than 2 500 landings every n-th of each hop is drawn, and the legend says
-/// which. Landings beyond the DEM are counted in words. An ellipse holds 95 % of a Gaussian with the landings' mean and covariance; its
-/// cross marks that mean.
+/// The map shows the area of path, landings and ellipses. More than 2 500 landings are thinned to every n-th of each hop, and the
+/// legend says so. The number of landings beyond the DEM is stated. An ellipse contains 95 % of a Gaussian with the landings' mean
+/// and covariance; its cross marks that mean.
 ///
 /// # Errors
-/// None: what is absent is not drawn.
+/// None today: absent data is not drawn.
 pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, FigureError> {
     let window = Window::around(figure.dem, places(figure));
     let pixels = raster::draw(figure.dem, &window, &[GROUND], |_, _| Some((0, Pattern::Plain)));
@@ -65,18 +65,18 @@ pub fn draw_landing_map(figure: &LandingMapFigure<'_>) -> Result<Picture, Figure
     Ok(Picture::page(sheet, y + 2.0))
 }
 
-/// All that has to be on the map.
+/// All points that the map must contain.
 fn places<'a>(figure: &'a LandingMapFigure<'_>) -> impl Iterator<Item = MapPoint> + 'a {
     let rims = figure.clouds.iter().filter_map(|cloud| cloud.ellipse).flat_map(|ellipse| rim(&ellipse));
     let clouds = figure.clouds.iter().flat_map(|cloud| cloud.landings.iter().copied().chain([cloud.planned]));
     let inside = figure.dem.bounds();
-    // What lies beyond the DEM cannot be drawn, and must not shrink the rest.
+    // Points beyond the DEM cannot be drawn and must not enlarge the window.
     figure.path.iter().copied().chain(clouds).chain(rims).filter(move |&at| inside.contains(at))
 }
 
 /// The outline of an ellipse on the map, its first point not repeated.
 ///
-/// With s and c the sine and cosine of the heading of the long axis, a point of it is centre + a cos(t) (s, c) + b sin(t) (c, -s).
+/// With s and c the sine and cosine of the major axis's heading, its points are centre + a cos(t) (s, c) + b sin(t) (c, -s).
 pub(super) fn rim(ellipse: &LandingEllipse) -> Vec<MapPoint> {
     let heading = ellipse.heading_deg.to_radians();
     let (s, c) = (libm::sin(heading), libm::cos(heading));
@@ -89,7 +89,7 @@ pub(super) fn rim(ellipse: &LandingEllipse) -> Vec<MapPoint> {
 }
 
 impl MapPanel {
-    /// An ellipse with a cross in its middle, as far as it lies on the map.
+    /// An ellipse with a cross at its centre, clipped to the map.
     fn ellipse(&self, sheet: &mut Sheet, ellipse: &LandingEllipse) {
         let rim = rim(ellipse);
         let mut pieces: Vec<Vec<Place>> = vec![Vec::new()];
@@ -112,7 +112,7 @@ impl MapPanel {
 }
 
 impl MapPanel {
-    /// Start and planned landings, and over them their names.
+    /// Start and planned landings, with their names on top.
     fn names_of_landings(&self, sheet: &mut Sheet, figure: &LandingMapFigure<'_>) {
         let planned = || figure.clouds.iter().filter(|cloud| self.shows(cloud.planned));
         let mut taken = Taken { kept: Vec::new(), spared: planned().map(|cloud| self.place(cloud.planned)).collect() };
@@ -132,7 +132,7 @@ impl MapPanel {
         }
     }
 
-    /// A hop's number outside its ellipse, so that it hides no landings; beside its planned landing where there is none.
+    /// A hop's number outside its ellipse, so that it hides no landings; beside the planned landing if there is no ellipse.
     fn number(&self, sheet: &mut Sheet, cloud: &LandingCloud, taken: &mut Taken) {
         let text = cloud.hop.to_string();
         let Some(ellipse) = cloud.ellipse else { return self.name(sheet, cloud.planned, &text, taken) };
@@ -185,7 +185,7 @@ fn planned_symbol(sheet: &mut Sheet, at: Place) {
     sheet.dot(at, 0.55, BLACK);
 }
 
-/// The legend; `drawn`: how many landings are; `has_gaps`: whether the map shows posts without data.
+/// The legend. `drawn`: the number of landings drawn; `has_gaps`: whether the map shows posts without data.
 fn entries(figure: &LandingMapFigure<'_>, drawn: usize, has_gaps: bool) -> Vec<(Swatch, String)> {
     let mut found = Vec::new();
     if !figure.path.is_empty() {
@@ -209,7 +209,7 @@ fn entries(figure: &LandingMapFigure<'_>, drawn: usize, has_gaps: bool) -> Vec<(
     found
 }
 
-/// The sizes of the ellipses, hop by hop or as a range; what lies beyond the map; what the raster is.
+/// The sizes of the ellipses, hop by hop or as a range, the landings beyond the map, and the description of the raster.
 fn words(figure: &LandingMapFigure<'_>, map: &MapPanel, window: &Window) -> Vec<String> {
     let with_ellipse: Vec<(&LandingCloud, LandingEllipse)> =
         figure.clouds.iter().filter_map(|cloud| Some((cloud, cloud.ellipse?))).collect();

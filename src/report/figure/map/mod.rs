@@ -19,7 +19,7 @@ pub use values::draw_value_map;
 
 use super::FigureError;
 
-/// Whether a raster has one number for each post.
+/// Checks that a raster has one value for each post.
 fn check_size(what: &'static str, posts: &MapPosts<'_>, found: usize) -> Result<(), FigureError> {
     let (rows, cols) = posts.size();
     if rows * cols == found { Ok(()) } else { Err(FigureError::RasterSize { what, found, rows, cols }) }

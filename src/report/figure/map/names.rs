@@ -1,19 +1,19 @@
-//! Where names stand on a map: inside it, over no marker and no other name, over as few landings as can be.
+//! Label placement on a map: inside the panel, over no marker or other label, over as few landings as possible.
 
 use super::super::{
     palette::SMALL_MM,
     sheet::{Anchor, Hang, Label, Place, text_width_mm},
 };
 
-/// By how much bold letters are wider than the estimate says.
+/// Extra width of bold letters, as a fraction of the estimated width.
 const BOLD: f64 = 0.1;
-/// Light ground beside, above and below the letters.
+/// Margin of the light background around the letters.
 const BESIDE_MM: f64 = 0.5;
 const ABOVE_MM: f64 = 0.3;
 const BELOW_MM: f64 = 0.4;
-/// Free room between a marker and its name: near ones are tried first, far ones get a line to their marker.
+/// Distances between a marker and its label: near ones are tried first, far ones get a line to their marker.
 const ROOMS_MM: [f64; 5] = [0.3, 2.5, 5.0, 8.5, 13.0];
-/// Hiding a landing is worse than standing this many rings farther out.
+/// Cost of hiding a landing, in rings of distance.
 const RINGS_PER_LANDING: usize = 2;
 
 /// A rectangle of the sheet, mm.
@@ -31,7 +31,8 @@ impl Bounds {
         Self { left: x - half_mm, top: y - half_mm, right: x + half_mm, bottom: y + half_mm }
     }
 
-    /// The light ground of a name in bold letters, which are wider than the estimate, away from where the text hangs.
+    /// The background rectangle of a bold label, extended on the side away from the text's anchor, since bold letters are wider
+    /// than the estimate.
     pub(super) fn of(label: &Label) -> Self {
         let (left, top, right, bottom) = label.bounds_mm();
         let wider_mm = BOLD * (right - left);
@@ -60,37 +61,37 @@ impl Bounds {
         self.left <= x && x <= self.right && self.top <= y && y <= self.bottom
     }
 
-    /// The point of the rectangle nearest to a place.
+    /// The point of the rectangle nearest to a position.
     pub(super) fn nearest(&self, (x, y): Place) -> Place {
         (x.clamp(self.left, self.right), y.clamp(self.top, self.bottom))
     }
 
-    /// How far a rectangle has to move, right and down, to lie within this one.
+    /// The shift, right and down, that moves a rectangle into this one.
     fn pull(&self, inner: &Self) -> Place {
         let along = |low: f64, high: f64, from: f64, to: f64| (low - from).max(0.0) + (high - to).min(0.0);
         (along(self.left, self.right, inner.left, inner.right), along(self.top, self.bottom, inner.top, inner.bottom))
     }
 }
 
-/// A place where a name may stand.
+/// A candidate position of a label.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Candidate {
     pub(super) label: Label,
-    /// 0 beside what it names, larger farther away.
+    /// The ring: 0 next to its marker, larger farther away.
     pub(super) ring: usize,
 }
 
-/// What names keep clear of.
+/// Obstacles for labels.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Taken {
     /// Markers and texts: never covered.
     pub(super) kept: Vec<Bounds>,
-    /// Landings of paths: covered only where there is no better place.
+    /// Landings of paths: covered only if there is no better candidate.
     pub(super) spared: Vec<Place>,
 }
 
-/// Places around a marker of some size: right, left, above, below and between them, near ones first, moved into a panel where they
-/// reach over its edge.
+/// Candidates around a marker: right, left, above, below and diagonal, near ones first, moved into the panel if they cross its
+/// edge.
 pub(super) fn candidates(text: &str, (x, y): Place, half_mm: f64, panel: &Bounds) -> Vec<Candidate> {
     let mut found = Vec::new();
     for (ring, room_mm) in ROOMS_MM.into_iter().enumerate() {
@@ -117,10 +118,10 @@ pub(super) fn candidates(text: &str, (x, y): Place, half_mm: f64, panel: &Bounds
     found
 }
 
-/// The best of some places for a name: inside the panel and over nothing that is kept, then the one that hides the fewest landings,
-/// then the nearest, then the first. `None` where every place is taken.
+/// The best candidate for a label: inside the panel and over no marker or text; among these the one that hides the fewest landings,
+/// then the nearest, then the first. `None` if there is none.
 pub(super) fn choose<'a>(candidates: &'a [Candidate], panel: &Bounds, taken: &Taken) -> Option<&'a Candidate> {
-    // Moving into the panel ends on its edge but for rounding.
+    // A candidate moved into the panel lies on its edge up to rounding.
     let panel = Bounds { left: panel.left - 1e-6, top: panel.top - 1e-6, right: panel.right + 1e-6, bottom: panel.bottom + 1e-6 };
     let is_free = |candidate: &&Candidate| {
         let bounds = Bounds::of(&candidate.label);
@@ -133,7 +134,7 @@ pub(super) fn choose<'a>(candidates: &'a [Candidate], panel: &Bounds, taken: &Ta
     candidates.iter().filter(is_free).min_by_key(cost)
 }
 
-/// The room that a name in bold letters takes at its widest, mm.
+/// The greatest width of a bold label, mm.
 pub(super) fn width_mm(text: &str) -> f64 {
     (1.0 + BOLD) * text_width_mm(text, SMALL_MM) + 2.0 * BESIDE_MM
 }
@@ -145,7 +146,7 @@ mod tests {
     const PANEL: Bounds = Bounds { left: 17.0, top: 20.0, right: 166.0, bottom: 185.0 };
     const HALF_MM: f64 = 2.0;
 
-    /// Names markers one after the other, as the map does.
+    /// Places labels one after the other, as the map does.
     fn named(markers: &[(&str, Place)], spared: &[Place], panel: &Bounds) -> Vec<Option<Bounds>> {
         let kept = markers.iter().map(|&(_, at)| Bounds::around(at, HALF_MM)).collect();
         let mut taken = Taken { kept, spared: spared.to_vec() };
@@ -159,13 +160,13 @@ mod tests {
     }
 
     #[test]
-    fn with_room_a_name_stands_right_of_its_marker() {
+    fn with_room_a_label_is_right_of_its_marker() {
         let found = named(&[("goal: 26 hops", (90.0, 100.0))], &[], &PANEL)[0].unwrap();
         assert!(found.left > 92.0 && found.left < 93.0 && (found.top + found.bottom) * 0.5 > 99.5, "{found:?}");
     }
 
     #[test]
-    fn names_at_edges_and_corners_stay_inside_and_off_their_marker() {
+    fn labels_at_edges_and_corners_stay_inside_and_off_their_marker() {
         for x in [17.0, 17.5, 60.0, 165.0, 166.0] {
             for y in [20.0, 20.4, 100.0, 184.0, 185.0] {
                 let found = named(&[("goal 12: not reached", (x, y))], &[], &PANEL)[0].unwrap();
@@ -177,8 +178,8 @@ mod tests {
     }
 
     #[test]
-    fn of_markers_side_by_side_no_name_covers_a_marker_or_another_name() {
-        // Two goals 20 m apart on a map of 1.3 km, a start beside them, then a whole crowd.
+    fn labels_of_adjacent_markers_cover_neither_markers_nor_labels() {
+        // Two goals 20 m apart on a map of 1.3 km, a start beside them, then a dense group.
         let close = [("start", (80.0, 90.0)), ("goal 1: 1 hop", (83.5, 90.5)), ("goal 2: 2 hops", (85.8, 91.0))];
         let crowd: Vec<(&str, Place)> =
             (0..12u8).map(|i| ("goal 10: 12 hops", (150.0 + f64::from(i % 4) * 4.0, 175.0 + f64::from(i / 4) * 4.0))).collect();
@@ -194,19 +195,19 @@ mod tests {
     }
 
     #[test]
-    fn a_name_goes_where_the_path_does_not() {
+    fn a_label_avoids_the_path() {
         // The path comes in from the right.
         let path: Vec<Place> = (1..8).map(|i| (90.0 + 3.0 * f64::from(i), 100.0)).collect();
         let found = named(&[("goal: 7 hops", (90.0, 100.0))], &path, &PANEL)[0].unwrap();
         assert!(path.iter().all(|&at| !found.covers(at)), "{found:?}");
         assert!(found.right < 90.0, "left of it: {found:?}");
-        // Landings everywhere: it stands all the same.
+        // With landings everywhere the label is still placed.
         let everywhere: Vec<Place> = (0..4000).map(|i| (70.0 + f64::from(i % 60), 80.0 + f64::from(i / 60))).collect();
         assert!(named(&[("goal: 7 hops", (90.0, 100.0))], &everywhere, &PANEL)[0].is_some());
     }
 
     #[test]
-    fn a_panel_too_small_for_a_name_has_none() {
+    fn a_panel_too_small_for_a_label_gets_none() {
         let tiny = Bounds { left: 80.0, top: 20.0, right: 88.0, bottom: 185.0 };
         assert_eq!(named(&[("goal: not reached", (84.0, 90.0))], &[], &tiny), [None]);
         assert!(width_mm("goal: not reached") > 8.0);

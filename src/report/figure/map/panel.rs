@@ -1,4 +1,4 @@
-//! The map on the sheet: raster, coordinates, scale bar, north arrow, places and paths.
+//! The map on the sheet: raster, coordinates, scale bar, north arrow, markers and paths.
 
 use plotters::style::RGBColor;
 
@@ -21,25 +21,25 @@ use crate::{
     terrain::{Dem, MapBounds},
 };
 
-/// The highest map on the page.
+/// The greatest height of a map on the page.
 const TALL_MM: f64 = 165.0;
 /// Room above the map for scale bar and north arrow.
 const STRIP_MM: f64 = 8.0;
-/// A scale bar may be this long however narrow the map.
+/// A scale bar may always be this long, even on a narrow map.
 const SHORT_MM: f64 = 15.0;
-/// Least distance of the numbers of the y axis.
+/// Smallest spacing of the numbers of the y axis.
 const TICK_MM: f64 = 9.0;
-/// More goals than this are marked without words.
+/// Above this number of goals the markers have no labels.
 const MOST_NAMED: usize = 12;
 /// Half the size of the markers of start and goals.
 pub(super) const MARKER_MM: f64 = 2.0;
-/// Paths: black in a white casing, to be seen on every band.
+/// Paths: black in a white casing, visible on every band.
 const CORE_PEN: Pen = Pen { colour: BLACK, width_mm: 0.35 };
 const CASING_PEN: Pen = Pen { colour: WHITE, width_mm: 0.9 };
-/// From a name to the marker that it stands away from.
+/// Line from a distant label to its marker.
 const LEADER_PEN: Pen = Pen { colour: BLACK, width_mm: 0.2 };
 
-/// Where the map lies on the sheet; both axes at one scale.
+/// The position of the map on the sheet; both axes have the same scale.
 pub(super) struct MapPanel {
     panel: Panel,
     bounds: MapBounds,
@@ -47,12 +47,12 @@ pub(super) struct MapPanel {
 }
 
 impl MapPanel {
-    /// Lays a window of a DEM out below a height of the sheet, both axes at one scale.
+    /// Lays out a window of a DEM below a height of the sheet, with the same scale on both axes.
     pub(super) fn new(dem: &Dem, window: &Window, top_mm: f64) -> Self {
         let map = dem.georeference();
         let first = map.post(window.rows.start, window.cols.start);
         let last = map.post(window.rows.end.saturating_sub(1), window.cols.end.saturating_sub(1));
-        // A post's pixel reaches half a spacing beyond it.
+        // A post's pixel extends half a spacing beyond the post.
         let (x, y) = (0.5 * map.dx_m(), 0.5 * map.dy_m());
         let bounds = MapBounds { min: MapPoint::new(first.x - x, last.y - y), max: MapPoint::new(last.x + x, first.y + y) };
         let (wide_m, high_m) = (bounds.max.x - bounds.min.x, bounds.max.y - bounds.min.y);
@@ -82,7 +82,7 @@ impl MapPanel {
         let (min, max) = (self.bounds.min, self.bounds.max);
         let guess = Ticks::round(min.x, max.x, panel.width() / 16.0);
         let widest_mm = text_width_mm(&guess.longest(), SMALL_MM) + 4.0;
-        // A narrow map still gets two numbers where they fit.
+        // A narrow map still gets two numbers if they fit.
         let least = if panel.width() > 2.5 * widest_mm { 2.5 } else { 1.0 };
         let along = Ticks::round(min.x, max.x, (panel.width() / widest_mm.max(16.0)).max(least));
         let ticks: Vec<_> = along.values.iter().map(|&x| (self.place(MapPoint::new(x, min.y)).0, along.text(x))).collect();
@@ -96,9 +96,9 @@ impl MapPanel {
         panel.bottom + BELOW_MM
     }
 
-    /// A bar of a round length above the map's left end; returns where its length ends, mm.
+    /// A scale bar of a round length above the map's left end; returns where its label ends, mm.
     fn scale_bar(&self, sheet: &mut Sheet) -> f64 {
-        // Round numbers lie at most a factor of 2.5 apart, so that one of them fits.
+        // Round numbers are at most a factor of 2.5 apart, so one of them fits.
         let lengths = Ticks::round(0.0, (0.3 * self.panel.width()).max(SHORT_MM) / self.mm_per_m, 2.5);
         let Some(&length_m) = lengths.values.last().filter(|&&length_m| length_m > 0.0) else { return self.panel.left };
         let (left, y) = (self.panel.left, self.panel.top - 2.6);
@@ -111,7 +111,7 @@ impl MapPanel {
         end_mm
     }
 
-    /// An arrow to grid north above the map's right end, of a narrow map right of the scale bar.
+    /// An arrow to grid north above the map's right end; on a narrow map right of the scale bar.
     fn north(&self, sheet: &mut Sheet, bar_end_mm: f64) {
         const NAME: &str = "N (grid)";
         let after_bar = bar_end_mm + 4.0 + text_width_mm(NAME, TEXT_MM) + 2.4;
@@ -136,7 +136,7 @@ impl MapPanel {
         }
     }
 
-    /// Start and goals, over the paths, and their names, over everything but markers.
+    /// Start and goals over the paths, and their labels over everything but markers.
     pub(super) fn ends(&self, sheet: &mut Sheet, start: Option<MapPoint>, goals: &[GoalMark], paths: &[Vec<MapPoint>]) {
         let start = start.filter(|&at| self.shows(at));
         let seen: Vec<_> = goals.iter().enumerate().filter(|(_, goal)| self.shows(goal.at)).collect();
@@ -165,14 +165,14 @@ impl MapPanel {
         }
     }
 
-    /// A name for the marker at a place, where there is room.
+    /// A label for the marker at a position, if there is room.
     pub(super) fn name(&self, sheet: &mut Sheet, at: MapPoint, text: &str, taken: &mut Taken) {
         let at = self.place(at);
         let places = candidates(text, at, MARKER_MM, &self.room(&[text]));
         self.name_on_one(sheet, &places, Some(at), taken);
     }
 
-    /// Where names may stand: on the map, or anywhere between the margins of the page where one of them is wider than the map.
+    /// The area for labels: the map, or the full width of the page if one of them is wider than the map.
     fn room(&self, texts: &[&str]) -> Bounds {
         let Panel { left, top, right, bottom } = self.panel;
         let is_narrow = texts.iter().any(|text| 2.0 * width_mm(text) > self.panel.width());
@@ -180,13 +180,13 @@ impl MapPanel {
         Bounds { left, top, right, bottom }
     }
 
-    /// The best of some places for a name, in bold on a light ground; none where all are taken.
+    /// Draws a bold label on a light background at the best candidate; nothing if there is none.
     ///
-    /// A name that stands away from its marker has a line to it.
+    /// A label away from its marker has a line to it.
     pub(super) fn name_on_one(&self, sheet: &mut Sheet, places: &[Candidate], marker: Option<Place>, taken: &mut Taken) {
         let texts: Vec<&str> = places.iter().map(|place| place.label.text.as_str()).collect();
         let mut all = taken.clone();
-        // Axes and whatever else is written.
+        // Axis numbers and other texts.
         all.kept.extend(
             sheet.marks.iter().filter_map(|mark| if let Mark::Label(label) = mark { Some(Bounds::of(label)) } else { None }),
         );
@@ -205,20 +205,20 @@ impl MapPanel {
     }
 }
 
-/// A start: a black disc in a white ring.
+/// The symbol of a start: a black disc in a white ring.
 pub(super) fn start_symbol(sheet: &mut Sheet, at: Place) {
     sheet.dot(at, 1.5, WHITE);
     sheet.dot(at, 1.1, BLACK);
 }
 
-/// A goal that is reached: a black diamond in a white one.
+/// The symbol of a reached goal: a black diamond in a white one.
 pub(super) fn goal_symbol(sheet: &mut Sheet, at: Place) {
     diamond(sheet, at, 2.0, WHITE);
     diamond(sheet, at, 1.5, BLACK);
     diamond(sheet, at, 0.7, WHITE);
 }
 
-/// A goal that is not: the same, with a cross through it.
+/// The symbol of an unreached goal: the same, crossed out.
 pub(super) fn missed_symbol(sheet: &mut Sheet, at: Place) {
     goal_symbol(sheet, at);
     super::super::symbols::cross(sheet, at);
@@ -236,7 +236,7 @@ pub(super) fn path_symbol(sheet: &mut Sheet, (x, y): Place) {
     }
 }
 
-/// Legend entries of start, goals and paths, as far as they are there.
+/// Legend entries of start, goals and paths, if present.
 pub(super) fn end_keys(start: Option<MapPoint>, goals: &[GoalMark], paths: &[Vec<MapPoint>]) -> Vec<(Swatch, String)> {
     let mut found = Vec::new();
     if start.is_some() {

@@ -1,4 +1,4 @@
-//! Classes of posts over a hillshade as one raster of few colours.
+//! Classes of posts over a hillshade, as a palette raster.
 
 use plotters::style::RGBColor;
 
@@ -12,22 +12,23 @@ use super::{
 };
 use crate::{quantity::MapPoint, terrain::Dem};
 
-/// The most pixels a side; of larger rasters every n-th post is drawn, which the map says.
+/// The greatest number of pixels per side; larger rasters are drawn with every n-th post, which the map says.
 pub(super) const MOST_PIXELS: usize = 2000;
-/// Small rasters get several pixels for each post, up to this many a side, so that stripes are fine and no viewer blurs the posts.
+/// Small rasters get several pixels for each post, up to this many per side, so that stripes are fine and viewers do not blur
+/// posts.
 const ENOUGH_PIXELS: usize = 1000;
-/// The most shades of each class: enough that no steps are seen.
+/// The greatest number of shades of each class: enough for a smooth appearance.
 const SHADES: usize = 24;
-/// The darkest ground, over level ground.
+/// Brightness of the darkest ground relative to level ground.
 const DARKEST: f64 = 0.45;
-/// How far towards white the brightest ground gets: farther, and bright classes lose their hue.
+/// Blend towards white of the brightest ground; with more, bright classes lose their hue.
 const BRIGHTEST: f64 = 0.3;
-/// How far towards white a class's colour is in the legend and on level ground.
+/// Blend towards white of a class's colour in the legend and on level ground.
 const LIGHTER: f64 = 0.1;
-/// Stripes and dots repeat after this many pixels.
+/// Period of stripes and dots, pixels.
 const PERIOD: usize = 9;
 
-/// Posts of a DEM from and before some rows and columns.
+/// A window of a DEM: ranges of rows and columns, each with an exclusive end.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Window {
     pub(super) rows: std::ops::Range<usize>,
@@ -40,11 +41,11 @@ impl Window {
         Self { rows: 0..dem.rows(), cols: 0..dem.cols() }
     }
 
-    /// The posts around some places, with a margin of a tenth of their extent and at least four posts; all posts without a place.
+    /// The posts around some points, with a margin of a tenth of their extent and at least four posts; all posts without a point.
     pub(super) fn around(dem: &Dem, places: impl Iterator<Item = MapPoint>) -> Self {
         let map = dem.georeference();
         let first = map.north_west();
-        // Rows and columns as real numbers, growing to the south and to the east.
+        // Rows and columns as real numbers, increasing to the south and to the east.
         let posts = places.map(|at| ((first.y - at.y) / map.dy_m(), (at.x - first.x) / map.dx_m()));
         let (mut low, mut high) = ((f64::INFINITY, f64::INFINITY), (f64::NEG_INFINITY, f64::NEG_INFINITY));
         for (row, col) in posts.filter(|(row, col)| row.is_finite() && col.is_finite()) {
@@ -62,13 +63,13 @@ impl Window {
         self.rows.clone().any(|row| self.cols.clone().any(|col| dem.elevation(row, col).is_none()))
     }
 
-    /// One in how many posts is drawn.
+    /// Every n-th post is drawn; this is n.
     pub(super) fn every(&self) -> usize {
         self.rows.len().max(self.cols.len()).div_ceil(MOST_PIXELS).max(1)
     }
 }
 
-/// The posts from a real number to another, of so many; where none lies between, the nearest one.
+/// The range of post indices between two real numbers, within `0..count`; the nearest post if none lies between.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -80,7 +81,7 @@ fn span(from: f64, to: f64, count: usize) -> std::ops::Range<usize> {
     from..to + 1
 }
 
-/// What is drawn over a class's colour.
+/// The pattern over a class's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Pattern {
     Plain,
@@ -94,7 +95,7 @@ impl Pattern {
         match self {
             Self::Plain => false,
             Self::Striped => (column + row) % PERIOD < 2,
-            // Columns counted backwards without going below zero: (PERIOD - 1) columns are one back.
+            // A step back by one column, modulo PERIOD, as a step of PERIOD - 1 forward, since columns are unsigned.
             Self::Crossed => (column + row) % PERIOD < 2 || ((PERIOD - 1) * column + row) % PERIOD < 2,
             Self::Dotted => {
                 let (c, r) = (column % (2 * PERIOD), row % (2 * PERIOD));
@@ -104,14 +105,14 @@ impl Pattern {
     }
 }
 
-/// Colour of a class in a legend: a little lighter than at full strength, as stripes over it need.
+/// Colour of a class in a legend: slightly lighter than the pure colour, so that stripes over it are visible.
 pub(super) fn tone(colour: RGBColor) -> RGBColor {
     mixed(colour, WHITE, LIGHTER)
 }
 
-/// Draws a class for each post over the hillshade, white where there is no elevation or no class.
+/// Draws a class for each post over the hillshade, white without an elevation or class.
 ///
-/// `class` tells, for a row and a column of the DEM, the place of its colour in `tones` and its pattern.
+/// `class` returns, for a row and a column of the DEM, the index of its colour in `tones` and its pattern.
 pub(super) fn draw(
     dem: &Dem,
     window: &Window,
@@ -148,7 +149,7 @@ pub(super) fn draw(
     Pixels { width: cols * up, height: rows * up, form: Form::Palette(colours), bytes }
 }
 
-/// The mean brightness of the posts that a pixel stands for; `None` where its own post has no elevation.
+/// The mean brightness of the posts that a pixel represents; `None` if its own post has no elevation.
 #[expect(clippy::cast_precision_loss, reason = "a few hundred posts")]
 fn mean_brightness(dem: &Dem, (row, col): (usize, usize), every: usize) -> Option<f64> {
     let own = brightness(dem, row, col)?;
@@ -168,7 +169,7 @@ fn shade_of(light: f64, shades: usize) -> usize {
     ((light * shades as f64) as usize).min(shades - 1)
 }
 
-/// A colour in a shade: level ground has the colour itself, what faces the sun gets lighter, what turns away darker.
+/// A colour in a shade: level ground has the colour itself, ground facing the sun is lighter, ground facing away darker.
 #[expect(clippy::cast_precision_loss, reason = "at most 24 shades")]
 fn shaded(tone: RGBColor, shade: usize, shades: usize) -> [u8; 3] {
     let light = if shades == 1 { LEVEL } else { (shade as f64 + 0.5) / shades as f64 };
@@ -185,7 +186,7 @@ mod tests {
     use super::{super::super::bands::ramp, *};
     use crate::report::figure::map::hops::NOT_REACHED;
 
-    /// CIE L*a*b* of an sRGB colour under D65: lightness 0 to 100, and two axes of hue whose length is the colourfulness.
+    /// CIE L*a*b* of an sRGB colour under D65: lightness 0 to 100, and two colour axes whose norm is the chroma.
     fn lab([r, g, b]: [u8; 3]) -> [f64; 3] {
         let linear = |c: u8| {
             let c = f64::from(c) / 255.0;
@@ -214,7 +215,7 @@ mod tests {
                 let seen = lab(shaded(band, shade, SHADES));
                 let colourful = libm::hypot(seen[1], seen[2]);
                 assert!(colourful > 12.0, "band {step} in light {shade} is grey: {seen:?}");
-                // A difference of 2 is just seen side by side, one of 10 at a glance.
+                // A difference of 2 is just visible side by side, one of 10 at a glance.
                 let nearest = grey.iter().map(|&grey| difference(seen, grey)).fold(f64::INFINITY, f64::min);
                 assert!(nearest > 16.0, "band {step} in light {shade}: {nearest} from not reached");
                 assert!(difference(seen, grey[shade]) > 19.0, "band {step} in light {shade}, side by side");

@@ -1,4 +1,4 @@
-//! Maps of real and made-up terrain: what they show, what they say, and that they can be read.
+//! Maps of real and synthetic terrain: contents, texts and legibility.
 
 use super::{
     super::{
@@ -30,7 +30,7 @@ fn made_up(rows: usize, cols: usize, spacing_m: f64) -> Dem {
     Dem::new(rows, cols, (0..rows * cols).map(height).collect(), map).unwrap()
 }
 
-/// Hops that rise with the distance from a post; steep posts and far ones are not reached.
+/// Hop counts that grow with the distance from a post; steep posts and far ones are not reached.
 fn made_up_hops(posts: &MapPosts<'_>, start: (usize, usize), posts_per_hop: f64, most: f64) -> Vec<i16> {
     let (rows, cols) = posts.size();
     let hops = |i: usize| {
@@ -62,7 +62,7 @@ fn drawn(name: &str, posts: MapPosts<'_>, per_hop: f64, most: f64, with_return: 
     // Every post is in exactly one entry of the legend.
     let counts = texts(&picture)
         .lines()
-        .filter(|line| !line.contains("way"))
+        .filter(|line| !line.contains("to the start"))
         .filter_map(|line| {
             let (_, count) = line.rsplit_once(": ")?;
             count.strip_suffix(" posts").or(count.strip_suffix(" post"))?.parse::<usize>().ok()
@@ -73,7 +73,7 @@ fn drawn(name: &str, posts: MapPosts<'_>, per_hop: f64, most: f64, with_return: 
 }
 
 #[test]
-fn hop_maps_of_real_terrain_are_whole() {
+fn hop_maps_of_real_terrain_are_complete() {
     for (name, file, per_hop, most) in [("hops-mars", MARS, 6.0, 7.0), ("hops-moon", MOON, 5.0, 30.0)] {
         let Some(dem) = real_dem(file) else { continue };
         let picture = drawn(name, MapPosts { dem: &dem, stride: 1 }, per_hop, most, name == "hops-moon");
@@ -84,12 +84,12 @@ fn hop_maps_of_real_terrain_are_whole() {
         {
             assert!(texts.contains(words), "{words:?} is missing in {texts}");
         }
-        assert_eq!(texts.contains("no way back"), name == "hops-moon");
+        assert_eq!(texts.contains("no path back"), name == "hops-moon");
     }
 }
 
 #[test]
-fn maps_with_a_stride_of_holes_and_of_many_posts_are_whole_and_say_so() {
+fn maps_with_a_stride_with_holes_and_with_many_posts_are_complete_and_say_so() {
     let small = made_up(31, 47, 2.5);
     let picture = drawn("hops-stride", MapPosts { dem: &small, stride: 4 }, 3.0, 300.0, false);
     let told = texts(&picture);
@@ -145,7 +145,7 @@ fn nothing_reached_only_the_start_and_very_many_hops_are_drawn() {
 }
 
 #[test]
-fn keep_out_posts_are_a_class_of_their_own_and_no_way_back_is_told_even_of_none() {
+fn keep_out_posts_are_a_separate_class_and_zero_posts_without_return_path_are_stated() {
     let dem = made_up(12, 20, 1.0);
     let posts = MapPosts { dem: &dem, stride: 1 };
     let at = |i: usize| dem.elevation(i / 20, i % 20);
@@ -156,20 +156,20 @@ fn keep_out_posts_are_a_class_of_their_own_and_no_way_back_is_told_even_of_none(
             Some(_) => 1,
         })
         .collect();
-    // A zone over the first two rows, and one over a reached post on a border, which stays what it is.
+    // A zone over the first two rows, and one over a reached post on a border, which keeps its class.
     let kept_out: Vec<bool> = (0..240).map(|i| i < 40 || i == 100).collect();
     let figure = HopMapFigure { kept_out: Some(&kept_out), ..hop_map(posts, &hops, Some(&[true; 240])) };
     let picture = check_picture("hops-keep-out", || draw_hop_map(&figure).unwrap());
     let told = texts(&picture);
-    for words in ["keep-out, not reached: 40 posts", "not reached: 20 posts", "no way back to the start: 0 posts"] {
+    for words in ["keep-out, not reached: 40 posts", "not reached: 20 posts", "no path back to the start: 0 posts"] {
         assert!(told.lines().any(|line| line.ends_with(words)), "{words:?} is missing in {told}");
     }
     let image = &picture.sheet.images[0].pixels;
-    // Of nine pixels two are under each set of stripes, and of 81 four under both: 32 of 81.
+    // Each set of stripes covers two of nine pixels, and both cover four of 81: together 32 of 81.
     let of_a_row = image.width * image.width / 20;
     let inked = |row: usize| (0..of_a_row).filter(|at| image.bytes[row * of_a_row + at] == 1).count();
     assert!(inked(0).abs_diff(of_a_row * 32 / 81) < of_a_row / 40, "{} of {of_a_row} under stripes", inked(0));
-    assert_eq!(inked(5), 0, "nothing over what is reached");
+    assert_eq!(inked(5), 0, "no pattern over reached posts");
     assert!(draw_hop_map(&HopMapFigure { kept_out: Some(&[true; 3]), ..figure }).is_err());
 }
 
@@ -187,7 +187,7 @@ fn value_map<'a>(posts: MapPosts<'a>, values: &'a [f64], name: &str) -> ValueMap
 }
 
 #[test]
-fn value_maps_have_round_classes_and_survive_odd_values() {
+fn value_maps_have_round_classes_and_accept_any_values() {
     if let Some(dem) = real_dem(MOON) {
         let posts = MapPosts { dem: &dem, stride: 2 };
         let values: Vec<f64> = (0..128 * 128usize)
@@ -231,7 +231,7 @@ fn landing_map(dem: &Dem, hops: usize, landings: usize, semi_m: (f64, f64), head
             semi_minor_m: growth * semi_m.1,
             heading_deg: heading_deg + hop as f64,
         };
-        // The golden angle spreads points evenly, thinning out from the middle.
+        // The golden angle spreads points evenly, less densely away from the centre.
         let landing = |i: usize| {
             let share = libm::sqrt(-2.0 * libm::log((i as f64 + 0.5) / landings as f64) / 5.991);
             let rim = rim(&ellipse);
@@ -274,7 +274,7 @@ fn landing_maps_of_real_terrain_show_path_landings_and_ellipses() {
 }
 
 #[test]
-fn landing_maps_are_cut_to_what_happened_and_count_what_left_the_map() {
+fn landing_maps_show_the_flown_area_and_count_landings_off_the_map() {
     let dem = made_up(200, 300, 2.0);
     let mut figure = landing_map(&dem, 3, 50, (4.0, 2.0), 0.0);
     let whole = dem.georeference().bounds(200, 300);
@@ -285,7 +285,7 @@ fn landing_maps_are_cut_to_what_happened_and_count_what_left_the_map() {
     assert!(told.contains("Landings beyond the DEM, not drawn: 1.") && told.contains("landing (149 of 30000 drawn)"), "{told}");
     let image = &picture.sheet.images[0];
     assert!(image.width_mm / image.height_mm > 1.2, "cut to the path, which runs east: {} by {}", image.width_mm, image.height_mm);
-    // Nothing at all, and a path without landings.
+    // No data at all, and a path without landings.
     for clouds in [Vec::new(), vec![LandingCloud { hop: 1, planned: whole.min, landings: Vec::new(), count: 0, ellipse: None }]] {
         let figure = LandingMapFigure { caption: Caption::default(), dem: &dem, path: Vec::new(), clouds };
         let picture = check_picture("landings-none", || draw_landing_map(&figure).unwrap());
@@ -294,11 +294,11 @@ fn landing_maps_are_cut_to_what_happened_and_count_what_left_the_map() {
 }
 
 #[test]
-fn the_rim_of_an_ellipse_has_its_axes_and_its_heading() {
+fn the_outline_of_an_ellipse_has_its_axes_and_its_heading() {
     let centre = MapPoint::new(10.0, -20.0);
     let ellipse = LandingEllipse { centre, semi_major_m: 5.0, semi_minor_m: 2.0, heading_deg: 30.0 };
     let rim = rim(&ellipse);
-    // The second road: the equation of an ellipse in axes turned by hand, 30 degrees from north being (1/2, sqrt 3 / 2).
+    // Independent computation: the equation of an ellipse in rotated axes; a heading of 30 degrees is (1/2, sqrt 3 / 2).
     let along = (0.5, libm::sqrt(3.0) / 2.0);
     for at in &rim {
         let (x, y) = (at.x - centre.x, at.y - centre.y);
@@ -309,7 +309,7 @@ fn the_rim_of_an_ellipse_has_its_axes_and_its_heading() {
 }
 
 #[test]
-fn windows_hold_their_places_with_a_margin_and_stay_on_the_dem() {
+fn windows_contain_their_points_with_a_margin_and_stay_on_the_dem() {
     let dem = made_up(60, 90, 2.0);
     let post = |row, col| dem.georeference().post(row, col);
     let window = Window::around(&dem, [post(20, 30), post(30, 80)].into_iter());

@@ -19,7 +19,7 @@ use super::{
     raster::{self, Pattern, Window, tone},
 };
 
-/// The most classes of a value.
+/// The greatest number of classes of a value.
 const MOST_CLASSES: f64 = 9.0;
 
 /// Draws a map of a continuous value, such as the least effort or the mobility, over a hillshade.
@@ -27,7 +27,7 @@ const MOST_CLASSES: f64 = 9.0;
 /// The values are drawn in up to ten classes between round numbers, light for low and dark for high.
 ///
 /// # Errors
-/// [`FigureError::RasterSize`] where the raster does not have one number for every post.
+/// [`FigureError::RasterSize`] if the raster does not have one value for every post.
 pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureError> {
     check_size("map of values", &figure.posts, figure.values.len())?;
     let posts = figure.posts;
@@ -62,9 +62,9 @@ pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureErro
     Ok(Picture::page(sheet, height_mm))
 }
 
-/// Classes of a value: between round numbers, the first and the last up to the ends.
+/// Classes of a value between round numbers; the first and the last end at the extremes.
 struct Steps {
-    /// The ends of the classes, rising; of a single value twice that, of none nothing.
+    /// The class boundaries, in ascending order; for a single value that value twice, without values empty.
     ends: Vec<f64>,
 }
 

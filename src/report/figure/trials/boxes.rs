@@ -24,22 +24,22 @@ use super::{
 
 /// Height of the panel.
 pub(super) const HIGH_MM: f64 = 58.0;
-/// More boxes than this and every n-th landing is drawn.
+/// Above this number of boxes only every n-th landing is drawn.
 const MOST_BOXES: usize = 80;
-/// The widest half of a box.
+/// The greatest half-width of a box.
 const HALF_MM: f64 = 3.2;
-/// The largest errors are drawn to scale as long as they are no farther than this many times the whiskers.
+/// The largest errors are drawn to scale up to this multiple of the whiskers.
 const FAR: f64 = 3.0;
 const WHISKER_PEN: Pen = Pen { colour: BLACK, width_mm: 0.2 };
 const MEDIAN_PEN: Pen = Pen { colour: BLACK, width_mm: 0.5 };
 
-/// Whether there is something to draw.
+/// Whether there are data to draw.
 pub(super) fn is_drawable(errors: &ErrorQuantiles) -> bool {
     let ErrorQuantiles { count, mean_m, q05_m, q25_m, q50_m, q75_m, q95_m, max_m } = *errors;
     count > 0 && [mean_m, q05_m, q25_m, q50_m, q75_m, q95_m, max_m].into_iter().all(f64::is_finite)
 }
 
-/// The range of errors that an axis shows: all of them, or up to somewhat above the whiskers where the largest are far beyond.
+/// The range of errors on the axis: all of them, or up to somewhat above the whiskers if the largest are far beyond.
 pub(super) fn range<'a>(errors: impl Iterator<Item = &'a ErrorQuantiles>) -> (f64, f64) {
     let (mut low, mut body, mut most) = (0.0_f64, 0.0_f64, 0.0_f64);
     for e in errors.filter(|e| is_drawable(e)) {
@@ -88,7 +88,7 @@ pub(super) fn draw(sheet: &mut Sheet, series: &[LandingBoxes], top_mm: f64) -> (
     (end_mm, entries(series, &plot))
 }
 
-/// The legend: series with their numbers of landings, and what a box says.
+/// The legend: series with their numbers of landings, and the parts of a box.
 fn entries(series: &[LandingBoxes], plot: &Plot) -> Vec<(Swatch, String)> {
     let of = |(s, boxes): (usize, &LandingBoxes)| {
         let landings = boxes.landings.iter().fold(0_u64, |sum, landing| sum.saturating_add(landing.count));
@@ -99,7 +99,7 @@ fn entries(series: &[LandingBoxes], plot: &Plot) -> Vec<(Swatch, String)> {
     series.iter().enumerate().map(of).chain(box_keys(plot, series.iter().flat_map(|s| &s.landings))).collect()
 }
 
-/// What a box says.
+/// The legend of the parts of a box.
 pub(super) fn box_keys<'a>(plot: &Plot, errors: impl Iterator<Item = &'a ErrorQuantiles>) -> Vec<(Swatch, String)> {
     let mut keys = vec![
         (Swatch::Symbol(box_symbol), "median, 25 % to 75 %".to_owned()),
@@ -139,7 +139,7 @@ pub(super) fn draw_box(sheet: &mut Sheet, plot: &Plot, (x, half_mm): (f64, f64),
     }
 }
 
-/// An arrow at the top of the panel with the number that lies beyond, where there is room for it.
+/// An arrow at the top of the panel with the value beyond the axis, if there is room.
 fn beyond(sheet: &mut Sheet, plot: &Plot, x: f64, value_m: f64) {
     beyond_symbol(sheet, (x, plot.panel.top + 1.6));
     let label = Label::new(short(value_m), (x, plot.panel.top + 3.2), SMALL_MM).hung(Anchor::Middle, Hang::Below);
@@ -149,7 +149,7 @@ fn beyond(sheet: &mut Sheet, plot: &Plot, x: f64, value_m: f64) {
     }
 }
 
-/// How many landings there were, below each box; returns where the row ends. Upright where there is no room side by side.
+/// The number of landings below each box, upright if there is no room side by side; returns where the row ends.
 pub(super) fn counts_row(
     sheet: &mut Sheet,
     panel: &Panel,
@@ -178,13 +178,13 @@ pub(super) fn counts_row(
     top_mm + high_mm + 1.3
 }
 
-/// Says that a panel is empty.
+/// Draws the statement that a panel is empty.
 pub(super) fn nothing(sheet: &mut Sheet, panel: &Panel, text: &str) {
     let middle = (0.5 * (panel.left + panel.right), 0.5 * (panel.top + panel.bottom));
     sheet.label(Label::new(text, middle, SMALL_MM).hung(Anchor::Middle, Hang::Through));
 }
 
-/// One in how many landings is drawn.
+/// Every n-th landing is drawn; returns n.
 fn one_of(boxes: usize) -> usize {
     boxes.div_ceil(MOST_BOXES).max(1)
 }

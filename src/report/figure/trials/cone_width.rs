@@ -1,5 +1,5 @@
-//! Distance errors against the width of the cones, with the hops of the planned path at each width. Of one width given twice the first
-//! is drawn.
+//! Distance errors against the width of the cones, with the hops of the planned path at each width. If a width is given twice, the
+//! first is drawn.
 
 use super::{
     super::{
@@ -16,11 +16,11 @@ use super::{
 const HIGH_MM: f64 = 68.0;
 /// The strip with the hops, at the top of the panel.
 const STRIP_MM: f64 = 5.0;
-/// The widest half of a box.
+/// The greatest half-width of a box.
 const HALF_MM: f64 = 4.0;
 /// Room beside the first and the last width.
 const BESIDE_MM: f64 = 12.0;
-/// The line through the medians.
+/// Style of the line through the medians.
 const MEDIANS_PEN: Pen = Pen { colour: BLUE, width_mm: 0.25 };
 
 /// Draws the panel below a height; returns where the numbers of landings end, and the legend.
@@ -68,7 +68,7 @@ pub(super) fn draw(sheet: &mut Sheet, points: &[ConeWidthPoint], top_mm: f64) ->
     (end_mm, keys)
 }
 
-/// The hops of the planned path above a width, where there is room.
+/// The hops of the planned path above a width, if there is room.
 fn hops(sheet: &mut Sheet, hops: Option<u64>, at: Place) {
     let text = match hops {
         Some(1) => "1 hop".to_owned(),

@@ -15,13 +15,13 @@ use super::{
 
 /// Height of the panel.
 const HIGH_MM: f64 = 42.0;
-/// From the fewest to the most trials by more than this factor: the axis is logarithmic.
+/// Above this ratio of the most to the fewest trials the axis is logarithmic.
 const FAR: f64 = 20.0;
-/// The least range of rates on the axis, percent.
+/// The smallest range of rates on the axis, percent.
 const LEAST: f64 = 2.0;
-/// Room at both ends of the numbers of trials.
+/// Margin at both ends of the axis of trials.
 const BESIDE_MM: f64 = 3.0;
-/// The rate; the ends of its band.
+/// Line widths of the rate and of the ends of its band.
 const RATE_MM: f64 = 0.5;
 const BAND_MM: f64 = 0.15;
 
@@ -38,7 +38,7 @@ pub(super) fn draw(sheet: &mut Sheet, bars: &[OutcomeBars], top_mm: f64) -> (f64
         };
         let (low, rate, high) = (at(|p| p.success.low), at(|p| p.success.rate), at(|p| p.success.high));
         if let ([(x, y)], [bottom], [top]) = (rate.as_slice(), low.as_slice(), high.as_slice()) {
-            // One point alone has no width: its interval as a bar.
+            // The interval of a single point is drawn as a bar.
             let shift_mm = 2.0 * number(s as u64);
             sheet.area(rectangle((x + shift_mm - 0.7, top.1), (x + shift_mm + 0.7, bottom.1)), style.colour, 0.5);
             sheet.dot((x + shift_mm, *y), 0.6, BLACK);
@@ -135,7 +135,7 @@ impl Trials {
     }
 }
 
-/// The legend: each policy with what it came to.
+/// The legend: each policy with its final rate.
 fn entries(bars: &[OutcomeBars], series: &[Vec<ConvergencePoint>]) -> Vec<(Swatch, String)> {
     let mut found = Vec::new();
     for (s, (bars, points)) in bars.iter().zip(series).enumerate() {

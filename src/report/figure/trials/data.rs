@@ -1,4 +1,4 @@
-//! What the pictures of trials show, as plain data.
+//! The data of the pictures of trials.
 
 use super::super::{Caption, Flight};
 use crate::quantity::ChainPoint;
@@ -10,37 +10,37 @@ pub struct FlownFigure {
     pub ground: Vec<ChainPoint>,
     /// The planned hops.
     pub planned: Vec<Flight>,
-    /// Some or all of the trials; of more than a few hundred flights every n-th trial is drawn, and the legend says so.
+    /// Some or all of the trials; more than a few hundred flights are thinned to every n-th trial, and the legend says so.
     pub trials: Vec<FlownTrial>,
-    /// How many trials were flown in all.
+    /// The number of all trials flown.
     pub trials_in_all: u64,
 }
 
 /// One trial.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FlownTrial {
-    /// Its flights, each from where it really took off to where it first met the ground.
+    /// Its flights, each from the actual take-off to first contact with the ground.
     pub flights: Vec<Flight>,
-    /// Whether it reached the goal; the others are drawn apart.
+    /// Whether it reached the goal; failed trials are drawn differently.
     pub reached: bool,
 }
 
 /// Quantiles of a distance error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ErrorQuantiles {
-    /// How many landings there were.
+    /// The number of landings.
     pub count: u64,
     /// Mean.
     pub mean_m: f64,
-    /// 5 % are below.
+    /// The 5 % quantile.
     pub q05_m: f64,
-    /// 25 % are below.
+    /// The 25 % quantile.
     pub q25_m: f64,
     /// Median.
     pub q50_m: f64,
-    /// 75 % are below.
+    /// The 75 % quantile.
     pub q75_m: f64,
-    /// 95 % are below.
+    /// The 95 % quantile.
     pub q95_m: f64,
     /// The largest.
     pub max_m: f64,
@@ -49,22 +49,22 @@ pub struct ErrorQuantiles {
 /// The distance errors of one policy or reading, landing by landing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LandingBoxes {
-    /// The policy or reading, such as `open-loop`; with one series alone it may be empty.
+    /// The policy or reading, such as `open-loop`; it may be empty for a single series.
     pub name: String,
-    /// Of hop 1, 2, and so on; a count of 0 leaves the place empty.
+    /// The errors of hop 1, 2, and so on; a count of 0 draws no box.
     pub landings: Vec<ErrorQuantiles>,
 }
 
 /// Box plots, group by group.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LandingErrorFigure {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
-    /// One or several series, told apart by colour and hatching.
+    /// One or several series, distinguished by colour and hatching.
     pub series: Vec<LandingBoxes>,
 }
 
-/// How the trials of one policy ended.
+/// The outcomes of the trials of one policy.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OutcomeBars {
     /// The policy, such as `open-loop`.
@@ -73,7 +73,7 @@ pub struct OutcomeBars {
     pub counts: Vec<(String, u64)>,
     /// The share that reached the goal, 0 to 1, with its 95 % interval.
     pub success: Success,
-    /// The success rate after the first so many trials, rising; may be empty.
+    /// The success rate after increasing numbers of trials; may be empty.
     pub convergence: Vec<ConvergencePoint>,
 }
 
@@ -91,18 +91,18 @@ pub struct Success {
 /// The success rate after some trials.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ConvergencePoint {
-    /// After how many trials.
+    /// The number of trials.
     pub trials: u64,
     /// The rate and its interval.
     pub success: Success,
 }
 
-/// All of a simulation; what is absent or empty is left out of the sheet.
+/// All data of a simulation; absent or empty parts are omitted from the sheet.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SimulationFigure {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
-    /// Trajectories over the profile (2-D chains).
+    /// Trajectories over the profile.
     pub flown: Option<FlownFigure>,
     /// Distance errors by landing, one series for each policy.
     pub errors: Vec<LandingBoxes>,
@@ -113,7 +113,7 @@ pub struct SimulationFigure {
 /// The landing error against the width of the cones.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ConeWidthFigure {
-    /// The words above.
+    /// The caption.
     pub caption: Caption,
     /// One for each width.
     pub points: Vec<ConeWidthPoint>,
@@ -124,7 +124,7 @@ pub struct ConeWidthFigure {
 pub struct ConeWidthPoint {
     /// The width of the cones.
     pub width_deg: f64,
-    /// Hops of the planned path; `None` where there is none, and then no errors are drawn.
+    /// Hops of the planned path; `None` without a path, and then no errors are drawn.
     pub hops: Option<u64>,
     /// The distance errors over all landings.
     pub errors: ErrorQuantiles,

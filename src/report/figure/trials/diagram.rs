@@ -1,4 +1,4 @@
-//! What the diagrams of trials share: values on the sheet, and how series are told apart.
+//! Shared by the diagrams of trials: the transformation of values to the sheet, and the styles of series.
 
 use plotters::style::RGBColor;
 
@@ -10,9 +10,9 @@ use super::super::{
     ticks::{Ticks, short},
 };
 
-/// Numbers of an axis longer than this are shortened.
+/// Axis numbers longer than this are shortened.
 const LONGEST: usize = 8;
-/// Least distance of the numbers of a vertical axis.
+/// Smallest spacing of the numbers of a vertical axis.
 const TICK_MM: f64 = 7.0;
 /// Room for the heading of a panel.
 const HEADING_MM: f64 = 5.5;
@@ -35,7 +35,7 @@ pub(super) struct Axis {
 }
 
 impl Axis {
-    /// A range between two heights or two distances of the sheet; a range of no width is widened.
+    /// A range of values between two positions of the sheet; a range of zero width is widened.
     pub(super) fn new((from, to): (f64, f64), start_mm: f64, end_mm: f64) -> Self {
         let (from, to) = if from < to { (from, to) } else { (from - 0.5, from + 0.5) };
         Self { from, to, start_mm, end_mm }
@@ -46,7 +46,7 @@ impl Axis {
         self.start_mm + (value - self.from) / (self.to - self.from) * (self.end_mm - self.start_mm)
     }
 
-    /// Round values with their places, so many at most.
+    /// Round values with their positions, at most the given number.
     pub(super) fn ticks(&self, most: f64) -> Vec<(f64, String)> {
         let ticks = Ticks::round(self.from, self.to, most);
         let long = ticks.longest().len() > LONGEST;
@@ -71,19 +71,19 @@ impl Plot {
         Self { panel: Panel { left, top: top_mm, right: RIGHT_MM, bottom: top_mm + height_mm }, up, ticks }
     }
 
-    /// Both axes with their grid; those across are given.
+    /// Both axes with their grid; the ticks of the horizontal axis are given.
     pub(super) fn axes(&self, sheet: &mut Sheet, (along, name): (&[(f64, String)], &str), up: &str, grid_along: bool) {
         self.panel.y_axis(sheet, &self.ticks, up, true);
         self.panel.x_axis(sheet, along, name, grid_along);
     }
 
-    /// Where it ends, numbers and name of the horizontal axis included.
+    /// The lower end, including numbers and name of the horizontal axis.
     pub(super) fn end_mm(&self) -> f64 {
         self.panel.bottom + BELOW_MM
     }
 }
 
-/// How a series looks.
+/// The style of a series.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Style {
     pub(super) colour: RGBColor,
@@ -98,7 +98,7 @@ enum Pattern {
 }
 
 impl Style {
-    /// Of the first, second, ... series: colour and hatching differ within each dozen.
+    /// The style of a series by its index: any twelve consecutive series differ in colour or hatching.
     pub(super) fn of(series: usize) -> Self {
         let colour = [SKY, ORANGE, GREEN, PURPLE][series % 4];
         Self { colour, pattern: [Pattern::Plain, Pattern::Striped, Pattern::Dotted][series % 3] }
@@ -154,12 +154,12 @@ pub(super) fn heading(sheet: &mut Sheet, text: &str, top_mm: f64) -> f64 {
     top_mm + HEADING_MM
 }
 
-/// A series' name, or a word for it where it has none.
+/// A series' name, or a numbered substitute.
 pub(super) fn named(name: &str, series: usize) -> String {
     if name.is_empty() { format!("series {}", series + 1) } else { name.to_owned() }
 }
 
-/// A thing counted, such as `1 trial` or `12 trials`.
+/// A counted noun, such as `1 trial` or `12 trials`.
 pub(super) fn counted(count: u64, name: &str) -> String {
     format!("{count} {name}{}", if count == 1 { "" } else { "s" })
 }

@@ -1,4 +1,4 @@
-//! Trajectories of trials over the profile, and below them where the landings lie.
+//! Trajectories of trials over the profile, and below them the positions of the landings.
 //!
 //! ```text
 //!   +-------------------------+   ground, trials (failed ones end in a cross), planned path on top
@@ -30,28 +30,28 @@ use crate::quantity::ChainPoint;
 /// Room above the highest flight and below the lowest ground.
 const ABOVE_MM: f64 = 4.0;
 const DEPTH_MM: f64 = 5.0;
-/// The least height of the panel: the name of its axis needs that much.
+/// The least height of the panel, set by the name of its axis.
 const LOWEST_MM: f64 = 24.0;
 /// Room between trajectories and landings.
 const GAP_MM: f64 = 2.0;
-/// The landings of one hop; all of them together at most.
+/// Height of one hop's row of landings, and the greatest height of all rows.
 const ROW_MM: f64 = 4.2;
 const ROWS_MM: f64 = 46.0;
-/// Least distance of the numbers of the height axis.
+/// Smallest spacing of the numbers of the height axis.
 const TICK_MM: f64 = 6.5;
-/// The view reaches beyond what was flown by this share of it.
+/// Margin of the view, as a fraction of the flown extent.
 const BESIDE: f64 = 0.06;
-/// More flights, or more points of drawn lines, than this and every n-th trial is drawn.
+/// Above this number of flights, or of points of drawn lines, only every n-th trial is drawn.
 const MOST_FLIGHTS: usize = 400;
 const MOST_POINTS: usize = 5000;
-/// The planned path has so many points at most, and its take-offs and landings are marked up to so many hops.
+/// The greatest number of points of the planned path, and the greatest number of hops whose take-offs and landings are marked.
 const MOST_PLANNED_POINTS: usize = 2500;
 const MOST_MARKED_HOPS: usize = 60;
-/// More landings than this and every n-th trial's are drawn.
+/// Above this number of landings only those of every n-th trial are drawn.
 const MOST_LANDINGS: usize = 600;
-/// How far a drawn flight may leave the parabola.
+/// Greatest deviation of a drawn flight from the parabola.
 const FLATNESS_MM: f64 = 0.025;
-/// The golden ratio's fraction spreads the dots of a row evenly, the same way each time.
+/// The fractional part of the golden ratio, which spreads the dots of a row evenly and reproducibly.
 const GOLDEN: f64 = 0.618_033_988_749_895;
 
 const REACHED_PEN: Pen = Pen { colour: SKY, width_mm: 0.13 };
@@ -80,7 +80,7 @@ pub(super) fn draw(sheet: &mut Sheet, flown: &FlownFigure, top_mm: f64) -> Resul
     Ok((view.bottom_mm() + BELOW_MM, entries(flown, &bundle, &view)))
 }
 
-/// What is drawn of the trials.
+/// The drawn part of the trials.
 struct Bundle<'a> {
     planned: Vec<Flight>,
     /// Every n-th trial.
@@ -105,11 +105,11 @@ impl<'a> Bundle<'a> {
     }
 }
 
-/// Where the panels lie, and their scale.
+/// The positions of the panels and their scale.
 struct View {
     panel: Panel,
     frame: Frame,
-    /// From and to, m.
+    /// The range of x shown, m.
     x_m: (f64, f64),
     rows: Option<Rows>,
 }
@@ -177,7 +177,7 @@ impl View {
         sheet.line(surface, symbols::SURFACE_PEN);
     }
 
-    /// Each trial as one line; those that failed over those that reached, each with a cross where its last flight ended.
+    /// Each trial as one line; failed trials over successful ones, each with a cross at the end of its last flight.
     fn trials(&self, sheet: &mut Sheet, bundle: &Bundle<'_>) {
         let mut left = MOST_POINTS;
         for reached in [true, false] {
@@ -212,7 +212,7 @@ impl View {
         }
     }
 
-    /// Flights that follow one another as one line; coarser where few points are left for it.
+    /// Consecutive flights as one line, coarser if the budget of points is small.
     fn line(&self, flights: &[Flight], most: usize) -> Vec<Place> {
         let mut points = Vec::new();
         for flight in flights.iter().filter(|flight| is_finite(flight)) {
@@ -225,7 +225,7 @@ impl View {
             }
         }
         let points = thinned(&points);
-        // Every n-th point, the last one always.
+        // Every n-th point, and always the last one.
         let every = points.len().div_ceil(most.max(32));
         if every <= 1 {
             return points;
@@ -269,13 +269,13 @@ impl Rows {
     }
 }
 
-/// One in how many trials shows its landings.
+/// The landings of every n-th trial are drawn; returns n.
 fn landings_every(bundle: &Bundle<'_>) -> usize {
     let landings: usize = bundle.trials.iter().map(|trial| trial.flights.len()).sum();
     landings.div_ceil(MOST_LANDINGS).max(1)
 }
 
-/// The stretch of chain that was flown over, m; without flights the whole chain.
+/// The stretch of chain flown over, m; the whole chain without flights.
 fn view(ground: &[ChainPoint], bundle: &Bundle<'_>) -> (f64, f64) {
     let whole = extent(ground.iter().map(|point| point.x_m));
     let (from, to) = extent(bundle.flights().flat_map(|flight| [flight.from.x_m, flight.to.x_m]));
@@ -283,7 +283,7 @@ fn view(ground: &[ChainPoint], bundle: &Bundle<'_>) -> (f64, f64) {
         return whole;
     }
     let beside = BESIDE * (to - from);
-    // Beyond the ends of the chain only where a trial flew there.
+    // Beyond the ends of the chain only if a trial flew there.
     ((from - beside).max(whole.0.min(from)), (to + beside).min(whole.1.max(to)))
 }
 

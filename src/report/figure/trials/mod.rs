@@ -1,4 +1,5 @@
-//! Pictures of many trials: trajectories, box plots of the landing error, outcomes, convergence, and landing error against cone width.
+//! Pictures of many trials: trajectories, box plots of the landing error, outcomes, convergence, and landing error against cone
+//! width.
 
 mod boxes;
 mod cone_width;
@@ -31,10 +32,10 @@ const BELOW_MM: f64 = 3.0;
 /// A panel: where it ends, and its legend.
 type Drawn = (f64, Vec<(Swatch, String)>);
 
-/// Draws everything of a simulation on one sheet, as far as it is there: trajectories, box plots, outcomes, convergence.
+/// Draws all available data of a simulation on one sheet: trajectories, box plots, outcomes, convergence.
 ///
 /// # Errors
-/// [`FigureError::NoGround`] where there are trajectories over a ground of fewer than two points.
+/// [`FigureError::NoGround`] if there are trajectories over a ground of fewer than two points.
 pub fn draw_simulation(figure: &SimulationFigure) -> Result<Picture, FigureError> {
     let mut sheet = Sheet::default();
     let mut end_mm = figure.caption.draw(&mut sheet);
@@ -61,18 +62,18 @@ pub fn draw_simulation(figure: &SimulationFigure) -> Result<Picture, FigureError
 
 /// Draws the trajectories of trials over the terrain, with the planned path on top, and below them the landings hop by hop.
 ///
-/// The view is the stretch that was flown over. Many trials are thinned to every n-th, which the legend says.
+/// The view is the stretch flown over. Many trials are thinned to every n-th, which the legend says.
 ///
 /// # Errors
-/// [`FigureError::NoGround`] where the ground has fewer than two points.
+/// [`FigureError::NoGround`] if the ground has fewer than two points.
 pub fn draw_flown(caption: &Caption, flown: &FlownFigure) -> Result<Picture, FigureError> {
     alone(caption, |sheet, top| flown::draw(sheet, flown, top))
 }
 
 /// Draws box plots of the distance error per landing, one group of boxes for each series (the paper's Fig. 6b).
 ///
-/// Boxes reach from the lower to the upper quartile, whiskers from 5 % to 95 %. Largest errors far beyond the whiskers are told by their
-/// numbers, so that the boxes stay readable. Of more than eighty boxes every n-th landing is drawn, which the axis says.
+/// Boxes extend from the lower to the upper quartile, whiskers from 5 % to 95 %. Largest errors far beyond the whiskers are written
+/// as numbers, so that the boxes stay readable. More than eighty boxes are thinned to every n-th landing, which the axis says.
 ///
 /// # Errors
 /// None today; [`FigureError`] as for the other pictures.
@@ -80,7 +81,7 @@ pub fn draw_landing_errors(figure: &LandingErrorFigure) -> Result<Picture, Figur
     alone(&figure.caption, |sheet, top| Ok(boxes::draw(sheet, &figure.series, top)))
 }
 
-/// Draws how trials ended, one group of bars for each outcome, with the success rate and its 95 % interval.
+/// Draws the outcomes of trials, one group of bars for each outcome, with the success rate and its 95 % interval.
 ///
 /// Outcomes that never occurred are named below the bars.
 ///
@@ -90,7 +91,7 @@ pub fn draw_outcomes(caption: &Caption, bars: &[OutcomeBars]) -> Result<Picture,
     alone(caption, |sheet, top| Ok(outcomes::draw(sheet, bars, top)))
 }
 
-/// Draws the success rate with its 95 % band over the number of trials, logarithmic where these differ by more than twenty times.
+/// Draws the success rate with its 95 % band over the number of trials, on a logarithmic axis if their ratio exceeds twenty.
 ///
 /// # Errors
 /// None today; [`FigureError`] as for the other pictures.
@@ -135,7 +136,7 @@ fn with_legend(
     Ok(if entries.is_empty() { end_mm } else { keys::draw(sheet, &entries, end_mm + 2.5) } + BELOW_MM)
 }
 
-/// A share with its interval in percent, with as many decimals as the interval is fine.
+/// A share with its interval in percent, with the number of decimals set by the width of the interval.
 fn percent(success: &Success) -> String {
     let Success { rate, low, high } = *success;
     if ![rate, low, high].into_iter().all(f64::is_finite) {

@@ -1,4 +1,4 @@
-//! How trials ended: a bar for each outcome and policy, and the success rate with its interval.
+//! The outcomes of trials: a bar for each outcome and policy, and the success rate with its interval.
 
 use super::{
     super::{
@@ -15,9 +15,9 @@ use super::{
 
 /// Thickness of a bar.
 const BAR_MM: f64 = 3.0;
-/// Distance of bars of one outcome.
+/// Spacing of the bars of one outcome.
 const NEXT_MM: f64 = 3.6;
-/// Room between outcomes.
+/// Space between outcomes.
 const BETWEEN_MM: f64 = 2.0;
 
 /// Draws the panel below a height; returns where it ends, and the legend.
@@ -65,7 +65,7 @@ pub(super) fn draw(sheet: &mut Sheet, bars: &[OutcomeBars], top_mm: f64) -> (f64
     (end_mm, entries(bars))
 }
 
-/// What the first row says.
+/// The name of the first row.
 const SUCCESS: &str = "success rate, 95 % interval";
 
 /// An outcome's name as words.
@@ -73,7 +73,7 @@ fn words(name: &str) -> String {
     name.replace('_', " ")
 }
 
-/// The names of outcomes in the order in which they are first met, those that occurred and the others.
+/// The names of outcomes in order of first appearance, those that occurred and the others.
 fn outcomes(bars: &[OutcomeBars]) -> (Vec<&str>, Vec<&str>) {
     let mut names: Vec<&str> = Vec::new();
     for (name, _) in bars.iter().flat_map(|bars| &bars.counts) {
@@ -97,7 +97,7 @@ fn share(bars: &OutcomeBars, outcome: &str) -> f64 {
     number(count(bars, outcome)) / number(total(bars).max(1))
 }
 
-/// Count and share; a share that only rounds to nothing or to all is told as less or more.
+/// Count and share; a share that rounds to 0 or 100 % without being it is written as less or more.
 fn count_text(bars: &OutcomeBars, outcome: &str) -> String {
     let (count, total) = (count(bars, outcome), total(bars));
     let percent = 100.0 * share(bars, outcome);

@@ -1,4 +1,4 @@
-//! Pictures of trials: what they show, what they say, and that they can be read, whatever the numbers.
+//! Pictures of trials: contents, texts and legibility for any numbers.
 
 use super::{
     super::{
@@ -11,7 +11,7 @@ use super::{
 };
 use crate::quantity::ChainPoint;
 
-/// Numbers between 0 and 1 that look like chance, the same everywhere.
+/// Pseudo-random numbers between 0 and 1, the same on every platform.
 fn chance(i: usize, k: usize) -> f64 {
     (libm::sin(i as f64 * 12.9898 + k as f64 * 78.233) * 43_758.545_3).rem_euclid(1.0)
 }
@@ -133,7 +133,7 @@ fn a_simulation_is_one_sheet_of_all_panels() {
 }
 
 #[test]
-fn what_is_absent_is_left_out_of_the_sheet() {
+fn absent_data_is_omitted_from_the_sheet() {
     let whole = simulation(&["open-loop"], 4, 20);
     let no_flights = SimulationFigure { flown: None, ..whole.clone() };
     let picture = check_picture("simulation_without_flights", || draw_simulation(&no_flights).unwrap());
@@ -147,7 +147,7 @@ fn what_is_absent_is_left_out_of_the_sheet() {
     let alone = check_picture("convergence_one_point", || draw_convergence(&caption(), std::slice::from_ref(&few)).unwrap());
     assert!(texts(&alone).lines().any(|line| line == "4"), "the number of trials on the axis");
     let picture = check_picture("simulation_empty", || draw_simulation(&empty).unwrap());
-    assert_eq!(labels(&picture).len(), 2, "only the words on top: {}", texts(&picture));
+    assert_eq!(labels(&picture).len(), 2, "only the caption: {}", texts(&picture));
 }
 
 #[test]
@@ -160,14 +160,14 @@ fn a_sheet_of_many_trials_hops_and_vertices_stays_small() {
 }
 
 #[test]
-fn thinned_trials_are_said_to_be() {
+fn thinned_trials_are_stated() {
     let all = flown(100, 4, 50);
     let picture = check_picture("flown", || draw_flown(&caption(), &FlownFigure { trials_in_all: 50, ..all.clone() }).unwrap());
     assert!(texts(&picture).contains("50 trials drawn"), "{}", texts(&picture));
-    assert_eq!(lines_of(&picture, SKY).len(), 40 + 1, "the trials that reached, and the legend");
+    assert_eq!(lines_of(&picture, SKY).len(), 40 + 1, "the successful trials, and the legend");
     assert_eq!(lines_of(&picture, ORANGE).len(), 10 + 1);
     let dots = picture.sheet.marks.iter().filter(|mark| matches!(mark, Mark::Dot { pen, .. } if pen.colour == BLUE)).count();
-    assert_eq!(dots, 40 * 4 + 10 + 1, "each landing but the last of those that failed, and the legend");
+    assert_eq!(dots, 40 * 4 + 10 + 1, "each landing but the last of failed trials, and the legend");
     // Crosses of two strokes: over the ground, among the landings, in the legend.
     assert_eq!(lines_of(&picture, VERMILION).len(), 2 * (10 + 10 + 1));
     let many = flown(100, 4, 1000);
@@ -196,7 +196,7 @@ fn drawn_flights_keep_their_parabola_and_their_ends() {
 }
 
 #[test]
-fn odd_bundles_are_drawn_and_no_ground_is_refused() {
+fn degenerate_trials_are_drawn_and_missing_ground_is_refused() {
     let ground = vec![ChainPoint::new(0.0, 5.0), ChainPoint::new(40.0, 5.0)];
     let nan = flight((1.0, 5.0), (f64::NAN, 5.0), 1.0);
     let standing = flight((3.0, 5.0), (3.0, 5.0), f64::INFINITY);
@@ -227,7 +227,7 @@ fn odd_bundles_are_drawn_and_no_ground_is_refused() {
 }
 
 #[test]
-fn boxes_are_where_their_quantiles_are() {
+fn boxes_are_at_their_quantiles() {
     let figure = LandingErrorFigure { caption: caption(), series: vec![boxes("", 7, 4000)] };
     let picture = check_picture("errors", || draw_landing_errors(&figure).unwrap());
     // The axis maps heights linearly: compare the filled boxes with each other.
@@ -251,7 +251,7 @@ fn boxes_are_where_their_quantiles_are() {
 }
 
 #[test]
-fn far_errors_are_told_by_number_beyond_the_axis() {
+fn far_errors_are_written_as_numbers_beyond_the_axis() {
     let mut series = vec![boxes("open-loop", 5, 1000), boxes("replan", 5, 1000)];
     series[1].landings[3].max_m = 12_345.0;
     series[1].landings[2] = ErrorQuantiles::default();
@@ -263,7 +263,7 @@ fn far_errors_are_told_by_number_beyond_the_axis() {
 }
 
 #[test]
-fn box_plots_stand_any_numbers() {
+fn box_plots_accept_any_numbers() {
     let all_equal =
         ErrorQuantiles { count: 1, mean_m: 2.0, q05_m: 2.0, q25_m: 2.0, q50_m: 2.0, q75_m: 2.0, q95_m: 2.0, max_m: 2.0 };
     let of = |landings: Vec<ErrorQuantiles>| vec![LandingBoxes { name: "one & <only>".to_owned(), landings }];
@@ -284,7 +284,7 @@ fn box_plots_stand_any_numbers() {
 }
 
 #[test]
-fn outcome_bars_tell_count_and_share_of_each_and_the_interval() {
+fn outcome_bars_state_counts_shares_and_the_interval() {
     let two = [bars("open-loop", 8120, 10_000), bars("replan", 9999, 10_000)];
     let picture = check_picture("outcomes", || draw_outcomes(&caption(), &two).unwrap());
     let texts = texts(&picture);
@@ -303,7 +303,7 @@ fn outcome_bars_tell_count_and_share_of_each_and_the_interval() {
 }
 
 #[test]
-fn outcome_bars_stand_any_counts() {
+fn outcome_bars_accept_any_counts() {
     let none = OutcomeBars { policy: "open-loop".to_owned(), ..OutcomeBars::default() };
     let unknown = OutcomeBars { success: Success { rate: f64::NAN, ..Success::default() }, ..none.clone() };
     let cases = [
@@ -325,7 +325,7 @@ fn the_rate_converges_within_its_band() {
     let two = [bars("open-loop", 8120, 10_000), bars("replan", 9400, 10_000)];
     let picture = check_picture("convergence", || draw_convergence(&caption(), &two).unwrap());
     assert!(texts(&picture).contains("trials (logarithmic)") && texts(&picture).contains("95 % band"), "{}", texts(&picture));
-    // The band closes around a rate: as many points on its lower as on its upper edge, narrower at the end than at the beginning.
+    // The band narrows around the rate: equally many points on its lower and upper edge, narrower at the end than at the beginning.
     let band =
         picture.sheet.marks.iter().find_map(|mark| if let Mark::Area { points, .. } = mark { Some(points.clone()) } else { None });
     let band = band.unwrap();

@@ -154,7 +154,7 @@ impl MeshSlice {
         if self.layers.places > 0 {
             warnings.push(format!(
                 "the plane meets several surfaces of the mesh one above another in {} places, over {:.3} of {:.3} m ({:.1} %): the \
-                 uppermost is used there",
+                 uppermost counts there",
                 self.layers.places,
                 self.layers.length_m,
                 length_m,

@@ -9,7 +9,10 @@ mod lanes;
 mod table;
 mod terrain;
 
-use std::{ops::Range, sync::Arc};
+use std::{
+    ops::{ControlFlow, Range},
+    sync::Arc,
+};
 
 use lanes::{Departure, Lanes};
 pub use table::LandingTable;
@@ -83,25 +86,40 @@ impl Sweep {
         direction: Direction,
         mut visit: impl FnMut(usize, Result<SlopeInterval, Limit>),
     ) {
+        let _: ControlFlow<()> = self.landings_while(takeoff, among, direction, |i, verdict| {
+            visit(i, verdict);
+            ControlFlow::Continue(())
+        });
+    }
+
+    /// The same, until `visit` breaks.
+    #[inline]
+    pub(crate) fn landings_while<B>(
+        &mut self,
+        takeoff: &Station,
+        among: Range<usize>,
+        direction: Direction,
+        mut visit: impl FnMut(usize, Result<SlopeInterval, Limit>) -> ControlFlow<B>,
+    ) -> ControlFlow<B> {
         let Self { table, lanes, overflight } = self;
         let table = &**table;
         let (test, stations, refusals) = (table.test(), table.stations(), &table.rules(direction).refusal);
         let among = table.part_ahead(takeoff, among, direction);
         let rule = match test.allowed(takeoff, Contact::Takeoff, direction) {
             Ok(rule) => rule,
-            Err(limit) => return outwards(among, direction).for_each(|i| visit(i, Err(limit))),
+            Err(limit) => return outwards(among, direction).try_for_each(|i| visit(i, Err(limit))),
         };
         let speed = tolerant_speed_m_s(rule.speed_max_m_s());
         let point = takeoff.point;
         let from = Departure { x_m: point.x_m, z_m: point.z_m, speed_squared: speed * speed, cone: rule.slopes() };
         let (in_plane, beyond_bend) = table.split_at_bend(takeoff, among, direction);
         let (on_segment, mut left) = table.split_at_segment(takeoff, in_plane, direction);
-        outwards(on_segment, direction).for_each(|i| visit(i, test.lofts(takeoff, &stations[i])));
+        outwards(on_segment, direction).try_for_each(|i| visit(i, test.lofts(takeoff, &stations[i])))?;
         overflight.begin(takeoff, direction);
         while !left.is_empty() {
             let block = next_block(&mut left, direction);
             if let Some(limit) = table.out_of_reach(&from, &block, direction) {
-                outwards(block, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(limit))));
+                outwards(block, direction).try_for_each(|i| visit(i, Err(refusals[i].unwrap_or(limit))))?;
                 continue;
             }
             lanes.evaluate(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
@@ -110,10 +128,10 @@ impl Sweep {
                     Some(limit) => Err(limit),
                     None => Landing { table, lanes, overflight }.verdict(&from, takeoff, direction, i, i - block.start),
                 };
-                visit(i, verdict);
+                visit(i, verdict)?;
             }
         }
-        outwards(beyond_bend, direction).for_each(|i| visit(i, Err(refusals[i].unwrap_or(Limit::Bend))));
+        outwards(beyond_bend, direction).try_for_each(|i| visit(i, Err(refusals[i].unwrap_or(Limit::Bend))))
     }
 }
 
