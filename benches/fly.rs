@@ -1,7 +1,8 @@
-//! Flown hops a second: the simulation on one thread, on the shipped chain of 100 vertices and on the shipped crater field, with errors
-//! of speed, angle and drift (on the map of heading too); and what replanning costs beside open loop.
+//! Flown hops a second: the simulation on one thread, on the shipped chain of 100 vertices and on the shipped crater field, with
+//! errors of speed, angle and drift (on the map of heading too); and what replanning costs beside open loop.
 //!
-//! `cargo bench --bench fly`. Items are flown hops, so the throughput is hops a second a core. Compare lines of one run with each other.
+//! `cargo bench --bench fly`. Items are flown hops, so the throughput is hops a second a core. Compare lines of one run with each
+//! other.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
 #![allow(clippy::print_stdout, reason = "how the trials end belongs to the figures")]

@@ -51,7 +51,8 @@ fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
         .bench_local(|| stations.iter().filter(|landing| test.lofts(black_box(&takeoff), black_box(landing)).is_ok()).count());
 }
 
-/// The same by a sweep: speeds cut the far landings, as they do in a search (`sweep_against_plain` has windows that they do not cut).
+/// The same by a sweep: speeds cut the far landings, as they do in a search (`sweep_against_plain` has windows that they do not
+/// cut).
 #[divan::bench(args = [30, 200, 2000])]
 fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
     let (chain, _) = support::fractal_chain(2 * window + 1);

@@ -1,7 +1,8 @@
-//! Instructions of one sweep, of the hop test pair by pair, and of the plain version: counted by valgrind, so the same on a busy machine.
+//! Instructions of one sweep, of the hop test pair by pair, and of the plain version: counted by valgrind, so the same on a busy
+//! machine.
 //!
-//! `cargo bench --bench instructions`. Needs valgrind and `cargo install gungraun-runner --version 0.20.0`; where either is absent it
-//! says so and stops. Divide by the pairs in the name: a window of 200 is 400 pairs.
+//! `cargo bench --bench instructions`. Needs valgrind and `cargo install gungraun-runner --version 0.20.0`; where either is absent
+//! it says so and stops. Divide by the pairs in the name: a window of 200 is 400 pairs.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
 #![allow(clippy::print_stdout, reason = "it says why it does not run")]

@@ -1,7 +1,7 @@
 //! Hop maps: against the plain way, pulling against pushing, and time over the number of posts.
 //!
-//! `cargo bench --bench map`. Compare lines of one run with each other: absolute times depend on the machine and its load. All on one
-//! thread but for the table of sizes.
+//! `cargo bench --bench map`. Compare lines of one run with each other: absolute times depend on the machine and its load. All on
+//! one thread but for the table of sizes.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
 #![allow(clippy::print_stdout, reason = "its result")]

@@ -37,8 +37,8 @@ pub(crate) fn fractal_chain(segments: usize) -> (ConstrainedChain, Hopper) {
 /// The vertices of a chain of any length in one-metre segments: fractal ground along a line, heights to the millimetre.
 ///
 /// Random midpoints, so that over a distance `L` heights differ by `0.12 m (L / 1 m)^0.75` (root mean square): one-metre slopes of
-/// about 7 degrees, none of a hundred thousand near the 31 degrees of friction 0.6, and hundreds of metres of relief over 100 km. Up to
-/// 131 072 segments, a shorter chain is the beginning of a longer one of the same seed.
+/// about 7 degrees, none of a hundred thousand near the 31 degrees of friction 0.6, and hundreds of metres of relief over 100 km.
+/// Up to 131 072 segments, a shorter chain is the beginning of a longer one of the same seed.
 #[expect(clippy::cast_precision_loss, reason = "far fewer vertices than 2^53")]
 pub(crate) fn long_chain(segments: usize, seed: u64) -> Vec<ChainPoint> {
     const HURST: f64 = 0.75;

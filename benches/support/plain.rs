@@ -11,8 +11,8 @@ use chta::{
 
 /// The feasible lofts of a hop between two vertices, `None` where there are none.
 ///
-/// The bound of a vertex is written with one division, `n >= (h - b d) X / (d (X - d))` for a vertex `h` (with the clearance) above the
-/// take-off at distance `d`, and its maximum without regard to NaN: about as quick as this loop gets.
+/// The bound of a vertex is written with one division, `n >= (h - b d) X / (d (X - d))` for a vertex `h` (with the clearance) above
+/// the take-off at distance `d`, and its maximum without regard to NaN: about as quick as this loop gets.
 #[inline]
 pub(crate) fn lofts(test: &HopTest, takeoff: &Station, landing: &Station) -> Option<SlopeInterval> {
     let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;

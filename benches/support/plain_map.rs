@@ -1,5 +1,5 @@
-//! Hop maps the plain way, to measure against: from each post of the layer, every post within reach that has no hops yet, the parabolas of
-//! safety first, then the slice between the two and the hop test.
+//! Hop maps the plain way, to measure against: from each post of the layer, every post within reach that has no hops yet, the
+//! parabolas of safety first, then the slice between the two and the hop test.
 
 use chta::{
     ballistics::{safety_ceiling_m, safety_range_m},

@@ -1,11 +1,11 @@
-//! What goes wrong, as standard deviations.
+//! The errors of execution, as standard deviations.
 
 use crate::quantity::Angle;
 
-/// Standard deviations of everything that goes otherwise than planned; zero: nothing does.
+/// Standard deviations of all errors of a hop's execution; zero means no error.
 ///
-/// Every error is Gaussian, independent of every other and of every other hop, but for friction and terrain height, which are drawn
-/// once per trial.
+/// Every error is Gaussian, and independent of all others and of those of other hops, except friction and terrain height, which are
+/// drawn once per trial.
 ///
 /// ```
 /// use chta::uncertainty::Uncertainty;
@@ -15,57 +15,57 @@ use crate::quantity::Angle;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Uncertainty {
-    /// Take-off speed, m/s. A draw below zero speed is a hop that stays where it is.
+    /// Take-off speed, m/s. If the drawn speed is below zero, the hopper stays where it is.
     pub takeoff_speed_sigma_m_s: f64,
-    /// Take-off speed as a share of the commanded one; adds to the absolute one as a second draw.
+    /// Take-off speed as a fraction of the commanded one; a second draw, added to the absolute error.
     pub takeoff_speed_sigma_fraction: f64,
-    /// Elevation of the take-off.
+    /// Elevation of the take-off velocity.
     pub takeoff_angle_sigma: Angle,
-    /// Heading of the take-off; on a map only.
+    /// Heading of the take-off velocity; on a map only.
     pub heading_sigma: Angle,
-    /// What the robot believes its position to be, m: on a chain along it, on a map both east and north. Only a policy that asks
-    /// where the robot is can feel it.
+    /// Error of the position estimate, m: on a chain along it, on a map both east and north. It only matters to a policy that uses
+    /// the position estimate.
     pub position_sigma_m: f64,
     /// Standard deviation of the bounce-and-roll displacement after a landing, along the direction of flight, m.
     pub drift_along_sigma_m: f64,
-    /// The same to the side, m. On a chain, whose ground is taken to go on as it is to both sides, it moves the robot out of the
-    /// plane of travel and counts as distance.
+    /// The same to the side, m. A chain's ground is taken to extend unchanged to both sides; there the displacement moves the robot
+    /// out of the plane of travel and counts as distance.
     pub drift_across_sigma_m: f64,
-    /// Friction coefficient of the whole ground, one draw per trial; a coefficient below zero is zero. Without effect where limits are
-    /// stated as angles.
+    /// Friction coefficient of the whole ground, one draw per trial; a coefficient below zero is set to zero. It has no effect
+    /// where limits are stated as angles.
     pub friction_sigma: f64,
-    /// Height of the terrain, m: a random field, one realisation per trial.
+    /// Height of the terrain, m: a random field, one realization per trial.
     pub height_sigma_m: f64,
-    /// Over what distance d0 the height error stays alike, m: its correlation is `exp(-d^2 / (2 d0^2))`, so that the error of the
-    /// terrain's slope has the deviation `height_sigma_m / height_correlation_m`.
+    /// Correlation length d0 of the height error, m: its correlation is `exp(-d^2 / (2 d0^2))`, so the error of the terrain's slope
+    /// has the deviation `height_sigma_m / height_correlation_m`.
     pub height_correlation_m: f64,
 }
 
-/// Why deviations make no sense.
+/// Why deviations are not valid.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("{}: {}", self.found(), self.help())]
 #[non_exhaustive]
 pub enum UncertaintyProblem {
-    /// A deviation below zero, infinite or no number.
+    /// A deviation below zero, infinite or NaN.
     Negative {
-        /// Which one, by its scenario key.
+        /// Its scenario key.
         what: &'static str,
         /// What was given.
         found: f64,
         /// Its unit.
         unit: &'static str,
     },
-    /// A correlation of nothing.
+    /// A correlation length without a height error.
     CorrelationWithoutHeight {
         /// The correlation length, m.
         found: f64,
     },
-    /// Height errors that change from point to point without any likeness.
+    /// A height error without a correlation length.
     HeightWithoutCorrelation {
         /// The deviation, m.
         sigma_m: f64,
     },
-    /// A heading error where there is no heading.
+    /// A heading error on a chain without a map.
     HeadingOnChain {
         /// The deviation, degrees.
         found_deg: f64,
@@ -73,7 +73,7 @@ pub enum UncertaintyProblem {
 }
 
 impl UncertaintyProblem {
-    /// The key that it is about, in the table `uncertainty`.
+    /// The key concerned, in the table `uncertainty`.
     pub const fn key(&self) -> &'static str {
         match self {
             Self::Negative { what, .. } => what,
@@ -94,21 +94,21 @@ impl UncertaintyProblem {
         }
     }
 
-    /// How to mend it.
+    /// How to correct it.
     pub const fn help(&self) -> &'static str {
         match self {
-            Self::Negative { .. } => "leave it out where there is no such error",
+            Self::Negative { .. } => "leave it out if there is no such error",
             Self::CorrelationWithoutHeight { .. } => {
-                "give height_sigma_m the deviation of the terrain's heights, or leave both out"
+                "set height_sigma_m to the standard deviation of the terrain's heights, or leave both out"
             }
-            Self::HeightWithoutCorrelation { .. } => "give height_correlation_m the distance in m over which the error stays alike",
+            Self::HeightWithoutCorrelation { .. } => "set height_correlation_m to the correlation length of the height error, m",
             Self::HeadingOnChain { .. } => "simulate on a DEM, or leave it out",
         }
     }
 }
 
 impl Uncertainty {
-    /// Everything goes as planned.
+    /// No errors: everything is executed as planned.
     pub const NONE: Self = Self {
         takeoff_speed_sigma_m_s: 0.0,
         takeoff_speed_sigma_fraction: 0.0,
@@ -138,7 +138,7 @@ impl Uncertainty {
         ]
     }
 
-    /// Whether the deviations make sense, on a map or on a bare chain.
+    /// Checks the deviations, for a map or a chain without one.
     ///
     /// # Errors
     /// The first [`UncertaintyProblem`].

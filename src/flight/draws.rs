@@ -1,13 +1,13 @@
-//! The random draws of one trial: a function of seed and trial number alone.
+//! The random draws of one trial: a function of seed and trial number only.
 
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
 use crate::quantity::standard_normals;
 
-/// Words of 32 bits in a block of the cipher: eight draws of 64 bits, all that a hop takes.
+/// 32-bit words in a block of the cipher: eight draws of 64 bits, as many as one hop uses.
 const WORDS_PER_BLOCK: u128 = 16;
 
-/// The block where the draws of the whole trial begin: no trial has so many hops.
+/// The first block of the draws of the whole trial: no trial has so many hops.
 const WHOLE_TRIAL: u128 = 1 << 40;
 
 /// The stream of one trial.
@@ -18,13 +18,13 @@ const WHOLE_TRIAL: u128 = 1 << 40;
 ///   blocks from 2^40 + 4  terrain height (4 for each wave)
 /// ```
 ///
-/// Every hop takes its whole block whether or not a deviation is zero and whatever the policy, so that runs with other deviations or
-/// policies compare on the same draws.
+/// Every hop uses its whole block, even if a deviation is zero and whatever the policy, so that runs with different deviations or
+/// policies share the same draws.
 pub(crate) struct TrialDraws {
     source: ChaCha8Rng,
 }
 
-/// Which pairs of normals are used; the others are left at zero and cost nothing.
+/// Which pairs of normals are used; the others are set to zero without being computed.
 #[derive(Clone, Copy, Debug, Default)]
 #[expect(clippy::struct_excessive_bools, reason = "one for each pair of draws, all independent")]
 pub(crate) struct Wanted {
@@ -37,13 +37,13 @@ pub(crate) struct Wanted {
 /// Independent standard normals of one hop.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct HopDraws {
-    /// Of the absolute and of the relative error of speed.
+    /// For the absolute and the relative error of speed.
     pub(crate) speed: [f64; 2],
-    /// Of elevation and heading.
+    /// For elevation and heading.
     pub(crate) direction: [f64; 2],
-    /// Of the bounce-and-roll displacement along and across.
+    /// For the bounce-and-roll displacement along and across.
     pub(crate) drift: [f64; 2],
-    /// Of the believed position, along or east, and north.
+    /// For the position estimate: along, or east, and north.
     pub(crate) position: [f64; 2],
 }
 
@@ -52,7 +52,7 @@ impl TrialDraws {
         Self { source: ChaCha8Rng::seed_from_u64(seed) }
     }
 
-    /// Goes to the first hop of a trial.
+    /// Moves to the first hop of a trial.
     pub(crate) fn begin(&mut self, trial: u64) {
         self.source.set_stream(trial);
     }
@@ -78,14 +78,14 @@ impl TrialDraws {
         standard_normals([self.uniform(), self.uniform()])[0]
     }
 
-    /// Goes to the draws of a trial's height field: uniforms in [0, 1) follow.
+    /// Moves to the draws of a trial's height field; returns a source of uniforms in [0, 1).
     pub(crate) fn height_field(&mut self, trial: u64) -> impl FnMut() -> f64 + '_ {
         self.source.set_stream(trial);
         self.source.set_word_pos((WHOLE_TRIAL + 4) * WORDS_PER_BLOCK);
         || self.uniform()
     }
 
-    /// In [0, 1): 53 random bits.
+    /// A uniform in [0, 1): 53 random bits.
     fn uniform(&mut self) -> f64 {
         self.source.random::<f64>()
     }

@@ -1,4 +1,4 @@
-//! A commanded hop as it is really flown.
+//! A commanded hop with the errors of its execution.
 
 use nalgebra::Vector2;
 
@@ -8,7 +8,7 @@ use super::{
 };
 use crate::ground::{ContactFailure, FirstContact, HeightField, LiftoffVelocity, Realization, TouchdownState};
 
-/// A command, and the landing that it aims at.
+/// A command, and its planned landing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Command<C> {
     pub(crate) liftoff: LiftoffVelocity,
@@ -29,23 +29,23 @@ pub(crate) struct Errors {
     wanted: Wanted,
 }
 
-/// What became of one hop.
+/// The result of one hop.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FlownHop<C> {
     /// The first contact, or the last position over known ground.
     pub(crate) end: C,
-    /// Where the hopper rests; the end itself where a contact did not hold.
+    /// Where the hopper rests; equal to `end` if a contact did not hold.
     pub(crate) rest: C,
     pub(crate) time_s: f64,
     pub(crate) touchdown: TouchdownState,
     /// Whether it met the ground.
     pub(crate) landed: bool,
-    /// Why the hopper does not rest safely.
+    /// Why the hopper does not rest safely; `None` if it does.
     pub(crate) failure: Option<ContactFailure>,
 }
 
 impl Errors {
-    /// The errors of a run; `asks_position`: whether its policy asks the hopper where it believes to be.
+    /// The errors of a run. `asks_position`: whether its policy uses the position estimate.
     pub(crate) fn new(uncertainty: Uncertainty, asks_position: bool) -> Self {
         let u = &uncertainty;
         let wanted = Wanted {
@@ -62,12 +62,12 @@ impl Errors {
         draws.hop(self.wanted)
     }
 
-    /// The errors of the believed position, m: along and across, or east and north.
+    /// The errors of the position estimate, m: along and across, or east and north.
     pub(crate) fn position_m(&self, draws: &HopDraws) -> [f64; 2] {
         draws.position.map(|normal| self.uncertainty.position_sigma_m * normal)
     }
 
-    /// The ground of a trial; `None` where every trial has the nominal one.
+    /// The realization of a trial's ground; `None` if all trials have the nominal ground.
     pub(crate) fn realization(&self, draws: &mut TrialDraws, trial: u64) -> Option<Realization> {
         let u = &self.uncertainty;
         let friction = if u.friction_sigma > 0.0 { u.friction_sigma * draws.friction(trial) } else { 0.0 };
@@ -76,7 +76,7 @@ impl Errors {
         (u.friction_sigma > 0.0 || heights.is_some()).then_some(Realization { friction, heights })
     }
 
-    /// A commanded velocity with its errors: of speed first, then of elevation, then of heading.
+    /// A commanded velocity with its errors: first of speed, then of elevation, then of heading.
     pub(crate) fn liftoff(&self, liftoff: &LiftoffVelocity, speed_m_s: f64, draws: &HopDraws) -> LiftoffVelocity {
         let u = &self.uncertainty;
         let real_m_s =
@@ -93,7 +93,7 @@ impl Errors {
             let (sine, cosine) = libm::sincos(u.heading_sigma.radians() * draws.direction[1]);
             heading = Vector2::new(heading.x * cosine + heading.y * sine, heading.y * cosine - heading.x * sine);
         }
-        // Beyond the vertical it flies the other way.
+        // An elevation beyond the vertical reverses the heading.
         if across < 0.0 {
             return LiftoffVelocity { heading: -heading, horizontal_m_s: -across, vertical_m_s: up };
         }
@@ -114,7 +114,7 @@ impl Errors {
         let u = &self.uncertainty;
         let displacement_m = [u.drift_along_sigma_m * draws.drift[0], u.drift_across_sigma_m * draws.drift[1]];
         let held = match &flight.support_facet {
-            // Nothing happens to a hopper that does not move.
+            // A hopper that does not move has no contact to check.
             _ if liftoff.stays() => Ok(()),
             None => Err(ContactFailure::OffLimits),
             Some(support_facet) => ground.check_landing(&flight.end, support_facet, &touchdown),

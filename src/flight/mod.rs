@@ -1,6 +1,6 @@
-//! One hop flown under drawn errors: the draws, the first contact, and whether the ground holds.
+//! One hop flown with drawn errors: the draws, the first contact, and whether the ground holds.
 //!
-//! What a trial makes of it (policies, outcomes, statistics) is [`crate::uncertainty`]'s.
+//! [`crate::uncertainty`] combines hops to trials: policies, outcomes, statistics.
 
 mod deviations;
 mod draws;

@@ -11,8 +11,8 @@ use crate::{
     world::{Contact, Direction, Hopper},
 };
 
-/// How far from the straight ground a point of a chain may lie, in units in the last place of its greatest height: two products, a
-/// quotient and a sum make a height inside a segment.
+/// Rounding error of a height inside a segment (from two products, a quotient and a sum), in units in the last place of the chain's
+/// greatest height.
 const HEIGHT_ULPS: f64 = 4.0;
 
 /// The direction of travel of a heading along a chain.
@@ -37,7 +37,7 @@ fn next_vertex(site: Site, direction: Direction, last: usize) -> Option<usize> {
     }
 }
 
-/// What a segment is to a traveller.
+/// The facet of a segment for a direction of travel.
 fn facet(segment: &SegmentConstraints, direction: Direction) -> Facet {
     let contact = |contact| segment.check_contact(contact, direction);
     let hold =
@@ -103,7 +103,7 @@ impl Surface for ConstrainedChain {
 
     fn facets(&self, at: &Station, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2] {
         let direction = direction_of(heading);
-        // The segment ahead of a station is that of a take-off there, the one behind that of a landing.
+        // A take-off obeys the segment ahead of its station, a landing the one behind.
         let contact = match side {
             Side::Ahead => Contact::Takeoff,
             Side::Behind => Contact::Landing,
@@ -120,7 +120,7 @@ impl Surface for ConstrainedChain {
         0.0
     }
 
-    /// A station is at a vertex where its x is the same double; nothing snaps.
+    /// A station is at a vertex only if its x is exactly the vertex's; there is no snapping.
     fn resolution_m(&self) -> f64 {
         0.0
     }

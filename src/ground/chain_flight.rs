@@ -1,4 +1,4 @@
-//! A chain with everything that a hop needs of it: windows in closed form, and the first contact of an arc in its vertical plane.
+//! A chain as the ground of flights: windows in closed form, and the first contact of an arc in the chain's vertical plane.
 
 use std::ops::ControlFlow;
 
@@ -18,14 +18,15 @@ use crate::{
 
 /// The chain as the ground of a trial.
 ///
-/// To the sides the ground is taken to go on as it is: displacement to the side moves the robot out of the plane and no more.
+/// The ground is taken to extend unchanged to both sides: a displacement to the side moves the robot out of the plane, nothing
+/// else.
 #[derive(Clone, Debug)]
 pub struct ChainGround {
     test: HopTest,
-    /// How much a height of the chain may be rounded, m.
+    /// Rounding error of the chain's heights, m.
     height_rounding_m: f64,
     friction: f64,
-    /// The vertices as this trial finds them; none where they are as planned.
+    /// The vertices of this trial; empty if they are as planned.
     found: Vec<ChainPoint>,
 }
 
@@ -34,7 +35,7 @@ pub struct ChainGround {
 pub struct ChainPosition {
     /// The station.
     pub station: Station,
-    /// How far to the left of the chain's plane, m.
+    /// Distance to the left of the chain's plane, m.
     pub left_m: f64,
 }
 
@@ -45,7 +46,7 @@ impl ChainPosition {
     }
 }
 
-/// An arc from its take-off, and how far rounding may carry it.
+/// An arc, given by its take-off, slope and curvature.
 #[derive(Clone, Copy)]
 struct Course {
     takeoff: ChainPoint,
@@ -63,7 +64,7 @@ impl Course {
         (self.direction.sign() * (point.x_m - self.takeoff.x_m), point.z_m - self.takeoff.z_m)
     }
 
-    /// How far the arc passes over a point.
+    /// Height of the arc above a point, m; negative below it.
     #[inline]
     fn over_m(&self, (distance_m, height_m): (f64, f64)) -> f64 {
         distance_m * (self.slope - self.curvature * distance_m) - height_m
@@ -75,14 +76,14 @@ impl Course {
     }
 }
 
-/// Where an arc that is `over_m >= 0` above straight ground of a slope comes down on it, m further on.
+/// Distance at which an arc that is `over_m >= 0` above straight ground meets that ground, m.
 ///
 /// ```text
 ///     over + (m - s) e - c e^2 = 0
 /// ```
 ///
-/// The positive root, in the form that does not cancel; exact where the arc begins on the ground (`over = 0`): `(m - s) / c`, or there
-/// and then where it does not leave the ground at all.
+/// The positive root, in the form without cancellation. If the arc begins on the ground (`over = 0`) it is exactly `(m - s) / c`,
+/// or 0 if the arc does not leave the ground.
 #[inline]
 pub(super) fn comes_down_m(over_m: f64, climb: f64, curvature: f64) -> f64 {
     if over_m <= 0.0 {
@@ -92,11 +93,11 @@ pub(super) fn comes_down_m(over_m: f64, climb: f64, curvature: f64) -> f64 {
     if climb >= 0.0 { (climb + root) / (2.0 * curvature) } else { 2.0 * over_m / (root - climb) }
 }
 
-/// The vertices ahead of a place, one after the other.
+/// The vertices ahead of a position, in the order of travel.
 #[derive(Clone, Copy)]
 struct Ahead {
     next: usize,
-    /// The last one before the plane turns or the chain ends.
+    /// The last vertex before a bend or the end of the chain.
     last: usize,
     direction: Direction,
 }
@@ -110,7 +111,7 @@ impl Ahead {
         }
     }
 
-    /// Goes on; `false` where there is nothing further.
+    /// Moves to the next vertex; `false` at the last one.
     const fn advance(&mut self) -> bool {
         if self.next == self.last {
             return false;
@@ -130,7 +131,7 @@ impl ChainGround {
         Self { test, height_rounding_m, friction: 0.0, found: Vec::new() }
     }
 
-    /// The hop test that it answers with.
+    /// The hop test of the chain.
     pub const fn test(&self) -> &HopTest {
         &self.test
     }
@@ -144,7 +145,7 @@ impl ChainGround {
         self.found.is_empty() && self.friction == 0.0
     }
 
-    /// A segment as this trial finds it.
+    /// The constraints of a segment in this trial.
     fn resolved(&self, segment: usize) -> Option<SegmentConstraints> {
         let chain = self.test.chain();
         if self.is_nominal() {
@@ -164,7 +165,7 @@ impl ChainGround {
         resolve_constraints(SegmentId(segment), slope, &ground, self.test.hopper(), chain.surface()).ok()
     }
 
-    /// What refuses any contact on a segment.
+    /// Why a segment refuses any contact; `None` if it does not.
     fn refusal(&self, segment: usize) -> Option<GroundRefusal> {
         if self.is_nominal() {
             return self.test.chain().segments().get(segment)?.refusal();
@@ -172,7 +173,7 @@ impl ChainGround {
         self.resolved(segment)?.refusal()
     }
 
-    /// What the ground says of a contact on a segment.
+    /// The rule of a contact on a segment, or why the ground refuses it.
     fn check_contact(
         &self,
         segment: Option<SegmentId>,
@@ -188,7 +189,7 @@ impl ChainGround {
         self.resolved(segment).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction)
     }
 
-    /// The point of a segment's ground at an x, counted from the nearer vertex, and its site.
+    /// The station on a segment at an x; its height is interpolated from the nearer vertex.
     fn station_on(&self, segment: usize, x_m: f64) -> Station {
         let (a, b) = (self.vertices()[segment], self.vertices()[segment + 1]);
         let x_m = x_m.clamp(a.x_m, b.x_m);
@@ -222,7 +223,7 @@ impl ChainGround {
         Some(Ahead { next, last, direction })
     }
 
-    /// Whether a flight over nominal ground comes down on its aim, as closely as rounding allows.
+    /// Whether a flight over nominal ground lands at its aim, within rounding.
     fn hits(&self, course: &Course, mut ahead: Ahead, aim: &Station, liftoff: &LiftoffVelocity) -> bool {
         let (run_m, rise_m) = course.seen(aim.point);
         if run_m <= 0.0 || !self.found.is_empty() {
@@ -292,7 +293,7 @@ impl Surface for ChainGround {
 }
 
 impl Windows for ChainGround {
-    /// As [`HopTest::lofts`]: one window at most.
+    /// As [`HopTest::lofts`]: at most one window.
     fn windows(&self, takeoff: &ChainPosition, landing: &ChainPosition) -> Option<TakeoffWindows> {
         let sight = self.test.line_of_sight(&takeoff.station, &landing.station)?;
         Some(TakeoffWindows { sight, lofts: self.test.lofts(&takeoff.station, &landing.station).into_iter().collect() })
@@ -354,7 +355,7 @@ impl FirstContact for ChainGround {
             return Flight { end: *from, support_facet: None, time_s: 0.0 };
         };
         if upright {
-            // Straight up, and down where it began.
+            // Straight up: it lands where it took off.
             return Flight { end: *from, support_facet: segment_under, time_s: (2.0 * liftoff.vertical_m_s / g).max(0.0) };
         }
         let lands = |station: Station, distance_m: f64, segment: Option<SegmentId>| Flight {
@@ -367,11 +368,11 @@ impl FirstContact for ChainGround {
             return lands(aim.station, course.seen(aim.station.point).0, under);
         }
         let vertices = self.vertices();
-        // Distance, height of the ground and height over it.
+        // Distance, height of the ground, and height of the arc above it.
         let mut before = (0.0, 0.0, 0.0);
         loop {
             let vertex = course.seen(vertices[ahead.next]);
-            // The first segment passes through the take-off itself, whatever the rounding of its height.
+            // The first segment contains the take-off, so the height above it is 0 there, without rounding.
             let first_slope = (before.0 == 0.0).then(|| self.slope_ahead(ahead));
             let over_m = match first_slope {
                 Some(slope) => vertex.0 * ((course.slope - slope) - course.curvature * vertex.0),
@@ -435,7 +436,8 @@ impl FirstContact for ChainGround {
 }
 
 impl ChainGround {
-    /// The slope of the segment ahead as the traveller sees it: its own, which keeps more digits than two close heights.
+    /// The slope of the segment ahead in the direction of travel: its stored slope has more digits than a difference of two close
+    /// heights.
     fn slope_ahead(&self, ahead: Ahead) -> f64 {
         let segment = ahead.segment();
         let (a, b) = (self.vertices()[segment], self.vertices()[segment + 1]);

@@ -17,23 +17,23 @@ use crate::{
     world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
 
-/// How far before a landing, or beyond a take-off, friction and keep-out zones are looked up, m: a landing obeys the ground just flown
-/// over and a take-off the ground ahead, also where a border runs through the very position.
+/// Distance before a landing, or beyond a take-off, at which friction and keep-out zones are looked up, m. A landing obeys the
+/// ground just flown over and a take-off the ground ahead, even if a border runs through the contact itself.
 pub(super) const BESIDE_M: f64 = 1e-6;
 
-/// How far along a line its facets are looked up, in units of the step aside: a line at a smaller angle than one over this to an edge
-/// counts as running along it. Lines between posts up to some 500 apart are not that close to any edge but their own. Larger would look
-/// into the next facet of a line that does not start at a post.
+/// Distance along a line at which its facets are looked up, in units of the step to the side: a line at a smaller angle than one
+/// over this to an edge counts as running along the edge. Lines between posts up to some 500 apart are not that close to any other
+/// edge. With a larger value, a line that does not start at a post could get the next facet.
 const FACET_LOOK: f64 = 4096.0;
 
-/// Units in the last place that a height or a coordinate may be off.
+/// Rounding error of a height or a coordinate, in units in the last place.
 const ULPS: f64 = 4.0;
 
-/// Within so many post spacings a position is on a line of the lattice, as in [`slice`](crate::terrain::slice()).
+/// A position within this many post spacings of a line of the lattice lies on it, as in [`slice`](crate::terrain::slice()).
 const ON_THE_LINE: f64 = 1.0e-9;
 
-/// A DEM with its overlays, the hopper, gravity, and what holds where the map says nothing: all that a hop between two map points
-/// depends on. A clone shares the terrain.
+/// A DEM with its overlays, the hopper, gravity and the default surface: all that a hop between two map points depends on. A clone
+/// shares the terrain.
 #[derive(Clone, Debug)]
 pub struct DemGround {
     terrain: OverlaidDem,
@@ -42,7 +42,7 @@ pub struct DemGround {
     height_rounding_m: f64,
     position_rounding_m: f64,
     resolution_m: f64,
-    /// How this ground differs from the map in one trial; default: not at all.
+    /// How this ground differs from the map in one trial; by default, not at all.
     pub(super) realization: Realization,
 }
 
@@ -55,28 +55,28 @@ pub struct MapPosition {
     pub z_m: f64,
 }
 
-/// The gradient of a facet: its slope towards east and north.
+/// The gradient of a facet: its slopes towards east and north.
 pub(super) type Gradient = Vector2<f64>;
 
-/// Why a slice of a DEM makes no chain.
+/// Why a slice of a DEM gives no chain.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SliceProblem {
-    /// The terrain, or what lies over it.
+    /// An error of the terrain or its overlays.
     #[error(transparent)]
     Terrain(#[from] TerrainError),
-    /// A slice that makes no chain.
-    #[error("the slice makes no chain: {0}")]
+    /// The slice is not a valid chain.
+    #[error("the slice is not a valid chain: {0}")]
     Chain(#[from] InvalidChain),
-    /// Segments without constraints.
+    /// The constraints of a segment cannot be resolved.
     #[error(transparent)]
     Constraints(#[from] ConstraintProblems),
 }
 
 impl DemGround {
-    /// The ground of a DEM for a hopper under a gravity.
+    /// The ground of a DEM for a hopper and gravity.
     ///
-    /// `surface` holds where the friction raster gives nothing.
+    /// `surface` applies where the friction raster has no data.
     pub fn new(terrain: OverlaidDem, hopper: &Hopper, gravity: Gravity, surface: &SurfaceProperties) -> Self {
         let dem = terrain.dem();
         let (low_m, high_m) = dem.elevation_range_m();
@@ -94,22 +94,22 @@ impl DemGround {
         }
     }
 
-    /// The terrain and what lies over it.
+    /// The terrain with its overlays.
     pub const fn terrain(&self) -> &OverlaidDem {
         &self.terrain
     }
 
-    /// The hopper under its gravity.
+    /// The flight envelope of the hopper under its gravity.
     pub const fn envelope(&self) -> &FlightEnvelope {
         &self.envelope
     }
 
-    /// What holds where the map says nothing.
+    /// The surface properties where the friction raster has no data.
     pub const fn surface(&self) -> &SurfaceProperties {
         &self.surface
     }
 
-    /// The friction where no raster gives it; `None` where the ground holds by angles from the slope, or not at all.
+    /// The friction where the raster has no data; `None` if the default surface has no friction cone.
     pub const fn constant_friction(&self) -> Option<FrictionCone> {
         match self.surface.grip {
             Some(Grip::Friction(cone)) => Some(cone),
@@ -117,7 +117,7 @@ impl DemGround {
         }
     }
 
-    /// The slice from one map point to another, with the overlays and the constraints of every segment.
+    /// The slice from one map point to another as a chain with overlays and resolved constraints.
     ///
     /// # Errors
     /// [`SliceProblem`].
@@ -126,7 +126,7 @@ impl DemGround {
         self.constrained(&self.terrain.slice(from, to, constant)?)
     }
 
-    /// The chain of a bare slice of this terrain: overlays laid over it, the constraints of every segment resolved.
+    /// The chain of a slice of this terrain, with overlays and resolved constraints.
     ///
     /// # Errors
     /// [`SliceProblem`].
@@ -146,7 +146,7 @@ impl DemGround {
 
     /// The position of the nominal ground at a map point; `None` where there is no ground.
     ///
-    /// A point on an edge or at a post belongs to every triangle that meets there: it has ground where one of them has.
+    /// A point on an edge or at a post belongs to every triangle that meets there; one triangle with ground suffices.
     pub fn position(&self, at: MapPoint) -> Option<MapPosition> {
         let triangles = self.triangles();
         if let Some((z_m, _)) = triangles.at(at, triangles.nominal()) {
@@ -164,17 +164,17 @@ impl DemGround {
         })
     }
 
-    /// Whether a map point lies on the map, its border included.
+    /// Whether a map point lies on the map, including its border.
     pub fn covers(&self, at: MapPoint) -> bool {
         self.triangles().covers(at)
     }
 
-    /// The friction of the nominal ground; `None` where angles are stated instead.
+    /// The friction of the nominal ground; `None` if angles are stated instead.
     pub(super) fn nominal_friction(&self, at: MapPoint) -> Option<FrictionCone> {
         self.terrain.overlays().friction_at(at).or(self.constant_friction())
     }
 
-    /// What the nominal ground allows on a facet met along a heading, as a slice along that heading has it.
+    /// What the nominal ground allows on a facet for a heading, as in a slice along that heading.
     fn constraints(
         &self,
         gradient: Gradient,
@@ -188,15 +188,16 @@ impl DemGround {
         resolve_constraints(SegmentId(0), gradient.dot(&heading), &ground, self.hopper(), &self.surface)
     }
 
-    /// The rule of a contact on a facet met along a heading; `None` where the nominal ground refuses it.
+    /// The rule of a contact on a facet for a heading; `None` if the nominal ground refuses it.
     fn allowed(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint, contact: Contact) -> Option<ContactRule> {
         self.constraints(gradient, heading, beside).ok()?.allowed(contact, Direction::Forward).copied()
     }
 
-    /// The feasible lofts of one hop by a walk over the triangles, without a slice: what replanning asks many times. `None` where there
-    /// are none.
+    /// The feasible lofts of one hop by a walk over the triangles, without a slice (replanning asks for them many times); `None` if
+    /// there are none.
     ///
-    /// Equal to [`windows`](Windows::windows) but for rounding, and for a line along the edge of two facets, where it takes one of them.
+    /// Equal to [`windows`](Windows::windows) except for rounding; on a line along the common edge of two facets, it uses one of
+    /// them.
     pub(crate) fn lofts_by_walk(
         &self,
         from: &MapPosition,
@@ -230,11 +231,11 @@ impl DemGround {
                 }
             }
         }
-        // A walk that ends before has met no-data.
+        // A walk that ends earlier has met no-data.
         (reached_m >= end_m).then_some(lofts)
     }
 
-    /// The facet of a gradient as the checker sees it along a heading.
+    /// A facet with the given gradient, for the checker.
     fn facet(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint) -> Option<Facet> {
         let constraints = self.constraints(gradient, heading, beside).ok()?;
         let hold = match self.nominal_friction(beside) {
@@ -260,7 +261,7 @@ impl Surface for DemGround {
         self.envelope.gravity_m_s2()
     }
 
-    /// A map point has no distance along a journey: that is 0.
+    /// A map point has no distance along a journey: the distance is 0.
     fn contact_point(&self, position: &MapPosition) -> ContactPoint {
         ContactPoint::on_map(0.0, position.at, position.z_m)
     }
@@ -281,7 +282,7 @@ impl Surface for DemGround {
     fn walk(&self, from: &MapPosition, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
         let triangles = self.triangles();
         let mut at = (0.0, from.z_m);
-        // A sliver next to a line of the lattice belongs to the element after it.
+        // A sliver next to a line of the lattice belongs to the following element.
         let mut element = |to_m: f64, to_z_m: f64| {
             let (from_m, from_z_m) = at;
             if to_m - from_m <= self.resolution_m {
@@ -298,7 +299,7 @@ impl Surface for DemGround {
             }
             return;
         };
-        // Along an edge there is ground where either of its two triangles has it.
+        // A line along an edge has ground if either of its two triangles has.
         let across = Vector2::new(-heading.y, heading.x) * self.resolution_m;
         let mut before_m = 0.0;
         for (row, col, to_m) in posts {
@@ -319,8 +320,8 @@ impl Surface for DemGround {
             Side::Behind => -heading,
         };
         let beside = at.at + towards * BESIDE_M;
-        // On both sides of the line, farther off it than the lattice's own tolerance, and so far along it that a line which only starts
-        // next to an edge has left it.
+        // One point on each side of the line, farther from it than the tolerance of the lattice, and far enough along it that a
+        // line which only starts next to an edge has left the edge.
         let along = at.at + towards * BESIDE_M.max(FACET_LOOK * self.resolution_m);
         let across = Vector2::new(-heading.y, heading.x) * self.resolution_m;
         let gradients = [along + across, along - across].map(|point| triangles.at(point, triangles.nominal()).map(|(_, g)| g));
@@ -343,7 +344,7 @@ impl Surface for DemGround {
 }
 
 impl Windows for DemGround {
-    /// By the slice between the two positions and the hop test on it: one window at most.
+    /// By the slice between the two positions and its hop test: at most one window.
     fn windows(&self, takeoff: &MapPosition, landing: &MapPosition) -> Option<TakeoffWindows> {
         let test = HopTest::new(self.chain(takeoff.at, landing.at).ok()?);
         let geometry = test.chain().geometry();
@@ -353,7 +354,7 @@ impl Windows for DemGround {
     }
 }
 
-/// Whether a facet of a gradient holds the hopper at rest, up to rounding; `friction` is its coefficient, where it has one.
+/// Whether a facet holds the hopper at rest, up to rounding; `friction` is its coefficient, if it has one.
 pub(super) fn rests(rest: RestSlope, gradient: Gradient, friction: Option<f64>, tolerance_rad: f64) -> bool {
     let max = match rest {
         RestSlope::AsFrictionHolds => friction,

@@ -16,7 +16,7 @@ use crate::{
 };
 
 impl DemGround {
-    /// Height of a post as this trial finds it.
+    /// Height of a post in this trial.
     #[inline]
     fn heights<'a>(&'a self, triangles: Triangles<'a>) -> impl Fn(usize, usize) -> f64 + 'a {
         let dem = self.terrain().dem();
@@ -31,13 +31,13 @@ impl DemGround {
         }
     }
 
-    /// The facet that a take-off leaves from: the one ahead. `None` where the known ground ends.
+    /// The facet ahead of a take-off; `None` if the known ground ends there.
     fn facet_ahead(&self, at: MapPoint, heading: Vector2<f64>) -> Option<Gradient> {
         let triangles = self.triangles();
         triangles.walk(at, heading, self.heights(triangles)).next().map(|span| span.gradient)
     }
 
-    /// The friction that a place has in this trial.
+    /// The friction at a position in this trial.
     fn friction(&self, at: MapPoint) -> Option<f64> {
         self.nominal_friction(at).map(|cone| (cone.coefficient() + self.realization.friction).max(0.0))
     }
@@ -46,12 +46,12 @@ impl DemGround {
         self.terrain().overlays().keeps_out(at)
     }
 
-    /// Whether the hopper rests on a facet with such friction.
+    /// Whether the hopper rests on a facet with this friction.
     fn rests(&self, gradient: Gradient, friction: Option<f64>) -> bool {
         rests(self.surface().rest, gradient, friction, ANGLE_TOLERANCE_RAD)
     }
 
-    /// The stated angles of a facet met along a heading, where they are stated.
+    /// The stated angles of a facet for a heading, if angles are stated.
     fn stated(&self, gradient: Gradient, heading: Vector2<f64>) -> Option<LineConstraints> {
         let Some(Grip::FromSlope { takeoff, landing }) = self.surface().grip else { return None };
         let limits = self.hopper().limits();
@@ -59,7 +59,7 @@ impl DemGround {
         Some(LineConstraints::from_offsets(slope, takeoff, landing, limits.takeoff_speed_max_m_s, limits.landing_speed_max_m_s))
     }
 
-    /// How far off its aim, ahead and across, an arc may pass and still land on it.
+    /// The aim, with the tolerances within which an arc lands on it; `None` if this arc misses it.
     fn aimed_at(
         &self,
         from: &MapPosition,
@@ -82,7 +82,7 @@ impl DemGround {
     }
 }
 
-/// A landing point that a flight passes as closely as rounding allows, all in m.
+/// The aim of a flight that passes it within rounding; lengths in m.
 #[derive(Clone, Copy)]
 struct Aimed {
     run: f64,
@@ -110,7 +110,7 @@ impl FirstContact for DemGround {
 
     fn holds_takeoff(&self, from: &MapPosition, liftoff: &LiftoffVelocity) -> bool {
         let Some(gradient) = self.facet_ahead(from.at, liftoff.heading) else {
-            // Beyond the edge of the known ground: nothing is known against it.
+            // Beyond the edge of the known ground there is nothing to check.
             return true;
         };
         let ahead = from.at + liftoff.heading * BESIDE_M;
@@ -134,7 +134,7 @@ impl FirstContact for DemGround {
         let (slope, curvature) = (liftoff.vertical_m_s / across, g / (2.0 * across * across));
         let mut last = FacetSpan { from_m: 0.0, to_m: 0.0, from_z_m: from.z_m, to_z_m: from.z_m, gradient: Gradient::zeros() };
         if !(curvature.is_finite() && slope.is_finite()) {
-            // Straight up, and down where it began.
+            // Straight up: it lands where it took off.
             let time_s = (2.0 * liftoff.vertical_m_s / g).max(0.0);
             return Flight { end: *from, support_facet: self.facet_ahead(from.at, liftoff.heading), time_s };
         }
@@ -151,7 +151,7 @@ impl FirstContact for DemGround {
                 continue;
             }
             let ground = span.gradient.dot(&liftoff.heading);
-            // The first facet passes through the take-off itself, whatever the rounding of its posts' plane.
+            // The first facet contains the take-off, so the height above it is 0 there, without rounding.
             let over_next_m = if last.to_m == 0.0 {
                 span.to_m * ((slope - ground) - curvature * span.to_m)
             } else {
@@ -233,17 +233,17 @@ fn velocity(liftoff: &LiftoffVelocity) -> Vector3<f64> {
     Vector3::new(liftoff.heading.x * liftoff.horizontal_m_s, liftoff.heading.y * liftoff.horizontal_m_s, liftoff.vertical_m_s)
 }
 
-/// Whether a facet of a gradient, with such friction, holds a direction away from it.
+/// Whether a facet with this gradient and friction holds a velocity that points away from it.
 ///
 /// ```text
 ///     |v - (n . v) n| <= mu (n . v)
 /// ```
 ///
-/// The friction cone itself, where a slice has its cut by the plane of travel.
+/// This is the friction cone itself; a slice has the cone's section by the plane of travel.
 fn holds_on(gradient: Gradient, friction: f64, away: Vector3<f64>, tolerance_rad: f64) -> bool {
     let normal = Vector3::new(-gradient.x, -gradient.y, 1.0);
     let upward = normal.dot(&away);
-    // |n x v| is the length of n times the part of v along the facet.
+    // |n x v| is the length of n times the component of v along the facet.
     let along2 = normal.cross(&away).norm_squared();
     let friction = friction + tolerance_rad * (1.0 + friction * friction);
     upward > 0.0 && along2 <= (friction * upward) * (friction * upward)

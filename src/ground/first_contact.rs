@@ -8,10 +8,10 @@ use crate::{
     world::tolerant_speed_m_s,
 };
 
-/// The velocity at which a hop really leaves the ground.
+/// The actual velocity at which a hop leaves the ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LiftoffVelocity {
-    /// Direction on the map (east, north), of length 1; on a chain (1, 0) or (-1, 0).
+    /// Horizontal direction, of length 1: (east, north) on a map, (1, 0) or (-1, 0) on a chain.
     pub heading: Vector2<f64>,
     /// Horizontal speed, not negative, m/s.
     pub horizontal_m_s: f64,
@@ -31,7 +31,7 @@ impl LiftoffVelocity {
 pub struct Flight<C, F> {
     /// The first contact, or the last position over known ground.
     pub end: C,
-    /// The facet met there; `None` where the flight leaves the known ground.
+    /// The facet at the contact; `None` if the flight leaves the known ground.
     pub support_facet: Option<F>,
     /// Time of flight, s.
     pub time_s: f64,
@@ -53,7 +53,7 @@ pub enum ContactFailure {
     Slides,
     /// The landing is faster than its limit.
     TooFast,
-    /// The contact lies in a keep-out zone, or where no ground is known.
+    /// The contact lies in a keep-out zone or where no ground is known.
     OffLimits,
 }
 
@@ -62,19 +62,19 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
     /// The facet that supports a landing.
     type SupportFacet: Copy;
 
-    /// Makes it the ground of another trial.
+    /// Changes this ground to the realization of another trial.
     fn realize(&mut self, realization: Realization);
 
-    /// A position of the plan on the realized ground.
+    /// A position of the plan on the realized ground: the same horizontal position at the realized height.
     fn realized(&self, planned: Self::Contact) -> Self::Contact;
 
-    /// The coordinates of a position of this ground: x along a chain, y to its left, z up; easting, northing and z on a map.
+    /// Coordinates of a position: on a chain x along it, y to its left, z up; on a map easting, northing and z.
     fn point(&self, position: &Self::Contact) -> Point3<f64>;
 
     /// Whether the ground holds a take-off with this velocity.
     fn holds_takeoff(&self, from: &Self::Contact, liftoff: &LiftoffVelocity) -> bool;
 
-    /// The first contact of an arc. An arc that passes its aim as closely as rounding allows lands on it.
+    /// The first contact of an arc. An arc that passes its aim within rounding lands on it.
     fn first_contact(
         &self,
         from: &Self::Contact,
@@ -83,6 +83,9 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
     ) -> Flight<Self::Contact, Self::SupportFacet>;
 
     /// Whether the ground holds a landing.
+    ///
+    /// # Errors
+    /// The [`ContactFailure`] of a landing that does not hold.
     fn check_landing(
         &self,
         end: &Self::Contact,
@@ -91,6 +94,9 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
     ) -> Result<(), ContactFailure>;
 
     /// Where the hopper comes to rest after a bounce-and-roll displacement along and to the left of its heading.
+    ///
+    /// # Errors
+    /// [`ContactFailure::OffLimits`] or [`ContactFailure::Slides`] where the hopper cannot rest.
     fn displaced(
         &self,
         from: &Self::Contact,
@@ -104,20 +110,20 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
     fn believed(&self, position: &Self::Contact, along_m: f64, across_m: f64) -> Option<Self::Contact>;
 }
 
-/// How far rounding may carry a flight from its place, as a share of its size: the tolerance of `path::execute`, for the same reasons.
+/// How far rounding may displace a flight, as a fraction of its size: the tolerance of `path::execute`, for the same reasons.
 pub(super) const PLACE_TOLERANCE: f64 = 1e-12;
 
-/// How far a direction may lie over its limit, rad, as in `path::execute`: a tangent and its arc tangent on the way from a limit to a
-/// command leave some 1e-15.
+/// Tolerance of directions, rad, as in `path::execute`: a tangent and an arc tangent between limit and command leave an error of
+/// some 1e-15.
 pub(super) const ANGLE_TOLERANCE_RAD: f64 = 1e-9;
 
-/// What may be lost of a speed by the formulas that gave it, as a share.
+/// Rounding error of a speed, as a fraction.
 const SPEED_ROUNDING: f64 = 1e-12;
 
 /// The state of the robot at touchdown.
 #[derive(Clone, Copy, Debug)]
 pub struct TouchdownState {
-    /// Direction on the map (east, north), of length 1; on a chain (1, 0) or (-1, 0).
+    /// Horizontal direction, of length 1: (east, north) on a map, (1, 0) or (-1, 0) on a chain.
     pub heading: Vector2<f64>,
     /// Horizontal speed, m/s.
     pub horizontal_m_s: f64,
@@ -125,18 +131,18 @@ pub struct TouchdownState {
     pub vertical_m_s: f64,
     /// Speed, m/s.
     pub speed_m_s: f64,
-    /// How uncertain rounding leaves the direction, rad.
+    /// Uncertainty of the direction from rounding, rad.
     pub angle_tolerance_rad: f64,
     speed_tolerance_m_s: f64,
 }
 
 impl TouchdownState {
-    /// After so much time of flight under gravity.
+    /// The state after a time of flight under gravity.
     pub fn after(liftoff: &LiftoffVelocity, time_s: f64, gravity_m_s2: f64) -> Self {
         let vertical_m_s = liftoff.vertical_m_s - gravity_m_s2 * time_s;
         let (across, up) = (liftoff.horizontal_m_s, vertical_m_s);
         let speed_m_s = (across * across + up * up).sqrt();
-        // A place uncertain by e turns the direction by e g v_x / v^3 and changes the speed by e g v_z / v^2.
+        // An error e of the position turns the direction by e g v_x / v^3 and changes the speed by e g v_z / v^2.
         let size_m = across * time_s + liftoff.vertical_m_s.abs() * time_s;
         let along_s = PLACE_TOLERANCE * size_m * gravity_m_s2 / (speed_m_s * speed_m_s);
         let uncertain = if along_s.is_finite() { along_s } else { 0.0 };
@@ -150,13 +156,13 @@ impl TouchdownState {
         }
     }
 
-    /// Whether it is faster than a limit allows.
+    /// Whether the speed exceeds a limit.
     pub fn is_over(&self, speed_max_m_s: f64) -> bool {
         self.speed_m_s > tolerant_speed_m_s(speed_max_m_s) + self.speed_tolerance_m_s
     }
 }
 
-/// Whether a direction lies within the slopes of a rule; straight up or down is infinite.
+/// Whether a direction lies within the slopes of a rule; the slope of straight up or down is infinite.
 pub(super) fn within(rule: &ContactRule, horizontal_m_s: f64, vertical_m_s: f64, tolerance_rad: f64) -> bool {
     let slope = vertical_m_s / horizontal_m_s;
     if !slope.is_finite() {
@@ -166,12 +172,12 @@ pub(super) fn within(rule: &ContactRule, horizontal_m_s: f64, vertical_m_s: f64,
     rule.slopes().lower - tolerance <= slope && slope <= rule.slopes().upper + tolerance
 }
 
-/// Whether a rule, or what the ground says instead, holds a take-off.
+/// Whether a rule holds a take-off; a refusal does not.
 pub(super) fn holds(rule: Result<ContactRule, GroundRefusal>, liftoff: &LiftoffVelocity) -> bool {
     rule.is_ok_and(|rule| within(&rule, liftoff.horizontal_m_s, liftoff.vertical_m_s, ANGLE_TOLERANCE_RAD))
 }
 
-/// Whether a landing holds under a rule, or what the ground says instead.
+/// Whether a rule holds a landing; of a refusal, which failure it causes.
 pub(super) fn check_landing(
     rule: Result<ContactRule, GroundRefusal>,
     landing_speed_max_m_s: f64,
@@ -179,9 +185,10 @@ pub(super) fn check_landing(
 ) -> Result<(), ContactFailure> {
     match rule {
         Err(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
-        Err(GroundRefusal::SpeedZero) => Err(ContactFailure::TooFast),
-        Err(_) if touchdown.is_over(landing_speed_max_m_s) => Err(ContactFailure::TooFast),
-        Err(_) => Err(ContactFailure::Slides),
+        Err(refusal) => {
+            let too_fast = refusal == GroundRefusal::SpeedZero || touchdown.is_over(landing_speed_max_m_s);
+            Err(if too_fast { ContactFailure::TooFast } else { ContactFailure::Slides })
+        }
         Ok(rule) if touchdown.is_over(rule.speed_max_m_s()) => Err(ContactFailure::TooFast),
         Ok(rule) if within(&rule, touchdown.horizontal_m_s, touchdown.vertical_m_s, touchdown.angle_tolerance_rad) => Ok(()),
         Ok(_) => Err(ContactFailure::Slides),

@@ -2,8 +2,9 @@
 
 use crate::quantity::standard_normals;
 
-/// How many waves make a field. Variance and correlation are right for any number; more waves make the heights of several places
-/// together more nearly Gaussian. 32 leave their fourth moments right to some per cent, and cost half a microsecond a place.
+/// Number of waves of a field. Variance and correlation are right for any number; with more waves, the joint distribution of
+/// heights at several positions is closer to Gaussian. 32 give fourth moments within some per cent and cost half a microsecond per
+/// position.
 const WAVES: usize = 32;
 
 /// One realisation of a homogeneous Gaussian random field of heights.
@@ -13,9 +14,9 @@ const WAVES: usize = 32;
 ///     E[e(x) e(y)] = sigma^2 exp(-|x - y|^2 / (2 d0^2))
 /// ```
 ///
-/// Random Fourier features (Rahimi and Recht 2007) with random amplitudes: at every single place the height is exactly Gaussian with
-/// deviation sigma, and the correlation is exact. The field is smooth, so that its slopes have the deviation sigma/d0 however densely
-/// the ground is divided; an exponential correlation would make the slopes of short segments grow without bound.
+/// Random Fourier features (Rahimi and Recht 2007) with random amplitudes: at every position the height is exactly Gaussian with
+/// deviation sigma, and the correlation is exact. The field is smooth, so its slopes have the deviation sigma/d0 for any division
+/// of the ground; with an exponential correlation the slopes of short segments would grow without bound.
 #[derive(Clone, Debug)]
 pub struct HeightField {
     waves: [Wave; WAVES],
@@ -43,19 +44,18 @@ impl HeightField {
         Self { waves }
     }
 
-    /// The height error at a place, m from any fixed origin.
+    /// The height error at a position, m from any fixed origin.
     pub fn at(&self, east_m: f64, north_m: f64) -> f64 {
         self.waves.iter().map(|w| w.amplitude_m * libm::cos(w.east * east_m + w.north * north_m + w.phase)).sum()
     }
 }
 
 #[cfg(test)]
-#[expect(clippy::cast_precision_loss, reason = "small counts")]
 mod tests {
     use super::*;
     use crate::draw::Draw;
 
-    /// Moments over many realisations, at one place and between two, along both axes and across.
+    /// Moments over many realisations, at one position and between two, along both axes and across.
     #[test]
     fn variance_and_correlation_are_as_stated() {
         let (sigma_m, length_m) = (0.7, 5.0);
@@ -67,9 +67,9 @@ mod tests {
         for _ in 0..count {
             let field = HeightField::drawn(|| draw.unit(), sigma_m, length_m);
             let here = field.at(0.0, 0.0) / sigma_m;
-            fourth += here.powi(4) / count as f64;
+            fourth += here.powi(4) / f64::from(count);
             for (sum, (x, y)) in sums.iter_mut().zip(places) {
-                *sum += here * field.at(x, y) / sigma_m / count as f64;
+                *sum += here * field.at(x, y) / sigma_m / f64::from(count);
             }
         }
         for (found, (x, y)) in sums.into_iter().zip(places) {

@@ -1,4 +1,4 @@
-//! The ground under a hop: chains, and DEMs with their overlays, under the same three traits.
+//! The ground under a hop: chains, and DEMs with their overlays, behind the same three traits.
 //!
 //! ```text
 //!   Surface        raw facts: contacts, elements under a line of travel, facets, normals, friction, zones
@@ -6,7 +6,7 @@
 //!   FirstContact   where an arc comes down, and whether the ground holds the hopper there
 //! ```
 //!
-//! The independent checker uses [`Surface`] alone; planners ask [`Windows`], or a fast form of it that gives the same answer; trials
+//! The independent checker uses [`Surface`] alone; planners use [`Windows`], or a fast equivalent with the same results; trials
 //! follow arcs with [`FirstContact`].
 
 mod chain;

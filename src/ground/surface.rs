@@ -1,4 +1,4 @@
-//! The raw facts of a ground, whatever its kind.
+//! The raw facts of a ground of any kind.
 
 use std::{fmt, ops::ControlFlow};
 
@@ -13,16 +13,17 @@ use crate::{
 /// The coordinates that a [`ContactPoint`] is given in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Frame {
-    /// The plane of a chain that lies on no map: x along the chain, y = 0, z up.
+    /// The plane of a chain without a map: x along the chain, y = 0, z up.
     Chain,
     /// A map: easting, northing, z up.
     Map,
 }
 
-/// Where a hop takes off or lands: a point in three dimensions, its distance along the journey, and its station where there is a chain.
+/// Where a hop takes off or lands: a point in three dimensions, its distance along the journey, and its station if there is a
+/// chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
-    /// Distance along the journey's profile, m: the chain's own x, or from the start along the unrolled path.
+    /// Distance along the journey's profile, m: the chain's x, or the distance from the start along the unrolled path.
     pub along_m: f64,
     /// The point, m.
     pub point_m: Point3<f64>,
@@ -43,7 +44,7 @@ impl ContactPoint {
         ChainPoint::new(self.along_m, self.point_m.z)
     }
 
-    /// The point on the map; `None` where the chain lies on no map.
+    /// The point on the map; `None` for a chain without a map.
     pub fn map(&self) -> Option<MapPoint> {
         match self.frame {
             Frame::Map => Some(self.point_m.xy()),
@@ -73,9 +74,9 @@ pub enum Hold {
     },
     /// Elevations stated for the direction of travel.
     Stated {
-        /// The line constraints as stated; `None` where the ground states none for this direction.
+        /// The line constraints as stated; `None` if none are stated for this direction.
         line: Option<LineConstraints>,
-        /// The rule of a take-off, or why the ground refuses it whatever the hop.
+        /// The rule of a take-off, or why the ground refuses every take-off.
         takeoff: Result<ContactRule, GroundRefusal>,
         /// The same for a landing.
         landing: Result<ContactRule, GroundRefusal>,
@@ -83,7 +84,7 @@ pub enum Hold {
 }
 
 impl Hold {
-    /// What is stated of one of the two contacts; `Ok(None)` under friction.
+    /// What is stated for a take-off or a landing; `None` under friction.
     pub(crate) fn stated(&self, contact: Contact) -> Option<Result<ContactRule, GroundRefusal>> {
         match (self, contact) {
             (Self::Friction { .. }, _) => None,
@@ -96,7 +97,7 @@ impl Hold {
 /// One facet under a line of travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facet {
-    /// Why nothing takes off or lands here, whatever the hop: a keep-out zone, or too steep to rest on.
+    /// Why every take-off and landing is refused here: a keep-out zone, or too steep to rest on.
     pub refusal: Option<GroundRefusal>,
     /// How it holds the hopper.
     pub hold: Hold,
@@ -129,49 +130,51 @@ pub struct Element {
 /// A vertex of a chain at the end of an element.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ElementVertex {
-    /// Which one.
+    /// Its id.
     pub id: VertexId,
     /// Its x, m.
     pub x_m: f64,
 }
 
-/// A ground: where contacts are, and what lies under a straight line of travel from one of them.
+/// A ground: its contacts, and what lies under a straight line of travel from a contact.
 ///
 /// These are facts without any equation of motion, so that the independent checker ([`crate::path::execute()`]) may use them.
-/// [`ConstrainedChain`](crate::chain::ConstrainedChain) and [`DemGround`](super::DemGround) implement it; a further kind of ground (a
-/// mesh, stances of legs) is one more implementation.
+/// [`ConstrainedChain`](crate::chain::ConstrainedChain) and [`DemGround`](super::DemGround) implement it; a further kind of ground
+/// (a mesh, stances of legs) is one more implementation.
 pub trait Surface {
     /// A contact with this ground: a station of a chain, a point of a map.
     type Contact: Copy + PartialEq + fmt::Debug + Send + Sync;
 
-    /// The hopper that the question is asked for.
+    /// The hopper.
     fn hopper(&self) -> &Hopper;
 
     /// Gravity, m/s^2.
     fn gravity_m_s2(&self) -> f64;
 
-    /// Where a contact is.
+    /// The position of a contact.
     fn contact_point(&self, contact: &Self::Contact) -> ContactPoint;
 
-    /// This ground's own contact at the horizontal position of a stated point; `None` where there is no ground.
+    /// This ground's contact at the horizontal position of a stated point; `None` where there is no ground.
     fn contact_at(&self, stated: &ContactPoint) -> Option<Self::Contact>;
 
-    /// Horizontal distance from one contact to another, m, and the unit direction of travel (east and north on a map; (1, 0) or (-1, 0)
-    /// along a chain); `None` where one lies above the other.
+    /// Horizontal distance from one contact to another, m, and the unit direction of travel (east and north on a map; (1, 0) or
+    /// (-1, 0) along a chain); `None` where one lies above the other.
     fn course(&self, from: &Self::Contact, to: &Self::Contact) -> Option<(f64, Vector2<f64>)>;
 
-    /// Visits the ground under a line of travel from a contact, element by element, until the visitor breaks or the known ground ends.
+    /// Visits the ground under a line of travel from a contact, element by element, until the visitor breaks or the known ground
+    /// ends.
     ///
     /// The elements touch; the first begins at the contact.
     fn walk(&self, from: &Self::Contact, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>);
 
-    /// The facets under a line of travel next to a contact: the one that the line meets, or both where it runs along their common edge.
+    /// The facets under a line of travel next to a contact: the facet under the line, or both facets if it runs along their common
+    /// edge.
     fn facets(&self, at: &Self::Contact, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2];
 
-    /// How far a height of this ground may be off by rounding, m.
+    /// Rounding error of the heights of this ground, m.
     fn height_rounding_m(&self) -> f64;
 
-    /// How far a horizontal position may be off by rounding, m.
+    /// Rounding error of the horizontal positions, m.
     fn position_rounding_m(&self) -> f64;
 
     /// Positions closer than this are one position, m: shorter elements carry no information.
@@ -181,16 +184,16 @@ pub trait Surface {
 /// The feasible take-off windows between two contacts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TakeoffWindows {
-    /// The line of sight that they are stated over.
+    /// The line of sight that the lofts refer to.
     pub sight: crate::ballistics::LineOfSight,
-    /// Intervals of the loft `n = m - b`, ascending and disjoint; empty where no arc is feasible. Over a ground without overhangs
-    /// there is at most one.
+    /// Intervals of the loft `n = m - b`, ascending and disjoint; empty if no arc is feasible. Over ground without overhangs there
+    /// is at most one.
     pub lofts: Vec<crate::quantity::SlopeInterval>,
 }
 
-/// Ground that knows every feasible arc between two contacts, in closed form.
+/// A ground that gives the feasible arcs between two contacts in closed form.
 pub trait Windows: Surface {
-    /// The feasible take-off windows of one hop; `None` where no arc joins the two contacts at all: one above the other, or no ground in
-    /// between.
+    /// The feasible take-off windows of one hop; `None` if no arc can join the two contacts: one lies above the other, or ground
+    /// between them is missing.
     fn windows(&self, takeoff: &Self::Contact, landing: &Self::Contact) -> Option<TakeoffWindows>;
 }

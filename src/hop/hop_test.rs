@@ -12,8 +12,8 @@ use crate::{
 
 /// The hop test of a chain with its hopper and gravity: it answers for any pair of stations.
 ///
-/// It shares its chain, and its tables are made when they are first needed: to make or to clone one costs next to nothing, and it may
-/// be kept and sent to other threads.
+/// It shares its chain, and its tables are computed when they are first needed: creating or cloning it is cheap, and it can be kept
+/// and sent to other threads.
 ///
 /// The kernel, [`lofts`](Self::lofts), uses no trigonometry and no allocation; [`takeoff_set`](Self::takeoff_set) explains
 /// the result.
@@ -24,7 +24,7 @@ pub struct HopTest {
     tables: Arc<Tables>,
 }
 
-/// What searches ask of a chain again and again, each made when it is first needed.
+/// Tables that searches use repeatedly, each computed when it is first needed.
 #[derive(Debug, Default)]
 struct Tables {
     /// Bounds of height and speed over any part of the chain.

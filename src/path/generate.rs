@@ -1,4 +1,4 @@
-//! From the search's legs to the hops that fly them (P Algorithm 4).
+//! From the legs of a search result to the commands of single hops (P Algorithm 4).
 
 use super::{Hop, HopPath, Totals, heading_deg};
 use crate::{
@@ -11,7 +11,7 @@ use crate::{
     world::{Contact, Direction, Hopper, Limit},
 };
 
-/// A path longer than this program lists hop by hop.
+/// A path with too many hops to list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("the path has {hops} hops, expected at most {} to list: raise the speed limits", TooManyHops::MOST)]
 pub struct TooManyHops {
@@ -20,11 +20,11 @@ pub struct TooManyHops {
 }
 
 impl TooManyHops {
-    /// The longest path that is listed: some 400 bytes a hop, so 400 MB.
+    /// The longest path that is listed: some 400 bytes per hop, so 400 MB.
     pub const MOST: u64 = 1_000_000;
 }
 
-/// The hops of a path, in two dimensions, and in three where the chain lies on a map (P Algorithm 4, Remark 3).
+/// The hops of a path, in two dimensions, and in three if the chain lies on a map (P Algorithm 4, Remark 3).
 ///
 /// # Errors
 /// [`TooManyHops`].
@@ -48,14 +48,14 @@ pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Spli
 }
 
 impl HopPath {
-    /// Hops in the order of travel, with what they add up to for a hopper.
+    /// A path of hops in the order of travel, with its totals for a hopper.
     pub fn of_hops(hops: Vec<Hop>, hopper: &Hopper) -> Self {
         let totals = totals(&hops, hopper);
         Self { hops, totals }
     }
 }
 
-/// The hop of a leg that takes one.
+/// The hop of a leg with one hop.
 fn single(test: &HopTest, leg: &Leg, lofts: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
     let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
     let arc = Arc::new(sight, choice.loft(sight, lofts), test.gravity_m_s2());
@@ -70,20 +70,20 @@ fn along_segment(test: &HopTest, leg: &Leg, along: &SegmentHops, choice: Takeoff
     let mut takeoff = leg.takeoff;
     let inside = landings.into_iter().map_while(|x_m| test.chain().geometry().station(x_m).ok());
     for landing in inside.chain([leg.landing]) {
-        // The length between the stations themselves: rounding their places must not move the landing.
+        // The length between the stations themselves: rounding of their x must not move the landing.
         let length_m = (landing.point.x_m - takeoff.point.x_m).abs();
         let arc = along.arc(test, length_m, choice);
-        // At full reach the set is one point, which rounding may lose: then what ends the reach binds.
+        // At full reach the set is one point, which rounding may lose: then the limit that ends the reach binds.
         hops.push(hop(test, takeoff, landing, &arc, along.lofts(test, length_m), along.reach().limit()));
         takeoff = landing;
     }
     hops
 }
 
-/// The x of all landings but the last for hops of full reach, m; `None` where the split is another, or the last hop would be too long.
+/// The x of all landings but the last for hops of full reach, m; `None` for another split, or if the last hop would be too long.
 ///
-/// An x far from zero has coarse last digits, and a hop rounded up would go beyond its reach (a hop of 1 mm at x = 200 km by 1e-8 of
-/// itself, ten times what a speed tolerates): each is rounded towards its take-off, and the last makes up for all.
+/// An x far from zero has a coarse last digit, and a hop rounded up would exceed its reach (a hop of 1 mm at x = 200 km by 1e-8 of
+/// itself, ten times the tolerance of a speed). Every x is therefore rounded towards its take-off; the last hop makes up for all.
 fn full_reach_m(leg: &Leg, along: &SegmentHops, direction: Direction, split: Split) -> Option<Vec<f64>> {
     let (each_m, last_m) = along.lengths_m(split);
     if each_m == last_m {
@@ -108,9 +108,9 @@ fn equal_m(leg: &Leg, along: &SegmentHops, direction: Direction) -> Vec<f64> {
     (1..along.hops()).map(x_m).collect()
 }
 
-/// A hop with all that is said of it.
+/// A hop with all its numbers.
 ///
-/// `otherwise` is the limit named where the set is one point that rounding loses.
+/// `otherwise` is the binding limit if the set is one point that rounding loses.
 fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc, lofts: SlopeInterval, otherwise: Limit) -> Hop {
     let direction = if landing.point.x_m < takeoff.point.x_m { Direction::Reverse } else { Direction::Forward };
     let limit = |contact, station: &Station| {
@@ -141,7 +141,7 @@ fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc, lofts: Slo
     }
 }
 
-/// What hops add up to.
+/// The totals of hops.
 fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
     let sum = |of: fn(&Hop) -> f64| hops.iter().map(of).sum::<f64>();
     let flight_time_s = sum(|h| h.flight_time_s);

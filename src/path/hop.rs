@@ -10,14 +10,14 @@ use crate::{
 /// One hop, with everything an operator needs to command and check it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hop {
-    /// Direction of travel along the chain; forward where there is no chain.
+    /// Direction of travel along the chain; forward if there is no chain.
     pub direction: Direction,
     /// Where it takes off.
     pub takeoff: ContactPoint,
     /// Where it lands.
     pub landing: ContactPoint,
-    /// Direction of flight on the map, clockwise from grid north, 0 to 360 degrees; of a chain that lies on no map, from its y axis: 90
-    /// forward, 270 in reverse.
+    /// Direction of flight on the map, clockwise from grid north, 0 to 360 degrees. For a chain without a map, 90 forward and 270
+    /// in reverse.
     pub heading_deg: f64,
     /// Take-off angle above the horizontal, in the direction of travel.
     pub takeoff_angle: Angle,
@@ -29,22 +29,22 @@ pub struct Hop {
     pub landing_speed_m_s: f64,
     /// Flight time, s.
     pub flight_time_s: f64,
-    /// Height of the highest point of the flight, m, in the ground's own heights.
+    /// Height of the highest point of the flight, m, in the height reference of the ground.
     pub apex_z_m: f64,
     /// All feasible take-off angles between the two contacts.
     pub takeoff_angles: AngleInterval,
-    /// The smaller of the two margins that take-off and landing speed leave to their limits, m/s.
+    /// The smaller of the margins of take-off and landing speed to their limits, m/s.
     pub speed_margin_m_s: f64,
-    /// Which limit sets the least feasible take-off angle.
+    /// The limit that sets the least feasible take-off angle.
     pub lower_limit: Limit,
-    /// The vertex of the profile that decides, where that limit is the terrain.
+    /// The vertex of the profile that sets it, if that limit is the terrain.
     pub lower_vertex: Option<VertexId>,
-    /// Which limit sets the greatest feasible take-off angle.
+    /// The limit that sets the greatest feasible take-off angle.
     pub upper_limit: Limit,
 }
 
 impl Hop {
-    /// Take-off and landing on the map; `None` for a hop along a chain that lies on no map.
+    /// Take-off and landing on the map; `None` for a chain without a map.
     pub fn map_ends(&self) -> Option<(MapPoint, MapPoint)> {
         self.takeoff.map().zip(self.landing.map())
     }
@@ -59,9 +59,8 @@ impl Hop {
         self.takeoff_speed_m_s / libm::hypot(1.0, self.takeoff_angle.slope())
     }
 
-    /// Points of the flight at equal horizontal distances, take-off and landing included: `(fraction of the run, point)`.
-    ///
-    /// At least two points.
+    /// At least two points of the flight at equal horizontal distances, including take-off and landing: `(fraction of the run,
+    /// point)`.
     pub fn flight_points(&self, gravity_m_s2: f64, count: u32) -> Vec<(f64, ChainPoint)> {
         let (from, to) = (self.takeoff.in_profile(), self.landing.in_profile());
         let sight = LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m);
@@ -77,7 +76,7 @@ impl Hop {
     }
 }
 
-/// The direction from one horizontal point to another, clockwise from the second axis (grid north on a map), 0 to 360 degrees.
+/// The direction from one horizontal point to another, clockwise from the second axis (on a map: grid north), 0 to 360 degrees.
 ///
 /// # Examples
 /// ```
@@ -93,25 +92,25 @@ pub fn heading_deg(from: MapPoint, to: MapPoint) -> f64 {
 /// A path of hops from start to goal.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HopPath {
-    /// The hops in the order of travel; none where start and goal are the same place.
+    /// The hops in the order of travel; empty if start and goal are the same position.
     pub hops: Vec<Hop>,
-    /// What they add up to.
+    /// The totals of the hops.
     pub totals: Totals,
 }
 
-/// What the hops of a path add up to.
+/// The totals of the hops of a path.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Totals {
     /// Time in flight, s.
     pub flight_time_s: f64,
-    /// Energy per unit mass given at take-off, the sum of `v_t^2 / 2`, J/kg.
+    /// Energy per unit mass at take-off, the sum of `v_t^2 / 2`, J/kg.
     pub energy_j_kg: f64,
     /// The greatest take-off speed, m/s.
     pub peak_takeoff_speed_m_s: f64,
     /// The sum of the hops' horizontal distances, m.
     pub ground_distance_m: f64,
-    /// Energy, J, where the mass is known.
+    /// Energy, J, if the mass is known.
     pub energy_j: Option<f64>,
-    /// Flight and rest between hops, s, where the rest time is known.
+    /// Time of flights and of rests between hops, s, if the rest time is known.
     pub mission_time_s: Option<f64>,
 }

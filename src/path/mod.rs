@@ -1,4 +1,4 @@
-//! The hop path: its generation from the search's answer, and an independent checker that flies it again.
+//! The hop path: its generation from the result of a search, and an independent checker that flies it again.
 
 mod execute;
 mod generate;

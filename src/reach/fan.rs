@@ -13,22 +13,22 @@ use crate::{
     world::Limit,
 };
 
-/// What a fan is made of.
+/// The parameters of a fan.
 #[derive(Clone, Copy, Debug)]
 pub struct FanRequest<'a> {
     /// The terrain, its overlays, the hopper and gravity.
     pub ground: &'a DemGround,
-    /// Where all slices begin.
+    /// The start of all slices.
     pub from: MapPoint,
-    /// How many there are, equally spaced clockwise from grid north.
+    /// The number of slices, equally spaced clockwise from grid north.
     pub headings: u32,
-    /// How long they are, m, where the map lets them.
+    /// Their length, m, if the map is large enough.
     pub length_m: f64,
-    /// How densely the slices are filled with nodes.
+    /// The spacing of nodes on the slices.
     pub spacing: PointSpacing,
 }
 
-/// What ends a slice before the length asked for.
+/// Why a slice is shorter than requested.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SliceEnd {
     /// The map's border.
@@ -47,14 +47,14 @@ impl SliceEnd {
     }
 }
 
-/// A part of a slice whose nodes all need as many hops.
+/// A part of a slice whose nodes all need the same number of hops.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HopBand {
-    /// Where it begins, half-way from the last node with another count, m from the start.
+    /// Its beginning, half-way from the last node with another count, m from the start.
     pub from_m: f64,
-    /// Where it ends.
+    /// Its end, m from the start.
     pub to_m: f64,
-    /// The hops; `None`: no hops over these nodes land there.
+    /// The number of hops; `None`: these nodes cannot be reached.
     pub hops: Option<u64>,
 }
 
@@ -65,17 +65,17 @@ pub struct FanRay {
     pub heading_deg: f64,
     /// How long the slice is, m.
     pub length_m: f64,
-    /// What ends it before the length asked for.
+    /// Why the slice is shorter than requested; `None` if it is not.
     pub end: Option<SliceEnd>,
-    /// The farthest node that can be reached, m from the start; 0 where none can.
+    /// The farthest reachable node, m from the start; 0 if there is none.
     pub farthest_m: f64,
     /// The fewest hops to it.
     pub hops_to_farthest: u64,
-    /// The fewest hops to the slice's far end; `None` where it is not reached.
+    /// The fewest hops to the slice's far end; `None` if it cannot be reached.
     pub hops_to_end: Option<u64>,
-    /// Which limit refuses the hop from the farthest node to the next one on; `None` where the far end is reached.
+    /// The limit that refuses the hop from the farthest node to the next one; `None` if the far end is reached.
     pub refusing: Option<Limit>,
-    /// The whole slice, from the start on.
+    /// The bands of the whole slice, beginning at the start.
     pub bands: Vec<HopBand>,
 }
 
@@ -83,28 +83,28 @@ pub struct FanRay {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FanError {
-    /// A request that makes no sense.
+    /// An invalid value in the request.
     #[error("{what} is {found}, expected {expected}")]
     Request {
-        /// Of what.
+        /// The name of the value.
         what: &'static str,
-        /// What was given.
+        /// The value given.
         found: String,
-        /// What is allowed.
+        /// What is expected.
         expected: &'static str,
     },
-    /// The start lies off the map, or where there is no elevation.
+    /// The start lies off the map, or has no elevation.
     #[error(transparent)]
     Terrain(#[from] TerrainError),
-    /// A slice that makes no chain.
+    /// A slice that is not a valid chain.
     #[error("heading {heading_deg} deg: {reason}")]
     Ground {
         /// Which slice.
         heading_deg: f64,
-        /// Why not.
+        /// Why.
         reason: Box<SliceProblem>,
     },
-    /// More nodes than fit.
+    /// A slice with too many nodes.
     #[error("heading {heading_deg} deg: {problem}")]
     TooManyNodes {
         /// Which slice.
@@ -112,12 +112,12 @@ pub enum FanError {
         /// How many.
         problem: TooManyNodes,
     },
-    /// It was cancelled.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// Analyses slices in all directions from one point, in parallel; the same for any number of threads.
+/// Analyses slices in all directions from one point, in parallel; the result does not depend on the number of threads.
 ///
 /// A slice that leaves the map or meets no-data ends there. Reports every heading.
 ///
@@ -125,7 +125,7 @@ pub enum FanError {
 /// One ray for each heading, `360 k / headings` degrees for k = 0, 1, ..
 ///
 /// # Errors
-/// [`FanError`]; of several, that of the least heading.
+/// [`FanError`]; of several, the one of the least heading.
 pub fn fan(request: &FanRequest<'_>, progress: &dyn Progress) -> Result<Vec<FanRay>, FanError> {
     let FanRequest { headings, length_m, .. } = *request;
     let refused = |what, found: String, expected| Err(FanError::Request { what, found, expected });
@@ -151,7 +151,7 @@ pub fn fan(request: &FanRequest<'_>, progress: &dyn Progress) -> Result<Vec<FanR
     let rays: Vec<Result<FanRay, FanError>> = (0..headings).into_par_iter().map(one).collect();
     meter.check()?;
     let rays: Vec<FanRay> = rays.into_iter().collect::<Result<_, _>>()?;
-    // No direction has ground: the start itself has none.
+    // No direction has ground, so the start has none.
     if rays.iter().all(|ray| ray.length_m == 0.0 && ray.end == Some(SliceEnd::NoData)) {
         return Err(TerrainError::NoData { at: request.from, distance_m: 0.0 }.into());
     }
@@ -208,7 +208,7 @@ fn ray(request: &FanRequest<'_>, number: u32, meter: &Meter<'_>) -> Result<FanRa
     })
 }
 
-/// Neighbouring nodes of as many hops as one band.
+/// Combines neighbouring nodes with the same number of hops into bands.
 fn bands(nodes: &[(f64, Option<u64>)]) -> Vec<HopBand> {
     let mut found: Vec<HopBand> = Vec::new();
     let mut previous_m = 0.0;
@@ -228,7 +228,7 @@ fn bands(nodes: &[(f64, Option<u64>)]) -> Vec<HopBand> {
     found
 }
 
-/// The slice in a direction, as far as there is ground, and what ended it; no slice where there is none at all.
+/// The slice in a direction up to the end of the ground, and what ended it; `None` if there is no ground at all.
 fn slice_ray(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<Profile>, Option<SliceEnd>), TerrainError> {
     let (dem, from) = (request.ground.terrain().dem(), request.from);
     let bounds = dem.bounds();
@@ -248,7 +248,7 @@ fn slice_ray(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<
         let to = from + heading * along_m;
         MapPoint::new(to.x.clamp(bounds.min.x, bounds.max.x), to.y.clamp(bounds.min.y, bounds.max.y))
     };
-    // Closer to the border than this there is nothing to analyse.
+    // A shorter slice has nothing to analyse.
     let least_m = 1e-6 * dem.georeference().dx_m().min(dem.georeference().dy_m());
     if length_m <= least_m {
         return Ok((None, end));
@@ -258,7 +258,7 @@ fn slice_ray(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<
         Err(TerrainError::NoData { distance_m, .. }) => distance_m,
         Err(other) => return Err(other),
     };
-    // The last ground before the gap, by halving: the gap's own place is only known to a segment.
+    // The last ground before the gap, by bisection: `slice` gives the position of the gap only to within a segment.
     let (mut ground_m, mut gap_m) = (0.0, gap_m.max(least_m));
     let mut whole = None;
     while gap_m - ground_m > least_m {

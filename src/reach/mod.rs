@@ -1,4 +1,4 @@
-//! How far one gets from one place of a map.
+//! What can be reached from one position of a map.
 
 mod fan;
 pub mod map;

@@ -1,11 +1,11 @@
-//! A DEM together with its overlays: friction by place, and zones where nothing takes off or lands.
+//! A DEM with its overlays: friction by position, and keep-out zones without take-offs and landings.
 
 use std::sync::Arc;
 
 use super::{Dem, FrictionRaster, KeepOut, Profile, TerrainError, slice};
 use crate::{quantity::MapPoint, world::FrictionCone};
 
-/// What lies over a terrain: a friction raster and keep-out zones, either or both absent.
+/// The overlays of a terrain: a friction raster and keep-out zones; either may be absent.
 #[derive(Clone, Debug, Default)]
 pub struct Overlays {
     friction: Option<FrictionRaster>,
@@ -15,14 +15,14 @@ pub struct Overlays {
 /// Which overlays have an effect on a profile.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OverlayEffect {
-    /// The raster gives the friction of a part of it.
+    /// The raster gives the friction of a part of the profile.
     pub friction: bool,
-    /// A part of it lies in a zone.
+    /// A part of the profile lies in a zone.
     pub keep_out: bool,
 }
 
 impl Overlays {
-    /// From a friction raster and keep-out zones.
+    /// The overlays from a friction raster and keep-out zones.
     pub const fn new(friction: Option<FrictionRaster>, keep_out: Option<KeepOut>) -> Self {
         Self { friction, keep_out }
     }
@@ -37,12 +37,12 @@ impl Overlays {
         self.keep_out.as_ref()
     }
 
-    /// Lays both over a profile: friction and zones of its facets, with further points where their borders cross it.
+    /// Adds both to a profile: friction and zones of its facets, with additional points where borders cross it.
     ///
     /// `constant` is the friction where the raster has no data.
     ///
     /// # Errors
-    /// [`TerrainError::Overlay`] where a mask ends before the profile does, or a part of the profile is left without friction.
+    /// [`TerrainError::Overlay`] if a mask does not cover the profile, or a part of the profile has no friction.
     pub fn lay(&self, profile: &mut Profile, constant: Option<FrictionCone>) -> Result<OverlayEffect, TerrainError> {
         let mut effect = OverlayEffect::default();
         if let Some(raster) = &self.friction {
@@ -54,12 +54,12 @@ impl Overlays {
         Ok(effect)
     }
 
-    /// The friction that the raster gives a place; `None` without a raster and where it has no data.
+    /// The friction of the raster at a position; `None` without a raster and where it has no data.
     pub fn friction_at(&self, at: MapPoint) -> Option<FrictionCone> {
         self.friction.as_ref().and_then(|raster| raster.at(at))
     }
 
-    /// Whether a place lies in a keep-out zone.
+    /// Whether a position lies in a keep-out zone.
     pub fn keeps_out(&self, at: MapPoint) -> bool {
         self.keep_out.as_ref().is_some_and(|zones| zones.keeps_out(at))
     }
@@ -83,22 +83,22 @@ pub struct OverlaidDem {
 }
 
 impl OverlaidDem {
-    /// A DEM with what lies over it.
+    /// A DEM with overlays.
     pub fn new(dem: impl Into<Arc<Dem>>, overlays: impl Into<Arc<Overlays>>) -> Self {
         Self { dem: dem.into(), overlays: overlays.into() }
     }
 
-    /// The elevations.
+    /// The DEM.
     pub fn dem(&self) -> &Dem {
         &self.dem
     }
 
-    /// What lies over them.
+    /// The overlays.
     pub fn overlays(&self) -> &Overlays {
         &self.overlays
     }
 
-    /// The slice from one map point to another with the overlays laid over it; `constant` is the friction where no raster gives any.
+    /// The slice from one map point to another with overlays; `constant` is the friction where the raster has no data.
     ///
     /// # Errors
     /// As [`slice`](super::slice()) and [`Overlays::lay`].

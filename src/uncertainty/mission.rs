@@ -1,4 +1,4 @@
-//! A planned journey and the ground that it is flown over.
+//! A planned journey and the ground under it.
 
 use std::sync::Arc;
 
@@ -10,9 +10,9 @@ use crate::{
     path::HopPath,
 };
 
-/// A planned journey and the ground that it is flown over. It owns or shares all that it needs.
+/// A planned journey and the ground under it. It owns or shares all its data.
 ///
-/// Nothing here asks how the path was found: any planner whose result is a [`HopPath`] can be simulated.
+/// It does not depend on how the path was found: any planner whose result is a [`HopPath`] can be simulated.
 #[derive(Clone, Debug)]
 pub struct Mission {
     pub(super) ground: MissionGround,
@@ -22,14 +22,14 @@ pub struct Mission {
     pub(super) replanning: Option<Replanning>,
 }
 
-/// What trials fly over.
+/// The ground of the trials.
 #[derive(Clone, Debug)]
 pub(super) enum MissionGround {
     Chain(ChainGround),
     Map(DemGround),
 }
 
-/// What replanning needs: the chain of the nodes, and what each node has still to go.
+/// The data for replanning: the chain of the nodes, and the cost-to-go of each node.
 #[derive(Clone, Debug)]
 pub(super) struct Replanning {
     pub(super) test: HopTest,
@@ -43,7 +43,7 @@ impl Mission {
         Self { ground: MissionGround::Chain(ChainGround::new(test)), path, start, goal, replanning: None }
     }
 
-    /// A path over a DEM, in any direction: flights go where their heading takes them.
+    /// A path over a DEM, in any direction: flights follow their heading.
     pub const fn over_dem(ground: DemGround, path: HopPath, start: ContactPoint, goal: ContactPoint) -> Self {
         Self { ground: MissionGround::Map(ground), path, start, goal, replanning: None }
     }

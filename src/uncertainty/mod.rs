@@ -1,20 +1,23 @@
-//! How reliably a planned path is flown: worst cases and frequencies under errors of command, ground and position.
+//! How reliably a planned path is flown: outcomes and their frequencies under errors of command, ground and position.
 //!
-//! A path is a promise made without slip and scatter. Here it is flown many times over ground that is not quite as mapped, with commands
-//! that are not quite as given: each [`HopRecord`] is one arc of a parabola to its first contact with the ground, found exactly, and
-//! checked where it really takes off and lands.
+//! A planned path assumes exact execution. Here it is flown many times over ground that differs from the map, with commands that
+//! are executed with errors. Each [`HopRecord`] is one parabolic arc to its first contact with the ground, found exactly, and
+//! checked at its actual take-off and landing.
 //!
 //! ```text
-//!   trial n -> draws (seed, n) -> [ command + errors -> take-off checked -> first contact -> landing checked -> bounce and roll ] -> next hop
+//!   trial n -> draws (seed, n) -> hop by hop:
+//!     command + errors -> take-off checked -> first contact -> landing checked -> bounce and roll
 //! ```
 //!
-//! Along a chain flights stay in its vertical plane; over a DEM ([`DemGround`](crate::ground::DemGround)) they go wherever their heading takes them.
+//! Along a chain, flights stay in its vertical plane; over a DEM ([`DemGround`](crate::ground::DemGround)) they follow their
+//! heading.
 //!
 //! # What is checked, and what is not
-//! The real direction of a take-off against the cone of the ground it leaves; direction and speed of a landing, and the rest slope,
-//! where it really happens; the rest slope and keep-out zones where the robot comes to rest. A cone is that of friction about the real
-//! facet's normal, or the angles stated for the segment. The first contact is with the ground itself: the clearance is a margin of the
-//! plan. The machine's own limits (speed, angle, height and time of flight) hold for commands, not for errors of their execution.
+//! At the take-off, the actual direction against the cone of the ground there. At the actual landing, direction, speed and rest
+//! slope. Where the robot comes to rest, the rest slope and keep-out zones. A cone is that of friction about the normal of the
+//! actual facet, or the angles stated for the segment. The first contact is with the ground itself: the clearance is a margin of
+//! the plan. The machine's own limits (speed, angle, height and time of flight) apply to commands, not to errors of their
+//! execution.
 //!
 //! # Examples
 //! ```
@@ -31,7 +34,7 @@
 //! let path = generate(&test, &legs, Default::default(), Split::FullReach)?;
 //!
 //! let mission = Mission::along_chain(test, path, start, goal);
-//! // One hop of 40 m at v = sqrt(g X) = 8 m/s: 1 % of speed is 2 % of range, 0.8 m. 1.6 m are two deviations: 95 % get there.
+//! // One hop of 40 m at v = sqrt(g X) = 8 m/s: 1 % of speed is 2 % of range, 0.8 m. 1.6 m are two deviations: 95 % succeed.
 //! let errors = Uncertainty { takeoff_speed_sigma_fraction: 0.01, ..Uncertainty::NONE };
 //! let options = TrialOptions { trials: 5000, goal_tolerance_m: 1.6, ..TrialOptions::default() };
 //! let summary = Simulation::new(&mission, errors)?.run(&options, &mut (), &())?;

@@ -1,24 +1,24 @@
-//! What to simulate, how often, and who is given the records.
+//! What to simulate, how many times, and the observer of the records.
 
 use super::{HopRecord, Policy, TrialRecord, UncertaintyProblem};
 use crate::progress::Cancelled;
 
-/// How many trials, and how they are flown and checked.
+/// The number of trials, and how they are flown and checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialOptions {
-    /// How many trials at most; at least 1.
+    /// The most trials; at least 1.
     pub trials: u64,
-    /// The draws of a trial depend on this and the trial's number alone.
+    /// The seed. The draws of a trial depend on it and on the trial's number only.
     pub seed: u64,
     /// Open loop or replanned.
     pub policy: Policy,
-    /// Most hops of a trial; `None`: [`TrialOptions::default_hop_limit`].
+    /// The most hops of a trial; `None`: [`TrialOptions::default_hop_limit`].
     pub hop_limit: Option<u32>,
-    /// Horizontal distance from the goal within which a trial has reached it, m.
+    /// A trial has reached the goal within this horizontal distance from it, m.
     pub goal_tolerance_m: f64,
-    /// Stop once half the width of the success rate's 95 % interval is at most this; tested after every 1 000 trials.
+    /// Stop once half the width of the success rate's 95 % interval is at most this; checked after every 1 000 trials.
     pub until_half_width: Option<f64>,
-    /// How many trials, from the first, to keep with all their hops.
+    /// The first trials, as many as this, are kept with all their hops.
     pub trajectories: u64,
 }
 
@@ -38,7 +38,7 @@ impl Default for TrialOptions {
 }
 
 impl TrialOptions {
-    /// Twice the planned hops and ten more: room to make up for errors, and an end for a robot that goes to and fro.
+    /// Twice the planned hops plus ten: enough to correct errors, and a bound for a robot that goes back and forth.
     pub fn default_hop_limit(planned_hops: usize) -> u32 {
         u32::try_from(planned_hops).unwrap_or(u32::MAX).saturating_mul(2).saturating_add(10)
     }
@@ -48,22 +48,22 @@ impl TrialOptions {
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum SimulationError {
-    /// Deviations that make no sense.
+    /// Invalid deviations.
     #[error(transparent)]
     Uncertainty(#[from] UncertaintyProblem),
-    /// No trials.
+    /// Zero trials.
     #[error("trials is 0, expected at least 1")]
     NoTrials,
     /// A hop limit below 1.
     #[error("hop_limit is 0, expected at least 1: leave it out for twice the planned hops and ten more")]
     NoHops,
-    /// A tolerance that no distance is within.
+    /// A negative or non-finite tolerance.
     #[error("goal_tolerance_m is {found} m, expected a finite number of at least 0")]
     GoalTolerance {
         /// What was given, m.
         found: f64,
     },
-    /// An interval that no number of trials gives.
+    /// A half-width outside (0, 0.5), which no number of trials gives.
     #[error("the half-width to reach is {found}, expected a number above 0 and below 0.5")]
     HalfWidth {
         /// What was given.
@@ -72,25 +72,25 @@ pub enum SimulationError {
     /// A policy that needs costs-to-go.
     #[error("the policy replan needs the costs-to-go of a node set, and none were given: build a graph::CostToGo for the mission")]
     NoCostsToGo,
-    /// A path in three dimensions that does not lie on the map.
+    /// A hop without a position on the map, in a simulation over a DEM.
     #[error("hop {hop} of the path lies on no map, but the simulation is to fly over a DEM: slice the chain from that DEM")]
     NotOnMap {
         /// Which hop, from 1.
         hop: usize,
     },
-    /// A path along a chain that is given without its stations.
+    /// A hop without a station, in a simulation along a chain.
     #[error("hop {hop} of the path has no station, but the simulation is to fly along a chain: plan the path on that chain")]
     NotOnChain {
         /// Which hop, from 1; 0: the start.
         hop: usize,
     },
-    /// A map of which nobody says how it grips.
+    /// A DEM without friction or stated angles.
     #[error(
-        "nothing says how the ground of the DEM grips: give the surface a friction coefficient or angles from the slope, or the map a \
-         friction raster"
+        "the ground of the DEM has no friction: give the surface a friction coefficient or angles from the slope, or the map a friction \
+         raster"
     )]
     NoGrip,
-    /// A start or goal without ground.
+    /// A start or goal without ground under it.
     #[error("the {which} lies at ({x_m} m, {y_m} m), where the DEM has no ground: give the DEM that the chain was sliced from")]
     NoGround {
         /// Start or goal.
@@ -100,14 +100,14 @@ pub enum SimulationError {
         /// North, m.
         y_m: f64,
     },
-    /// It was cancelled.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }
 
-/// Who listens to a simulation. All calls come from one thread, in the order of trials and hops, whatever the number of threads.
+/// An observer of a simulation. All calls come from one thread, in the order of trials and hops, for any number of threads.
 pub trait Observer {
-    /// Whether [`hop`](Self::hop) and [`trial`](Self::trial) are wanted; records are only made where they are.
+    /// Whether [`hop`](Self::hop) and [`trial`](Self::trial) are called; records are only made if they are.
     fn wants_records(&self) -> bool {
         false
     }
@@ -115,9 +115,9 @@ pub trait Observer {
     /// A hop was flown.
     fn hop(&mut self, _hop: &HopRecord) {}
 
-    /// A trial ended, all of its hops told.
+    /// A trial ended; all its hops have been reported.
     fn trial(&mut self, _trial: &TrialRecord) {}
 }
 
-/// Nobody listens.
+/// An observer that ignores everything.
 impl Observer for () {}

@@ -1,12 +1,12 @@
-//! How a trial ends, and how the robot decides on its way.
+//! How a trial ends, and the policies of the robot.
 
-/// How the robot goes about its journey.
+/// How the robot chooses its commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Policy {
-    /// The planned commands, one after the other, from wherever it really is.
+    /// The planned commands, one after the other, from its actual position.
     #[default]
     OpenLoop,
-    /// After every landing the best next hop from where it believes to be.
+    /// After every landing, the best next hop from the estimated position.
     Replan,
 }
 
@@ -28,20 +28,20 @@ impl Policy {
 pub enum TrialOutcome {
     /// It stopped within the goal tolerance (horizontal distance).
     Reached,
-    /// It stopped elsewhere: all planned commands flown (open loop), or it believed to be at the goal and was not (replan).
+    /// It stopped elsewhere: all planned commands were flown (open loop), or its estimated position was at the goal (replan).
     Missed,
-    /// The real direction of a take-off left the cone of the ground it really stood on, or that ground allows none.
+    /// The actual direction of a take-off was outside the cone of the ground there, or that ground allows no take-off.
     SlidAtTakeoff,
-    /// The real direction of a landing left the cone of the ground it really met, or the surface is too steep to rest on there or
-    /// where it came to rest.
+    /// The actual direction of a landing was outside the cone of the ground there, or the ground at the landing or at the place of
+    /// rest is too steep to rest on.
     SlidAtLanding,
     /// It met the ground faster than its landing speed limit.
     Damaged,
     /// It left the chain, its plane of travel (past a bend) or the map, met no-data, or came down or to rest in a keep-out zone.
     Lost,
-    /// No hop leads on from where it believes to be (replan).
+    /// No hop leads on from its estimated position (replan).
     Stuck,
-    /// It had flown as many hops as allowed and was not done.
+    /// It flew the greatest number of hops without ending otherwise.
     HopLimit,
 }
 
@@ -78,22 +78,22 @@ impl TrialOutcome {
 pub struct OutcomeCounts([u64; 8]);
 
 impl OutcomeCounts {
-    /// One more trial that ended so.
+    /// Counts one trial with this outcome.
     pub const fn count(&mut self, outcome: TrialOutcome) {
         self.0[outcome as usize] += 1;
     }
 
-    /// How many trials ended so.
+    /// The number of trials with this outcome.
     pub const fn of(&self, outcome: TrialOutcome) -> u64 {
         self.0[outcome as usize]
     }
 
-    /// Every outcome with its count, in the order of [`TrialOutcome::ALL`], those of none included.
+    /// Every outcome with its count, zero counts included, in the order of [`TrialOutcome::ALL`].
     pub fn each(&self) -> impl Iterator<Item = (TrialOutcome, u64)> + '_ {
         TrialOutcome::ALL.into_iter().map(|outcome| (outcome, self.of(outcome)))
     }
 
-    /// All trials counted.
+    /// The number of trials counted.
     pub fn total(&self) -> u64 {
         self.0.iter().sum()
     }

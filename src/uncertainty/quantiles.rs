@@ -4,15 +4,16 @@
 const KEPT_BITS: u32 = 8;
 const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - KEPT_BITS;
 
-/// Distances below this are counted as zero: a billionth of a metre is below every rounding of a place on a map.
+/// Distances below this are counted as zero: a billionth of a metre is below the rounding of any position on a map.
 const LEAST_M: f64 = 1e-9;
 
-/// A histogram with bins of equal relative width, from which quantiles are read: a log-linear histogram, as
-/// `HdrHistogram`, with a bounded relative error, as `DDSketch`.
+/// A histogram with bins of equal relative width for quantiles: log-linear, like `HdrHistogram`, with a bounded relative error,
+/// like `DDSketch`.
 ///
-/// A bin is the exponent and the first eight bits of the significand of a double, so finding it takes a shift. A quantile is the middle of
-/// its bin, within 1/512 (0.2 %) of the true order statistic; below a nanometre, zero. Bins hold counts, so merging is exact and in any
-/// order gives the same. Memory: 8 bytes a bin between the smallest and the largest value, 2 kB for each factor of two.
+/// A bin is the exponent and the first eight bits of the significand of a double, so it is found by a shift. A quantile is the
+/// middle of its bin, within 1/512 (0.2 %) of the true order statistic; zero below a nanometre. Bins hold counts, so merging is
+/// exact and independent of the order. Memory: 8 bytes per bin between the smallest and the largest value, 2 kB for each factor of
+/// two.
 ///
 /// ```
 /// use chta::uncertainty::QuantileSketch;
@@ -25,13 +26,13 @@ const LEAST_M: f64 = 1e-9;
 pub struct QuantileSketch {
     count: u64,
     zeros: u64,
-    /// Number of the first bin.
+    /// The number of the first bin.
     first: u64,
     bins: Vec<u64>,
 }
 
 impl QuantileSketch {
-    /// Counts a distance, finite and not negative.
+    /// Counts a finite distance of at least 0.
     pub fn add(&mut self, value: f64) {
         self.count += 1;
         if value < LEAST_M {
@@ -43,7 +44,7 @@ impl QuantileSketch {
         }
     }
 
-    /// The index of a bin, which is made if it is not there.
+    /// The index of a bin, which is created if needed.
     fn place(&mut self, bin: u64) -> usize {
         let to_index = |bins: u64| usize::try_from(bins).unwrap_or(usize::MAX);
         if self.bins.is_empty() {
@@ -74,12 +75,12 @@ impl QuantileSketch {
         }
     }
 
-    /// How many values were counted.
+    /// The number of values counted.
     pub const fn count(&self) -> u64 {
         self.count
     }
 
-    /// The value of rank `share * (count - 1)`, rounded down; `None` of no values.
+    /// The value of rank `share * (count - 1)`, rounded down; `None` without values.
     #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a rank from a share")]
     pub fn quantile(&self, share: f64) -> Option<f64> {
         let last = self.count.checked_sub(1)?;

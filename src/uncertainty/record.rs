@@ -1,4 +1,4 @@
-//! What happened in a trial, hop by hop.
+//! The events of a trial, hop by hop.
 
 use nalgebra::{Point3, Vector2};
 
@@ -7,47 +7,47 @@ use crate::quantity::Angle;
 
 /// One flown hop of one trial.
 ///
-/// Places are (x, y, z) in m. On a map x is east and y north. On a chain x runs along it and y is the offset to the left of its plane,
-/// which only bounce-and-roll displacement to the side changes.
+/// Positions are (x, y, z) in m. On a map x is east and y north. On a chain x runs along it and y is the offset to the left of its
+/// plane, which only bounce-and-roll displacement to the side changes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HopRecord {
     /// Which trial, from 0.
     pub trial: u64,
-    /// Which hop of it, from 1.
+    /// The number of the hop in it, from 1.
     pub hop: u32,
-    /// Where it really took off.
+    /// The actual take-off.
     pub takeoff_m: Point3<f64>,
-    /// Its real direction on the map (east, north), of length 1; on a chain (1, 0) or (-1, 0).
+    /// The actual horizontal direction, of length 1: (east, north) on a map, (1, 0) or (-1, 0) on a chain.
     pub heading: Vector2<f64>,
-    /// Its real horizontal speed, constant over the flight, m/s.
+    /// The actual horizontal speed, constant over the flight, m/s.
     pub horizontal_m_s: f64,
-    /// Its real vertical speed at the take-off, m/s.
+    /// The actual vertical speed at the take-off, m/s.
     pub takeoff_vertical_m_s: f64,
     /// Its vertical speed where the flight ends, negative on the way down, m/s.
     pub landing_vertical_m_s: f64,
     /// Time from take-off to the end of the flight, s.
     pub flight_time_s: f64,
-    /// The landing that it aimed at.
+    /// The planned landing.
     pub planned_m: Point3<f64>,
-    /// Where it first met the ground; where it left the known ground in flight, for a hop that did not land.
+    /// The first contact with the ground; for a hop that did not land, where it left the known ground in flight.
     pub contact_m: Point3<f64>,
-    /// Where it came to rest after the bounce-and-roll displacement; the contact itself where the trial ended with it.
+    /// Where it came to rest after the bounce-and-roll displacement; the contact itself if the trial ended with it.
     pub rest_m: Point3<f64>,
-    /// Horizontal distance from the planned landing to the place of rest, m.
+    /// Horizontal distance from the planned landing to the position of rest, m.
     pub error_m: f64,
-    /// Whether it met the ground at all.
+    /// Whether it met the ground.
     pub landed: bool,
-    /// How the trial ended, where it ended with this hop.
+    /// The outcome of the trial, if it ended with this hop.
     pub outcome: Option<TrialOutcome>,
 }
 
 impl HopRecord {
-    /// Real take-off speed, m/s.
+    /// Actual take-off speed, m/s.
     pub fn takeoff_speed_m_s(&self) -> f64 {
         libm::hypot(self.horizontal_m_s, self.takeoff_vertical_m_s)
     }
 
-    /// Real take-off angle above the horizontal, in the real direction of travel.
+    /// Actual take-off angle above the horizontal, in the actual direction of travel.
     pub fn takeoff_angle(&self) -> Angle {
         Angle::from_radians(libm::atan2(self.takeoff_vertical_m_s, self.horizontal_m_s))
     }
@@ -62,7 +62,7 @@ impl HopRecord {
         Angle::from_radians(libm::atan2(self.landing_vertical_m_s, self.horizontal_m_s))
     }
 
-    /// Points of the flight at equal times, both ends included; at least two.
+    /// At least two points of the flight at equal times, including both ends.
     pub fn flight_points(&self, gravity_m_s2: f64, count: u32) -> Vec<Point3<f64>> {
         let last = count.max(2) - 1;
         (0..=last)
@@ -86,18 +86,18 @@ pub struct TrialRecord {
     pub trial: u64,
     /// How it ended.
     pub outcome: TrialOutcome,
-    /// How many hops were flown, the last included, whether it landed or not.
+    /// The number of hops flown, including the last one, even if it did not land.
     pub hops: u32,
     /// Where it ended.
     pub end_m: Point3<f64>,
-    /// Horizontal distance from there to the goal, m.
+    /// Horizontal distance from the end to the goal, m.
     pub goal_distance_m: f64,
 }
 
-/// A trial with all its hops, kept for a picture.
+/// A trial with all its hops.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trajectory {
-    /// How it went.
+    /// The trial.
     pub trial: TrialRecord,
     /// Its hops in the order of flight.
     pub hops: Vec<HopRecord>,

@@ -1,4 +1,4 @@
-//! The next command from wherever the hopper believes to be, for [`Policy::Replan`](super::Policy::Replan).
+//! The next command from the estimated position of the hopper, for [`Policy::Replan`](super::Policy::Replan).
 
 use std::sync::Arc;
 
@@ -16,7 +16,7 @@ use crate::{
 
 /// Chooses the next hop from a position of the nominal ground.
 pub(super) trait Replan<C>: Send + Sync + std::fmt::Debug {
-    /// The best next hop; `None` where no hop leads to the goal.
+    /// The best next hop; `None` if no hop leads to the goal.
     fn next(&self, believed: &C) -> Option<Command<C>>;
 }
 
@@ -26,7 +26,7 @@ fn liftoff(arc: &ballistics::Arc, heading: Vector2<f64>) -> LiftoffVelocity {
     LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() }
 }
 
-/// Along a chain, over the costs-to-go of its nodes.
+/// Replanning along a chain, by the costs-to-go of its nodes.
 #[derive(Debug)]
 pub(super) struct ChainReplan {
     pub(super) test: HopTest,
@@ -55,17 +55,17 @@ impl Replan<ChainPosition> for ChainReplan {
     }
 }
 
-/// Over a DEM, towards the nodes of a transect.
+/// Replanning over a DEM, by hops to the nodes of a transect.
 #[derive(Debug)]
 pub(super) struct MapReplan {
     pub(super) ground: DemGround,
     pub(super) to_go: Arc<CostToGo>,
-    /// The nodes of the costs-to-go on the map.
+    /// The map positions of the nodes of the costs-to-go.
     pub(super) nodes: Vec<MapPosition>,
 }
 
 impl MapReplan {
-    /// The best hop to a node and what the journey then costs, where it could be better than the best known.
+    /// The best hop to a node and the cost of the journey over it, if that may be lower than `best`.
     fn hop_to(&self, from: &MapPosition, node: usize, best: Option<Cost>) -> Option<(Command<MapPosition>, Cost)> {
         let Self { ground, to_go, nodes } = self;
         let target = nodes[node];
@@ -93,7 +93,7 @@ impl MapReplan {
         Some((Command::new(liftoff(&arc, heading), target), cost))
     }
 
-    /// Where reliability counts: the most reliable successor of the node nearest to a position that one hop from there reaches.
+    /// If reliability counts: of the successors of the nearest node, the most reliable that one hop from a position reaches.
     fn reliable_successor(&self, from: &MapPosition) -> Option<Command<MapPosition>> {
         if !self.to_go.weighs_reliability() {
             return None;
@@ -115,7 +115,7 @@ impl Replan<MapPosition> for MapReplan {
             let known = best.as_ref().map(|(_, cost)| *cost);
             let rest = self.to_go.of_node(*node)?;
             if known.is_some_and(|known| Cost::of_hops(1) + rest >= known) {
-                // The nodes that follow have no less to go.
+                // The nodes are sorted by cost-to-go, so no later node is better.
                 break;
             }
             if let Some(better) = self.hop_to(believed, node.index(), known) {

@@ -21,30 +21,30 @@ use crate::{
     progress::{Detail, Meter, Progress, Stage},
 };
 
-/// After so many trials the rate is looked at.
+/// The success rate is checked after this many trials.
 const BATCH: u64 = 1000;
 
-/// Trials that one thread flies at a stretch: a batch then keeps twenty threads busy, and starting costs next to nothing of each.
+/// Trials that one thread flies in one task: a batch then employs twenty threads, and the overhead per task is negligible.
 const STRETCH: u64 = 50;
 
-/// A mission made ready to be flown again and again.
+/// A mission prepared for repeated flights.
 #[derive(Debug)]
 pub struct Simulation {
     uncertainty: Uncertainty,
     course: Course,
 }
 
-/// The mission's plan over the ground that it is flown on.
+/// The mission's plan and its ground.
 #[derive(Debug)]
 enum Course {
     Chain(ChainGround, Plan<ChainPosition>),
     Map(DemGround, Plan<MapPosition>),
 }
 
-/// Where a flight ends.
+/// The end of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightEnd {
-    /// The first contact with the ground, or the ground below the place where the flight leaves all that is known of it.
+    /// The first contact, or the point of the ground below the flight where it leaves the known ground.
     pub at_m: Point3<f64>,
     /// Whether it is a contact.
     pub landed: bool,
@@ -53,10 +53,10 @@ pub struct FlightEnd {
 }
 
 impl Simulation {
-    /// A mission under these errors.
+    /// Prepares a mission with these errors.
     ///
     /// # Errors
-    /// [`SimulationError`] where the deviations make no sense, or path and map do not belong together.
+    /// [`SimulationError`] if the deviations are invalid, or path and map do not match.
     pub fn new(mission: &Mission, uncertainty: Uncertainty) -> Result<Self, SimulationError> {
         uncertainty.check(matches!(mission.ground, MissionGround::Map(_)))?;
         let course = match &mission.ground {
@@ -73,11 +73,11 @@ impl Simulation {
 
     /// Flies the trials.
     ///
-    /// Batches of 1 000 are shared out to the threads and added up in the order of trials, so that the results are the same for any
-    /// number of threads. Memory does not grow with the number of trials. Reports every batch.
+    /// Batches of 1 000 trials are distributed over the threads and added in the order of trials, so the results do not depend on
+    /// the number of threads. Memory does not grow with the number of trials. Reports every batch.
     ///
     /// # Errors
-    /// [`SimulationError`]: options that make no sense, [`Policy::Replan`] without costs-to-go, or cancelled.
+    /// [`SimulationError`]: invalid options, [`Policy::Replan`] without costs-to-go, or cancelled.
     pub fn run(
         &self,
         options: &TrialOptions,
@@ -106,8 +106,8 @@ impl Simulation {
         Ok([of(open_loop)?, of(replan)?])
     }
 
-    /// Flies one hop from a place of the nominal ground to its first contact, which may be the take-off itself for a take-off into the
-    /// ground. Nothing is checked. `None` where there is no ground at that place.
+    /// Flies one hop from a position of the nominal ground to its first contact, which is the take-off itself for a take-off into
+    /// the ground. No limit is checked. `None` if there is no ground at that position.
     ///
     /// `from`: x and y as in [`HopRecord`](super::HopRecord).
     pub fn fly(&self, from: Point2<f64>, liftoff: LiftoffVelocity) -> Option<FlightEnd> {
@@ -120,7 +120,7 @@ impl Simulation {
         }
     }
 
-    /// Refuses options that make no sense.
+    /// Checks the options.
     fn check(&self, options: &TrialOptions) -> Result<(), SimulationError> {
         let TrialOptions { trials, policy, hop_limit, goal_tolerance_m: found, until_half_width, .. } = *options;
         if trials == 0 {
@@ -207,7 +207,7 @@ impl Simulation {
     }
 }
 
-/// Adds what some trials gave, in their order.
+/// Adds the results of some trials, in their order.
 fn add(flown: &Flown, tally: &mut Tally, trajectories: &mut Vec<Trajectory>, wanted: u64) {
     for trial in &flown.trials {
         tally.trial(trial.outcome, trial.hops);
@@ -221,7 +221,7 @@ fn add(flown: &Flown, tally: &mut Tally, trajectories: &mut Vec<Trajectory>, wan
     }
 }
 
-/// Tells an observer of some trials, in their order.
+/// Reports some trials to an observer, in their order.
 fn tell(flown: &Flown, observer: &mut dyn Observer) {
     let mut hops = flown.hops.iter().peekable();
     for trial in &flown.trials {
@@ -232,7 +232,7 @@ fn tell(flown: &Flown, observer: &mut dyn Observer) {
     }
 }
 
-/// A flight that aims at nothing.
+/// A flight without an aim.
 fn flown<G: FirstContact>(ground: &G, from: &G::Contact, liftoff: &LiftoffVelocity) -> FlightEnd {
     let flight = ground.first_contact(from, liftoff, from);
     FlightEnd { at_m: ground.point(&flight.end), landed: flight.support_facet.is_some(), time_s: flight.time_s }

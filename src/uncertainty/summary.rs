@@ -1,80 +1,80 @@
-//! What many trials come to.
+//! The statistics of many trials.
 
 use nalgebra::{Matrix2, Point2};
 
 use super::{OutcomeCounts, Policy, Trajectory, Wilson};
 use crate::quantity::Angle;
 
-/// What many trials came to. The same for any number of threads, to the last bit.
+/// The statistics of many trials, bit-identical for any number of threads.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summary {
     /// The policy flown.
     pub policy: Policy,
     /// The seed of all draws.
     pub seed: u64,
-    /// How many trials were flown; fewer than asked for where the rate was known well enough before.
+    /// The number of trials flown; fewer than requested if the success rate was precise enough before.
     pub trials: u64,
-    /// How they ended; adds up to `trials`.
+    /// The outcomes; their sum is `trials`.
     pub outcomes: OutcomeCounts,
-    /// The share that reached the goal, with its 95 % interval.
+    /// The success rate with its 95 % interval.
     pub success: Wilson,
-    /// All hops flown, landed or not.
+    /// The number of hops flown, landed or not.
     pub hops_flown: u64,
-    /// The landings by number of hop, from 1; as many as any trial had.
+    /// The landings by the number of their hop, from 1 to the most hops of any trial.
     pub landings: Vec<LandingSummary>,
-    /// How the rate converged: after 10, 20, 50, 100, 200 and 500 trials, after each 1 000, and at the end.
+    /// The convergence of the rate: after 10, 20, 50, 100, 200 and 500 trials, after each 1 000, and at the end.
     pub convergence: Vec<RatePoint>,
-    /// The first trials with all their hops, as many as asked for.
+    /// The first trials with all their hops, as many as requested.
     pub trajectories: Vec<Trajectory>,
 }
 
-/// The rate after so many trials.
+/// The success rate after some trials.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RatePoint {
-    /// After how many.
+    /// The number of trials.
     pub trials: u64,
-    /// The rate then.
+    /// The rate after them.
     pub success: Wilson,
 }
 
-/// The landings of one number of hop over all trials that landed it, those that ended with it included (their place is that of the
-/// contact).
+/// The landings of all trials' hops with one number. A landing that ended its trial is included; its position of rest is the
+/// contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LandingSummary {
-    /// Which hop, from 1.
+    /// The number of the hop, from 1.
     pub hop: u32,
-    /// How many trials landed it.
+    /// The number of trials with this landing.
     pub count: u64,
-    /// Of the horizontal distance between planned landing and place of rest.
+    /// The horizontal distances between planned landing and position of rest.
     pub error: ErrorSummary,
-    /// Where the robot came to rest, on a map.
+    /// The positions of rest, on a map.
     pub ellipse: Option<LandingEllipse>,
 }
 
-/// A distribution of distances, m. The quantiles are within 0.2 % of the true ones (see
-/// [`QuantileSketch`](super::QuantileSketch)), the others are exact.
+/// A distribution of distances, m. Quantiles are within 0.2 % of the true ones (see [`QuantileSketch`](super::QuantileSketch));
+/// mean and maximum are exact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ErrorSummary {
     /// Mean.
     pub mean_m: f64,
-    /// 5 % lie below.
+    /// The 5 % quantile.
     pub q05_m: f64,
-    /// A quarter lies below.
+    /// The 25 % quantile.
     pub q25_m: f64,
-    /// Half lie below.
+    /// The median.
     pub q50_m: f64,
-    /// Three quarters lie below.
+    /// The 75 % quantile.
     pub q75_m: f64,
-    /// 95 % lie below.
+    /// The 95 % quantile.
     pub q95_m: f64,
     /// The largest.
     pub max_m: f64,
 }
 
-/// The ellipse that holds 95 % of a Gaussian with the mean and covariance of the places where a hop came to rest.
+/// The ellipse that holds 95 % of a Gaussian with the mean and covariance of the positions of rest after one hop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LandingEllipse {
-    /// Its centre, the mean place on the map, m.
+    /// Its centre, the mean position on the map, m.
     pub centre: Point2<f64>,
     /// Covariance east and north, m^2.
     pub covariance_m2: Matrix2<f64>,

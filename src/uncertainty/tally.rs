@@ -1,4 +1,4 @@
-//! Statistics that grow trial by trial, in memory independent of their number.
+//! Statistics that accumulate trial by trial in bounded memory.
 
 use nalgebra::{Matrix2, Point2, Vector2};
 
@@ -7,16 +7,16 @@ use super::{
 };
 use crate::quantity::Angle;
 
-/// The 95 % point of the chi-squared distribution of two degrees of freedom, `-2 ln 0.05`.
+/// The 95 % quantile of the chi-squared distribution with two degrees of freedom, `-2 ln 0.05`.
 const CHI_SQUARED_95: f64 = 5.991_464_547_107_979;
 
-/// The most points that the record of the rate keeps; more are thinned by dropping every second one.
+/// The most points of the record of the rate; beyond it every second point is dropped.
 const MOST_RATE_POINTS: usize = 1000;
 
-/// After how many trials the rate is noted before the first batch ends: few trials have a curve too.
+/// Numbers of trials before the end of the first batch at which the rate is noted, so that short runs have a curve too.
 const EARLY: [u64; 6] = [10, 20, 50, 100, 200, 500];
 
-/// What all trials so far came to. Trials must be added in their order: sums of floating-point numbers depend on it.
+/// The statistics of all trials so far. Trials must be added in their order: sums of floating-point numbers depend on it.
 #[derive(Debug, Default)]
 pub(super) struct Tally {
     pub(super) outcomes: OutcomeCounts,
@@ -26,18 +26,18 @@ pub(super) struct Tally {
     early: Vec<RatePoint>,
     /// The rate at the ends of batches.
     convergence: Vec<RatePoint>,
-    /// Of how many batches each point of the record is the last.
+    /// Batches from one point of the record to the next.
     stride: u64,
     batches: u64,
 }
 
-/// The landings of one number of hop.
+/// The landings of all trials' hops with one number.
 #[derive(Debug, Default)]
 struct LandingTally {
     errors: QuantileSketch,
     sum_m: f64,
     max_m: f64,
-    /// Of the places of rest, from the first one, so that no digits go to where on the map that is.
+    /// The first position of rest; the sums below are relative to it, so that large map coordinates do not cost digits.
     origin: Option<Point2<f64>>,
     away_m: Vector2<f64>,
     squares_m2: Matrix2<f64>,
@@ -93,7 +93,7 @@ impl Tally {
         }
     }
 
-    /// The record of the rate, the last one at the end.
+    /// The record of the rate, ending with the present rate.
     pub(super) fn convergence(&self) -> Vec<RatePoint> {
         let now = self.rate();
         let first_batch = self.convergence.first().map_or(now.trials, |point| point.trials);
@@ -105,7 +105,7 @@ impl Tally {
         points
     }
 
-    /// The landings by number of hop.
+    /// The landings by the number of their hop.
     pub(super) fn landings(&self, on_a_map: bool) -> Vec<LandingSummary> {
         let of = |(hop, tally): (u32, &LandingTally)| tally.summary(hop, on_a_map);
         (1..).zip(&self.landings).filter_map(of).collect()

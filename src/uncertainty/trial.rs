@@ -1,4 +1,4 @@
-//! One trial: hop after hop until it ends.
+//! One trial, hop after hop until it ends.
 
 use nalgebra::{Point2, Point3};
 
@@ -25,7 +25,7 @@ pub(super) struct PlannedHop<C> {
     pub(super) command: Command<C>,
 }
 
-/// What holds for every trial of a run.
+/// What is the same for all trials of a run.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rules {
     pub(super) errors: Errors,
@@ -34,7 +34,7 @@ pub(super) struct Rules {
     pub(super) goal_tolerance_m: f64,
 }
 
-/// A landing as the statistics need it.
+/// A landing for the statistics.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Landing {
     /// From 0.
@@ -43,12 +43,12 @@ pub(super) struct Landing {
     pub(super) rest: Point2<f64>,
 }
 
-/// What some trials gave, in the order of trials and hops.
+/// The results of some trials, in the order of trials and hops.
 #[derive(Debug, Default)]
 pub(super) struct Flown {
     pub(super) trials: Vec<TrialRecord>,
     pub(super) landings: Vec<Landing>,
-    /// Empty where no records are wanted.
+    /// Empty if no records are requested.
     pub(super) hops: Vec<HopRecord>,
 }
 
@@ -95,7 +95,7 @@ pub(super) fn fly<G: FirstContact>(
     flown.trials.push(TrialRecord { trial, outcome, hops: journey.hops, end_m, goal_distance_m });
 }
 
-/// A trial on its way.
+/// A trial in progress.
 struct Journey<'t, G: FirstContact> {
     ground: &'t G,
     plan: &'t Plan<G::Contact>,
@@ -105,7 +105,7 @@ struct Journey<'t, G: FirstContact> {
 }
 
 impl<G: FirstContact> Journey<'_, G> {
-    /// The next command, or how the journey ends here.
+    /// The next command, or the outcome of a journey that ends here.
     fn decide(&self, drawn: &HopDraws) -> Result<Command<G::Contact>, TrialOutcome> {
         let planned = usize::try_from(self.hops).ok().and_then(|hop| self.plan.hops.get(hop));
         match self.rules.policy {
@@ -116,7 +116,7 @@ impl<G: FirstContact> Journey<'_, G> {
                 if self.is_at_goal(&believed) {
                     return Err(self.arrived());
                 }
-                // Where it believes to be on the plan, the plan is as good as any other.
+                // At a planned position the planned hop is optimal.
                 match planned {
                     Some(hop) if hop.from == believed => Ok(hop.command),
                     _ => self.plan.replan.as_ref().and_then(|replan| replan.next(&believed)).ok_or(TrialOutcome::Stuck),
@@ -129,12 +129,12 @@ impl<G: FirstContact> Journey<'_, G> {
         (self.ground.point(position).xy() - self.plan.goal).norm() <= self.rules.goal_tolerance_m
     }
 
-    /// How a journey ends that stops here on purpose.
+    /// The outcome of a journey that the robot ends here on purpose.
     fn arrived(&self) -> TrialOutcome {
         if self.is_at_goal(&self.position) { TrialOutcome::Reached } else { TrialOutcome::Missed }
     }
 
-    /// Flies a hop, with the bounce-and-roll displacement after it, and reports it; the outcome, where the trial ends with it.
+    /// Flies a hop and its bounce-and-roll displacement, and reports it; returns the outcome if the trial ends with it.
     fn hop(
         &mut self,
         liftoff: &LiftoffVelocity,
@@ -172,7 +172,7 @@ impl<G: FirstContact> Journey<'_, G> {
         outcome
     }
 
-    /// The contact; of a flight that left the known ground, where it was then, in the air.
+    /// The contact; for a flight that left the known ground, its position in the air there.
     fn end_of_flight(
         &self,
         end: &G::Contact,
@@ -190,7 +190,7 @@ impl<G: FirstContact> Journey<'_, G> {
     }
 }
 
-/// How a trial ends with a contact that does not hold.
+/// The outcome of a contact that does not hold.
 const fn outcome_of(failure: ContactFailure) -> TrialOutcome {
     match failure {
         ContactFailure::Slides => TrialOutcome::SlidAtLanding,

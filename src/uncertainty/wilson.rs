@@ -1,18 +1,18 @@
-//! A share with its interval.
+//! A proportion with its confidence interval.
 
-/// The standard normal's 97.5 % point, the double nearest to it.
+/// The standard normal's 97.5 % quantile, to the nearest double.
 const Z_95: f64 = 1.959_963_984_540_054;
 
-/// A share of successes with its 95 % interval by Wilson's score.
+/// A proportion of successes with its 95 % interval by Wilson's score.
 ///
 /// ```text
 ///     (p + z^2/2n -+ z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n)
 /// ```
 ///
-/// Source: Wilson, J. Am. Stat. Assoc. 22, 1927. Unlike the textbook interval it is of use for rates next to 0 and 1.
+/// Source: Wilson, J. Am. Stat. Assoc. 22, 1927. Unlike the normal approximation, it is valid for proportions close to 0 and 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wilson {
-    /// The share; 0 of no trials.
+    /// The proportion; 0 without trials.
     pub rate: f64,
     /// Lower end.
     pub low: f64,
@@ -21,12 +21,12 @@ pub struct Wilson {
 }
 
 impl Wilson {
-    /// Of so many successes among so many trials; 0 to 1 of no trials.
+    /// The interval for a number of successes in a number of trials; 0 to 1 without trials.
     ///
     /// # Examples
     /// ```
     /// use chta::uncertainty::Wilson;
-    /// // The classic: none of ten.
+    /// // The classic: 0 of 10.
     /// let none = Wilson::of(0, 10);
     /// assert!(none.low == 0.0 && (none.high - 0.277_532_799_862_888_6).abs() < 1e-12);
     /// // 8 of 10: 0.490 to 0.943
@@ -44,7 +44,7 @@ impl Wilson {
         let centre = rate + z2 / (2.0 * n);
         let half = Z_95 * (rate * (1.0 - rate) / n + z2 / (4.0 * n * n)).sqrt();
         let scale = 1.0 + z2 / n;
-        // The two ends are exactly 0 and 1 where none or all succeed; rounding must not move them.
+        // The ends are exactly 0 and 1 if none or all succeed; rounding must not change them.
         let low = if successes == 0 { 0.0 } else { ((centre - half) / scale).max(0.0) };
         let high = if successes == trials { 1.0 } else { ((centre + half) / scale).min(1.0) };
         Self { rate, low, high }

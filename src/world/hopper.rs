@@ -23,9 +23,9 @@ pub struct HopperLimits {
     pub apex_height_max_m: Option<f64>,
     /// Longest flight, s.
     pub flight_time_max_s: Option<f64>,
-    /// Mass, kg, used for energies only.
+    /// Mass, kg, only used for energies.
     pub mass_kg: Option<f64>,
-    /// Rest between hops, s, used for the mission time only.
+    /// Rest between hops, s, only used for the mission time.
     pub rest_time_s: Option<f64>,
 }
 
@@ -43,7 +43,7 @@ impl HopperLimits {
         rest_time_s: None,
     };
 
-    /// The two speed limits that every analysis needs, and no other limit.
+    /// The two speed limits that every analysis needs, without other limits.
     pub const fn with_speeds(takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Self {
         Self { takeoff_speed_max_m_s, landing_speed_max_m_s, ..Self::UNLIMITED }
     }
@@ -55,13 +55,13 @@ impl Default for HopperLimits {
     }
 }
 
-/// A ballistic hopper: a point mass with limits that are valid.
+/// A ballistic hopper: a point mass with valid limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hopper {
     limits: HopperLimits,
 }
 
-/// One limit of a hopper that has no meaning.
+/// One invalid limit of a hopper.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct HopperProblem {
     /// The limit, by its key in a scenario's table `hopper`.
@@ -72,7 +72,7 @@ pub struct HopperProblem {
     pub expected: &'static str,
 }
 
-/// All that is wrong with the limits of a hopper.
+/// All invalid limits of a hopper.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
 pub struct InvalidHopper(pub Vec<HopperProblem>);
@@ -90,7 +90,7 @@ impl Hopper {
     /// A hopper with these limits.
     ///
     /// # Errors
-    /// [`InvalidHopper`] with every limit that has no meaning.
+    /// [`InvalidHopper`] with every invalid limit.
     ///
     /// # Examples
     /// ```
@@ -108,7 +108,7 @@ impl Hopper {
         const NOT_NEGATIVE: &str = "a finite number of at least 0";
         const POSITIVE: &str = "a finite number above 0";
         const ELEVATION: &str = "an angle from -90 to 90 degrees";
-        // No destructuring with `..`: a limit that is added is checked too.
+        // No destructuring with `..`, so that a new limit cannot be left unchecked.
         let HopperLimits {
             takeoff_speed_max_m_s,
             landing_speed_max_m_s,
@@ -123,7 +123,7 @@ impl Hopper {
         let not_negative = |number: f64| number.is_finite() && number >= 0.0;
         let positive = |number: f64| number.is_finite() && number > 0.0;
         let speed = |number: f64| number > 0.0;
-        // Not 90 in degrees, which may round: a right angle in radians is the bound.
+        // The bound is a right angle in radians: 90 in degrees may be rounded.
         let elevation = |angle: Angle| angle.radians().abs() <= std::f64::consts::FRAC_PI_2;
         let angle = |key, angle: Option<Angle>| (key, angle.is_none_or(elevation), angle.map_or(0.0, Angle::degrees), ELEVATION);
         let number = |key, number: Option<f64>, holds: fn(f64) -> bool, expected| {
@@ -158,10 +158,10 @@ impl Hopper {
         if problems.is_empty() { Ok(Self { limits }) } else { Err(InvalidHopper(problems)) }
     }
 
-    /// A hopper with the two speed limits that every analysis needs, and no other limit.
+    /// A hopper with the two speed limits that every analysis needs, without other limits.
     ///
     /// # Errors
-    /// [`InvalidHopper`] where a speed is not above 0.
+    /// [`InvalidHopper`] if a speed is not above 0.
     pub fn with_speeds(takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Result<Self, InvalidHopper> {
         Self::new(HopperLimits::with_speeds(takeoff_speed_max_m_s, landing_speed_max_m_s))
     }
@@ -177,7 +177,7 @@ impl Hopper {
 mod tests {
     use super::*;
 
-    /// The keys that a change of the limits of a good hopper gives problems for.
+    /// The keys of the problems that a change to the limits of a valid hopper causes.
     fn refused(change: impl FnOnce(&mut HopperLimits)) -> Vec<&'static str> {
         let mut limits = HopperLimits::with_speeds(8.0, 8.0);
         change(&mut limits);

@@ -1,4 +1,4 @@
-//! Flying allocates nothing: what a run allocates does not grow with hops or trials.
+//! Trials allocate no memory: the allocations of a run do not grow with hops or trials.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene should stop")]
 
@@ -47,7 +47,7 @@ fn a_thousand_trials_take_few_allocations_on_chain_and_map() {
     for mission in [Mission::along_chain(test, path, start, goal), over_dem] {
         let simulation = Simulation::new(&mission, errors).unwrap();
         let trials = TrialOptions { trials: 1000, ..TrialOptions::default() };
-        // The harness has a thread of its own: the quietest of three rounds is the run's.
+        // The test harness has its own thread, so the round with the fewest allocations counts.
         let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
         let rounds = [(); 3].map(|()| {
             let region = Region::new(ALLOCATOR);
@@ -57,7 +57,7 @@ fn a_thousand_trials_take_few_allocations_on_chain_and_map() {
         });
         let (allocations, hops) = rounds.into_iter().min().unwrap();
         assert!(hops > 1000, "only {hops} hops");
-        // Lists that grow in doublings for each of twenty stretches, bins of the quantiles.
+        // Lists that grow in doublings for each of twenty tasks, bins of the quantiles.
         assert!(allocations < 900, "{allocations} allocations for {hops} hops");
     }
 }

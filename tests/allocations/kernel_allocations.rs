@@ -62,11 +62,12 @@ fn ten_thousand_pairs_are_evaluated_without_an_allocation_either_way() {
     let (allocations, (feasible, refused)) = quietest(evaluate_all);
     assert_eq!(allocations, 0);
     assert!(feasible > 300 && refused > 3000, "the pairs are all alike: {feasible} feasible, {refused} refused");
-    // The first round makes the working memory; the other two have it.
+    // The first round creates the working memory, which the other two reuse.
     assert_eq!(quietest(&mut sweep_all), (0, (feasible, refused)));
 }
 
-/// The fewest allocations of three rounds, and what that round came to: the harness has a thread of its own, whose allocations count too.
+/// The fewest allocations of three rounds, and the result of that round: the test harness has its own thread, whose allocations
+/// count too.
 fn quietest<T: Ord + Copy>(mut round: impl FnMut() -> T) -> (usize, T) {
     let rounds = [(); 3].map(|()| {
         let region = Region::new(ALLOCATOR);

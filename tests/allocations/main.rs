@@ -1,4 +1,4 @@
-//! Tests that count allocations. They have a process of their own, because the counter sees the whole process, and run one at a time.
+//! Tests that count allocations. The counter sees the whole process, so they have a process of their own and run one at a time.
 
 use std::{
     alloc::System,
@@ -14,7 +14,7 @@ mod map_allocations;
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Holds the other tests of this process back until the guard is dropped: their allocations would be counted too.
+/// Blocks the other tests of this process until the guard is dropped: their allocations would be counted too.
 fn alone() -> MutexGuard<'static, ()> {
     static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
     ONE_AT_A_TIME.lock().unwrap_or_else(PoisonError::into_inner)

@@ -1,4 +1,4 @@
-//! The map's kernel allocates nothing, but for the one pair in thousands that it gives to the slice and the hop test.
+//! The map's kernel allocates no memory except for one pair in thousands that needs the slice and the hop test.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot set its scene should stop")]
 
@@ -34,5 +34,5 @@ fn hardly_a_pair_of_rough_ground_needs_an_allocation() {
         }
     }
     assert!(feasible > 10_000 && refused > 10_000, "the pairs are all alike: {feasible} feasible, {refused} refused");
-    assert!(exact <= (feasible + refused) / 1000, "{exact} of {} pairs were given to the exact code", feasible + refused);
+    assert!(exact <= (feasible + refused) / 1000, "{exact} of {} pairs needed the exact code", feasible + refused);
 }

@@ -9,7 +9,8 @@ use crate::desk::Desk;
 use chta::terrain::{Dem, read_dem};
 use serde_json::Value;
 
-/// Level ground of 30 x 20 posts of 1 m with a wall of steep posts across, but for a gap in the north, and a hole in the south-east.
+/// Level ground of 30 x 20 posts of 1 m with a wall of steep posts across, but for a gap in the north, and a hole in the
+/// south-east.
 fn walled() -> Desk {
     let desk = Desk::new();
     let mut grid = "ncols 30\nnrows 20\nxllcorner 99.5\nyllcorner 199.5\ncellsize 1\nNODATA_value -9999\n".to_owned();

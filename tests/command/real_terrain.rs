@@ -1,7 +1,7 @@
 //! Both real DEMs from `chta run` to path and picture, for several transects, reachable and not.
 //!
-//! The files are read from ../shared/dem and skipped with a printed reason where they are absent; the same kinds of file and slope are
-//! covered by made-up terrain in `shipped_scenarios.rs` and `terrain_files.rs`.
+//! The files are read from ../shared/dem and skipped with a printed reason where they are absent; the same kinds of file and slope
+//! are covered by made-up terrain in `shipped_scenarios.rs` and `terrain_files.rs`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot run the program should stop")]
 

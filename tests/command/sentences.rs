@@ -1,7 +1,7 @@
 //! Sentences of the library name keys and facts, never options of the command; and no decision is made on a sentence.
 //!
-//! Both are looked for in the sources, without their tests: options and commands in the text and the documentation of everything outside
-//! `src/cli`, decisions in the code of all of `src`.
+//! Both are looked for in the sources, without their tests: options and commands in the text and the documentation of everything
+//! outside `src/cli`, decisions in the code of all of `src`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot read the sources should stop")]
 

@@ -305,8 +305,8 @@ fn narrow_cones_lower_the_spread_of_a_landing_and_raise_the_error_at_the_goal() 
     }
 }
 
-/// On a chain and over a DEM: replanned trials of a scenario that weighs risk reach the goal no less often than the plan flown blindly,
-/// and more often than trials that are replanned without regard to it.
+/// On a chain and over a DEM: replanned trials of a scenario that weighs risk reach the goal no less often than the plan flown
+/// blindly, and more often than trials that are replanned without regard to it.
 #[test]
 fn replanning_weighs_risk_as_the_plan_does() {
     for name in ["rolling_surely.toml", "mars_crater_field_surely.toml"] {

@@ -1,4 +1,5 @@
-//! What the set says of itself: the limits it names as binding or in conflict are those whose removal changes the answer.
+//! The explanations of a take-off set: the limits that it names as binding or in conflict are those whose removal changes the
+//! result.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::support::{Draw, uniform};
@@ -9,7 +10,7 @@ use chta::{
     world::{Gravity, Hopper, HopperLimits, Limit},
 };
 
-/// One pair in a world of the same limits everywhere, so that each can be taken away by itself.
+/// One pair in a world with the same limits everywhere, so that each limit can be removed separately.
 #[derive(Clone)]
 struct Case {
     points: Vec<ChainPoint>,
@@ -61,7 +62,7 @@ impl Case {
             Limit::ApexHeight => other.limits.apex_height_max_m = None,
             Limit::FlightTime => other.limits.flight_time_max_s = None,
             Limit::Direction | Limit::KeepOut | Limit::RestSlope | Limit::Bend | Limit::LineOfSight => {
-                panic!("{limit} cannot be taken away")
+                panic!("{limit} cannot be removed")
             }
         }
         other
@@ -95,7 +96,7 @@ fn the_binding_limits_move_their_end_and_no_other_limit_does() {
         }
         if let Some(vertex) = binding.lower.vertex {
             assert_eq!(binding.lower.limit, Limit::Terrain);
-            // Lowering the vertex that decides moves the lower end; lowering any other does not.
+            // Lowering the deciding vertex moves the lower end; lowering any other vertex does not.
             for i in 1..case.points.len() - 1 {
                 let mut lowered = case.clone();
                 lowered.points[i].z_m -= 1e-3 * (case.points[1].x_m - case.points[0].x_m);
@@ -119,12 +120,12 @@ fn a_limit_that_refuses_alone_refuses_alone_and_not_without_itself() {
         let only_it = REMOVABLE.into_iter().filter(|l| *l != alone.limit).fold(case.clone(), |case, limit| case.without(limit));
         assert!(
             matches!(only_it.set().conflict(), Some(Conflict::Alone(again)) if again.limit == alone.limit),
-            "{} does not refuse by itself",
+            "{} alone does not refuse",
             alone.limit
         );
         let without = case.without(alone.limit).set();
         let again = matches!(without.conflict(), Some(Conflict::Alone(other)) if other.limit == alone.limit);
-        assert!(!again, "{} still refuses after it was taken away", alone.limit);
+        assert!(!again, "{} is reported after its removal", alone.limit);
         seen.insert(alone.limit);
     }
     for limit in [Limit::TakeoffSpeed, Limit::LandingSpeed, Limit::ApexHeight] {
@@ -140,10 +141,10 @@ fn two_limits_in_conflict_leave_nothing_between_them_and_less_of_a_gap_without_e
         let case = Case::draw(draw);
         let set = case.set();
         let Some(Conflict::Pair { lower, upper, gap_deg }) = set.conflict() else { continue };
-        assert!(gap_deg >= 0.0, "a gap of {gap_deg} deg is none");
+        assert!(gap_deg >= 0.0, "a negative gap: {gap_deg} deg");
         let between = SlopeInterval { lower: lower.lofts.lower, upper: upper.lofts.upper };
         assert!(between.is_empty() || between.upper <= 0.0, "{between:?} is left between {} and {}", lower.limit, upper.limit);
-        // These two alone, all else taken away, still conflict.
+        // These two limits still conflict when all others are removed.
         let only_both = REMOVABLE
             .into_iter()
             .filter(|l| *l != lower.limit && *l != upper.limit)

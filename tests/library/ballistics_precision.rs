@@ -42,7 +42,7 @@ impl Case {
         .unwrap()
     }
 
-    /// The chain of take-off, vertex and landing, from left to right.
+    /// The chain of take-off, vertex and landing, sorted by x.
     fn chain(&self) -> ConstrainedChain {
         let point = |name: &str| {
             let x = self.number(&format!("{name}_x_m"))?;
@@ -55,7 +55,7 @@ impl Case {
         uniform(&points, line(cone("takeoff"), speed("takeoff"), cone("landing"), speed("landing")))
     }
 
-    /// The program's answer.
+    /// The library's result.
     fn answer(&self) -> TakeoffSet {
         let chain = self.chain();
         let test = HopTest::new(chain.with_hopper(&self.hopper(), Gravity::new(self.input("gravity_m_s2")).unwrap()).unwrap());
@@ -70,7 +70,7 @@ fn cases() -> Vec<Case> {
     lines.map(|line| Case(header.iter().copied().zip(line.split(',')).collect())).collect()
 }
 
-/// The larger of the errors of both ends; asserts that both sides agree on whether there is anything.
+/// The larger of the errors of both ends; asserts that both sides are empty or neither is.
 fn error_rad(case: &Case, name: &str, found: Option<AngleInterval>) -> Option<f64> {
     let expected = (case.number(&format!("{name}_min_rad")), case.number(&format!("{name}_max_rad")));
     match (expected, found) {
@@ -90,7 +90,7 @@ fn every_limit_and_the_intersection_agree_with_60_digits_to_a_nanoradian() {
         for limit in set.limits().iter().filter(|l| l.limit != Limit::LineOfSight) {
             let name = limit.limit.name();
             if case.0[format!("{name}_min_rad").as_str()] == "absent" {
-                assert!(limit.limit == Limit::Terrain && limit.vertex.is_none(), "{name} where none was set");
+                assert!(limit.limit == Limit::Terrain && limit.vertex.is_none(), "a limit {name} that was not set");
                 continue;
             }
             errors.entry(name).or_default().extend(error_rad(case, name, set.angles_of(limit.lofts)));

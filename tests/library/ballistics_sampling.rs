@@ -1,4 +1,4 @@
-//! The feasible take-off set against brute force: flights simulated in time and looked at from outside, no closed form of any limit.
+//! The feasible take-off set against brute force: flights simulated in time and checked without any closed form of a limit.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::support::{Draw, explicit, line, uniform};
@@ -11,10 +11,10 @@ use chta::{
     },
 };
 
-/// Where a flight and a limit come so close (relative) that rounding may decide, brute force has no say.
+/// If a flight is closer to a limit than this (relative), rounding may decide and the sample is ignored.
 const TOO_CLOSE: f64 = 3e-8;
 
-/// What brute force says of one flight.
+/// The verdict of brute force on one flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Verdict {
     Feasible,
@@ -22,7 +22,7 @@ enum Verdict {
     TooClose,
 }
 
-/// The tightest limit so far: slack is relative, negative where broken.
+/// The tightest limit so far: slack is relative, negative if the limit is violated.
 struct Slack {
     least: f64,
     by: Limit,
@@ -68,7 +68,7 @@ impl Flight {
     }
 }
 
-/// Evaluates one take-off angle by flying it and comparing what happens with what each limit says.
+/// Evaluates one take-off angle by flying it and checking every limit.
 fn evaluate(test: &HopTest, takeoff: &Station, landing: &Station, theta: f64) -> Verdict {
     let (run, rise) = ((landing.point.x_m - takeoff.point.x_m).abs(), landing.point.z_m - takeoff.point.z_m);
     let flight = Flight::through(run, rise, theta, test.gravity_m_s2());
@@ -116,14 +116,14 @@ fn machine(hopper: &Hopper, flight: &Flight, end: f64, size: f64, slack: &mut Sl
     }
 }
 
-/// Clearance over vertices, and no contact with the ground in between.
+/// Clearance over vertices, and no earlier contact with the ground.
 fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, flight: &Flight, slack: &mut Slack) {
     let geometry = test.chain().geometry();
     let (left, right) = (takeoff.point.x_m.min(landing.point.x_m), takeoff.point.x_m.max(landing.point.x_m));
     let run = right - left;
     let above = |x: f64, ground: f64| takeoff.point.z_m + flight.height(flight.time_to((x - takeoff.point.x_m).abs())) - ground;
     for vertex in geometry.vertices().iter().filter(|v| left < v.x_m && v.x_m < right) {
-        // An angle moves a height by its distance from the nearer end: that is the scale.
+        // A change of angle moves a height in proportion to its distance from the nearer end: that is the scale.
         let arm = (vertex.x_m - left).min(right - vertex.x_m);
         let steep = arm * (1.0 + flight.theta.tan().powi(2)).max(1.0);
         slack.at_most(test.hopper().limits().clearance_m, above(vertex.x_m, vertex.z_m), steep, Limit::Terrain);
@@ -131,7 +131,7 @@ fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, flight: &Flight
     for i in 1..24 {
         let x = left + run * f64::from(i) / 24.0;
         let ground = geometry.station(x).unwrap().point.z_m;
-        // Straight ground and a concave arc: where the vertices are clear, nothing else is hit.
+        // The arc is concave and the ground straight, so an arc above all vertices meets nothing in between.
         if slack.least > 0.0 {
             assert!(
                 above(x, ground) > -1e-6 * run * (1.0 + flight.theta.tan().abs()),
@@ -141,7 +141,7 @@ fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, flight: &Flight
     }
 }
 
-/// A chain of everything ugly, a hopper with some limits of its own, a gravity.
+/// A chain of extreme segments, a hopper with some limits of its own, a gravity.
 fn world(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
     let (g, size) = (draw.gravity(), draw.log_uniform(1e-2, 1e3));
     let segments = 2 + draw.below(6);
@@ -167,7 +167,7 @@ fn world(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
     (explicit(&points, &lines, rest), Hopper::new(limits).unwrap(), g)
 }
 
-/// A chain by friction and cross-slope, as slices of terrain give.
+/// A chain with friction and cross-slopes, as slices of terrain have.
 fn rocky_world(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
     use chta::chain::{GroundForm, PolygonalChain, SegmentGround};
     let (g, size) = (draw.gravity(), draw.log_uniform(1e-2, 1e3));
@@ -191,7 +191,7 @@ fn rocky_world(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
     )
 }
 
-/// A place on the chain: often a vertex, sometimes right beside one.
+/// A position on the chain: often a vertex, sometimes right beside one.
 fn place(draw: &mut Draw, chain: &ConstrainedChain) -> Station {
     let geometry = chain.geometry();
     let vertex = geometry.vertex_station(VertexId(draw.below(geometry.segment_count() + 1)));
@@ -205,7 +205,7 @@ fn place(draw: &mut Draw, chain: &ConstrainedChain) -> Station {
     }
 }
 
-/// Angles between the line of sight and the vertical: spread out, and crowded about the ends of the set.
+/// Angles between the line of sight and the vertical: evenly spread, and concentrated around the ends of the set.
 fn sampled_angles(draw: &mut Draw, set: &TakeoffSet) -> Vec<f64> {
     let (low, high) = (set.line_of_sight().angle().radians() + 1e-5, std::f64::consts::FRAC_PI_2 - 1e-4);
     let mut angles: Vec<f64> = (0..40).map(|i| low + (high - low) * (f64::from(i) + draw.unit()) / 40.0).collect();
@@ -230,7 +230,7 @@ fn compare(seed: u64, worlds: u32, make: fn(&mut Draw) -> (ConstrainedChain, Hop
         for _ in 0..12 {
             let (takeoff, landing) = (place(draw, &chain), place(draw, &chain));
             let Some(set) = test.takeoff_set(&takeoff, &landing) else { continue };
-            // Beyond this the simulation in doubles loses its own digits.
+            // Beyond this the simulation in double precision is not accurate enough.
             if set.line_of_sight().slope().abs() > 50.0 || set.line_of_sight().length_m() < 1e-6 * chain_length(&chain) {
                 continue;
             }
@@ -241,9 +241,11 @@ fn compare(seed: u64, worlds: u32, make: fn(&mut Draw) -> (ConstrainedChain, Hop
                 let inside = set.angles().is_some_and(|a| a.min.radians() <= theta && theta <= a.max.radians());
                 match evaluate(&test, &takeoff, &landing, theta) {
                     Verdict::TooClose => close += 1,
-                    Verdict::Feasible => assert!(inside, "flies at {theta} rad, not in {set:?}\n{chain:?}\n{hopper:?} g {g}"),
+                    Verdict::Feasible => {
+                        assert!(inside, "flies at {theta} rad, which is not in {set:?}\n{chain:?}\n{hopper:?} g {g}");
+                    }
                     Verdict::Infeasible(by) => {
-                        assert!(!inside, "{by} broken at {theta} rad, yet in {set:?}\n{chain:?}\n{hopper:?} g {g}");
+                        assert!(!inside, "{by} violated at {theta} rad, which is in {set:?}\n{chain:?}\n{hopper:?} g {g}");
                     }
                 }
             }
@@ -271,7 +273,7 @@ fn every_sampled_angle_is_in_the_set_exactly_if_it_flies_on_rocky_ground() {
     assert!(close * 50 < evaluated, "{close} of {evaluated} flights too close to call");
 }
 
-/// Flies from a station until the arc meets the chain again; the x of that point.
+/// Flies from a station until the arc meets the chain again; returns the x of that point.
 fn fly(points: &[ChainPoint], takeoff: &Station, direction: Direction, flight: &Flight) -> Option<f64> {
     let above = |d: f64, p: ChainPoint| takeoff.point.z_m + flight.height(flight.time_to(d)) - p.z_m;
     let order: Vec<ChainPoint> =
@@ -285,7 +287,7 @@ fn fly(points: &[ChainPoint], takeoff: &Station, direction: Direction, flight: &
         if above(away(b), b) > 0.0 {
             continue;
         }
-        // Above at the near end (or at the take-off itself), below at the far end: bisect.
+        // Above the ground at the near end (or at the take-off itself), below it at the far end: bisect.
         let on = |d: f64| ChainPoint::new(0.0, a.z_m + (b.z_m - a.z_m) * ((d - away(a)) / (away(b) - away(a))));
         let (mut low, mut high) = (away(a).max(1e-4 * away(b)), away(b));
         if above(low, on(low)) <= 0.0 {
@@ -319,7 +321,7 @@ fn a_planted_flight_is_found_under_limits_that_touch_it() {
         }
         let end = flight.time_to(run);
         let (vx, vz) = (flight.v * flight.theta.cos(), flight.v * flight.theta.sin() - g * end);
-        // Limits that the flight touches, but for the rounding of its own simulation.
+        // Limits that the flight just satisfies, except for the rounding of its simulation.
         let hair = 1e-7;
         let touching = |angle: f64, draw: &mut Draw| {
             let ends = if draw.chance(0.5) { (hair, draw.uniform(hair, 1.0)) } else { (draw.uniform(hair, 1.0), hair) };
@@ -462,7 +464,7 @@ fn energy_is_kept_and_the_tangents_add_up() {
         let (v_t, v_l) = (arc.takeoff_speed_m_s(), arc.landing_speed_m_s());
         let potential = 2.0 * test.gravity_m_s2() * set.line_of_sight().rise_m();
         assert!((v_l * v_l - (v_t * v_t - potential)).abs() <= 1e-12 * (v_t * v_t + v_l * v_l), "v_l^2 = v_t^2 - 2 g Z");
-        // The tangents of take-off and landing have the line of sight's as their mean (P eq. 10).
+        // The mean of the take-off and landing tangents is that of the line of sight (P eq. 10).
         let (up, down) = (arc.takeoff_angle().radians().tan(), arc.landing_angle().radians().tan());
         let sum = up + down - 2.0 * set.line_of_sight().slope();
         assert!(sum.abs() <= 1e-11 * (1.0 + up.abs() + up * up + down * down), "{up} + {down}");
@@ -487,7 +489,7 @@ fn rest_slope_cross_slope_and_keep_out_refuse_at_the_end_that_has_them() {
             }
             seen.insert(first);
         }
-        // The steepness by hand, from the two vertices of the segment that a point lies on.
+        // The steepness computed independently, from the two vertices of the segment under a point.
         if let Site::Inside(segment) = takeoff.site
             && let Err(GroundRefusal::TooSteep { tilt, max }) = test.chain().check_contact(takeoff, Contact::Takeoff, direction)
         {
@@ -514,7 +516,7 @@ fn limits_that_touch_leave_exactly_one_arc() {
         let angles = test.takeoff_set(&at(0), &at(1)).unwrap().angles().expect("limits that touch still hold");
         assert_eq!(angles.min, angles.max);
         assert!((angles.min.degrees() - degrees).abs() < 1e-12 * degrees);
-        // The least speed there is, as a double: the tolerance keeps it, a millionth less does not.
+        // The least possible speed, as a double: the tolerance accepts it, and refuses a millionth less.
         let least = chta::ballistics::least_takeoff_speed_m_s(chta::ballistics::LineOfSight::new(run, 0.0), g);
         for (speed, reaches) in [(least, true), (least * (1.0 - 1e-6), false)] {
             let chain = uniform(&points, line((-90.0, 90.0), speed, (-90.0, 90.0), speed));
@@ -535,7 +537,7 @@ fn a_landing_exactly_as_high_as_the_apex_limit_is_allowed_from_below() {
         let at = |i| chain.geometry().vertex_station(VertexId(i));
         let set = test.takeoff_set(&at(0), &at(1)).unwrap();
         assert_eq!(set.lofts().is_some(), allowed, "{height} m");
-        // The steepest of them lands level: b - n = 0.
+        // The steepest of them lands horizontally: b - n = 0.
         assert!(set.lofts().is_none_or(|lofts| (lofts.upper - 3.0).abs() < 1e-12));
     }
 }

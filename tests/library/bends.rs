@@ -91,7 +91,7 @@ fn legs_meet_in_one_vertex_and_a_straight_via_is_no_bend() {
     let chain = PolygonalChain::from_legs(&legs, None).unwrap();
     let place = |v: &VertexId| (chain.vertices()[v.index()].x_m, chain.map_points().unwrap()[v.index()]);
     let bends: Vec<_> = chain.bends().iter().map(place).collect();
-    assert_eq!(bends, [(50.0, at(55.0, 5.0)), (100.0, at(55.0, 55.0))], "(30, 5) is passed straight on; turning back is a bend");
+    assert_eq!(bends, [(50.0, at(55.0, 5.0)), (100.0, at(55.0, 55.0))], "(30, 5) lies on a straight line; turning back is a bend");
     assert_eq!(chain.extent_m(), (0.0, 125.0));
     let mut csv = Vec::new();
     chta::chain::csv::write_chain_csv(&chain, &mut csv, &[]).unwrap();

@@ -1,4 +1,4 @@
-//! Every kind of bad chain CSV, drawn: line, column, underlined text, and the words that matter.
+//! Every kind of bad chain CSV: line, column, underlined text, and the important words of the message.
 
 use chta::chain::csv::{CsvProblem, CsvProblems, read_chain_csv, read_pairs_csv};
 
@@ -141,7 +141,7 @@ fn ragged_rows() {
 
 #[test]
 fn a_ragged_row_says_nothing_of_its_columns() {
-    // Neither that a column is filled, nor that both forms are.
+    // Neither "column filled" nor "both forms" is reported.
     let header = format!("x_m,z_m,friction_coefficient,{SIX}");
     let words = &["found 2 fields", "expected 9 as in the header"];
     assert_problems(&format!("{header}\n0,0,0.6,,,,,,\n1,0\n2,0,,,,,,,\n"), &[(3, None, "1,0", None, words)]);
@@ -251,7 +251,7 @@ fn a_line_without_end_is_refused_in_little_space() {
         let size: usize = problems.iter().map(|p| p.text.len() + p.found.len() + p.expected.len() + p.help.len()).sum();
         assert!(size < 2000, "the problems hold {size} bytes");
     }
-    // Long, but not too long: the message holds a window of it.
+    // Long, but not too long: the message shows an excerpt.
     let source = format!("x_m,z_m,note\n0,{},{}\n1,1,\n", "9".repeat(30_000), "n".repeat(30_000));
     let CsvProblems { problems, .. } = problems_of(source.as_bytes());
     assert_eq!((problems.len(), problems[0].column), (1, Some(3)));

@@ -1,4 +1,4 @@
-//! Chains of every kind go through their CSV and come back the same, bit by bit.
+//! Chains of every kind are written to CSV and read back the same, bit by bit.
 
 use chta::{
     chain::{
@@ -16,7 +16,7 @@ fn written(chain: &PolygonalChain) -> Result<String, ChainWriteError> {
     Ok(String::from_utf8(bytes).unwrap_or_else(|error| panic!("no UTF-8: {error}")))
 }
 
-/// Numbers that printing and parsing have trouble with.
+/// Numbers that are difficult to print and parse.
 fn ugly_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         select(
@@ -163,14 +163,14 @@ fn columns_go_in_any_order_and_dress() {
 #[test]
 fn what_a_file_cannot_state_is_speed_zero_or_refused() {
     let good = LineConstraints { takeoff: rule(60.0, 90.0, 10.0), landing: rule(-90.0, -60.0, 10.0) };
-    // A direction that one segment leaves out, and a set whose ends are crossed: not allowed there.
+    // A direction that one segment leaves out, and a set with crossed ends: not allowed there.
     let crossed = LineConstraints { takeoff: rule(90.0, 60.0, 10.0), ..good };
     let chain = one_segment(vec![explicit(Some(good), Some(good)), explicit(Some(crossed), None)]);
     let text = written(&chain).unwrap();
     assert!(text.contains("\n1,0,60,90,0,-90,-60,10,0,0,0,0,0,0\n"), "{text}");
     let read = read_chain_csv(text.as_bytes()).unwrap().chain;
     assert_eq!(read.grounds()[0], chain.grounds()[0]);
-    // Nothing allowed anywhere stays so, and does not turn into a chain that asks the scenario.
+    // Where nothing is allowed, that is kept, and the chain does not take constraints from the scenario.
     let nothing = read_chain_csv(written(&one_segment(vec![explicit(None, None)])).unwrap().as_bytes()).unwrap().chain;
     let GroundForm::Explicit { forward: Some(forward), reverse: None } = nothing.grounds()[0].form else { panic!("{nothing:?}") };
     assert_eq!((forward.takeoff.speed_max_m_s(), forward.landing.speed_max_m_s()), (0.0, 0.0));

@@ -1,6 +1,7 @@
-//! Every file of the shared folder read or refused: docs/formats.md says how, by real runs, and GDAL agrees on what was read.
+//! Every file of the shared folder is read or refused as docs/formats.md states; the table there comes from real runs, and GDAL
+//! agrees on what was read.
 //!
-//! `CHTA_UPDATE_DOCS=1 cargo test --test library formats_table` writes the table anew.
+//! `CHTA_UPDATE_DOCS=1 cargo test --test library formats_table` writes the table again.
 #![allow(clippy::cast_precision_loss, reason = "rows and columns are small")]
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
@@ -88,7 +89,7 @@ fn the_table_of_the_documentation_is_what_real_runs_say() {
     if std::env::var_os("CHTA_UPDATE_DOCS").is_some() {
         std::fs::write(&documentation, format!("{before}{BEGIN}{table}{END}{after}")).unwrap();
     } else {
-        assert_eq!(old, table, "docs/formats.md is old: run with CHTA_UPDATE_DOCS=1");
+        assert_eq!(old, table, "docs/formats.md is out of date: run with CHTA_UPDATE_DOCS=1");
     }
 }
 
@@ -96,7 +97,7 @@ fn the_table_of_the_documentation_is_what_real_runs_say() {
 fn the_documentation_names_every_format() {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/formats.md")).unwrap();
     for (name, _) in FORMATS {
-        assert!(text.contains(name), "docs/formats.md says nothing of {name}");
+        assert!(text.contains(name), "docs/formats.md does not mention {name}");
     }
 }
 
@@ -114,7 +115,7 @@ fn run(program: &str, arguments: &[&str]) -> Vec<u8> {
     output.stdout
 }
 
-/// Rows, columns, extremes and transform after gdalinfo. `-mm` computes the extremes; `-stats` would believe what a file says of itself.
+/// Rows, columns, extremes and transform from gdalinfo. `-mm` computes the extremes; `-stats` would use those stated in the file.
 fn compare_with_gdalinfo(name: &str, path: &Path, dem: &Dem) {
     let info: serde_json::Value = serde_json::from_slice(&run("gdalinfo", &["-json", "-mm", path.to_str().unwrap()])).unwrap();
     let number =
@@ -134,11 +135,11 @@ fn compare_with_gdalinfo(name: &str, path: &Path, dem: &Dem) {
     assert_eq!((transform[2], transform[4]), (0.0, 0.0), "{name}");
 }
 
-/// Every post after GDAL, as raw doubles.
+/// Every post as read by GDAL, as raw doubles.
 fn compare_every_post(name: &str, path: &Path, dem: &Dem) {
     let folder = tempfile::tempdir().unwrap();
     let raw = folder.path().join("raw.img");
-    // GDAL rounds text to 32 bits unless told not to.
+    // GDAL rounds text output to 32 bits by default.
     let exactly: &[&str] = if name.to_ascii_lowercase().ends_with(".asc") { &["-oo", "DATATYPE=Float64"] } else { &[] };
     let files = [path.to_str().unwrap(), raw.to_str().unwrap()];
     run("gdal_translate", &[&["-q", "-of", "ENVI", "-ot", "Float64"], exactly, &files].concat());
@@ -156,7 +157,7 @@ fn gdal_agrees_on_every_file_that_is_read() {
     let mut read = 0;
     for (name, path) in files {
         let Ok(dem) = read_dem(&path) else { continue };
-        // A copy: gdalinfo would write beside the original, and read what an older one wrote there.
+        // A copy: gdalinfo would write statistics beside the original, and read older ones there.
         let folder = tempfile::tempdir().unwrap();
         let copy = folder.path().join(path.file_name().unwrap());
         std::fs::copy(&path, &copy).unwrap();

@@ -1,4 +1,4 @@
-//! The search against an edge list built pair by pair, the frontier against closures, and what more limits may and may not do.
+//! The search against an edge list of all pairs, the frontier against closures, and the effect of additional limits.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod own_search;
@@ -21,7 +21,7 @@ use chta::{
 /// Hops and effort, compared in this order.
 type Price = (u64, f64);
 
-/// A chain on which some journeys are possible and some are not.
+/// A chain with some possible and some impossible journeys.
 struct World {
     points: Vec<ChainPoint>,
     lines: Vec<(LineConstraints, LineConstraints)>,
@@ -51,7 +51,7 @@ impl World {
         explicit(&self.points, &self.lines, RestSlope::Unlimited)
     }
 
-    /// The same with every speed limit multiplied.
+    /// The same chain with every speed limit multiplied.
     fn slower(&self, factor: f64) -> Self {
         let slow = |l: &LineConstraints| l.capped(l.takeoff.speed_max_m_s() * factor, l.landing.speed_max_m_s() * factor);
         let lines = self.lines.iter().map(|(f, r)| (slow(f), slow(r))).collect();
@@ -59,7 +59,7 @@ impl World {
     }
 }
 
-/// A place on a chain, often a vertex.
+/// A position on a chain, often a vertex.
 fn place(draw: &mut Draw, chain: &ConstrainedChain) -> Station {
     let geometry = chain.geometry();
     let (first, last) = geometry.extent_m();
@@ -70,7 +70,7 @@ fn place(draw: &mut Draw, chain: &ConstrainedChain) -> Station {
     }
 }
 
-/// The price of what joins two stations; every pair is tried, near or far.
+/// The cost of the edge between two stations; every pair is tested, near or far.
 fn price(test: &HopTest, a: &Station, b: &Station, options: &SearchOptions) -> Option<Price> {
     let each = |speed: f64, time: f64| match options.effort {
         Effort::TakeoffSpeed | Effort::PeakSpeed => speed,
@@ -97,13 +97,13 @@ fn joined(a: Price, b: Price, effort: Effort) -> Price {
     (a.0 + b.0, if effort == Effort::PeakSpeed { a.1.max(b.1) } else { a.1 + b.1 })
 }
 
-/// The matrix of all prices.
+/// The matrix of all costs.
 fn prices(test: &HopTest, nodes: &NodeSet, options: &SearchOptions) -> Vec<Vec<Option<Price>>> {
     let stations = nodes.stations();
     stations.iter().map(|a| stations.iter().map(|b| price(test, a, b, options)).collect()).collect()
 }
 
-/// Bellman and Ford: relax every edge until nothing changes.
+/// Bellman-Ford: relax every edge until nothing changes.
 fn bellman_ford(prices: &[Vec<Option<Price>>], start: usize, effort: Effort) -> Vec<Option<Price>> {
     let mut best: Vec<Option<Price>> = vec![None; prices.len()];
     best[start] = Some((0, 0.0));
@@ -240,7 +240,7 @@ fn some_journeys_must_first_go_back() {
         if !legs.iter().any(backwards) {
             continue;
         }
-        // The same chain with the direction of the journey alone: longer, or impossible.
+        // The same chain with the direction of the journey only: longer, or impossible.
         let one_way = |(forward, reverse): &(LineConstraints, LineConstraints)| GroundForm::Explicit {
             forward: (towards == Some(Direction::Forward)).then_some(*forward),
             reverse: (towards == Some(Direction::Reverse)).then_some(*reverse),
@@ -262,7 +262,7 @@ fn some_journeys_must_first_go_back() {
     assert!(needed > 5, "only {needed} journeys needed to go back");
 }
 
-/// What can be reached over all pairs from a set, forwards or (transposed) backwards.
+/// The stations reachable from a set over all pairs, forwards or (transposed) backwards.
 fn closure(prices: &[Vec<Option<Price>>], from: usize, transposed: bool) -> Vec<usize> {
     let mut reached = vec![from];
     let mut next = 0;
@@ -307,7 +307,7 @@ fn the_frontier_is_the_closure_from_either_end() {
     assert!(seen > 300 && misses > 30, "{seen} frontiers, {misses} near misses");
 }
 
-/// Whether there is a near miss; asserts that it is the smallest gap of all pairs out of the reached set.
+/// Whether there is a near miss; asserts that it has the smallest gap of all pairs that leave the reached set.
 fn smallest_gap_agrees(test: &HopTest, nodes: &NodeSet, reached: &[usize], frontier: &Frontier) -> bool {
     let stations = nodes.stations();
     let mut smallest = f64::INFINITY;
@@ -320,7 +320,7 @@ fn smallest_gap_agrees(test: &HopTest, nodes: &NodeSet, reached: &[usize], front
     match frontier.nearest_miss {
         None => assert_eq!(smallest, f64::INFINITY),
         Some(miss) => {
-            let Conflict::Pair { gap_deg, .. } = miss.conflict else { panic!("a near miss of one limit alone") };
+            let Conflict::Pair { gap_deg, .. } = miss.conflict else { panic!("a near miss with a single limit") };
             assert_eq!(gap_deg, smallest);
             assert!(frontier.reached.contains(&miss.takeoff) && !frontier.reached.contains(&miss.landing));
             assert!(frontier.refusals.total() >= 1);
@@ -336,7 +336,7 @@ fn staying_where_one_is_takes_no_hop_even_where_nothing_is_allowed() {
     let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(1.62).unwrap()).unwrap());
     let here = chain.geometry().station(4.0).unwrap();
     let answer = asked(&test, here, here, &SearchOptions::default());
-    let Outcome::Path { legs, cost } = answer.outcome else { panic!("no path to where one is") };
+    let Outcome::Path { legs, cost } = answer.outcome else { panic!("no path from a station to itself") };
     assert!(legs.is_empty() && cost.hops() == 0 && cost.effort() == 0.0);
 }
 
@@ -368,7 +368,7 @@ fn refusing_ends_are_named_with_a_usable_point_where_there_is_one() {
             .map(|(_, contact)| contact)
             .collect();
         let Outcome::EndpointsRefuse(refusals) = asked(&test, start, goal, &SearchOptions::default()).outcome else {
-            assert!(expected.is_empty(), "{expected:?} went unnoticed");
+            assert!(expected.is_empty(), "{expected:?} is not reported");
             continue;
         };
         assert_eq!(refusals.iter().map(|r| r.contact).collect::<Vec<_>>(), expected);
@@ -379,7 +379,7 @@ fn refusing_ends_are_named_with_a_usable_point_where_there_is_one() {
             } else {
                 let x = |i: i32| (first + (last - first) * f64::from(i) / 400.0).min(last);
                 let anywhere = (0..=400).map(|i| chain.geometry().station(x(i)).unwrap());
-                assert!(!anywhere.clone().any(|s| allowed(&s, refusal.contact)), "there are usable points");
+                assert!(!anywhere.clone().any(|s| allowed(&s, refusal.contact)), "usable points exist");
                 nowhere += 1;
             }
             if refusal.contact == Contact::Takeoff { starts += 1 } else { goals += 1 }
@@ -447,7 +447,7 @@ fn node_spacing_puts_as_few_points_as_keep_it() {
             let inside = nodes.stations().iter().filter(|s| pair[0].x_m < s.point.x_m && s.point.x_m < pair[1].x_m).count();
             let whole = length(pair[0], pair[1]);
             let gaps = f64::from(u32::try_from(inside).unwrap() + 1);
-            assert!(whole / gaps <= widest * (1.0 + 1e-12), "{inside} points leave gaps over {widest} m");
+            assert!(whole / gaps <= widest * (1.0 + 1e-12), "{inside} points leave gaps wider than {widest} m");
             assert!(inside == 0 || whole / (gaps - 1.0) > widest * (1.0 - 1e-12), "{inside} points are more than needed");
             most = most.max(inside);
         }
@@ -490,7 +490,7 @@ fn slower_or_more_limited_never_takes_fewer_hops() {
                 .unwrap_or(u64::MAX)
         };
         let free = hops(&chain, &world.hopper);
-        assert!(hops(&slow_chain, &world.hopper) >= free, "slower, and fewer hops");
+        assert!(hops(&slow_chain, &world.hopper) >= free, "lower speeds give fewer hops");
         let reach = (world.lines[0].0.takeoff.speed_max_m_s().powi(2) / world.g).max(1e-3);
         let limited = Hopper::new(HopperLimits {
             clearance_m: world.hopper.limits().clearance_m * 2.0,
@@ -499,7 +499,7 @@ fn slower_or_more_limited_never_takes_fewer_hops() {
             ..*world.hopper.limits()
         })
         .unwrap();
-        assert!(hops(&chain, &limited) >= free, "more limits, and fewer hops");
+        assert!(hops(&chain, &limited) >= free, "more limits give fewer hops");
         compared += u32::from(free < u64::MAX && free > 0);
     }
     assert!(compared > 150, "only {compared} journeys possible");

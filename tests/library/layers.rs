@@ -1,11 +1,11 @@
-//! The ladder of modules (docs in `src/lib.rs`): a module uses only those above it. Read from the sources, so that a new import
-//! upwards fails here with file and line.
+//! The order of modules (docs in `src/lib.rs`): a module uses only those above it. Read from the sources, so that an upward import
+//! fails here with file and line.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot read the sources should stop")]
 
 use std::{fs, path::Path};
 
-/// The rungs, from the top. The last two share no rung with the library: the binary's own side comes after everything.
+/// The layers of modules, from the top. The last two are the binary's own modules, below all of the library.
 const LADDER: [&str; 16] = [
     "progress",
     "quantity",
@@ -25,7 +25,7 @@ const LADDER: [&str; 16] = [
     "cli",
 ];
 
-/// One import that goes the wrong way.
+/// One import that violates the order.
 #[derive(Debug, PartialEq, Eq)]
 struct Upward {
     line: usize,
@@ -33,18 +33,18 @@ struct Upward {
     to: String,
 }
 
-fn rung(module: &str) -> Option<usize> {
+fn layer_of(module: &str) -> Option<usize> {
     LADDER.iter().position(|known| *known == module)
 }
 
-/// The modules that a line of source names after `crate::` or `chta::`, also inside `use crate::{a::b, c}` over several lines.
+/// The modules that a line of source names after `crate::` or `chta::`, including `use crate::{a::b, c}` over several lines.
 fn named_modules(source: &str) -> Vec<(usize, String)> {
     let mut named = Vec::new();
     for prefix in ["crate::", "chta::"] {
         for (start, _) in source.match_indices(prefix) {
             let line = source[..start].matches('\n').count() + 1;
             let line_start = source[..start].rfind('\n').map_or(0, |i| i + 1);
-            // Documentation may speak of any module.
+            // Documentation may name any module.
             if source[line_start..start].trim_start().starts_with("//") {
                 continue;
             }
@@ -54,7 +54,7 @@ fn named_modules(source: &str) -> Vec<(usize, String)> {
                 named.push((line, word(rest)));
                 continue;
             };
-            // The heads of a group at its own depth.
+            // The first names of a group at its own depth.
             let (mut depth, mut head) = (1, true);
             let mut newlines = 0;
             for (i, c) in group.char_indices() {
@@ -79,10 +79,10 @@ fn named_modules(source: &str) -> Vec<(usize, String)> {
 }
 
 fn upward_imports(module: &str, source: &str) -> Vec<Upward> {
-    let Some(own) = rung(module) else { return Vec::new() };
+    let Some(own) = layer_of(module) else { return Vec::new() };
     named_modules(source)
         .into_iter()
-        .filter(|(_, to)| rung(to).is_some_and(|to| to > own))
+        .filter(|(_, to)| layer_of(to).is_some_and(|to| to > own))
         .map(|(line, to)| Upward { line, from: module.to_owned(), to })
         .collect()
 }
@@ -109,8 +109,8 @@ fn every_module_uses_only_those_above_it() {
         let inside = file.strip_prefix(&src).unwrap();
         let module = inside.components().next().unwrap().as_os_str().to_str().unwrap().trim_end_matches(".rs").to_owned();
         assert!(
-            rung(&module).is_some() || ["lib", "main"].contains(&module.as_str()),
-            "{} belongs to no rung of the ladder",
+            layer_of(&module).is_some() || ["lib", "main"].contains(&module.as_str()),
+            "{} belongs to no layer",
             inside.display()
         );
         for Upward { line, from, to } in upward_imports(&module, &fs::read_to_string(&file).unwrap()) {
@@ -125,18 +125,18 @@ fn a_planted_upward_import_is_found() {
     let planted = "//! crate::report is only spoken of here\nuse crate::{\n    chain::Station,\n    graph::{search, Answer},\n    world::Limit,\n};\n";
     let found = upward_imports("hop", planted);
     assert_eq!(found, [Upward { line: 4, from: "hop".to_owned(), to: "graph".to_owned() }]);
-    assert_eq!(upward_imports("ballistics", "fn f() { crate::chain::x() }").len(), 1, "a path in an expression counts");
-    assert_eq!(upward_imports("report", planted), [], "downwards is fine");
+    assert_eq!(upward_imports("ballistics", "fn f() { crate::chain::x() }").len(), 1, "a path in an expression is an import too");
+    assert_eq!(upward_imports("report", planted), [], "downward imports are allowed");
 }
 
-/// Modules that the independent checker may not use: it would state the physics with the same code as the plan.
+/// Modules that the independent checker must not use: otherwise it would share the physics with the plan.
 const CLOSED_TO_THE_CHECKER: [&str; 5] = ["ballistics", "hop", "flight", "graph", "terrain"];
 
-/// Items of `ground` that the checker may not use: it has [`Surface`](chta::ground::Surface) alone.
+/// Items of `ground` that the checker must not use: it may use [`Surface`](chta::ground::Surface) only.
 const CLOSED_ITEMS: [&str; 8] =
     ["Windows", "TakeoffWindows", "FirstContact", "ChainGround", "DemGround", "PostHops", "LiftoffVelocity", "TouchdownState"];
 
-/// What the checker's source names although it may not.
+/// The forbidden names in the checker's source.
 fn forbidden_to_the_checker(source: &str) -> Vec<String> {
     let modules = named_modules(source).into_iter().filter(|(_, module)| CLOSED_TO_THE_CHECKER.contains(&module.as_str()));
     let mut found: Vec<String> = modules.map(|(line, module)| format!("{line}: {module}")).collect();
@@ -152,7 +152,7 @@ fn the_checker_uses_surface_alone() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/path/execute");
     let mut files = Vec::new();
     sources(&folder, &mut files);
-    assert!(!files.is_empty(), "the checker has moved");
+    assert!(!files.is_empty(), "the checker's sources are not at this path");
     for file in files {
         let forbidden = forbidden_to_the_checker(&fs::read_to_string(&file).unwrap());
         assert!(forbidden.is_empty(), "{}: {forbidden:?}", file.display());

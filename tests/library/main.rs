@@ -1,4 +1,4 @@
-//! Tests of the library: what needs neither the command nor a process of its own.
+//! Tests of the library that need neither the command nor a process of their own.
 
 #[path = "../support/mod.rs"]
 mod support;

@@ -1,4 +1,4 @@
-//! Hop maps against the plain way: every pair of posts with the slice and the hop test themselves.
+//! Hop maps against the direct method: slice and hop test for every pair of posts.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its terrain should stop")]
 #![allow(clippy::print_stderr, reason = "skipped tests say why")]
@@ -16,7 +16,7 @@ use chta::{
     world::{Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
-/// Every pair of posts: the same answer, and the same lofts to rounding.
+/// Every pair of posts has the same verdict, and the same lofts up to rounding.
 fn compare_pairs(world: &World, what: &str) -> (usize, usize) {
     let hops = PostHops::new(world.ground(), 1).unwrap();
     let (mut yes, mut no) = (0, 0);
@@ -58,7 +58,7 @@ fn every_pair_of_random_grids_has_the_answer_of_slice_and_hop() {
     assert!(yes > 8_000 && no > 8_000, "{yes} pairs joined, {no} not");
 }
 
-/// Compares whole maps, out and back, with one and with several threads; the plain way's hops.
+/// Compares whole maps in both directions, with one and with several threads; returns the hops of the direct method.
 fn compare_maps(world: &World, start: Post, stride: usize, journeys: &[Journey], what: &str) -> Vec<i16> {
     let mut last = Vec::new();
     for &journey in journeys {
@@ -77,7 +77,7 @@ fn compare_maps(world: &World, start: Post, stride: usize, journeys: &[Journey],
     last
 }
 
-/// A window of a DEM, some of its posts without elevation.
+/// A window of a DEM, with some posts set to no-data.
 fn cut_out(dem: &Dem, first: Post, side: usize, holes: usize, draw: &mut Draw) -> Dem {
     let posts = (0..side).flat_map(|row| (0..side).map(move |col| (first.row + row, first.col + col)));
     let mut heights: Vec<f64> = posts.map(|(row, col)| dem.elevation(row, col).unwrap_or(f64::NAN)).collect();
@@ -91,7 +91,7 @@ fn cut_out(dem: &Dem, first: Post, side: usize, holes: usize, draw: &mut Draw) -
     Dem::new(side, side, heights, GeoReference::local(map.post(first.row, first.col), map.dx_m(), map.dy_m()).unwrap()).unwrap()
 }
 
-/// Twenty cut-outs of a real DEM, each with a start that gets somewhere and with at least a fifth of its posts out of reach.
+/// Twenty cut-outs of a real DEM; from each start some post is reachable and at least a fifth of the posts is not.
 fn compare_cut_outs(file: &str, hopper: Hopper, surface: SurfaceProperties, gravity_m_s2: f64, seed: u64) {
     const SIDE: usize = 24;
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(file);
@@ -138,7 +138,7 @@ fn cut_outs_of_the_moon_have_the_hops_of_every_pair() {
     compare_cut_outs("lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif", hopper, friction(0.25), 1.62, 12);
 }
 
-/// Zones as polygons and as a mask, friction from a raster with holes: every pair as the slice and the hop test have it.
+/// Zones as polygons and as a mask, friction from a raster with holes: every pair has the verdict of the slice and the hop test.
 #[test]
 fn every_pair_under_zones_and_friction_has_the_answer_of_slice_and_hop() {
     let folder = tempfile::tempdir().unwrap();
@@ -151,7 +151,7 @@ fn every_pair_under_zones_and_friction_has_the_answer_of_slice_and_hop() {
         let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(4.0, 4.0) }).unwrap();
         let mut world = World::new(dem, hopper, friction(0.8), 2.0);
         let file = folder.path().join(format!("cover_{number}"));
-        // On lattice lines, beside them, and a needle inside one square.
+        // On lattice lines, beside them, and a narrow triangle inside one square.
         let corner = [2.0, 2.5, 3.3][number % 3];
         let polygon = format!(
             r#"{{"type": "MultiPolygon", "coordinates": [[[[{corner}, 1], [5, 1], [5, {corner}], [{corner}, 4], [{corner}, 1]]],
@@ -194,7 +194,7 @@ fn ways_back_and_strides_have_the_hops_of_every_pair() {
         if dem.elevation(start.row, start.col).is_none() {
             continue;
         }
-        // Falling is easier than climbing for legs that land hard and leap little.
+        // With a high landing speed and a low take-off speed, falling is easier than climbing.
         let hopper = Hopper::new(HopperLimits { clearance_m: 0.02, ..HopperLimits::with_speeds(2.2, 3.5) }).unwrap();
         let world = World::new(dem, hopper, friction(0.9), 1.62);
         let out = compare_maps(&world, start, 1, &[Journey::Outbound], &format!("grid {number}"));
@@ -202,10 +202,11 @@ fn ways_back_and_strides_have_the_hops_of_every_pair() {
         unlike += out.iter().zip(&back).filter(|(out, back)| out != back).count();
         compare_maps(&world, start, 2, &[Journey::Outbound, Journey::Return], &format!("grid {number}, every second post"));
     }
-    assert!(unlike > 50, "ways out and back differ at {unlike} posts only");
+    assert!(unlike > 50, "outbound and return hops differ only at {unlike} posts");
 }
 
-/// The least effort among paths of fewest hops, against a plain search over all pairs of neighbouring layers; and the paths themselves.
+/// The least effort among paths of fewest hops, against a direct search over all pairs of neighbouring layers; and the paths
+/// themselves.
 #[test]
 #[expect(clippy::cast_precision_loss, reason = "small numbers")]
 fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
@@ -309,8 +310,8 @@ fn raising_a_speed_limit_never_makes_a_post_unreachable_nor_farther() {
     }
 }
 
-/// A level plane: one hop reaches `v^2 sin(2 theta) / g` at the steepest of its cone's lower end and 45 degrees, so that hops go by
-/// distance alone. A tilted plane: the parabola of safety, hop by hop, along its line of fall and against it.
+/// A level plane: one hop reaches `v^2 sin(2 theta) / g` at the steeper of 45 degrees and its cone's lower end, so the number of
+/// hops depends on the distance only. A tilted plane: the parabola of safety, hop by hop, up and down its line of fall.
 #[test]
 #[expect(clippy::cast_precision_loss, reason = "small numbers")]
 fn planes_have_the_analytic_shape() {
@@ -326,7 +327,7 @@ fn planes_have_the_analytic_shape() {
         let hops = PostHops::new(world.ground(), 1).unwrap();
         search(&hops, Post { row: 20, col: 20 }, Search::default(), &()).unwrap().hops
     };
-    // The cone keeps hops at atan(1 / mu) or steeper.
+    // The cone allows hops at atan(1 / mu) or steeper.
     let least = libm::atan(1.0 / mu);
     let reach = speed * speed * libm::sin(2.0 * least) / gravity;
     let level = map(0.0);
@@ -372,7 +373,7 @@ fn planes_have_the_analytic_shape() {
     }
 }
 
-/// On a cone whose flank is steeper than friction holds, only its level surroundings and nothing of the flank can be reached.
+/// Of a cone whose flank is steeper than friction holds, only the level surroundings can be reached.
 #[test]
 fn a_cone_too_steep_to_rest_on_is_an_island() {
     let (side, middle) = (31, 15.0f64);
@@ -395,6 +396,6 @@ fn a_cone_too_steep_to_rest_on_is_an_island() {
             assert!(hops >= 0, "({row}, {col}) on level ground");
         }
     }
-    // Behind the cone the way round is longer than the way across: 26 m of chord and more of arc, at most v^2 / g = 5.6 m a hop.
+    // The path around the cone is longer than the straight one: 26 m of chord and more of arc, at most v^2 / g = 5.6 m per hop.
     assert!(map.hops[29 * side + 29] > 7);
 }

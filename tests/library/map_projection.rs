@@ -1,4 +1,4 @@
-//! Projections against GDAL: its files read, its coordinates reproduced.
+//! Projections against GDAL: its files are read, its coordinates reproduced.
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::io::Write;
@@ -25,8 +25,8 @@ fn run(program: &str, arguments: &[&str], input: &str) -> String {
     String::from_utf8_lossy(&output.stdout).into_owned()
 }
 
-/// Longitude and planetocentric latitude of map points as GDAL has them: by way of three dimensions, where no latitude is a matter of
-/// definition.
+/// Longitude and planetocentric latitude of map points from GDAL, via Cartesian coordinates, which are free of the definition of
+/// latitude.
 fn places_of_gdal(srs: &str, points: &[MapPoint]) -> Vec<LonLat> {
     let lines = points.iter().map(|point| format!("{} {} 0\n", point.x, point.y)).collect::<Vec<_>>().concat();
     let centred = format!("+proj=geocent {} +no_defs", figure_of(srs));
@@ -43,7 +43,7 @@ fn places_of_gdal(srs: &str, points: &[MapPoint]) -> Vec<LonLat> {
     places
 }
 
-/// Map points of places as GDAL has them; latitudes planetocentric, by way of three dimensions on the reference surface.
+/// Map points of positions from GDAL, with planetocentric latitudes, via Cartesian coordinates on the reference surface.
 fn points_of_gdal(srs: &str, places: &[LonLat]) -> Vec<MapPoint> {
     let figure = figure_of(srs);
     let radius = |keys: &[&str]| {
@@ -71,10 +71,10 @@ fn figure_of(srs: &str) -> String {
     srs.split_whitespace().filter(|word| keys.iter().any(|key| word.starts_with(key))).collect::<Vec<_>>().join(" ")
 }
 
-/// Both ways, on a grid of points, to 1e-9 degrees and 1e-6 m.
+/// Both directions, on a grid of points, to 1e-9 degrees and 1e-6 m.
 ///
-/// GDAL's own inverse of the equal-area map on an ellipsoid is a cut-off series, 1e-7 degrees off its own way forward on Mars: there only the
-/// way forward counts.
+/// GDAL's inverse of the equal-area map on an ellipsoid is a truncated series, 1e-7 degrees off its own forward projection on Mars:
+/// for that map only the forward projection is compared.
 fn agree(name: &str, projection: &MapProjection, srs: &str, (x, y): (f64, f64), reach_m: f64) {
     let grid = [-1.0, -0.62, -0.1, 0.35, 1.0].map(|step| step * reach_m);
     let points: Vec<MapPoint> = grid.iter().flat_map(|dx| grid.map(|dy| MapPoint::new(x + dx, y + dy))).collect();
@@ -107,7 +107,7 @@ fn placed(directory: &Path, srs: &str) -> PathBuf {
 
 const MARS: &str = "+a=3396190 +b=3376200";
 
-/// Reference systems, a point of each map, and how far around it to look.
+/// Reference systems, a point of each map, and the size of the area around it to compare.
 fn systems() -> Vec<(String, (f64, f64), f64)> {
     let moon = |text: &str, at, reach| (format!("{text} +R=1737400 +units=m +no_defs"), at, reach);
     let mars = |text: &str, at, reach| (format!("{text} {MARS} +units=m +no_defs"), at, reach);
@@ -175,7 +175,7 @@ fn epsg_and_iau_codes_mean_what_gdal_says_and_are_found_again() {
     for (code, at, reach_m) in of_earth {
         let projection = read_dem(&placed(directory.path(), code)).unwrap().georeference().projection().unwrap();
         assert_eq!(projection.code(), Some(code));
-        // GDAL's axes of a code may be north first; its proj string is east first.
+        // The axes of a code in GDAL may be north first; its proj string is east first.
         let srs = run("gdalsrsinfo", &["-o", "proj4", code], "");
         let srs: Vec<&str> =
             srs.split_whitespace().filter(|word| !word.starts_with("+towgs84") && !word.starts_with("+datum")).collect();
@@ -246,7 +246,7 @@ fn the_prj_text_and_the_keys_that_we_write_mean_the_same_to_gdal() {
     }
 }
 
-/// A code, GDAL's PROJ string of it and three dialects of GDAL's well-known text are one map, and GDAL computes the same points on it.
+/// A code, GDAL's PROJ string of it and three dialects of GDAL's WKT state one map, and GDAL computes the same points on it.
 #[test]
 fn a_map_by_code_by_proj_string_and_by_every_well_known_text_is_the_map_of_gdal() {
     if !has_gdal() {
@@ -258,7 +258,7 @@ fn a_map_by_code_by_proj_string_and_by_every_well_known_text_is_the_map_of_gdal(
         let by_code = MapProjection::from_code(&code).unwrap();
         for form in ["proj4", "wkt1", "wkt_esri", "wkt2_2015", "wkt2_2019"] {
             let text = run("gdalsrsinfo", &["-o", form, &code], "");
-            // ESRI's dialect has its orthographic map under another name.
+            // ESRI's dialect names the orthographic map differently.
             if form == "wkt_esri" && text.contains("PROJECTION[\"Local\"]") {
                 continue;
             }
@@ -286,7 +286,7 @@ fn a_map_by_code_by_proj_string_and_by_every_well_known_text_is_the_map_of_gdal(
     }
 }
 
-/// Two roads to the numbers of a projection: equal but for the rounding of a text.
+/// A projection's numbers from two sources: equal up to the rounding of a text.
 fn same_map(what: &str, text: &str, expected: &MapProjection) {
     let found: MapProjection = text.parse().unwrap_or_else(|error| panic!("{what}: {error}\n{text}"));
     let (a, b) = (found.definition(), expected.definition());

@@ -1,5 +1,5 @@
-//! Paths of hop maps, flown again over the triangles of the DEM by the independent checker: every path holds, and what is spoiled is refused
-//! under the name of the limit that it breaks.
+//! Paths of hop maps, flown again over the triangles of the DEM by the independent checker: every path holds, and spoiled ones are
+//! refused under the name of the violated limit.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its terrain should stop")]
 #![allow(clippy::print_stderr, reason = "skipped tests say why")]
@@ -33,7 +33,7 @@ fn path_to(hops: &PostHops, map: &HopMap, goal: Post, choice: TakeoffChoice) -> 
     Some(joined(hops, &flown))
 }
 
-/// Flies the paths to every `step`-th post again; how many hops that were.
+/// Flies the paths to every `step`-th post again; returns the number of hops.
 fn all_hold(ground: DemGround, start: Post, stride: usize, step: usize, what: &str) -> usize {
     let hops = PostHops::new(ground, stride).unwrap();
     let start = hops.nearest_usable(start).unwrap_or(start);
@@ -129,7 +129,7 @@ fn paths_under_zones_and_friction_hold_when_flown_again() {
     assert!(flown > 1000, "only {flown} hops");
 }
 
-/// A real DEM; `None` with a reason where it is absent.
+/// A real DEM; `None` with a printed reason if it is absent.
 fn real(file: &str) -> Option<Dem> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(file);
     if !path.is_file() {
@@ -220,7 +220,7 @@ fn a_hop_spoiled_by_one_percent_is_refused_under_its_limits_name() {
         turned += 1;
         let (min, max) = (hop.takeoff_angles.min.radians(), hop.takeoff_angles.max.radians());
         let sight_rad = ((hop.landing.point_m.z - hop.takeoff.point_m.z) / hop.run_m()).atan();
-        // 1 % of the angle, or of the room to the line of sight and to the vertical where that is less.
+        // 1 % of the angle, or of the distance to the line of sight and to the vertical if that is less.
         let lower = (0.01 * min.abs()).max(1e-3).min(0.5 * (min - sight_rad));
         let upper = (0.01 * max.abs()).max(1e-3).min(0.5 * (std::f64::consts::FRAC_PI_2 - max));
         for (radians, room, limit) in [(min - lower, lower, hop.lower_limit), (max + upper, upper, hop.upper_limit)] {
@@ -243,7 +243,7 @@ fn a_hop_spoiled_by_one_percent_is_refused_under_its_limits_name() {
         Limit::ApexHeight,
         Limit::FlightTime,
     ] {
-        assert!(by_limit[limit.index()] >= 8, "{limit} was spoiled {} times only", by_limit[limit.index()]);
+        assert!(by_limit[limit.index()] >= 8, "{limit} was tested only {} times", by_limit[limit.index()]);
     }
 }
 
@@ -272,7 +272,7 @@ fn a_map_with_one_altered_post_fails() {
         execute(&altered, &path, ends[0].zip(ends[1])).violations
     };
     let index = |row: usize, col: usize| row * 21 + col;
-    // A needle up to 0.1 m below the arc: less than the clearance. 45 degrees over 8 m: 2 m at the middle.
+    // A needle up to 0.1 m below the arc, less than the clearance. 45 degrees over 8 m: 2 m at the middle.
     assert!(names(&flown_over((index(10, 6), 3.0 + 1.9)), ViolatedLimit::Limit(Limit::Terrain)));
     assert!(!names(&flown_over((index(10, 6), 3.0 + 1.7)), ViolatedLimit::Limit(Limit::Terrain)), "it clears that by 0.3 m");
     let blocked = flown_over((index(10, 6), 3.0 + 2.5));
@@ -284,7 +284,7 @@ fn a_map_with_one_altered_post_fails() {
     // A neighbour that makes the landing's own facet too steep to rest on.
     let steep = flown_over((index(10, 9), 3.0 - 1.5));
     assert!(names(&steep, ViolatedLimit::Limit(Limit::RestSlope)), "{steep:?}");
-    // Beside the path nothing changes.
+    // A change beside the path has no effect.
     assert_eq!(flown_over((index(3, 3), 90.0)), []);
 }
 
@@ -310,7 +310,7 @@ fn a_path_of_a_map_must_join_its_ends() {
     assert_eq!(gaps(&path, goal), [2]);
 }
 
-/// The three forms of the same question: slice and hop test, the table of offsets, and the walk over the triangles that replanning asks.
+/// The three forms of the hop test: slice and hop test, the table of offsets, and the walk over the triangles that replanning uses.
 #[test]
 fn a_pair_has_the_same_windows_whichever_way_it_is_asked() {
     let mut compared = 0;
@@ -329,7 +329,7 @@ fn a_pair_has_the_same_windows_whichever_way_it_is_asked() {
     assert!(compared > 500, "only {compared} pairs");
 }
 
-/// A chain that is a slice and the DEM itself give the checker the same answer for the same hop.
+/// On a chain that is a slice and on the DEM itself the checker gives the same result for the same hop.
 #[test]
 fn the_checker_agrees_on_the_slice_and_on_the_dem() {
     let mut compared = 0;

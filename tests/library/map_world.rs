@@ -1,4 +1,4 @@
-//! Random worlds for hop maps: a DEM, a robot, and what lies over the ground, and the plain way to their hops.
+//! Random worlds for hop maps: a DEM with overlays, a robot, and the direct method for their hops.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its terrain should stop")]
 
@@ -16,7 +16,7 @@ use chta::{
 
 use crate::support::Draw;
 
-/// A terrain, a robot, and what lies over the ground.
+/// A terrain with overlays, and a robot.
 pub(crate) struct World {
     pub(crate) dem: Dem,
     pub(crate) hopper: Hopper,
@@ -31,7 +31,7 @@ impl World {
         Self { dem, hopper, surface, gravity_m_s2, friction: None, keep_out: None }
     }
 
-    /// What `chta slice` and the reading of its chain do to a profile.
+    /// The changes that `chta slice` and the reading of its chain make to a profile.
     pub(crate) fn chain(&self, mut profile: Profile) -> Result<ConstrainedChain, Box<dyn Error + Send + Sync>> {
         let constant = match self.surface.grip {
             Some(Grip::Friction(cone)) => Some(cone),
@@ -47,14 +47,14 @@ impl World {
         Ok(ConstrainedChain::new(geometry, &self.hopper, Gravity::new(self.gravity_m_s2).unwrap(), &self.surface)?)
     }
 
-    /// What the fast form is asked on.
+    /// The ground for the fast form.
     pub(crate) fn ground(&self) -> DemGround {
         let overlays = Overlays::new(self.friction.clone(), self.keep_out.clone());
         let terrain = OverlaidDem::new(self.dem.clone(), overlays);
         DemGround::new(terrain, &self.hopper, Gravity::new(self.gravity_m_s2).unwrap(), &self.surface)
     }
 
-    /// The plain way: slice, chain, hop test.
+    /// The direct method: slice, chain, hop test.
     pub(crate) fn lofts(&self, from: Post, to: Post) -> Option<SlopeInterval> {
         let map = self.dem.georeference();
         let profile = slice(&self.dem, map.post(from.row, from.col), map.post(to.row, to.col)).ok()?;
@@ -64,7 +64,7 @@ impl World {
         test.lofts(&geometry.vertex_station(VertexId(0)), &geometry.vertex_station(VertexId(geometry.segment_count()))).ok()
     }
 
-    /// Whether a pair lies within the parabolas of safety of both speeds, a little widened: beyond, no limit but speed needs a look.
+    /// Whether a pair lies within the parabolas of safety of both speeds, slightly widened; beyond them only speed matters.
     pub(crate) fn within_safety(&self, from: Post, to: Post) -> bool {
         let map = self.dem.georeference();
         let height = |post: Post| self.dem.elevation(post.row, post.col).unwrap_or(f64::NAN);
@@ -78,7 +78,7 @@ impl World {
         rows.flat_map(|row| (0..self.dem.cols()).step_by(stride).map(move |col| Post { row, col })).collect()
     }
 
-    /// Fewest hops the plain way: every pair of posts within the parabolas of safety (the test of random grids takes all pairs).
+    /// Fewest hops by the direct method over all pairs within the parabolas of safety (the test of random grids takes all pairs).
     pub(crate) fn plain_map(&self, start: Post, stride: usize, journey: Journey) -> Vec<i16> {
         let posts = self.posts(stride);
         let no_ground = |post: &Post| self.dem.elevation(post.row, post.col).is_none();

@@ -1,4 +1,4 @@
-//! Slices of meshes against slices of DEMs, against meshes that others made, and against the paper's simple scenario.
+//! Slices of meshes against slices of DEMs, against meshes from other sources, and against the paper's simple scenario.
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 #![expect(clippy::unreadable_literal, reason = "as another program printed them")]
 
@@ -11,7 +11,7 @@ use nalgebra::Point3;
 use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
-/// A DEM as the triangles that its slice cuts, in shuffled order and turned either way.
+/// A DEM as the triangles that its slice cuts, in shuffled order and with both orientations.
 fn triangulated(dem: &Dem, random: &mut ChaCha8Rng) -> Mesh {
     let cols = u32::try_from(dem.cols()).unwrap();
     let posts = (0..dem.rows()).flat_map(|row| (0..dem.cols()).map(move |col| (row, col)));
@@ -50,7 +50,7 @@ fn a_mesh_that_triangulates_a_dem_has_the_slices_of_the_dem() {
         let bounds = dem.bounds();
         for case in 0..400 {
             let mut end = || match case % 4 {
-                // Anywhere; posts, so that planes run along rows, columns and diagonals; halves of the spacing.
+                // Random points; posts, so that planes run along rows, columns and diagonals; halves of the spacing.
                 0 => {
                     bounds.min + (bounds.max - bounds.min).component_mul(&nalgebra::Vector2::new(random.random(), random.random()))
                 }
@@ -88,7 +88,7 @@ fn the_same_holds_with_posts_of_a_pattern_and_gradients_that_change_everywhere()
     let post = |row, col| dem.georeference().post(row, col);
     for (from, to) in [(post(4, 0), post(4, 11)), (post(0, 5), post(8, 5)), (post(0, 2), post(8, 10)), (post(8, 0), post(0, 8))] {
         let (expected, found) = (slice(&dem, from, to).unwrap(), slice_mesh(&mesh, from, to).unwrap().profile);
-        // On posts and on edges nothing rounds.
+        // On posts and on edges there is no rounding.
         let places = |points: &[ProfilePoint]| points.iter().map(|point| (point.map, point.z_m)).collect::<Vec<_>>();
         assert_eq!(places(&found.points), places(&expected.points));
         for (a, b) in found.facets.iter().zip(&expected.facets) {
@@ -97,7 +97,7 @@ fn the_same_holds_with_posts_of_a_pattern_and_gradients_that_change_everywhere()
     }
 }
 
-/// A file of the shared folder, or a printed reason why not.
+/// A file of the shared folder; `None` with a printed reason if it is absent.
 fn shared(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared").join(name);
     if path.exists() {
@@ -107,7 +107,7 @@ fn shared(name: &str) -> Option<PathBuf> {
     None
 }
 
-/// Elevation of a slice at a share of its length.
+/// Elevation of a slice at a fraction of its length.
 fn elevation(slice: &MeshSlice, share: f64) -> f64 {
     let points = &slice.profile.points;
     let x_m = share * slice.profile.length_m();
@@ -128,8 +128,8 @@ fn highest(mesh: &Mesh, place: MapPoint) -> f64 {
     mesh.triangles().filter_map(over).fold(f64::NEG_INFINITY, f64::max)
 }
 
-/// Slices a mesh of others and holds every fiftieth of the way against a search through all triangles; how many places have several
-/// surfaces.
+/// Slices a foreign mesh and compares fifty positions along it with a search through all triangles; returns how many of them have
+/// several surfaces.
 fn check_transect(mesh: &Mesh, from: MapPoint, to: MapPoint) -> usize {
     let slice = slice_mesh(mesh, from, to).unwrap();
     for share in (1..50).map(|i| f64::from(i) / 50.0) {
@@ -155,7 +155,7 @@ fn read_shared(name: &str, scale: f64, triangles: usize) -> Option<Mesh> {
 
 #[test]
 fn boxes_around_the_meshes_are_those_that_another_reader_found() {
-    // Read with Python's struct and float.
+    // Computed in Python with struct and float.
     for (name, triangles, x, y, z) in [
         (
             "mesh/scene_jump10.stl",
@@ -194,7 +194,7 @@ fn the_platforms_of_the_planning_paper_are_sliced_and_the_air_between_them_is_a_
         (at(-2.5, -1.6), at(-1.3, -2.5)),
         (at(2.0, -2.5), at(3.0, -1.6)),
     ] {
-        assert!(check_transect(&mesh, from, to) > 0, "platforms are closed bodies");
+        assert!(check_transect(&mesh, from, to) > 0, "platforms are closed bodies, with several surfaces");
     }
     let message = slice_mesh(&mesh, at(6.2, 0.5), at(-4.4, -1.5)).unwrap_err().to_string();
     assert!(message.contains("meets no triangle of the mesh from x = ") && message.contains("more such stretches"), "{message}");
@@ -226,7 +226,7 @@ fn the_simple_mesh_is_that_of_the_simple_chain_and_gives_its_vertices() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     let chain = read_chain_csv_file(folder.join("chains/simple.csv")).unwrap().chain;
     let mesh = read_mesh(&folder.join("mesh/simple.obj"), 1.0).unwrap().mesh;
-    // The corners lie alternately north and south of the plane, and every vertex of the chain half-way between two.
+    // The corners lie alternately north and south of the plane, and every vertex of the chain half-way between two of them.
     let mut corner = Point3::new(-1.0, 4.0, -0.25);
     let mut corners = vec![corner];
     for vertex in chain.vertices() {
@@ -238,6 +238,6 @@ fn the_simple_mesh_is_that_of_the_simple_chain_and_gives_its_vertices() {
     let vertices: Vec<(f64, f64)> = slice.profile.points.iter().map(|point| (point.x_m, point.z_m)).collect();
     assert_eq!(vertices, chain.vertices().iter().map(|vertex| (vertex.x_m, vertex.z_m)).collect::<Vec<_>>());
     assert!(slice.warnings().is_empty());
-    // Every polygon is tilted: the slice alone would not tell.
+    // Every polygon is tilted, which the slice alone does not show.
     assert!(slice.profile.facets.iter().all(|facet| facet.cross_slope.degrees() > 3.0));
 }

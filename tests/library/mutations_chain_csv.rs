@@ -1,4 +1,4 @@
-//! Ten thousand spoiled files of each form: never a panic, and what is accepted reads back equal after writing.
+//! Ten thousand mutated files of each form: no panic, and accepted files read back equal after writing.
 
 use chta::chain::csv::{read_chain_csv, read_pairs_csv, write_chain_csv};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -19,10 +19,10 @@ const EXPLICIT: &str = "x_m,z_m,takeoff_min_deg,takeoff_max_deg,takeoff_speed_ma
 
 const PAIRS: &str = "start_x_m,goal_x_m\n0,9\n2.5,4\n1e0,\"0.5\"\n";
 
-/// Bytes that mean something in a CSV, more likely to get past the first check than any byte.
+/// Bytes with a meaning in CSV, which pass the first check more often than random bytes.
 const TELLING: &[u8] = b",\n\r\"#;\t 0123456789.-+eE\0\xff\xefx_mnaif";
 
-/// Spoils a file, mostly in one place, else in up to four.
+/// Mutates a file, mostly in one position, else in up to four.
 fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
     let mut bytes = original.to_vec();
     let places = if rng.random_bool(0.6) { 1 } else { rng.random_range(2..=4) };
@@ -43,14 +43,14 @@ fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
                 let to = rng.random_range(0..=bytes.len());
                 bytes.splice(to..to, piece);
             }
-            // Another digit: what most likely passes every check.
+            // Another digit: the change that most likely passes every check.
             6..9 => {
                 let digits: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i].is_ascii_digit()).collect();
                 if !digits.is_empty() {
                     bytes[digits[rng.random_range(0..digits.len())]] = rng.random_range(b'0'..=b'9');
                 }
             }
-            // Rare: most of a file should be left.
+            // Rare, so that most of a file remains.
             _ if rng.random_bool(0.2) => bytes.truncate(at),
             _ => bytes[at] = rng.random(),
         }
@@ -58,7 +58,7 @@ fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Spoils a chain 10 000 times; how many were still accepted.
+/// Mutates a chain 10 000 times; returns how many were still accepted.
 fn accepted(original: &str, seed: u64) -> usize {
     let mut rng = ChaCha8Rng::seed_from_u64(seed);
     let mut accepted = 0;
@@ -76,7 +76,7 @@ fn accepted(original: &str, seed: u64) -> usize {
             Err(problems) => {
                 assert!(!problems.problems.is_empty());
                 for problem in &problems.problems {
-                    assert!(problem.text.get(problem.span.clone()).is_some(), "a span off its text: {problem:?}");
+                    assert!(problem.text.get(problem.span.clone()).is_some(), "a span outside its text: {problem:?}");
                     assert!(problem.line >= 1 && problem.to_string().starts_with("line "), "{problem:?}");
                 }
             }
@@ -88,13 +88,13 @@ fn accepted(original: &str, seed: u64) -> usize {
 #[test]
 fn spoiled_surface_files_never_panic_and_read_back() {
     let accepted = accepted(SURFACE, 1);
-    assert!((500..9500).contains(&accepted), "{accepted} of 10 000 were accepted: the mutations test one side only");
+    assert!((500..9500).contains(&accepted), "{accepted} of 10 000 were accepted: the mutations test only one outcome");
 }
 
 #[test]
 fn spoiled_explicit_files_never_panic_and_read_back() {
     let accepted = accepted(EXPLICIT, 2);
-    assert!((500..9500).contains(&accepted), "{accepted} of 10 000 were accepted: the mutations test one side only");
+    assert!((500..9500).contains(&accepted), "{accepted} of 10 000 were accepted: the mutations test only one outcome");
 }
 
 #[test]

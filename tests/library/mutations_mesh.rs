@@ -1,4 +1,4 @@
-//! The readers of meshes against ten thousand seeded mutations each: no panic, no long run, and what is still read can be sliced.
+//! The readers of meshes with ten thousand seeded mutations each: no panic, no long run, and what is still read can be sliced.
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and tells what it saw")]
 
 use std::fmt::Write;
@@ -10,7 +10,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
 const MUTATIONS: u64 = 10_000;
-/// One file of a kilobyte must not keep anyone waiting, even on a busy machine and unoptimised.
+/// A file of a kilobyte must be read quickly, even on a busy machine and unoptimised.
 const LONGEST: Duration = Duration::from_secs(2);
 
 /// A grid of 5 x 4 vertices and its triangles.
@@ -87,7 +87,7 @@ fn ply(binary: bool) -> Vec<u8> {
     bytes
 }
 
-/// One to six changes: bits, bytes, interesting numbers, cuts, copies.
+/// One to six changes: bits, bytes, special numbers, cuts, copies.
 fn mutate(whole: &[u8], random: &mut ChaCha8Rng) -> Vec<u8> {
     let alphabet = b"0123456789.,-+eE nNaA\n\r\t/\\#vf\x00\x01\xff";
     let mut bytes = whole.to_vec();

@@ -1,5 +1,5 @@
-//! Ten thousand spoiled scenarios of each form: never a panic, every problem has a place inside the text and says how to mend it, and
-//! what is accepted reads back equal after writing.
+//! Ten thousand mutated scenarios of each form: no panic, every problem has a position inside the text and a remedy, and accepted
+//! scenarios read back equal after writing.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot read its own JSON should stop")]
 
@@ -18,12 +18,12 @@ const JSON: &str = r#"{"schema": "chta/run/1", "chta_version": "0.1.0", "scenari
     "least-time"}, "surface": {"friction_coefficient": 0.6, "rest_slope_max_deg": "inf"}, "terrain": {"chain": "chain.csv", "goal_x_m": 40.0,
     "start_x_m": -0.5}}, "inputs": [], "warnings": []}"#;
 
-/// Bytes that mean something in TOML or JSON, and numbers at the edge of what they can hold.
+/// Bytes with a meaning in TOML or JSON, and numbers at the limits of their types.
 const TELLING: &[u8] = b"[]{}\"'=.,:#\\\n\r\t 0123456789-+eE_inaftx\0\xff\xc3";
 const TELLING_WORDS: [&str; 12] =
     ["nan", "inf", "-inf", "1e400", "9223372036854775808", "-0.0", "null", "{}", "[[1]]", "true", "\"auto\"", "1979-05-27"];
 
-/// Spoils a text, mostly in one place, else in up to four.
+/// Mutates a text, mostly in one position, else in up to four.
 fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
     let mut bytes = original.to_vec();
     let places = if rng.random_bool(0.6) { 1 } else { rng.random_range(2..=4) };
@@ -43,7 +43,7 @@ fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
                 let to = rng.random_range(0..=bytes.len());
                 bytes.splice(to..to, piece);
             }
-            // A number in place of a number: what most likely passes every check.
+            // A number in place of a number: the change that most likely passes every check.
             5 | 6 => {
                 let digits: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i].is_ascii_digit()).collect();
                 if !digits.is_empty() {
@@ -65,7 +65,7 @@ fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// Validates the keys: `true` where they are accepted.
+/// Validates the keys; returns `true` if they are accepted.
 fn is_accepted(entries: Entries, source: &str) -> bool {
     match Scenario::new(entries) {
         Ok(scenario) => {
@@ -80,7 +80,7 @@ fn is_accepted(entries: Entries, source: &str) -> bool {
             for problem in &problems {
                 assert!(!problem.message.is_empty() && !problem.help.is_empty(), "{problem:?}");
                 if let Place::File(span) = &problem.place {
-                    assert!(source.get(span.clone()).is_some(), "a span off its text: {problem:?} in {source}");
+                    assert!(source.get(span.clone()).is_some(), "a span outside its text: {problem:?} in {source}");
                 }
             }
             let told = ScenarioProblems { name: "s.toml".to_owned(), source: source.to_owned(), problems };
@@ -90,7 +90,7 @@ fn is_accepted(entries: Entries, source: &str) -> bool {
     }
 }
 
-/// Some of both, or the mutations test one branch alone.
+/// Both outcomes must occur; otherwise the mutations test one branch only.
 fn assert_both_kinds(accepted: usize, tried: usize) {
     assert!(accepted > tried / 20 && accepted < tried * 19 / 20, "{accepted} of {tried} accepted");
 }

@@ -1,4 +1,4 @@
-//! The byte readers against ten thousand seeded mutations each: no panic, no long run, no absurd memory.
+//! The byte readers with ten thousand seeded mutations each: no panic, no long run, no huge memory.
 #![allow(clippy::format_push_string, reason = "a test's text need not be written fast")]
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and tells what it saw")]
 
@@ -13,7 +13,7 @@ use rand::rngs::ChaCha8Rng;
 use rand::{RngExt, SeedableRng};
 
 const MUTATIONS: u64 = 10_000;
-/// One file of a kilobyte must not keep anyone waiting, even on a busy machine and unoptimised.
+/// A file of a kilobyte must be read quickly, even on a busy machine and unoptimised.
 const LONGEST: Duration = Duration::from_secs(2);
 
 fn small() -> Dem {
@@ -21,7 +21,7 @@ fn small() -> Dem {
     synthesise(&terrain).unwrap()
 }
 
-/// One to eight changes: bits, bytes, interesting numbers, cuts, copies.
+/// One to eight changes: bits, bytes, special numbers, cuts, copies.
 fn mutate(whole: &[u8], random: &mut ChaCha8Rng, alphabet: &[u8]) -> Vec<u8> {
     let mut bytes = whole.to_vec();
     for _ in 0..random.random_range(1..=8) {
@@ -77,7 +77,7 @@ fn check(whole: &[u8], alphabet: &[u8], read: impl Fn(Vec<u8>) -> Result<Dem, Te
         slowest = slowest.max(took);
         assert!(took < LONGEST, "mutation {number} took {took:?}");
     }
-    // Some mutations touch elevations only; most must be noticed.
+    // Some mutations change elevations only; most must be detected.
     assert!(read_well > 0 && read_well < MUTATIONS, "{read_well}");
     eprintln!("{read_well} of {MUTATIONS} mutations still read; the slowest took {slowest:?}");
 }
@@ -89,7 +89,7 @@ fn mutated_geotiffs_never_panic() {
 
 #[test]
 fn mutated_plain_geotiffs_never_panic() {
-    // Without compression, where a mutation is not caught by deflate's checksum.
+    // Without compression, so that deflate's checksum does not detect the mutation.
     check(&plain_tiff(), b"\x00\x01\x02\x03\x04\x08\x10\xff", read_geotiff_bytes);
 }
 

@@ -1,4 +1,4 @@
-//! The CHTA paper's own figures (model section 7), each beside ours, and a numeric case for each of its errata.
+//! The CHTA paper's own figures (model section 7) compared with ours, and a numeric case for each of its errata.
 #![allow(clippy::unwrap_used, reason = "helpers of tests: shipped data that cannot be read fails them")]
 
 use chta::{
@@ -13,7 +13,7 @@ use chta::{
 
 const NO_REST: RestSlope = RestSlope::Unlimited;
 
-/// Section V-B's angles from the slope, with these for the landing.
+/// Section V-B's angles from the slope, with the given ones for the landing.
 fn from_slope(landing_deg: (f64, f64)) -> Grip {
     Grip::FromSlope {
         takeoff: AngleInterval::from_degrees(60.0, 90.0),
@@ -38,7 +38,7 @@ fn with_points(points_per_segment: u32) -> SearchOptions {
     SearchOptions { spacing: Some(PointSpacing::PerSegment(points_per_segment)), ..SearchOptions::default() }
 }
 
-/// A search between two vertices, counted from 0.
+/// A search between two vertices, numbered from 0.
 fn between(test: &HopTest, from: usize, to: usize, options: &SearchOptions) -> Answer {
     let at = |i| test.chain().geometry().vertex_station(VertexId(i));
     search(test, at(from), at(to), options, &()).unwrap()
@@ -80,7 +80,7 @@ fn the_76_m_case_lands_slower_than_it_starts_so_the_landing_reaches_farther() {
     assert_eq!(reach.limit(), Limit::LandingSpeed);
 }
 
-// ---- The simple scenario, section V-A, on a chain of ours.
+// ---- The simple scenario, section V-A, on our own chain.
 
 /// A shipped chain CSV of the explicit form.
 fn shipped(csv: &str) -> ConstrainedChain {
@@ -114,7 +114,7 @@ fn simple_reduced() -> ConstrainedChain {
     shipped(include_str!("../../data/chains/simple_reduced.csv"))
 }
 
-/// Nodes 2 and 5 of the paper's count.
+/// Nodes 2 and 5 in the paper's numbering.
 const START: usize = 1;
 const GOAL: usize = 4;
 
@@ -150,7 +150,7 @@ fn in_the_reduced_scenario_speed_forbids_the_one_hop_and_segment_3_joins_no_poin
     let at = |i| chain.geometry().vertex_station(VertexId(i));
     let refused = test.lofts(&at(START), &at(GOAL)).unwrap_err();
     assert!(matches!(refused, Limit::TakeoffSpeed | Limit::LandingSpeed), "{refused}");
-    // Segment 3, forward: its cones leave no angle, however short the hop (P eq. 23 is empty).
+    // Segment 3, forward: its cones leave no angle for any hop (P eq. 23 is empty).
     assert_eq!(test.segment_reach(SegmentId(2), Direction::Forward), None);
     assert!(test.lofts(&at(2), &at(3)).is_err() && test.segment_hops(&at(2), &at(3)).is_none());
     // So nodes 3 and 4 are not joined, while 2 and 3, and 4 and 5, are.
@@ -172,7 +172,7 @@ fn in_the_reduced_scenario_raising_k_finds_a_path_and_then_shorter_ones() {
     let mut expected = vec![None, None, Some(5), Some(4), Some(4), Some(4)];
     expected.resize(31, Some(3));
     assert_eq!(hops, expected);
-    // Automatic choice of k ends at the first that answers.
+    // The automatic choice of k ends at the first k with a path.
     let answer = between(&test, START, GOAL, &SearchOptions::default());
     assert_eq!((answer.points_per_segment, answer.hops()), (2, Some(5)));
 }
@@ -195,10 +195,9 @@ fn line(takeoff_deg: (f64, f64), takeoff_m_s: f64, landing_deg: (f64, f64), land
     LineConstraints { takeoff: rule(takeoff_deg, takeoff_m_s), landing: rule(landing_deg, landing_m_s) }
 }
 
-/// Erratum: the summary of Theta after eq. 21 prints the take-off limit in the lower landing-speed term, where eq. 17 has the landing
-/// limit.
+/// Erratum: the summary of Theta after eq. 21 has the take-off limit in the lower landing-speed term; eq. 17 has the landing limit.
 ///
-/// Drawn: 10 m of flat ground, g = 9.81, 20 m/s at take-off, 10.5 m/s at landing. As printed the set begins at 7.1 degrees; the arc
+/// Case: 10 m of flat ground, g = 9.81, 20 m/s at take-off, 10.5 m/s at landing. As printed, the set begins at 7.1 degrees; the arc
 /// there lands with 20 m/s. By eq. 17 it begins at 31.4 degrees, where the arc lands with 10.5 m/s.
 #[test]
 fn erratum_summary_of_theta_prints_the_takeoff_limit_for_the_landing_speed() {
@@ -217,14 +216,14 @@ fn erratum_summary_of_theta_prints_the_takeoff_limit_for_the_landing_speed() {
     assert!((landing_speed(by_eq_17) - v_l).abs() < 1e-9);
 }
 
-/// Erratum: section V-B states its landing bounds the wrong way round, lower alpha - pi/3 and upper alpha - pi/2.
+/// Erratum: section V-B states its landing bounds in the wrong order, lower alpha - pi/3 and upper alpha - pi/2.
 ///
-/// Taken literally nothing lands anywhere; swapped, the traverse takes the paper's four hops.
+/// Taken literally, no landing is possible; swapped, the traverse takes the paper's four hops.
 #[test]
 fn erratum_landing_bounds_of_section_v_b_are_swapped() {
     let right = the_76_m_case((-90.0, -60.0));
     assert_eq!(between(&HopTest::new(right.clone()), 0, 1, &with_points(0)).hops(), Some(4));
-    // A surface refuses angles in that order, so the literal bounds are stated as the limits of the segment.
+    // A surface refuses angles in that order, so the literal bounds are stated as limits of the segment.
     let reversed = SurfaceProperties { grip: Some(from_slope((-60.0, -90.0))), rest: NO_REST };
     let bare = PolygonalChain::bare(right.geometry().vertices().to_vec()).unwrap();
     assert!(ConstrainedChain::new(bare, right.hopper(), right.gravity(), &reversed).is_err());
@@ -242,11 +241,11 @@ fn erratum_landing_bounds_of_section_v_b_are_swapped() {
     assert!(matches!(refusal, GroundRefusal::NothingAhead { .. }), "{refusal}");
 }
 
-/// Erratum: section IV-C takes the reach per hop from eq. 16 and 18, which hold at the angle of least speed; Algorithm 4 takes it, rightly,
-/// from eq. 29 and 30, at the angle flown.
+/// Erratum: section IV-C takes the reach per hop from eq. 16 and 18, which hold at the angle of least speed; Algorithm 4 correctly
+/// takes it from eq. 29 and 30, at the angle flown.
 ///
-/// The 76 m case: eq. 16 gives 25.402 m a hop, which 60 degrees over the slope cannot fly with 10 m/s (it takes 11.02); eq. 29 gives 20.913 m,
-/// which takes 10 m/s exactly.
+/// The 76 m case: eq. 16 gives 25.402 m per hop, which at 60 degrees over the slope needs 11.02 m/s, more than the 10 m/s allowed;
+/// eq. 29 gives 20.913 m, which needs exactly 10 m/s.
 #[test]
 fn erratum_reach_of_section_iv_c_is_that_of_another_angle() {
     let (g, v) = (3.711, 10.0);
@@ -255,23 +254,23 @@ fn erratum_reach_of_section_iv_c_is_that_of_another_angle() {
     let reach = test.segment_reach(SegmentId(0), Direction::Forward).unwrap();
     let b = reach.sight_slope();
     let beta = b.atan();
-    // Eq. 16, along the line of sight, and the horizontal part of it.
+    // Eq. 16, along the line of sight, and its horizontal part.
     let by_eq_16 = v * v * (1.0 - beta.sin()) / (g * beta.cos().powi(2));
     assert!((by_eq_16 - 25.402).abs() < 5e-4, "{by_eq_16}");
     assert!((least_takeoff_speed_m_s(LineOfSight::along(by_eq_16 * beta.cos(), b), g) - v).abs() < 1e-9);
     let speed_over = |length: f64| Arc::new(LineOfSight::along(length * beta.cos(), b), reach.loft(), g).takeoff_speed_m_s();
     assert!((speed_over(by_eq_16) - 11.02).abs() < 5e-3, "{}", speed_over(by_eq_16));
     assert!((speed_over(reach.reach_line_of_sight_m()) - v).abs() < 1e-9);
-    // Three hops of eq. 16 would be the whole way of 76.14 m; the paper and we need four.
+    // Three hops of eq. 16 would cover the whole 76.14 m; the paper and we need four.
     let whole = 76.0 / beta.cos();
     assert_eq!(((whole / by_eq_16).ceil(), (whole / reach.reach_line_of_sight_m()).ceil()), (3.0, 4.0));
 }
 
-/// Erratum: Property 2 claims least take-off speed of a search whose cost counts hops alone.
+/// Erratum: Property 2 claims least take-off speed for a search whose cost is the number of hops only.
 ///
-/// Drawn: 12 m of flat ground, g = 10, 10 m/s (10 m a hop), vertices at 3 and 6 m. Two hops by either vertex; their speeds add up to
-/// 14.96 m/s over 3 m and to 15.49 m/s over 6 m. A count of hops cannot tell them apart, effort in the cost can, and another effort
-/// (least peak speed) rightly answers otherwise.
+/// Case: 12 m of flat ground, g = 10, 10 m/s (10 m per hop), vertices at 3 and 6 m. Two hops by either vertex; their speeds add up
+/// to 14.96 m/s over 3 m and to 15.49 m/s over 6 m. A count of hops does not distinguish them; a cost with effort does, and another
+/// effort (least peak speed) correctly gives the other path.
 #[test]
 fn erratum_property_2_needs_the_effort_in_the_cost() {
     let wide = line((-90.0, 90.0), 10.0, (-90.0, 90.0), 10.0);
@@ -296,10 +295,10 @@ fn erratum_property_2_needs_the_effort_in_the_cost() {
     }
 }
 
-/// Erratum: Algorithm 2's pseudo-code asks for many hops only where R >= Rmax, its prose wherever two points share a segment.
+/// Erratum: Algorithm 2's pseudo-code uses many hops only where R >= Rmax, its prose wherever two points share a segment.
 ///
-/// Drawn: 9 m of flat ground, g = 10, 10 m/s (Rmax = 10 m), take-off at 75 degrees or more, which carries 5 m. One hop is impossible, two
-/// are not; the pseudo-code answers that there is no connection.
+/// Case: 9 m of flat ground, g = 10, 10 m/s (Rmax = 10 m), take-off at 75 degrees or more, with a range of 5 m. One hop is
+/// impossible, two are possible; the pseudo-code finds no connection.
 #[test]
 fn erratum_algorithm_2_loses_pairs_within_reach() {
     let (g, v, run) = (10.0, 10.0, 9.0);

@@ -1,4 +1,4 @@
-//! PDS3 images made by a small writer of the test's own, read by us and by GDAL.
+//! PDS3 images from a small writer of the test, read by us and by GDAL.
 #![allow(clippy::format_push_string, reason = "a test's text need not be written fast")]
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
@@ -12,12 +12,12 @@ const ROWS: usize = 17;
 const COLS: usize = 23;
 const RECORD: usize = 512;
 
-/// Stored numbers without a pattern, that every type of 8 bits and more can hold.
+/// Stored numbers without a pattern that fit every sample type.
 fn stored(row: usize, col: usize) -> u8 {
     u8::try_from((row * 7919 + col * 104_729) % 113).unwrap()
 }
 
-/// A sample's bytes as each type writes them.
+/// A sample's bytes in each type.
 fn encode(value: f64, sample_type: &str, bits: usize) -> Vec<u8> {
     let little = ["LSB", "PC_", "VAX"].iter().any(|start| sample_type.starts_with(start));
     #[expect(clippy::cast_possible_truncation, reason = "small whole numbers")]
@@ -224,7 +224,7 @@ fn output(program: &str, arguments: &[&str]) -> Option<String> {
 #[test]
 fn gdal_places_and_reads_the_same_images() {
     let folder = tempfile::tempdir().unwrap();
-    // GDAL knows fewer types by name.
+    // GDAL supports fewer type names.
     for (sample_type, bits) in [
         ("LSB_INTEGER", 16),
         ("MSB_INTEGER", 16),
@@ -242,7 +242,7 @@ fn gdal_places_and_reads_the_same_images() {
         let dem = read_dem(&path).unwrap();
         assert_eq!(info["driverShortName"], "PDS");
         assert_eq!((number("/size/0"), number("/size/1")), (23.0, 17.0));
-        // GDAL's corner is half a post outside the first post's centre.
+        // GDAL's corner lies half a post outside the centre of the first post.
         let map = dem.georeference();
         assert_eq!((number("/geoTransform/1"), number("/geoTransform/5")), (map.dx_m(), -map.dy_m()));
         let centre = MapPoint::new(
@@ -258,7 +258,7 @@ fn gdal_places_and_reads_the_same_images() {
     }
 }
 
-/// The same place on the body, through GDAL, from the image and from our `GeoTIFF` of it.
+/// The same position on the body, through GDAL, from the image and from our `GeoTIFF` of it.
 #[test]
 fn the_projection_goes_into_a_geotiff_as_gdal_understands_the_label() {
     let folder = tempfile::tempdir().unwrap();
@@ -268,7 +268,7 @@ fn the_projection_goes_into_a_geotiff_as_gdal_understands_the_label() {
         ("SIMPLE_CYLINDRICAL", "0"),
         ("EQUIRECTANGULAR", "12"),
         ("SINUSOIDAL", "0"),
-        // GDAL takes a centre elsewhere for the standard parallel of a polar map.
+        // For a polar map, GDAL uses a centre other than the pole as the standard parallel.
         ("STEREOGRAPHIC", "90"),
         ("ORTHOGRAPHIC", "-20"),
         ("TRANSVERSE_MERCATOR", "10"),

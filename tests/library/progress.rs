@@ -1,5 +1,5 @@
-//! Progress and cancellation of every stage: reports come often enough, a break at any of them ends the stage with an error and next to
-//! no more work, and answers do not depend on whether anything is reported.
+//! Progress and cancellation of every stage: reports come often enough, a break at any of them ends the stage with an error and
+//! next to no more work, and answers do not depend on whether anything is reported.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::{fmt::Debug, ops::ControlFlow, path::Path, sync::Mutex};

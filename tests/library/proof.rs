@@ -1,4 +1,4 @@
-//! Bounds that hold for every choice of points: against the search at every density, against random paths, and against dense attack.
+//! Bounds that hold for every choice of points: against the search at all densities, random paths, and a dense sampling attack.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::support::{Draw, explicit, line};
@@ -26,7 +26,7 @@ struct Journey {
 }
 
 impl Journey {
-    /// Adversarial: explicit constraints that differ from segment to segment and by direction, machine limits, bends, tiny segments.
+    /// Adversarial chains: explicit constraints that differ by segment and direction, machine limits, bends, tiny segments.
     fn ugly(draw: &mut Draw) -> Self {
         let segments = 2 + draw.below(6);
         let (g, size) = (draw.gravity(), draw.log_uniform(1e-1, 1e2));
@@ -75,7 +75,7 @@ impl Journey {
         Self { chain, hopper, g, start, goal }
     }
 
-    /// Of the prototype's kind: eight segments of rough ground under a friction cone, from end to end.
+    /// Chains like the prototype's: eight segments of rough ground with a friction cone, from end to end.
     fn rough(draw: &mut Draw, segments: usize) -> Self {
         let mut points = vec![ChainPoint::new(0.0, 0.0)];
         for i in 0..segments {
@@ -110,13 +110,13 @@ impl Journey {
         bounds(&self.test(), self.start, self.goal, &options, &()).unwrap()
     }
 
-    /// The fewest hops over so many points inside each segment.
+    /// The fewest hops with a number of points inside each segment.
     fn fewest(&self, points: u32) -> Option<u64> {
         let options = SearchOptions { spacing: Some(PointSpacing::PerSegment(points)), ..SearchOptions::default() };
         search(&self.test(), self.start, self.goal, &options, &()).unwrap().hops()
     }
 
-    /// The upper bound's path is real: flown again, it breaks nothing and joins start and goal in so many hops.
+    /// The upper bound's path must be valid: flown again, it violates nothing and joins start and goal in that many hops.
     fn verify(&self, found: &Bounds) {
         let Outcome::Path { legs, cost } = &found.answer.outcome else { return };
         let path = generate(&self.test(), legs, TakeoffChoice::LeastSpeed, Split::FullReach).unwrap();
@@ -126,7 +126,7 @@ impl Journey {
     }
 }
 
-/// A place on a chain, often a vertex.
+/// A position on a chain, often a vertex.
 fn place(draw: &mut Draw, chain: &ConstrainedChain) -> Station {
     let geometry = chain.geometry();
     let (first, last) = geometry.extent_m();
@@ -137,7 +137,7 @@ fn place(draw: &mut Draw, chain: &ConstrainedChain) -> Station {
     }
 }
 
-/// The vertices, start, goal and some places drawn, from left to right, without doubles.
+/// The vertices, start, goal and some random positions, sorted by x, without duplicates.
 fn drawn_stations(draw: &mut Draw, journey: &Journey, count: usize) -> Vec<Station> {
     let geometry = journey.chain.geometry();
     let (first, last) = geometry.extent_m();
@@ -149,7 +149,7 @@ fn drawn_stations(draw: &mut Draw, journey: &Journey, count: usize) -> Vec<Stati
     stations
 }
 
-/// The fewest hops from start to goal over some stations, breadth first, where a pair is joined by what the closure says.
+/// The fewest hops from start to goal over some stations by breadth-first search; `joined` tells which pairs have an edge.
 fn fewest_over(stations: &[Station], journey: &Journey, joined: &dyn Fn(&Station, &Station) -> bool) -> Option<u64> {
     let mut hops: Vec<Option<u64>> = stations.iter().map(|s| (s == &journey.start).then_some(0)).collect();
     let mut queue: std::collections::VecDeque<usize> = hops.iter().position(Option::is_some).into_iter().collect();
@@ -167,7 +167,7 @@ fn fewest_over(stations: &[Station], journey: &Journey, joined: &dyn Fn(&Station
     None
 }
 
-/// Whether one of some take-off angles flies from one station to another, by the equations as they stand, with limits relaxed by a
+/// Whether one of some take-off angles flies from one station to another, by the original equations with limits relaxed by a
 /// billionth: no loft, no interval, no quadratic.
 fn flies(journey: &Journey, from: &Station, to: &Station, angles: u32) -> bool {
     const SLACK: f64 = 1.0 + 2e-9;
@@ -235,7 +235,7 @@ fn untraversable_survives_an_attack_by_points_and_angles() {
         match found.verdict() {
             ProofVerdict::Untraversable => {
                 attacked += 1;
-                assert_eq!(attack, None, "journey {i}: proved untraversable, but a path of sampled angles gets there");
+                assert_eq!(attack, None, "journey {i}: proved untraversable, but a path of sampled angles reaches the goal");
             }
             _ => broken_open += u64::from(attack.is_some()),
         }
@@ -243,7 +243,7 @@ fn untraversable_survives_an_attack_by_points_and_angles() {
             assert!(found.lower.unwrap() <= hops, "journey {i}: bound {:?}, but sampled angles take {hops} hops", found.lower);
         }
     }
-    assert!(attacked > 80 && broken_open > 150, "{attacked} attacked; of the others the attack solves {broken_open}");
+    assert!(attacked > 80 && broken_open > 150, "{attacked} attacked; {broken_open} of the others are solved by the attack");
 }
 
 #[test]
@@ -261,10 +261,10 @@ fn no_path_over_random_points_beats_the_lower_bound() {
     assert!(found_paths > 250, "only {found_paths} paths");
 }
 
-/// The densities that the lower bound is held against.
+/// The point densities with which the lower bound is compared.
 const DENSITIES: [u32; 6] = [0, 1, 2, 3, 5, 8];
 
-/// Those that it is held against on every twentieth chain.
+/// Those with which it is compared on every twentieth chain.
 const DENSER: [u32; 3] = [13, 31, 64];
 
 #[test]

@@ -1,8 +1,8 @@
-//! Bounds on slices of both real DEMs: how many meet within the budget, each one left open printed with its seed and gap.
+//! Bounds on slices of both real DEMs: how many are equal within the budget; each open one is printed with its seed and gap.
 //!
-//! The files are read from ../shared/dem and skipped with a printed reason where they are absent.
+//! The files are read from ../shared/dem; a test without its file prints why it is skipped.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
-#![allow(clippy::print_stdout, reason = "a skipped DEM and every slice left open are told")]
+#![allow(clippy::print_stdout, reason = "skipped DEMs and open slices are printed")]
 
 use std::{path::PathBuf, time::Instant};
 
@@ -25,7 +25,7 @@ use chta::{
 const DEMS: [(&str, &str); 2] =
     [("hirise_DTEEC_010228_1490_crop_120x70.tif", "mars"), ("lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif", "moon")];
 
-/// A real DEM; `None` with a printed reason where it is absent.
+/// A real DEM; `None` with a printed reason if it is absent.
 fn real(name: &str) -> Option<Dem> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(name);
     if !path.exists() {
@@ -35,7 +35,7 @@ fn real(name: &str) -> Option<Dem> {
     Some(read_dem(&path).unwrap())
 }
 
-/// A slice of at most so many segments between two places drawn from a seed, and the hopper to cross it.
+/// A slice with a bounded number of segments between two positions drawn from a seed, and a hopper to cross it.
 fn drawn_chain(dem: &Dem, gravity: Gravity, seed: u64, most_segments: usize) -> ConstrainedChain {
     let draw = &mut Draw::seeded(seed);
     let area = dem.georeference().bounds(dem.rows(), dem.cols());
@@ -54,8 +54,8 @@ fn drawn_chain(dem: &Dem, gravity: Gravity, seed: u64, most_segments: usize) -> 
     ConstrainedChain::new(chain, &hopper, gravity, &surface).unwrap()
 }
 
-/// The first and the last place of a chain, among the middles of its segments, that allows a contact: the journey is to be long, and not
-/// refused by the ground below its ends.
+/// The first and the last of a chain's segment midpoints at which a contact is allowed: the journey should be long and not refused
+/// at its ends.
 fn usable_ends(chain: &ConstrainedChain) -> Option<(Station, Station)> {
     let middles = chain.geometry().vertices().windows(2).map(|v| 0.5 * (v[0].x_m + v[1].x_m));
     let stations: Vec<_> = middles.map(|x_m| chain.geometry().station(x_m).unwrap()).collect();
@@ -64,7 +64,7 @@ fn usable_ends(chain: &ConstrainedChain) -> Option<(Station, Station)> {
     Some((*start, *goal))
 }
 
-/// Bounds on so many slices of each DEM; how many were left open, and each of them printed.
+/// Bounds on a number of slices of each DEM; prints the open ones and returns how many there are.
 fn left_open(slices: u64) -> usize {
     let mut open = 0;
     for (name, body) in DEMS {
@@ -111,7 +111,7 @@ fn bounds_meet_on_slices_of_both_real_dems() {
     assert!(open <= 1, "{open} of 24 left open");
 }
 
-/// The whole count: `cargo test --release --test library proof_terrain -- --ignored --nocapture`.
+/// The complete count: `cargo test --release --test library proof_terrain -- --ignored --nocapture`.
 #[test]
 #[ignore = "the long run: 400 slices"]
 fn bounds_meet_on_four_hundred_slices_of_both_real_dems() {

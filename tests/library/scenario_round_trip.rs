@@ -1,11 +1,11 @@
-//! A scenario that the program writes reads back as it was, whatever it was.
+//! Every scenario that the program writes reads back equal.
 
 use std::fmt::Write;
 
 use chta::scenario::{CATALOGUE, Entries, Key, Kind, Scenario, scenario_document};
 use proptest::{prelude::*, strategy::ValueTree};
 
-/// A number as TOML: whole, short, long, at either bound.
+/// A number in TOML: whole, short, long, at either bound.
 fn number(min: f64, max: f64) -> BoxedStrategy<String> {
     let within = move |number: f64| number.clamp(min, max);
     prop_oneof![
@@ -19,7 +19,7 @@ fn number(min: f64, max: f64) -> BoxedStrategy<String> {
     .boxed()
 }
 
-/// A value that fits a key, as TOML.
+/// A valid value for a key, in TOML.
 fn value(key: &Key) -> BoxedStrategy<String> {
     let two = |min: f64, max: f64| (number(min, max), number(min, max));
     match key.kind {
@@ -57,10 +57,10 @@ fn value(key: &Key) -> BoxedStrategy<String> {
     }
 }
 
-/// Any keys, each with a value that fits it: often a valid scenario, often one whose keys do not go together.
+/// Random keys with valid values: often a valid scenario, often one whose keys exclude each other.
 fn toml() -> impl Strategy<Value = String> {
     let keys: Vec<_> = CATALOGUE.iter().map(|key| proptest::option::of(value(key)).prop_map(move |value| (key, value))).collect();
-    // Which of the keys that exclude each other may stay.
+    // Which of the mutually exclusive keys may stay.
     let choices = (0..4_u8, any::<bool>(), any::<bool>(), any::<bool>());
     (keys, choices).prop_map(|(keys, (ground, friction, points, degrees))| {
         let kept = |key: &Key| match (key.table, key.name) {
@@ -85,7 +85,7 @@ fn toml() -> impl Strategy<Value = String> {
         let mut text = String::new();
         for (key, value) in keys {
             if let Some(value) = value.filter(|_| kept(key)) {
-                // Dotted keys: no table needs a line of its own.
+                // Dotted keys, so that no table header is needed.
                 let _ = writeln!(text, "{}.{} = {value}", key.table, key.name);
             }
         }
@@ -104,14 +104,14 @@ proptest! {
             let read: serde_json::Value = serde_json::from_str(&written).map_err(|error| TestCaseError::fail(error.to_string()))?;
             let again = Scenario::new(Entries::from_json(&read));
             prop_assert_eq!(again.as_ref(), Ok(&scenario), "{}\n{}", text, written);
-            // Written again, it has the same bytes.
+            // Writing it again gives the same bytes.
             let second = again.map(|again| scenario_document(&again, &|path| path.to_string_lossy().into_owned()));
             prop_assert_eq!(second, Ok(document));
         }
     }
 }
 
-/// The generator above is worth something only while enough of its scenarios are valid.
+/// Enough scenarios of the generator above must be valid for its test to be useful.
 #[test]
 fn many_generated_scenarios_are_valid() {
     let mut runner = proptest::test_runner::TestRunner::deterministic();
@@ -123,7 +123,7 @@ fn many_generated_scenarios_are_valid() {
     assert!(valid > 50, "only {valid} of 500");
 }
 
-/// Every key that is given stands in the document, with the value that was given: none is lost on the way.
+/// Every key given is in the document with its value: none is lost.
 #[test]
 fn every_key_reaches_the_document() {
     let alone = |key: &Key| match key.kind {

@@ -1,4 +1,4 @@
-//! Many hops along one segment: the least number of them, their lengths and their arcs, against flights simulated one by one.
+//! Many hops along one segment: their least number, their lengths and their arcs, against flights simulated one by one.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use crate::support::{Draw, line, uniform};
@@ -18,7 +18,7 @@ struct Slope {
     line: LineConstraints,
     hopper: Hopper,
     g: f64,
-    /// As the traveller sees it.
+    /// In the direction of travel.
     b: f64,
     direction: Direction,
 }
@@ -30,7 +30,7 @@ impl Slope {
         Self { chain, line, hopper, g, b, direction }
     }
 
-    /// Anything from flat to steep, with or without limits of the machine.
+    /// A segment from flat to steep, with or without machine limits.
     fn draw(draw: &mut Draw, machine: bool) -> Self {
         let (g, run) = (draw.gravity(), draw.log_uniform(1e-1, 1e4));
         let slope = if draw.chance(0.2) { 0.0 } else { draw.uniform(-1.5, 1.5) };
@@ -61,7 +61,7 @@ impl Slope {
         (a.point.x_m - b.point.x_m).abs()
     }
 
-    /// Whether a flight of this length at this angle keeps every limit, speeds with the program's tolerance and all by a hair.
+    /// Whether a flight of this length at this angle keeps every limit, within the tolerances.
     fn flies(&self, length: f64, theta: f64, hair: f64) -> bool {
         let v = length / theta.cos() * (self.g / (2.0 * length * (theta.tan() - self.b))).sqrt();
         let (vx, end) = (v * theta.cos(), length / (v * theta.cos()));
@@ -99,7 +99,7 @@ impl Slope {
     }
 }
 
-/// The stations' hops as flown: of one leg along the segment.
+/// The hops of one leg along the segment.
 fn flown(slope: &Slope, along: SegmentHops, choice: TakeoffChoice, split: Split) -> Vec<chta::path::Hop> {
     let (takeoff, landing) = slope.ends();
     generate(&slope.test(), &[Leg { takeoff, landing, edge: Edge::Along(along) }], choice, split).unwrap().hops
@@ -113,12 +113,12 @@ fn no_simulated_hop_goes_farther_than_the_reach_and_some_come_close() {
         let slope = Slope::draw(draw, i % 2 == 0);
         let best = slope.angles(800).map(|theta| slope.longest(theta)).fold(0.0, f64::max);
         match slope.test().segment_reach(SegmentId(0), slope.direction) {
-            None => assert_eq!(best, 0.0, "no reach, yet {best} m were flown"),
+            None => assert_eq!(best, 0.0, "{best} m were flown without a reach"),
             Some(reach) => {
                 assert!(best <= reach.reach_m() * (1.0 + 1e-8), "{best} m flown, reach {} m", reach.reach_m());
                 // The best angle lies within a sampling step of a sampled one, unless the cones leave less than that.
                 let flies_best = slope.flies(reach.reach_m() * (1.0 - 1e-9), reach.takeoff_slope().atan(), 1e-8);
-                assert!(flies_best, "the reach of {} m by {} is not flown", reach.reach_m(), reach.limit());
+                assert!(flies_best, "the reach of {} m by {} cannot be flown", reach.reach_m(), reach.limit());
                 compared += u32::from(best > 0.97 * reach.reach_m());
             }
         }
@@ -137,8 +137,8 @@ fn no_mixture_of_hops_needs_fewer() {
         if along.hops() > 40 {
             continue;
         }
-        // Longest hops per sampled angle, any length below them: the fewest hops that cover the run are by dynamic search over
-        // covered distance, which for hops that may all be shortened is greedy; random mixtures must not beat it either.
+        // For each sampled angle the longest hop; shorter ones are possible too. The fewest hops that cover the run are found
+        // greedily, since all hops may be shortened; random mixtures must not need fewer.
         let longest: Vec<f64> = slope.angles(300).map(|theta| slope.longest(theta)).filter(|l| *l > 0.0).collect();
         let Some(best) = longest.iter().copied().reduce(f64::max) else { continue };
         let mut covered = 0.0;
@@ -232,11 +232,11 @@ fn a_run_of_exactly_so_many_reaches_takes_so_many_hops() {
         assert_eq!(hops(exactly), count);
         assert_eq!(hops(exactly * (1.0 + 1.9e-9)), count, "within the speeds' tolerance, v (1 + 1e-9)");
         assert_eq!(hops(exactly * (1.0 + 2.1e-9)), count + 1, "beyond it");
-        // And each of those hops is one for the hop test too.
+        // The hop test allows each of those hops too.
         let fresh =
             Slope::new(reach.reach_m(), slope.direction.sign() * slope.b, slope.line, slope.hopper, slope.g, slope.direction);
         let (takeoff, landing) = fresh.ends();
-        assert!(fresh.test().lofts(&takeoff, &landing).is_ok(), "one reach of {} m is no hop", reach.reach_m());
+        assert!(fresh.test().lofts(&takeoff, &landing).is_ok(), "a hop of one reach, {} m, is refused", reach.reach_m());
     }
 }
 
@@ -302,7 +302,7 @@ fn mid_range_hops_fly_the_middle_of_their_own_set_and_are_no_more() {
             continue;
         }
         for hop in flown(&slope, along, TakeoffChoice::MidRange, Split::Equal) {
-            // At full reach the set is one point, and rounding may leave the explained set empty.
+            // At full reach the set is one point, which rounding may make empty.
             let Some(set) =
                 test.takeoff_set(&hop.takeoff.station.unwrap(), &hop.landing.station.unwrap()).and_then(|set| set.angles())
             else {

@@ -1,4 +1,4 @@
-//! Slices that read windows of a file against slices of the whole, on every layout that GDAL writes.
+//! Slices that read only windows of a file against slices of the whole file, for every layout that GDAL writes.
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::path::Path;
@@ -15,7 +15,7 @@ fn has_gdal() -> bool {
     there
 }
 
-/// The same profile to the bit, on ways along rows, columns, diagonals, borders and none of those, or the same refusal.
+/// Lines along rows, columns, diagonals, borders and others give the same profile to the bit, or the same refusal.
 fn check(path: &Path) {
     let dem = read_dem(path).unwrap();
     let (low, high) = (dem.bounds().min, dem.bounds().max);

@@ -1,4 +1,4 @@
-//! One sweep against the hop test pair by pair: the same verdict everywhere, the same lofts, on random, adversarial and real ground.
+//! The sweep against the hop test pair by pair: the same verdict and lofts everywhere, on random, adversarial and real ground.
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use std::sync::Arc;
@@ -13,14 +13,14 @@ use chta::{
     world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
 
-/// What a comparison of many pairs came to.
+/// The counts of a comparison of many pairs.
 #[derive(Debug, Default)]
 struct Compared {
     pairs: u64,
     feasible: u64,
-    /// Feasible pairs whose lower end the ground sets.
+    /// Feasible pairs whose lower end is set by the terrain.
     over_ground: u64,
-    /// Feasible pairs whose lofts are not the same doubles.
+    /// Feasible pairs whose lofts are not bit-identical.
     unlike: u64,
     by_limit: [u64; Limit::ALL.len()],
 }
@@ -46,7 +46,7 @@ fn stations(chain: &ConstrainedChain, inside: u32) -> Vec<Station> {
     found
 }
 
-/// Sweeps from every station (or some of many) both ways and asks the hop test for each pair as well.
+/// Sweeps from every station (or some of many) in both directions and runs the hop test for each pair as well.
 fn compare(test: &HopTest, stations: &[Station], most_takeoffs: usize, compared: &mut Compared) {
     let table = Arc::new(LandingTable::new(test, stations));
     let mut sweep = Sweep::new(Arc::clone(&table));
@@ -62,7 +62,7 @@ fn compare(test: &HopTest, stations: &[Station], most_takeoffs: usize, compared:
                 Direction::Forward => (from + 1..stations.len()).collect(),
                 Direction::Reverse => (0..from).rev().collect(),
             };
-            assert_eq!(visited, expected, "not every landing once, nearest first");
+            assert_eq!(visited, expected, "every landing must be visited once, nearest first");
         }
     }
 }
@@ -132,7 +132,7 @@ fn random_chains_bends_and_points_inside_segments() {
     assert!(spoken >= 9, "{compared:?}");
 }
 
-/// The adversarial grounds of issue and model: each with its name.
+/// The adversarial grounds of issue and model, with their names.
 fn adversaries(draw: &mut Draw) -> Vec<(&'static str, Vec<ChainPoint>)> {
     let along = |n: usize, height: &mut dyn FnMut(f64) -> f64| -> Vec<ChainPoint> {
         (0..=n).map(|i| f64::from(u32::try_from(i).unwrap())).map(|x| ChainPoint::new(x, height(x))).collect()
@@ -189,7 +189,8 @@ fn adversarial_ground() {
     }
 }
 
-/// Where the terrain's loft equals the greatest allowed one to the last digits, the verdict hangs on rounding: it is the hop test's.
+/// Where the terrain's loft equals the greatest allowed one to the last digits, rounding decides; the sweep must agree with the hop
+/// test.
 #[test]
 fn touching_limits_are_evaluated_as_pair_by_pair() {
     let draw = &mut Draw::seeded(403);
@@ -205,7 +206,7 @@ fn touching_limits_are_evaluated_as_pair_by_pair() {
         let Ok(lofts) = roomy.lofts(&at(&fast, from), &at(&fast, to)) else { continue };
         let slope = roomy.line_of_sight(&at(&fast, from), &at(&fast, to)).unwrap().slope() + lofts.lower;
         for nudge in -2..=2 {
-            // A machine whose greatest angle is the least that clears the ground, give or take rounding.
+            // A machine whose greatest angle just clears the ground, up to rounding.
             let steepest = Angle::from_radians(Angle::from_slope(slope).radians() * (1.0 + f64::from(nudge) * 2.0 * f64::EPSILON));
             let exact = Hopper::new(HopperLimits { takeoff_angle_max: Some(steepest), ..*hopper.limits() }).unwrap();
             let test = HopTest::new(fast.with_hopper(&exact, Gravity::new(g).unwrap()).unwrap());
@@ -217,7 +218,7 @@ fn touching_limits_are_evaluated_as_pair_by_pair() {
     assert!((100..600).contains(&touching), "{touching} of 750 touch from inside");
 }
 
-/// Slices of real DEMs (skipped where they are absent), at speeds that carry far: friction cones, rough ground, flats and walls.
+/// Slices of real DEMs (skipped if absent), at speeds with a long range: friction cones, rough ground, flats and walls.
 #[test]
 fn real_ground() {
     let mut compared = Compared::default();
@@ -261,7 +262,7 @@ fn real_ground() {
     assert!(compared.pairs == 0 || (compared.over_ground > 400 && compared.refused_by(Limit::Terrain) > 400), "{compared:?}");
 }
 
-/// No feasible pair lies beyond the reach from its take-off or to its landing, whatever the relief hides; and the reach is worth having.
+/// No feasible pair exceeds the reach from its take-off or to its landing, for any relief; and the reach is not far too long.
 #[test]
 fn nothing_feasible_lies_beyond_reach() {
     let draw = &mut Draw::seeded(404);
@@ -271,7 +272,7 @@ fn nothing_feasible_lies_beyond_reach() {
         let segments = 2 + draw.below(60);
         let mut points = draw.profile(segments, size_m);
         if draw.chance(0.5) {
-            // A canyon, whose floor is in reach from above where nearer, higher ground is not.
+            // A canyon whose floor is within reach from above while nearer, higher ground is not.
             let (from, to) = (draw.below(segments), draw.below(segments));
             points.iter_mut().take(to).skip(from).for_each(|p| p.z_m -= 10.0 * size_m);
         }
@@ -299,7 +300,10 @@ fn nothing_feasible_lies_beyond_reach() {
                     if test.lofts(takeoff, landing).is_ok() {
                         feasible += 1;
                         assert!(run_m <= reach_m, "{run_m} m in one hop, out of a reach of {reach_m} m");
-                        assert!(run_m <= test.takeoff_reach_m(landing, direction), "{run_m} m in one hop, seen from its landing");
+                        assert!(
+                            run_m <= test.takeoff_reach_m(landing, direction),
+                            "{run_m} m in one hop, beyond the reach computed at its landing"
+                        );
                         nearly += u32::from(run_m > 0.5 * reach_m);
                     } else if run_m > reach_m {
                         beyond += 1;
@@ -311,7 +315,7 @@ fn nothing_feasible_lies_beyond_reach() {
     assert!(feasible > 6_000 && beyond > 15_000 && nearly > 300, "{feasible} feasible, {beyond} beyond, {nearly} nearly as far");
 }
 
-/// Two parabolas of safety meet at `X = v_t v_l / g`: with one speed all over, no relief makes the reach longer.
+/// Two parabolas of safety meet at `X = v_t v_l / g`: with one speed everywhere, no relief makes the reach longer.
 #[test]
 fn reach_does_not_grow_with_the_chain() {
     let draw = &mut Draw::seeded(405);
@@ -320,12 +324,12 @@ fn reach_does_not_grow_with_the_chain() {
     let chain = uniform(&points, line((-90.0, 90.0), 10.0, (-90.0, 90.0), 8.0));
     let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(2.0).unwrap()).unwrap());
     assert!((test.greatest_reach_m() - 40.0).abs() < 1e-6, "{} m", test.greatest_reach_m());
-    // On flat ground the slower end decides: 64 / 2 m and a little for the roughness of 1 m.
+    // On flat ground the smaller speed decides: 64 / 2 m plus some for the roughness of 1 m.
     let flat = test.reach_bound_m(&chain.geometry().vertex_station(VertexId(50)));
     assert!((32.0..34.0).contains(&flat), "{flat} m");
 }
 
-/// What another language may keep as a value and hand to its threads.
+/// A value that another language may store and pass to its threads.
 const fn shareable<T: Clone + Send + Sync + 'static>() {}
 
 const _: () = {

@@ -1,4 +1,4 @@
-//! Reading and writing DEM files: real ones, those of other programs, and layouts that GDAL makes on the spot.
+//! Reading and writing DEM files: real ones, those of other programs, and layouts created with GDAL.
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::path::{Path, PathBuf};
@@ -10,7 +10,7 @@ use chta::terrain::{
     write_ascii_grid,
 };
 
-/// A file of the shared folder, or a printed reason why not.
+/// A file of the shared folder; `None` with a printed reason if it is absent.
 fn shared(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(name);
     if path.exists() {
@@ -321,7 +321,7 @@ fn files_that_only_begin_well_are_refused_quickly_and_without_memory() {
         b"ncols 3\nnrows 1000000000000000000000\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 2 3\n",
         "nrows '1000000000000000000000'",
     );
-    // An absurd width in a sound file: the tag that holds the image's width, patched.
+    // A huge width in a valid file: the tag of the image's width, patched.
     let mut absurd = whole.clone();
     let width_tag = absurd.windows(8).position(|window| window == [0, 1, 4, 0, 1, 0, 0, 0]).unwrap();
     absurd[width_tag + 8..width_tag + 12].copy_from_slice(&u32::MAX.to_le_bytes());

@@ -1,4 +1,4 @@
-//! A desk to try the command on: a folder of its own with some files, and what came of a run.
+//! A workspace for tests of the command: a temporary folder with some files, and the results of runs in it.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 
@@ -16,12 +16,12 @@ pub(crate) const CHAIN: &str = "x_m,z_m\n0,0\n10,2\n20,0\n30,1\n40,0\n";
 pub(crate) const SCENARIO: &str = "[body]\nname = \"mars\"\n\n[hopper]\ntakeoff_speed_max_m_s = 10.0\nlanding_speed_max_m_s = 10.0\n\n\
     [surface]\nfriction_coefficient = 0.6\n\n[terrain]\nchain = \"chain.csv\"\nstart_x_m = 0\ngoal_x_m = 40\n";
 
-/// Hops over a raster that [`Desk::with_dem`] makes.
+/// Hops over the raster of [`Desk::with_dem`].
 pub(crate) const ON_MAP: &str = "[body]\nname = \"mars\"\n\n[hopper]\ntakeoff_speed_max_m_s = 6.0\nlanding_speed_max_m_s = 6.0\n\n\
     [surface]\nfriction_coefficient = 0.8\n\n[terrain]\ndem = \"ground.tif\"\nstart_m = [1, 2]\ngoal_m = [15, 12]\n\n\
     [search]\nnode_spacing_max_m = 1.0\n";
 
-/// Explicit constraints, forward only.
+/// Explicit constraints in forward direction only.
 pub(crate) const FORWARD_ONLY: &str = "x_m,z_m,takeoff_min_deg,takeoff_max_deg,takeoff_speed_max_m_s,landing_min_deg,landing_max_deg,\
     landing_speed_max_m_s\n0,0,5,80,30,-80,-5,60\n10,0,,,,,,\n";
 
@@ -30,7 +30,7 @@ pub(crate) struct Desk {
     folder: TempDir,
 }
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) struct Ran {
     pub(crate) status: i32,
@@ -46,7 +46,7 @@ impl Desk {
         desk
     }
 
-    /// With `ground.tif`, `map.toml` and `plate.obj` beside them.
+    /// The same folder with `ground.tif`, `map.toml` and `plate.obj`.
     pub(crate) fn with_dem() -> Self {
         let desk = Self::new();
         desk.write("map.toml", ON_MAP);
@@ -81,7 +81,7 @@ impl Desk {
         ran
     }
 
-    /// Runs the command, which ends well, whatever the answer, and gives its document.
+    /// Runs the command, which must succeed (status 0 or 1), and returns its document.
     pub(crate) fn json(&self, args: &[&str]) -> serde_json::Value {
         let args = [args, &["--format", "json"]].concat();
         let ran = self.run(&args);
@@ -89,7 +89,7 @@ impl Desk {
         serde_json::from_str(&ran.stdout).unwrap_or_else(|error| panic!("{args:?}: {error} in {}", ran.stdout))
     }
 
-    /// All files below the folder: name, size and bytes (of huge ones the size alone).
+    /// All files below the folder: name, size and bytes (of huge files only the size).
     pub(crate) fn files(&self) -> BTreeMap<String, (u64, Vec<u8>)> {
         fn add(folder: &Path, prefix: &str, files: &mut BTreeMap<String, (u64, Vec<u8>)>) {
             for entry in fs::read_dir(folder).unwrap() {
@@ -110,8 +110,8 @@ impl Desk {
         files
     }
 
-    /// Runs what must be refused: status 2, nothing on standard output, a sentence with all `parts` on standard error, and every file as
-    /// it was.
+    /// Runs a command that must be refused: status 2, nothing on standard output, all `parts` on standard error, and no file
+    /// changed.
     pub(crate) fn refused(&self, args: &[&str], parts: &[&str]) {
         let before = self.files();
         let ran = self.run(args);

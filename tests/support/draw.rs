@@ -1,7 +1,7 @@
-//! The seeded generator of all tests: those of the library include this file too (`src/lib.rs`).
-#![allow(dead_code, reason = "each crate of tests uses its own part")]
+//! The seeded generator of all tests; those of the library include this file too (`src/lib.rs`).
+#![allow(dead_code, reason = "every test crate uses a part of it")]
 
-/// `SplitMix64`: the same numbers on every platform and with every version of every crate.
+/// `SplitMix64`: the same numbers on every platform and with all versions of all crates.
 pub(crate) struct Draw(u64);
 
 impl Draw {

@@ -1,4 +1,4 @@
-//! What several test files share: a seeded generator biased to the ugly, and short ways to build chains.
+//! Shared by several test files: a seeded generator biased to extreme cases, and short constructors of chains.
 #![allow(clippy::unwrap_used, reason = "test helpers: a chain that cannot be built fails its test")]
 
 use chta::{
@@ -11,12 +11,12 @@ mod draw;
 pub(crate) use draw::Draw;
 
 impl Draw {
-    /// Gravity from a boulder's to above Jupiter's, m/s^2.
+    /// A gravity between that of a small asteroid and more than Jupiter's, m/s^2.
     pub(crate) fn gravity(&mut self) -> f64 {
         self.log_uniform(1e-5, 25.0)
     }
 
-    /// A rough profile: flats, slopes, steps, walls and needles, with here and there a segment of next to no length.
+    /// A rough profile: flats, slopes, steps, walls and needles, with a few extremely short segments.
     pub(crate) fn profile(&mut self, segments: usize, size_m: f64) -> Vec<ChainPoint> {
         let mut points = vec![ChainPoint::new(self.uniform(-1.0, 1.0) * size_m, self.uniform(-1.0, 1.0) * size_m)];
         for i in 0..segments {
@@ -32,7 +32,7 @@ impl Draw {
         points
     }
 
-    /// Line constraints: cones from wide open to a sliver about the vertical, speeds about `speed_m_s`.
+    /// Line constraints: cones from wide open to nearly closed about the vertical, speeds around `speed_m_s`.
     pub(crate) fn line(&mut self, speed_m_s: f64) -> LineConstraints {
         let takeoff = match self.below(4) {
             0 => (-90.0, 90.0),
@@ -58,7 +58,7 @@ pub(crate) fn line(takeoff_deg: (f64, f64), takeoff_m_s: f64, landing_deg: (f64,
     }
 }
 
-/// A surface that adds nothing to explicit constraints.
+/// A surface without constraints of its own, for explicit constraints.
 pub(crate) const NO_SURFACE: SurfaceProperties = SurfaceProperties { grip: None, rest: RestSlope::Unlimited };
 
 /// A chain with explicit constraints per segment, (forward, reverse).
@@ -79,7 +79,7 @@ pub(crate) fn uniform(points: &[ChainPoint], line: LineConstraints) -> Constrain
     explicit(points, &vec![(line, line); points.len() - 1], RestSlope::Unlimited)
 }
 
-/// The value below which this share of the values lies.
+/// The quantile of the values at a fraction.
 #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "an index from a share")]
 pub(crate) fn quantile(values: &mut [f64], share: f64) -> f64 {
     assert!(!values.is_empty(), "a quantile of nothing");

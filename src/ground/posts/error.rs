@@ -2,53 +2,53 @@
 
 use crate::{ground::SliceProblem, progress::Cancelled, quantity::MapPoint, terrain::TerrainError};
 
-/// Why there is no map.
+/// Why there is no hop map.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum MapError {
-    /// A request that makes no sense.
+    /// An invalid value in the request.
     #[error("{what} is {found}, expected {expected}")]
     Request {
-        /// Of what.
+        /// The name of the value.
         what: &'static str,
-        /// What was given.
+        /// The value given.
         found: String,
-        /// What is allowed.
+        /// What is expected.
         expected: &'static str,
     },
-    /// The terrain, or what lies over it.
+    /// An error of the terrain or its overlays.
     #[error(transparent)]
     Terrain(#[from] TerrainError),
-    /// A slice that makes no chain.
+    /// The slice between two nodes is not a valid chain.
     #[error("the slice from ({:.3} m, {:.3} m): {reason}", at.x, at.y)]
     Ground {
         /// Where it begins.
         at: MapPoint,
-        /// Why not.
+        /// Why.
         reason: Box<SliceProblem>,
     },
-    /// A hop that spans too many posts.
+    /// One hop spans too many posts.
     #[error(
         "one hop reaches {range_m:.1} m, {posts:.0} posts, which makes {offsets} landings from every post, more than fit a table of 256 MiB \
          (some 150 posts): take a stride of {stride}, a coarser raster (gdalwarp -tr), or lower speed limits"
     )]
     TooFar {
-        /// How far, m.
+        /// The reach of one hop, m.
         range_m: f64,
-        /// How many posts that is.
+        /// The same in posts.
         posts: f64,
-        /// How many landings there are.
+        /// How many offsets are in reach.
         offsets: usize,
-        /// The least stride at which they fit.
+        /// The least stride with which the table fits.
         stride: usize,
     },
-    /// More hops than the map's numbers hold.
+    /// A hop count exceeds the range of the map's integers.
     #[error("a post is more than {most} hops away, expected fewer: take a greater stride or higher speed limits")]
     TooManyHops {
-        /// The most there are.
+        /// The largest hop count.
         most: i16,
     },
-    /// It was cancelled.
+    /// The computation was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
 }

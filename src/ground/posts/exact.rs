@@ -1,4 +1,4 @@
-//! The slice and the hop test on a pair, where quick arithmetic does not decide.
+//! The exact hop test of a pair, by its slice, where fast arithmetic does not decide.
 
 use super::{Lofts, MapError, Post, PostHops, offsets::Offset};
 use crate::{
@@ -10,7 +10,7 @@ use crate::{
 };
 
 impl PostHops {
-    /// The slice and the hop test themselves.
+    /// The lofts of a hop by the slice and the hop test.
     #[cold]
     pub(super) fn exact(&self, from: Post, offset: &Offset) -> Result<Option<Lofts>, MapError> {
         let Some(to) = self.moved(from, offset.rows, offset.cols) else { return Ok(None) };
@@ -21,7 +21,7 @@ impl PostHops {
         Ok(test.line_of_sight(&start, &end).zip(test.lofts(&start, &end).ok()))
     }
 
-    /// The slice between two nodes with its constraints; `None` where an elevation is missing on the way.
+    /// The slice between two nodes with its constraints; `None` if an elevation on the line is missing.
     ///
     /// # Errors
     /// [`MapError::Ground`] and [`MapError::Terrain`].
@@ -39,7 +39,7 @@ impl PostHops {
     }
 }
 
-/// Tries the constraints on one slice, so that what is missing is reported before the work begins.
+/// Resolves the constraints of one slice, so that missing ones are reported before the search begins.
 pub(super) fn probe(ground: &DemGround) -> Result<(), MapError> {
     let dem = ground.terrain().dem();
     let gap = |row: usize, col: usize| dem.elevation(row, col).is_none();

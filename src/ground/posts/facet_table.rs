@@ -1,4 +1,4 @@
-//! What the ground around every post allows, whatever the hop: looked up once, asked a hundred times.
+//! Which facets around every post allow contacts, for all hops: computed once, looked up many times.
 
 use rayon::prelude::*;
 
@@ -7,7 +7,7 @@ use super::{
     samples::Heights,
 };
 
-/// A slope this near its limit, as a share of the square of its tangent, is left to the exact code.
+/// A squared slope within this fraction of its limit is left to the exact code.
 const NEAR: f64 = 1.0e-6;
 
 /// The facets around every post, one bit each.
@@ -16,23 +16,23 @@ pub(super) struct FacetTable {
     exists: Vec<u8>,
     steep: Vec<u8>,
     doubtful: Vec<u8>,
-    /// Whether any post has no elevation.
+    /// Whether some post has no elevation.
     pub(super) gaps: bool,
 }
 
-/// What the ground says of a contact on the facets of a heading.
+/// What the facets of a heading allow a contact.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Footing {
     /// No ground, or too steep to rest on.
     Refused,
-    /// Steep to within rounding.
+    /// Within rounding of the steepest slope to rest on.
     Doubtful,
-    /// Good.
+    /// The contact is allowed.
     Sound,
 }
 
 impl FacetTable {
-    /// Of a raster, where `rest` gives the tangent of the steepest slope to rest on at a post.
+    /// The table of a raster; `rest` gives the tangent of the steepest slope to rest on at a post.
     pub(super) fn new(heights: Heights<'_>, rest: &(dyn Fn(usize) -> Option<f64> + Sync)) -> Self {
         let (rows, cols) = (heights.rows(), heights.cols);
         let mut bits = vec![[0u8; 3]; rows * cols];
@@ -46,13 +46,13 @@ impl FacetTable {
         Self { exists: of(0), steep: of(1), doubtful: of(2), gaps }
     }
 
-    /// Whether a hop may begin or end at a post in any direction at all.
+    /// Whether a hop in some direction may begin or end at a post.
     #[inline]
     pub(super) fn usable(&self, post: usize) -> bool {
         self.exists[post] & !self.steep[post] != 0
     }
 
-    /// Whether a post has any of the facets.
+    /// Whether a post has at least one of the facets.
     #[inline]
     pub(super) fn has_any(&self, post: usize, facets: Facets) -> bool {
         self.exists[post] & facets.bits() != 0
@@ -64,7 +64,7 @@ impl FacetTable {
         self.exists[post] & (1 << facet) != 0
     }
 
-    /// On the facet of a heading; along an edge the steeper of the two.
+    /// What the facet of a heading allows; along an edge, the steeper of the two facets.
     #[inline]
     pub(super) fn footing(&self, post: usize, facets: Facets) -> Footing {
         let bits = facets.bits();

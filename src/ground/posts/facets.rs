@@ -24,8 +24,8 @@ const WEST: Neighbour = (-1, 0);
 const NORTH_WEST: Neighbour = (-1, -1);
 const NORTH: Neighbour = (0, -1);
 
-/// Of each facet the posts whose heights give its gradient: (east less west) / dx and (north less south) / dy. All three of its posts
-/// are among them.
+/// For each facet, the posts whose heights give its gradient: (east - west) / dx and (north - south) / dy. They include all three
+/// posts of the facet.
 pub(super) const CORNERS: [[Neighbour; 4]; 6] = [
     [EAST, HERE, EAST, SOUTH_EAST],
     [SOUTH_EAST, SOUTH, HERE, SOUTH],
@@ -35,7 +35,7 @@ pub(super) const CORNERS: [[Neighbour; 4]; 6] = [
     [EAST, HERE, NORTH, HERE],
 ];
 
-/// The facet that a heading leaves a post over, or the two on both sides of the edge it runs along.
+/// The facet under a heading from a post, or the two facets on both sides of an edge that the heading runs along.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Facets {
     first: u8,
@@ -43,7 +43,7 @@ pub(super) struct Facets {
 }
 
 impl Facets {
-    /// As bits, facet 0 the lowest.
+    /// As bits; facet 0 is the lowest.
     #[inline]
     pub(super) const fn bits(self) -> u8 {
         (1 << self.first) | (1 << self.second)
@@ -55,7 +55,7 @@ impl Facets {
         self.first != self.second
     }
 
-    /// The number of the one facet, or of the first of the two.
+    /// The number of the facet, or of the first of two.
     #[inline]
     pub(super) const fn first(self) -> usize {
         self.first as usize
@@ -69,7 +69,7 @@ impl Facets {
     }
 }
 
-/// The facets towards a place so many columns to the east and rows to the south, not both 0.
+/// The facets towards an offset of `cols` to the east and `rows` to the south, not both 0.
 pub(super) fn facets_towards(cols: i32, rows: i32) -> Facets {
     let [before, after] = match (cols.signum(), rows.signum()) {
         (1, 0) => [5, 0],

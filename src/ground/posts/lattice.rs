@@ -1,12 +1,12 @@
-//! The nodes of a hop map: every N-th post of a DEM, and the blocks of nodes that work is shared out in.
+//! The nodes of a hop map: every N-th post of a DEM, and the blocks of nodes that are the units of parallel work.
 
 use crate::{
     quantity::MapPoint,
     terrain::{Dem, GeoReference},
 };
 
-/// Side of a block, nodes. Smaller blocks know their relief, and so their reach, more closely; larger ones cost less to keep and to hand
-/// out to threads. Not tuned: a block of 256 nodes is some milliseconds of work.
+/// Side of a block, nodes. Smaller blocks bound their relief, and so their reach, more tightly; larger ones cost less memory and
+/// scheduling. Not tuned: a block of 256 nodes is some milliseconds of work.
 pub(super) const BLOCK: usize = 16;
 
 /// A post by row and column from the north-west.
@@ -18,7 +18,7 @@ pub struct Post {
     pub col: usize,
 }
 
-/// Every `stride`-th post of a DEM, from its north-west post on.
+/// Every `stride`-th post of a DEM, starting at the north-west post.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NodeLattice {
     /// Rows of nodes.
@@ -48,24 +48,24 @@ impl NodeLattice {
         node.row * self.cols + node.col
     }
 
-    /// The node of a number.
+    /// The node with a number.
     pub fn node(&self, index: usize) -> Post {
         Post { row: index / self.cols, col: index % self.cols }
     }
 
-    /// The DEM's post that a node is.
+    /// The post of the DEM at a node.
     pub fn post(&self, node: Post) -> Post {
         Post { row: node.row * self.stride, col: node.col * self.stride }
     }
 
-    /// The same as a place among the DEM's elevations.
+    /// The index of that post among the DEM's elevations.
     pub(super) fn post_index(&self, node: Post) -> usize {
         (node.row * self.post_cols + node.col) * self.stride
     }
 
-    /// The node nearest to a place on the map; halves go north and west.
+    /// The node nearest to a position on the map; ties go north and west.
     ///
-    /// The place is inside the DEM's bounds, or this is the nearest node of the border.
+    /// A position outside the DEM's bounds gives the nearest node of the border.
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the lattice first")]
     #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
     pub fn nearest(&self, map: &GeoReference, at: MapPoint) -> Post {
@@ -74,7 +74,7 @@ impl NodeLattice {
         Post { row: nearest(-away.y / map.dy_m(), self.rows), col: nearest(away.x / map.dx_m(), self.cols) }
     }
 
-    /// How many blocks there are, down and across.
+    /// The number of blocks, down and across.
     pub(crate) fn blocks(&self) -> (usize, usize) {
         (self.rows.div_ceil(BLOCK), self.cols.div_ceil(BLOCK))
     }

@@ -1,4 +1,5 @@
-//! All single hops between the posts of a DEM, fast: the answer is that of [`Windows`](super::Windows) on the same two posts.
+//! All single hops between the posts of a DEM, computed fast, with the results of [`Windows`](super::Windows) on the same two
+//! posts.
 
 mod error;
 mod exact;

@@ -1,8 +1,8 @@
-//! All offsets from a node to another within reach, each with what is the same for every pair of posts that far apart.
+//! All offsets between nodes within reach, each with everything that is the same for all pairs of posts with that offset.
 //!
-//! Two posts `(columns, rows)` apart see the lattice's lines at the same places between them, whichever posts they are: where the line of
-//! an offset crosses rows, columns and diagonals, between which two posts, and how far along. All of it follows from whole numbers,
-//! so a hop over the terrain is a walk down a table.
+//! The line between two posts `(columns, rows)` apart crosses the lattice's rows, columns and diagonals at the same relative
+//! positions for every such pair: between which two posts, and how far from one to the other. All of it follows from integers, so
+//! testing a hop against the terrain is a walk down a table.
 //!
 //! ```text
 //!   o---o---o---o       offset (3, 1): crosses columns at 1/3 and 2/3 of the way,
@@ -20,55 +20,55 @@ use super::facets::{Facets, facets_towards};
 /// A vertex of the slice between two posts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Crossing {
-    /// The two posts it lies between, as steps from the take-off among the DEM's elevations.
+    /// The two posts it lies between, as steps from the take-off in the array of elevations.
     pub(super) first: i32,
     pub(super) second: i32,
-    /// How far from the first to the second.
+    /// Fraction of the distance from the first to the second.
     pub(super) share: f64,
-    /// How far from take-off to landing.
+    /// Fraction of the distance from take-off to landing.
     pub(super) along: f64,
-    /// Loft that a height above the line of sight costs here: `1 / d + 1 / e`, 1/m, for the distances to both ends.
+    /// Loft needed per metre of height above the line of sight: `1 / d + 1 / e`, 1/m, for the distances `d`, `e` to both ends.
     pub(super) stiffness: f64,
 }
 
 /// The offset from a node to another.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Offset {
-    /// To the east and to the south, nodes.
+    /// Nodes to the east and to the south.
     pub(crate) cols: i32,
     pub(crate) rows: i32,
-    /// Steps among the DEM's elevations.
+    /// The step in the array of elevations.
     pub(super) post_step: isize,
     pub(crate) run_m: f64,
     /// East and north, of length 1.
     pub(crate) heading: Vector2<f64>,
-    /// Its part of the table of crossings, which it shares with the opposite offset: that one meets the same places turned about the take-off.
+    /// Its range in the table of crossings. The opposite offset shares it: its crossings are the same, mirrored about the take-off.
     crossings: Range<usize>,
-    /// 1 where steps lead as the table has them, -1 where they are turned.
+    /// 1 if the steps of the table apply as they are, -1 if they are negated.
     pub(super) turn: isize,
     /// The facets of the take-off and of the landing.
     pub(super) departure: Facets,
     pub(super) arrival: Facets,
-    /// Rises that the parabolas of safety of both speeds allow, m.
+    /// The rises that the parabolas of safety of both speeds allow, m.
     pub(super) rises_m: (f64, f64),
 }
 
-/// A lattice on which offsets are taken.
+/// Spacing of a lattice.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Spacing {
-    /// Posts, m.
+    /// Post spacing, m.
     pub(crate) dx_m: f64,
     pub(crate) dy_m: f64,
-    /// Posts from node to node.
+    /// Posts from one node to the next.
     pub(crate) stride: usize,
     /// Columns of nodes and of posts.
     pub(crate) node_cols: usize,
     pub(crate) post_cols: usize,
 }
 
-/// The vertices of the slice over `(columns, rows)` posts, without its ends, in the order of travel.
+/// The vertices of the slice over `(columns, rows)` posts, in the order of travel, without its ends.
 pub(super) fn crossings(cols: i32, rows: i32, run_m: f64, post_cols: usize) -> Vec<Crossing> {
-    // A crossing at n / d of the way, d > 0, to be sorted exactly.
+    // A crossing at the fraction n / d, d > 0, of the line; fractions are compared exactly.
     let mut places: Vec<(i64, i64)> = Vec::new();
     for lines in [cols, rows, cols - rows] {
         let count = i64::from(lines.abs());
@@ -82,14 +82,14 @@ pub(super) fn crossings(cols: i32, rows: i32, run_m: f64, post_cols: usize) -> V
         .collect()
 }
 
-/// The vertex `number / count` along the way.
+/// The vertex at the fraction `number / count` of the line.
 #[expect(clippy::cast_precision_loss, reason = "products of two reaches stay far below 2^53")]
 #[expect(clippy::cast_possible_truncation, reason = "steps within a raster that fits memory, checked where the table is made")]
 fn crossing(cols: i64, rows: i64, (number, count): (i64, i64), run_m: f64, post_cols: usize) -> Crossing {
     let (east, south) = (cols * number, rows * number);
     let (col, row) = (east.div_euclid(count), south.div_euclid(count));
     let (rest_east, rest_south) = (east.rem_euclid(count), south.rem_euclid(count));
-    // On a row, a column or a diagonal: along it to the next post; on a post both rests are 0.
+    // On a row, a column or a diagonal: interpolated along it to the next post; at a post both remainders are 0.
     let rest = rest_east.max(rest_south);
     let next = (col + i64::from(rest_east > 0), row + i64::from(rest_south > 0));
     #[expect(clippy::cast_possible_wrap, reason = "a raster's columns")]
@@ -101,7 +101,7 @@ fn crossing(cols: i64, rows: i64, (number, count): (i64, i64), run_m: f64, post_
         second: step(next),
         share: rest as f64 / count as f64,
         along,
-        // X / (d e), with the distances d and e as shares of X.
+        // X / (d e), with the distances d and e as fractions of X.
         stiffness: (count * count) as f64 / ((number * (count - number)) as f64 * run_m),
     }
 }
@@ -110,12 +110,12 @@ fn crossing(cols: i64, rows: i64, (number, count): (i64, i64), run_m: f64, post_
 #[derive(Clone, Debug, Default)]
 pub(crate) struct OffsetTable {
     pub(crate) offsets: Vec<Offset>,
-    /// The steps among the nodes of all offsets, by themselves: a search runs down them far more often than it tests a pair.
+    /// The steps of all offsets in the array of nodes, kept separately: a search scans them far more often than it tests a pair.
     pub(super) node_steps: Vec<isize>,
     pub(super) crossings: Vec<Crossing>,
 }
 
-/// How many offsets and crossings a range takes.
+/// The number of offsets and crossings within a range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct TableSize {
     pub(super) offsets: usize,
@@ -123,7 +123,7 @@ pub(super) struct TableSize {
 }
 
 impl OffsetTable {
-    /// Whole numbers of nodes `(columns, rows)` within a range, but none at all.
+    /// All node offsets `(columns, rows)` within a range except (0, 0).
     fn within(spacing: Spacing, range_m: f64, bounds: (usize, usize)) -> impl Iterator<Item = (i32, i32)> {
         #[expect(clippy::cast_precision_loss, clippy::cast_possible_truncation, reason = "clamped to the lattice")]
         let reach = |step_m: f64, count: usize| {
@@ -136,7 +136,7 @@ impl OffsetTable {
             .filter(move |&(cols, rows)| (cols, rows) != (0, 0) && spacing.metres(cols, rows).norm() <= range_m)
     }
 
-    /// What a table would hold, for lattices of so many rows and columns of nodes.
+    /// The size of a table for a lattice with this many rows and columns of nodes.
     pub(super) fn size(spacing: Spacing, range_m: f64, bounds: (usize, usize)) -> TableSize {
         let mut size = TableSize { offsets: 0, crossings: 0 };
         for (cols, rows) in Self::within(spacing, range_m, bounds) {
@@ -144,12 +144,12 @@ impl OffsetTable {
             let lines = cols.unsigned_abs() as usize + rows.unsigned_abs() as usize + cols.abs_diff(rows) as usize;
             size.crossings += lines * spacing.stride;
         }
-        // Every offset shares its crossings with the one that leads back.
+        // Every offset shares its crossings with the opposite one.
         size.crossings /= 2;
         size
     }
 
-    /// The table, where `rises_m` says which rises a distance allows (none: the offset is left out).
+    /// The table; `rises_m` gives the rises that a distance allows (`None`: the offset is left out).
     pub(crate) fn new(spacing: Spacing, range_m: f64, bounds: (usize, usize), rises_m: impl Fn(f64) -> (f64, f64)) -> Self {
         let mut found: Vec<(f64, i32, i32)> =
             Self::within(spacing, range_m, bounds).map(|(cols, rows)| (spacing.metres(cols, rows).norm(), rows, cols)).collect();
@@ -200,14 +200,14 @@ impl OffsetTable {
         });
     }
 
-    /// The offset's vertices, in the order of travel; their steps are to be turned as the offset says.
+    /// The offset's vertices in the order of travel; their steps must be multiplied by its `turn`.
     pub(super) fn crossings_of(&self, offset: &Offset) -> &[Crossing] {
         &self.crossings[offset.crossings.clone()]
     }
 }
 
 impl Spacing {
-    /// Metres east and north of so many nodes.
+    /// Distances east and north of an offset in nodes, m.
     #[expect(clippy::cast_precision_loss, reason = "strides stay far below 2^53")]
     pub(super) fn metres(&self, cols: i32, rows: i32) -> Vector2<f64> {
         let stride = self.stride as f64;
@@ -223,7 +223,7 @@ mod tests {
         terrain::{Dem, GeoReference, slice},
     };
 
-    /// The slice between two posts has the table's vertices, place by place and height by height, over every offset of a square.
+    /// The table's vertices have the positions and heights of those of the slice, for every offset of a square.
     #[test]
     #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, clippy::cast_possible_wrap, reason = "small numbers")]
     fn crossings_are_those_of_the_slice() {

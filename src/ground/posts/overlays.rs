@@ -1,7 +1,7 @@
-//! The overlays of the terrain, friction raster and keep-out zones, by post: the squares of posts that a border runs through, and the
-//! values elsewhere.
+//! The overlays of the terrain, friction raster and keep-out zones, at every post: which squares of posts a border runs through,
+//! and the values elsewhere.
 //!
-//! Between two posts whose bounding box no border touches, one answer holds all the way, and the slice has no vertices but its own.
+//! If no border touches the bounding box of two posts, the overlays are constant between them and add no vertices to the slice.
 
 use nalgebra::{Vector2, Vector3};
 use rayon::prelude::*;
@@ -12,7 +12,7 @@ use crate::{
     world::FrictionCone,
 };
 
-/// Borders this near to a square, as a share of the post spacing, run through it.
+/// A border within this fraction of the post spacing from a square counts as running through it.
 const TOUCHING: f64 = 1.0e-6;
 
 /// Zones and friction at every post.
@@ -20,17 +20,17 @@ const TOUCHING: f64 = 1.0e-6;
 pub(super) struct OverlayTable {
     cols: usize,
     kept: Vec<bool>,
-    /// Friction coefficient, NaN where there is none; empty where no raster gives any.
+    /// Friction coefficients, NaN where the raster has none; empty without a raster.
     friction: Vec<f64>,
     /// How many squares with a border lie to the north and west of each post.
     borders_before: Vec<u32>,
 }
 
 impl OverlayTable {
-    /// Of zones and friction over a DEM; `None` where there are neither.
+    /// The overlays of a DEM; `None` if it has neither friction raster nor zones.
     ///
     /// # Errors
-    /// [`TerrainError::Overlay`] where a mask ends before the terrain does, or there is neither friction nor a constant for it.
+    /// [`TerrainError::Overlay`] if a mask does not cover the terrain, or friction is missing in the raster and as a constant.
     pub(super) fn new(terrain: &OverlaidDem, constant: Option<FrictionCone>) -> Result<Option<Self>, TerrainError> {
         let (dem, overlays) = (terrain.dem(), terrain.overlays());
         let (friction, keep_out) = (overlays.friction(), overlays.keep_out());
@@ -66,13 +66,13 @@ impl OverlayTable {
         Ok(Some(Self { cols, kept, friction: coefficients, borders_before: squares.counted() }))
     }
 
-    /// Whether a post, and all around it that no border parts from it, is kept out of.
+    /// Whether a post, with everything around it up to the next border, lies in a keep-out zone.
     #[inline]
     pub(super) fn kept(&self, post: usize) -> bool {
         self.kept[post]
     }
 
-    /// Whether a raster gives friction.
+    /// Whether there is a friction raster.
     #[inline]
     pub(super) fn has_friction(&self) -> bool {
         !self.friction.is_empty()
@@ -87,7 +87,7 @@ impl OverlayTable {
     /// Whether a border touches the bounding box of two posts.
     #[inline]
     pub(super) fn has_border(&self, a: Post, b: Post) -> bool {
-        // Squares that touch the box: from the one before its first post to the one of its last.
+        // Squares that touch the box: from the one before its first post to the one at its last.
         let (north, south) = (a.row.min(b.row), a.row.max(b.row));
         let (west, east) = (a.col.min(b.col), a.col.max(b.col));
         let before = |row: usize, col: usize| self.borders_before[row * (self.cols + 1) + col];
@@ -96,7 +96,7 @@ impl OverlayTable {
     }
 }
 
-/// A row of posts as a level line.
+/// A row of posts as a level profile.
 fn level_row(dem: &Dem, row: usize) -> Profile {
     let map = dem.georeference();
     let level =
@@ -111,7 +111,7 @@ fn level_row(dem: &Dem, row: usize) -> Profile {
     Profile { points, facets: vec![level; dem.cols() - 1], heading: Vector2::new(1.0, 0.0) }
 }
 
-/// What lies under each post of a row's line: that of the segment after it, and of the last one before it.
+/// The facet under each post of a row's line: that of the segment after it, for the last post of the segment before it.
 fn at_posts(dem: &Dem, line: &Profile) -> Vec<ProfileFacet> {
     let mut found = Vec::with_capacity(dem.cols());
     let mut posts = level_row(dem, 0).points.into_iter().map(|point| point.x_m).peekable();
@@ -123,7 +123,7 @@ fn at_posts(dem: &Dem, line: &Profile) -> Vec<ProfileFacet> {
     found
 }
 
-/// The squares of four posts that borders run through.
+/// The squares of four posts with borders through them.
 struct Squares<'a> {
     dem: &'a Dem,
     touched: Vec<bool>,
@@ -134,7 +134,8 @@ impl<'a> Squares<'a> {
         Self { dem, touched: vec![false; dem.rows() * dem.cols()] }
     }
 
-    /// Pieces of borders no longer than this touch few squares more than they must.
+    /// Greatest length of a piece of a border, m: short pieces have small bounding boxes, so they mark few squares without a
+    /// border.
     fn step_m(&self) -> f64 {
         self.dem.georeference().dx_m().min(self.dem.georeference().dy_m())
     }
@@ -153,7 +154,7 @@ impl<'a> Squares<'a> {
         }
     }
 
-    /// How many are marked to the north and west of each post, one row and column of zeros first.
+    /// The number of marked squares to the north and west of each post, preceded by a row and a column of zeros.
     fn counted(self) -> Vec<u32> {
         let (rows, cols) = (self.dem.rows(), self.dem.cols());
         let mut before = vec![0u32; (rows + 1) * (cols + 1)];
@@ -168,7 +169,7 @@ impl<'a> Squares<'a> {
     }
 }
 
-/// The squares between two coordinates, of as many posts; none where they lie off the map.
+/// The range of squares between two coordinates, clamped to the raster; empty if they lie off the map.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the raster first")]
 #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
 fn within([low, high]: [f64; 2], posts: usize) -> Option<std::ops::RangeInclusive<usize>> {

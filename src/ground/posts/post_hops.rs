@@ -1,8 +1,8 @@
-//! One hop between two posts: quick where that is sure, exact where it is close.
+//! One hop between two posts: fast arithmetic where its result is certain, the exact hop test where it is close.
 //!
-//! The answer is that of [`slice`](crate::terrain::slice()) and [`HopTest`](crate::hop::HopTest) on the same two posts. Quick arithmetic, which differs from
-//! theirs by rounding only, says yes or no where the limits leave a margin far above rounding; what is nearer than that is given to
-//! the slice and the hop test themselves. So is every hop near a border of a zone or of friction, where the slice has more vertices.
+//! The result is that of [`slice`](crate::terrain::slice()) and [`HopTest`](crate::hop::HopTest) on the same two posts. Fast
+//! arithmetic differs from theirs only by rounding; it decides where the margin to the limits is far above rounding. Closer pairs,
+//! and all pairs near a border of a zone or of friction, where the slice has more vertices, are left to the slice and the hop test.
 
 use super::{
     MapError, Post, exact,
@@ -22,12 +22,12 @@ use crate::{
     world::Grip,
 };
 
-/// Lofts closer than this, as a share of one plus their size, are left to the exact code. The quick ones are off by some 1e-8 of
-/// themselves next to the end of a cone (see [`QuickGrip`]) and by 1e-13 elsewhere. Larger only asks the exact code more often.
+/// Lofts closer than this, relative to one plus their size, are left to the exact code. Fast arithmetic has relative errors of some
+/// 1e-8 next to the end of a cone (see [`QuickGrip`]) and 1e-13 elsewhere. A larger value only uses the exact code more often.
 const NEAR: f64 = 1.0e-5;
 
-/// Map coordinates and heights must be this fine, as a share of the post spacing, for quick arithmetic to be within [`NEAR`]: 1 m posts
-/// up to 4 000 km from the origin. On coarser ones every pair is given to the exact code.
+/// Greatest rounding error of map coordinates and heights, as a fraction of the post spacing, for fast arithmetic to be within
+/// [`NEAR`]: 1 m posts up to 4 000 km from the origin. On coarser maps every pair is left to the exact code.
 const FINE: f64 = 1.0e-9;
 
 /// All single hops between the nodes of a DEM.
@@ -39,9 +39,9 @@ pub struct PostHops {
     pub(super) facets: FacetTable,
     pub(super) overlays: Option<OverlayTable>,
     grip: Option<QuickGrip>,
-    /// How many of the nearest offsets are within reach of each block's nodes.
+    /// For each block, how many of the nearest offsets are within reach of its nodes.
     pub(super) within_reach: Vec<usize>,
-    /// Whether map coordinates are too coarse for quick arithmetic.
+    /// Whether map coordinates are too coarse for fast arithmetic.
     coarse: bool,
 }
 
@@ -55,7 +55,7 @@ impl std::fmt::Debug for PostHops {
     }
 }
 
-/// What quick arithmetic says of a pair.
+/// The result of fast arithmetic on a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Verdict {
     No,
@@ -67,10 +67,11 @@ enum Verdict {
 pub type Lofts = (LineOfSight, SlopeInterval);
 
 impl PostHops {
-    /// Prepares all that pairs share; every `stride`-th post is a node (0 counts as 1), the terrain in between is always the full DEM.
+    /// Prepares the tables that all pairs share. Every `stride`-th post is a node (0 counts as 1); the terrain is always the full
+    /// DEM.
     ///
     /// # Errors
-    /// [`MapError`]: a reach of too many posts, constraints that are missing, overlays that end before the terrain does.
+    /// [`MapError`]: the reach spans too many posts, constraints are missing, or overlays do not cover the terrain.
     pub fn new(ground: DemGround, stride: usize) -> Result<Self, MapError> {
         let dem = ground.terrain().dem();
         let lattice = NodeLattice::new(dem, stride);
@@ -101,12 +102,12 @@ impl PostHops {
         self.lattice
     }
 
-    /// The ground that they lie on.
+    /// The ground that the nodes lie on.
     pub const fn ground(&self) -> &DemGround {
         &self.ground
     }
 
-    /// The hopper under its gravity.
+    /// The flight envelope of the hopper under its gravity.
     pub(crate) const fn envelope(&self) -> &FlightEnvelope {
         self.ground.envelope()
     }
@@ -122,12 +123,12 @@ impl PostHops {
         &self.table.offsets
     }
 
-    /// The steps among the nodes of all offsets.
+    /// The steps of all offsets in the array of nodes.
     pub(crate) fn node_steps(&self) -> &[isize] {
         &self.table.node_steps
     }
 
-    /// How many of the nearest offsets matter to the nodes of a block.
+    /// How many of the nearest offsets are within reach of the nodes of a block.
     pub(crate) fn within_reach(&self, block: usize) -> usize {
         self.within_reach[block]
     }
@@ -145,23 +146,23 @@ impl PostHops {
         !self.heights().at(self.lattice.post_index(node)).is_nan()
     }
 
-    /// Whether a hop may begin or end at a node at all.
+    /// Whether a hop in some direction may begin or end at a node.
     pub(crate) fn usable(&self, node: Post) -> bool {
         self.facets.usable(self.lattice.post_index(node))
     }
 
-    /// How many offsets lead from a node to another one: `0..offset_count()` are their numbers, nearest first.
+    /// The number of offsets from one node to another: `0..offset_count()` are their numbers, nearest first.
     pub fn offset_count(&self) -> usize {
         self.table.offsets.len()
     }
 
-    /// The node at the end of an offset; `None` off the map.
+    /// The node at the end of an offset; `None` outside the map.
     #[inline]
     pub fn landing(&self, from: Post, offset: usize) -> Option<Post> {
         self.moved(from, self.table.offsets[offset].rows, self.table.offsets[offset].cols)
     }
 
-    /// The node from which an offset leads to this one; `None` off the map.
+    /// The node from which an offset leads to this one; `None` outside the map.
     #[inline]
     pub(crate) fn takeoff(&self, to: Post, offset: usize) -> Option<Post> {
         self.moved(to, -self.table.offsets[offset].rows, -self.table.offsets[offset].cols)
@@ -174,17 +175,17 @@ impl PostHops {
         (row < self.lattice.rows && col < self.lattice.cols).then_some(Post { row, col })
     }
 
-    /// The feasible lofts of a hop from a node by an offset that ends on the map; `None` where there are none.
+    /// The feasible lofts of a hop from a node by an offset that ends on the map; `None` if there are none.
     ///
     /// # Errors
-    /// [`MapError::Ground`] where the exact code finds overlays that end.
+    /// [`MapError::Ground`] if the exact code cannot build the slice.
     pub fn lofts(&self, from: Post, offset: usize) -> Result<Option<Lofts>, MapError> {
         self.lofts_where(from, &self.table.offsets[offset], |_, _| true)
     }
 
-    /// The same, given up before the terrain where the lofts that all other limits leave are not worth while.
+    /// The same, but `None` without a test of the terrain if `worth` rejects the lofts that all other limits leave.
     ///
-    /// The lofts told to `worth` hold the feasible ones.
+    /// The lofts passed to `worth` contain the feasible ones.
     #[inline]
     pub(crate) fn lofts_where(
         &self,
@@ -199,7 +200,7 @@ impl PostHops {
         }
     }
 
-    /// Quick arithmetic on a pair.
+    /// Fast arithmetic on a pair.
     #[inline]
     fn evaluate(&self, from: Post, offset: &Offset, worth: impl FnOnce(LineOfSight, SlopeInterval) -> bool) -> Verdict {
         let takeoff = self.lattice.post_index(from);
@@ -207,7 +208,7 @@ impl PostHops {
         let heights = self.heights();
         let takeoff_m = heights.at(takeoff);
         let rise_m = heights.at(landing) - takeoff_m;
-        // A gap on either end makes this no number.
+        // NaN if either end has no elevation, which fails the comparison.
         let in_reach = offset.rises_m.0 <= rise_m && rise_m <= offset.rises_m.1;
         if !in_reach {
             return Verdict::No;
@@ -266,7 +267,7 @@ impl PostHops {
         }
     }
 
-    /// The directions that both ends allow, and whether they are sure; `None` where an end allows none.
+    /// The directions that both ends allow, and whether they are certain; `None` if an end allows none.
     #[inline]
     fn cones(&self, takeoff: usize, landing: usize, offset: &Offset, overlay: Overlay) -> Option<([SlopeInterval; 2], bool)> {
         let everything = ([SlopeInterval::ALL; 2], false);
@@ -298,7 +299,7 @@ impl PostHops {
         Some(([ahead, behind], sure))
     }
 
-    /// Slope along the heading and square of the gradient of the facet under an end; along an edge of the steeper one.
+    /// Slope along the heading and squared gradient of the facet under an end; along an edge, those of the steeper facet.
     #[inline]
     fn facet(&self, post: usize, facets: Facets, offset: &Offset) -> (f64, f64) {
         let heights = self.heights();
@@ -313,7 +314,7 @@ impl PostHops {
         there.fold((0.0, f64::NEG_INFINITY), |steepest, facet| if facet.1 > steepest.1 { facet } else { steepest })
     }
 
-    /// Whether a way along edges of facets has one on either side all the way.
+    /// Whether a line along edges of facets has a facet on at least one side everywhere.
     fn has_facets_along(&self, takeoff: usize, offset: &Offset) -> bool {
         let posts = self.table.crossings_of(offset).iter();
         posts
@@ -322,7 +323,7 @@ impl PostHops {
     }
 }
 
-/// The overlays between a pair of posts: none (or the same friction everywhere), a zone all over, or borders.
+/// The overlays between a pair of posts: constant, a keep-out zone everywhere, or borders.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Overlay {
     Bare,
@@ -330,7 +331,7 @@ enum Overlay {
     Mixed,
 }
 
-/// The distance within which a loft is close to another.
+/// The distance below which another loft counts as close to this one.
 #[inline]
 fn near(loft: f64) -> f64 {
     NEAR * (1.0 + loft.abs())

@@ -1,4 +1,4 @@
-//! Which offsets there are, and which of them matter where.
+//! The offsets within reach of one hop, and how many of them are within reach of each block.
 
 use super::{
     MapError, PostHops,
@@ -11,7 +11,7 @@ use crate::{
     world::tolerant_speed_m_s,
 };
 
-/// What the bounds on reach are widened by against rounding.
+/// Bounds on reach are widened by this factor against rounding.
 const WIDER: f64 = 1.0 + 1.0e-6;
 
 /// The largest table of crossings, 256 MiB: a reach of some 150 posts.
@@ -23,7 +23,7 @@ impl PostHops {
         let hopper = self.ground.hopper().limits();
         let speeds = [hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s].map(|v| tolerant_speed_m_s(v) * WIDER);
         let gravity = self.ground.gravity_m_s2();
-        // The longest hop that falls or climbs no further than a height.
+        // The longest hop that rises or falls by at most a height.
         let range_m =
             |height_m: f64| safety_range_m(height_m, speeds[0], gravity).min(safety_range_m(height_m, speeds[1], gravity)) * WIDER;
         let blocks = self.block_heights();
@@ -37,7 +37,7 @@ impl PostHops {
                 expected: "a finite one: give speed limits and gravity",
             });
         }
-        // Within a shorter range there is less relief, which makes the range shorter still.
+        // A shorter range contains less relief, which shortens the range further.
         let mut ranges_m = Vec::new();
         for _ in 0..8 {
             ranges_m =
@@ -85,20 +85,20 @@ impl PostHops {
         }
     }
 
-    /// Lowest and highest node of each block; infinities the wrong way round where it has none.
+    /// Lowest and highest node of each block; (inf, -inf) if it has none.
     fn block_heights(&self) -> Vec<(f64, f64)> {
         let (down, across) = self.lattice.blocks();
         let posts = self.heights();
         (0..down * across)
             .map(|block| {
                 let heights = self.lattice.nodes_of(block).map(|node| posts.at(self.lattice.post_index(node)));
-                // The minimum and maximum of a number and NaN are the number.
+                // `min` and `max` of a number and NaN give the number.
                 heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)))
             })
             .collect()
     }
 
-    /// How many blocks away a range may reach, down and across.
+    /// The number of blocks that a range may extend over, down and across.
     pub(crate) fn blocks_within(&self, range_m: f64) -> (usize, usize) {
         let spacing = self.spacing();
         #[expect(clippy::cast_precision_loss, reason = "strides and blocks are small")]
@@ -108,7 +108,7 @@ impl PostHops {
         (count(spacing.dy_m), count(spacing.dx_m))
     }
 
-    /// Of each block, the relief of all blocks within a range of it, m.
+    /// For each block, the relief of all blocks within a range of it, m.
     fn block_reliefs(&self, blocks: &[(f64, f64)], range_m: f64) -> Vec<f64> {
         let (down, across) = self.lattice.blocks();
         let (rows, cols) = self.blocks_within(range_m);

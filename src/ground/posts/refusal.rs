@@ -1,4 +1,4 @@
-//! Why a post takes no hop and gives none, whatever the direction.
+//! Why no hop begins or ends at a post, in any direction.
 
 use std::fmt;
 
@@ -12,15 +12,15 @@ use crate::{
 /// Why no hop begins or ends at a post.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum PostRefusal {
-    /// No elevation there, or none around it.
+    /// The post or everything around it has no elevation.
     NoGround,
     /// Inside a keep-out zone.
     KeptOut,
     /// All its facets are too steep to rest on.
     TooSteep {
-        /// The mildest of them.
+        /// The slope of the least steep facet.
         slope: Angle,
-        /// The steepest that holds.
+        /// The steepest slope to rest on there.
         rest_slope: Angle,
     },
 }
@@ -41,7 +41,7 @@ impl fmt::Display for PostRefusal {
     }
 }
 
-/// The tangent of the steepest slope to rest on at a post; `None` where every slope holds.
+/// The tangent of the steepest slope to rest on at a post; `None` if every slope holds.
 pub(super) fn rest_tangent(ground: &DemGround, overlays: Option<&OverlayTable>, post: usize) -> Option<f64> {
     match ground.surface().rest {
         RestSlope::AsFrictionHolds => {
@@ -53,7 +53,7 @@ pub(super) fn rest_tangent(ground: &DemGround, overlays: Option<&OverlayTable>, 
 }
 
 impl PostHops {
-    /// Why no hop begins or ends at a node in any direction; `None` where ground and zones allow some.
+    /// Why no hop begins or ends at a node in any direction; `None` if ground and zones allow some.
     pub fn refusal(&self, node: Post) -> Option<PostRefusal> {
         let post = self.lattice.post(node);
         let place = self.ground.terrain().dem().georeference().post(post.row, post.col);
@@ -77,7 +77,7 @@ impl PostHops {
         })
     }
 
-    /// The node nearest to another that refuses neither; of equally near ones the north-western. `None` where all refuse.
+    /// The nearest node with neither refusal; ties go to the north and west. `None` if all refuse.
     pub fn nearest_usable(&self, node: Post) -> Option<Post> {
         let place = |node: Post| {
             let Post { row, col } = self.lattice.post(node);

@@ -3,7 +3,7 @@
 use super::{facets::CORNERS, offsets::Crossing};
 use crate::terrain::{Dem, Samples};
 
-/// Elevations row after row, NaN for gaps, with the spacing of their posts.
+/// Elevations row after row, NaN for gaps, and the post spacing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Heights<'a> {
     samples: Samples<'a>,
@@ -11,28 +11,28 @@ pub(super) struct Heights<'a> {
     scale: &'a HeightScale,
 }
 
-/// What the heights of a DEM share: the spacing of its posts, and where the neighbours of a post stand among them.
+/// What the heights of a DEM share: the post spacing, and the steps to the neighbours of a post in the array.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HeightScale {
-    /// One over the posts' spacing, 1/m: a quotient's last bit is worth less than a division.
+    /// Inverse post spacing, 1/m: a multiplication is faster than a division, and the last bit does not matter.
     per_dx: f64,
     per_dy: f64,
-    /// [`CORNERS`] as steps among the elevations.
+    /// [`CORNERS`] as steps in the array of elevations.
     corners: [[isize; 4]; 6],
 }
 
 /// The take-off of a walk and the height of its line of sight.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Walk {
-    /// The take-off's place among the elevations.
+    /// The index of the take-off in the array of elevations.
     pub(super) from: usize,
     /// The take-off's height less the clearance, m.
     pub(super) base_m: f64,
-    /// 1 or -1: how the crossings' steps are turned.
+    /// 1 or -1: the sign of the crossings' steps.
     pub(super) turn: isize,
-    /// To the landing, m.
+    /// Height of the landing above the take-off, m.
     pub(super) rise_m: f64,
-    /// A loft that no vertex may ask more than.
+    /// The walk ends at a vertex that needs more loft than this.
     pub(super) most: f64,
 }
 
@@ -68,7 +68,7 @@ impl<'a> Heights<'a> {
         }
     }
 
-    /// The gradient (east, north) of one of a post's facets, which must exist; NaN where a post of it has no elevation.
+    /// The gradient (east, north) of one of a post's facets, which must exist; NaN if an elevation is missing.
     #[inline]
     pub(super) fn gradient(&self, post: usize, facet: usize) -> (f64, f64) {
         match self.samples {
@@ -84,7 +84,7 @@ impl<'a> Heights<'a> {
         ((east - west) * self.scale.per_dx, (north - south) * self.scale.per_dy)
     }
 
-    /// The least loft that clears all vertices on the way; `None` where that is more than the most allowed, or an elevation is missing.
+    /// The least loft that clears all vertices on the line; `None` if that exceeds the most allowed, or an elevation is missing.
     #[inline]
     pub(super) fn clearing_loft(&self, walk: Walk, crossings: &[Crossing]) -> Option<f64> {
         match self.samples {
@@ -94,8 +94,8 @@ impl<'a> Heights<'a> {
     }
 }
 
-/// With `n >= s - t` of [`clearing_loft`](crate::ballistics::limits::clearing_loft) written as the height over the line of sight times
-/// `1 / d + 1 / e`: no division.
+/// The bound of [`clearing_loft`](crate::ballistics::limits::clearing_loft), `n >= s - t`, computed without a division as the
+/// height over the line of sight times `1 / d + 1 / e`.
 #[inline]
 fn clearing_loft<T: Copy + Into<f64>>(heights: &[T], walk: Walk, crossings: &[Crossing]) -> Option<f64> {
     let mut least = f64::NEG_INFINITY;
@@ -104,7 +104,7 @@ fn clearing_loft<T: Copy + Into<f64>>(heights: &[T], walk: Walk, crossings: &[Cr
         let first = at(crossing.first);
         let z_m = first + crossing.share * (at(crossing.second) - first);
         let loft = (z_m - (walk.base_m + walk.rise_m * crossing.along)) * crossing.stiffness;
-        // So that a missing elevation, which is no number, ends the walk too.
+        // Written so that NaN, a missing elevation, also ends the walk.
         let clears = loft <= walk.most;
         if !clears {
             return None;

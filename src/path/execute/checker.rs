@@ -1,4 +1,4 @@
-//! Every limit of one hop, held against what was flown.
+//! The check of every limit of one flown hop.
 
 use std::{f64::consts::FRAC_PI_2, ops::ControlFlow};
 
@@ -13,20 +13,20 @@ use crate::{
     world::{Contact, Direction, FrictionCone, Limit, tolerant_speed_m_s},
 };
 
-/// How far an angle may lie over its limit, rad: what the speeds' tolerance is in directions. A tangent and its arc tangent on the
-/// way from a limit to a command leave some 1e-15; a nanoradian is a millimetre in 1000 km.
+/// Tolerance of an angle over its limit, rad: it corresponds to the tolerance of speeds. A tangent and an arc tangent between limit
+/// and command leave an error of some 1e-15; a nanoradian is a millimetre in 1000 km.
 const ANGLE_TOLERANCE_RAD: f64 = 1e-9;
 
-/// How far a time may lie over its limit, as a share: as the speeds' own tolerance.
+/// Relative tolerance of a time over its limit: the same as for speeds.
 const TIME_TOLERANCE: f64 = 1e-9;
 
-/// How far a speed may lie over its limit beyond the program's tolerance, as a share: the rounding of the formulas that gave it.
+/// Relative rounding error of a speed from the formulas that gave it, allowed beyond the crate's tolerance.
 const SPEED_ROUNDING: f64 = 1e-12;
 
-/// How far a point on the map may lie from its place, as a share of the coordinates' size.
+/// Tolerance of a map position, as a fraction of the size of its coordinates.
 const MAP_TOLERANCE: f64 = 1e-12;
 
-/// Holds one hop against its limits and notes what it offends.
+/// Checks one hop against its limits and collects the violations.
 pub(super) struct Checker<'a, S: Surface> {
     pub(super) number: usize,
     pub(super) surface: &'a S,
@@ -34,14 +34,14 @@ pub(super) struct Checker<'a, S: Surface> {
     pub(super) contacts: [Option<S::Contact>; 2],
     pub(super) hop: &'a Hop,
     pub(super) direction: Direction,
-    /// The horizontal direction of flight; `None` where the ends are not two positions of the ground.
+    /// The horizontal direction of flight; `None` if the ends are not two positions of the ground.
     pub(super) heading: Option<Vector2<f64>>,
     /// Horizontal distance from take-off to landing, m.
     pub(super) run_m: Option<f64>,
     pub(super) violations: &'a mut Vec<Violation>,
 }
 
-/// Direction and speed at one end of a hop, and how uncertain rounding leaves them.
+/// Direction and speed at one end of a hop, with their rounding errors.
 #[derive(Clone, Copy)]
 struct Meeting {
     contact: Contact,
@@ -60,9 +60,9 @@ impl<S: Surface> Checker<'_, S> {
         self.note(ViolatedLimit::Limit(limit), Some(Measure { found, allowed, unit }), at_x_m);
     }
 
-    /// A number of the plan that must be the flown one, up to a tolerance.
+    /// A stated number must equal the flown one, within a tolerance.
     fn stated(&mut self, value: StatedValue, stated: f64, flown: f64, tolerance: f64, unit: &'static str) {
-        // Written so that a number which is none fails.
+        // Written so that NaN fails.
         let agrees = (stated - flown).abs() <= tolerance;
         if !agrees {
             let measure = Measure { found: stated, allowed: flown, unit };
@@ -70,7 +70,7 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// What is wrong with a command that does not leave forwards at all: it lands nowhere.
+    /// The violations of a command that does not leave the ground forwards: it has no landing.
     pub(super) fn no_flight(&mut self) {
         let (takeoff, landing) = (self.hop.takeoff.in_profile(), self.hop.landing.in_profile());
         self.takeoff(self.hop);
@@ -80,7 +80,7 @@ impl<S: Surface> Checker<'_, S> {
         self.note(ViolatedLimit::LandingPoint, Some(measure), takeoff.x_m);
     }
 
-    /// Everything there is to hold against a flight.
+    /// All checks of a flight.
     pub(super) fn flight(&mut self, flight: &Flight) {
         self.takeoff(self.hop);
         self.landing(flight);
@@ -92,7 +92,7 @@ impl<S: Surface> Checker<'_, S> {
         self.stated_values(flight);
     }
 
-    /// A flight stays in one vertical plane: every bend strictly under it is one too many.
+    /// A flight stays in one vertical plane, so every bend strictly below it is a violation.
     fn bends(&mut self) {
         let ([Some(from), _], Some(heading), Some(run_m)) = (self.contacts, self.heading, self.run_m) else { return };
         let (number, violations) = (self.number, &mut *self.violations);
@@ -107,11 +107,11 @@ impl<S: Surface> Checker<'_, S> {
             }
             ControlFlow::Continue(())
         });
-        // In the order of the chain, whatever the direction of travel.
+        // In the order of the chain, for both directions of travel.
         violations[before..].sort_by(|a, b| a.at_x_m.total_cmp(&b.at_x_m));
     }
 
-    /// What holds at the take-off: commanded direction and speed are what is flown.
+    /// Checks of the take-off: the flown direction and speed are the commanded ones.
     fn takeoff(&mut self, hop: &Hop) {
         let meeting = Meeting {
             contact: Contact::Takeoff,
@@ -124,20 +124,20 @@ impl<S: Surface> Checker<'_, S> {
         self.ground(&hop.takeoff, meeting);
     }
 
-    /// How uncertain the landing's direction is: a place uncertain by `e` turns the direction of flight by `e` times the curvature
-    /// there, `g v_x / v^3`.
+    /// Uncertainty of the landing's direction: an error `e` of the position turns the direction of flight by `e` times the
+    /// curvature there, `g v_x / v^3`.
     fn landing_angle_tolerance_rad(&self, flight: &Flight) -> f64 {
         let v = flight.landing_speed_m_s;
         ANGLE_TOLERANCE_RAD + flight.rounding_m * (self.surface.gravity_m_s2() / v) * (flight.across_m_s / v) / v
     }
 
-    /// How uncertain the landing's speed is: it changes by `g v_z / v^2` per metre flown.
+    /// Uncertainty of the landing's speed: it changes by `g v_z / v^2` per metre flown.
     fn landing_speed_rounding_m_s(&self, flight: &Flight) -> f64 {
         let v = flight.landing_speed_m_s;
         flight.rounding_m * (self.surface.gravity_m_s2() / v) * (flight.landing_climb_m_s.abs() / v)
     }
 
-    /// What holds at the landing.
+    /// Checks of the landing.
     fn landing(&mut self, flight: &Flight) {
         let meeting = Meeting {
             contact: Contact::Landing,
@@ -155,7 +155,7 @@ impl<S: Surface> Checker<'_, S> {
         self.contacts[usize::from(contact == Contact::Landing)]
     }
 
-    /// A contact must be the surface's own at its horizontal position.
+    /// A stated contact must be the surface's own contact at the same horizontal position.
     fn contact(&mut self, stated: &ContactPoint, value: StatedValue, contact: Contact) {
         let own = self.own(contact).map(|own| self.surface.contact_point(&own));
         match own {
@@ -170,7 +170,7 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// The facets that rule a contact: those ahead of a take-off, those just flown over before a landing.
+    /// The facets that a contact obeys: those ahead of a take-off, those just flown over before a landing.
     fn ruling(&self, contact: Contact) -> impl Iterator<Item = Facet> + use<S> {
         let side = match contact {
             Contact::Takeoff => Side::Ahead,
@@ -183,7 +183,7 @@ impl<S: Surface> Checker<'_, S> {
         facets.into_iter().flatten()
     }
 
-    /// The ground's own refusals, its cone and its speed limit; of two facets beside an edge, both.
+    /// The ground's refusals, cone and speed limit; beside an edge, those of both facets.
     fn ground(&mut self, stated: &ContactPoint, meeting: Meeting) {
         let x_m = stated.along_m;
         let mut known = false;
@@ -191,7 +191,7 @@ impl<S: Surface> Checker<'_, S> {
             let before = self.violations.len();
             self.facet(&facet, meeting, x_m);
             known = true;
-            // What one facet already says is not said again of its neighbour.
+            // A violation on one facet is not reported again for its neighbour.
             if self.violations.len() > before {
                 return;
             }
@@ -201,7 +201,7 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// One facet under a contact.
+    /// Checks of one facet under a contact.
     fn facet(&mut self, facet: &Facet, meeting: Meeting, x_m: f64) {
         let before = self.violations.len();
         if let Some(refusal) = facet.refusal.filter(|refusal| !only_rounding(*refusal)) {
@@ -257,14 +257,14 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// The cone of the ground, and that the hop goes forward at all.
+    /// The cone of the ground, and that the hop goes forwards.
     fn cone(&mut self, angles: AngleInterval, meeting: Meeting, x_m: f64) {
         let limit = if meeting.contact == Contact::Takeoff { Limit::TakeoffCone } else { Limit::LandingCone };
         let (min, max) = (angles.min.radians().max(-FRAC_PI_2), angles.max.radians().min(FRAC_PI_2));
         self.angle_between(limit, meeting.angle_rad, (min, max), meeting.angle_tolerance_rad, x_m);
     }
 
-    /// An angle between two, both ends allowed.
+    /// An angle must lie between two others, both included.
     fn angle_between(&mut self, limit: Limit, angle_rad: f64, (min, max): (f64, f64), tolerance_rad: f64, x_m: f64) {
         let reached = angle_rad >= min - tolerance_rad;
         let kept = angle_rad <= max + tolerance_rad;
@@ -276,7 +276,7 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// The machine's own take-off angles.
+    /// The take-off angles of the mechanism.
     fn mechanical_angle(&mut self) {
         let limits = self.surface.hopper().limits();
         let (min, max) = (limits.takeoff_angle_min, limits.takeoff_angle_max);
@@ -287,7 +287,7 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// Clearance over the vertices, and the ground between them.
+    /// Clearance over the vertices and over the ground between them.
     fn terrain(&mut self, flight: &Flight) {
         let limit = ViolatedLimit::Limit(Limit::Terrain);
         if let (Some(known_m), Some(run_m)) = (flight.unknown_from_m, self.run_m) {
@@ -305,7 +305,7 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// Where it really comes down, against where it should.
+    /// The actual landing point must be the planned one.
     fn landing_point(&mut self, flight: &Flight) {
         if flight.hits {
             return;
@@ -314,7 +314,7 @@ impl<S: Surface> Checker<'_, S> {
         let (found, at_x_m) = if let Some(contact) = flight.contact {
             (libm::hypot(contact.x_m - planned.x_m, contact.z_m - planned.z_m), contact.x_m)
         } else {
-            // It flies off the known ground: by at least as much.
+            // It leaves the known ground, so it misses by at least the distance to its end.
             let end_x_m = self.end_of_ground_m();
             ((end_x_m - planned.x_m).abs(), end_x_m)
         };
@@ -334,7 +334,7 @@ impl<S: Surface> Checker<'_, S> {
         end_m
     }
 
-    /// Greatest height and longest flight.
+    /// The greatest height and the longest flight.
     fn machine(&mut self, flight: &Flight) {
         let x_m = self.hop.takeoff.along_m;
         if let Some(height_m) = self.surface.hopper().limits().apex_height_max_m {
@@ -351,7 +351,7 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// The numbers of the plan, against those flown.
+    /// The stated numbers must equal those flown.
     fn stated_values(&mut self, flight: &Flight) {
         let hop = self.hop;
         let angle_tolerance_deg = self.landing_angle_tolerance_rad(flight).to_degrees();
@@ -374,14 +374,14 @@ impl<S: Surface> Checker<'_, S> {
         self.map_ends();
     }
 
-    /// What the two speeds leave of their limits; `None` where the ground refuses a contact.
+    /// The smaller margin of the two speeds to their limits; `None` if the ground refuses a contact.
     fn margin_m_s(&self, flight: &Flight) -> Option<f64> {
         let takeoff = self.speed_limit_m_s(Contact::Takeoff)? - self.hop.takeoff_speed_m_s;
         let landing = self.speed_limit_m_s(Contact::Landing)? - flight.landing_speed_m_s;
         Some(takeoff.min(landing))
     }
 
-    /// The greatest speed that the ground allows a contact; `None` where it refuses the contact.
+    /// The greatest speed that the ground allows a contact; `None` if it refuses the contact.
     fn speed_limit_m_s(&self, contact: Contact) -> Option<f64> {
         let limits = self.surface.hopper().limits();
         let of = |facet: Facet| match facet.hold.stated(contact) {
@@ -391,7 +391,7 @@ impl<S: Surface> Checker<'_, S> {
         self.ruling(contact).map(of).reduce(|a, b| Some(a?.min(b?)))?
     }
 
-    /// The two ends on the map, where the ground lies on one, and the distance between them.
+    /// The two ends on the map, if the ground lies on one, and the distance between them.
     fn map_ends(&mut self) {
         let own = self.contacts.map(|own| own.map(|own| self.surface.contact_point(&own)));
         let [Some(takeoff), Some(landing)] = own else { return };
@@ -418,7 +418,7 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// The heading: a step along it must lead from one place to the other.
+    /// The heading: a step along it from take-off must lead to the landing.
     fn heading(&mut self, heading_deg: f64, takeoff: MapPoint, landing: MapPoint, tolerance_m: f64) {
         let along = landing - takeoff;
         let length_m = along.norm();
@@ -441,17 +441,17 @@ const fn speed_max_m_s(takeoff_m_s: f64, landing_m_s: f64, contact: Contact) -> 
     }
 }
 
-/// Whether a refusal goes no further than rounding: a facet exactly at the rest slope.
+/// Whether a refusal is within rounding: a facet exactly at the rest slope.
 fn only_rounding(refusal: GroundRefusal) -> bool {
     matches!(refusal, GroundRefusal::TooSteep { tilt, max } if tilt.radians() - max.radians() <= ANGLE_TOLERANCE_RAD)
 }
 
-/// How uncertain the time of landing is: a place over the speed.
+/// Uncertainty of the landing time: that of the position over the speed.
 fn time_rounding_s(flight: &Flight) -> f64 {
     flight.rounding_m / flight.landing_speed_m_s
 }
 
-/// The numbers of a refusal, where it has some.
+/// The numbers of a refusal, if it has some.
 fn refusal_measure(refusal: GroundRefusal) -> Option<Measure> {
     let degrees = |found: f64, allowed: f64| Some(Measure { found, allowed, unit: "deg" });
     match refusal {

@@ -10,39 +10,40 @@ use crate::{
     quantity::{Angle, ChainPoint, VertexId},
 };
 
-/// Steps that a flight takes at least, and those of each stretch between two vertices.
+/// Least number of steps of a flight, and of each stretch between two vertices.
 ///
-/// A step under constant acceleration is exact, however long: small steps are there only to look at the ground in between. On a
-/// stretch the arc bends and the ground is straight, so that what a vertex does not show would show in the stretch's inside; four
-/// looks, and 64 on a stretch that is the whole flight, leave no part of a hop unseen. More steps cost time and a rounding each.
+/// A step under constant acceleration is exact for any length; small steps only serve to compare the arc with the ground. On a
+/// stretch the arc is concave and the ground straight, so an arc above the ground at both ends of a stretch is above it in between;
+/// four samples per stretch, and 64 on a stretch that is the whole flight, check that independently. More steps cost time and
+/// rounding.
 const STEPS_PER_FLIGHT: f64 = 64.0;
 const STEPS_PER_STRETCH: f64 = 4.0;
 
-/// How far from its true place a flown point may be, as a share of the flight's size (its run and its height together).
+/// Tolerance of a flown position, as a fraction of the flight's size (the sum of its run and its height).
 ///
-/// Places are counted from the take-off, so no digits go to where on the map the hop lies. What is left is the last digit of the
-/// commanded angle and speed (some 1e-15 of the size) and one rounding per step (1e-16 each, in a random walk: 1e-13 for a million
-/// steps). Ten times more than that, and a ten-millionth of what 1 % of a hop is.
+/// Positions are measured from the take-off, so where on the map the hop lies costs no digits. What remains is the last digit of
+/// the commanded angle and speed (some 1e-15 of the size) and one rounding per step (1e-16 each, in a random walk: 1e-13 for a
+/// million steps). The tolerance is ten times that, and a ten-billionth of 1 % of a hop.
 const PLACE_TOLERANCE: f64 = 1e-12;
 
 /// The least height over a vertex flown past.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clearance {
-    /// Over which vertex of the chain; `None` over a ground that numbers none.
+    /// The vertex of the chain; `None` over a ground without numbered vertices.
     pub vertex: Option<VertexId>,
-    /// Where that is along the profile, m.
+    /// Its position along the profile, m.
     pub x_m: f64,
-    /// How high the flight passes over it, m; negative below.
+    /// Height of the flight above it, m; negative below.
     pub height_m: f64,
 }
 
-/// What was flown of one hop.
+/// The flight of one hop.
 ///
-/// Time, angle and speed of the landing are those above the planned landing point, also where the flight meets the ground elsewhere:
-/// so every limit of a hop is checked, not only the first that fails.
+/// Time, angle and speed of the landing are those above the planned landing point, even if the flight meets the ground elsewhere:
+/// so every limit of a hop is checked, not only the first violated one.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flight {
-    /// Where it first comes down, along the profile; `None` where it leaves the known ground in flight.
+    /// Where it first comes down, along the profile; `None` if it leaves the known ground in flight.
     pub contact: Option<ChainPoint>,
     /// Direction of flight at the landing.
     pub landing_angle: Angle,
@@ -50,25 +51,26 @@ pub struct Flight {
     pub landing_speed_m_s: f64,
     /// Time to the landing, s.
     pub flight_time_s: f64,
-    /// The highest point from take-off to landing, m, in the ground's own heights; the landing itself where it still rises there.
+    /// The highest point from take-off to landing, m, in the height reference of the ground; the landing itself if it still rises
+    /// there.
     pub apex_z_m: f64,
     /// The same above the take-off, m.
     pub apex_height_m: f64,
-    /// The least clearance over the vertices flown past; `None` where there are none.
+    /// The least clearance over the vertices flown past; `None` if there are none.
     pub least_clearance: Option<Clearance>,
     /// How many steps it took.
     pub steps: usize,
-    /// Every vertex passed lower than its clearance, and by how much the flight passes it, m.
+    /// Every vertex passed below its clearance, and the height of the flight above it, m.
     pub(super) too_low: Vec<Clearance>,
-    /// Where the flight runs below straight ground between vertices first, and how deep it then gets, m.
+    /// Where the flight first runs below straight ground between vertices, and its greatest depth there, m.
     pub(super) underground: Option<(f64, f64)>,
     /// Where the known ground ends before the landing, m from the take-off.
     pub(super) unknown_from_m: Option<f64>,
-    /// How uncertain a place of this flight is by rounding alone, m: [`PLACE_TOLERANCE`] of its size.
+    /// Uncertainty of a position of this flight from rounding of the flight, m: [`PLACE_TOLERANCE`] of its size.
     pub(super) rounding_m: f64,
-    /// The same with the rounding of the ground's own heights, m.
+    /// The same including the rounding of the ground's heights, m.
     pub(super) place_tolerance_m: f64,
-    /// Whether the planned landing is where it comes down.
+    /// Whether it comes down at the planned landing.
     pub(super) hits: bool,
     /// Horizontal speed, m/s.
     pub(super) across_m_s: f64,
@@ -76,7 +78,7 @@ pub struct Flight {
     pub(super) landing_climb_m_s: f64,
 }
 
-/// Where the hopper is and how it moves, seen from its take-off and along its direction of travel.
+/// Position and velocity of the hopper, relative to its take-off and along its direction of travel.
 #[derive(Clone, Copy, Debug)]
 struct State {
     distance_m: f64,
@@ -98,12 +100,12 @@ impl State {
         }
     }
 
-    /// At a distance ahead, which is then met to the last digit.
+    /// The state at a distance ahead, which it has exactly.
     fn at(self, distance_m: f64, gravity_m_s2: f64) -> Self {
         Self { distance_m, ..self.after((distance_m - self.distance_m) / self.across_m_s, gravity_m_s2) }
     }
 
-    /// Length of the flight per metre of run, here.
+    /// Length of the flight per metre of run at this state.
     fn stretch(self) -> f64 {
         libm::hypot(1.0, self.climb_m_s / self.across_m_s)
     }
@@ -143,7 +145,7 @@ impl Stretch {
         libm::hypot(1.0, (self.to.1 - self.from.1) / (self.to.0 - self.from.0))
     }
 
-    /// Where a flight that is above the ground at `above` and not at `below` meets it: bisection to the last digit.
+    /// Where a flight that is above the ground at `above` and not at `below` meets it, by bisection to the last digit.
     fn contact_m(&self, above: State, below: State, gravity_m_s2: f64) -> f64 {
         let (mut near, mut far) = (above.distance_m, below.distance_m);
         loop {
@@ -156,7 +158,7 @@ impl Stretch {
     }
 }
 
-/// The ground under a hop: what a flight is flown over.
+/// A hop and the ground under it.
 pub(super) struct Course<'a, S: Surface> {
     pub(super) surface: &'a S,
     pub(super) hop: &'a Hop,
@@ -168,12 +170,12 @@ pub(super) struct Course<'a, S: Surface> {
 }
 
 impl<S: Surface> Course<'_, S> {
-    /// Height of a point over the take-off, m. Close doubles subtract without error.
+    /// Height of a point above the take-off, m. Close doubles subtract without error.
     fn over_takeoff_m(&self, z_m: f64) -> f64 {
         z_m - self.hop.takeoff.point_m.z
     }
 
-    /// The stretches of ground from the take-off to the landing, and where the known ground ends before it.
+    /// The stretches of ground from the take-off to the landing, and where the known ground ends before the landing.
     fn stretches(&self) -> (Vec<Stretch>, Option<f64>) {
         let mut stretches = Vec::new();
         let mut from = (0.0, 0.0);
@@ -217,9 +219,9 @@ impl<S: Surface> Course<'_, S> {
         ChainPoint::new(takeoff.along_m + sign * distance_m, takeoff.point_m.z + height_m)
     }
 
-    /// Flies the hop as commanded; `None` where it does not leave forwards at all.
+    /// Flies the hop as commanded; `None` if it does not leave the ground forwards.
     ///
-    /// Steps end exactly above every vertex flown past, with the small ones of [`STEPS_PER_FLIGHT`] between.
+    /// Steps end exactly above every vertex flown past, with the small steps of [`STEPS_PER_FLIGHT`] in between.
     pub(super) fn fly(&self) -> Option<Flight> {
         let (speed, angle) = (self.hop.takeoff_speed_m_s, self.hop.takeoff_angle.radians());
         let takeoff = State {
@@ -260,7 +262,7 @@ impl<S: Surface> Course<'_, S> {
         };
         self.look_at_vertices(&mut flight, &stretches, &states);
         let early = self.look_at_ground(&mut flight, takeoff, &stretches, &states);
-        // Across the arc: how far the landing point lies off the flown line.
+        // Perpendicular to the arc: the distance of the landing point from the flown curve.
         let over_m = (landing.height_m - rise_m) / landing.stretch();
         flight.hits = early.is_none() && over_m.abs() <= place_tolerance_m;
         flight.contact = match early {
@@ -271,7 +273,7 @@ impl<S: Surface> Course<'_, S> {
         Some(flight)
     }
 
-    /// All states, stretch by stretch, and the highest height on the way.
+    /// All states, stretch by stretch, and the greatest height.
     fn stepped(&self, takeoff: State, stretches: &[Stretch]) -> (Vec<Vec<State>>, f64) {
         let run_m = stretches.last().map_or(0.0, |s| s.to.0);
         let g = self.surface.gravity_m_s2();
@@ -287,7 +289,7 @@ impl<S: Surface> Course<'_, S> {
                 let to_m = if piece == pieces { stretch.to.0 } else { stretch.from.0 + length_m * (piece / pieces) };
                 let next = state.at(to_m, g);
                 if state.climb_m_s > 0.0 && next.climb_m_s < 0.0 {
-                    // The top of the flight lies within this step: a step that ends there, exactly.
+                    // The top of the flight lies within this step: a step that ends exactly there.
                     top_m = top_m.max(state.after(state.climb_m_s / g, g).height_m);
                 }
                 top_m = top_m.max(next.height_m);
@@ -310,14 +312,14 @@ impl<S: Surface> Course<'_, S> {
             if flight.least_clearance.is_none_or(|least| height_m < least.height_m) {
                 flight.least_clearance = Some(clearance);
             }
-            // A place uncertain across a steep arc is uncertain in height by so much more.
+            // On a steep arc, an error of the horizontal position is a larger error of the height.
             if height_m < self.surface.hopper().limits().clearance_m - flight.place_tolerance_m * over.stretch() {
                 flight.too_low.push(clearance);
             }
         }
     }
 
-    /// Whether every small step stays above the ground; where not, the point at which the flight first meets it.
+    /// Whether every small step stays above the ground; if not, the point at which the flight first meets it.
     fn look_at_ground(
         &self,
         flight: &mut Flight,
@@ -339,7 +341,7 @@ impl<S: Surface> Course<'_, S> {
                         let met_m = stretch.contact_m(before, state, self.surface.gravity_m_s2());
                         contact = Some(self.point(met_m, stretch.height_m(stretch.share(met_m))));
                     }
-                    // On the last stretch, to come down early is to land early.
+                    // On the last stretch, coming down early is an early landing.
                     if matches!(stretch.end, StretchEnd::Edge(_)) {
                         let x_m = self.point(state.distance_m, 0.0).x_m;
                         let known = flight.underground.unwrap_or((x_m, over_m));
@@ -352,7 +354,7 @@ impl<S: Surface> Course<'_, S> {
         contact
     }
 
-    /// Where a flight that passes over its landing comes down; `None` where the known ground ends first.
+    /// Where a flight that passes over its landing comes down; `None` if the known ground ends first.
     ///
     /// The arc is concave, so it has met a straight stretch if and only if it is below that stretch's end.
     fn beyond(&self, landing: State) -> Option<ChainPoint> {

@@ -1,8 +1,8 @@
-//! The independent checker of a planned path: it flies every hop again and holds it against every limit.
+//! The independent checker of a planned path: it flies every hop again and checks every limit.
 //!
-//! This is the one allowed second statement of the physics. It knows nothing of lofts, lines of sight or quadratics: it takes the
-//! command of a hop (place, angle, speed), steps Newton's equations from there and looks at what happens. It imports nothing from the
-//! closed forms of `ballistics` nor from the graph, and a test reads these files to see that it stays so.
+//! This is the only second implementation of the physics that the crate allows. It uses no lofts, lines of sight or quadratics: it
+//! takes the command of a hop (position, angle, speed), steps Newton's equations from there and looks at what happens. It imports
+//! nothing from the closed forms of `ballistics` or from the graph; a test reads these files and enforces that.
 
 mod checker;
 mod flight;
@@ -19,38 +19,38 @@ use crate::{
     world::Direction,
 };
 
-/// What came of flying a path.
+/// The result of flying a path.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Execution {
-    /// What was flown of each hop; `None` where a hop could not be flown at all.
+    /// What was flown of each hop; `None` if a hop could not be flown.
     pub flights: Vec<Option<Flight>>,
-    /// Everything that is wrong, hop by hop; empty where the path holds.
+    /// All violations, hop by hop; empty if the path holds.
     pub violations: Vec<Violation>,
 }
 
 impl Execution {
-    /// Whether nothing is wrong.
+    /// Whether there is no violation.
     pub const fn passes(&self) -> bool {
         self.violations.is_empty()
     }
 }
 
-/// Flies a planned path by Newton's equations and reports everything that is wrong with it.
+/// Flies a planned path by Newton's equations and reports all its violations.
 ///
 /// ```text
 ///     x += v_x dt,   z += v_z dt - g dt^2 / 2,   v_z -= g dt            (constant acceleration: exact for any dt)
 /// ```
 ///
-/// Checks of each hop: that it begins where the one before landed; the ground's refusals (direction, keep-out, rest slope),
-/// directions and speeds at both ends; the machine's angles, height and time; the clearance over every vertex flown past and the
-/// ground between them; where it really comes down; and the numbers that the plan states. Every violation is reported.
+/// Checks of each hop: it begins where the one before landed; the ground's refusals (direction, keep-out, rest slope); directions
+/// and speeds at both ends; the machine's angles, height and time; the clearance over every vertex flown past and the ground
+/// between them; the actual landing point; and the numbers that the plan states. Every violation is reported.
 ///
-/// Speeds hold as everywhere with [`tolerant_speed_m_s`](crate::world::tolerant_speed_m_s). The checker's own tolerances are a
-/// nanoradian for directions, 1e-12 of a flight's size for places (with the rounding of the chain's heights), and what such an
-/// uncertain place does to direction, speed and time at the landing.
+/// Speed limits have the crate's tolerance, [`tolerant_speed_m_s`](crate::world::tolerant_speed_m_s). The checker's own tolerances
+/// are a nanoradian for directions, 1e-12 of a flight's size for positions (plus the rounding of the ground's heights), and the
+/// resulting uncertainty of direction, speed and time at the landing.
 ///
 /// # Arguments
-/// `gravity_m_s2`: above 0; `ends`: the start and goal that the path should join, where they are to be checked.
+/// `ends`: the start and goal that the path should join; `None` if they are not to be checked.
 ///
 /// # Examples
 /// ```
@@ -101,7 +101,7 @@ pub fn execute<S: Surface>(surface: &S, path: &HopPath, ends: Option<(S::Contact
     Execution { flights, violations }
 }
 
-/// Flies one hop over the surface and holds it against every limit.
+/// Flies one hop over the surface and checks every limit.
 fn checked<S: Surface>(
     surface: &S,
     number: usize,
@@ -125,13 +125,13 @@ fn checked<S: Surface>(
     flown
 }
 
-/// A path must begin at its start and end at its goal: the same points to the last digit, at any distance along the path.
+/// A path must begin at its start and end at its goal: exactly the same points, at any distance along the path.
 fn joins(hop: usize, ends: (&ContactPoint, &ContactPoint), violations: &mut Vec<Violation>) {
     let (a, b) = ends;
     continuous(hop, ends, (a.point_m, a.frame, a.station) == (b.point_m, b.frame, b.station), violations);
 }
 
-/// A hop must begin where the one before landed, to the last digit: both are the same numbers of the plan.
+/// A hop must begin exactly where the one before landed: both are the same numbers of the plan.
 fn continuous(hop: usize, (is, should_be): (&ContactPoint, &ContactPoint), same: bool, violations: &mut Vec<Violation>) {
     if !same {
         let found = (is.point_m - should_be.point_m).norm();
@@ -140,14 +140,14 @@ fn continuous(hop: usize, (is, should_be): (&ContactPoint, &ContactPoint), same:
     }
 }
 
-/// The direction of a hop that can be flown: its numbers are numbers, its ends are two places, and it goes where it says.
+/// The direction of a hop that can be flown: its numbers are finite, its ends differ, and it travels in its stated direction.
 fn flyable(number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> Option<Direction> {
     let before = violations.len();
     let mut note = |value| {
         let limit = ViolatedLimit::StatedValue(value);
         violations.push(Violation { hop: number, limit, measure: None, at_x_m: hop.takeoff.along_m, vertex: None });
     };
-    // Finite only where every coordinate is.
+    // Finite only if every coordinate is.
     let size = |point: &ContactPoint| point.along_m.abs() + point.point_m.coords.abs().sum();
     let numbers = [
         (StatedValue::TakeoffStation, size(&hop.takeoff)),
@@ -164,7 +164,7 @@ fn flyable(number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> Option<
     if direction != Some(hop.direction) {
         note(StatedValue::Direction);
     }
-    // A wrong word for the direction keeps no hop from being flown; numbers that are none do.
+    // A wrong stated direction does not prevent a flight; numbers that are not finite do.
     let flown = violations[before..].iter().all(|v| v.limit == ViolatedLimit::StatedValue(StatedValue::Direction));
     direction.filter(|_| flown)
 }

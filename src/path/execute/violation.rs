@@ -1,10 +1,10 @@
-//! What the checker finds wrong with a hop.
+//! The violations that the checker reports.
 
 use std::fmt;
 
 use crate::{quantity::VertexId, world::Limit};
 
-/// A number written in a [`Hop`](crate::path::Hop) that the checker finds by itself.
+/// A number stated in a [`Hop`](crate::path::Hop) that the checker computes by itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum StatedValue {
     /// The direction of travel.
@@ -56,18 +56,18 @@ impl StatedValue {
     }
 }
 
-/// What a hop offends against.
+/// The limit that a hop violates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum ViolatedLimit {
-    /// A limit of ground or machine.
+    /// A limit of the ground or the machine.
     Limit(Limit),
     /// The hop comes down elsewhere than planned.
     LandingPoint,
-    /// The hop flies over ground that is not known.
+    /// The hop flies over unknown ground.
     UnknownGround,
-    /// The hop does not begin where the one before (or the journey) says, or the last does not end at the goal.
+    /// The hop does not begin where the one before ends or at the start, or the last hop does not end at the goal.
     Continuity,
-    /// A number of the plan is not the one flown, or is none at all.
+    /// A number of the plan differs from the one flown, or is not finite.
     StatedValue(StatedValue),
 }
 
@@ -83,29 +83,29 @@ impl fmt::Display for ViolatedLimit {
     }
 }
 
-/// What was found beside what was allowed.
+/// The value found and the value allowed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Measure {
-    /// What the flight gave; of a stated value, what the plan says.
+    /// The flown value; of a stated value, the one in the plan.
     pub found: f64,
-    /// What the limit allows; of a stated value, what the flight gave.
+    /// The value that the limit allows; of a stated value, the flown one.
     pub allowed: f64,
     /// Unit of both.
     pub unit: &'static str,
 }
 
-/// One thing that is wrong with a planned hop.
+/// One violation of a planned hop.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Violation {
-    /// Which hop, from 1; 0 where the path has none.
+    /// Which hop, from 1; 0 if the path has none.
     pub hop: usize,
-    /// What it offends against.
+    /// What is violated.
     pub limit: ViolatedLimit,
-    /// By how much, where the offence is one of numbers.
+    /// The numbers, if the violation has some.
     pub measure: Option<Measure>,
-    /// Where, m along the chain.
+    /// Position along the chain, m.
     pub at_x_m: f64,
-    /// The vertex flown past too low, for the terrain.
+    /// The vertex passed too low, for the terrain.
     pub vertex: Option<VertexId>,
 }
 

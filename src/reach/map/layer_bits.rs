@@ -1,4 +1,4 @@
-//! The nodes of one BFS layer as a bitmap, so that a node far from all of them is skipped after a look at a few words.
+//! The nodes of one BFS layer as a bitmap, so that nodes far from the layer are skipped after reading a few words.
 
 use super::{NodeLattice, Post};
 use crate::ground::Offset;
@@ -12,7 +12,7 @@ pub(super) struct LayerBits {
     rows: usize,
     words_in_row: usize,
     words: Vec<u64>,
-    /// Rows that have any.
+    /// Whether each row has any node.
     occupied: Vec<bool>,
 }
 
@@ -23,7 +23,7 @@ impl LayerBits {
         Self { rows: lattice.rows, words_in_row, words: vec![0; words_in_row * lattice.rows], occupied: vec![false; lattice.rows] }
     }
 
-    /// Takes all nodes out.
+    /// Removes all nodes.
     pub(super) fn clear(&mut self) {
         for (row, occupied) in self.occupied.iter_mut().enumerate().filter(|(_, occupied)| **occupied) {
             self.words[row * self.words_in_row..][..self.words_in_row].fill(0);
@@ -31,13 +31,13 @@ impl LayerBits {
         }
     }
 
-    /// Puts a node in.
+    /// Adds a node.
     pub(super) fn insert(&mut self, node: Post) {
         self.words[node.row * self.words_in_row + node.col / WORD] |= 1 << (node.col % WORD);
         self.occupied[node.row] = true;
     }
 
-    /// Whether any node lies in a disc about a node.
+    /// Whether any node of the layer lies in a disc around a node.
     #[inline]
     pub(super) fn any_in(&self, disc: &Disc, node: Post) -> bool {
         disc.half_widths.iter().enumerate().any(|(away, &half_width)| {
@@ -47,7 +47,7 @@ impl LayerBits {
         })
     }
 
-    /// Whether any node of a row lies within so many columns.
+    /// Whether any node of a row of the layer lies within `half_width` columns.
     #[inline]
     fn any_in_row(&self, row: usize, col: usize, half_width: usize) -> bool {
         if row >= self.rows || !self.occupied[row] {
@@ -65,17 +65,17 @@ impl LayerBits {
     }
 }
 
-/// How far a disc of offsets extends.
+/// The extent of a disc of offsets.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Disc {
-    /// Of each row from the middle one on, how many columns to either side.
+    /// For each row from the middle one, the number of columns to either side.
     half_widths: Vec<usize>,
-    /// The greatest of them.
+    /// The greatest half-width.
     widest: usize,
 }
 
 impl Disc {
-    /// That of the nearest offsets, which are as many to all sides.
+    /// The disc of the nearest offsets, which are symmetric about the node.
     pub(super) fn of(offsets: &[Offset]) -> Self {
         let mut half_widths = Vec::new();
         for offset in offsets {
@@ -89,7 +89,7 @@ impl Disc {
         Self { half_widths, widest }
     }
 
-    /// Whether a disc about a node lies on the lattice with all its nodes.
+    /// Whether all nodes of a disc around a node lie on the lattice.
     pub(super) fn is_inside(&self, lattice: NodeLattice, node: Post) -> bool {
         let down = self.half_widths.len().saturating_sub(1);
         let inside = |at: usize, reach: usize, count: usize| at >= reach && at + reach < count;
@@ -116,7 +116,7 @@ mod tests {
         OffsetTable::new(spacing, range_m, (lattice.rows, lattice.cols), |_| (-1.0, 1.0)).offsets
     }
 
-    /// What lies in the disc, one offset after the other: whether it meets the node, and whether all of it is on the lattice.
+    /// The same offset by offset: whether the disc contains the node, and whether it lies on the lattice completely.
     fn plainly(lattice: NodeLattice, offsets: &[Offset], about: Post, node: Post) -> (bool, bool) {
         let at = |offset: &Offset| {
             let row = about.row.checked_add_signed(offset.rows as isize).filter(|&row| row < lattice.rows)?;
@@ -127,7 +127,8 @@ mod tests {
         (meets, offsets.iter().all(|offset| at(offset).is_some()))
     }
 
-    /// Every pair of places on lattices of less than a word, of one and of several words in a row, and discs wider than a word.
+    /// All pairs of positions on lattices with less than one word, one word and several words per row; some discs are wider than a
+    /// word.
     #[test]
     fn discs_meet_the_nodes_that_their_offsets_lead_to() {
         let (mut met, mut missed, mut within) = (0, 0, 0);

@@ -1,4 +1,4 @@
-//! How freely a hopper moves from each post: the map that picks landing sites.
+//! How freely a hopper moves from each post: a map for the choice of landing sites.
 
 use rayon::prelude::*;
 
@@ -10,27 +10,28 @@ use crate::{
     world::tolerant_speed_m_s,
 };
 
-/// Directions are counted in so many equal sectors, the first about grid north.
+/// The number of equal sectors in which directions are counted; the first is centred on grid north.
 pub const SECTORS: u8 = 16;
 
-/// What single hops from every node come to.
+/// The results of single hops from every node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mobility {
-    /// The radius of the disc, m: how far one hop carries over level ground.
+    /// The radius of the disc, m: the range of one hop over level ground.
     pub disc_radius_m: f64,
-    /// Of each node, the share of the nodes in its disc (those on the map and with an elevation) that one hop reaches, 0 to 1; NaN where
-    /// the node has no elevation or no other one in its disc.
+    /// For each node, the fraction of the other nodes in its disc (on the map and with an elevation) that one hop reaches, 0 to 1;
+    /// NaN if the node has no elevation or its disc no other node.
     pub share: Vec<f32>,
-    /// Of each node, in how many of [`SECTORS`] directions there is a hop in its disc; NaN where it has no elevation.
+    /// For each node, the number of the [`SECTORS`] directions in which its disc has a hop; NaN if it has no elevation.
     pub directions: Vec<f32>,
 }
 
-/// Tries every hop from every node within the disc, and reports every block of nodes; the same for any number of threads.
+/// Tests every hop from every node within the disc and reports every block of nodes; the result does not depend on the number of
+/// threads.
 ///
-/// The disc is that of level ground, `v^2 / g` for the smaller of both speed limits, so that shares of different terrains compare.
+/// The disc is that of level ground, `v^2 / g` for the smaller of both speed limits, so that different terrains are comparable.
 ///
 /// # Errors
-/// [`MapError`]; of several, that of the first block.
+/// [`MapError`]; of several, the one of the first block.
 pub fn mobility(hops: &PostHops, progress: &dyn Progress) -> Result<Mobility, MapError> {
     let lattice = hops.lattice();
     let limits = hops.ground().hopper().limits();
@@ -72,10 +73,10 @@ pub fn mobility(hops: &PostHops, progress: &dyn Progress) -> Result<Mobility, Ma
     Ok(map)
 }
 
-/// A node's number, its share and its directions.
+/// A node's number, its fraction and its directions.
 type OfNode = (usize, f32, f32);
 
-/// Share and directions of one node.
+/// Fraction and directions of one node.
 fn from_node(
     hops: &PostHops,
     node: Post,

@@ -1,7 +1,7 @@
-//! Hop maps: from one post of a DEM to all others, in how few hops.
+//! Hop maps: the fewest hops from one post of a DEM to all others.
 //!
-//! Nodes are posts, an edge is a single hop whose limits hold on the exact slice between its two posts ([`PostHops`]). [`search`] finds
-//! the fewest hops from a start to every post, layer by layer.
+//! Nodes are posts; an edge is a single hop whose limits hold on the exact slice between its two posts ([`PostHops`]). [`search`]
+//! finds the fewest hops from a start to every post, layer by layer.
 
 mod layer_bits;
 mod mobility;

@@ -13,13 +13,13 @@ use crate::{
 /// One hop of a path, on the slice between its two posts.
 #[derive(Clone, Debug)]
 pub struct MapHop {
-    /// The hop test on the slice from take-off to landing, which [`slice`](crate::terrain::slice()) gives too.
+    /// The hop test on the slice from take-off to landing, the same as from [`slice`](crate::terrain::slice()).
     pub test: HopTest,
-    /// The hop along it.
+    /// The hop.
     pub path: HopPath,
 }
 
-/// The hops of a path from node to node, as chosen.
+/// The hops of a path of nodes, with their chosen take-offs.
 ///
 /// # Errors
 /// [`MapError`], as [`PostHops::lofts`].
@@ -34,7 +34,7 @@ pub fn path_hops(hops: &PostHops, nodes: &[Post], choice: TakeoffChoice) -> Resu
     Ok(found)
 }
 
-/// The single hop over a slice; `None` where nodes are given that no hop joins.
+/// The single hop over a slice; `None` if no hop joins the two nodes.
 fn hop_along(test: &HopTest, choice: TakeoffChoice) -> Option<HopPath> {
     let geometry = test.chain().geometry();
     let (takeoff, landing) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
@@ -42,7 +42,7 @@ fn hop_along(test: &HopTest, choice: TakeoffChoice) -> Option<HopPath> {
     generate(test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts) }], choice, Split::default()).ok()
 }
 
-/// The hops of a path joined to one [`HopPath`] over the map, with distances along it from its beginning.
+/// Joins the hops of a path to one [`HopPath`] over the map, with distances along it from its start.
 pub fn joined(hops: &PostHops, path: &[MapHop]) -> HopPath {
     let mut begin_m = 0.0;
     let mut flown: Vec<Hop> = Vec::with_capacity(path.len());
@@ -56,9 +56,9 @@ pub fn joined(hops: &PostHops, path: &[MapHop]) -> HopPath {
     HopPath::of_hops(flown, hops.ground().hopper())
 }
 
-/// Flies a joined path again over the ground itself, from one node to another, by the independent checker.
+/// Flies a joined path again over the ground, from one node to another, by the independent checker.
 ///
-/// The checker walks the triangles of the DEM, where the hops were found on slices and by a table of offsets.
+/// The checker walks over the triangles of the DEM; the hops were found with slices and a table of offsets.
 pub fn verify(hops: &PostHops, path: &HopPath, start: Post, goal: Post) -> Execution {
     let [start, goal] = [start, goal].map(|node| hops.position(node));
     execute(hops.ground(), path, start.zip(goal))

@@ -1,8 +1,8 @@
 //! Fewest hops by breadth-first search, layer by layer: a layer is all nodes of one hop count.
 //!
-//! Unreached nodes look back at the last layer (the nodes of the hop count before), nearest first, and stop at the first feasible hop;
-//! a bitmap of the layer skips nodes with none in reach. Pairs that cannot improve the answer are never tested, and the answer does not
-//! depend on which thread tests a node first.
+//! Unreached nodes look back at the last layer (the nodes one hop closer to the start), nearest first, and stop at the first
+//! feasible hop; a bitmap of the layer skips nodes with none in reach. Pairs that cannot improve the result are never tested, and
+//! the result does not depend on which thread tests a node first.
 
 use rayon::prelude::*;
 
@@ -17,16 +17,16 @@ use crate::{
     quantity::SlopeInterval,
 };
 
-/// Of a post that no hops reach.
+/// The hop count of a post that cannot be reached.
 pub const UNREACHED: i16 = -1;
 
-/// Of a post without elevation.
+/// The hop count of a post without elevation.
 pub const NO_GROUND: i16 = i16::MIN;
 
-/// No offset: the start's, and that of posts without hops.
+/// No offset: for the start and for unreached posts.
 const NONE: u32 = u32::MAX;
 
-/// The direction of the hops between the start and the other posts.
+/// The direction of travel between the start and the other posts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Journey {
     /// From the start to every post.
@@ -39,26 +39,26 @@ pub enum Journey {
 /// What to search for.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 pub struct Search {
-    /// From or to the start.
+    /// Outbound or return.
     pub journey: Journey,
-    /// Also the least effort among the paths of fewest hops, flown as chosen.
+    /// If given, also find the least effort among the paths of fewest hops, for this choice of take-offs.
     pub effort: Option<(Effort, TakeoffChoice)>,
 }
 
 /// Fewest hops between the start and every node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HopMap {
-    /// Of each node, row after row: hops, or [`UNREACHED`], or [`NO_GROUND`].
+    /// For each node, row after row: its hop count, [`UNREACHED`] or [`NO_GROUND`].
     pub hops: Vec<i16>,
-    /// The least effort among the paths of fewest hops, in the unit of the [`Effort`] asked for; NaN where no hops lead. Empty where none
-    /// was asked for.
+    /// The least effort among the paths of fewest hops, in the unit of the requested [`Effort`]; NaN for unreached nodes. Empty if
+    /// no effort was requested.
     pub effort: Vec<f64>,
     /// The offset of the hop between each node and the node before it.
     previous: Vec<u32>,
     journey: Journey,
 }
 
-/// A node that got its hops.
+/// A node reached by the present layer.
 #[derive(Clone, Copy, Debug)]
 struct Found {
     node: usize,
@@ -66,12 +66,12 @@ struct Found {
     effort: f64,
 }
 
-/// Fewest hops between a start and every node, layer by layer; the same for any number of threads.
+/// The fewest hops between a start and every node, layer by layer; the result does not depend on the number of threads.
 ///
-/// Reports every complete layer, with the posts that have their hops and those that have them or may still get some.
+/// Reports every complete layer, with the number of posts reached and the number of posts reached or still open.
 ///
 /// # Errors
-/// [`MapError`]; of several, that of the first block.
+/// [`MapError`]; of several, the one of the first block.
 pub fn search(hops: &PostHops, start: Post, asked: Search, progress: &dyn Progress) -> Result<HopMap, MapError> {
     let meter = Meter::new(progress, Stage::MapLayers);
     meter.report(Detail::None)?;
@@ -102,18 +102,18 @@ pub fn search(hops: &PostHops, start: Post, asked: Search, progress: &dyn Progre
 /// The state between two layers.
 struct State {
     map: HopMap,
-    /// Of each block, nodes that may still get hops.
+    /// For each block, the number of nodes that may still be reached.
     open: Vec<u32>,
-    /// The nodes of the layer.
+    /// The nodes of the last layer.
     layer: LayerBits,
-    /// Blocks with nodes of the layer.
+    /// Blocks with nodes of the last layer.
     layer_blocks: Vec<bool>,
-    /// Nodes that have their hops.
+    /// Number of nodes reached.
     reached: usize,
 }
 
 impl State {
-    /// Only the start has its hops.
+    /// The state with only the start reached.
     fn new(hops: &PostHops, start: Post, asked: Search) -> Self {
         let lattice = hops.lattice();
         let (nodes, (down, across)) = (lattice.count(), lattice.blocks());
@@ -131,7 +131,7 @@ impl State {
         state
     }
 
-    /// Gives a node its hops.
+    /// Marks a node as reached.
     fn settle(&mut self, hops: &PostHops, Found { node, offset, effort }: Found, count: i16) {
         let lattice = hops.lattice();
         self.map.hops[node] = count;
@@ -143,13 +143,13 @@ impl State {
         let block = lattice.block_of(post);
         self.layer_blocks[block] = true;
         self.layer.insert(post);
-        // The start may lie where no hop begins or ends.
+        // The start may be a node at which no hop can begin or end.
         self.open[block] -= u32::from(hops.usable(post)).min(self.open[block]);
         self.reached += 1;
     }
 }
 
-/// The blocks with open nodes that a layer in other blocks may reach.
+/// The blocks with open nodes that are within reach of the layer.
 fn blocks_near(hops: &PostHops, layer: &[bool], open: &[u32]) -> Vec<usize> {
     let (down, across) = hops.lattice().blocks();
     (0..down * across)
@@ -194,7 +194,8 @@ impl Pull<'_> {
         Ok(found)
     }
 
-    /// The node at the other end of an offset, where that is on the layer. Where all offsets are `inside` the map, a step tells.
+    /// The node at the other end of an offset, if it is in the layer. If all offsets are `inside` the map, its array step decides
+    /// first.
     #[inline]
     fn on_layer(&self, node: Post, index: usize, (number, step): (usize, isize), inside: bool) -> Option<Post> {
         let step = if self.asked.journey == Journey::Outbound { -step } else { step };
@@ -209,7 +210,7 @@ impl Pull<'_> {
         (inside || is_on_layer(self.hops.lattice().index(other))).then_some(other)
     }
 
-    /// The hop that joins a node to the layer: the shortest, or the one of least effort in all.
+    /// The hop that joins a node to the layer: the shortest, or the one with the least total effort.
     fn pulled(&self, node: Post, steps: &[isize], inside: bool, counter: &mut PairCounter<'_>) -> Result<Option<Found>, MapError> {
         let lattice = self.hops.lattice();
         let index = lattice.index(node);
@@ -245,13 +246,13 @@ impl Pull<'_> {
     }
 }
 
-/// Effort of a path and one hop more.
+/// Effort of a path extended by one hop.
 fn joined(effort: Effort, path: f64, hop: f64) -> f64 {
     if effort == Effort::PeakSpeed { path.max(hop) } else { path + hop }
 }
 
-/// What a hop at the least speed takes at least, where its lofts are among these: a vertex on the way only raises the loft, and with it
-/// speed and time. A little less, against rounding.
+/// A lower bound of the effort of a hop with these lofts: a vertex below the arc only raises the loft, and with it speed and time.
+/// Reduced slightly against rounding.
 fn at_least(effort: Effort, sight: LineOfSight, lofts: SlopeInterval, gravity_m_s2: f64) -> f64 {
     let loft = TakeoffChoice::LeastSpeed.loft(sight, lofts);
     let slope = sight.slope() + loft;
@@ -265,7 +266,8 @@ fn at_least(effort: Effort, sight: LineOfSight, lofts: SlopeInterval, gravity_m_
 }
 
 impl HopMap {
-    /// The node before this one on its path from the start (after it, on a return path); `None` for the start and for nodes without hops.
+    /// The node before this one on its path from the start (after it, on a return path); `None` for the start and for unreached
+    /// nodes.
     pub fn previous(&self, hops: &PostHops, node: Post) -> Option<Post> {
         let offset = self.previous[hops.lattice().index(node)];
         if offset == NONE {
@@ -277,7 +279,7 @@ impl HopMap {
         }
     }
 
-    /// The nodes of a path of fewest hops between the start and a node, in the order of flight; `None` where there is none.
+    /// The nodes of a path of fewest hops between the start and a node, in the order of flight; `None` if there is none.
     pub fn path(&self, hops: &PostHops, node: Post) -> Option<Vec<Post>> {
         if self.hops[hops.lattice().index(node)] < 0 {
             return None;

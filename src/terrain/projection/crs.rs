@@ -37,7 +37,7 @@ impl MapProjection {
     /// `+proj=utm +zone=33 +datum=WGS84`.
     ///
     /// # Errors
-    /// [`CrsError`] for the first word that is not understood: a word passed over would be another map.
+    /// [`CrsError`] for the first word that is not supported: ignoring it would give another map.
     ///
     /// # Examples
     /// ```
@@ -50,12 +50,13 @@ impl MapProjection {
         Self::valid(proj_text::parse(text)?, None)
     }
 
-    /// A projection from well-known text: WKT 1 of OGC and GDAL, WKT 1 of ESRI (the content of a `.prj` file), or WKT 2 of 2015 and 2019. Of
-    /// a compound system the horizontal part counts; its heights must be in metres. An EPSG code in it is kept where it means the same map.
+    /// A projection from well-known text: WKT 1 of OGC and GDAL, WKT 1 of ESRI (the content of a `.prj` file), or WKT 2 of 2015 and
+    /// 2019. Of a compound system, the horizontal part is used; its heights must be in metres. An EPSG code in the text is kept if
+    /// it states the same map.
     ///
     /// # Errors
-    /// [`CrsError`]: broken text, a system that is not a projected map, units other than metres and degrees, a method or parameter that is not
-    /// known here, numbers that make no map.
+    /// [`CrsError`]: broken text, a system that is not a projected map, units other than metres and degrees, an unsupported method
+    /// or parameter, invalid numbers.
     ///
     /// # Examples
     /// ```
@@ -88,7 +89,7 @@ impl MapProjection {
     }
 }
 
-/// A code, a PROJ string or well-known text, whichever it is.
+/// Reads a code, a PROJ string or well-known text.
 ///
 /// ```
 /// use chta::terrain::MapProjection;
@@ -209,7 +210,7 @@ mod tests {
         ] {
             assert_eq!(definition(&wkt_1(projection, &format!("{parameters},{METRE}"))), expected, "{projection}");
         }
-        // What is written for a .prj file.
+        // As written to a .prj file.
         for method in Method::ALL.into_iter().filter(|method| *method != Method::PolarStereographic) {
             let parallels_deg = match method {
                 Method::Equirectangular => [Some(20.0), None],

@@ -1,30 +1,30 @@
-//! Why a text that should state a coordinate reference system does not state a map that can be used.
+//! Why a text does not state a usable coordinate reference system.
 
-/// Why a code, a PROJ string or well-known text (WKT) gives no map projection. Each sentence says what was found, what was expected and how
-/// to mend it.
+/// Why a code, a PROJ string or well-known text (WKT) gives no map projection. Each message says what was found, what was expected
+/// and how to correct it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[non_exhaustive]
 pub enum CrsError {
     /// The text has none of the three forms.
     #[error(
-        "'{found}' is no coordinate reference system, expected a code (EPSG:32633, IAU_2015:30135), a PROJ string (+proj=...) or well-known \
+        "'{found}' is not a coordinate reference system, expected a code (EPSG:32633, IAU_2015:30135), a PROJ string (+proj=...) or well-known \
          text (PROJCS[...], PROJCRS[...]); gdalsrsinfo -o proj4 FILE prints the PROJ string of a file"
     )]
     NotRecognised {
-        /// How the text begins.
+        /// The beginning of the text.
         found: String,
     },
-    /// A code of an authority that is not in the tables of this library.
+    /// A code that is not in the tables of this library.
     #[error(
         "the code '{found}' is not supported, expected {expected}; give its PROJ string instead, which gdalsrsinfo -o proj4 {found} prints"
     )]
     UnknownCode {
         /// The code.
         found: String,
-        /// The codes that are known.
+        /// The supported codes.
         expected: &'static str,
     },
-    /// A system that is not a map: degrees, geocentric coordinates, heights alone, a local system.
+    /// A system that is not a projected map: degrees, geocentric coordinates, heights alone, a local system.
     #[error(
         "{found}, expected a projected map in metres, such as '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE +R=RADIUS_M +units=m' about the \
          middle of the area; gdalwarp -t_srs makes a raster on it"
@@ -45,27 +45,27 @@ pub enum CrsError {
         /// The unit that was expected.
         expected: &'static str,
     },
-    /// A projection method that is not computed here.
+    /// A projection method that is not supported.
     #[error(
         "the projection method '{found}' is not supported, expected one of: {expected}; warp the raster to one of them with: gdalwarp -t_srs"
     )]
     UnknownMethod {
         /// The method's name, as the text has it.
         found: String,
-        /// The names of the methods that are known.
+        /// The names of the supported methods.
         expected: String,
     },
-    /// A parameter that is not known, or that this projection does not have. To ignore it would give another map.
+    /// A parameter that is not supported, or not part of this projection. Ignoring it would give another map.
     #[error(
         "{item} is not supported or does not belong to this projection, expected {expected}; remove it if it has no effect on the map"
     )]
     UnknownParameter {
         /// The parameter, as the text has it.
         item: String,
-        /// What may stand there.
+        /// What is expected.
         expected: &'static str,
     },
-    /// A parameter that must be given.
+    /// A required parameter that is missing.
     #[error("{item} is missing, expected {expected}; add it")]
     Missing {
         /// The parameter.
@@ -90,9 +90,9 @@ pub enum CrsError {
     /// Parameters that exclude one another.
     #[error("{found}, expected {expected}; remove or correct one of them")]
     Contradiction {
-        /// What disagrees.
+        /// What is contradictory.
         found: String,
-        /// What would agree.
+        /// What is expected.
         expected: &'static str,
     },
     /// Text that breaks the grammar of WKT.
@@ -102,12 +102,12 @@ pub enum CrsError {
     Syntax {
         /// Where, bytes from the start of the text.
         at: usize,
-        /// What stands there.
+        /// What was found there.
         found: String,
         /// What was expected.
         expected: &'static str,
     },
-    /// Numbers that make no projection, such as a negative radius.
+    /// Numbers that make no valid projection, such as a negative radius.
     #[error("the projection has {fault}, expected numbers that make a map; correct them")]
     Invalid {
         /// What is wrong with its numbers.
@@ -116,7 +116,7 @@ pub enum CrsError {
 }
 
 impl CrsError {
-    /// The beginning of a text, for a sentence.
+    /// The beginning of a text, for an error message.
     pub(super) fn excerpt(text: &str) -> String {
         let mut letters = text.chars();
         let begin: String = letters.by_ref().take(60).flat_map(char::escape_debug).collect();

@@ -25,7 +25,7 @@ impl MapProjection {
     }
 }
 
-/// The words of a PROJ string; those that have been understood are taken out, and what is left at the end is not known.
+/// The words of a PROJ string. Words that have been read are removed; what is left at the end is not supported.
 struct Words<'a>(BTreeMap<&'a str, &'a str>);
 
 impl<'a> Words<'a> {
@@ -53,7 +53,7 @@ impl<'a> Words<'a> {
         Ok(self.number(key)?.unwrap_or(0.0))
     }
 
-    /// Takes words out that say nothing of the map as long as they have these values.
+    /// Removes words that do not affect the map as long as they have these values.
     fn take_idle(&mut self) -> Result<(), CrsError> {
         if let Some(unit) = self.take("units").filter(|unit| *unit != "m") {
             return Err(CrsError::Unit { what: "+units: map coordinates", found: CrsError::excerpt(unit), expected: "metres" });
@@ -180,7 +180,8 @@ fn surplus(item: &str) -> CrsError {
     CrsError::UnknownParameter { item: item.to_owned(), expected: "the parameters of its +proj alone" }
 }
 
-/// The body's figure, by exactly one of `+R`, `+a` with another axis or flattening, `+datum`, `+ellps`; a datum may repeat its ellipsoid.
+/// The figure of the body, by exactly one of `+R`, `+a` with another axis or flattening, `+datum`, `+ellps`; a datum may repeat its
+/// ellipsoid.
 fn ellipsoid(words: &mut Words<'_>) -> Result<Ellipsoid, CrsError> {
     let named = |key: &str, name: &str| {
         let expected = "WGS84, GRS80 or NAD83, or the radii themselves as +R or +a and +b";
@@ -204,7 +205,7 @@ fn ellipsoid(words: &mut Words<'_>) -> Result<Ellipsoid, CrsError> {
     }
 }
 
-/// An ellipsoid of a semi-major axis and one more word.
+/// An ellipsoid from its semi-major axis and one more word.
 fn with_axis(semi_major_m: f64, words: &mut Words<'_>) -> Result<Ellipsoid, CrsError> {
     match (words.number("b")?, words.number("rf")?, words.number("f")?) {
         (Some(semi_minor_m), None, None) => Ok(Ellipsoid { semi_major_m, semi_minor_m }),

@@ -1,4 +1,5 @@
-//! Does a narrower cone about the vertical lower the bounce-and-roll displacement? The paper says so without testing it (P section V-B, last sentence).
+//! Does a narrower cone about the vertical reduce the bounce-and-roll displacement? The paper claims it without a test (P section
+//! V-B, last sentence).
 
 use super::worst_drift::{DriftExperiment, DriftLanding, drift_with};
 use crate::{
@@ -8,16 +9,16 @@ use crate::{
     world::{Contact, Direction},
 };
 
-/// The widths tried: these shares of every cone's own distance from the vertical.
+/// The widths tested, as fractions of every cone's own distance from the vertical.
 pub const CONE_SHARES: [f64; 5] = [1.0, 0.8, 0.6, 0.4, 0.2];
 
 /// The bounce-and-roll displacement after a landing, called drift in the paper and in keys.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DriftLaw {
-    /// As the paper draws it: equally far after every landing, whatever its angle.
+    /// As in the paper's experiment: the same distribution after every landing, for any angle.
     Fixed,
-    /// As the paper argues: in proportion to the horizontal speed of the landing, as far as it draws it for the first landing of the widest
-    /// cone.
+    /// As in the paper's argument: proportional to the horizontal speed of the landing, and equal to the paper's distribution at
+    /// the first landing with the widest cone.
     WithHorizontalSpeed,
 }
 
@@ -34,9 +35,9 @@ impl DriftLaw {
     }
 }
 
-/// Flies the paper's experiment along a path under a law of bounce-and-roll displacement.
+/// Flies the paper's experiment along a path with a law of bounce-and-roll displacement.
 ///
-/// `reference_m_s` is the horizontal speed at which the displacement is as far as the paper says.
+/// `reference_m_s` is the horizontal speed at which the displacement has the paper's distribution.
 pub fn cone_width(
     chain: &ConstrainedChain,
     hops: &[Hop],
@@ -54,13 +55,13 @@ pub fn cone_width(
     drift_with(chain, hops, experiment, &scatter)
 }
 
-/// A chain with all its cones narrowed about the vertical: every bound keeps this share of its distance from straight up (take-off) or
-/// straight down (landing).
+/// A chain with all its cones narrowed about the vertical: every bound keeps this fraction of its distance from straight up
+/// (take-off) or straight down (landing).
 ///
-/// What a segment refuses, it refuses still; speeds and bends stay.
+/// Refusals, speeds and bends are unchanged.
 ///
 /// # Errors
-/// [`InvalidChain`], which a valid chain does not give.
+/// [`InvalidChain`], which a valid chain never causes.
 pub fn narrowed(chain: &ConstrainedChain, share: f64) -> Result<PolygonalChain, InvalidChain> {
     let geometry = chain.geometry();
     let grounds = chain

@@ -1,13 +1,13 @@
-//! Where an arc from anywhere comes down on a chain that goes on to both sides of the plane of travel and beyond both its ends.
+//! Where an arc comes down on a chain that is extended to both sides of the plane of travel and beyond both its ends.
 
 use crate::chain::PolygonalChain;
 
 /// An arc in the plane of travel, seen along +x: `z = z0 + m d - c d^2` with `d` along the direction of travel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct FreeArc {
-    /// Where it begins, along the chain, m.
+    /// Its beginning, along the chain, m.
     pub(super) x_m: f64,
-    /// At which height, m; it need not be that of the ground.
+    /// The height of its beginning, m; it may differ from that of the ground.
     pub(super) z_m: f64,
     /// +1 towards +x, -1 towards -x.
     pub(super) sign: f64,
@@ -17,19 +17,20 @@ pub(super) struct FreeArc {
     pub(super) bend_per_m: f64,
 }
 
-/// Where an arc first comes down through the ground from above, as x and z in m.
+/// Where an arc first crosses the ground from above: x and z in m.
 ///
-/// Beyond its ends the chain goes on as its first and last segments do: a goal at the last vertex would otherwise lose every flight that
-/// falls too far. `None` for an arc that begins too deep below the ground to rise above it.
+/// Beyond its ends the chain continues as its first and last segments do; otherwise every flight that goes too far would be lost
+/// for a goal at the last vertex. `None` for an arc that begins too deep below the ground to rise above it.
 ///
-/// An arc that begins below the ground (a take-off scattered downwards) has to rise above it first, so each segment is asked for the
-/// crossing at which the arc's height over it falls through zero: with ground of slope `s` at height `h` below the arc's beginning,
+/// An arc that begins below the ground (a take-off scattered downwards) must rise above it first. So for each segment, the crossing
+/// is computed at which the arc's height over it falls through zero: with ground of slope `s` at height `h` below the arc's
+/// beginning,
 ///
 /// ```text
 ///     c d^2 - (m - s) d + h = 0, the larger root
 /// ```
 ///
-/// and the first segment that holds its own is where it lands.
+/// and the arc lands on the first segment that contains its own crossing.
 pub(super) fn comes_down(chain: &PolygonalChain, arc: &FreeArc) -> Option<(f64, f64)> {
     let vertices = chain.vertices();
     let first = vertices.partition_point(|vertex| vertex.x_m <= arc.x_m).saturating_sub(1).min(chain.segment_count() - 1);
@@ -54,14 +55,14 @@ mod tests {
     use super::*;
     use crate::quantity::ChainPoint;
 
-    /// Stepping finely, told apart by the sign of the height alone.
+    /// The same by fine steps, from the sign of the height alone.
     fn stepped(chain: &PolygonalChain, arc: &FreeArc) -> Option<f64> {
         let mut above = false;
         for i in 1..400_000 {
             let d_m = f64::from(i) * 1e-4;
             let x_m = arc.x_m + arc.sign * d_m;
             let (low_m, high_m) = chain.extent_m();
-            // Beyond the ends: on along the line of the end segment.
+            // Beyond the ends the end segment continues.
             let near_m = x_m.clamp(low_m, high_m);
             let end_slope = if x_m < low_m { chain.slopes()[0] } else { *chain.slopes().last()? };
             let ground = chain.station(near_m).ok()?.point.z_m + end_slope * (x_m - near_m);

@@ -1,4 +1,4 @@
-//! The CHTA paper's experiment, and its claim that it does not test.
+//! The experiment of the CHTA paper, and a test of a claim that the paper leaves untested.
 
 mod cone_width;
 mod ground;
@@ -7,10 +7,11 @@ mod worst_drift;
 pub use cone_width::{CONE_SHARES, DriftLaw, cone_width, narrowed};
 pub use worst_drift::{DriftExperiment, DriftLanding, DriftReading, worst_drift};
 
-/// The experiments, by the names they are asked for.
+/// The experiments, with their names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Experiment {
-    /// The paper's own: the farthest of a hundred landings starts the next hundred (P section V-B, Fig. 6b).
+    /// The paper's experiment: the farthest of a hundred landings is the start of the next hundred flights (P section V-B, Fig.
+    /// 6b).
     WorstDrift,
     /// Narrower cones about the vertical on the same draws (P section V-B, last sentence).
     ConeWidth,

@@ -1,4 +1,4 @@
-//! The worst bounce-and-roll displacement that a hundred tries from each landing find (P section V-B, Fig. 6b).
+//! The worst bounce-and-roll displacement of a hundred flights from each landing (P section V-B, Fig. 6b).
 
 use nalgebra::{Point3, Vector3};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
@@ -11,7 +11,7 @@ use crate::{
     world::Direction,
 };
 
-/// How the paper's sentence is read, which leaves two things open: at what rate the noise acts, and which landing is farthest.
+/// The readings of the paper's description, which leaves two things open: the rate of the noise, and which landing is the farthest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum DriftReading {
     /// One draw of noise per axis, added to the landing point; farthest from that hop's planned landing (model section 6).
@@ -19,7 +19,7 @@ pub enum DriftReading {
     NoiseAtLanding,
     /// One draw of noise per axis for every step of 0.1 s of flight, all added to the landing point; farthest as above.
     NoiseInFlight,
-    /// Noise at the landing; the landing farthest from the goal goes on: the robot that lags behind the most.
+    /// Noise at the landing; the landing farthest from the goal is kept: the robot that lags behind the most.
     FarthestFromGoal,
 }
 
@@ -40,20 +40,20 @@ impl DriftReading {
 /// The paper's experiment in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriftExperiment {
-    /// How it is read.
+    /// The reading.
     pub reading: DriftReading,
-    /// How many flights from each landing.
+    /// The number of flights from each landing.
     pub flights: u32,
     /// Variance of the noise on each axis, m^2.
     pub noise_variance_m2: f64,
-    /// Variances of the take-off about the landing before, along, across and up, m^2.
+    /// Variances of the take-off about the previous landing, along, across and up, m^2.
     pub takeoff_variances_m2: [f64; 3],
     /// The seed of all draws.
     pub seed: u64,
 }
 
 impl DriftExperiment {
-    /// The paper's own numbers: 100 flights, noise of 0.1 m^2, take-offs scattered by (1, 1, 0.1) m^2.
+    /// The paper's numbers: 100 flights, noise of 0.1 m^2, take-offs scattered by (1, 1, 0.1) m^2.
     pub const fn of_the_paper(reading: DriftReading, seed: u64) -> Self {
         Self { reading, flights: 100, noise_variance_m2: 0.1, takeoff_variances_m2: [1.0, 1.0, 0.1], seed }
     }
@@ -62,23 +62,23 @@ impl DriftExperiment {
 /// The landings of one hop.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DriftLanding {
-    /// Distance in three dimensions from this hop's planned landing, m, of every flight that came down, in the order of flights.
+    /// Distance in three dimensions from this hop's planned landing, m, for every flight that came down, in the order of flights.
     pub errors_m: Vec<f64>,
-    /// Where they came down: along the chain, to the left of it, up, m.
+    /// The landings: along the chain, to its left, up, m.
     pub landings_m: Vec<Point3<f64>>,
-    /// Where they took off, in the same order.
+    /// The take-offs, in the same order.
     pub takeoffs_m: Vec<Point3<f64>>,
-    /// How many flights never came down: they began too deep below the ground to rise above it.
+    /// The number of flights that never came down: they began too deep below the ground to rise above it.
     pub lost: u32,
-    /// The landing that goes on.
+    /// The landing from which the next flights start.
     pub farthest_m: Point3<f64>,
 }
 
 impl DriftLanding {
-    /// Root mean square distance of the landings from their own mean, m: what this hop adds by itself, whatever was inherited; `None`
+    /// Root mean square distance of the landings from their mean, m: what this hop adds, without the inherited displacement; `None`
     /// without a landing.
     ///
-    /// Two landings 2 m apart spread by 1 m.
+    /// For two landings 2 m apart it is 1 m.
     pub fn spread_m(&self) -> Option<f64> {
         let count = self.landings_m.len();
         #[expect(clippy::cast_precision_loss, reason = "a hundred flights")]
@@ -89,25 +89,26 @@ impl DriftLanding {
     }
 }
 
-/// Step of the flight for [`DriftReading::NoiseInFlight`], s: the rate that the paper does not give.
+/// Time step of the noise for [`DriftReading::NoiseInFlight`], s; the paper does not state it.
 const STEP_S: f64 = 0.1;
 
 /// Flies the paper's experiment along a planned path.
 ///
-/// The first hundred starts at the planned start itself, and differs by noise alone. Every flight has the planned speed, angle and
-/// direction of its hop; it lands where its parabola first comes down on the chain, which goes on unchanged to both sides of the plane of
-/// travel, and beyond its ends as its first and last segments do. The landing that goes on is the centre of the next hundred take-offs, so a displacement stays.
+/// The first hundred flights start exactly at the planned start and differ by noise only. Every flight has the planned speed, angle
+/// and direction of its hop; it lands where its parabola first comes down on the chain, which is extended unchanged to both sides
+/// of the plane of travel, and beyond its ends as its first and last segments. The farthest landing is the centre of the next
+/// hundred take-offs, so displacements accumulate.
 ///
 /// Source: P section V-B; model section 6.
 ///
 /// # Returns
-/// One entry per hop; fewer where no flight of a hop came down.
+/// One entry per hop; fewer if no flight of a hop came down.
 pub fn worst_drift(chain: &ConstrainedChain, hops: &[Hop], experiment: &DriftExperiment) -> Vec<DriftLanding> {
     let scatter = |_: &Hop| experiment.takeoff_variances_m2.map(f64::sqrt);
     drift_with(chain, hops, experiment, &scatter)
 }
 
-/// The same with take-offs that scatter as the hop before them landed.
+/// The same with the standard deviations of the take-offs given by the previous hop.
 pub(super) fn drift_with(
     chain: &ConstrainedChain,
     hops: &[Hop],
@@ -130,12 +131,12 @@ pub(super) fn drift_with(
     landings
 }
 
-/// A point of the plane of travel in space.
+/// A point of the plane of travel in three dimensions.
 fn solid(point: ChainPoint) -> Point3<f64> {
     Point3::new(point.x_m, 0.0, point.z_m)
 }
 
-/// All flights of one hop. Each flight has a stream of its own, so that other hops and other experiments of the same seed compare on the
+/// All flights of one hop. Each flight has its own random stream, so other hops and other experiments with the same seed share the
 /// same draws.
 fn hundred(
     chain: &ConstrainedChain,
@@ -176,7 +177,7 @@ fn hundred(
     landing
 }
 
-/// Standard deviation of the noise on one axis of a landing, m: independent steps add up by their variance.
+/// Standard deviation of the noise on one axis of a landing, m: the variances of independent steps add up.
 fn noise_sigma_m(hop: &Hop, experiment: &DriftExperiment) -> f64 {
     let steps = match experiment.reading {
         DriftReading::NoiseAtLanding | DriftReading::FarthestFromGoal => 1.0,
@@ -185,7 +186,7 @@ fn noise_sigma_m(hop: &Hop, experiment: &DriftExperiment) -> f64 {
     (experiment.noise_variance_m2 * steps).sqrt()
 }
 
-/// Where a hop flown as planned from elsewhere comes down.
+/// Where a hop with the planned command lands if it starts at another point.
 fn flown(chain: &ConstrainedChain, hop: &Hop, from: Point3<f64>) -> Option<Point3<f64>> {
     let (slope, horizontal_m_s) = (hop.takeoff_angle.slope(), hop.horizontal_speed_m_s());
     let sign = if hop.direction == Direction::Forward { 1.0 } else { -1.0 };

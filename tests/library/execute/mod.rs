@@ -1,4 +1,4 @@
-//! The checker of planned paths: what the planner makes passes, and what is spoiled is refused under its name.
+//! The checker of planned paths: paths of the planner pass, and spoiled ones are refused under the right name.
 
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may fail, and says how much it has tried")]
 
@@ -16,7 +16,7 @@ use chta::{
     world::{Direction, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
 
-/// The independence that the whole check rests on, read from the source itself.
+/// The independence on which the check rests, verified in the source.
 #[test]
 fn the_checker_imports_nothing_of_the_closed_forms_or_the_graph() {
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("src/path/execute");
@@ -67,7 +67,7 @@ fn thousands_of_random_paths_pass_unspoiled() {
 
 type Change = fn(&mut Hop);
 
-/// Every number that a hop states is held against the flight.
+/// Every number that a hop states is compared with the flight.
 #[test]
 fn a_changed_number_is_named() {
     let mut dice = Dice::new(7);
@@ -125,7 +125,7 @@ fn a_path_must_join_its_ends_without_a_gap() {
         holed.hops.remove(1);
         assert_eq!(gaps(&holed, Some((start, goal))), [2]);
         holed.hops.clear();
-        assert_eq!(gaps(&holed, Some((start, goal))), [0], "no hop joins two places");
+        assert_eq!(gaps(&holed, Some((start, goal))), [0], "an empty path between two positions");
         assert!(gaps(&holed, Some((start, start))).is_empty());
         checked += 1;
     }

@@ -1,4 +1,4 @@
-//! Every planned hop, spoiled by 1 % outwards through what limits it: the checker must refuse it and name that limit.
+//! Every planned hop, spoiled by 1 % beyond its binding limit: the checker must refuse it and name that limit.
 
 use chta::{
     ballistics::{Arc, LineOfSight},
@@ -12,18 +12,18 @@ use chta::{
 
 use super::world::{Dice, World};
 
-/// What has been spoiled so far, by the limit that must be named.
+/// The number of spoiled hops, by the limit that must be named.
 #[derive(Default)]
 struct Tally {
     by_limit: [usize; Limit::ALL.len()],
     landing_points: usize,
     speeds: usize,
     reaches: usize,
-    /// Spoiled hops whose 1 % is less than a double or the limit's own tolerance can tell.
+    /// Spoiled hops whose 1 % is smaller than rounding or the limit's own tolerance.
     too_fine: usize,
 }
 
-/// A world, its plan, and the hop looked at.
+/// A world, its plan, and one hop.
 struct Case<'a> {
     world: &'a World,
     chain: &'a ConstrainedChain,
@@ -89,8 +89,8 @@ fn misses(execution: &Execution) -> bool {
     execution.violations.iter().any(|v| v.limit == ViolatedLimit::LandingPoint)
 }
 
-/// 1 % beyond an end of the feasible angles: of the angle itself; where that is next to nothing or would leave the directions that any
-/// arc has, of the distance to the line of sight below or to the vertical above.
+/// 1 % beyond an end of the feasible angles: of the angle itself, or, if that is very small or would leave the possible directions,
+/// of the distance to the line of sight below or to the vertical above.
 fn beyond(end: f64, room: f64) -> f64 {
     let of_angle = 0.01 * end.abs();
     if end.abs() < 0.01 || of_angle >= room { 0.01 * room } else { of_angle }
@@ -105,13 +105,13 @@ fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
         (min - beyond(min, lower_room), lower_room, case.hop.lower_limit),
         (max + beyond(max, upper_room), upper_room, case.hop.upper_limit),
     ];
-    // Full reach leaves one angle, and one limit named for it, which lies on one of its sides at least.
+    // Full reach leaves one angle and names one limit for it, which lies on at least one side.
     let one_point = min == max;
     let named_by_any = ends.iter().any(|&(radians, _, limit)| names(&case.flown(case.at_angle(radians)), limit));
     for (i, (radians, room, limit)) in ends.into_iter().enumerate() {
-        // Next to the line of sight and the vertical 1 % of the rest is less than the nanoradian that directions tolerate (and a
-        // speed at the bottom of its curve, which goes with the square of the angle, less than its own).
-        // Nor does any angle alone break an apex limit that the landing itself just meets.
+        // Next to the line of sight and the vertical, 1 % of the distance is less than the tolerance of directions, a nanoradian. A
+        // speed near its minimum depends on the square of the angle, so its change is less than the tolerance of speeds.
+        // A change of angle alone does not violate an apex limit that the landing itself just meets.
         let landing_is_top = one_point && limit == Limit::ApexHeight && case.hop.landing_angle.radians() >= 0.0;
         if room < 1e-5 || landing_is_top {
             tally.too_fine += 1;
@@ -133,7 +133,7 @@ fn spoil_speed(case: &Case<'_>, tally: &mut Tally) {
         let execution = case.flown(Hop { takeoff_speed_m_s: case.hop.takeoff_speed_m_s * factor, ..*case.hop });
         assert!(misses(&execution), "{factor} of the speed hits: {:?}\n{:?}\n{:?}", execution, case.hop, case.world);
         tally.speeds += 1;
-        // A take-off speed with nothing to spare is named besides.
+        // If the take-off speed is at its limit, that is named too.
         let rule = case.chain.check_contact(&case.stations().0, Contact::Takeoff, case.hop.direction).unwrap();
         if case.hop.takeoff_speed_m_s * factor > rule.speed_max_m_s() * 1.000_001 {
             assert!(names(&execution, Limit::TakeoffSpeed), "{:?}", execution.violations);
@@ -141,7 +141,7 @@ fn spoil_speed(case: &Case<'_>, tally: &mut Tally) {
     }
 }
 
-/// A landing claimed 1 % of the run farther and nearer.
+/// A landing point stated 1 % of the run too far and too near.
 fn spoil_landing(case: &Case<'_>, tally: &mut Tally) {
     for share in [0.99, 1.01] {
         let (from_m, to_m) = (case.hop.takeoff.along_m, case.hop.landing.along_m);
@@ -171,7 +171,7 @@ fn spoil_reach(case: &Case<'_>, tally: &mut Tally) {
     tally.reaches += 1;
 }
 
-/// The same hop where the ground under an end is kept out of, closed for the direction, or 1 % too steep.
+/// The same hop if the ground under an end is a keep-out zone, closed for the direction, or 1 % too steep.
 fn spoil_ground(case: &Case<'_>, contact: Contact, tally: &mut Tally) {
     let (takeoff, landing) = case.stations();
     let station = if contact == Contact::Takeoff { takeoff } else { landing };
@@ -222,7 +222,7 @@ fn every_spoiled_hop_is_refused_under_its_limits_name() {
         let Some(path) = world.plan(&test) else { continue };
         for hop in path.hops.iter().take(8) {
             let case = Case { world: &world, chain: &chain, test: &test, path: &path, hop };
-            // An arc that hugs its line of sight, or a hop of few of its coordinates' last digits, is no place to tell 1 %.
+            // 1 % cannot be resolved on an arc along its line of sight, or on a hop as short as the last digits of its coordinates.
             let loft = hop.takeoff_angle.slope() - case.sight().slope();
             let digits =
                 [hop.takeoff, hop.landing].iter().map(|p| p.along_m.abs() + p.point_m.z.abs()).fold(0.0, f64::max) * f64::EPSILON;
@@ -245,11 +245,11 @@ fn every_spoiled_hop_is_refused_under_its_limits_name() {
     let Tally { landing_points, speeds, reaches, too_fine, .. } = tally;
     println!("landing points {landing_points}, speeds {speeds}, reaches {reaches}, too fine to tell {too_fine}");
     for limit in Limit::ALL {
-        // No finite speed lets an arc come down to its line of sight: that limit never sets an end. These chains do not bend: see
-        // tests/library/bends.rs.
+        // No finite speed lets an arc come down to its line of sight, so that limit never sets an end. These chains have no bends;
+        // for those see tests/library/bends.rs.
         let least = if matches!(limit, Limit::LineOfSight | Limit::Bend) { 0 } else { 300 };
-        assert!(tally.by_limit[limit.index()] >= least, "{limit} was spoiled {} times only", tally.by_limit[limit.index()]);
+        assert!(tally.by_limit[limit.index()] >= least, "{limit} was tested only {} times", tally.by_limit[limit.index()]);
     }
     assert!(landing_points >= 20_000 && speeds >= 20_000 && reaches >= 5000, "{landing_points}, {speeds}, {reaches}");
-    assert!(too_fine * 10 < speeds, "{too_fine} hops were too fine to spoil");
+    assert!(too_fine * 10 < speeds, "{too_fine} hops were too small to spoil");
 }

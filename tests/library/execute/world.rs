@@ -1,4 +1,5 @@
-//! Random worlds, biased to the ugly: walls, needles, sawtooth, micrometres next to metres, far-off coordinates, gravity from 1e-5 to 25.
+//! Random worlds, biased to extremes: walls, needles, sawtooth, micrometres next to metres, remote coordinates, gravity from 1e-5
+//! to 25.
 
 use chta::{
     ballistics::TakeoffChoice,
@@ -12,7 +13,7 @@ use chta::{
 
 use crate::support::Draw;
 
-/// The shared generator, with the draws that worlds are made of.
+/// The shared generator, with the draws of worlds.
 pub(crate) struct Dice(Draw);
 
 impl Dice {
@@ -39,7 +40,7 @@ impl Dice {
     }
 }
 
-/// All that a plan is made from, kept so that one thing can be changed.
+/// All inputs of a plan, kept so that one of them can be changed.
 #[derive(Clone, Debug)]
 pub(crate) struct World {
     pub(crate) vertices: Vec<ChainPoint>,
@@ -60,7 +61,7 @@ impl World {
         let size_m = dice.decades(-3.0, 4.5);
         let vertices = vertices(dice, size_m);
         let segments = vertices.len() - 1;
-        // A hop on flat ground carries v^2 / g: from a fifth of a segment to many, at times absurdly far.
+        // The range on flat ground is v^2 / g: from a fifth of a segment to many, sometimes extremely far.
         let hop_m = size_m * if dice.chance(0.1) { dice.decades(1.0, 6.0) } else { dice.decades(-0.7, 1.3) };
         let speed_m_s = (gravity_m_s2 * hop_m).sqrt();
         let hopper = hopper(dice, size_m, speed_m_s, gravity_m_s2);
@@ -83,7 +84,7 @@ impl World {
         Self { vertices, grounds, map, hopper, surface, gravity_m_s2, start_x_m, goal_x_m, options }
     }
 
-    /// The chain with its constraints; `None` where this world makes none.
+    /// The chain with its constraints; `None` if this world gives no valid chain.
     pub(crate) fn chain(&self) -> Option<ConstrainedChain> {
         let geometry = PolygonalChain::new(self.vertices.clone(), self.grounds.clone(), self.map.clone()).ok()?;
         ConstrainedChain::new(geometry, &self.hopper, Gravity::new(self.gravity_m_s2).unwrap(), &self.surface).ok()
@@ -94,7 +95,7 @@ impl World {
         (chain.geometry().station(self.start_x_m).unwrap(), chain.geometry().station(self.goal_x_m).unwrap())
     }
 
-    /// The planned path; `None` where there is none, or one of so many hops that it would take the whole test.
+    /// The planned path; `None` if there is none, or if it has too many hops for a test.
     pub(crate) fn plan(&self, test: &HopTest) -> Option<HopPath> {
         let (start, goal) = self.ends(test.chain());
         match search(test, start, goal, &self.options, &()).unwrap().outcome {
@@ -138,7 +139,7 @@ fn vertices(dice: &mut Dice, size_m: f64) -> Vec<ChainPoint> {
                 }
             }
         };
-        // Coordinates far off may swallow a short run.
+        // At remote coordinates a short run may be lost in rounding.
         let next_m = x_m + run_m;
         if next_m > x_m + 1e-9 * x_m.abs() {
             x_m = next_m;

@@ -1,4 +1,5 @@
-//! First contact against dense looks at the ground, the checker of `path::execute`, an analytic distribution, and chain against map.
+//! First contact against dense sampling of the ground, the checker of `path::execute`, an analytic distribution, and chain against
+//! map.
 
 use chta::{
     chain::ConstrainedChain,
@@ -17,10 +18,10 @@ use super::{
 };
 use crate::support::Draw;
 
-/// How many looks at the ground a flight is checked with.
+/// The number of ground samples with which a flight is checked.
 const LOOKS: u32 = 1000;
 
-/// The found end must lie on the ground and on the arc, with no look before it below the ground.
+/// The computed end must lie on the ground and on the arc, with no earlier sample below the ground.
 fn is_first_contact(
     what: &str,
     (from, z_m): (Point2<f64>, f64),
@@ -37,7 +38,7 @@ fn is_first_contact(
     let slack_m = 1e-9 * (1.0 + size_m);
     let (place, height_m) = at(end.time_s);
     let steep = 1.0 + ((liftoff.vertical_m_s - gravity_m_s2 * end.time_s) / liftoff.horizontal_m_s).abs();
-    assert!((place - end.at_m.xy()).norm() < slack_m, "{what}: {place} is not {end:?}");
+    assert!((place - end.at_m.xy()).norm() < slack_m, "{what}: {place} differs from {end:?}");
     if end.landed {
         assert!((height_m - end.at_m.z).abs() < slack_m * steep, "{what}: the arc is at {height_m} m, {end:?}");
         let ground_m = ground(end.at_m.xy()).unwrap();
@@ -45,7 +46,7 @@ fn is_first_contact(
     }
     for look in 1..LOOKS {
         let (place, height_m) = at(end.time_s * f64::from(look) / f64::from(LOOKS));
-        // Next to the end rounding may look a hair beyond it.
+        // Next to the end, rounding may put a sample just behind it.
         if let Some(ground_m) = ground(place) {
             assert!(height_m > ground_m - slack_m * steep, "{what}: {height_m} m is below the ground at {place}, before {end:?}");
         }
@@ -61,7 +62,7 @@ fn no_path() -> HopPath {
     HopPath { hops: Vec::new(), totals: Totals::default() }
 }
 
-/// Height of the chain, interpolated afresh.
+/// Height of the chain, interpolated independently.
 fn height_on(chain: &ConstrainedChain, x_m: f64) -> Option<f64> {
     let vertices = chain.geometry().vertices();
     let pair = vertices.windows(2).find(|pair| pair[0].x_m <= x_m && x_m <= pair[1].x_m)?;
@@ -81,7 +82,7 @@ fn contact_with_random_chains_is_the_first_a_dense_look_finds() {
         let path = no_path();
         let simulation = Simulation::new(&Mission::along_chain(test, path, start, start), Uncertainty::NONE).unwrap();
         for i in 0..20 {
-            // Some from vertices, some from inside.
+            // Some start at vertices, some inside segments.
             let x_m = if i % 4 == 0 { points[draw.below(points.len())].0 } else { draw.uniform(scene.ends_m.0, scene.ends_m.1) };
             let liftoff = liftoff(&mut draw, Vector2::new(if i % 2 == 0 { 1.0 } else { -1.0 }, 0.0), 9.0);
             let end = simulation.fly(Point2::new(x_m, 0.0), liftoff).unwrap();
@@ -97,7 +98,7 @@ fn contact_with_random_chains_is_the_first_a_dense_look_finds() {
     assert!(landed > 300 && lost > 60 && stayed > 60, "{landed} landed, {lost} lost, {stayed} never left the ground");
 }
 
-/// Height of the triangulated posts, from the definition in `interface.md` and nothing else.
+/// Height of the triangulated posts, implemented from the definition in `interface.md` alone.
 fn height_of(dem: &Dem, at: Point2<f64>) -> Option<f64> {
     let map = dem.georeference();
     let (u, v) = ((at.x - map.north_west().x) / map.dx_m(), (map.north_west().y - at.y) / map.dy_m());
@@ -108,7 +109,7 @@ fn height_of(dem: &Dem, at: Point2<f64>) -> Option<f64> {
     let (col, row) = ((u as usize).min(dem.cols() - 2), (v as usize).min(dem.rows() - 2));
     let (u, v) = (u - col as f64, v - row as f64);
     let z = |down: usize, right: usize| dem.elevation(row + down, col + right);
-    // Weights of the corners of the half that the place lies in.
+    // Weights of the corners of the half-square that contains the position.
     let third = if u >= v { z(0, 1)? } else { z(1, 0)? };
     Some((1.0 - u.max(v)) * z(0, 0)? + (u - v).abs() * third + u.min(v) * z(1, 1)?)
 }
@@ -133,7 +134,7 @@ fn contact_with_a_map_is_the_first_a_dense_look_finds() {
     let (mut landed, mut lost, mut stayed) = (0, 0, 0);
     for i in 0..1000 {
         let mut from = MapPoint::new(draw.uniform(0.0, 49.0), draw.uniform(0.0, 39.0));
-        // Some from posts, some from rows.
+        // Some start at posts, some on rows.
         if i % 3 == 0 {
             from.y = from.y.round();
             from.x = if i % 2 == 0 { from.x.round() } else { from.x };
@@ -185,12 +186,12 @@ fn contact_agrees_with_the_checker() {
     assert!(compared > 30, "only {compared} flights");
 }
 
-/// Range over flat ground is `k v^2`, so its distribution under a Gaussian speed is known: Kolmogorov and Smirnov at the level 0.01.
+/// Range over flat ground is `k v^2`, so its distribution for a Gaussian speed is known: Kolmogorov-Smirnov test at the level 0.01.
 #[test]
 fn landings_on_flat_ground_follow_their_analytic_distribution() {
     let scene = Scene::flat();
     let planned = scene.planned();
-    let [hop] = planned.path.hops[..] else { panic!("one hop planned") };
+    let [hop] = planned.path.hops[..] else { panic!("the plan has more than one hop") };
     for (absolute, fraction) in [(0.4, 0.0), (0.0, 0.03)] {
         let uncertainty =
             Uncertainty { takeoff_speed_sigma_m_s: absolute, takeoff_speed_sigma_fraction: fraction, ..Uncertainty::NONE };
@@ -212,7 +213,7 @@ fn landings_on_flat_ground_follow_their_analytic_distribution() {
             largest.max((share - i as f64 / n).abs()).max((share - (i as f64 + 1.0) / n).abs())
         });
         assert!(largest * n.sqrt() < 1.628, "sqrt(n) D = {}, more than the 1.628 of level 0.01", largest * n.sqrt());
-        // The summary's quantiles against the same landings, sorted.
+        // The quantiles of the summary against the same landings, sorted.
         let mut errors: Vec<f64> = listener.hops.iter().map(|hop| hop.error_m).collect();
         errors.sort_by(f64::total_cmp);
         let found = summary.landings[0].error;
@@ -226,7 +227,7 @@ fn landings_on_flat_ground_follow_their_analytic_distribution() {
     }
 }
 
-/// A slice of a DEM flown as a chain and over the triangles: the same places and the same verdicts, by two statements of the cone.
+/// A slice of a DEM flown as a chain and over the triangles: the same positions and outcomes, from two implementations of the cone.
 #[test]
 fn along_a_slice_the_chain_and_the_map_agree() {
     let scene = Scene::craters();
@@ -250,8 +251,8 @@ fn along_a_slice_the_chain_and_the_map_agree() {
     for (a, b) in chain.trials.iter().zip(&map.trials) {
         different += u32::from(a.outcome != b.outcome || a.hops != b.hops);
     }
-    // Drift on a border between a facet that rests and one that does not may fall either way.
-    assert!(different <= 3, "{different} trials of 1500 end differently");
+    // A displaced position on the border between a facet that holds and one that does not may be on either side.
+    assert!(different <= 3, "{different} trials of 1500 have different outcomes");
     if different == 0 {
         for (a, b) in chain.hops.iter().zip(&map.hops) {
             let along_m = (b.contact_m.xy() - start).norm();
@@ -262,7 +263,7 @@ fn along_a_slice_the_chain_and_the_map_agree() {
     }
 }
 
-/// A robot that only drifts along the slice stays in its plane: what it replans over the triangles is what it replans on the chain.
+/// A robot that is displaced only along the slice stays in its plane, so replanning over the triangles gives the hops of the chain.
 #[test]
 fn along_a_slice_chain_and_map_replan_the_same_hops() {
     let scene = Scene::craters();
@@ -285,6 +286,6 @@ fn along_a_slice_chain_and_map_replan_the_same_hops() {
         *counted += 1;
         off_plan += on_map.len().saturating_sub(1);
     }
-    // Nodes that cost the same to the last digits but one may be chosen either way.
+    // Nodes whose costs differ only in the last digit may be chosen either way.
     assert!(different <= 3 && off_plan > 300, "{same} trials the same, {different} different, {off_plan} hops replanned");
 }

@@ -1,4 +1,4 @@
-//! Every outcome, planted; early stopping; bad input.
+//! Every outcome, in a scene that causes it; early stopping; bad input.
 
 use std::{ops::ControlFlow, sync::Mutex};
 
@@ -34,7 +34,7 @@ const HUNDRED: TrialOptions = TrialOptions {
 
 const REPLAN: TrialOptions = TrialOptions { policy: Policy::Replan, ..HUNDRED };
 
-/// Two plateaus with a ravine between, deeper than the robot jumps.
+/// Two plateaus with a ravine between them, deeper than the robot can jump.
 fn ravine() -> Scene {
     let mut scene =
         Scene::of_chain(&[(0.0, 0.0), (20.0, 0.0), (20.1, -30.0), (31.9, -30.0), (32.0, 0.0), (60.0, 0.0)], 8.0, friction(0.9));
@@ -55,10 +55,10 @@ fn every_outcome_occurs_where_it_is_planted() {
     let none = Uncertainty::NONE;
     let flat = Scene::flat();
     assert_eq!(count(&flat, none, &HUNDRED, TrialOutcome::Reached), 100);
-    // 1 m/s of 15 is some metres of 40.
+    // 1 m/s of 15 m/s moves the landing by some metres of 40 m.
     let speed = Uncertainty { takeoff_speed_sigma_m_s: 1.0, ..none };
     assert!(count(&flat, speed, &HUNDRED, TrialOutcome::Missed) > 80);
-    // The chain has 300 m on one side and 100 m on the other.
+    // The chain extends 300 m to one side and 100 m to the other.
     let wild = Uncertainty { takeoff_speed_sigma_m_s: 40.0, ..none };
     assert!(count(&flat, wild, &HUNDRED, TrialOutcome::Lost) > 20);
     // Cones of 2 degrees about the planned directions.
@@ -82,7 +82,7 @@ fn every_outcome_occurs_where_it_is_planted() {
         .unwrap();
         assert!(count(&narrow, turned, &HUNDRED, outcome) > 50);
     }
-    // Landing 1 % over the speed of the planned landing is too much.
+    // Landing 1 % over the speed of the planned landing is too fast.
     let mut brittle = Scene::flat();
     let planned_m_s = brittle.planned().path.hops[0].landing_speed_m_s;
     brittle.hopper = Hopper::new(HopperLimits { landing_speed_max_m_s: planned_m_s * 1.01, ..*brittle.hopper.limits() }).unwrap();
@@ -94,15 +94,15 @@ fn every_outcome_occurs_where_it_is_planted() {
     )
     .unwrap();
     assert!(count(&brittle, speed, &HUNDRED, TrialOutcome::Damaged) > 20);
-    // A robot that falls into the ravine does not come out again.
+    // A robot that falls into the ravine cannot leave it.
     let slow = Uncertainty { takeoff_speed_sigma_fraction: 0.2, ..none };
     assert!(count(&ravine(), slow, &REPLAN, TrialOutcome::Stuck) > 5);
-    // It wants several hops and may have one.
+    // It needs several hops and may fly one.
     let one_hop = TrialOptions { hop_limit: Some(1), ..HUNDRED };
     assert_eq!(count(&Scene::rolling(), none, &one_hop, TrialOutcome::HopLimit), 100);
 }
 
-/// A plain of 100 m by 100 m, planned along its middle.
+/// A plain of 100 m by 100 m with a plan along its middle.
 fn plain() -> Scene {
     let map = GeoReference::local(MapPoint::new(0.0, 100.0), 10.0, 10.0).unwrap();
     let dem = Dem::new(11, 11, vec![5.0; 121], map).unwrap();
@@ -115,7 +115,7 @@ fn zones_gaps_and_borders_lose_the_robot() {
     let planned = scene.planned();
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("zones.geojson");
-    // Both sides of the planned line, which itself is free.
+    // Zones on both sides of the planned line, which is free itself.
     let ring = |low: f64, high: f64| format!("[[[0, {low}], [100, {low}], [100, {high}], [0, {high}], [0, {low}]]]");
     let text = format!(r#"{{"type": "MultiPolygon", "coordinates": [{}, {}]}}"#, ring(47.5, 60.0), ring(40.0, 46.5));
     std::fs::write(&file, text).unwrap();
@@ -134,8 +134,8 @@ fn zones_gaps_and_borders_lose_the_robot() {
     for hop in listener.hops.iter().filter(|hop| hop.outcome == Some(TrialOutcome::Lost)) {
         assert!(hop.landed && (hop.contact_m.y >= 47.5 || hop.contact_m.y <= 46.5), "{hop:?}");
     }
-    assert_eq!(lost(planned.mission(), aside).0, 0, "without zones all stay on the map");
-    // Twice as fast, it flies over the border 7 m behind the goal.
+    assert_eq!(lost(planned.mission(), aside).0, 0, "all trials stay on the map without zones");
+    // At twice the speed it flies over the border 7 m behind the goal.
     let fast = Uncertainty { takeoff_speed_sigma_fraction: 0.3, ..Uncertainty::NONE };
     let strong = Hopper::with_speeds(50.0, 50.0).unwrap();
     let chain = PolygonalChain::new(
@@ -147,7 +147,7 @@ fn zones_gaps_and_borders_lose_the_robot() {
     let chain = ConstrainedChain::new(chain, &strong, Gravity::new(scene.gravity_m_s2).unwrap(), &scene.surface).unwrap();
     let test = chta::hop::HopTest::new(chain.with_hopper(&strong, Gravity::new(scene.gravity_m_s2).unwrap()).unwrap());
     let (off, listener) = lost(planned.without_replanning(test, planned.path.clone()), fast);
-    assert!(off > 20, "{off} off the map");
+    assert!(off > 20, "{off} trials left the map");
     let beyond = listener.hops.iter().find(|hop| hop.outcome == Some(TrialOutcome::Lost)).unwrap();
     assert!(!beyond.landed && (beyond.contact_m.x - 100.0).abs() < 1e-9 && beyond.contact_m.z > 5.0, "{beyond:?}");
 }
@@ -160,7 +160,7 @@ fn a_bend_loses_those_that_fly_over_it() {
     scene.chain = ConstrainedChain::new(bent, &scene.hopper, Gravity::new(scene.gravity_m_s2).unwrap(), &scene.surface).unwrap();
     let speed = Uncertainty { takeoff_speed_sigma_m_s: 0.3, ..Uncertainty::NONE };
     let lost = count(&scene, speed, &HUNDRED, TrialOutcome::Lost);
-    assert!((30..70).contains(&lost), "about half overshoot: {lost}");
+    assert!((30..70).contains(&lost), "about half must overshoot: {lost}");
 }
 
 #[test]
@@ -199,7 +199,7 @@ fn a_map_needs_grip_and_the_path_must_lie_on_it() {
     assert!(matches!(error, SimulationError::NotOnMap { hop: 1 }), "{error}");
 }
 
-/// Cancels after the second batch; the first report is that of the beginning.
+/// Cancels after the second batch; the first report is made at the start.
 #[derive(Default)]
 struct Impatient(Mutex<Vec<Step>>);
 

@@ -1,10 +1,10 @@
-//! Without errors, the plan; with them, what must follow.
+//! Without errors, trials follow the plan; with errors, their necessary consequences.
 
 use chta::uncertainty::{HopRecord, Observer, Policy, Summary, TrialOptions, TrialOutcome, TrialRecord, Uncertainty};
 
 use super::scene::{Planned, Scene, each_error};
 
-/// Keeps what it is told.
+/// Collects all records.
 #[derive(Default)]
 pub(crate) struct Listener {
     pub(crate) hops: Vec<HopRecord>,
@@ -92,7 +92,7 @@ fn several() -> Uncertainty {
 fn any_number_of_threads_gives_the_same() {
     for scene in [Scene::rolling(), Scene::craters()] {
         let planned = scene.planned();
-        // Open loop over more than one batch; replanning on a map takes longer.
+        // Open loop over more than one batch; replanning on a map takes longer, so fewer trials.
         for (policy, trials) in [(Policy::OpenLoop, 1100), (Policy::Replan, 120)] {
             let run = |threads| {
                 let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
@@ -151,7 +151,7 @@ fn replanning_makes_up_for_drift() {
     }
 }
 
-/// Friction and height errors are what the ground is; the robot plans by its map.
+/// Friction and height errors change the actual ground; the robot plans by its map.
 #[test]
 fn the_robot_does_not_know_what_ground_it_drew() {
     for scene in [Scene::rolling(), Scene::craters()] {
@@ -169,7 +169,7 @@ fn the_robot_does_not_know_what_ground_it_drew() {
         ] {
             let mut compared = 0;
             for hop in first_hops(other) {
-                // Those that slid at their take-off have no hop, in either run.
+                // Trials that slid at their first take-off have no hop, in either run.
                 let Some(same) = nominal.iter().find(|known| known.trial == hop.trial) else { continue };
                 assert_eq!((hop.heading, hop.horizontal_m_s), (same.heading, same.horizontal_m_s), "{hop:?}");
                 assert_eq!(hop.takeoff_vertical_m_s, same.takeoff_vertical_m_s);

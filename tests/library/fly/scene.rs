@@ -15,7 +15,7 @@ use chta::{
     world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
-/// A journey and the ground it is planned on.
+/// A journey and the ground of its plan.
 pub(crate) struct Scene {
     pub(crate) chain: ConstrainedChain,
     pub(crate) hopper: Hopper,
@@ -41,7 +41,7 @@ pub(crate) fn friction(coefficient: f64) -> SurfaceProperties {
     SurfaceProperties { grip: Some(Grip::Friction(cone)), rest: RestSlope::AsFrictionHolds }
 }
 
-/// The middle of the feasible angles leaves room for errors both ways.
+/// The middle of the feasible angles leaves a margin for errors in both directions.
 pub(crate) fn mid_range(spacing: PointSpacing) -> SearchOptions {
     SearchOptions { spacing: Some(spacing), takeoff: TakeoffChoice::MidRange, ..SearchOptions::default() }
 }
@@ -98,7 +98,7 @@ impl Scene {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/data/terrain/mars_crater_field.tif");
         let dem = chta::terrain::read_dem(file.as_ref()).unwrap();
         let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(10.0, 10.0) }).unwrap();
-        // The slice goes on behind the goal, so that the chain has ground for those that fly too far.
+        // The slice continues behind the goal, so that flights that go too far still have ground.
         let scene = Self::of_dem(dem, [(12.0, 84.0), (114.0, 50.0)], hopper, friction(0.9), 3.711);
         Self { ends_m: (0.0, 82.0), ..scene }
     }
@@ -117,18 +117,18 @@ impl Scene {
 }
 
 impl Planned<'_> {
-    /// The mission over the DEM where the scene has one, else along the chain; with replanning.
+    /// The mission over the DEM if the scene has one, else along the chain; with replanning.
     pub(crate) fn mission(&self) -> Mission {
         self.without_replanning(self.test.clone(), self.path.clone()).with_replanning(self.test.clone(), Arc::clone(&self.to_go))
     }
 
-    /// The mission along the chain, also where the scene has a DEM.
+    /// The mission along the chain, even if the scene has a DEM.
     pub(crate) fn chain_mission(&self) -> Mission {
         Mission::along_chain(self.test.clone(), self.path.clone(), self.start, self.goal)
             .with_replanning(self.test.clone(), Arc::clone(&self.to_go))
     }
 
-    /// The mission of another path, or with the hopper of another hop test.
+    /// The mission with another path, or with the hopper of another hop test.
     pub(crate) fn without_replanning(&self, test: HopTest, path: HopPath) -> Mission {
         match &self.scene.dem {
             None => Mission::along_chain(test, path, self.start, self.goal),
@@ -139,7 +139,7 @@ impl Planned<'_> {
         }
     }
 
-    /// The mission over any DEM with overlays.
+    /// The mission over another DEM with overlays.
     pub(crate) fn over_dem(
         &self,
         dem: Dem,
@@ -161,7 +161,7 @@ impl Planned<'_> {
     }
 }
 
-/// Every listed error by itself, large enough to matter on these scenes.
+/// Each error alone, large enough to matter in these scenes.
 pub(crate) fn each_error(on_a_map: bool) -> Vec<(&'static str, Uncertainty)> {
     let none = Uncertainty::NONE;
     let degrees = Angle::from_degrees;

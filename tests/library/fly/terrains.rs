@@ -1,4 +1,4 @@
-//! Plans that touch their limits, on the shipped terrains and on real ones: without errors they hold to the last digit.
+//! Plans that touch their limits, on the shipped and on real terrains: without errors they hold to the last digit.
 
 use std::path::{Path, PathBuf};
 
@@ -26,7 +26,7 @@ fn scene(file: &Path, body: &str, ends: [(f64, f64); 2], spacing_m: f64, takeoff
     scene
 }
 
-/// Every choice of angle: the least speed lies on a cone's border wherever the cone forbids 45 degrees, the least time on a vertex.
+/// Every choice of angle: the least speed lies on the border of a cone that forbids 45 degrees, the least time on a vertex.
 fn holds(file: &Path, body: &str, ends: [(f64, f64); 2], spacing_m: f64) {
     for takeoff in TakeoffChoice::ALL {
         let scene = scene(file, body, ends, spacing_m, takeoff);
@@ -53,7 +53,7 @@ fn shipped_terrains() {
     holds(&data.join("lunar_rille.tif"), "moon", [(380.0, 90.0), (340.0, 260.0)], 4.0);
 }
 
-/// A file of ../shared/dem, or why it is skipped.
+/// A file of ../shared/dem; `None` with a printed reason if it is absent.
 fn real(name: &str) -> Option<PathBuf> {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(name);
     if path.exists() {

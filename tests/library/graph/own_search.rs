@@ -1,4 +1,5 @@
-//! The search against petgraph's on the same graph, against itself on other numbers of threads, and many questions against one.
+//! The search against petgraph's on the same graph and against itself with other numbers of threads; many questions against single
+//! ones.
 
 use chta::{
     graph::{Edge, HopGraph, reachable, search_pairs},
@@ -8,7 +9,7 @@ use petgraph::{algo, visit::EdgeRef};
 
 use super::*;
 
-/// A chain that turns here and there, with hops in either direction.
+/// A chain with some bends, with hops in both directions.
 fn bent(draw: &mut Draw, world: &World) -> ConstrainedChain {
     let geometry = world.chain().geometry().clone();
     let bends = (1..geometry.segment_count()).filter(|_| draw.chance(0.15)).map(VertexId).collect();
@@ -59,7 +60,7 @@ fn petgraph_finds_the_same_costs() {
             sum = sum + graph.cost(&leg.takeoff, &leg.landing, leg.edge);
             along += u32::from(matches!(leg.edge, Edge::Along(_)));
         }
-        assert_eq!(sum, *cost, "the cost is that of the legs, added up from the start on");
+        assert_eq!(sum, *cost, "the cost is the sum over the legs, from the start");
         paths += 1;
     }
     assert!(paths > 700 && none > 300 && along > 30, "{paths} paths with {along} stretches, {none} without");
@@ -91,7 +92,7 @@ fn petgraph_reaches_the_same_nodes_in_as_many_hops() {
     assert!(reached > 1000, "only {reached} nodes reached");
 }
 
-/// A long stretch whose batches are worth sharing, from a place inside it.
+/// A long chain whose batches are worth distributing, from a position inside it.
 fn long(draw: &mut Draw, segments: u16) -> (ConstrainedChain, Hopper) {
     let mut z_m = 0.0;
     let point = |i: u16| {
