@@ -409,3 +409,34 @@ fn gdal_sees_place_reference_system_and_no_data_of_the_input() {
         }
     }
 }
+
+/// Every path is flown again before it is printed, and `--simulate` flies it with the trial code of transects.
+#[test]
+fn paths_are_verified_and_simulated_the_same_for_any_number_of_threads() {
+    let desk = walled();
+    let scenario = "[body]\nname = \"moon\"\n[hopper]\ntakeoff_speed_max_m_s = 2.5\nlanding_speed_max_m_s = 2.5\n[surface]\n\
+                    friction_coefficient = 1.2\n[search]\ntakeoff_angle = \"mid-range\"\n[uncertainty]\n\
+                    takeoff_speed_sigma_fraction = 0.02\nheading_sigma_deg = 0.5\ngoal_tolerance_m = 0.6\ntrials = 400\nseed = 5\n";
+    desk.write("errors.toml", scenario);
+    let asked = ["map", "walled.asc", "--start", "102,205", "--goal", "108,206", "--goal", "114,205", "--simulate", "--scenario"];
+    let document = |more: &[&str]| desk.json(&[&asked[..], more].concat());
+    let found = document(&["errors.toml", "--threads", "1"]);
+    assert_eq!(found["goals"], document(&["errors.toml", "--threads", "3"])["goals"]);
+    let [reached, walled_in] = [&found["goals"][0], &found["goals"][1]];
+    assert_eq!(reached["verified"], true);
+    let simulation = &reached["simulation"];
+    assert_eq!((simulation["trials"].as_u64(), simulation["policy"].as_str()), (Some(400), Some("open-loop")));
+    let rate = simulation["success_rate"].as_f64().unwrap();
+    assert!(rate > 0.1 && rate < 1.0, "some trials land beyond the tolerance: {rate}");
+    assert_eq!(simulation["landings"].as_array().unwrap().len() as u64, reached["hops"].as_u64().unwrap());
+    assert_eq!((&walled_in["hops"], &walled_in["verified"], walled_in.get("simulation")), (&Value::Null, &Value::Null, None));
+    // Without errors every trial is the plan.
+    let exact = document(&["hopper.toml", "--set", "uncertainty.trials=50"]);
+    assert_eq!(exact["goals"][0]["simulation"]["success_rate"], 1.0);
+    assert!(exact["warnings"].to_string().contains("no errors are given"), "{}", exact["warnings"]);
+    let refused = desk.run(&[&asked[..], &["errors.toml", "--set", "uncertainty.policy=replan"]].concat());
+    assert_eq!(refused.status, 2);
+    assert!(refused.stderr.contains("--simulate") && refused.stderr.contains("open-loop"), "{}", refused.stderr);
+    // What it proposes works.
+    document(&["errors.toml", "--set", "uncertainty.policy=open-loop"]);
+}
