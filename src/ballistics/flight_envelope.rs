@@ -51,14 +51,14 @@ impl FlightEnvelope {
         self.gravity.m_s2()
     }
 
-    /// The take-off slopes that the mechanism allows.
-    pub const fn mechanical(&self) -> SlopeInterval {
+    /// The take-off slopes that the take-off mechanism can produce: from the hopper's least to its greatest take-off angle.
+    pub const fn mechanism_slopes(&self) -> SlopeInterval {
         self.mechanical
     }
 
     /// The lofts that all limits except the terrain allow: the intersection of the intervals in [`limits`].
     ///
-    /// Source: P eq. 21 without eq. 14.
+    /// Source: CHTA paper, eq. 21 without eq. 14.
     ///
     /// # Returns
     /// A hop exists if the interval is not empty and contains a positive loft.
@@ -81,12 +81,12 @@ impl FlightEnvelope {
         limits::speeds(sight, takeoff.speed_max_m_s, landing.speed_max_m_s, self.gravity.m_s2())
             .intersect(limits::takeoff_cone(sight, takeoff.slopes.intersect(self.mechanical)))
             .intersect(limits::landing_cone(sight, landing.slopes))
-            .intersect(self.machine(sight))
+            .intersect(self.flight_limits(sight))
     }
 
-    /// The lofts that the hopper's greatest apex height and longest flight time allow; all lofts if it has neither limit.
+    /// The lofts that the hopper's limits on the flight (greatest apex height, longest flight time) allow; all lofts if it has neither.
     #[inline]
-    pub fn machine(&self, sight: LineOfSight) -> SlopeInterval {
+    pub fn flight_limits(&self, sight: LineOfSight) -> SlopeInterval {
         let apex =
             self.hopper.limits().apex_height_max_m.map_or(SlopeInterval::ALL, |height_m| limits::apex_height(sight, height_m));
         match self.hopper.limits().flight_time_max_s {

@@ -34,11 +34,11 @@ pub(crate) struct Errors {
 pub(crate) struct FlownHop<C> {
     /// The first contact, or the last position over known ground.
     pub(crate) end: C,
-    /// Where the hopper rests; equal to `end` if a contact did not hold.
+    /// Where the hopper comes to rest after bounce and roll; equal to `end` if it does not come to rest safely (see `failure`).
     pub(crate) rest: C,
     pub(crate) time_s: f64,
     pub(crate) touchdown: TouchdownState,
-    /// Whether it met the ground.
+    /// Whether it ended on the ground: it touched down, or it never lifted off.
     pub(crate) landed: bool,
     /// Why the hopper does not rest safely; `None` if it does.
     pub(crate) failure: Option<ContactFailure>,
@@ -76,31 +76,32 @@ impl Errors {
         (u.friction_sigma > 0.0 || heights.is_some()).then_some(Realization { friction, heights })
     }
 
-    /// A commanded velocity with its errors: first of speed, then of elevation, then of heading.
+    /// A commanded velocity with its errors: first of speed, then of elevation angle, then of heading.
     pub(crate) fn liftoff(&self, liftoff: &LiftoffVelocity, speed_m_s: f64, draws: &HopDraws) -> LiftoffVelocity {
         let u = &self.uncertainty;
         let real_m_s =
             speed_m_s * (1.0 + u.takeoff_speed_sigma_fraction * draws.speed[1]) + u.takeoff_speed_sigma_m_s * draws.speed[0];
         let scale = if self.wanted.speed { real_m_s.max(0.0) / speed_m_s } else { 1.0 };
-        let (across, up) = (liftoff.horizontal_m_s * scale, liftoff.vertical_m_s * scale);
+        let (horizontal, up) = (liftoff.horizontal_m_s * scale, liftoff.vertical_m_s * scale);
         if !self.wanted.direction {
-            return LiftoffVelocity { heading: liftoff.heading, horizontal_m_s: across, vertical_m_s: up };
+            return LiftoffVelocity { heading: liftoff.heading, horizontal_m_s: horizontal, vertical_m_s: up };
         }
         let (sine, cosine) = libm::sincos(u.takeoff_angle_sigma.radians() * draws.direction[0]);
-        let (across, up) = (across * cosine - up * sine, across * sine + up * cosine);
+        let (horizontal, up) = (horizontal * cosine - up * sine, horizontal * sine + up * cosine);
         let mut heading = liftoff.heading;
         if u.heading_sigma.radians() > 0.0 {
             let (sine, cosine) = libm::sincos(u.heading_sigma.radians() * draws.direction[1]);
             heading = Vector2::new(heading.x * cosine + heading.y * sine, heading.y * cosine - heading.x * sine);
         }
-        // An elevation beyond the vertical reverses the heading.
-        if across < 0.0 {
-            return LiftoffVelocity { heading: -heading, horizontal_m_s: -across, vertical_m_s: up };
+        // A take-off angle beyond 90 degrees reverses the heading.
+        if horizontal < 0.0 {
+            return LiftoffVelocity { heading: -heading, horizontal_m_s: -horizontal, vertical_m_s: up };
         }
-        LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: up }
+        LiftoffVelocity { heading, horizontal_m_s: horizontal, vertical_m_s: up }
     }
 
-    /// Follows an arc to its first contact, checks the landing, and displaces the hopper by bounce and roll.
+    /// Follows an arc to its first contact, checks the landing, and adds the random displacement (`drift_*`) that stands for bounce and
+    /// roll.
     pub(crate) fn fly<G: FirstContact>(
         &self,
         ground: &G,

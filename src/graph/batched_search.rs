@@ -1,8 +1,8 @@
-//! The search: label-setting A* in batches of equal hop count. The edges of a batch are evaluated when its nodes are settled,
-//! and never stored.
+//! The search: label-setting A* in batches. A batch is all open nodes with the same lower bound on the total number of hops and
+//! the same number of hops from the start. The edges of a batch are evaluated when its nodes are settled, and never stored.
 //!
-//! Every edge takes at least one hop, so the best cost of a node is known once all nodes with fewer hops are settled. All
-//! nodes then due at one hop count form a batch, which any number of threads may evaluate in any order. Offers to a node are
+//! Since every edge takes at least one hop and the bound is consistent, the label of a node is final when its batch is taken from
+//! the queue. Any number of threads may evaluate a batch in any order. Offers to a node are
 //! compared by cost, then by the index of the predecessor (the smaller one wins, the start before all). This is a total
 //! order, so the result does not depend on the order of evaluation.
 
@@ -129,8 +129,8 @@ pub(super) enum Aim {
     Hops,
 }
 
-/// A label-setting A* search over one graph, run for one start after another; nodes of equal hop count are settled as one
-/// batch.
+/// A label-setting A* search in batches over one graph, run for one start after another. A batch is all open nodes with the same
+/// lower bound on the total number of hops and the same number of hops from the start.
 #[derive(Debug)]
 pub(super) struct BatchedSearch<'g> {
     graph: &'g HopGraph,
@@ -144,7 +144,7 @@ pub(super) struct BatchedSearch<'g> {
     due: BTreeMap<(u64, u64), Vec<u32>>,
     sweep: Sweep,
     tally: Tally,
-    /// The least work of a batch, in pairs, that is divided among threads: below it, waking them takes longer.
+    /// Batches of at least this many pairs are split among threads; for smaller ones, waking the threads costs more than it saves.
     shared_from_pairs: usize,
     /// In tests, the order in which a batch is evaluated.
     #[cfg(test)]
@@ -152,7 +152,7 @@ pub(super) struct BatchedSearch<'g> {
 }
 
 impl<'g> BatchedSearch<'g> {
-    /// Some 100 to 200 microseconds of work.
+    /// About 100 to 200 microseconds of work.
     const SHARED_FROM_PAIRS: usize = 4096;
     /// Parts per thread of a shared batch, which balances parts of unequal work.
     const PIECES_PER_THREAD: usize = 4;
@@ -180,8 +180,10 @@ impl<'g> BatchedSearch<'g> {
         self.tally
     }
 
-    /// The fewest hops to a node, after a run that had no goals or left some goal without a path; `None` if the node is
-    /// unreachable.
+    /// The fewest hops to a node; `None` if it is unreachable.
+    ///
+    /// Valid only after a run that settled every reachable node, that is, one with no goals or with an unreached goal; other runs
+    /// stop early.
     pub(super) fn hops(&self, node: NodeId) -> Option<u64> {
         let label = self.labels[node.index()];
         label.is_known().then(|| label.cost.hops())
@@ -218,13 +220,13 @@ impl<'g> BatchedSearch<'g> {
         }
         goals.arrive_at(start);
         let first = Takeoff { station: *start, cost: Cost::of_hops(0), origin: Origin::START, reach_m: self.reach.at_m(start) };
-        self.settle(&mut [first], goals, left, meter)?;
+        self.expand(&mut [first], goals, left, meter)?;
         while let Some(((least, hops), nodes)) = self.due.pop_first() {
             if least > goals.most_hops() {
                 break;
             }
-            let mut batch = self.takeoffs(nodes, hops);
-            self.settle(&mut batch, goals, left, meter)?;
+            let mut batch = self.settle(nodes, hops);
+            self.expand(&mut batch, goals, left, meter)?;
         }
         Ok(())
     }
@@ -238,9 +240,9 @@ impl<'g> BatchedSearch<'g> {
         self.tally = Tally::default();
     }
 
-    /// Settles the nodes of a batch, from left to right; nodes that have since been reached with fewer hops are already
-    /// settled.
-    fn takeoffs(&mut self, mut nodes: Vec<u32>, hops: u64) -> Vec<Takeoff> {
+    /// Marks the nodes of a batch as settled and returns them as take-offs from left to right. Skips nodes already settled with
+    /// fewer hops.
+    fn settle(&mut self, mut nodes: Vec<u32>, hops: u64) -> Vec<Takeoff> {
         nodes.sort_unstable();
         let stations = self.graph.nodes().stations();
         let mut takeoffs = Vec::with_capacity(nodes.len());
@@ -262,9 +264,9 @@ impl<'g> BatchedSearch<'g> {
     ///
     /// # Errors
     /// [`Cancelled`].
-    fn settle(&mut self, batch: &mut [Takeoff], goals: &mut Goals, left: HopsLeft<'_>, meter: &Meter<'_>) -> Result<(), Cancelled> {
+    fn expand(&mut self, batch: &mut [Takeoff], goals: &mut Goals, left: HopsLeft<'_>, meter: &Meter<'_>) -> Result<(), Cancelled> {
         self.tally += goals.land_from(self.graph, batch, meter)?;
-        // A path through a landing of this batch takes at least two hops more.
+        // Any other path to a goal needs at least two more hops: one to a node, one from it to the goal.
         let Some(takeoff) = batch.first() else { return Ok(()) };
         if takeoff.cost.hops() + 2 > goals.most_hops() {
             return Ok(());
@@ -346,7 +348,8 @@ impl<'g> BatchedSearch<'g> {
     }
 }
 
-/// Neighbouring nodes that could still get better labels, all from take-offs with equal hops.
+/// The labels of a contiguous range of nodes, and the indices within it (`waiting`) whose labels could still improve by a hop from
+/// take-offs with the same hop count.
 #[derive(Clone, Copy)]
 struct Stretch<'s> {
     graph: &'s HopGraph,

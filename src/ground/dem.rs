@@ -21,9 +21,10 @@ use crate::{
 /// ground just flown over and a take-off the ground ahead, even if a border runs through the contact itself.
 pub(super) const BESIDE_M: f64 = 1e-6;
 
-/// Distance along a line at which its facets are looked up, in units of the step to the side: a line at a smaller angle than one
-/// over this to an edge counts as running along the edge. Lines between posts up to some 500 apart are not that close to any other
-/// edge. With a larger value, a line that does not start at a post could get the next facet.
+/// [`facets`](Surface::facets) probes two points, one on each side of the line: `resolution_m` to the side and this many times
+/// `resolution_m` along it. A line at less than 1/4096 rad to an edge therefore counts as running along it. Lines between posts up to
+/// some 500 posts apart make larger angles with every other edge. A larger value could probe past the facet under the contact when the
+/// line does not start at a post.
 const FACET_LOOK: f64 = 4096.0;
 
 /// Rounding error of a height or a coordinate, in units in the last place.
@@ -282,7 +283,7 @@ impl Surface for DemGround {
     fn walk(&self, from: &MapPosition, heading: Vector2<f64>, visit: &mut dyn FnMut(&Element) -> ControlFlow<()>) {
         let triangles = self.triangles();
         let mut at = (0.0, from.z_m);
-        // A sliver next to a line of the lattice belongs to the following element.
+        // Spans shorter than the resolution, which arise next to grid lines, are merged into the next element.
         let mut element = |to_m: f64, to_z_m: f64| {
             let (from_m, from_z_m) = at;
             if to_m - from_m <= self.resolution_m {
@@ -344,7 +345,7 @@ impl Surface for DemGround {
 }
 
 impl Windows for DemGround {
-    /// By the slice between the two positions and its hop test: at most one window.
+    /// Slices the DEM between the two positions and runs the hop test on the slice: at most one window.
     fn windows(&self, takeoff: &MapPosition, landing: &MapPosition) -> Option<TakeoffWindows> {
         let test = HopTest::new(self.chain(takeoff.at, landing.at).ok()?);
         let geometry = test.chain().geometry();
@@ -354,7 +355,8 @@ impl Windows for DemGround {
     }
 }
 
-/// Whether a facet holds the hopper at rest, up to rounding; `friction` is its coefficient, if it has one.
+/// Whether the facet is flat enough to rest on; an absent limit always holds. `friction` is its coefficient, if it has one;
+/// `tolerance_rad`, an angle, is converted to a slope: d tan = (1 + tan^2) d angle.
 pub(super) fn rests(rest: RestSlope, gradient: Gradient, friction: Option<f64>, tolerance_rad: f64) -> bool {
     let max = match rest {
         RestSlope::AsFrictionHolds => friction,

@@ -53,7 +53,7 @@ impl ContactPoint {
     }
 }
 
-/// A side of a contact along a line of travel.
+/// Which part of the ground next to a contact: ahead of it or behind it, in the direction of travel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// The ground just beyond it.
@@ -62,7 +62,7 @@ pub enum Side {
     Behind,
 }
 
-/// How a facet keeps a hopper from sliding.
+/// What keeps the hopper from sliding on a facet.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Hold {
     /// Coulomb friction on a facet of this upward normal of length 1: a force within the cone about the normal does not slide.
@@ -72,7 +72,7 @@ pub enum Hold {
         /// The cone.
         cone: FrictionCone,
     },
-    /// Elevations stated for the direction of travel.
+    /// Take-off and landing angles given explicitly for this direction of travel, instead of friction.
     Stated {
         /// The line constraints as stated; `None` if none are stated for this direction.
         line: Option<LineConstraints>,
@@ -99,7 +99,7 @@ impl Hold {
 pub struct Facet {
     /// Why every take-off and landing is refused here: a keep-out zone, or too steep to rest on.
     pub refusal: Option<GroundRefusal>,
-    /// How it holds the hopper.
+    /// What keeps the hopper from sliding.
     pub hold: Hold,
 }
 
@@ -158,7 +158,7 @@ pub trait Surface {
     fn contact_at(&self, stated: &ContactPoint) -> Option<Self::Contact>;
 
     /// Horizontal distance from one contact to another, m, and the unit direction of travel (east and north on a map; (1, 0) or
-    /// (-1, 0) along a chain); `None` where one lies above the other.
+    /// (-1, 0) along a chain); `None` if both have the same horizontal position.
     fn course(&self, from: &Self::Contact, to: &Self::Contact) -> Option<(f64, Vector2<f64>)>;
 
     /// Visits the ground under a line of travel from a contact, element by element, until the visitor breaks or the known ground
@@ -186,14 +186,14 @@ pub trait Surface {
 pub struct TakeoffWindows {
     /// The line of sight that the lofts refer to.
     pub sight: crate::ballistics::LineOfSight,
-    /// Intervals of the loft `n = m - b`, ascending and disjoint; empty if no arc is feasible. Over ground without overhangs there
-    /// is at most one.
+    /// Intervals of the loft, the take-off slope minus the slope of `sight`, ascending and disjoint; empty if no arc is feasible.
+    /// Over ground without overhangs there is at most one.
     pub lofts: Vec<crate::quantity::SlopeInterval>,
 }
 
 /// A ground that gives the feasible arcs between two contacts in closed form.
 pub trait Windows: Surface {
-    /// The feasible take-off windows of one hop; `None` if no arc can join the two contacts: one lies above the other, or ground
-    /// between them is missing.
+    /// The feasible take-off windows of one hop; `None` if no arc can join the two contacts: both have the same horizontal
+    /// position, or ground between them is missing.
     fn windows(&self, takeoff: &Self::Contact, landing: &Self::Contact) -> Option<TakeoffWindows>;
 }

@@ -76,9 +76,9 @@ impl HopTest {
         })
     }
 
-    /// The take-off slopes that the mechanism allows.
-    pub const fn mechanical(&self) -> SlopeInterval {
-        self.envelope.mechanical()
+    /// The take-off slopes that the take-off mechanism can produce: from the hopper's least to its greatest take-off angle.
+    pub const fn mechanism_slopes(&self) -> SlopeInterval {
+        self.envelope.mechanism_slopes()
     }
 
     /// The line of sight between two stations in the direction of travel; `None` if both have the same x.
@@ -95,14 +95,15 @@ impl HopTest {
         })
     }
 
-    /// The feasible lofts of one hop between two stations under all limits, or the limit that leaves no arc.
+    /// Feasible lofts (take-off slope minus line-of-sight slope, see [`crate::ballistics`]) of one hop between two stations under all
+    /// limits, or the limit that leaves no arc.
     ///
     /// Cheap limits are tested first and the terrain last; the test stops at the first vertex that leaves no arc.
     ///
-    /// Source: P eq. 21; model section 2.
+    /// Source: CHTA paper, eq. 21.
     ///
     /// # Errors
-    /// The first limit, in the order of testing (ground, bends, speeds, cones, machine, terrain), that leaves no arc together
+    /// The first limit, in the order of testing (ground, bends, speeds, cones, take-off mechanism, apex and time, terrain), that leaves no arc together
     /// with those before it. [`takeoff_set`](Self::takeoff_set) evaluates every limit. [`Limit::Direction`] if both stations
     /// have the same x.
     #[inline]
@@ -152,15 +153,15 @@ impl HopTest {
         if lofts.is_empty() || lofts.upper <= 0.0 { Err(self.refusing(sight, from, to)) } else { Ok(lofts) }
     }
 
-    /// The lofts that the hopper's greatest apex height and longest flight time allow.
+    /// The lofts that the hopper's limits on the flight (greatest apex height, longest flight time) allow.
     #[inline]
-    pub(crate) fn machine(&self, sight: LineOfSight) -> SlopeInterval {
-        self.envelope.machine(sight)
+    pub(crate) fn flight_limits(&self, sight: LineOfSight) -> SlopeInterval {
+        self.envelope.flight_limits(sight)
     }
 
     /// Whether the hopper has a greatest apex height or a longest flight time.
     #[inline]
-    pub(crate) const fn has_machine_limits(&self) -> bool {
+    pub(crate) const fn has_flight_limits(&self) -> bool {
         self.envelope.hopper().limits().apex_height_max_m.is_some() || self.envelope.hopper().limits().flight_time_max_s.is_some()
     }
 
@@ -189,7 +190,7 @@ impl HopTest {
         let in_order = [
             (Limit::TakeoffCone, limits::takeoff_cone(sight, takeoff_slopes)),
             (Limit::LandingCone, limits::landing_cone(sight, landing_slopes)),
-            (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanical())),
+            (Limit::MechanicalAngle, limits::takeoff_cone(sight, self.mechanism_slopes())),
             (
                 Limit::ApexHeight,
                 self.envelope.hopper().limits().apex_height_max_m.map_or(SlopeInterval::ALL, |h| limits::apex_height(sight, h)),
@@ -212,11 +213,11 @@ impl HopTest {
         TakeoffSet::of(self, takeoff, landing)
     }
 
-    /// The least number of hops along the ground that join two stations of one segment; `None` if they share no segment or
-    /// its cones allow no arc.
+    /// The least number of hops along the ground that join two stations of one segment; `None` if they share no segment, have the
+    /// same x, or no hop along the segment is allowed in this direction (or the number would exceed 2^53).
     ///
-    /// Meant for pairs that a single hop cannot join, including pairs within one reach. The pseudo-code of Algorithm 2 in the
-    /// CHTA paper misses the latter (its text does not).
+    /// For pairs that no single hop joins. They can be closer than the reach, since the other limits can exclude the single hop;
+    /// the CHTA paper's text covers this case, the pseudo-code of its Algorithm 2 does not.
     pub fn segment_hops(&self, takeoff: &Station, landing: &Station) -> Option<SegmentHops> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let segment = takeoff.shared_segment(landing)?;

@@ -72,7 +72,7 @@ impl SegmentReach {
         let to = constraints.allowed(Contact::Landing, direction)?;
         let sight_slope = direction.sign() * test.chain().geometry().slopes()[segment.index()];
         let sight = LineOfSight::along(1.0, sight_slope);
-        let lofts = limits::takeoff_cone(sight, from.slopes().intersect(test.mechanical()))
+        let lofts = limits::takeoff_cone(sight, from.slopes().intersect(test.mechanism_slopes()))
             .intersect(limits::landing_cone(sight, to.slopes()));
         if lofts.is_empty() || lofts.upper <= 0.0 {
             return None;

@@ -177,7 +177,7 @@ fn machine_limits(
 ) {
     let hopper = test.hopper();
     if hopper.limits().takeoff_angle_min.is_some() || hopper.limits().takeoff_angle_max.is_some() {
-        add(Limit::MechanicalAngle, limits::takeoff_cone(sight, test.mechanical()), None, None);
+        add(Limit::MechanicalAngle, limits::takeoff_cone(sight, test.mechanism_slopes()), None, None);
     }
     if let Some(height_m) = hopper.limits().apex_height_max_m {
         let lofts = limits::apex_height(sight, height_m);

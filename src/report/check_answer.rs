@@ -33,7 +33,7 @@ pub struct CheckAnswer {
     pub node_spacing_max_m: Option<f64>,
     /// The number of nodes.
     pub nodes: usize,
-    /// The number of tested pairs.
+    /// The number of pairs tested, over all spacings tried.
     pub pairs_tested: u64,
     /// The number of pairs refused by each limit.
     pub refusals: BTreeMap<&'static str, u64>,
@@ -97,7 +97,7 @@ pub struct FrontierRecord {
     pub leads_to_goal_nodes: usize,
     /// The refusals of hops out of the reached nodes, by limit.
     pub refusals: BTreeMap<&'static str, u64>,
-    /// The refused hop with the smallest violation.
+    /// Of the hops refused by two conflicting limits, the one with the smallest gap in degrees.
     pub nearest_miss: Option<MissRecord>,
 }
 
@@ -144,7 +144,7 @@ impl CheckAnswer {
         }
     }
 
-    /// The same with the bounds of the proof that contains this search's answer.
+    /// Adds the bounds of a proof whose search gave this answer, and replaces the verdict by that of the proof.
     #[must_use]
     pub fn with_bounds(mut self, bounds: &Bounds, budget_cells: usize) -> Self {
         let proof = ProofRecord::new(bounds, budget_cells);

@@ -1,4 +1,4 @@
-//! Reads keys as typed into a validated scenario in SI units.
+//! Converts raw TOML keys to a validated scenario in SI units.
 
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,7 @@ pub struct BodyChoice {
 pub enum TerrainSource {
     /// A slice of an elevation raster between two map points.
     Dem {
-        /// The file, from the scenario's folder.
+        /// The file's path, relative to the scenario's folder.
         path: PathBuf,
         /// Where the slice begins.
         start: MapPlace,
@@ -37,7 +37,7 @@ pub enum TerrainSource {
     },
     /// A slice of a triangulated surface between two map points.
     Mesh {
-        /// The file, from the scenario's folder.
+        /// The file's path, relative to the scenario's folder.
         path: PathBuf,
         /// Metres per unit of the file.
         scale: f64,
@@ -48,13 +48,13 @@ pub enum TerrainSource {
     },
     /// A chain CSV.
     Chain {
-        /// The file, from the scenario's folder.
+        /// The file's path, relative to the scenario's folder.
         path: PathBuf,
     },
 }
 
 impl TerrainSource {
-    /// The file, from the scenario's folder.
+    /// The file's path, relative to the scenario's folder.
     pub fn path(&self) -> &Path {
         match self {
             Self::Dem { path, .. } | Self::Mesh { path, .. } | Self::Chain { path } => path,
@@ -80,9 +80,9 @@ pub struct Scenario {
     pub hopper: Hopper,
     /// The ground's grip.
     pub surface: SurfaceProperties,
-    /// Raster of friction coefficients, from the scenario's folder.
+    /// Path of the raster of friction coefficients, relative to the scenario's folder.
     pub friction_raster: Option<PathBuf>,
-    /// Keep-out zones, from the scenario's folder.
+    /// Path of the keep-out zones, relative to the scenario's folder.
     pub keep_out: Option<PathBuf>,
     /// The terrain, if the scenario names one.
     pub terrain: Option<TerrainSource>,
@@ -107,10 +107,10 @@ pub struct Scenario {
 }
 
 impl Scenario {
-    /// Validates keys as typed.
+    /// Validates raw keys.
     ///
     /// # Errors
-    /// Every problem of the keys, in the order of the file.
+    /// Every problem found: those in the file in file order, then those of command-line options or without a position.
     pub fn new(mut entries: Entries) -> Result<Self, Vec<ScenarioProblem>> {
         if entries.is_unreadable() {
             return Err(entries.problems().to_vec());
@@ -154,7 +154,7 @@ impl Scenario {
 }
 
 impl Scenario {
-    /// The missing keys for hops over a DEM, which has no chain columns that could give them.
+    /// Keys that hops over a DEM need and the scenario lacks (a chain file could supply them in its columns).
     pub fn lacks_on_a_dem(&self) -> Vec<LackingKey> {
         let no_grip = self.surface.grip.is_none() && self.friction_raster.is_none();
         let from_slope: &[_] = &["surface.takeoff_from_slope_deg", "surface.landing_from_slope_deg"];
@@ -384,7 +384,7 @@ fn via(entries: &mut Entries, terrain: Option<&TerrainSource>) -> Vec<MapPlace> 
         let message = "terrain has both via_m and via_lonlat_deg, expected one of the two".to_owned();
         entries.problem(key, ProblemKind::Conflict, message, "remove one of them");
     } else if !degrees.is_empty() && matches!(terrain, Some(TerrainSource::Mesh { .. })) {
-        let message = "terrain has longitude and latitude beside a mesh, which has no projection".to_owned();
+        let message = "terrain gives longitude and latitude for a mesh, which has no projection".to_owned();
         entries.problem(key, ProblemKind::Conflict, message, "give via_m = [[x, y], ...], in the mesh's own metres");
     }
     if metres.is_empty() { degrees } else { metres }
@@ -396,7 +396,7 @@ fn on_mesh(entries: &mut Entries, ends: [MapPlace; 2]) -> Option<[MapPoint; 2]> 
         return Some([start, goal]);
     }
     let given = ["start_lonlat_deg", "goal_lonlat_deg"].into_iter().find(|name| entries.value("terrain", name).is_some());
-    let message = "terrain has longitude and latitude beside a mesh, which has no projection".to_owned();
+    let message = "terrain gives longitude and latitude for a mesh, which has no projection".to_owned();
     let help = "give start_m and goal_m = [x, y], in the mesh's own metres";
     entries.problem(("terrain", given.unwrap_or_default()), ProblemKind::Conflict, message, help);
     None
@@ -407,13 +407,14 @@ fn refuse_map_points(entries: &mut Entries) {
     for name in ["start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg"] {
         if entries.value("terrain", name).is_some() {
             let help = format!("for a chain give {}_x_m instead", name.split('_').next().unwrap_or(name));
-            let message = format!("terrain.{name} is a map point, which a chain does not take");
+            let message =
+                format!("terrain.{name} is a map position, but terrain is a chain, whose positions are distances along it");
             entries.problem(("terrain", name), ProblemKind::Misplaced, message, help);
         }
     }
     for name in ["via_m", "via_lonlat_deg"] {
         if entries.value("terrain", name).is_some() {
-            let message = format!("terrain.{name} bends a slice, but terrain has a chain");
+            let message = format!("terrain.{name} adds a bend to a DEM or mesh slice, but terrain is a chain");
             entries.problem(("terrain", name), ProblemKind::Misplaced, message, "give the chain a column bend instead");
         }
     }

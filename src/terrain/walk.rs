@@ -127,8 +127,9 @@ impl<'a> Triangles<'a> {
 
     /// The triangles along a straight line from a position, up to the end of the ground.
     ///
-    /// From a position on a line of the lattice (within 1e-9 post spacings) the walk begins with the triangle ahead; along a
-    /// line, with one of the two beside it. Consecutive spans share their ends, and the ground is continuous over them.
+    /// From a position on a line of the lattice (within 1e-9 post spacings, or the rounding error of the map coordinates
+    /// if that is larger) the walk begins with the triangle ahead; along a line, with one of the two beside it. Consecutive spans
+    /// share their ends, and the ground is continuous over them.
     ///
     /// # Arguments
     /// `heading`: unit vector, east and north.
@@ -149,24 +150,24 @@ impl<'a> Triangles<'a> {
         let step = Vector2::new(heading.x / self.spacing_m.x, -heading.y / self.spacing_m.y);
         let triangle = self.lattice(from).and_then(|(u, v)| self.ahead(u, v, step, &heights));
         let (u, v) = self.lattice(from).unwrap_or((0.0, 0.0));
-        let side = self.nearly_whole(u - v);
-        let turn = step.x - step.y;
+        let diagonal_offset = self.nearly_whole(u - v);
+        let diagonal_rate = step.x - step.y;
         FacetWalk {
             ground: *self,
             heights,
             start: Vector2::new(u, v),
-            side,
+            diagonal_offset,
             step,
-            turn,
-            inverse: Vector2::new(1.0 / step.x, 1.0 / step.y),
-            inverse_turn: 1.0 / turn,
+            diagonal_rate,
+            inverse_step: Vector2::new(1.0 / step.x, 1.0 / step.y),
+            inverse_diagonal_rate: 1.0 / diagonal_rate,
             from_m: 0.0,
             next: triangle,
         }
     }
 
-    /// The posts ahead on a straight line that runs along edges of triangles, which is along a row, a column or a diagonal of posts: row,
-    /// column and distance of each, up to the map's border. `None` for any other line, and off the map.
+    /// The posts ahead on a straight line that runs along edges of triangles, which is along a row, a column or a diagonal of
+    /// posts: row, column and distance of each, up to the map's border. `None` for any other line, and off the map.
     ///
     /// # Examples
     /// ```
@@ -189,7 +190,8 @@ impl<'a> Triangles<'a> {
         if !(along_row || along_col || diagonal) {
             return None;
         }
-        // Columns, or rows where there are none, from one post to the next: 1 or -1.
+        // Position and rate along the line, counted in columns (in rows if it runs along a column); from one post to the next it
+        // changes by `sign`.
         let (at, rate) = if along_col { (v, step.y) } else { (u, step.x) };
         let sign = if rate < 0.0 { -1.0 } else { 1.0 };
         let first = if rate < 0.0 { at.ceil() - 1.0 } else { at.floor() + 1.0 };
@@ -316,24 +318,34 @@ impl Triangle {
 pub struct FacetWalk<'a, H> {
     ground: Triangles<'a>,
     heights: H,
+    /// Column and row of the beginning of the line, counted from the north-west post.
     start: Vector2<f64>,
-    side: f64,
+    /// Column minus row at the beginning of the line.
+    diagonal_offset: f64,
+    /// Change of column and row per metre along the line.
     step: Vector2<f64>,
-    turn: f64,
-    inverse: Vector2<f64>,
-    inverse_turn: f64,
+    /// Change of column minus row per metre along the line.
+    diagonal_rate: f64,
+    /// One over each component of `step`.
+    inverse_step: Vector2<f64>,
+    /// One over `diagonal_rate`.
+    inverse_diagonal_rate: f64,
+    /// Where the next triangle begins, m along the line.
     from_m: f64,
+    /// The next triangle; `None` at the end of the walk.
     next: Option<Triangle>,
 }
 
 impl<H> FacetWalk<'_, H> {
-    /// The distance at which the walk leaves a triangle, and through which side. A direction crosses each side in one sense
-    /// only, so no walk turns back.
+    /// The distance at which the walk leaves a triangle, and through which side.
+    ///
+    /// For a given heading each side can only be crossed in one direction (e.g. only eastwards), so the walk cannot return to a
+    /// triangle it has left.
     #[inline]
     fn exit(&self, triangle: &Triangle) -> (f64, Side) {
         let (col, row) = (coordinate(triangle.col), coordinate(triangle.row));
-        let east_or_west = |line: f64| (line - self.start.x) * self.inverse.x;
-        let north_or_south = |line: f64| (line - self.start.y) * self.inverse.y;
+        let east_or_west = |line: f64| (line - self.start.x) * self.inverse_step.x;
+        let north_or_south = |line: f64| (line - self.start.y) * self.inverse_step.y;
         let mut exit = (f64::INFINITY, Side::Diagonal);
         let mut candidate = |crosses: bool, at_m: f64, side: Side| {
             if crosses && at_m < exit.0 {
@@ -344,12 +356,20 @@ impl<H> FacetWalk<'_, H> {
             Half::NorthEast => {
                 candidate(self.step.x > 0.0, east_or_west(col + 1.0), Side::East);
                 candidate(self.step.y < 0.0, north_or_south(row), Side::North);
-                candidate(self.turn < 0.0, ((col - row) - self.side) * self.inverse_turn, Side::Diagonal);
+                candidate(
+                    self.diagonal_rate < 0.0,
+                    ((col - row) - self.diagonal_offset) * self.inverse_diagonal_rate,
+                    Side::Diagonal,
+                );
             }
             Half::SouthWest => {
                 candidate(self.step.x < 0.0, east_or_west(col), Side::West);
                 candidate(self.step.y > 0.0, north_or_south(row + 1.0), Side::South);
-                candidate(self.turn > 0.0, ((col - row) - self.side) * self.inverse_turn, Side::Diagonal);
+                candidate(
+                    self.diagonal_rate > 0.0,
+                    ((col - row) - self.diagonal_offset) * self.inverse_diagonal_rate,
+                    Side::Diagonal,
+                );
             }
         }
         exit
@@ -370,13 +390,13 @@ impl<H: Fn(usize, usize) -> f64> Iterator for FacetWalk<'_, H> {
             let (from_z_m, to_z_m) = (height_m(from_m), height_m(to_m));
             self.next = triangle.beyond(side, &self.ground, &self.heights);
             self.from_m = to_m;
+            // A line through a post may clip the corner of a triangle without data over a length within rounding: skip that
+            // triangle. A longer span without data ends the walk.
             if from_z_m.is_nan() || to_z_m.is_nan() {
-                // A line through a post may touch a triangle there, for a length that is rounding alone.
                 if to_m > from_m + self.ground.tolerance * self.ground.spacing_m.amin() {
                     self.next = None;
                     return None;
                 }
-                // The line only touches the triangle at one of its posts.
                 continue;
             }
             return Some(FacetSpan { from_m, to_m, from_z_m, to_z_m, gradient: triangle.gradient(self.ground.spacing_m) });

@@ -60,7 +60,7 @@ pub use crate::{
     ground::LiftoffVelocity,
 };
 pub use mission::Mission;
-pub use options::{Observer, SimulationError, TrialOptions};
+pub use options::{MissionPoint, Observer, SimulationError, TrialOptions};
 pub use outcome::{OutcomeCounts, Policy, TrialOutcome};
 pub use quantiles::QuantileSketch;
 pub use record::{HopRecord, Trajectory, TrialRecord};

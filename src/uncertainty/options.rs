@@ -1,5 +1,7 @@
 //! What to simulate, how many times, and the observer of the records.
 
+use std::fmt;
+
 use super::{HopRecord, Policy, TrialRecord, UncertaintyProblem};
 use crate::progress::Cancelled;
 
@@ -44,6 +46,30 @@ impl TrialOptions {
     }
 }
 
+/// A point of a mission, as errors name it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MissionPoint {
+    /// The take-off or landing of a hop of the path; the number counts from 1.
+    Hop(usize),
+    /// The start.
+    Start,
+    /// The goal.
+    Goal,
+    /// A node of the costs-to-go, at which a replanned hop may begin or end.
+    Node,
+}
+
+impl fmt::Display for MissionPoint {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Hop(number) => write!(formatter, "hop {number} of the path"),
+            Self::Start => write!(formatter, "the start"),
+            Self::Goal => write!(formatter, "the goal"),
+            Self::Node => write!(formatter, "a node of the costs-to-go"),
+        }
+    }
+}
+
 /// Why there is no simulation.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -72,17 +98,17 @@ pub enum SimulationError {
     /// A policy that needs costs-to-go.
     #[error("the policy replan needs the costs-to-go of a node set, and none were given: build a graph::CostToGo for the mission")]
     NoCostsToGo,
-    /// A hop without a position on the map, in a simulation over a DEM.
-    #[error("hop {hop} of the path lies on no map, but the simulation is to fly over a DEM: slice the chain from that DEM")]
+    /// A point without a position on the map, in a simulation over a DEM.
+    #[error("{which} lies on no map, but the simulation is to fly over a DEM: slice the chain from that DEM")]
     NotOnMap {
-        /// Which hop, from 1.
-        hop: usize,
+        /// Which point.
+        which: MissionPoint,
     },
-    /// A hop without a station, in a simulation along a chain.
-    #[error("hop {hop} of the path has no station, but the simulation is to fly along a chain: plan the path on that chain")]
+    /// A point without a station, in a simulation along a chain.
+    #[error("{which} has no station, but the simulation is to fly along a chain: plan the path on that chain")]
     NotOnChain {
-        /// Which hop, from 1; 0: the start.
-        hop: usize,
+        /// Which point.
+        which: MissionPoint,
     },
     /// A DEM without friction or stated angles.
     #[error(
@@ -90,11 +116,11 @@ pub enum SimulationError {
          raster"
     )]
     NoGrip,
-    /// A start or goal without ground under it.
-    #[error("the {which} lies at ({x_m} m, {y_m} m), where the DEM has no ground: give the DEM that the chain was sliced from")]
+    /// A start, goal or node without ground under it.
+    #[error("{which} lies at ({x_m} m, {y_m} m), where the DEM has no ground: give the DEM that the chain was sliced from")]
     NoGround {
-        /// Start or goal.
-        which: &'static str,
+        /// Which point.
+        which: MissionPoint,
         /// East, m.
         x_m: f64,
         /// North, m.

@@ -6,7 +6,7 @@ use nalgebra::{Point2, Point3, Vector2};
 use rayon::prelude::*;
 
 use super::{
-    Mission, Observer, Policy, SimulationError, Summary, Trajectory, TrialOptions,
+    Mission, MissionPoint, Observer, Policy, SimulationError, Summary, Trajectory, TrialOptions,
     mission::{MissionGround, Replanning},
     replan::{ChainReplan, MapReplan},
     tally::Tally,
@@ -31,12 +31,12 @@ const STRETCH: u64 = 50;
 #[derive(Debug)]
 pub struct Simulation {
     uncertainty: Uncertainty,
-    course: Course,
+    ground_and_plan: GroundAndPlan,
 }
 
-/// The mission's plan and its ground.
+/// The mission's ground and its plan.
 #[derive(Debug)]
-enum Course {
+enum GroundAndPlan {
     Chain(ChainGround, Plan<ChainPosition>),
     Map(DemGround, Plan<MapPosition>),
 }
@@ -44,7 +44,7 @@ enum Course {
 /// The end of a flight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FlightEnd {
-    /// The first contact, or the point of the ground below the flight where it leaves the known ground.
+    /// The first contact; or, if the flight leaves the known ground, the last known ground point beneath it.
     pub at_m: Point3<f64>,
     /// Whether it is a contact.
     pub landed: bool,
@@ -59,16 +59,16 @@ impl Simulation {
     /// [`SimulationError`] if the deviations are invalid, or path and map do not match.
     pub fn new(mission: &Mission, uncertainty: Uncertainty) -> Result<Self, SimulationError> {
         uncertainty.check(matches!(mission.ground, MissionGround::Map(_)))?;
-        let course = match &mission.ground {
-            MissionGround::Chain(ground) => Course::Chain(ground.clone(), chain_plan(mission)?),
+        let ground_and_plan = match &mission.ground {
+            MissionGround::Chain(ground) => GroundAndPlan::Chain(ground.clone(), chain_plan(mission)?),
             MissionGround::Map(ground) => {
                 if ground.surface().grip.is_none() && ground.terrain().overlays().friction().is_none() {
                     return Err(SimulationError::NoGrip);
                 }
-                Course::Map(ground.clone(), map_plan(mission, ground)?)
+                GroundAndPlan::Map(ground.clone(), map_plan(mission, ground)?)
             }
         };
-        Ok(Self { uncertainty, course })
+        Ok(Self { uncertainty, ground_and_plan })
     }
 
     /// Flies the trials.
@@ -85,9 +85,9 @@ impl Simulation {
         progress: &dyn Progress,
     ) -> Result<Summary, SimulationError> {
         self.check(options)?;
-        match &self.course {
-            Course::Chain(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
-            Course::Map(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
+        match &self.ground_and_plan {
+            GroundAndPlan::Chain(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
+            GroundAndPlan::Map(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
         }
     }
 
@@ -106,17 +106,17 @@ impl Simulation {
         Ok([of(open_loop)?, of(replan)?])
     }
 
-    /// Flies one hop from a position of the nominal ground to its first contact, which is the take-off itself for a take-off into
-    /// the ground. No limit is checked. `None` if there is no ground at that position.
+    /// Flies one hop from a position of the nominal ground to its first contact. If the velocity points into the ground, the contact
+    /// is the take-off point. No limit is checked. `None` if there is no ground at that position.
     ///
     /// `from`: x and y as in [`HopRecord`](super::HopRecord).
     pub fn fly(&self, from: Point2<f64>, liftoff: LiftoffVelocity) -> Option<FlightEnd> {
-        match &self.course {
-            Course::Chain(ground, _) => {
+        match &self.ground_and_plan {
+            GroundAndPlan::Chain(ground, _) => {
                 let station = ground.test().chain().geometry().station(from.x).ok()?;
                 Some(flown(ground, &ChainPosition { station, left_m: from.y }, &liftoff))
             }
-            Course::Map(ground, _) => Some(flown(ground, &ground.position(from)?, &liftoff)),
+            GroundAndPlan::Map(ground, _) => Some(flown(ground, &ground.position(from)?, &liftoff)),
         }
     }
 
@@ -135,9 +135,9 @@ impl Simulation {
         if let Some(found) = until_half_width.filter(|width| !(*width > 0.0 && *width < 0.5)) {
             return Err(SimulationError::HalfWidth { found });
         }
-        let replans = match &self.course {
-            Course::Chain(_, plan) => plan.replan.is_some(),
-            Course::Map(_, plan) => plan.replan.is_some(),
+        let replans = match &self.ground_and_plan {
+            GroundAndPlan::Chain(_, plan) => plan.replan.is_some(),
+            GroundAndPlan::Map(_, plan) => plan.replan.is_some(),
         };
         if policy == Policy::Replan && !replans {
             return Err(SimulationError::NoCostsToGo);
@@ -200,7 +200,7 @@ impl Simulation {
             outcomes: tally.outcomes,
             success: tally.success(),
             hops_flown: tally.hops_flown,
-            landings: tally.landings(matches!(self.course, Course::Map(..))),
+            landings: tally.landings(matches!(self.ground_and_plan, GroundAndPlan::Map(..))),
             convergence: tally.convergence(),
             trajectories,
         })
@@ -232,7 +232,7 @@ fn tell(flown: &Flown, observer: &mut dyn Observer) {
     }
 }
 
-/// A flight without an aim.
+/// Flies one hop that has no planned landing; `from` is passed as the aim.
 fn flown<G: FirstContact>(ground: &G, from: &G::Contact, liftoff: &LiftoffVelocity) -> FlightEnd {
     let flight = ground.first_contact(from, liftoff, from);
     FlightEnd { at_m: ground.point(&flight.end), landed: flight.support_facet.is_some(), time_s: flight.time_s }
@@ -249,9 +249,10 @@ fn command<C>(hop: &Hop, heading: Vector2<f64>, aim: C) -> Command<C> {
 /// The plan along a chain.
 fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError> {
     let position =
-        |point: &ContactPoint, hop: usize| point.station.map(ChainPosition::on_chain).ok_or(SimulationError::NotOnChain { hop });
+        |point: &ContactPoint, which| point.station.map(ChainPosition::on_chain).ok_or(SimulationError::NotOnChain { which });
     let planned = mission.path.hops.iter().enumerate().map(|(i, hop)| {
-        let (from, aim) = (position(&hop.takeoff, i + 1)?, position(&hop.landing, i + 1)?);
+        let which = MissionPoint::Hop(i + 1);
+        let (from, aim) = (position(&hop.takeoff, which)?, position(&hop.landing, which)?);
         Ok(PlannedHop { from, command: command(hop, heading_of(hop.direction), aim) })
     });
     let hops = planned.collect::<Result<_, SimulationError>>()?;
@@ -260,32 +261,34 @@ fn chain_plan(mission: &Mission) -> Result<Plan<ChainPosition>, SimulationError>
         Box::new(replan) as _
     });
     let goal = Point2::new(mission.goal.along_m, 0.0);
-    Ok(Plan { start: position(&mission.start, 0)?, goal, hops, replan })
+    Ok(Plan { start: position(&mission.start, MissionPoint::Start)?, goal, hops, replan })
 }
 
 /// The plan on a map.
 fn map_plan(mission: &Mission, ground: &DemGround) -> Result<Plan<MapPosition>, SimulationError> {
-    let position = |point: &ContactPoint, hop: usize| {
-        let at = point.map().ok_or(SimulationError::NotOnMap { hop })?;
+    let position = |point: &ContactPoint, which| {
+        let at = point.map().ok_or(SimulationError::NotOnMap { which })?;
         Ok::<_, SimulationError>(MapPosition { at, z_m: point.point_m.z })
     };
     let planned = mission.path.hops.iter().enumerate().map(|(i, hop)| {
-        let (from, aim) = (position(&hop.takeoff, i + 1)?, position(&hop.landing, i + 1)?);
+        let which = MissionPoint::Hop(i + 1);
+        let (from, aim) = (position(&hop.takeoff, which)?, position(&hop.landing, which)?);
         let away = aim.at - from.at;
         Ok(PlannedHop { from, command: command(hop, away / away.norm(), aim) })
     });
     let hops = planned.collect::<Result<_, SimulationError>>()?;
-    let on_ground = |point: &ContactPoint, which: &'static str| {
-        let position = position(point, 1)?;
+    let on_ground = |point: &ContactPoint, which| {
+        let position = position(point, which)?;
         if !ground.covers(position.at) {
             return Err(SimulationError::NoGround { which, x_m: position.at.x, y_m: position.at.y });
         }
         Ok(position)
     };
-    let (start, goal) = (on_ground(&mission.start, "start")?, on_ground(&mission.goal, "goal")?);
+    let (start, goal) = (on_ground(&mission.start, MissionPoint::Start)?, on_ground(&mission.goal, MissionPoint::Goal)?);
     let replan = mission.replanning.as_ref().map(|Replanning { test, to_go }| {
         let stations = to_go.nodes().stations().iter();
-        let nodes = stations.map(|station| on_ground(&test.chain().contact_point(station), "node")).collect::<Result<_, _>>()?;
+        let node = |station| on_ground(&test.chain().contact_point(station), MissionPoint::Node);
+        let nodes = stations.map(node).collect::<Result<_, _>>()?;
         Ok::<_, SimulationError>(Box::new(MapReplan { ground: ground.clone(), to_go: Arc::clone(to_go), nodes }) as _)
     });
     Ok(Plan { start, goal: goal.at, hops, replan: replan.transpose()? })

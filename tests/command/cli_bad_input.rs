@@ -191,7 +191,10 @@ fn options_that_say_nothing_sensible_are_refused_by_name() {
     let no_dem = ["check", "chain.csv", "--scenario", "scenario.toml", "--set", "terrain.dem=x.tif"];
     desk.refused(&no_dem, &["terrain has both dem and chain"]);
     let no_map = ["check", "chain.csv", "--scenario", "scenario.toml", "--set", "terrain.start_m=[1,2]"];
-    desk.refused(&no_map, &["terrain.start_m is a map point, which a chain does not take", "start_x_m"]);
+    desk.refused(
+        &no_map,
+        &["terrain.start_m is a map position, but terrain is a chain, whose positions are distances along it", "start_x_m"],
+    );
     desk.refused(&["plan", "scenario.toml", "--geojson", "path.geojson"], &["--geojson: the chain lies on no map", "map_x_m"]);
 }
 
@@ -356,7 +359,7 @@ fn one_fault_of_a_scenario_tells_one_problem() {
         ("chain = ", "chian = ", "bad.toml:12:1: unknown key terrain.chian", "the nearest known key is terrain.chain"),
         ("chain = ", "dem = ", "bad.toml:12:7: terrain has a dem but no start_m", "add start_m = [x, y], in map metres"),
         ("chain = \"chain.csv\"\n", "", "bad.toml:12:13: terrain.start_x_m without a chain", "add chain = \"file.csv\""),
-        ("start_x_m = 0", "start_m = [0, 1]", "bad.toml:13:11: terrain.start_m is a map point", "give start_x_m instead"),
+        ("start_x_m = 0", "start_m = [0, 1]", "bad.toml:13:11: terrain.start_m is a map position", "give start_x_m instead"),
         ("start_x_m = 0", "start_x_m = nan", "bad.toml:13:13: terrain.start_x_m is nan", "expected a number"),
         ("friction_coefficient = 0.6", "takeoff_from_slope_deg = [60, 90]", "bad.toml:9:26:", "add landing_from_slope_deg"),
         ("friction_coefficient = 0.6", "rest_slope_max_deg = 91", "bad.toml:9:22:", "from 0 to 90 degrees, or inf"),

@@ -179,7 +179,7 @@ fn exit_status_is_1_where_a_goal_is_out_of_reach_and_2_with_a_sentence_for_bad_i
     desk.refused(&[&MAP[..], &["--goal", "127,205", "--paths", "-"]].concat(), &["--paths -", ".csv"]);
     desk.refused(&[&MAP[..], &["--threads", "100000"]].concat(), &["--threads", "512"]);
     let merged = [&MAP[..], &["--goal", "114,205", "--stride", "40"]].concat();
-    desk.refused(&merged, &["--stride 40", "(102.000, 205.000) m and (114.000, 205.000) m for the same post"]);
+    desk.refused(&merged, &["--stride 40", "(102.000, 205.000) m and (114.000, 205.000) m have the same nearest post"]);
     desk.refused(&[&MAP[..], &["--effort", "cheer"]].concat(), &["--effort", "takeoff-speed"]);
 }
 

@@ -1,5 +1,5 @@
-//! The order of modules (docs in `src/lib.rs`): a module uses only those above it. Read from the sources, so that an upward import
-//! fails here with file and line.
+//! The order of modules (docs in `src/lib.rs`): a module imports only modules listed above it. The test reads the sources and reports
+//! a wrong import with file and line.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot read the sources should stop")]
 
@@ -27,7 +27,7 @@ const LADDER: [&str; 16] = [
 
 /// One import that violates the order.
 #[derive(Debug, PartialEq, Eq)]
-struct Upward {
+struct WrongImport {
     line: usize,
     from: String,
     to: String,
@@ -78,12 +78,12 @@ fn named_modules(source: &str) -> Vec<(usize, String)> {
     named
 }
 
-fn upward_imports(module: &str, source: &str) -> Vec<Upward> {
+fn wrong_imports(module: &str, source: &str) -> Vec<WrongImport> {
     let Some(own) = layer_of(module) else { return Vec::new() };
     named_modules(source)
         .into_iter()
         .filter(|(_, to)| layer_of(to).is_some_and(|to| to > own))
-        .map(|(line, to)| Upward { line, from: module.to_owned(), to })
+        .map(|(line, to)| WrongImport { line, from: module.to_owned(), to })
         .collect()
 }
 
@@ -113,20 +113,20 @@ fn every_module_uses_only_those_above_it() {
             "{} belongs to no layer",
             inside.display()
         );
-        for Upward { line, from, to } in upward_imports(&module, &fs::read_to_string(&file).unwrap()) {
-            wrong.push(format!("src/{}:{line}: {from} uses {to}, which stands below it", inside.display()));
+        for WrongImport { line, from, to } in wrong_imports(&module, &fs::read_to_string(&file).unwrap()) {
+            wrong.push(format!("src/{}:{line}: {from} uses {to}, which is listed below it", inside.display()));
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
 #[test]
-fn a_planted_upward_import_is_found() {
+fn a_planted_wrong_import_is_found() {
     let planted = "//! crate::report is only spoken of here\nuse crate::{\n    chain::Station,\n    graph::{search, Answer},\n    world::Limit,\n};\n";
-    let found = upward_imports("hop", planted);
-    assert_eq!(found, [Upward { line: 4, from: "hop".to_owned(), to: "graph".to_owned() }]);
-    assert_eq!(upward_imports("ballistics", "fn f() { crate::chain::x() }").len(), 1, "a path in an expression is an import too");
-    assert_eq!(upward_imports("report", planted), [], "downward imports are allowed");
+    let found = wrong_imports("hop", planted);
+    assert_eq!(found, [WrongImport { line: 4, from: "hop".to_owned(), to: "graph".to_owned() }]);
+    assert_eq!(wrong_imports("ballistics", "fn f() { crate::chain::x() }").len(), 1, "a path in an expression is an import too");
+    assert_eq!(wrong_imports("report", planted), [], "imports of modules listed above are allowed");
 }
 
 /// Modules that the independent checker must not use: otherwise it would share the physics with the plan.

@@ -13,7 +13,7 @@ const SAMPLE: [&str; 7] = [
     "flight_time::flight_time",
     "fn flight_time",
     "\"flight-time\"",
-    "has_machine_limits",
+    "has_flight_limits",
 ];
 
 /// Where files may handle a limit.

@@ -34,17 +34,17 @@ use crate::cli::{
 };
 
 /// The terrain of a map, its projection and the scenario.
-struct Terrain {
+struct Inputs {
     ground: DemGround,
     projection: Result<MapProjection, NoProjection>,
     scenario: Scenario,
     lattice: NodeLattice,
     document: serde_json::Value,
-    inputs: Vec<InputFile>,
+    input_files: Vec<InputFile>,
     warnings: Vec<String>,
 }
 
-impl Terrain {
+impl Inputs {
     fn dem(&self) -> &Dem {
         self.ground.terrain().dem()
     }
@@ -68,46 +68,46 @@ struct Maps {
     paths: Vec<Option<HopPath>>,
     /// The trials for each goal; `None` if unreachable or not requested.
     trials: Vec<Option<SimulationRecord>>,
-    /// Of start and goals.
+    /// Warnings about the start and the goals.
     warnings: Vec<String>,
 }
 
 /// Computes and writes the map.
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     use_threads(args.answer.threads)?;
-    let (ground, start, goals) = prepared(args)?;
+    let (inputs, start, goals) = prepared(args)?;
     check_extensions(args)?;
-    let begun = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;
-    let keys = args.simulate.then(|| trial_keys(&ground.scenario)).transpose()?;
-    let mut maps = mapped(args, &ground, start, &goals)?;
+    let opened_files = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;
+    let keys = args.simulate.then(|| trial_keys(&inputs.scenario)).transpose()?;
+    let mut maps = mapped(args, &inputs, start, &goals)?;
     if let Some(keys) = &keys {
-        maps.trials = simulated(args, &ground, &maps, keys)?;
+        maps.trials = simulated(args, &inputs, &maps, keys)?;
     }
-    let effort = args.effort.is_some().then_some(ground.scenario.search.effort);
+    let effort = args.effort.is_some().then_some(inputs.scenario.search.effort);
     let mut answer = MapAnswer::new(&MapSummary {
-        dem: ground.dem(),
-        lattice: ground.lattice,
+        dem: inputs.dem(),
+        lattice: inputs.lattice,
         start: (start.asked, start.post),
         out: &maps.out,
         back: maps.back.as_ref(),
         mobility: maps.mobility.as_ref(),
         effort,
     });
-    answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&ground, &maps, goal, index)).collect();
-    let mut warnings = ground.warnings.clone();
+    answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&inputs, &maps, goal, index)).collect();
+    let mut warnings = inputs.warnings.clone();
     warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
     warnings.extend(maps.warnings.iter().cloned());
     let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
-    warnings.extend(constant_gravity_warnings(&ground.scenario.body, Extremes::of(&hops)));
+    warnings.extend(constant_gravity_warnings(&inputs.scenario.body, Extremes::of(&hops)));
     for warning in &warnings {
         output::warn(args.common.quiet, warning);
     }
-    write_files(begun, args, &ground, &maps, &answer, (start, &goals))?;
+    write_files(opened_files, args, &inputs, &maps, &answer, (start, &goals))?;
     let text = match args.answer.format {
         Format::Text => answer.text(),
         Format::Json => {
-            let document = Document::new("map", ground.document.clone(), ground.inputs.clone(), warnings, answer.clone());
-            document.on_map(ground.projection.as_ref().ok()).to_json()?
+            let document = Document::new("map", inputs.document.clone(), inputs.input_files.clone(), warnings, answer.clone());
+            document.on_map(inputs.projection.as_ref().ok()).to_json()?
         }
     };
     output::to_stdout(text.as_bytes())?;
@@ -115,7 +115,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
 }
 
 /// Reads terrain and scenario and finds the posts of start and goals.
-fn prepared(args: &MapArgs) -> Result<(Terrain, Spot, Vec<Spot>), Failure> {
+fn prepared(args: &MapArgs) -> Result<(Inputs, Spot, Vec<Spot>), Failure> {
     let MapArgs { dem: file, start, start_lonlat, goal, goal_lonlat, stride, effort, common, .. } = args;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     if *stride == 0 {
@@ -159,11 +159,11 @@ fn prepared(args: &MapArgs) -> Result<(Terrain, Spot, Vec<Spot>), Failure> {
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
     warnings.extend(scale.warning());
     let ground = overlays.ground(dem, &scenario);
-    let mut inputs = vec![input_file(file)?];
+    let mut input_files = vec![input_file(file)?];
     for overlay in Overlays::files(&scenario) {
-        inputs.push(input_file(&base.join(overlay))?);
+        input_files.push(input_file(&base.join(overlay))?);
     }
-    Ok((Terrain { ground, projection, scenario, lattice, document, inputs, warnings }, start, goals))
+    Ok((Inputs { ground, projection, scenario, lattice, document, input_files, warnings }, start, goals))
 }
 
 /// Checks that positions at different posts map to different nodes: a stride that merges them would give one answer for both.
@@ -173,7 +173,7 @@ fn check_distinct_nodes(dem: &Dem, stride: u32, spots: &[Spot]) -> Result<(), St
         let post = |spot: &Spot| every_post.nearest(dem.georeference(), spot.asked);
         if let Some(other) = spots[..i].iter().find(|other| other.post == spot.post && post(other) != post(spot)) {
             return Err(format!(
-                "--stride {stride} takes ({:.3}, {:.3}) m and ({:.3}, {:.3}) m for the same post, ({:.3}, {:.3}) m: give a smaller --stride",
+                "with --stride {stride}, ({:.3}, {:.3}) m and ({:.3}, {:.3}) m have the same nearest post, ({:.3}, {:.3}) m: give a smaller --stride",
                 other.asked.x, other.asked.y, spot.asked.x, spot.asked.y, spot.at.x, spot.at.y
             ));
         }
@@ -208,24 +208,24 @@ fn refusals(hops: &PostHops, start: Spot, goals: &[Spot]) -> Vec<String> {
 }
 
 /// Searches, with progress on the terminal.
-fn mapped(args: &MapArgs, ground: &Terrain, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
-    let Terrain { scenario, lattice, .. } = ground;
+fn mapped(args: &MapArgs, inputs: &Inputs, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
+    let Inputs { scenario, lattice, .. } = inputs;
     let failed = |error: &MapError| Failure::about(&args.dem, error);
     let progress = Progress::new(args.common.quiet);
-    let began = std::time::Instant::now();
-    // From inside the pool, whose threads hear of each other sooner than of one outside.
+    let search_started = std::time::Instant::now();
+    // Run inside the rayon pool: work started by a pool thread is picked up faster than work submitted from outside.
     let maps = rayon::scope(|_| -> Result<(Maps, Vec<Option<Execution>>), MapError> {
-        let hops = PostHops::new(ground.ground.clone(), lattice.stride)?;
-        let layers = |what: &'static str| progress.with_lines(move |step| format_layer(what, step, began.elapsed().as_secs_f64()));
+        let hops = PostHops::new(inputs.ground.clone(), lattice.stride)?;
+        let layers =
+            |what: &'static str| progress.with_lines(move |step| format_layer(what, step, search_started.elapsed().as_secs_f64()));
         let effort = args.effort.as_ref().map(|_| (scenario.search.effort, scenario.search.takeoff));
         let out = search(&hops, start.post, Search { journey: Journey::Outbound, effort }, &layers("outbound"))?;
         let back =
             args.back.then(|| search(&hops, start.post, Search { journey: Journey::Return, effort: None }, &layers("return")));
-        let begun = std::time::Instant::now();
-        let mobile = args
-            .mobility
-            .as_ref()
-            .map(|_| mobility(&hops, &progress.with_lines(|step| format_share("mobility", step, begun.elapsed().as_secs_f64()))));
+        let mobility_started = std::time::Instant::now();
+        let mobile = args.mobility.as_ref().map(|_| {
+            mobility(&hops, &progress.with_lines(|step| format_share("mobility", step, mobility_started.elapsed().as_secs_f64())))
+        });
         let hops_to = |goal: &Spot| {
             let nodes = out.path(&hops, goal.post);
             nodes.map(|nodes| path_hops(&hops, &nodes, scenario.search.takeoff)).transpose()
@@ -250,8 +250,8 @@ fn mapped(args: &MapArgs, ground: &Terrain, start: Spot, goals: &[Spot]) -> Resu
 fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
     let keys = scenario.uncertainty.unwrap_or_default();
     if keys.policy == Policy::Replan {
-        let message = "--simulate: the trials of a map fly open loop, but uncertainty.policy is \"replan\"; give it as \"open-loop\", or \
-                       simulate a transect, whose nodes replanning needs: chta simulate";
+        let message = "--simulate: uncertainty.policy is \"replan\", expected \"open-loop\": replanning needs the nodes of a transect search; \
+                       set uncertainty.policy = \"open-loop\", or use `chta simulate` on a transect";
         return Err(Failure::message(message));
     }
     Ok(keys)
@@ -260,7 +260,7 @@ fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
 /// Flies the path to every reachable goal many times.
 fn simulated(
     args: &MapArgs,
-    ground: &Terrain,
+    inputs: &Inputs,
     maps: &Maps,
     keys: &UncertaintyKeys,
 ) -> Result<Vec<Option<SimulationRecord>>, Failure> {
@@ -269,7 +269,7 @@ fn simulated(
     let progress = Progress::new(args.common.quiet);
     let fly = |path: &HopPath| {
         let (Some(first), Some(last)) = (path.hops.first(), path.hops.last()) else { return Ok(None) };
-        let mission = Mission::over_dem(ground.ground.clone(), path.clone(), first.takeoff, last.landing);
+        let mission = Mission::over_dem(inputs.ground.clone(), path.clone(), first.takeoff, last.landing);
         let summary = Simulation::new(&mission, keys.errors).map_err(failed)?.run(&options, &mut (), &progress).map_err(failed)?;
         Ok(Some(SimulationRecord::new(&summary, path.hops.len())))
     };
@@ -286,7 +286,7 @@ fn format_layer(what: &str, step: &Step, elapsed_s: f64) -> Option<String> {
 fn format_share(what: &str, step: &Step, elapsed_s: f64) -> Option<String> {
     let share = step.done as f64 / step.of?.max(1) as f64;
     let left_s = elapsed_s * (1.0 - share) / share.max(1.0e-3);
-    Some(format!("{what} {:.0} % done, at most {left_s:.0} s left", 100.0 * share))
+    Some(format!("{what} {:.0} % done, about {left_s:.0} s left", 100.0 * share))
 }
 
 /// Checks that each output has an extension that its readers recognise.
@@ -315,8 +315,8 @@ fn outputs(args: &MapArgs) -> impl Iterator<Item = &Path> {
 }
 
 /// The record of a goal.
-fn goal_record(ground: &Terrain, maps: &Maps, goal: &Spot, index: usize) -> GoalRecord {
-    let node = ground.lattice.index(goal.post);
+fn goal_record(inputs: &Inputs, maps: &Maps, goal: &Spot, index: usize) -> GoalRecord {
+    let node = inputs.lattice.index(goal.post);
     let reached = |map: &HopMap| Some(map.hops[node]).filter(|&hops| hops >= 0);
     let path = maps.paths[index].as_ref();
     GoalRecord {
@@ -325,7 +325,7 @@ fn goal_record(ground: &Terrain, maps: &Maps, goal: &Spot, index: usize) -> Goal
         offset_m: (goal.at - goal.asked).norm(),
         hops: reached(&maps.out),
         return_hops: maps.back.as_ref().map(reached),
-        path: path.map(|path| HopRecord::rows(path, ground.projection.as_ref().ok())).unwrap_or_default(),
+        path: path.map(|path| HopRecord::rows(path, inputs.projection.as_ref().ok())).unwrap_or_default(),
         totals: path.map(|path| TotalsRecord::from(&path.totals)),
         // A path that fails the check has already ended the command with an error.
         verified: path.map(|_| true),
@@ -335,24 +335,24 @@ fn goal_record(ground: &Terrain, maps: &Maps, goal: &Spot, index: usize) -> Goal
 
 /// Writes the requested outputs, all or none, into the files opened for them.
 fn write_files<'a>(
-    mut begun: Vec<Pending<'a>>,
+    mut opened_files: Vec<Pending<'a>>,
     args: &'a MapArgs,
-    ground: &Terrain,
+    inputs: &Inputs,
     maps: &Maps,
     answer: &MapAnswer,
     ends: (Spot, &[Spot]),
 ) -> Result<(), Failure> {
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
-    let Terrain { lattice, scenario, projection, .. } = ground;
-    let map = ground.dem().georeference().every(lattice.stride);
+    let Inputs { lattice, scenario, projection, .. } = inputs;
+    let map = inputs.dem().georeference().every(lattice.stride);
     let raster = |bands: &ResultBands<'_>| result_geotiff_bytes(lattice.rows, lattice.cols, &map, bands).map_err(|e| failed(&e));
-    let whole = |name, hops| raster(&ResultBands::Int16(vec![Band { name, samples: hops }], NO_GROUND));
+    let integer_raster = |name, hops| raster(&ResultBands::Int16(vec![Band { name, samples: hops }], NO_GROUND));
     let mut files: Vec<(&Path, Vec<u8>)> = Vec::new();
     if let Some(file) = &args.output {
-        files.push((file, whole("fewest hops from the start; -1 unreachable", &maps.out.hops)?));
+        files.push((file, integer_raster("fewest hops from the start; -1 unreachable", &maps.out.hops)?));
     }
     if let (Some(file), Some(back)) = (&args.return_output, &maps.back) {
-        files.push((file, whole("fewest hops back to the start; -1 no way", &back.hops)?));
+        files.push((file, integer_raster("fewest hops back to the start; -1 no way", &back.hops)?));
     }
     if let Some(file) = &args.effort_output {
         #[expect(clippy::cast_possible_truncation, reason = "the file holds 32-bit floats")]
@@ -383,12 +383,12 @@ fn write_files<'a>(
         files.push((file, map_profiles::sheet(&name_of(args), scenario, &maps.goal_hops, file)?));
     }
     if let Some(file) = &args.plot {
-        files.push((file, picture(args, ground, maps, answer, ends, file)?));
+        files.push((file, picture(args, inputs, maps, answer, ends, file)?));
     }
     let mut pending = Vec::new();
     for (file, bytes) in files {
-        let place = begun.iter().position(|one| one.path() == file);
-        pending.push((place.map_or_else(|| Pending::begin(file), |place| Ok(begun.swap_remove(place)))?, bytes));
+        let place = opened_files.iter().position(|one| one.path() == file);
+        pending.push((place.map_or_else(|| Pending::begin(file), |place| Ok(opened_files.swap_remove(place)))?, bytes));
     }
     output::finish(pending)
 }
@@ -406,7 +406,7 @@ fn name_of(args: &MapArgs) -> String {
 /// The map as a picture, in the format of the file's extension.
 fn picture(
     args: &MapArgs,
-    ground: &Terrain,
+    inputs: &Inputs,
     maps: &Maps,
     answer: &MapAnswer,
     (start, goals): (Spot, &[Spot]),
@@ -414,14 +414,14 @@ fn picture(
 ) -> Result<Vec<u8>, Failure> {
     let name = name_of(args);
     let can_return: Option<Vec<bool>> = maps.back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
-    let kept_out = ground.ground.terrain().overlays().keep_out().map(|zones| kept_out(ground, zones));
+    let kept_out = inputs.ground.terrain().overlays().keep_out().map(|zones| kept_out(inputs, zones));
     let places = |path: &HopPath| {
         let landings = path.hops.iter().filter_map(|hop| hop.landing.map());
         std::iter::once(start.at).chain(landings).collect()
     };
     let figure = HopMapFigure {
-        caption: Caption { title: format!("Where in how few hops: {name}"), lines: subtitle(answer, &ground.scenario) },
-        posts: MapPosts { dem: ground.dem(), stride: ground.lattice.stride },
+        caption: Caption { title: format!("Where in how few hops: {name}"), lines: subtitle(answer, &inputs.scenario) },
+        posts: MapPosts { dem: inputs.dem(), stride: inputs.lattice.stride },
         hops: &maps.out.hops,
         can_return: can_return.as_deref(),
         kept_out: kept_out.as_deref(),
@@ -437,9 +437,9 @@ fn picture(
 }
 
 /// Which posts of the lattice lie in a keep-out zone.
-fn kept_out(ground: &Terrain, zones: &KeepOut) -> Vec<bool> {
-    let NodeLattice { rows, cols, stride, .. } = ground.lattice;
-    let nodes = ground.dem().georeference().every(stride);
+fn kept_out(inputs: &Inputs, zones: &KeepOut) -> Vec<bool> {
+    let NodeLattice { rows, cols, stride, .. } = inputs.lattice;
+    let nodes = inputs.dem().georeference().every(stride);
     (0..rows * cols).map(|index| zones.keeps_out(nodes.post(index / cols, index % cols))).collect()
 }
 

@@ -76,7 +76,7 @@ impl<'a, F: Faults> Prover<'a, F> {
             slopes: slopes::<F>(chain.geometry()),
             speeds_squared: [fastest(0), fastest(1)],
             rules,
-            mechanical: relaxed::<F>(test.mechanical()),
+            mechanical: relaxed::<F>(test.mechanism_slopes()),
             clearance_m: hopper.limits().clearance_m * (1.0 - RELAXATION * F::SLACK),
             apex_height_max_m: hopper.limits().apex_height_max_m.map(|height_m| height_m * (1.0 + RELAXATION * F::SLACK)),
             flight_time_max_s: hopper.limits().flight_time_max_s.map(|time_s| time_s * (1.0 + RELAXATION * F::SLACK)),

@@ -60,7 +60,7 @@ impl Lanes {
         range: std::ops::Range<usize>,
     ) {
         let count = range.len().min(Self::COUNT);
-        let cone = from.cone.intersect(test.mechanical());
+        let cone = from.cone.intersect(test.mechanism_slopes());
         let gravity = test.gravity_m_s2();
         let (x_m, z_m) = (&x_m[range.clone()][..count], &z_m[range.clone()][..count]);
         let speed_squared = &rules.speed_squared[range.clone()][..count];
@@ -94,9 +94,9 @@ impl Lanes {
             lower[i] = least;
             upper[i] = if excess >= 0.0 { greatest } else { f64::NEG_INFINITY };
         }
-        if test.has_machine_limits() {
+        if test.has_flight_limits() {
             for (i, x_m) in x_m.iter().enumerate() {
-                let machine = test.machine(LineOfSight::along((x_m - from.x_m).abs(), self.slope[i]));
+                let machine = test.flight_limits(LineOfSight::along((x_m - from.x_m).abs(), self.slope[i]));
                 self.lower[i] = self.lower[i].max(machine.lower);
                 self.upper[i] = self.upper[i].min(machine.upper);
             }

@@ -1,7 +1,7 @@
 //! The independent checker of a planned path: it flies every hop again and checks every limit.
 //!
-//! This is the only second implementation of the physics that the crate allows. It uses no lofts, lines of sight or quadratics: it
-//! takes the command of a hop (position, angle, speed), steps Newton's equations from there and looks at what happens. It imports
+//! The limits of a hop are implemented twice in this crate: as closed forms in `ballistics`, and independently here. The checker
+//! uses no lofts, lines of sight or quadratics: it takes the command of a hop (position, angle, speed), steps Newton's equations from there and looks at what happens. It imports
 //! nothing from the closed forms of `ballistics` or from the graph; a test reads these files and enforces that.
 
 mod checker;
@@ -42,8 +42,8 @@ impl Execution {
 /// ```
 ///
 /// Checks of each hop: it begins where the one before landed; the ground's refusals (direction, keep-out, rest slope); directions
-/// and speeds at both ends; the machine's angles, height and time; the clearance over every vertex flown past and the ground
-/// between them; the actual landing point; and the numbers that the plan states. Every violation is reported.
+/// and speeds at both ends; the machine's angles, height and time; the clearance over every vertex flown past, and that
+/// the arc stays above the ground between them; the actual landing point; and the numbers that the plan states. Every violation is reported.
 ///
 /// Speed limits have the crate's tolerance, [`tolerant_speed_m_s`](crate::world::tolerant_speed_m_s). The checker's own tolerances
 /// are a nanoradian for directions, 1e-12 of a flight's size for positions (plus the rounding of the ground's heights), and the
@@ -125,22 +125,26 @@ fn checked<S: Surface>(
     flown
 }
 
-/// A path must begin at its start and end at its goal: exactly the same points, at any distance along the path.
+/// Checks an end of the path against the requested start or goal: point, frame and station must be identical; the distance along
+/// the path (`along_m`) is not compared.
 fn joins(hop: usize, ends: (&ContactPoint, &ContactPoint), violations: &mut Vec<Violation>) {
-    let (a, b) = ends;
-    continuous(hop, ends, (a.point_m, a.frame, a.station) == (b.point_m, b.frame, b.station), violations);
+    let (arrived, departs) = ends;
+    let same = (arrived.point_m, arrived.frame, arrived.station) == (departs.point_m, departs.frame, departs.station);
+    continuous(hop, ends, same, violations);
 }
 
-/// A hop must begin exactly where the one before landed: both are the same numbers of the plan.
-fn continuous(hop: usize, (is, should_be): (&ContactPoint, &ContactPoint), same: bool, violations: &mut Vec<Violation>) {
+/// Reports a gap between two points that must be identical: the landing of one hop and the take-off of the next, or an end of the
+/// path and the requested start or goal. The comparison is exact, since the plan copies the numbers.
+fn continuous(hop: usize, (arrived, departs): (&ContactPoint, &ContactPoint), same: bool, violations: &mut Vec<Violation>) {
     if !same {
-        let found = (is.point_m - should_be.point_m).norm();
+        let found = (arrived.point_m - departs.point_m).norm();
         let measure = Some(Measure { found, allowed: 0.0, unit: "m" });
-        violations.push(Violation { hop, limit: ViolatedLimit::Continuity, measure, at_x_m: should_be.along_m, vertex: None });
+        violations.push(Violation { hop, limit: ViolatedLimit::Continuity, measure, at_x_m: departs.along_m, vertex: None });
     }
 }
 
-/// The direction of a hop that can be flown: its numbers are finite, its ends differ, and it travels in its stated direction.
+/// Checks that a hop's numbers are finite and that its ends differ in distance along the path. Returns the actual direction of
+/// travel, or `None` if the hop cannot be flown. A wrong stated direction is reported but does not prevent the flight.
 fn flyable(number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> Option<Direction> {
     let before = violations.len();
     let mut note = |value| {
@@ -164,7 +168,6 @@ fn flyable(number: usize, hop: &Hop, violations: &mut Vec<Violation>) -> Option<
     if direction != Some(hop.direction) {
         note(StatedValue::Direction);
     }
-    // A wrong stated direction does not prevent a flight; numbers that are not finite do.
     let flown = violations[before..].iter().all(|v| v.limit == ViolatedLimit::StatedValue(StatedValue::Direction));
     direction.filter(|_| flown)
 }

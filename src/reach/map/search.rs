@@ -1,7 +1,7 @@
 //! Fewest hops by breadth-first search, layer by layer: a layer is all nodes of one hop count.
 //!
-//! Unreached nodes look back at the last layer (the nodes one hop closer to the start), nearest first, and stop at the first
-//! feasible hop; a bitmap of the layer skips nodes with none in reach. Pairs that cannot improve the result are never tested, and
+//! Each unreached node searches the last layer, nearest nodes first, for one that a feasible hop joins to it (bottom-up
+//! breadth-first search). A bitmap of the layer lets the search skip nodes that have no layer node within reach. Pairs that cannot improve the result are never tested, and
 //! the result does not depend on which thread tests a node first.
 
 use rayon::prelude::*;
@@ -71,7 +71,7 @@ struct Found {
 /// Reports every complete layer, with the number of posts reached and the number of posts reached or still open.
 ///
 /// # Errors
-/// [`MapError`]; of several, the one of the first block.
+/// [`MapError`]; if several blocks fail, the error of the block with the lowest index.
 pub fn search(hops: &PostHops, start: Post, asked: Search, progress: &dyn Progress) -> Result<HopMap, MapError> {
     let meter = Meter::new(progress, Stage::MapLayers);
     meter.report(Detail::None)?;
@@ -194,8 +194,8 @@ impl Pull<'_> {
         Ok(found)
     }
 
-    /// The node at the other end of an offset, if it is in the layer. If all offsets are `inside` the map, its array step decides
-    /// first.
+    /// The node at the other end of an offset, if it is in the layer. `inside` says that all offsets from this node stay on the
+    /// map; then membership is checked first through the array step, without computing row and column.
     #[inline]
     fn on_layer(&self, node: Post, index: usize, (number, step): (usize, isize), inside: bool) -> Option<Post> {
         let step = if self.asked.journey == Journey::Outbound { -step } else { step };
@@ -251,8 +251,9 @@ fn joined(effort: Effort, path: f64, hop: f64) -> f64 {
     if effort == Effort::PeakSpeed { path.max(hop) } else { path + hop }
 }
 
-/// A lower bound of the effort of a hop with these lofts: a vertex below the arc only raises the loft, and with it speed and time.
-/// Reduced slightly against rounding.
+/// A lower bound on the effort of a hop whose lofts satisfy all limits but the terrain, for the choice `LeastSpeed`. Terrain can
+/// only raise the lower end of the interval, which never lowers the least speed or the flight time. The bound is reduced by a relative
+/// 1e-9 to allow for rounding.
 fn at_least(effort: Effort, sight: LineOfSight, lofts: SlopeInterval, gravity_m_s2: f64) -> f64 {
     let loft = TakeoffChoice::LeastSpeed.loft(sight, lofts);
     let slope = sight.slope() + loft;

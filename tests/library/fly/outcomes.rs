@@ -7,7 +7,7 @@ use chta::{
     progress::{Cancelled, Detail, Progress, Stage, Step},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
     terrain::{Dem, GeoReference, KeepOut, Overlays, read_keep_out},
-    uncertainty::{Mission, Policy, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty},
+    uncertainty::{Mission, MissionPoint, Policy, Simulation, SimulationError, TrialOptions, TrialOutcome, Uncertainty},
     world::{Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
@@ -196,7 +196,7 @@ fn a_map_needs_grip_and_the_path_must_lie_on_it() {
     let mut path = planned.path.clone();
     path.hops[0].takeoff.frame = chta::ground::Frame::Chain;
     let error = over(dem, &path, &scene.surface);
-    assert!(matches!(error, SimulationError::NotOnMap { hop: 1 }), "{error}");
+    assert!(matches!(error, SimulationError::NotOnMap { which: MissionPoint::Hop(1) }), "{error}");
 }
 
 /// Cancels after the second batch; the first report is made at the start.
