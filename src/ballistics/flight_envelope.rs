@@ -84,7 +84,8 @@ impl FlightEnvelope {
             .intersect(self.flight_limits(sight))
     }
 
-    /// The lofts that the hopper's limits on the flight (greatest apex height, longest flight time) allow; all lofts if it has neither.
+    /// The lofts that the hopper's limits on the flight (greatest apex height, longest flight time) allow; all lofts if it has
+    /// neither.
     #[inline]
     pub fn flight_limits(&self, sight: LineOfSight) -> SlopeInterval {
         let apex =

@@ -100,8 +100,8 @@ impl Errors {
         LiftoffVelocity { heading, horizontal_m_s: horizontal, vertical_m_s: up }
     }
 
-    /// Follows an arc to its first contact, checks the landing, and adds the random displacement (`drift_*`) that stands for bounce and
-    /// roll.
+    /// Follows an arc to its first contact, checks the landing, and adds the random displacement (`drift_*`) that stands for bounce
+    /// and roll.
     pub(crate) fn fly<G: FirstContact>(
         &self,
         ground: &G,

@@ -22,9 +22,9 @@ use crate::{
 pub(super) const BESIDE_M: f64 = 1e-6;
 
 /// [`facets`](Surface::facets) probes two points, one on each side of the line: `resolution_m` to the side and this many times
-/// `resolution_m` along it. A line at less than 1/4096 rad to an edge therefore counts as running along it. Lines between posts up to
-/// some 500 posts apart make larger angles with every other edge. A larger value could probe past the facet under the contact when the
-/// line does not start at a post.
+/// `resolution_m` along it. A line at less than 1/4096 rad to an edge therefore counts as running along it. Lines between posts up
+/// to some 500 posts apart make larger angles with every other edge. A larger value could probe past the facet under the contact
+/// when the line does not start at a post.
 const FACET_LOOK: f64 = 4096.0;
 
 /// Rounding error of a height or a coordinate, in units in the last place.

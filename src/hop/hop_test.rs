@@ -95,17 +95,17 @@ impl HopTest {
         })
     }
 
-    /// Feasible lofts (take-off slope minus line-of-sight slope, see [`crate::ballistics`]) of one hop between two stations under all
-    /// limits, or the limit that leaves no arc.
+    /// Feasible lofts (take-off slope minus line-of-sight slope, see [`crate::ballistics`]) of one hop between two stations under
+    /// all limits, or the limit that leaves no arc.
     ///
     /// Cheap limits are tested first and the terrain last; the test stops at the first vertex that leaves no arc.
     ///
     /// Source: CHTA paper, eq. 21.
     ///
     /// # Errors
-    /// The first limit, in the order of testing (ground, bends, speeds, cones, take-off mechanism, apex and time, terrain), that leaves no arc together
-    /// with those before it. [`takeoff_set`](Self::takeoff_set) evaluates every limit. [`Limit::Direction`] if both stations
-    /// have the same x.
+    /// The first limit, in the order of testing (ground, bends, speeds, cones, take-off mechanism, apex and time, terrain), that
+    /// leaves no arc together with those before it. [`takeoff_set`](Self::takeoff_set) evaluates every limit. [`Limit::Direction`]
+    /// if both stations have the same x.
     #[inline]
     pub fn lofts(&self, takeoff: &Station, landing: &Station) -> Result<SlopeInterval, Limit> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m).ok_or(Limit::Direction)?;

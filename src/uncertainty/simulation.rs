@@ -106,8 +106,8 @@ impl Simulation {
         Ok([of(open_loop)?, of(replan)?])
     }
 
-    /// Flies one hop from a position of the nominal ground to its first contact. If the velocity points into the ground, the contact
-    /// is the take-off point. No limit is checked. `None` if there is no ground at that position.
+    /// Flies one hop from a position of the nominal ground to its first contact. If the velocity points into the ground, the
+    /// contact is the take-off point. No limit is checked. `None` if there is no ground at that position.
     ///
     /// `from`: x and y as in [`HopRecord`](super::HopRecord).
     pub fn fly(&self, from: Point2<f64>, liftoff: LiftoffVelocity) -> Option<FlightEnd> {

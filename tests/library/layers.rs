@@ -1,5 +1,5 @@
-//! The order of modules (docs in `src/lib.rs`): a module imports only modules listed above it. The test reads the sources and reports
-//! a wrong import with file and line.
+//! The order of modules (docs in `src/lib.rs`): a module imports only modules listed above it. The test reads the sources and
+//! reports a wrong import with file and line.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot read the sources should stop")]
 

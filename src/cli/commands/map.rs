@@ -173,7 +173,8 @@ fn check_distinct_nodes(dem: &Dem, stride: u32, spots: &[Spot]) -> Result<(), St
         let post = |spot: &Spot| every_post.nearest(dem.georeference(), spot.asked);
         if let Some(other) = spots[..i].iter().find(|other| other.post == spot.post && post(other) != post(spot)) {
             return Err(format!(
-                "with --stride {stride}, ({:.3}, {:.3}) m and ({:.3}, {:.3}) m have the same nearest post, ({:.3}, {:.3}) m: give a smaller --stride",
+                "with --stride {stride}, ({:.3}, {:.3}) m and ({:.3}, {:.3}) m have the same nearest post, ({:.3}, {:.3}) m: give a \
+                 smaller --stride",
                 other.asked.x, other.asked.y, spot.asked.x, spot.asked.y, spot.at.x, spot.at.y
             ));
         }
@@ -250,8 +251,8 @@ fn mapped(args: &MapArgs, inputs: &Inputs, start: Spot, goals: &[Spot]) -> Resul
 fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
     let keys = scenario.uncertainty.unwrap_or_default();
     if keys.policy == Policy::Replan {
-        let message = "--simulate: uncertainty.policy is \"replan\", expected \"open-loop\": replanning needs the nodes of a transect search; \
-                       set uncertainty.policy = \"open-loop\", or use `chta simulate` on a transect";
+        let message = "--simulate: uncertainty.policy is \"replan\", expected \"open-loop\": replanning needs the nodes of a \
+                       transect search; set uncertainty.policy = \"open-loop\", or use `chta simulate` on a transect";
         return Err(Failure::message(message));
     }
     Ok(keys)

@@ -96,9 +96,9 @@ impl Lanes {
         }
         if test.has_flight_limits() {
             for (i, x_m) in x_m.iter().enumerate() {
-                let machine = test.flight_limits(LineOfSight::along((x_m - from.x_m).abs(), self.slope[i]));
-                self.lower[i] = self.lower[i].max(machine.lower);
-                self.upper[i] = self.upper[i].min(machine.upper);
+                let flight = test.flight_limits(LineOfSight::along((x_m - from.x_m).abs(), self.slope[i]));
+                self.lower[i] = self.lower[i].max(flight.lower);
+                self.upper[i] = self.upper[i].min(flight.upper);
             }
         }
     }

@@ -1,8 +1,9 @@
 //! The independent checker of a planned path: it flies every hop again and checks every limit.
 //!
 //! The limits of a hop are implemented twice in this crate: as closed forms in `ballistics`, and independently here. The checker
-//! uses no lofts, lines of sight or quadratics: it takes the command of a hop (position, angle, speed), steps Newton's equations from there and looks at what happens. It imports
-//! nothing from the closed forms of `ballistics` or from the graph; a test reads these files and enforces that.
+//! uses no lofts, lines of sight or quadratics: it takes the command of a hop (position, angle, speed), steps Newton's equations
+//! from there and looks at what happens. It imports nothing from the closed forms of `ballistics` or from the graph; a test reads
+//! these files and enforces that.
 
 mod checker;
 mod flight;
@@ -43,7 +44,8 @@ impl Execution {
 ///
 /// Checks of each hop: it begins where the one before landed; the ground's refusals (direction, keep-out, rest slope); directions
 /// and speeds at both ends; the machine's angles, height and time; the clearance over every vertex flown past, and that
-/// the arc stays above the ground between them; the actual landing point; and the numbers that the plan states. Every violation is reported.
+/// the arc stays above the ground between them; the actual landing point; and the numbers that the plan states. Every violation is
+/// reported.
 ///
 /// Speed limits have the crate's tolerance, [`tolerant_speed_m_s`](crate::world::tolerant_speed_m_s). The checker's own tolerances
 /// are a nanoradian for directions, 1e-12 of a flight's size for positions (plus the rounding of the ground's heights), and the

@@ -1,8 +1,8 @@
 //! Fewest hops by breadth-first search, layer by layer: a layer is all nodes of one hop count.
 //!
 //! Each unreached node searches the last layer, nearest nodes first, for one that a feasible hop joins to it (bottom-up
-//! breadth-first search). A bitmap of the layer lets the search skip nodes that have no layer node within reach. Pairs that cannot improve the result are never tested, and
-//! the result does not depend on which thread tests a node first.
+//! breadth-first search). A bitmap of the layer lets the search skip nodes that have no layer node within reach. Pairs that cannot
+//! improve the result are never tested, and the result does not depend on which thread tests a node first.
 
 use rayon::prelude::*;
 
@@ -252,8 +252,8 @@ fn joined(effort: Effort, path: f64, hop: f64) -> f64 {
 }
 
 /// A lower bound on the effort of a hop whose lofts satisfy all limits but the terrain, for the choice `LeastSpeed`. Terrain can
-/// only raise the lower end of the interval, which never lowers the least speed or the flight time. The bound is reduced by a relative
-/// 1e-9 to allow for rounding.
+/// only raise the lower end of the interval, which never lowers the least speed or the flight time. The bound is reduced by a
+/// relative 1e-9 to allow for rounding.
 fn at_least(effort: Effort, sight: LineOfSight, lofts: SlopeInterval, gravity_m_s2: f64) -> f64 {
     let loft = TakeoffChoice::LeastSpeed.loft(sight, lofts);
     let slope = sight.slope() + loft;
