@@ -173,8 +173,8 @@ fn check_distinct_nodes(dem: &Dem, stride: u32, spots: &[Spot]) -> Result<(), St
         let post = |spot: &Spot| every_post.nearest(dem.georeference(), spot.asked);
         if let Some(other) = spots[..i].iter().find(|other| other.post == spot.post && post(other) != post(spot)) {
             return Err(format!(
-                "with --stride {stride}, ({:.3}, {:.3}) m and ({:.3}, {:.3}) m have the same nearest post, ({:.3}, {:.3}) m: give a \
-                 smaller --stride",
+                "with --stride {stride}, ({:.3}, {:.3}) m and ({:.3}, {:.3}) m have the same nearest post, ({:.3}, {:.3}) m: \
+                 give a smaller --stride",
                 other.asked.x, other.asked.y, spot.asked.x, spot.asked.y, spot.at.x, spot.at.y
             ));
         }
