@@ -1,4 +1,4 @@
-//! Maps at the command line: places as longitude and latitude, the scale of the map, reference systems read back by OGR.
+//! Maps at the command line: positions as longitude and latitude, the scale of the map, reference systems read back by OGR.
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::path::Path;
@@ -11,7 +11,7 @@ use chta::terrain::{
 
 const MOON: Ellipsoid = Ellipsoid::sphere(1_737_400.0);
 
-/// Whether GDAL is here, or a printed reason.
+/// Whether GDAL is installed; prints a reason if it is not.
 fn has_gdal() -> bool {
     let there = Command::new("ogrinfo").arg("--version").output().is_ok_and(|output| output.status.success());
     if !there {
@@ -20,7 +20,7 @@ fn has_gdal() -> bool {
     there
 }
 
-/// Runs the command in a folder: status, standard output, standard error.
+/// Runs the command in a folder; returns status, standard output and standard error.
 fn chta(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
     let output = Command::new(env!("CARGO_BIN_EXE_chta")).current_dir(folder).args(arguments).output().unwrap();
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
@@ -33,7 +33,7 @@ fn shell(folder: &Path, line: &str) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// Gentle ground on a map of this projection, its middle at a place.
+/// Gentle ground on a map of this projection, with its middle at a position.
 fn placed(folder: &Path, definition: Definition, middle: LonLat, spacing_m: f64) -> MapProjection {
     let projection = MapProjection::new(definition, None).unwrap();
     let ground = synthesise(&SyntheticTerrain { rows: 81, cols: 81, ..SyntheticTerrain::default() }).unwrap();
@@ -51,7 +51,7 @@ fn stretched(folder: &Path) -> MapProjection {
     placed(folder, Definition::about(Method::Equirectangular, 0.0, 0.0, MOON), LonLat { lon_deg: 30.0, lat_deg: 40.0 }, 20.0)
 }
 
-/// A local stereographic map: true to scale, and without a code.
+/// A local stereographic map: true to scale, without a code.
 fn local(folder: &Path) -> MapProjection {
     let middle = LonLat { lon_deg: 77.25, lat_deg: 18.5 };
     placed(folder, Definition::about(Method::ObliqueStereographic, 18.5, 77.25, Ellipsoid::sphere(3_396_190.0)), middle, 1.0)
@@ -77,7 +77,7 @@ fn longitude_and_latitude_are_the_same_slice_as_map_coordinates() {
     assert_eq!(status, 0);
     let (status, by_degrees, told) = chta(folder.path(), &["slice", "in.tif", "--from-lonlat", &from, "--to-lonlat", &to]);
     assert_eq!((status, told.as_str()), (0, ""));
-    // The corners of the map themselves, whatever their last digit does.
+    // The corners of the map themselves are accepted, for any rounding of the last digit.
     let (from, to) = (degrees(-40.0, 40.0), degrees(40.0, -40.0));
     assert_eq!(chta(folder.path(), &["slice", "in.tif", "--from-lonlat", &from, "--to-lonlat", &to]).0, 0);
     let (by_map, by_degrees) = (rows(&by_map), rows(&by_degrees));
@@ -88,7 +88,7 @@ fn longitude_and_latitude_are_the_same_slice_as_map_coordinates() {
 }
 
 #[test]
-fn places_are_refused_without_a_projection_off_the_map_or_said_twice() {
+fn positions_without_a_projection_off_the_map_or_given_twice_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     local(folder.path());
     let refused = |arguments: &[&str], words: &[&str]| {
@@ -114,7 +114,7 @@ fn places_are_refused_without_a_projection_off_the_map_or_said_twice() {
 }
 
 #[test]
-fn a_map_that_is_not_true_to_scale_is_refused_with_a_line_that_mends_it() {
+fn a_map_that_is_not_true_to_scale_is_refused_with_a_command_that_corrects_it() {
     let folder = tempfile::tempdir().unwrap();
     let projection = stretched(folder.path());
     let at = projection.map_point(LonLat { lon_deg: 30.0, lat_deg: 40.0 }).unwrap();
@@ -122,7 +122,7 @@ fn a_map_that_is_not_true_to_scale_is_refused_with_a_line_that_mends_it() {
     let slice = ["slice", "in.tif", "--from", &ends[0], "--to", &ends[1]];
     let (status, _, told) = chta(folder.path(), &slice);
     assert_eq!(status, 2);
-    // Eastward 1 / cos 40 = 1.3054.
+    // Eastward scale 1 / cos 40 = 1.3054.
     assert!(told.contains("scale along the transect is 1.30") && told.contains("--accept-map-scale"), "{told}");
     let (_, mend) = told.split_once("mend it with: ").unwrap();
     let (mend, _) = mend.split_once("; or accept").unwrap();
@@ -138,7 +138,7 @@ fn a_map_that_is_not_true_to_scale_is_refused_with_a_line_that_mends_it() {
     let (status, chain, told) = chta(folder.path(), &arguments);
     assert_eq!((status, told.as_str()), (0, ""), "{arguments:?}");
     let length_m = |chain: &str| rows(chain).last().unwrap()[0];
-    // On the ground: eastward parts are cos 40 as long as on the stretched map.
+    // On the ground, eastward components are shorter than on the stretched map by cos 40.
     let true_m = (1400.0 * 40.0_f64.to_radians().cos()).hypot(80.0);
     assert!(
         (length_m(&chain) - true_m).abs() < 1e-3 * true_m && (length_m(&stretched_chain) - 1400.0_f64.hypot(80.0)).abs() < 1e-6
@@ -146,9 +146,9 @@ fn a_map_that_is_not_true_to_scale_is_refused_with_a_line_that_mends_it() {
     assert!((rows(&chain)[0][1] - rows(&stretched_chain)[0][1]).abs() < 1.0);
 }
 
-/// A map is mended about its start, as a map: the command that the sentence names gives hops over true distances.
+/// The remedy for a hop map is a map around its start: the command in the message gives hops over true distances.
 #[test]
-fn a_hop_map_that_is_not_true_to_scale_is_mended_about_its_start() {
+fn a_hop_map_that_is_not_true_to_scale_is_refused_with_a_command_that_corrects_it() {
     let folder = tempfile::tempdir().unwrap();
     let projection = stretched(folder.path());
     std::fs::write(folder.path().join("hopper.toml"), HOPPER).unwrap();
@@ -175,7 +175,7 @@ fn a_hop_map_that_is_not_true_to_scale_is_mended_about_its_start() {
     let (status, answer, told) = chta(folder.path(), &arguments);
     assert!(status == 0 && told.is_empty(), "{told}");
     assert!(answer.starts_with(|first: char| first.is_ascii_digit()), "{answer}");
-    // Square posts as fine as the finer of the old ones on the ground: 20 m x cos 40 eastward.
+    // Square posts as fine as the finer spacing of the old ones on the ground: 20 m x cos 40 eastward.
     let dem = read_dem(&folder.path().join("out.tif")).unwrap();
     assert!((dem.georeference().dx_m() - 20.0 * 40.0_f64.to_radians().cos()).abs() < 0.01);
     assert!(
@@ -219,7 +219,7 @@ fn an_accepted_scale_is_recorded_in_the_result_which_repeats_it() {
 }
 
 #[test]
-fn a_slice_without_a_code_has_a_prj_beside_it_and_opens_in_its_place() {
+fn a_slice_without_a_code_has_a_prj_file_and_opens_at_its_position() {
     let folder = tempfile::tempdir().unwrap();
     let projection = local(folder.path());
     let slice = ["slice", "in.tif", "--from", "-20,10", "--to", "30,-15", "-o", "chain.csv", "--geojson", "slice.geojson"];
@@ -233,7 +233,7 @@ fn a_slice_without_a_code_has_a_prj_beside_it_and_opens_in_its_place() {
     let coordinates = line["features"][0]["geometry"]["coordinates"].as_array().unwrap();
     assert_eq!(coordinates.len(), chain.len());
     assert!(coordinates.iter().zip(&chain).all(|(position, row)| position[2] == row[1]));
-    // The chain keeps its map: what is planned over it knows longitude and latitude.
+    // The chain keeps its map, so a plan over it has longitudes and latitudes.
     std::fs::write(folder.path().join("s.toml"), HOPPER).unwrap();
     let (status, planned, told) = chta(
         folder.path(),
@@ -300,7 +300,7 @@ fn a_path_on_the_lola_dem_opens_near_shoemaker() {
         |name: &str| told.lines().find_map(|line| line.trim().strip_prefix(name)?.split_once("= ")?.1.parse::<f64>().ok()).unwrap();
     let (lon_deg, lat_deg) = (number("takeoff_lon_deg (Real)"), number("takeoff_lat_deg (Real)"));
     assert!((lat_deg + 87.18).abs() < 0.005 && (lon_deg - 62.8).abs() < 0.05, "{lon_deg} {lat_deg}");
-    // The same from the coordinates alone: GDAL reads the reference system and goes to degrees by itself.
+    // The same from the coordinates alone: GDAL reads the reference system and converts to degrees.
     shell(folder.path(), "ogr2ogr -t_srs '+proj=longlat +R=1737400 +no_defs' degrees.geojson out/path.geojson");
     let degrees: serde_json::Value =
         serde_json::from_str(&std::fs::read_to_string(folder.path().join("degrees.geojson")).unwrap()).unwrap();

@@ -1,7 +1,7 @@
-//! Both real DEMs from `chta run` to path and picture, for several transects, reachable and not.
+//! Both real DEMs from `chta run` to path and picture, for several transects with and without a path.
 //!
-//! The files are read from ../shared/dem and skipped with a printed reason where they are absent; the same kinds of file and slope
-//! are covered by made-up terrain in `shipped_scenarios.rs` and `terrain_files.rs`.
+//! The files are read from ../shared/dem; a test without its file prints why it is skipped. The same kinds of files and slopes are
+//! tested with synthetic terrain in `shipped_scenarios.rs` and `terrain_files.rs`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot run the program should stop")]
 
@@ -10,7 +10,7 @@ use std::{fs, path::PathBuf};
 use assert_cmd::Command;
 use serde_json::Value;
 
-/// One transect and what is known of its answer.
+/// One transect and its expected result.
 struct Transect {
     from: [f64; 2],
     to: [f64; 2],
@@ -64,7 +64,7 @@ fn run_all(dem: &str, body: &str, spacing_m: f64, transects: &[Transect]) {
         if *status == 0 {
             let hops = result["path"].as_array().unwrap();
             assert_eq!(result["verified"], true, "transect {i}: not flown again");
-            // At 10 m/s no hop carries farther than v^2 / g and a little for falling ground.
+            // At 10 m/s the range of a hop is v^2 / g, plus some on falling ground.
             assert!(
                 f64::from(u32::try_from(hops.len()).unwrap()) >= (length_m / 75.0).ceil(),
                 "transect {i}: only {} hops over {length_m} m",

@@ -133,7 +133,7 @@ fn rule(min_deg: f64, max_deg: f64, speed_m_s: f64) -> ContactRule {
 }
 
 #[test]
-fn files_look_as_the_contract_says() {
+fn written_files_have_the_documented_form() {
     let limits = LineConstraints { takeoff: rule(63.5, 93.5, 10.0), landing: rule(-93.5, -60.0, 0.0) };
     assert_eq!(
         written(&one_segment(vec![explicit(Some(limits), None)])).unwrap(),
@@ -152,7 +152,7 @@ fn files_look_as_the_contract_says() {
 }
 
 #[test]
-fn columns_go_in_any_order_and_dress() {
+fn columns_in_any_order_and_notation_are_read() {
     let plain = b"x_m,z_m,friction_coefficient,keep_out,map_x_m,map_y_m\n0,0,0.6,1,5,6\n1,2,0.5,0,7,8\n2,2,,,9,10\n";
     let odd = "\u{feff}# dressed\r\n\"map_y_m\", keep_out ,z_m,note,x_m,map_x_m,friction_coefficient\r\n\r\n\"6\",1.0, 0 ,\"a,\r\n\"\"b\",0,5,+.6\r\n\
                8,0,2e0,,1,7,0.50\r\n#\r\n10,,2,,2.,9,";

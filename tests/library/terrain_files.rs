@@ -86,7 +86,7 @@ fn real_dems_are_sliced_and_every_vertex_lies_between_their_extremes() {
 }
 
 #[test]
-fn every_interoperability_file_is_read_or_refused_with_a_way_out() {
+fn every_interoperability_file_is_read_or_refused_with_a_remedy() {
     let expected = [
         ("asynctiff_BigTIFF.tif", "RGB picture of 3 bands"),
         ("asynctiff_gradient-1c-64b-float.tiff", "no position on a map"),
@@ -108,7 +108,7 @@ fn every_interoperability_file_is_read_or_refused_with_a_way_out() {
 }
 
 #[test]
-fn the_commands_that_refusals_name_do_mend_the_file() {
+fn the_commands_that_refusals_name_repair_the_file() {
     if !has_gdal() {
         return;
     }
@@ -301,7 +301,7 @@ fn a_real_projection_survives_writing_tag_for_tag_and_gdal_agrees() {
 }
 
 #[test]
-fn files_that_only_begin_well_are_refused_quickly_and_without_memory() {
+fn files_with_only_a_valid_beginning_are_refused_quickly_and_without_memory() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("terrain");
     let refuse = |content: &[u8], expected: &str| {

@@ -30,7 +30,7 @@ pub(super) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<V
 /// The landings on the map; `None` where there is no map.
 pub(super) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Option<Vec<u8>>, Failure> {
     let (Some(dem), Some(Flown { summary })) = (flyer.dem(), flown.first()) else { return Ok(None) };
-    let ends: Vec<_> = flyer.path.hops.iter().filter_map(|hop| hop.map_ends()).collect();
+    let ends: Vec<_> = flyer.path.hops.iter().filter_map(chta::path::Hop::map_ends).collect();
     let path = ends.first().map(|(takeoff, _)| *takeoff).into_iter().chain(ends.iter().map(|(_, landing)| *landing)).collect();
     let clouds = summary.landings.iter().zip(&ends).map(|(landing, (_, planned))| cloud(landing, *planned, summary)).collect();
     let figure = LandingMapFigure { caption: caption(flyer.loaded, std::iter::once(summary)), dem, path, clouds };
