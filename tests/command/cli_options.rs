@@ -69,7 +69,12 @@ const SLICE: [Trial; 8] = [
     ),
 ];
 
-const MAP: [Trial; 20] = [
+const MAP: [Trial; 21] = [
+    (
+        "--simulate",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9", "--simulate"],
+    ),
     (
         "--start",
         &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
