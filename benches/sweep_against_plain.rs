@@ -147,14 +147,14 @@ fn survivors<'a>(
         (Limit::Terrain, "terrain"),
     ];
     let mut left = pairs;
-    let mut told: Vec<(&str, f64)> = Vec::new();
+    let mut left_after: Vec<(&str, f64)> = Vec::new();
     for (limit, name) in order {
         left -= f64::from(refused[limit.index()]);
-        match told.last_mut() {
+        match left_after.last_mut() {
             Some(last) if last.0 == name => last.1 = left,
-            _ => told.push((name, left)),
+            _ => left_after.push((name, left)),
         }
     }
-    let shares: Vec<_> = told.iter().map(|(name, left)| format!("{name} {:.1} %", 100.0 * left / pairs)).collect();
+    let shares: Vec<_> = left_after.iter().map(|(name, left)| format!("{name} {:.1} %", 100.0 * left / pairs)).collect();
     format!("{}; lower end set by the ground: {:.1} %", shares.join(", "), 100.0 * f64::from(over_ground) / pairs)
 }

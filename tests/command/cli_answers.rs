@@ -203,9 +203,9 @@ fn require_brackets_what_a_fine_scan_finds() {
     }
     let too_little = desk.run(&["require", "scenario.toml", "--vary", key, "--from", "0.05", "--to", "0.1"]);
     assert_eq!(too_little.status, 1, "{too_little:?}");
-    for (vary, told) in [("hopper.mass_kg", "expected one of"), ("friction", "expected one of")] {
+    for (vary, expected) in [("hopper.mass_kg", "expected one of"), ("friction", "expected one of")] {
         let refused = desk.run(&["require", "scenario.toml", "--vary", vary]);
-        assert!(refused.status == 2 && refused.stderr.contains(told), "{refused:?}");
+        assert!(refused.status == 2 && refused.stderr.contains(expected), "{refused:?}");
     }
     desk.write("forward.csv", FORWARD_ONLY);
     let ends = ["--body", "mars", "--start", "0", "--goal", "10"];
@@ -367,12 +367,12 @@ fn paths_in_a_scenario_start_from_its_folder() {
 fn assert_warned(desk: &Desk, args: &[&str], warnings: &[&str]) {
     let ran = desk.run(args);
     let document = desk.json(args);
-    let told = document["warnings"].as_array().unwrap();
-    assert_eq!(told.len(), warnings.len(), "{args:?}: {told:?}");
-    for (warning, told) in warnings.iter().zip(told) {
-        let told = told.as_str().unwrap();
-        assert!(told.contains(warning), "{args:?}: {told} does not say {warning}");
-        assert_eq!(ran.stderr.matches(&format!("warning: {told}\n")).count(), 1, "{args:?}: {}", ran.stderr);
+    let documented = document["warnings"].as_array().unwrap();
+    assert_eq!(documented.len(), warnings.len(), "{args:?}: {documented:?}");
+    for (warning, documented) in warnings.iter().zip(documented) {
+        let documented = documented.as_str().unwrap();
+        assert!(documented.contains(warning), "{args:?}: {documented} does not contain {warning}");
+        assert_eq!(ran.stderr.matches(&format!("warning: {documented}\n")).count(), 1, "{args:?}: {}", ran.stderr);
     }
     let quiet = desk.run(&[args, &["--quiet"]].concat());
     assert_eq!((quiet.stderr.as_str(), quiet.status), ("", ran.status), "{args:?}");

@@ -281,13 +281,13 @@ fn a_full_disk_is_reported_for_standard_output_and_for_files() {
         let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
         let mut command = Command::new(env!("CARGO_BIN_EXE_chta"));
         let output = command.current_dir(desk.path()).args(args).stdout(full).stderr(Stdio::piped()).output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {told}");
-        assert!(told.starts_with("error: standard output: cannot be written (No space left on device"), "{args:?}: {told}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {message}");
+        assert!(message.starts_with("error: standard output: cannot be written (No space left on device"), "{args:?}: {message}");
     }
-    let told = "/dev/full: cannot be written (No space left on device";
-    desk.refused(&["plan", "scenario.toml", "-o", "/dev/full"], &[told]);
-    desk.refused(&["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "-o", "/dev/full"], &[told]);
+    let message = "/dev/full: cannot be written (No space left on device";
+    desk.refused(&["plan", "scenario.toml", "-o", "/dev/full"], &[message]);
+    desk.refused(&["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "-o", "/dev/full"], &[message]);
 }
 
 #[test]
@@ -338,10 +338,10 @@ fn all_problems_of_a_scenario_are_reported_at_once_with_line_and_column() {
     ];
     for command in [&["run", "bad.toml", "-o", "out"][..], &["plan", "bad.toml"], &["hop", "bad.toml"], &["check", "bad.toml"]] {
         desk.refused(command, &parts);
-        let told = desk.run(command).stderr;
-        assert_eq!(told.matches("error: ").count(), parts.len(), "another number of problems:\n{told}");
-        let places: Vec<_> = parts.iter().map(|part| told.find(part).unwrap()).collect();
-        assert!(places.is_sorted(), "not in the order of the file:\n{told}");
+        let message = desk.run(command).stderr;
+        assert_eq!(message.matches("error: ").count(), parts.len(), "another number of problems:\n{message}");
+        let places: Vec<_> = parts.iter().map(|part| message.find(part).unwrap()).collect();
+        assert!(places.is_sorted(), "not in the order of the file:\n{message}");
     }
 }
 
@@ -366,8 +366,8 @@ fn one_fault_of_a_scenario_gives_one_problem() {
         assert!(SCENARIO.contains(right), "{right}");
         desk.write("bad.toml", SCENARIO.replacen(right, wrong, 1));
         desk.refused(&["run", "bad.toml", "-o", "out"], &[place, part]);
-        let told = desk.run(&["run", "bad.toml", "-o", "out"]).stderr;
-        assert_eq!(told.matches("error: ").count(), 1, "{wrong}:\n{told}");
+        let message = desk.run(&["run", "bad.toml", "-o", "out"]).stderr;
+        assert_eq!(message.matches("error: ").count(), 1, "{wrong}:\n{message}");
     }
 }
 

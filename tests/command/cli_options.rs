@@ -966,7 +966,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
             .contains(&name.as_str());
             assert!(
                 !takes_value || required || writes || one_line.contains("[default: "),
-                "{command} {name} tells no default: {one_line}"
+                "{command} {name} states no default: {one_line}"
             );
         }
     }

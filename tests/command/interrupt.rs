@@ -113,9 +113,9 @@ fn an_interrupted_command_prints_no_answer() {
         thread::sleep(Duration::from_millis(400));
         send("-INT", &command);
         let ended = command.wait_with_output().unwrap();
-        let told = String::from_utf8_lossy(&ended.stderr);
-        assert_eq!(ended.status.code(), Some(130), "{words:?}: {told}");
-        assert_eq!((ended.stdout.len(), told.as_ref()), (0, ""), "{words:?}");
+        let message = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(130), "{words:?}: {message}");
+        assert_eq!((ended.stdout.len(), message.as_ref()), (0, ""), "{words:?}");
     }
 }
 

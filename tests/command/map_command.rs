@@ -251,17 +251,17 @@ fn overlays_without_effect_give_warnings() {
             [(&MAP[..], over_dem), (&fan, over_dem), (&["plan", "journey.toml"], along), (&["simulate", "journey.toml"], along)];
         for (command, expected) in commands {
             let words = [command, &["--set", &set]].concat();
-            let told = desk.run(&words).stderr;
+            let output = desk.run(&words).stderr;
             let warnings = desk.json(&words)["warnings"].to_string();
             match expected {
                 Some((what, place)) => {
                     let said = format!("{what} {place}");
                     assert!(
-                        told.matches(&said).count() == 1 && warnings.matches(&said).count() == 1,
-                        "{words:?}: {told}{warnings}"
+                        output.matches(&said).count() == 1 && warnings.matches(&said).count() == 1,
+                        "{words:?}: {output}{warnings}"
                     );
                 }
-                None => assert!(!told.contains(file) && !warnings.contains(file), "{words:?}: {told}{warnings}"),
+                None => assert!(!output.contains(file) && !warnings.contains(file), "{words:?}: {output}{warnings}"),
             }
         }
     }
@@ -369,12 +369,12 @@ fn pictures_are_complete_and_of_the_format_of_their_extension() {
 
 /// The output of gdalinfo; `None` with a printed reason if it is not installed.
 fn gdal_says(file: &Path) -> Option<Value> {
-    let Ok(told) = Command::new("gdalinfo").args(["-json"]).arg(file).output() else {
+    let Ok(output) = Command::new("gdalinfo").args(["-json"]).arg(file).output() else {
         eprintln!("skipped: gdalinfo is not installed");
         return None;
     };
-    assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
-    Some(serde_json::from_slice(&told.stdout).unwrap())
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(serde_json::from_slice(&output.stdout).unwrap())
 }
 
 #[test]

@@ -52,12 +52,12 @@ fn run_all(dem: &str, body: &str, spacing_m: f64, transects: &[Transect]) {
         .unwrap();
         let out = folder.path().join("out");
         let output = Command::cargo_bin("chta").unwrap().arg("run").arg(&scenario).arg("-o").arg(&out).output().unwrap();
-        let told = String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout);
-        assert_eq!(output.status.code(), Some(*status), "transect {i} of {}: {told}", dem.display());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(*status), "transect {i} of {}: {message}", dem.display());
 
         let result: Value = serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
         let svg = fs::read_to_string(out.join("path.svg")).unwrap();
-        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "transect {i}: no whole picture");
+        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "transect {i}: an incomplete picture");
         let chain = fs::read_to_string(out.join("chain.csv")).unwrap();
         assert!(chain.lines().filter(|line| !line.starts_with('#')).count() > 20, "transect {i}: a short chain");
         let length_m = (to[0] - from[0]).hypot(to[1] - from[1]);
@@ -81,7 +81,7 @@ fn run_all(dem: &str, body: &str, spacing_m: f64, transects: &[Transect]) {
         } else {
             let refused = !result["endpoint_refusals"].as_array().unwrap().is_empty();
             let stopped = result["frontier"].is_object();
-            assert!(refused != stopped, "transect {i}: no reason, or two: {result}");
+            assert!(refused != stopped, "transect {i}: not exactly one reason: {result}");
         }
     }
 }

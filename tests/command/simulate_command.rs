@@ -78,23 +78,23 @@ fn without_errors_every_trial_arrives() {
 fn trials_without_errors_give_a_warning() {
     let desk = Desk::with_dem();
     desk.write("zeros.toml", desk.read("scenario.toml") + "\n[uncertainty]\ntakeoff_angle_sigma_deg = 0\ntrials = 20\n");
-    let told = "no errors are given, so that every trial flies the plan exactly";
+    let warning = "no errors are given, so that every trial flies the plan exactly";
     for scenario in ["scenario.toml", "zeros.toml"] {
         let words = ["simulate", scenario, "--trials", "20"];
         let ran = desk.run(&words);
-        assert_eq!((ran.status, ran.stderr.matches(told).count()), (0, 1), "{}", ran.stderr);
+        assert_eq!((ran.status, ran.stderr.matches(warning).count()), (0, 1), "{}", ran.stderr);
         assert!(ran.stderr.contains("give [uncertainty]"), "{}", ran.stderr);
         let warnings = desk.json(&words)["warnings"].clone();
         assert_eq!(warnings.as_array().unwrap().len(), 1, "{warnings}");
-        assert!(warnings[0].as_str().unwrap().starts_with(told), "{warnings}");
+        assert!(warnings[0].as_str().unwrap().starts_with(warning), "{warnings}");
     }
     let ran = desk.run(&["run", "zeros.toml", "-o", "out"]);
-    assert_eq!((ran.status, ran.stderr.matches(told).count()), (0, 1), "{}", ran.stderr);
+    assert_eq!((ran.status, ran.stderr.matches(warning).count()), (0, 1), "{}", ran.stderr);
     let risk = desk.run(&["simulate", "zeros.toml", "--experiment", "risk-trade"]);
-    assert_eq!((risk.status, risk.stderr.matches(told).count()), (0, 1), "{}", risk.stderr);
+    assert_eq!((risk.status, risk.stderr.matches(warning).count()), (0, 1), "{}", risk.stderr);
     for set in ["uncertainty.takeoff_angle_sigma_deg=0.1", "uncertainty.friction_sigma=0.01"] {
         let ran = desk.run(&["simulate", "scenario.toml", "--trials", "20", "--set", set]);
-        assert!(!ran.stderr.contains(told) && ran.stderr.contains("goal_tolerance_m is 0 or absent"), "{set}: {}", ran.stderr);
+        assert!(!ran.stderr.contains(warning) && ran.stderr.contains("goal_tolerance_m is 0 or absent"), "{set}: {}", ran.stderr);
     }
 }
 

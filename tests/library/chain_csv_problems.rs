@@ -13,20 +13,20 @@ fn problems_of(source: &[u8]) -> CsvProblems {
 }
 
 fn assert_problem(problem: &CsvProblem, (line, column, underlined, name, words): Expected<'_>) {
-    let told = problem.to_string();
-    assert_eq!((problem.line, problem.column), (line, column), "{told}");
-    assert_eq!(&problem.text[problem.span.clone()], underlined, "{told}");
-    assert_eq!(problem.name.as_deref(), name, "{told}");
+    let text = problem.to_string();
+    assert_eq!((problem.line, problem.column), (line, column), "{text}");
+    assert_eq!(&problem.text[problem.span.clone()], underlined, "{text}");
+    assert_eq!(problem.name.as_deref(), name, "{text}");
     for word in words {
-        assert!(told.contains(word), "`{word}` is missing in: {told}");
+        assert!(text.contains(word), "`{word}` is missing in: {text}");
     }
-    assert!(!told.contains('\n') && told.starts_with("line ") && !problem.help.is_empty(), "{told}");
+    assert!(!text.contains('\n') && text.starts_with("line ") && !problem.help.is_empty(), "{text}");
 }
 
 fn assert_problems(source: &str, expected: &[Expected<'_>]) {
     let CsvProblems { problems, more } = problems_of(source.as_bytes());
-    let told: Vec<String> = problems.iter().map(ToString::to_string).collect();
-    assert_eq!((problems.len(), more), (expected.len(), 0), "{source:?} gave {told:#?}");
+    let text: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    assert_eq!((problems.len(), more), (expected.len(), 0), "{source:?} gave {text:#?}");
     for (problem, &expected) in problems.iter().zip(expected) {
         assert_problem(problem, expected);
     }

@@ -83,8 +83,8 @@ fn is_accepted(entries: Entries, source: &str) -> bool {
                     assert!(source.get(span.clone()).is_some(), "a span outside its text: {problem:?} in {source}");
                 }
             }
-            let told = ScenarioProblems { name: "s.toml".to_owned(), source: source.to_owned(), problems };
-            assert!(told.to_string().len() < 100_000, "{told}");
+            let text = ScenarioProblems { name: "s.toml".to_owned(), source: source.to_owned(), problems };
+            assert!(text.to_string().len() < 100_000, "{text}");
             false
         }
     }

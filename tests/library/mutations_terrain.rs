@@ -1,6 +1,6 @@
 //! The byte readers with ten thousand seeded mutations each: no panic, no long run, no huge memory.
 #![allow(clippy::format_push_string, reason = "a test's text need not be written fast")]
-#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and tells what it saw")]
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and prints its counts")]
 
 use std::time::{Duration, Instant};
 
