@@ -133,7 +133,7 @@ pub(super) enum Aim {
 /// batch.
 #[derive(Debug)]
 pub(super) struct BatchedSearch<'g> {
-    graph: &'g HopGraph<'g>,
+    graph: &'g HopGraph,
     table: &'g Arc<LandingTable>,
     reach: &'g LocalReach,
     aim: Aim,
@@ -158,7 +158,7 @@ impl<'g> BatchedSearch<'g> {
     const PIECES_PER_THREAD: usize = 4;
 
     /// A search that has not run yet.
-    pub(super) fn new(graph: &'g HopGraph<'g>, table: &'g Arc<LandingTable>, reach: &'g LocalReach, aim: Aim) -> Self {
+    pub(super) fn new(graph: &'g HopGraph, table: &'g Arc<LandingTable>, reach: &'g LocalReach, aim: Aim) -> Self {
         Self {
             graph,
             table,
@@ -349,7 +349,7 @@ impl<'g> BatchedSearch<'g> {
 /// Neighbouring nodes that could still get better labels, all from take-offs with equal hops.
 #[derive(Clone, Copy)]
 struct Stretch<'s> {
-    graph: &'s HopGraph<'s>,
+    graph: &'s HopGraph,
     aim: Aim,
     /// The number of hops at a landing.
     hops: u64,
@@ -469,7 +469,7 @@ mod tests {
         let chain = chain();
         let test = HopTest::new(chain.clone());
         let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(2)).unwrap();
-        let (table, reach) = (Arc::new(LandingTable::new(&test, nodes.stations())), LocalReach::of(&test));
+        let (table, reach) = (Arc::new(LandingTable::new(&test, nodes.shared_stations())), LocalReach::of(&test));
         let at = |i| chain.geometry().vertex_station(VertexId(i));
         for effort in Effort::ALL {
             let graph = HopGraph::new(&test, &nodes, effort, TakeoffChoice::LeastSpeed, Split::FullReach);
@@ -506,7 +506,7 @@ mod tests {
         let test = HopTest::new(chain.clone());
         let nodes = NodeSet::of_chain(&chain, PointSpacing::PerSegment(1)).unwrap();
         let graph = HopGraph::new(&test, &nodes, Effort::Time, TakeoffChoice::MidRange, Split::Equal);
-        let (table, reach) = (Arc::new(LandingTable::new(&test, nodes.stations())), LocalReach::of(&test));
+        let (table, reach) = (Arc::new(LandingTable::new(&test, nodes.shared_stations())), LocalReach::of(&test));
         let at = |i| chain.geometry().vertex_station(VertexId(i));
         let meter = Meter::new(&(), Stage::Search);
         let mut one = BatchedSearch::new(&graph, &table, &reach, Aim::HopsThenEffort);

@@ -92,7 +92,7 @@ impl CostToGo {
     }
 
     /// The graph that defines the costs.
-    fn graph<'g>(&'g self, test: &'g HopTest) -> HopGraph<'g> {
+    fn graph(&self, test: &HopTest) -> HopGraph {
         HopGraph::new(test, &self.nodes, self.options.effort, self.options.takeoff, self.options.split)
     }
 
@@ -211,7 +211,7 @@ impl OneHop {
 }
 
 /// The least costs of all nodes, from Dijkstra's algorithm.
-fn costs_to_go(graph: &HopGraph<'_>, meter: &Meter<'_>) -> Result<Vec<Option<Cost>>, Cancelled> {
+fn costs_to_go(graph: &HopGraph, meter: &Meter<'_>) -> Result<Vec<Option<Cost>>, Cancelled> {
     let mut counter = meter.counter();
     let nodes = graph.nodes();
     let mut costs: Vec<Option<Cost>> = vec![None; nodes.stations().len()];

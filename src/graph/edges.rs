@@ -34,31 +34,33 @@ impl Edge {
 
 /// The hop graph over a node set. Edges are computed when visited and never stored.
 ///
-/// petgraph's algorithms run on it without changes. [`search`](super::search()) uses a faster algorithm, which the tests
-/// compare with petgraph's.
-#[derive(Debug)]
-pub struct HopGraph<'a> {
-    test: &'a HopTest,
-    nodes: &'a NodeSet,
+/// petgraph's algorithms run on it without changes: `examples/petgraph_on_hops.rs`. [`search`](super::search()) uses a faster
+/// algorithm, which the tests compare with petgraph's.
+///
+/// It shares the hop test and the nodes: to make or to clone one costs next to nothing, and it may be kept and sent to other threads.
+#[derive(Clone, Debug)]
+pub struct HopGraph {
+    test: HopTest,
+    nodes: NodeSet,
     effort: Effort,
     choice: TakeoffChoice,
     split: Split,
 }
 
-impl<'a> HopGraph<'a> {
+impl HopGraph {
     /// A graph over nodes; effort, choice of take-off angle and split define its costs.
-    pub const fn new(test: &'a HopTest, nodes: &'a NodeSet, effort: Effort, choice: TakeoffChoice, split: Split) -> Self {
-        Self { test, nodes, effort, choice, split }
+    pub fn new(test: &HopTest, nodes: &NodeSet, effort: Effort, choice: TakeoffChoice, split: Split) -> Self {
+        Self { test: test.clone(), nodes: nodes.clone(), effort, choice, split }
     }
 
     /// The nodes.
-    pub const fn nodes(&self) -> &'a NodeSet {
-        self.nodes
+    pub const fn nodes(&self) -> &NodeSet {
+        &self.nodes
     }
 
     /// The hop test that evaluates the edges.
-    pub const fn test(&self) -> &'a HopTest {
-        self.test
+    pub const fn test(&self) -> &HopTest {
+        &self.test
     }
 
     /// The edge between two stations: one hop if feasible, else hops along their common segment (P Algorithm 2, as its text
@@ -93,7 +95,7 @@ impl<'a> HopGraph<'a> {
             Edge::Hop(lofts) => self.effort.cost(&Arc::new(sight, self.choice.loft(sight, lofts), g), 1),
             Edge::Along(along) => {
                 let (each_m, last_m) = along.lengths_m(self.split);
-                let arc = |length_m| along.arc(self.test, length_m, self.choice);
+                let arc = |length_m| along.arc(&self.test, length_m, self.choice);
                 self.effort.cost(&arc(each_m), along.hops() - 1) + self.effort.cost(&arc(last_m), 1)
             }
         }
@@ -139,7 +141,7 @@ impl EdgeRef for EdgeReference {
 /// The edges that leave one node, each evaluated when the iterator yields it.
 #[derive(Clone, Debug)]
 pub struct Edges<'g> {
-    graph: &'g HopGraph<'g>,
+    graph: &'g HopGraph,
     source: NodeId,
     candidates: Range<usize>,
 }
@@ -163,17 +165,17 @@ impl Iterator for Edges<'_> {
     }
 }
 
-impl GraphBase for HopGraph<'_> {
+impl GraphBase for HopGraph {
     type NodeId = NodeId;
     type EdgeId = (NodeId, NodeId);
 }
 
-impl Data for HopGraph<'_> {
+impl Data for HopGraph {
     type NodeWeight = Station;
     type EdgeWeight = Cost;
 }
 
-impl Visitable for HopGraph<'_> {
+impl Visitable for HopGraph {
     type Map = HashSet<NodeId>;
 
     fn visit_map(&self) -> Self::Map {
@@ -185,7 +187,7 @@ impl Visitable for HopGraph<'_> {
     }
 }
 
-impl<'g> IntoEdgeReferences for &'g HopGraph<'g> {
+impl<'g> IntoEdgeReferences for &'g HopGraph {
     type EdgeRef = EdgeReference;
     type EdgeReferences = AllEdges<'g>;
 
@@ -197,7 +199,7 @@ impl<'g> IntoEdgeReferences for &'g HopGraph<'g> {
 /// All edges of the graph, node by node.
 #[derive(Clone, Debug)]
 pub struct AllEdges<'g> {
-    graph: &'g HopGraph<'g>,
+    graph: &'g HopGraph,
     next: usize,
     current: Option<Edges<'g>>,
 }
@@ -219,7 +221,7 @@ impl Iterator for AllEdges<'_> {
     }
 }
 
-impl<'g> IntoNeighbors for &'g HopGraph<'g> {
+impl<'g> IntoNeighbors for &'g HopGraph {
     type Neighbors = std::iter::Map<Edges<'g>, fn(EdgeReference) -> NodeId>;
 
     fn neighbors(self, node: NodeId) -> Self::Neighbors {
@@ -227,7 +229,7 @@ impl<'g> IntoNeighbors for &'g HopGraph<'g> {
     }
 }
 
-impl<'g> IntoEdges for &'g HopGraph<'g> {
+impl<'g> IntoEdges for &'g HopGraph {
     type Edges = Edges<'g>;
 
     fn edges(self, node: NodeId) -> Edges<'g> {

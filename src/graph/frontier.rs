@@ -48,7 +48,7 @@ impl Frontier {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub(super) fn of(graph: &HopGraph<'_>, reach: &LocalReach, reached: &[bool], meter: &Meter<'_>) -> Result<Self, Cancelled> {
+    pub(super) fn of(graph: &HopGraph, reach: &LocalReach, reached: &[bool], meter: &Meter<'_>) -> Result<Self, Cancelled> {
         let nodes = graph.nodes();
         let leads = leading_to_goal(graph, reach, meter)?;
         let of = |flags: &[bool]| -> Vec<Station> {
@@ -73,7 +73,7 @@ impl Frontier {
 }
 
 /// The nodes that lead to the goal: breadth-first search against the direction of the hops.
-fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach, meter: &Meter<'_>) -> Result<Vec<bool>, Cancelled> {
+fn leading_to_goal(graph: &HopGraph, reach: &LocalReach, meter: &Meter<'_>) -> Result<Vec<bool>, Cancelled> {
     let mut counter = meter.counter();
     let nodes = graph.nodes();
     let mut leads = vec![false; nodes.stations().len()];
@@ -97,7 +97,7 @@ fn leading_to_goal(graph: &HopGraph<'_>, reach: &LocalReach, meter: &Meter<'_>) 
 
 /// The refusals of the hops that leave a set of nodes, and the smallest gap among them.
 fn refusals_out_of(
-    graph: &HopGraph<'_>,
+    graph: &HopGraph,
     reached: &[bool],
     meter: &Meter<'_>,
 ) -> Result<(RefusalCounts, Option<NearestMiss>), Cancelled> {

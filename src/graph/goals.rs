@@ -63,7 +63,7 @@ impl Goals {
     ///
     /// # Errors
     /// [`Cancelled`].
-    pub(super) fn land_from(&mut self, graph: &HopGraph<'_>, takeoffs: &[Takeoff], meter: &Meter<'_>) -> Result<Tally, Cancelled> {
+    pub(super) fn land_from(&mut self, graph: &HopGraph, takeoffs: &[Takeoff], meter: &Meter<'_>) -> Result<Tally, Cancelled> {
         let mut counter = meter.counter();
         let mut tally = Tally::default();
         for takeoff in takeoffs {

@@ -1,6 +1,6 @@
 //! The points of the chain between which hops are tested.
 
-use std::ops::Range;
+use std::{ops::Range, sync::Arc};
 
 use crate::{
     chain::{ConstrainedChain, Station},
@@ -24,10 +24,10 @@ pub struct TooManyNodes {
     pub nodes: u64,
 }
 
-/// The nodes of a hop graph, from left to right, no two at the same x.
+/// The nodes of a hop graph, from left to right, no two at the same x. Clones share the stations.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeSet {
-    stations: Vec<Station>,
+    stations: Arc<[Station]>,
     start: NodeId,
     goal: NodeId,
     most_per_segment: u32,
@@ -42,11 +42,11 @@ impl NodeSet {
     /// # Errors
     /// [`TooManyNodes`] for more than [`NodeSet::MAX_NODES`].
     pub fn new(chain: &ConstrainedChain, start: Station, goal: Station, spacing: PointSpacing) -> Result<Self, TooManyNodes> {
-        let mut nodes = Self::of_chain(chain, spacing)?;
-        nodes.insert(start);
-        nodes.insert(goal);
-        (nodes.start, nodes.goal) = (nodes.at(&start), nodes.at(&goal));
-        Ok(nodes)
+        let (mut stations, most_per_segment) = stations_of(chain, spacing)?;
+        insert(&mut stations, start);
+        insert(&mut stations, goal);
+        let (start, goal) = (first_from(&stations, &start), first_from(&stations, &goal));
+        Ok(Self { stations: stations.into(), start: NodeId(start), goal: NodeId(goal), most_per_segment })
     }
 
     /// All vertices and equidistant points inside each segment: the nodes that all searches over a chain share. Its start is
@@ -55,61 +55,25 @@ impl NodeSet {
     /// # Errors
     /// [`TooManyNodes`] for more than [`NodeSet::MAX_NODES`], including a separate start and goal.
     pub fn of_chain(chain: &ConstrainedChain, spacing: PointSpacing) -> Result<Self, TooManyNodes> {
-        let geometry = chain.geometry();
-        let inside = |pair: &[ChainPoint]| match spacing {
-            PointSpacing::PerSegment(k) => u64::from(k),
-            PointSpacing::AtMostM(spacing_m) => {
-                points_needed(libm::hypot(pair[1].x_m - pair[0].x_m, pair[1].z_m - pair[0].z_m), spacing_m)
-            }
-        };
-        let segments = || geometry.vertices().windows(2);
-        let nodes = segments().map(inside).fold(geometry.vertices().len() as u64 + 2, u64::saturating_add);
-        if nodes > Self::MAX_NODES {
-            return Err(TooManyNodes { nodes });
-        }
-        let mut stations: Vec<Station> = Vec::with_capacity(usize::try_from(nodes).unwrap_or(0));
-        let mut most = 0;
-        for (i, pair) in segments().enumerate() {
-            let k = inside(pair);
-            most = most.max(k);
-            stations.push(geometry.vertex_station(VertexId(i)));
-            for j in 1..=k {
-                #[expect(clippy::cast_precision_loss, reason = "fewer points than 2^53")]
-                let fraction = j as f64 / (k + 1) as f64;
-                let x_m = pair[0].x_m + (pair[1].x_m - pair[0].x_m) * fraction;
-                // On very short segments several points may round to the same x.
-                if stations.last().is_some_and(|last| last.point.x_m < x_m) && x_m < pair[1].x_m {
-                    stations.push(geometry.station_inside(SegmentId(i), x_m));
-                }
-            }
-        }
-        stations.push(geometry.vertex_station(VertexId(geometry.segment_count())));
+        let (stations, most_per_segment) = stations_of(chain, spacing)?;
         let goal = NodeId(stations.len() - 1);
-        Ok(Self { stations, start: NodeId(0), goal, most_per_segment: u32::try_from(most).unwrap_or(u32::MAX) })
-    }
-
-    /// Adds a station as a node unless there is one at its x: equal x means the same position.
-    fn insert(&mut self, station: Station) {
-        if self.find(&station).is_none() {
-            let at = self.at(&station);
-            self.stations.insert(at.index(), station);
-        }
-    }
-
-    /// The first node at a station's x or beyond.
-    fn at(&self, station: &Station) -> NodeId {
-        NodeId(self.stations.partition_point(|s| s.point.x_m < station.point.x_m))
+        Ok(Self { stations: stations.into(), start: NodeId(0), goal, most_per_segment })
     }
 
     /// The node at a station's x; `None` if there is none.
     pub fn find(&self, station: &Station) -> Option<NodeId> {
-        let at = self.at(station);
-        self.stations.get(at.index()).is_some_and(|s| s.point.x_m == station.point.x_m).then_some(at)
+        let at = first_from(&self.stations, station);
+        self.stations.get(at).is_some_and(|s| s.point.x_m == station.point.x_m).then_some(NodeId(at))
     }
 
     /// The stations of all nodes, from left to right.
     pub fn stations(&self) -> &[Station] {
         &self.stations
+    }
+
+    /// The stations of all nodes, as a shared pointer.
+    pub fn shared_stations(&self) -> Arc<[Station]> {
+        Arc::clone(&self.stations)
     }
 
     /// The station of one node.
@@ -140,6 +104,53 @@ impl NodeSet {
     pub fn within(&self, station: &Station, distance_m: f64) -> Range<usize> {
         within(&self.stations, station, distance_m)
     }
+}
+
+/// All vertices and equidistant points inside each segment, and the greatest number of points inside one segment.
+fn stations_of(chain: &ConstrainedChain, spacing: PointSpacing) -> Result<(Vec<Station>, u32), TooManyNodes> {
+    let geometry = chain.geometry();
+    let inside = |pair: &[ChainPoint]| match spacing {
+        PointSpacing::PerSegment(k) => u64::from(k),
+        PointSpacing::AtMostM(spacing_m) => {
+            points_needed(libm::hypot(pair[1].x_m - pair[0].x_m, pair[1].z_m - pair[0].z_m), spacing_m)
+        }
+    };
+    let segments = || geometry.vertices().windows(2);
+    let nodes = segments().map(inside).fold(geometry.vertices().len() as u64 + 2, u64::saturating_add);
+    if nodes > NodeSet::MAX_NODES {
+        return Err(TooManyNodes { nodes });
+    }
+    let mut stations: Vec<Station> = Vec::with_capacity(usize::try_from(nodes).unwrap_or(0));
+    let mut most = 0;
+    for (i, pair) in segments().enumerate() {
+        let k = inside(pair);
+        most = most.max(k);
+        stations.push(geometry.vertex_station(VertexId(i)));
+        for j in 1..=k {
+            #[expect(clippy::cast_precision_loss, reason = "fewer points than 2^53")]
+            let fraction = j as f64 / (k + 1) as f64;
+            let x_m = pair[0].x_m + (pair[1].x_m - pair[0].x_m) * fraction;
+            // On very short segments several points may round to the same x.
+            if stations.last().is_some_and(|last| last.point.x_m < x_m) && x_m < pair[1].x_m {
+                stations.push(geometry.station_inside(SegmentId(i), x_m));
+            }
+        }
+    }
+    stations.push(geometry.vertex_station(VertexId(geometry.segment_count())));
+    Ok((stations, u32::try_from(most).unwrap_or(u32::MAX)))
+}
+
+/// Inserts a station unless there is one at its x: equal x means the same position.
+fn insert(stations: &mut Vec<Station>, station: Station) {
+    let at = first_from(stations, &station);
+    if stations.get(at).is_none_or(|s| s.point.x_m != station.point.x_m) {
+        stations.insert(at, station);
+    }
+}
+
+/// The first of `stations` (sorted by x) at a station's x or beyond.
+fn first_from(stations: &[Station], station: &Station) -> usize {
+    stations.partition_point(|s| s.point.x_m < station.point.x_m)
 }
 
 /// The sub-range of `stations` (sorted by x) whose x lies within `distance_m` of `station`.

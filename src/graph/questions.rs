@@ -34,9 +34,9 @@ pub(super) struct Round<'a> {
     pub(super) is_last: bool,
 }
 
-impl<'a> Round<'a> {
+impl Round<'_> {
     /// The graph over some nodes.
-    const fn graph(&self, nodes: &'a NodeSet) -> HopGraph<'a> {
+    fn graph(&self, nodes: &NodeSet) -> HopGraph {
         let SearchOptions { effort, takeoff, split, .. } = *self.options;
         HopGraph::new(self.test, nodes, effort, takeoff, split)
     }
@@ -116,7 +116,7 @@ impl Questions {
     /// [`TooManyNodes`] if adding the ends of a question without a path exceeds the limit.
     pub(super) fn ask(&mut self, round: &Round<'_>, meter: &Meter<'_>) -> Result<(), SearchError> {
         let graph = round.graph(round.nodes);
-        let table = Arc::new(LandingTable::new(round.test, round.nodes.stations()));
+        let table = Arc::new(LandingTable::new(round.test, round.nodes.shared_stations()));
         let mut batched = BatchedSearch::new(&graph, &table, round.reach, Aim::HopsThenEffort);
         for of_start in &self.by_start {
             let open: Vec<usize> = of_start.iter().copied().filter(|&i| self.questions[i].answer.is_none()).collect();
@@ -155,7 +155,7 @@ fn refusing_endpoints(test: &HopTest, (start, goal): &(Station, Station)) -> Vec
 }
 
 /// The path that ends with a goal's label.
-fn path(graph: &HopGraph<'_>, batched: &BatchedSearch<'_>, (start, goal): &(Station, Station), goal_label: &Label) -> Outcome {
+fn path(graph: &HopGraph, batched: &BatchedSearch<'_>, (start, goal): &(Station, Station), goal_label: &Label) -> Outcome {
     let mut stations = batched.stations_before(start, goal_label);
     if goal_label.cost > Cost::default() {
         stations.push(*goal);

@@ -50,7 +50,7 @@ pub(crate) fn reachable_nodes(
 ) -> Result<Reachable, SearchError> {
     let set = NodeSet::new(test.chain(), start, start, spacing)?;
     let graph = HopGraph::new(test, &set, Effort::default(), TakeoffChoice::default(), Split::default());
-    let table = Arc::new(LandingTable::new(test, set.stations()));
+    let table = Arc::new(LandingTable::new(test, set.shared_stations()));
     let reach = LocalReach::of(test);
     let mut batched = BatchedSearch::new(&graph, &table, &reach, Aim::Hops);
     batched.run(&start, &mut Goals::new(&[]), meter)?;

@@ -152,7 +152,7 @@ type Labels = BTreeMap<u64, BTreeMap<usize, Label>>;
 
 impl Lattice {
     /// The edges out of every node within the budget, breadth first by hops; `None` if the goal is not reached.
-    fn within(graph: &HopGraph<'_>, extra: u64, counter: &mut PairCounter<'_>) -> Result<Option<Self>, Cancelled> {
+    fn within(graph: &HopGraph, extra: u64, counter: &mut PairCounter<'_>) -> Result<Option<Self>, Cancelled> {
         let nodes = graph.nodes();
         let count = nodes.stations().len();
         let (start, goal) = (nodes.start().index(), nodes.goal().index());
@@ -190,7 +190,7 @@ impl Lattice {
     /// All labels from which the goal is still within the budget.
     fn labelled(
         &self,
-        graph: &HopGraph<'_>,
+        graph: &HopGraph,
         options: &SearchOptions,
         reliability: &ReliabilityOptions,
         counter: &mut PairCounter<'_>,
@@ -237,7 +237,7 @@ impl Lattice {
 ///
 /// # Errors
 /// [`Cancelled`].
-pub(super) fn steps_from(graph: &HopGraph<'_>, node: usize, counter: &mut PairCounter<'_>) -> Result<Vec<Step>, Cancelled> {
+pub(super) fn steps_from(graph: &HopGraph, node: usize, counter: &mut PairCounter<'_>) -> Result<Vec<Step>, Cancelled> {
     let nodes = graph.nodes();
     let takeoff = nodes.station(NodeId(node));
     let mut steps = Vec::new();
@@ -287,7 +287,7 @@ fn hops_to(goal: usize, steps: &[Vec<Step>]) -> Vec<u64> {
 
 /// The weight of an edge: the sum over its hops.
 pub(super) fn edge_weight(
-    graph: &HopGraph<'_>,
+    graph: &HopGraph,
     (from, to): (usize, usize),
     options: &SearchOptions,
     reliability: &ReliabilityOptions,
@@ -345,7 +345,7 @@ fn along_weight(
 }
 
 /// The path to the goal that ends with a label.
-fn path_to_goal(graph: &HopGraph<'_>, labels: &Labels, hops: u64, weight: f64) -> Option<ReliablePath> {
+fn path_to_goal(graph: &HopGraph, labels: &Labels, hops: u64, weight: f64) -> Option<ReliablePath> {
     let nodes = graph.nodes();
     let mut at = (hops, nodes.goal().index());
     let (mut legs, mut cost) = (Vec::new(), Cost::default());

@@ -51,7 +51,7 @@ impl ReliabilityPolicy {
     /// # Complexity
     /// With E edges on some path within the hop budget: E hop tests and risk estimates, `E (1 + extra)` additions.
     pub(super) fn of(
-        graph: &HopGraph<'_>,
+        graph: &HopGraph,
         costs: &[Option<Cost>],
         options: &SearchOptions,
         reliability: &ReliabilityOptions,

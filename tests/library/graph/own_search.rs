@@ -16,7 +16,7 @@ fn bent(draw: &mut Draw, world: &World) -> ConstrainedChain {
     ConstrainedChain::new(geometry.with_bends(bends).unwrap(), &Hopper::UNLIMITED, Gravity::new(1.0).unwrap(), &surface).unwrap()
 }
 
-fn graph<'a>(test: &'a HopTest, nodes: &'a NodeSet, options: &SearchOptions) -> HopGraph<'a> {
+fn graph(test: &HopTest, nodes: &NodeSet, options: &SearchOptions) -> HopGraph {
     HopGraph::new(test, nodes, options.effort, options.takeoff, options.split)
 }
 
