@@ -2,7 +2,10 @@
 
 use std::{collections::HashSet, ops::Range};
 
-use petgraph::visit::{Data, EdgeRef, GraphBase, IntoEdgeReferences, IntoEdges, IntoNeighbors, Visitable};
+use petgraph::visit::{
+    Data, EdgeRef, GraphBase, IntoEdgeReferences, IntoEdges, IntoNeighbors, IntoNodeIdentifiers, NodeCompactIndexable, NodeCount,
+    NodeIndexable, Visitable,
+};
 
 use super::{Cost, Effort, NodeSet, nodes::around};
 use crate::{
@@ -173,6 +176,36 @@ impl GraphBase for HopGraph {
 impl Data for HopGraph {
     type NodeWeight = Station;
     type EdgeWeight = Cost;
+}
+
+impl NodeCount for HopGraph {
+    fn node_count(&self) -> usize {
+        self.nodes.stations().len()
+    }
+}
+
+impl NodeIndexable for HopGraph {
+    fn node_bound(&self) -> usize {
+        self.node_count()
+    }
+
+    fn to_index(&self, node: NodeId) -> usize {
+        node.index()
+    }
+
+    fn from_index(&self, index: usize) -> NodeId {
+        NodeId(index)
+    }
+}
+
+impl NodeCompactIndexable for HopGraph {}
+
+impl IntoNodeIdentifiers for &HopGraph {
+    type NodeIdentifiers = std::iter::Map<Range<usize>, fn(usize) -> NodeId>;
+
+    fn node_identifiers(self) -> Self::NodeIdentifiers {
+        (0..self.node_count()).map(NodeId)
+    }
 }
 
 impl Visitable for HopGraph {

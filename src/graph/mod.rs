@@ -4,6 +4,8 @@
 //! direction of travel. Edges are evaluated when their source node is settled and never stored, so memory grows only with the
 //! nodes. Nodes are settled in batches of one hop count, each shared among as many threads as its size justifies.
 //!
+//! [`HopGraph`] implements petgraph's traits, so petgraph's algorithms run on it: `examples/petgraph_on_hops.rs`.
+//!
 //! A discretisation can only miss paths: a path found exists, but a failure at some density of points proves nothing.
 //! [`proof`] bounds the fewest hops from both sides, for every density.
 
@@ -26,7 +28,7 @@ mod usable;
 
 pub use cost::{Cost, Effort};
 pub use cost_to_go::CostToGo;
-pub use edges::{Edge, HopGraph};
+pub use edges::{Edge, EdgeReference, HopGraph};
 pub use frontier::{Frontier, NearestMiss};
 pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
 pub use reachable::{Reachable, reachable};

@@ -28,6 +28,7 @@ mod mutations_chain_csv;
 mod mutations_mesh;
 mod mutations_scenario;
 mod mutations_terrain;
+mod new_limit;
 mod paper;
 mod pds3;
 mod progress;
