@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let at_m: Vec<String> = path.iter().map(|&node| format!("{:.1}", nodes.station(node).point.x_m)).collect();
     println!("A*: {} hops at x = {} m, sum of take-off speeds {:.3} m/s", cost.hops(), at_m.join(", "), cost.effort());
     let options = SearchOptions { spacing: Some(spacing), effort: Effort::TakeoffSpeed, ..SearchOptions::default() };
-    let own = search(&test, start, goal, &options, &mut |_| {})?;
+    let own = search(&test, start, goal, &options, &())?;
     assert_eq!(own.hops(), Some(cost.hops()), "search and A* count different hops");
     println!("chta::graph::search: {} hops", cost.hops());
 
@@ -46,7 +46,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let hops = dijkstra(&graph, nodes.start(), None, |edge| edge.weight().hops());
     let most = hops.values().max().copied().unwrap_or(0);
     println!("Dijkstra: {} of {} nodes are reached, each in {most} hops or fewer", hops.len(), nodes.stations().len());
-    let own = reachable(&test, start, spacing)?;
+    let own = reachable(&test, start, spacing, &())?;
     for (station, own_hops) in own.nodes {
         let node = nodes.find(&station);
         let theirs = node.and_then(|node| hops.get(&node).copied());
