@@ -3,12 +3,12 @@
 #
 #   benches/against_commit.sh REV [--assert]
 #
-# Both trees run their own bench sources, in turn (commit, tree, commit, ...), so that a change of load meets both alike; a bench is
+# Both trees run their own bench sources, in turn (commit, tree, commit, ...), so that a change of load affects both equally; a bench is
 # known by its name. For each, the ratio tree / commit of the fastest times of all rounds and of the medians, and the least and greatest
 # ratio of one round. With --assert the exit status is 1 where the ratio of the fastest times is above 1.05; such benches first get up to
-# twice as many rounds again, since other work on the machine can only add time. A bench that one tree alone has is named and not judged.
+# twice as many rounds again, since other load on the machine can only add time. A bench that only one tree has is listed without a limit.
 #
-# Where valgrind and gungraun-runner are installed, the instructions that benches/instructions.rs counts follow, by the same limit. They
+# If valgrind and gungraun-runner are installed, the instruction counts of benches/instructions.rs follow, with the same limit. They
 # do not depend on load. GUNGRAUN_RUNNER may hold the runner's path.
 #
 # ROUNDS=5, SAMPLES=20 (of divan, per round) and BENCHES="sweep_against_plain graph map fly" can be set.
@@ -32,7 +32,7 @@ executable() {
         sed -n 's/.*"kind":\["bench"\].*"executable":"\([^"]*\)".*/\1/p'
 }
 
-# What a bench prints -> lines of `name <tab> fastest <tab> median`, in ns.
+# The output of a bench -> lines of `name <tab> fastest <tab> median`, in ns.
 times() {
     sed 's/│/|/g; s/├─/+-/g; s/╰─/+-/g; s/µs/us/g' | awk -v bench="$1" '
         function ns(text, part) { split(text, part, " "); return part[1] * unit[part[2]] }

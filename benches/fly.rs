@@ -1,11 +1,11 @@
-//! Flown hops a second: the simulation on one thread, on the shipped chain of 100 vertices and on the shipped crater field, with
-//! errors of speed, angle and drift (on the map of heading too); and what replanning costs beside open loop.
+//! Flown hops per second: the simulation on one thread, on the shipped chain of 100 vertices and on the shipped crater field, with
+//! errors of speed, angle and drift (on the map of heading too); and the cost of replanning compared with open loop.
 //!
-//! `cargo bench --bench fly`. Items are flown hops, so the throughput is hops a second a core. Compare lines of one run with each
-//! other.
+//! `cargo bench --bench fly`. Items are flown hops, so the throughput is hops per second per core. Compare lines of one run with
+//! each other.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
-#![allow(clippy::print_stdout, reason = "how the trials end belongs to the figures")]
+#![allow(clippy::print_stdout, reason = "the outcomes of the trials are needed to read the times")]
 
 mod support;
 
@@ -29,7 +29,7 @@ fn main() {
     divan::main();
 }
 
-/// Errors that let most trials go on for all their hops.
+/// Errors with which most trials fly all their hops.
 const ERRORS: Uncertainty = Uncertainty {
     takeoff_speed_sigma_fraction: 0.01,
     takeoff_angle_sigma: Angle::from_radians(0.01),
@@ -37,7 +37,7 @@ const ERRORS: Uncertainty = Uncertainty {
     ..Uncertainty::NONE
 };
 
-/// A slower robot on ground of less grip plans, so that the real one has some of both to spare.
+/// The plan is for a slower robot on ground with less friction, so that the real robot has a margin of both.
 fn robots() -> [(Hopper, SurfaceProperties); 2] {
     [(7.0, 0.8), (10.0, 3.0)].map(|(speed_m_s, friction)| {
         let hopper = Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(speed_m_s, speed_m_s) })
@@ -65,7 +65,7 @@ fn fly(
     let test = HopTest::new(chains[0].clone());
     let (first_m, last_m) = geometry.extent_m();
     let station = |x_m| geometry.station(x_m).expect("an end of the chain");
-    // Ground behind the start and beyond the goal, for those that fly too short or too far.
+    // Ground behind the start and beyond the goal, for flights that are too short or too long.
     let (start, goal) = (station(first_m + 5.0), station(last_m - 10.0));
     let spacing = PointSpacing::AtMostM(spacing_m);
     let options = SearchOptions { spacing: Some(spacing), takeoff: TakeoffChoice::MidRange, ..SearchOptions::default() };
@@ -102,7 +102,7 @@ fn data(file: &str) -> std::path::PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("data").join(file)
 }
 
-/// The shipped chain, its vertices a metre apart as nodes.
+/// The shipped chain with its vertices, a metre apart, as nodes.
 #[divan::bench(args = ["open-loop", "replan"])]
 fn on_the_chain(bencher: Bencher<'_, '_>, policy: &str) {
     let chain = read_chain_csv_file(data("chains/rolling_100.csv")).expect("the shipped chain").chain;

@@ -1,4 +1,4 @@
-//! The whole question: nodes, hops, search. How time grows with vertices, points per segment and reach.
+//! The whole analysis: nodes, hops, search. How time grows with vertices, points per segment and reach.
 //!
 //! `cargo bench --bench graph`. Compare lines of one run with each other: absolute times depend on the machine and its load.
 
@@ -42,7 +42,7 @@ fn by_points_per_segment(bencher: Bencher<'_, '_>, points: u32) {
     across(bencher, 300, points, 10.0);
 }
 
-/// Time against reach, which goes with the square of the speed: 1000 segments, no points inside.
+/// Time against reach, which is proportional to the square of the speed: 1000 segments, no points inside.
 #[divan::bench(args = [5, 7, 10, 14, 20])]
 fn by_speed(bencher: Bencher<'_, '_>, speed_m_s: u32) {
     across(bencher, 1000, 0, f64::from(speed_m_s));

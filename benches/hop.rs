@@ -30,7 +30,7 @@ fn one_pair_kernel(bencher: Bencher<'_, '_>) {
     bencher.bench_local(|| test.lofts(black_box(&at(100)), black_box(&at(115))));
 }
 
-/// The same pair explained: every limit by itself and what binds.
+/// The same pair explained: every limit separately, and the binding limits.
 #[divan::bench]
 fn one_pair_explained(bencher: Bencher<'_, '_>) {
     let (chain, _) = support::fractal_chain(200);
@@ -51,8 +51,7 @@ fn one_takeoff_all_landings(bencher: Bencher<'_, '_>, window: usize) {
         .bench_local(|| stations.iter().filter(|landing| test.lofts(black_box(&takeoff), black_box(landing)).is_ok()).count());
 }
 
-/// The same by a sweep: speeds cut the far landings, as they do in a search (`sweep_against_plain` has windows that they do not
-/// cut).
+/// The same by a sweep: speeds exclude the far landings, as they do in a search (in `sweep_against_plain` they do not).
 #[divan::bench(args = [30, 200, 2000])]
 fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
     let (chain, _) = support::fractal_chain(2 * window + 1);
@@ -71,7 +70,7 @@ fn one_takeoff_swept(bencher: Bencher<'_, '_>, window: usize) {
     });
 }
 
-/// The bound on reach that a search asks for at every take-off, on a chain of 100 000 segments.
+/// The bound on reach that a search computes at every take-off, on a chain of 100 000 segments.
 #[divan::bench]
 fn reach_of_one_takeoff(bencher: Bencher<'_, '_>) {
     let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(10.0, 10.0) }).expect("a valid hopper");

@@ -1,8 +1,8 @@
-//! Instructions of one sweep, of the hop test pair by pair, and of the plain version: counted by valgrind, so the same on a busy
-//! machine.
+//! Instructions of one sweep, of the hop test pair by pair, and of the plain version, counted by valgrind and so independent of
+//! other load on the machine.
 //!
-//! `cargo bench --bench instructions`. Needs valgrind and `cargo install gungraun-runner --version 0.20.0`; where either is absent
-//! it says so and stops. Divide by the pairs in the name: a window of 200 is 400 pairs.
+//! `cargo bench --bench instructions`. Needs valgrind and `cargo install gungraun-runner --version 0.20.0`; without them it prints
+//! the reason and stops. Divide by the pairs in the name: a window of 200 is 400 pairs.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
 #![allow(clippy::print_stdout, reason = "it says why it does not run")]
@@ -29,7 +29,7 @@ use chta::{
 };
 use gungraun::{library_benchmark, library_benchmark_group};
 
-/// Everything that one take-off against a window needs, made before counting begins.
+/// All that one take-off against a window needs, created before counting begins.
 struct Scene {
     test: HopTest,
     stations: Arc<[Station]>,
@@ -37,7 +37,7 @@ struct Scene {
     window: usize,
 }
 
-/// Rough Martian ground at four times the speed that its window needs, after one sweep that made the working memory.
+/// Rough Martian ground at four times the speed that its window needs, after one sweep that allocated the working memory.
 fn scene(window: usize, friction: f64) -> Scene {
     let (chain, _) = support::fractal_chain(2 * window);
     #[expect(clippy::cast_precision_loss, reason = "a few thousand metres")]
@@ -87,7 +87,7 @@ library_benchmark_group!(name = hop; benchmarks = sweep, plain);
 fn main() {
     let runner = std::env::var("GUNGRAUN_RUNNER").unwrap_or_else(|_| "gungraun-runner".to_owned());
     for (program, mend) in [("valgrind", "install valgrind"), (&runner, "cargo install gungraun-runner --version 0.20.0")] {
-        // Which status it ends with does not matter: only whether it is there.
+        // The exit status does not matter, only whether the program exists.
         if Command::new(program).arg("--version").output().is_err() {
             println!("skipped: no {program} to count instructions with; {mend}");
             return;

@@ -1,7 +1,7 @@
-//! Hop maps: against the plain way, pulling against pushing, and time over the number of posts.
+//! Hop maps: against the plain method, pulling against pushing, and time against the number of posts.
 //!
 //! `cargo bench --bench map`. Compare lines of one run with each other: absolute times depend on the machine and its load. All on
-//! one thread but for the table of sizes.
+//! one thread except the table of sizes.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
 #![allow(clippy::print_stdout, reason = "its result")]
@@ -53,14 +53,14 @@ impl Scene {
     }
 }
 
-/// Seconds that work takes, and what comes of it.
+/// The time of some work, s, and its result.
 fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     let began = Instant::now();
     let made = work();
     (began.elapsed().as_secs_f64(), made)
 }
 
-/// Fewest hops by pushing: each post of the layer asks all posts within reach that have no hops yet.
+/// Fewest hops by pushing: each post of the layer tests all unreached posts within reach.
 fn pushed(hops: &PostHops, start: Post) -> (Vec<i16>, u64) {
     let lattice = hops.lattice();
     let mut found = vec![UNREACHED; lattice.count()];

@@ -1,10 +1,10 @@
 #!/bin/sh
-# Posts a second of a hop map beside posts a second of one view of gdal_viewshed, on the same grid.
+# Posts per second of a hop map and of one viewshed by gdal_viewshed, on the same grid.
 #
 #   benches/map_against_viewshed.sh [SIDE]
 #
-# A viewshed answers for every post whether one place sees it; a hop map answers in how few hops one gets there, which takes many views'
-# worth of pairs. Whole processes on the same file in turn, three times each, least processor time of each. Needs gdal-bin and GNU time.
+# A viewshed tells for every post whether it is visible from one position; a hop map gives the fewest hops to every post, which needs
+# the pairs of many viewsheds. Whole processes on the same file in turn, three times each, least processor time of each. Needs gdal-bin and GNU time.
 set -eu
 cd "$(dirname "$0")/.."
 side=${1:-1024}

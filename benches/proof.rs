@@ -17,7 +17,7 @@ fn hopper() -> Hopper {
     Hopper::new(HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(8.0, 8.0) }).unwrap()
 }
 
-/// Rough ground of so many segments, each about a metre long, as slices of a DEM of 1 m posts have them.
+/// Rough ground of segments about a metre long, as in slices of a DEM with 1 m posts.
 fn rough(segments: u32) -> ConstrainedChain {
     let mut points = vec![ChainPoint::new(0.0, 0.0)];
     for i in 0..segments {

@@ -1,5 +1,5 @@
 #!/bin/sh
-# How long reading 6000 x 6000 float32 takes beside GDAL, and how much memory a slice of such a file takes.
+# The time to read 6000 x 6000 float32 compared with GDAL, and the memory for a slice of such a file.
 #
 #   benches/read_against_gdal.sh [SIDE]
 #

@@ -1,7 +1,7 @@
 //! One take-off against all landings of a window: the sweep against the plain hop test, in one run, as a table.
 //!
-//! `cargo bench --bench sweep_against_plain`. Both count the feasible landings, which have to be the same. All limits are included;
-//! the window is so many vertices to either side of the take-off, and the speeds are such that reach is not what cuts it.
+//! `cargo bench --bench sweep_against_plain`. Both count the feasible landings, which must agree. All limits are included; the
+//! window is a number of vertices to either side of the take-off, and the speeds are high enough that reach does not limit it.
 
 #![allow(clippy::expect_used, reason = "a bench that cannot set its scene should stop")]
 #![allow(clippy::print_stdout, reason = "it prints a table")]
@@ -24,15 +24,16 @@ use chta::{
     world::{Direction, Hopper, HopperLimits, Limit},
 };
 
-/// Of so many rounds each, taken in turn, the fastest counts: the one least disturbed.
+/// The fastest of this many alternating rounds counts: the least disturbed one.
 const ROUNDS: usize = 25;
 
-/// How many take-offs one round has: so many that no branch is learned by heart, and the rounds of all windows are about as long.
+/// Take-offs per round: enough that branch prediction cannot memorise them, and that the rounds of all windows take about equally
+/// long.
 const fn takeoffs_of(window: usize) -> usize {
     if window > 200 { 20 } else { 100 }
 }
 
-/// One ground to measure on.
+/// One ground for the measurements.
 struct Scene {
     name: &'static str,
     friction: f64,
@@ -117,7 +118,7 @@ fn timed(mut work: impl FnMut() -> usize) -> Duration {
     begin.elapsed()
 }
 
-/// Which share of the pairs each limit leaves, limits taken in the order of testing; those that refuse nothing are not named.
+/// The fraction of the pairs that each limit leaves, in the order of testing; limits that refuse nothing are omitted.
 fn survivors<'a>(
     test: &HopTest,
     stations: &[Station],
@@ -146,14 +147,14 @@ fn survivors<'a>(
         (Limit::Terrain, "terrain"),
     ];
     let mut left = pairs;
-    let mut told: Vec<(&str, f64)> = Vec::new();
+    let mut left_after: Vec<(&str, f64)> = Vec::new();
     for (limit, name) in order {
         left -= f64::from(refused[limit.index()]);
-        match told.last_mut() {
+        match left_after.last_mut() {
             Some(last) if last.0 == name => last.1 = left,
-            _ => told.push((name, left)),
+            _ => left_after.push((name, left)),
         }
     }
-    let shares: Vec<_> = told.iter().map(|(name, left)| format!("{name} {:.1} %", 100.0 * left / pairs)).collect();
+    let shares: Vec<_> = left_after.iter().map(|(name, left)| format!("{name} {:.1} %", 100.0 * left / pairs)).collect();
     format!("{}; lower end set by the ground: {:.1} %", shares.join(", "), 100.0 * f64::from(over_ground) / pairs)
 }

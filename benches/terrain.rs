@@ -1,4 +1,4 @@
-//! How long it takes to read a DEM, to cut it, and to make one up.
+//! The time to read, slice and synthesise a DEM.
 #![expect(clippy::unwrap_used, reason = "a bench may panic")]
 
 use chta::quantity::MapPoint;
@@ -80,7 +80,7 @@ fn read_stl(bencher: Bencher<'_, '_>) {
     bencher.bench(|| read_mesh_bytes(black_box(&bytes), 1.0).unwrap());
 }
 
-#[expect(clippy::cast_possible_truncation, reason = "what an STL keeps")]
+#[expect(clippy::cast_possible_truncation, reason = "an STL stores 32-bit numbers")]
 fn single(value: f64) -> f32 {
     value as f32
 }

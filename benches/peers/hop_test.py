@@ -67,7 +67,7 @@ def chain_table(x, z, cross, scenario):
             low, high = np.arctan(seen) + turn - half, np.arctan(seen) + turn + half
             ahead = (low < math.pi / 2) & (high > -math.pi / 2)
             first = RULES + RULES_OF_A_DIRECTION * direction + 3 * contact
-            # A bound at or beyond the vertical is none; its tangent is never taken.
+            # A bound at or beyond the vertical limits nothing; its tangent is never computed.
             table[first, :segments] = np.where(low > -math.pi / 2, np.tan(low), -np.inf)
             table[first + 1, :segments] = np.where(high < math.pi / 2, np.tan(high), np.inf)
             table[first + 2, :segments] = np.where(usable & ahead, speed * (1.0 + SPEED_TOLERANCE), 0.0)
@@ -91,7 +91,7 @@ def hops_between(table, gravity, clearance, xt, zt, segment_t, vertex_t, xl, zl,
     """The hops that join a take-off to a landing: 1, or many along one segment, or 0 where there are none."""
     forward = xl > xt
     last = table.shape[1] - 2
-    # The segment that rules: a take-off obeys the ground ahead, a landing the ground just flown over.
+    # The segment that applies: a take-off obeys the ground ahead, a landing the ground just flown over.
     ruling_t = segment_t - 1 if vertex_t and not forward else segment_t
     ruling_l = segment_l - 1 if vertex_l and forward else segment_l
     if ruling_t < 0 or ruling_t > last or ruling_l < 0 or ruling_l > last:
@@ -139,7 +139,7 @@ def hops_between(table, gravity, clearance, xt, zt, segment_t, vertex_t, xl, zl,
                 return 1
     if not shared:
         return 0
-    # Many hops along the segment: each covers most at the take-off slope of least speed, cut to the cones.
+    # Many hops along the segment: each goes farthest at the take-off slope of least speed, clipped to the cones.
     m = min(max(b + math.sqrt(1.0 + b * b), cone_low), cone_high)
     reach_t = 2.0 * vt * vt * (m - b) / (gravity * (1.0 + m * m))
     reach_l = 2.0 * vl * vl * (m - b) / (gravity * (1.0 + (2.0 * b - m) ** 2))

@@ -18,7 +18,7 @@ LIMIT_S = 120
 LIMIT_MIB = 12 * 1024
 ANYTIME_S = 5
 SEEDS = (1, 2, 3)
-# Points inside each segment for the row that shows what a finer net gives.
+# Points inside each segment for the row that shows the effect of denser nodes.
 FINER = 4
 
 
@@ -38,7 +38,7 @@ class Row:
 def ended(command):
     """What a process printed, its wall time in s, its peak memory in MiB, and why it was stopped, if it was."""
     record = WORK / "peak"
-    # GNU time between: a process begun from here would count the pages of this interpreter as its own peak.
+    # GNU time in between: a process started from here would count the pages of this interpreter in its own peak.
     limited = ["timeout", str(LIMIT_S), "prlimit", f"--data={LIMIT_MIB << 20}", "/usr/bin/time", "-q", "-o", record, "-f", "%M", *command]
     began = time.perf_counter()
     process = subprocess.run(limited, capture_output=True, text=True, check=False)

@@ -1,5 +1,5 @@
 #!/bin/sh
-# What one would use instead, on the same chains: README.md beside this file says how and what is counted.
+# Alternatives to chta on the same chains; README.md beside this file explains what is run and counted.
 #
 #   benches/peers/run.sh [SEGMENTS...]
 set -eu

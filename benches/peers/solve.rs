@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release --example peers_solve -- CHAIN SCENARIO POINTS_PER_SEGMENT REPEATS`
 //!
-//! From the left end of the chain to its right end. Counted as `benches/peers/all_pairs.py` counts its own: constraints of all
-//! segments, nodes, hops, search. `solve_s` is the least of the repeats, the first left out where there are more.
+//! From the left end of the chain to its right end. The same steps are timed as in `benches/peers/all_pairs.py`: constraints of all
+//! segments, nodes, hops, search. `solve_s` is the least of the repeats; the first round is left out if there are more.
 
 #![expect(clippy::print_stdout, reason = "a program that prints")]
 

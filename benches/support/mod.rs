@@ -15,7 +15,7 @@ use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 /// Gravity of Mars, m/s^2.
 pub(crate) const MARS_M_S2: f64 = 3.711;
 
-/// Rough Martian ground along a row of posts: as many one-metre segments, a hopper of 10 m/s with 5 cm of clearance, friction 0.6.
+/// Rough Martian ground along a row of posts in one-metre segments, a hopper of 10 m/s with 5 cm of clearance, friction 0.6.
 pub(crate) fn fractal_chain(segments: usize) -> (ConstrainedChain, Hopper) {
     let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(10.0, 10.0) }).expect("a valid hopper");
     let terrain = SyntheticTerrain {
@@ -36,9 +36,9 @@ pub(crate) fn fractal_chain(segments: usize) -> (ConstrainedChain, Hopper) {
 
 /// The vertices of a chain of any length in one-metre segments: fractal ground along a line, heights to the millimetre.
 ///
-/// Random midpoints, so that over a distance `L` heights differ by `0.12 m (L / 1 m)^0.75` (root mean square): one-metre slopes of
-/// about 7 degrees, none of a hundred thousand near the 31 degrees of friction 0.6, and hundreds of metres of relief over 100 km.
-/// Up to 131 072 segments, a shorter chain is the beginning of a longer one of the same seed.
+/// Random midpoint displacement: over a distance `L` heights differ by `0.12 m (L / 1 m)^0.75` (root mean square). One-metre slopes
+/// are about 7 degrees, none of a hundred thousand is near the 31 degrees of friction 0.6, and the relief over 100 km is hundreds
+/// of metres. Up to 131 072 segments, a shorter chain is the beginning of a longer one with the same seed.
 #[expect(clippy::cast_precision_loss, reason = "far fewer vertices than 2^53")]
 pub(crate) fn long_chain(segments: usize, seed: u64) -> Vec<ChainPoint> {
     const HURST: f64 = 0.75;
@@ -55,7 +55,7 @@ pub(crate) fn long_chain(segments: usize, seed: u64) -> Vec<ChainPoint> {
     let mut step = length;
     while step > 1 {
         let half = step / 2;
-        // The middle between two known heights, and what is random about it there.
+        // The mean of two known heights, plus a random displacement.
         let around_m = deviation_m(half) * (1.0 - libm::pow(2.0, 2.0 * HURST - 2.0)).sqrt();
         for at in (half..length).step_by(step) {
             heights_m[at] = 0.5 * (heights_m[at - half] + heights_m[at + half]) + around_m * normal();
@@ -66,12 +66,12 @@ pub(crate) fn long_chain(segments: usize, seed: u64) -> Vec<ChainPoint> {
     heights_m.iter().take(segments + 1).enumerate().map(vertex).collect()
 }
 
-/// With friction 0.6 all over.
+/// Constraints with friction 0.6 everywhere.
 pub(crate) fn constrained(geometry: PolygonalChain, hopper: &Hopper) -> ConstrainedChain {
     constrained_by(geometry, hopper, 0.6)
 }
 
-/// With the same friction all over.
+/// Constraints with the same friction everywhere.
 pub(crate) fn constrained_by(geometry: PolygonalChain, hopper: &Hopper, friction: f64) -> ConstrainedChain {
     let grip = Some(Grip::Friction(FrictionCone::new(friction).expect("a friction coefficient")));
     ConstrainedChain::new(

@@ -1,5 +1,5 @@
-//! The plain hop test that the sweep is measured against: pair by pair, cheap limits first, the terrain only for pairs that survive
-//! them, stopped at the first vertex whose bound passes the greatest take-off slope. Counts the same feasible pairs.
+//! The plain hop test, the reference for the sweep: pair by pair, cheap limits first, the terrain only for the remaining pairs and
+//! only up to the first vertex whose bound exceeds the greatest take-off slope. It counts the same feasible pairs.
 
 use chta::{
     ballistics::{LineOfSight, limits},
@@ -11,8 +11,8 @@ use chta::{
 
 /// The feasible lofts of a hop between two vertices, `None` where there are none.
 ///
-/// The bound of a vertex is written with one division, `n >= (h - b d) X / (d (X - d))` for a vertex `h` (with the clearance) above
-/// the take-off at distance `d`, and its maximum without regard to NaN: about as quick as this loop gets.
+/// The bound of a vertex is computed with one division, `n >= (h - b d) X / (d (X - d))` for a vertex `h` (with the clearance)
+/// above the take-off at distance `d`, and its maximum without regard to NaN: about as fast as this loop can be.
 #[inline]
 pub(crate) fn lofts(test: &HopTest, takeoff: &Station, landing: &Station) -> Option<SlopeInterval> {
     let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;

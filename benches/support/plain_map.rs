@@ -1,5 +1,5 @@
-//! Hop maps the plain way, to measure against: from each post of the layer, every post within reach that has no hops yet, the
-//! parabolas of safety first, then the slice between the two and the hop test.
+//! Hop maps by the plain method, as a reference: from each post of the layer, every unreached post within reach; first the
+//! parabolas of safety, then the slice between the two posts and the hop test.
 
 use chta::{
     ballistics::{safety_ceiling_m, safety_range_m},
@@ -10,7 +10,7 @@ use chta::{
     world::{Gravity, Grip, Hopper, SurfaceProperties},
 };
 
-/// Fewest hops from a post (row, column) to every other; -1 where there are none. Every post has an elevation.
+/// Fewest hops from a post (row, column) to every other; -1 for unreachable posts. Every post has an elevation.
 pub(crate) fn plain_map(
     dem: &Dem,
     start: (usize, usize),

@@ -105,8 +105,7 @@ pub trait FirstContact: Surface + Clone + Send + Sync {
         left_m: f64,
     ) -> Result<Self::Contact, ContactFailure>;
 
-    /// The position of the nominal ground that the hopper believes to be at, for these errors of position; `None` where there is no
-    /// ground.
+    /// The hopper's position estimate on the nominal ground, for these errors; `None` where there is no ground.
     fn believed(&self, position: &Self::Contact, along_m: f64, across_m: f64) -> Option<Self::Contact>;
 }
 

@@ -82,7 +82,7 @@ mod tests {
     }
 
     #[test]
-    fn slopes_stay_within_what_the_correlation_length_allows() {
+    fn slopes_have_the_deviation_of_height_over_correlation_length() {
         let mut draw = Draw::seeded(4);
         let step_m = 1e-4;
         let mean_square: f64 = (0..4000)

@@ -130,7 +130,7 @@ mod tests {
     }
 
     #[test]
-    fn merged_parts_are_the_whole_in_any_order() {
+    fn merged_parts_equal_the_whole_in_any_order() {
         let values = values();
         let of = |part: &[f64]| {
             let mut sketch = QuantileSketch::default();

@@ -199,7 +199,7 @@ mod tests {
     }
 
     #[test]
-    fn few_trials_have_a_record_of_their_rate_too() {
+    fn short_runs_have_a_record_of_their_rate_too() {
         let mut tally = Tally::default();
         for trial in 1..=200u64 {
             tally.trial(if trial <= 15 { TrialOutcome::Lost } else { TrialOutcome::Reached }, 1);

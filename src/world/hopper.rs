@@ -185,7 +185,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_not_a_limit_is_refused_by_its_key() {
+    fn invalid_limits_are_refused_by_key() {
         let degrees = Angle::from_degrees;
         for bad in [f64::NAN, -1.0, f64::NEG_INFINITY] {
             assert_eq!(refused(|l| l.takeoff_speed_max_m_s = bad), ["takeoff_speed_max_m_s"], "{bad}");

@@ -13,7 +13,7 @@ use stats_alloc::Region;
 use crate::{ALLOCATOR, alone};
 
 #[test]
-fn hardly_a_pair_of_rough_ground_needs_an_allocation() {
+fn rough_ground_needs_an_allocation_for_at_most_one_pair_in_a_thousand() {
     let _guard = alone();
     let dem = synthesise(&SyntheticTerrain { rows: 80, cols: 80, seed: 5, ..SyntheticTerrain::default() }).unwrap();
     let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(3.5, 3.5) }).unwrap();

@@ -1,6 +1,6 @@
 //! A path around an obstacle, along a polyline.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot set its stage should stop")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 
 use std::{fs, path::Path, process::Output};
 
@@ -19,7 +19,7 @@ fn json(output: &Output) -> Value {
 }
 
 #[test]
-fn around_the_tower_by_the_corners_and_the_run_repeats() {
+fn a_polyline_leads_around_the_tower_and_the_run_repeats() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
     write_ascii_grid(&tower(), fs::File::create(at.join("tower.asc")).unwrap()).unwrap();
@@ -57,7 +57,7 @@ fn around_the_tower_by_the_corners_and_the_run_repeats() {
     let read = |name: &str| fs::read_to_string(at.join(name)).unwrap();
     assert_eq!(read("out/result.json"), read("again/result.json"));
     assert_eq!(read("out/path.csv"), read("again/path.csv"));
-    // Both ways of giving the bends make the same chain, and the chain alone remembers them.
+    // Both forms of the bends give the same chain, and the chain file alone stores them.
     let sliced = chta(
         at,
         &["slice", "tower.asc", "--from", "5,30", "--to", "55,30", "--via", "5,5", "--via", "55,5", "--scenario", "around.toml"],

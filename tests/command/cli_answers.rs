@@ -1,4 +1,4 @@
-//! What the command answers: exit status, documents, files, warnings; the same bytes for the same run.
+//! The results of the command: exit status, documents, files, warnings; identical bytes for identical runs.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 
@@ -27,12 +27,12 @@ const PATH_COLUMNS: [&str; 16] = [
 ];
 const MAP_COLUMNS: [&str; 5] = ["heading_deg", "takeoff_map_x_m", "takeoff_map_y_m", "landing_map_x_m", "landing_map_y_m"];
 
-/// Flat ground, with two points too far apart for the speed.
+/// Flat ground with two points too far apart for the speed.
 const TOO_SLOW: [&str; 2] = ["--set", "hopper.takeoff_speed_max_m_s=0.01"];
-/// Nothing lands on a slope of more than a degree.
+/// No landing is allowed on a slope of more than a degree.
 const TOO_STEEP: [&str; 2] = ["--set", "surface.rest_slope_max_deg=1"];
 
-/// The keys of an object in a pretty document, in their order: those indented by `indent` after `from`, until the object ends.
+/// The keys of an object in a pretty-printed document, in order: those indented by `indent` after `from`, up to the object's end.
 fn keys_in_order(document: &str, from: &str, indent: usize) -> Vec<String> {
     let after = &document[document.find(from).unwrap() + from.len()..];
     let pad = " ".repeat(indent);
@@ -47,7 +47,7 @@ fn keys_in_order(document: &str, from: &str, indent: usize) -> Vec<String> {
     keys
 }
 
-/// Every document begins with what it is, what made it, from what scenario and files.
+/// Every document begins with its kind, the program and version, and its scenario and input files.
 fn assert_framed(document: &str, kind: &str, folder: &Path) {
     let keys = keys_in_order(document, "{\n", 2);
     assert_eq!(keys[..5], ["schema", "chta_version", "scenario", "inputs", "warnings"], "{document}");
@@ -203,9 +203,9 @@ fn require_brackets_what_a_fine_scan_finds() {
     }
     let too_little = desk.run(&["require", "scenario.toml", "--vary", key, "--from", "0.05", "--to", "0.1"]);
     assert_eq!(too_little.status, 1, "{too_little:?}");
-    for (vary, told) in [("hopper.mass_kg", "expected one of"), ("friction", "expected one of")] {
+    for (vary, expected) in [("hopper.mass_kg", "expected one of"), ("friction", "expected one of")] {
         let refused = desk.run(&["require", "scenario.toml", "--vary", vary]);
-        assert!(refused.status == 2 && refused.stderr.contains(told), "{refused:?}");
+        assert!(refused.status == 2 && refused.stderr.contains(expected), "{refused:?}");
     }
     desk.write("forward.csv", FORWARD_ONLY);
     let ends = ["--body", "mars", "--start", "0", "--goal", "10"];
@@ -329,7 +329,7 @@ fn a_run_gives_the_same_bytes_again_and_its_result_repeats_it() {
 }
 
 #[test]
-fn a_path_of_an_earlier_run_does_not_stay_behind() {
+fn the_path_of_an_earlier_run_is_removed() {
     let desk = Desk::with_dem();
     assert_eq!(desk.run(&["run", "map.toml", "-o", "out"]).status, 0);
     assert!(desk.files().contains_key("out/path.geojson"));
@@ -339,7 +339,7 @@ fn a_path_of_an_earlier_run_does_not_stay_behind() {
 }
 
 #[test]
-fn a_result_stands_wherever_a_chain_does() {
+fn a_result_is_accepted_wherever_a_chain_is() {
     let desk = Desk::new();
     assert_eq!(desk.run(&["run", "scenario.toml", "-o", "out"]).status, 0);
     for args in [&["plan", "-o", "-"][..], &["check"], &["hop", "--from", "0", "--to", "10"]] {
@@ -362,16 +362,17 @@ fn paths_in_a_scenario_start_from_its_folder() {
     assert_eq!((&document["inputs"][0]["name"], &document["hops"]), (&Value::from("chain.csv"), &Value::from(3)));
 }
 
-/// Runs a command as text, as JSON and with --quiet: the warning is on standard error and in the document, and silenced.
+/// Runs a command as text, as JSON and with --quiet: the warning is on standard error and in the document; --quiet removes it from
+/// standard error.
 fn assert_warned(desk: &Desk, args: &[&str], warnings: &[&str]) {
     let ran = desk.run(args);
     let document = desk.json(args);
-    let told = document["warnings"].as_array().unwrap();
-    assert_eq!(told.len(), warnings.len(), "{args:?}: {told:?}");
-    for (warning, told) in warnings.iter().zip(told) {
-        let told = told.as_str().unwrap();
-        assert!(told.contains(warning), "{args:?}: {told} does not say {warning}");
-        assert_eq!(ran.stderr.matches(&format!("warning: {told}\n")).count(), 1, "{args:?}: {}", ran.stderr);
+    let documented = document["warnings"].as_array().unwrap();
+    assert_eq!(documented.len(), warnings.len(), "{args:?}: {documented:?}");
+    for (warning, documented) in warnings.iter().zip(documented) {
+        let documented = documented.as_str().unwrap();
+        assert!(documented.contains(warning), "{args:?}: {documented} does not contain {warning}");
+        assert_eq!(ran.stderr.matches(&format!("warning: {documented}\n")).count(), 1, "{args:?}: {}", ran.stderr);
     }
     let quiet = desk.run(&[args, &["--quiet"]].concat());
     assert_eq!((quiet.stderr.as_str(), quiet.status), ("", ran.status), "{args:?}");
@@ -402,7 +403,7 @@ fn constant_gravity_gives_a_warning_on_small_bodies() {
 }
 
 #[test]
-fn what_a_chain_lacks_or_has_too_much_is_told() {
+fn missing_and_ignored_parts_of_a_chain_give_warnings() {
     let desk = Desk::new();
     desk.write("forward.csv", FORWARD_ONLY);
     let ends = ["--body", "mars", "--start", "0", "--goal", "10"];
@@ -422,7 +423,7 @@ fn what_a_chain_lacks_or_has_too_much_is_told() {
 }
 
 #[test]
-fn slice_says_where_a_scenario_has_no_friction_for_it() {
+fn slice_warns_if_the_scenario_has_no_friction() {
     let desk = Desk::with_dem();
     let slice = ["slice", "ground.tif", "--from", "1,1", "--to", "9,9"];
     let with = desk.run(&[&slice[..], &["--scenario", "scenario.toml"]].concat());
@@ -448,9 +449,9 @@ fn a_slice_is_a_chain_that_runs_like_its_dem() {
     assert_eq!(desk.run(&chain), desk.run(&["plan", "map.toml", "-o", "-"]));
 }
 
-/// Over several hops no effort reads as the speed of one, and the document keeps the names of the efforts.
+/// Over several hops, the text names an effort as a sum or a maximum; the document keeps the names of the efforts.
 #[test]
-fn efforts_are_said_to_be_sums_or_the_largest() {
+fn texts_name_efforts_as_sums_or_maxima() {
     let desk = Desk::new();
     let said = [
         ("takeoff-speed", "sum of take-off speeds", "m/s"),

@@ -1,4 +1,4 @@
-//! Bad input at the command line: status 2, one sentence with the place, nothing on standard output, no file touched.
+//! Bad input at the command line: status 2, one sentence with the position, nothing on standard output, no file changed.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 
@@ -13,7 +13,7 @@ use crate::desk::{Desk, SCENARIO};
 const EXPLICIT_HEADER: &str =
     "takeoff_min_deg,takeoff_max_deg,takeoff_speed_max_m_s,landing_min_deg,landing_max_deg,landing_speed_max_m_s";
 
-/// A chain CSV, and what the refusal says of it.
+/// A chain CSV, and words of its refusal.
 fn bad_chains() -> Vec<(String, Vec<&'static str>)> {
     let surface = |rows: &str| format!("x_m,z_m,friction_coefficient\n{rows}");
     let explicit = |rows: &str| format!("x_m,z_m,{EXPLICIT_HEADER}\n{rows}");
@@ -87,7 +87,7 @@ fn a_line_of_200_megabytes_is_refused_within_seconds() {
         [("long.csv", "x_m,z_m\n0,0\n1"), ("long.asc", "ncols 2\nnrows 2\nxllcorner 0\nyllcorner 0\ncellsize 1\n1 ")]
     {
         desk.write(name, beginning);
-        // Sparse: the rest reads as zero bytes.
+        // A sparse file: the rest reads as zero bytes.
         OpenOptions::new().write(true).open(desk.path().join(name)).unwrap().set_len(200_000_000).unwrap();
     }
     let began = Instant::now();
@@ -95,7 +95,7 @@ fn a_line_of_200_megabytes_is_refused_within_seconds() {
     desk.refused(&["slice", "long.asc", "--from", "0,0", "--to", "1,1"], &["long.asc"]);
     fs::rename(desk.path().join("long.csv"), desk.path().join("long.toml")).unwrap();
     desk.refused(&["run", "long.toml", "-o", "out"], &["long.toml: cannot be read (200000000 bytes)", "some kilobytes"]);
-    // Generous, for a busy machine: reading it as numbers would take minutes.
+    // A large margin for a busy machine: parsing it as numbers would take minutes.
     assert!(began.elapsed() < Duration::from_secs(20), "took {:?}", began.elapsed());
 }
 
@@ -110,7 +110,7 @@ fn a_truncated_tiff_is_refused_wherever_it_is_cut() {
 }
 
 #[test]
-fn places_off_the_chain_and_the_map_are_refused_with_the_reach() {
+fn positions_off_the_chain_and_the_map_are_refused_with_the_valid_range() {
     let desk = Desk::with_dem();
     let reach = "which reaches from 0 to 40 m: choose a point between";
     desk.refused(&["plan", "scenario.toml", "--start", "-5"], &["--start: x = -5 m is off the chain", reach]);
@@ -137,7 +137,7 @@ fn places_off_the_chain_and_the_map_are_refused_with_the_reach() {
 }
 
 #[test]
-fn the_ends_may_be_missing_nowhere() {
+fn missing_start_and_goal_are_refused_by_every_command() {
     let desk = Desk::new();
     let common = ["chain.csv", "--body", "mars", "--set", "surface.friction_coefficient=0.6"];
     let speeds = ["--set", "hopper.takeoff_speed_max_m_s=9", "--set", "hopper.landing_speed_max_m_s=9"];
@@ -155,7 +155,7 @@ fn the_ends_may_be_missing_nowhere() {
 }
 
 #[test]
-fn options_that_say_nothing_sensible_are_refused_by_name() {
+fn invalid_values_of_options_are_refused_by_name() {
     let desk = Desk::new();
     let cases: [(&[&str], &[&str]); 17] = [
         (&["--gravity-m-s2", "0"], &["--gravity-m-s2: body.gravity_m_s2 is 0.0, expected a number from 1e-9 to 1000"]),
@@ -199,7 +199,7 @@ fn options_that_say_nothing_sensible_are_refused_by_name() {
 }
 
 #[test]
-fn synth_and_slice_refuse_what_makes_no_terrain() {
+fn synth_and_slice_refuse_invalid_terrain() {
     let desk = Desk::with_dem();
     desk.refused(&["synth", "-o", "ground.png"], &["-o ground.png: found no known extension, expected .tif (GeoTIFF) or .asc"]);
     for (option, value, part) in [
@@ -278,19 +278,19 @@ const WRITING: [&[&str]; 7] = [
 
 #[cfg(target_os = "linux")]
 #[test]
-fn a_full_disk_is_told_for_standard_output_and_for_files() {
+fn a_full_disk_is_reported_for_standard_output_and_for_files() {
     let desk = Desk::with_dem();
     for args in WRITING {
         let full = OpenOptions::new().write(true).open("/dev/full").unwrap();
         let mut command = Command::new(env!("CARGO_BIN_EXE_chta"));
         let output = command.current_dir(desk.path()).args(args).stdout(full).stderr(Stdio::piped()).output().unwrap();
-        let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!(output.status.code(), Some(2), "{args:?}: {told}");
-        assert!(told.starts_with("error: standard output: cannot be written (No space left on device"), "{args:?}: {told}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{args:?}: {message}");
+        assert!(message.starts_with("error: standard output: cannot be written (No space left on device"), "{args:?}: {message}");
     }
-    let told = "/dev/full: cannot be written (No space left on device";
-    desk.refused(&["plan", "scenario.toml", "-o", "/dev/full"], &[told]);
-    desk.refused(&["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "-o", "/dev/full"], &[told]);
+    let message = "/dev/full: cannot be written (No space left on device";
+    desk.refused(&["plan", "scenario.toml", "-o", "/dev/full"], &[message]);
+    desk.refused(&["slice", "ground.tif", "--from", "1,1", "--to", "9,9", "-o", "/dev/full"], &[message]);
 }
 
 #[test]
@@ -319,7 +319,7 @@ fn a_pipe_can_be_read_where_a_file_is_expected() {
 }
 
 #[test]
-fn all_problems_of_a_scenario_are_told_at_once_with_line_and_column() {
+fn all_problems_of_a_scenario_are_reported_at_once_with_line_and_column() {
     let desk = Desk::new();
     let bad = "body = 3\n[hoper]\nmass_kg = 1\n[surface]\nfriction_coefficient = -1\ntakeoff_from_slope_deg = [3]\n\
                [terrain]\ndem = \"a.tif\"\nchain = \"b.csv\"\n[nothing]\n[search]\neffort = \"fun\"\npoints_per_segment = 1.5\n\
@@ -341,15 +341,15 @@ fn all_problems_of_a_scenario_are_told_at_once_with_line_and_column() {
     ];
     for command in [&["run", "bad.toml", "-o", "out"][..], &["plan", "bad.toml"], &["hop", "bad.toml"], &["check", "bad.toml"]] {
         desk.refused(command, &parts);
-        let told = desk.run(command).stderr;
-        assert_eq!(told.matches("error: ").count(), parts.len(), "another number of problems:\n{told}");
-        let places: Vec<_> = parts.iter().map(|part| told.find(part).unwrap()).collect();
-        assert!(places.is_sorted(), "not in the order of the file:\n{told}");
+        let message = desk.run(command).stderr;
+        assert_eq!(message.matches("error: ").count(), parts.len(), "another number of problems:\n{message}");
+        let places: Vec<_> = parts.iter().map(|part| message.find(part).unwrap()).collect();
+        assert!(places.is_sorted(), "not in the order of the file:\n{message}");
     }
 }
 
 #[test]
-fn one_fault_of_a_scenario_tells_one_problem() {
+fn one_fault_of_a_scenario_gives_one_problem() {
     let desk = Desk::new();
     let cases = [
         ("name = \"mars\"", "name = \"marz\"", "bad.toml:2:8: body.name is \"marz\"", "the nearest known name is mars"),
@@ -369,13 +369,13 @@ fn one_fault_of_a_scenario_tells_one_problem() {
         assert!(SCENARIO.contains(right), "{right}");
         desk.write("bad.toml", SCENARIO.replacen(right, wrong, 1));
         desk.refused(&["run", "bad.toml", "-o", "out"], &[place, part]);
-        let told = desk.run(&["run", "bad.toml", "-o", "out"]).stderr;
-        assert_eq!(told.matches("error: ").count(), 1, "{wrong}:\n{told}");
+        let message = desk.run(&["run", "bad.toml", "-o", "out"]).stderr;
+        assert_eq!(message.matches("error: ").count(), 1, "{wrong}:\n{message}");
     }
 }
 
 #[test]
-fn a_misspelt_key_is_told_the_nearest_or_those_of_its_table() {
+fn a_misspelt_key_gives_the_nearest_key_or_those_of_its_table() {
     let desk = Desk::new();
     let nearest = [
         ("surface.friktion", "surface.friction_coefficient"),
@@ -404,9 +404,9 @@ fn a_misspelt_key_is_told_the_nearest_or_those_of_its_table() {
     );
 }
 
-/// No rows of zeros and no rounding residue in sentences; documents keep all digits.
+/// Numbers in sentences have no rows of zeros and no rounding residue; documents keep all digits.
 #[test]
-fn numbers_in_sentences_have_the_digits_that_help() {
+fn numbers_in_sentences_are_short() {
     let desk = Desk::with_dem();
     desk.refused(&["check", "scenario.toml", "--set", "hopper.clearance_m=1e300"], &["hopper.clearance_m is 1e300, expected"]);
     desk.refused(&["check", "scenario.toml", "--set", "hopper.mass_kg=1e-300"], &["hopper.mass_kg is 1e-300, expected"]);

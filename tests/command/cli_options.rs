@@ -1,4 +1,4 @@
-//! Every option of every command does something, or is refused; every help text says what it is good for, and its example runs.
+//! Every option of every command has an effect or is refused; every help text explains its option, and its example runs.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 #![allow(clippy::print_stderr, reason = "a skipped example says why")]
@@ -13,11 +13,11 @@ use crate::desk::{CHAIN, Desk, FORWARD_ONLY, Ran};
 const COMMANDS: [&str; 12] =
     ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "simulate", "synth", "bodies"];
 
-/// Options that need a projected map, tried in `maps_command.rs`.
+/// Options that need a projected map, tested in `maps_command.rs`.
 const ON_A_PROJECTED_MAP: [&str; 6] =
     ["--from-lonlat", "--to-lonlat", "--via-lonlat", "--start-lonlat", "--goal-lonlat", "--accept-map-scale"];
 
-/// Options that must change nothing but the time it takes, tried below and in `trade_compare.rs`.
+/// Options that change only the run time, tested below and in `trade_compare.rs`.
 const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
 
 /// An option, a command line without it, and one with it.
@@ -298,7 +298,7 @@ const PLAN: [Trial; 18] = [
     ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-/// A question that other options change.
+/// A base case for several options.
 const REQUIRED: [&str; 10] =
     ["require", "scenario.toml", "--vary", "surface.friction_coefficient", "--from", "0.03", "--to", "2", "--resolution", "0.05"];
 
@@ -694,7 +694,7 @@ const COMPARE: [Trial; 7] = [
     ),
 ];
 
-/// Ground with all there is on it, small enough for a test.
+/// Ground with all overlays, small enough for a test.
 const SIMULATE: [Trial; 22] = [
     ("--start", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--start", "10"]),
     ("--goal", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--goal", "30"]),
@@ -740,7 +740,7 @@ const SIMULATE: [Trial; 22] = [
     ),
 ];
 
-/// Errors for trials.
+/// Errors of execution for trials.
 const ERRORS: &str =
     "\n[uncertainty]\ntakeoff_speed_sigma_fraction = 0.01\ndrift_along_sigma_m = 0.1\ngoal_tolerance_m = 2.0\ntrials = 200\n";
 
@@ -777,7 +777,7 @@ const SYNTH: [&str; 30] = [
     "6",
 ];
 
-/// Values for the options of `synth`, each other than the one in [`SYNTH`] or the default.
+/// Values for the options of `synth`, all different from those in [`SYNTH`] and from the defaults.
 const SYNTH_OPTIONS: [(&str, &str); 26] = [
     ("--output", "other.asc"),
     ("--seed", "2"),
@@ -812,7 +812,7 @@ fn desk() -> Desk {
     desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
     desk.write("forward.csv", FORWARD_ONLY);
     desk.write("errors.toml", desk.read("scenario.toml") + ERRORS);
-    // Walls too steep to rest on around a pit: what it takes to cross it is found by splitting cells.
+    // Walls too steep to rest on around a pit: the least capability to cross it is found by splitting cells.
     desk.write("pit.csv", "x_m,z_m\n0,0\n10,0\n11,-3\n20,-3\n21,0\n40,0\n");
 
     desk.write(
@@ -822,13 +822,13 @@ fn desk() -> Desk {
     desk
 }
 
-/// What a user sees of a run: status, both streams, every file.
+/// The visible results of a run: status, both streams, every file.
 fn seen(args: &[&str]) -> (Ran, BTreeMap<String, (u64, Vec<u8>)>) {
     let desk = desk();
     (desk.run(args), desk.files())
 }
 
-/// The long options that a command's help lists.
+/// The long options in a command's help.
 fn options(command: &str) -> BTreeSet<String> {
     let help = desk().run(&[command, "--help"]).stdout;
     let long = |line: &str| {
@@ -839,7 +839,7 @@ fn options(command: &str) -> BTreeSet<String> {
 }
 
 #[test]
-fn every_option_changes_what_one_sees() {
+fn every_option_changes_the_output() {
     let all = [
         ("run", &RUN[..]),
         ("slice", &SLICE),
@@ -907,7 +907,7 @@ fn every_option_of_synth_changes_the_ground() {
     assert!(before == ground(base), "the same options give the same bytes");
     for (option, value) in SYNTH_OPTIONS.into_iter().chain([("--boulder-burial", "0.6")]) {
         let mut with = base.to_vec();
-        // In place of the value it has, or behind.
+        // In place of the present value, or appended.
         let short = if option == "--output" { "-o" } else { option };
         match with.iter().position(|known| *known == short) {
             Some(at) => with[at + 1] = value,
@@ -930,7 +930,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
         let ran = desk.run(&[command, "--help"]);
         assert_eq!((ran.status, ran.stderr.as_str()), (0, ""));
         assert!(ran.stdout.contains("Example:\n  chta "), "{command}: no example");
-        // One block per option: its own line and all that is said below it.
+        // One block per option: its own line and its description below.
         let mut blocks: Vec<String> = Vec::new();
         for paragraph in ran.stdout.split("\n\n").skip_while(|paragraph| !paragraph.starts_with("Options:")) {
             let paragraph = paragraph.trim_start_matches("Options:\n");
@@ -966,13 +966,13 @@ fn every_help_text_shows_units_defaults_and_an_example() {
             .contains(&name.as_str());
             assert!(
                 !takes_value || required || writes || one_line.contains("[default: "),
-                "{command} {name} tells no default: {one_line}"
+                "{command} {name} states no default: {one_line}"
             );
         }
     }
 }
 
-/// The example of a command's help, as words.
+/// The example in a command's help, split into words.
 fn example(command: &str) -> Vec<String> {
     let help = desk().run(&[command, "--help"]).stdout;
     let line = help.split("Example:\n  chta ").nth(1).unwrap().lines().next().unwrap().to_owned();

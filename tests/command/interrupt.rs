@@ -1,4 +1,4 @@
-//! Ctrl-C: what was there stays as it was, and nothing half-written lies beside it.
+//! Ctrl-C: existing files are unchanged, and no incomplete file is left.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 
@@ -16,7 +16,7 @@ fn names(desk: &Desk) -> BTreeSet<String> {
     fs::read_dir(desk.path()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }
 
-/// Interrupts a map of many seconds as soon as its files are begun.
+/// Interrupts a map of many seconds as soon as its files have been created.
 fn interrupted_by(signal: &str) {
     let desk = Desk::new();
     assert_eq!(desk.run(&["synth", "--rows", "700", "--cols", "700", "-o", "ground.tif"]).status, 0);
@@ -31,7 +31,7 @@ fn interrupted_by(signal: &str) {
         .stderr(Stdio::null())
         .spawn()
         .unwrap();
-    // Files are begun before the work: the interrupt falls into it.
+    // Files are created before the computation, so the interrupt comes during it.
     while names(&desk).iter().filter(|name| name.starts_with(".chta-")).count() < 2 {
         assert_eq!(map.try_wait().unwrap(), None, "ended before it could be interrupted");
         thread::sleep(Duration::from_millis(5));
@@ -43,11 +43,11 @@ fn interrupted_by(signal: &str) {
 }
 
 fn send(signal: &str, process: &Child) {
-    // The shell's own kill: not every machine has a program of that name.
+    // The shell's builtin `kill`: not every machine has the program.
     assert!(Command::new("sh").args(["-c", &format!("kill {signal} {}", process.id())]).status().unwrap().success());
 }
 
-/// A command that waits for a reader of the pipe that it writes to: it reports nothing.
+/// A command that waits for a reader of the pipe that it writes to, so it reports no progress.
 fn waiting_for_a_reader(desk: &Desk) -> Child {
     assert!(Command::new("mkfifo").arg("pipe.asc").current_dir(desk.path()).status().unwrap().success());
     let waiting = Command::new(env!("CARGO_BIN_EXE_chta"))
@@ -78,14 +78,14 @@ fn a_second_interrupt_ends_the_program_at_once() {
     let mut waiting = waiting_for_a_reader(&desk);
     send("-INT", &waiting);
     thread::sleep(Duration::from_millis(50));
-    // It may have ended of the first one where the machine is busy.
+    // On a busy machine the first one may already have ended it.
     if waiting.try_wait().unwrap().is_none() {
         send("-INT", &waiting);
     }
     assert_eq!(waiting.wait().unwrap().code(), Some(130));
 }
 
-/// Every command with a long stage: on an interrupt it ends with 130 and prints no answer.
+/// Every command with a long stage: an interrupt ends it with status 130 and without a result.
 #[test]
 fn an_interrupted_command_prints_no_answer() {
     let desk = Desk::new();
@@ -113,9 +113,9 @@ fn an_interrupted_command_prints_no_answer() {
         thread::sleep(Duration::from_millis(400));
         send("-INT", &command);
         let ended = command.wait_with_output().unwrap();
-        let told = String::from_utf8_lossy(&ended.stderr);
-        assert_eq!(ended.status.code(), Some(130), "{words:?}: {told}");
-        assert_eq!((ended.stdout.len(), told.as_ref()), (0, ""), "{words:?}");
+        let message = String::from_utf8_lossy(&ended.stderr);
+        assert_eq!(ended.status.code(), Some(130), "{words:?}: {message}");
+        assert_eq!((ended.stdout.len(), message.as_ref()), (0, ""), "{words:?}");
     }
 }
 

@@ -9,7 +9,7 @@ use crate::desk::Desk;
 use chta::terrain::{Dem, read_dem};
 use serde_json::Value;
 
-/// Level ground of 30 x 20 posts of 1 m with a wall of steep posts across, but for a gap in the north, and a hole in the
+/// Level ground of 30 x 20 posts of 1 m with a wall of steep posts across it, a gap in the wall in the north, and a hole in the
 /// south-east.
 fn walled() -> Desk {
     let desk = Desk::new();
@@ -41,7 +41,7 @@ fn hops_at(dem: &Dem, x: f64, y: f64) -> Option<f64> {
 }
 
 #[test]
-fn the_document_and_the_raster_say_the_same() {
+fn the_document_and_the_raster_agree() {
     let desk = walled();
     let goals = ["--goal", "127.2,205.4", "--goal", "114,205", "-o", "hops.tif", "--return", "--return-output", "back.tif"];
     let document = desk.json(&[&MAP[..], &goals].concat());
@@ -61,7 +61,7 @@ fn the_document_and_the_raster_say_the_same() {
         assert_eq!(*posts, count(&|found| found == hops), "{hops} hops");
     }
     assert_eq!(document["farthest_hops"].as_u64(), Some(histogram.len() as u64 - 1));
-    // Right across the wall lies the way through the gap; the wall itself is too steep.
+    // The path to the other side of the wall leads through the gap; the wall itself is too steep.
     let [behind, wall] = [&document["goals"][0], &document["goals"][1]];
     assert_eq!((behind["x_m"].as_f64(), behind["y_m"].as_f64()), (Some(127.0), Some(205.0)));
     assert!((behind["offset_m"].as_f64().unwrap() - 0.2f64.hypot(0.4)).abs() < 1e-9);
@@ -73,14 +73,14 @@ fn the_document_and_the_raster_say_the_same() {
     let back = read_dem(&desk.path().join("back.tif")).unwrap();
     assert!(back.elevations().eq(raster.elevations()));
     assert_eq!(document["return"]["round_trip_posts"], document["reachable_posts"]);
-    // 20 x 30 posts: the border's reachable ones are those that are no wall and no hole.
+    // 20 x 30 posts: the reachable posts of the border are those outside wall and hole.
     let on_border = |row: usize, col: usize| row == 0 || col == 0 || row == 19 || col == 29;
     let at_border = (0..600).filter(|i| on_border(i / 30, i % 30) && counted[*i].is_some_and(|hops| hops >= 0.0)).count();
     assert_eq!(document["reachable_posts_at_border"].as_u64(), Some(at_border as u64));
     assert!(document["reachable_posts_at_no_data"].as_u64() > Some(5));
 }
 
-/// Every edge of a path, taken to `chta slice` and `chta hop`, is the hop that the map gives.
+/// Every edge of a path gives the hop of the map when it is recomputed with `chta slice` and `chta hop`.
 #[test]
 fn every_hop_of_a_path_is_confirmed_by_slice_and_hop() {
     let desk = walled();
@@ -119,7 +119,7 @@ fn every_hop_of_a_path_is_confirmed_by_slice_and_hop() {
 }
 
 #[test]
-fn the_effort_of_a_map_is_said_to_be_a_sum() {
+fn the_text_names_the_effort_of_a_map_as_a_sum() {
     let desk = walled();
     for (effort, words) in [("takeoff-speed", "sum of take-off speeds"), ("peak-speed", "largest take-off speed")] {
         let words = format!("\n{words}: at most ");
@@ -183,9 +183,9 @@ fn exit_status_is_1_where_a_goal_is_out_of_reach_and_2_with_a_sentence_for_bad_i
     desk.refused(&[&MAP[..], &["--effort", "cheer"]].concat(), &["--effort", "takeoff-speed"]);
 }
 
-/// A DEM has no columns: what is missing is named by its keys, all at once, with the options that give it.
+/// A DEM has no columns, so missing limits are named by their keys, all at once, with the options that set them.
 #[test]
-fn what_a_scenario_lacks_for_a_map_is_named_by_its_keys() {
+fn missing_keys_of_a_map_are_named() {
     let desk = walled();
     let bare = ["walled.asc", "--body", "moon"];
     let speeds = "no hopper.takeoff_speed_max_m_s, no hopper.landing_speed_max_m_s";
@@ -195,7 +195,7 @@ fn what_a_scenario_lacks_for_a_map_is_named_by_its_keys() {
         let words = [command, &bare[..]].concat();
         desk.refused(&words, &[speeds, "surface.friction_coefficient (or surface.takeoff_from_slope_deg", options]);
         assert!(!desk.run(&words).stderr.contains("segment"), "{words:?}");
-        // What the sentence names mends it.
+        // The options in the message solve the problem.
         let sets: Vec<&str> = options.split(' ').collect();
         assert_eq!(desk.run(&[&words[..], &sets].concat()).status, 0);
     }
@@ -206,21 +206,21 @@ fn what_a_scenario_lacks_for_a_map_is_named_by_its_keys() {
     );
     let given = desk.run(&["map", "walled.asc", "--start", "102,205", "--scenario", "grip.toml"]).stderr;
     assert!(!given.contains("surface"), "{given}");
-    // A scenario in place of the DEM, whatever it says.
+    // A scenario in place of the DEM, with any content.
     desk.refused(&["map", "grip.toml", "--start", "1,1"], &["grip.toml: found a scenario", "--scenario grip.toml"]);
     desk.refused(&["fan", "grip.toml", "--from", "1,1", "--length", "3"], &["grip.toml: found a scenario"]);
 }
 
 #[test]
-fn one_hop_is_no_hops() {
+fn one_hop_is_written_in_the_singular() {
     let desk = walled();
     let near = desk.run(&[&MAP[..], &["--goal", "103,205", "--return"]].concat());
     assert!(near.stdout.contains("asked for: 1 hop, 1 hop back\n"), "{}", near.stdout);
 }
 
-/// Friction and zones that touch nothing of the DEM or the transect are no silent success.
+/// Friction and zones without effect on the DEM or the transect give a warning.
 #[test]
-fn covers_without_effect_are_told() {
+fn overlays_without_effect_give_warnings() {
     let desk = walled();
     let raster = |west: f64, values: &str| format!("ncols 2\nnrows 2\nxllcorner {west}\nyllcorner 189\ncellsize 20\n{values}\n");
     desk.write("far.asc", raster(900.0, "0.3 0.3\n0.3 0.3"));
@@ -251,17 +251,17 @@ fn covers_without_effect_are_told() {
             [(&MAP[..], over_dem), (&fan, over_dem), (&["plan", "journey.toml"], along), (&["simulate", "journey.toml"], along)];
         for (command, expected) in commands {
             let words = [command, &["--set", &set]].concat();
-            let told = desk.run(&words).stderr;
+            let output = desk.run(&words).stderr;
             let warnings = desk.json(&words)["warnings"].to_string();
             match expected {
                 Some((what, place)) => {
                     let said = format!("{what} {place}");
                     assert!(
-                        told.matches(&said).count() == 1 && warnings.matches(&said).count() == 1,
-                        "{words:?}: {told}{warnings}"
+                        output.matches(&said).count() == 1 && warnings.matches(&said).count() == 1,
+                        "{words:?}: {output}{warnings}"
                     );
                 }
-                None => assert!(!told.contains(file) && !warnings.contains(file), "{words:?}: {told}{warnings}"),
+                None => assert!(!output.contains(file) && !warnings.contains(file), "{words:?}: {output}{warnings}"),
             }
         }
     }
@@ -283,9 +283,9 @@ fn a_result_repeats_with_its_terrain_and_says_so_without() {
 }
 
 #[test]
-fn what_refuses_start_or_goal_is_said() {
+fn the_refusal_of_a_start_or_goal_is_reported() {
     let desk = walled();
-    // On the wall's flank, 30 m up over 1 m.
+    // On the flank of the wall, which rises by 30 m over 1 m.
     let document = desk.json(&["map", "walled.asc", "--start", "114,205", "--goal", "102,205", "--scenario", "hopper.toml"]);
     let warnings = document["warnings"].as_array().unwrap();
     assert_eq!(warnings.len(), 1, "{warnings:?}");
@@ -301,7 +301,7 @@ fn what_refuses_start_or_goal_is_said() {
     assert!(ran.stderr.contains("the start's post (102.000, 205.000) m lies in a keep-out zone"), "{}", ran.stderr);
 }
 
-/// Whatever the command: never over what it reads, under whatever name, and no two answers into one file.
+/// No command overwrites a file that it reads, under any name, or writes two results to one file.
 #[test]
 fn no_file_is_written_over_another() {
     let desk = walled();
@@ -317,7 +317,7 @@ fn no_file_is_written_over_another() {
     );
     desk.refused(&["plan", "scenario.toml", "--plot", "a.svg", "-o", "a.svg"], &["a.svg", "two answers"]);
     desk.refused(&["plan", "scenario.toml", "-o", "chain.csv"], &["chain.csv", "reads the file"]);
-    // A run writes a chain.csv of its own; its result may be repeated into its own place.
+    // A run writes its own chain.csv; a result may be repeated into its own folder.
     desk.refused(&["run", "scenario.toml", "-o", "."], &["chain.csv", "reads the file"]);
     assert_eq!(desk.run(&["run", "scenario.toml", "-o", "out"]).status, 0);
     let result = desk.read("out/result.json");
@@ -332,7 +332,7 @@ fn a_stride_lands_on_fewer_posts_over_the_same_terrain() {
     let desk = walled();
     let document = desk.json(&[&MAP[..], &["--stride", "3", "-o", "hops.tif", "--mobility", "m.tif"]].concat());
     assert_eq!((document["posts"].as_u64(), document["stride"].as_u64()), (Some(70), Some(3)));
-    // The nodes are those of rows 0, 3, .. from the north: the nearest to (102, 205) is (103, 204) or nearer.
+    // The nodes are at rows 0, 3, .. from the north: the nearest to (102, 205) is (103, 204) or nearer.
     let raster = read_dem(&desk.path().join("hops.tif")).unwrap();
     assert_eq!((raster.rows(), raster.cols()), (7, 10));
     let map = raster.georeference();
@@ -348,14 +348,14 @@ fn mobility_counts_the_disc_and_its_directions() {
     let document = desk.json(&[&MAP[..], &["--mobility", "m.tif"]].concat());
     let mobility = &document["mobility"];
     assert!((mobility["disc_radius_m"].as_f64().unwrap() - 2.5 * 2.5 / 1.624).abs() < 0.01, "{mobility}");
-    // Posts at the border have a part of their disc only, so the best is one of them.
+    // Posts at the border have only a part of their disc, so the best post is one of them.
     assert!(mobility["best_directions"].as_f64() >= Some(5.0), "{mobility}");
     assert!(mobility["best_share"].as_f64() <= Some(1.0), "{mobility}");
     assert!(mobility["mean_share"].as_f64() < mobility["best_share"].as_f64());
 }
 
 #[test]
-fn pictures_are_whole_and_of_the_kind_their_name_says() {
+fn pictures_are_complete_and_of_the_format_of_their_extension() {
     let desk = walled();
     let ran = desk.run(&[&MAP[..], &["--goal", "127,205", "--plot", "map.svg", "--profiles", "hops.svg", "--quiet"]].concat());
     assert_eq!(ran.status, 0, "{}", ran.stderr);
@@ -367,18 +367,18 @@ fn pictures_are_whole_and_of_the_kind_their_name_says() {
     assert!(fs::read(desk.path().join("map.png")).unwrap().starts_with(b"\x89PNG\r\n"));
 }
 
-/// What GDAL says of a file; `None` with a reason where it is not installed.
+/// The output of gdalinfo; `None` with a printed reason if it is not installed.
 fn gdal_says(file: &Path) -> Option<Value> {
-    let Ok(told) = Command::new("gdalinfo").args(["-json"]).arg(file).output() else {
+    let Ok(output) = Command::new("gdalinfo").args(["-json"]).arg(file).output() else {
         eprintln!("skipped: gdalinfo is not installed");
         return None;
     };
-    assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
-    Some(serde_json::from_slice(&told.stdout).unwrap())
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(serde_json::from_slice(&output.stdout).unwrap())
 }
 
 #[test]
-fn gdal_sees_place_reference_system_and_no_data_of_the_input() {
+fn gdal_reads_position_reference_system_and_no_data_of_the_input() {
     let input = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem/lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif");
     if !input.exists() {
         eprintln!("skipped: {} is absent", input.display());
@@ -387,7 +387,7 @@ fn gdal_sees_place_reference_system_and_no_data_of_the_input() {
     let desk = walled();
     let file = input.to_str().unwrap();
     let outputs = ["-o", "hops.tif", "--effort", "--effort-output", "effort.tif", "--mobility", "mobility.tif"];
-    // At 2 m/s a hop spans no post, so that only the start is reachable and the files are quickly made.
+    // At 2 m/s no hop spans a post, so only the start is reachable and the files are created quickly.
     let speeds = ["--set", "hopper.takeoff_speed_max_m_s=3", "--set", "hopper.landing_speed_max_m_s=3"];
     let ran = desk.run(&[&["map", file, "--start", "76000,39000", "--scenario", "hopper.toml"][..], &outputs, &speeds].concat());
     assert_eq!(ran.status, 0, "{}", ran.stderr);

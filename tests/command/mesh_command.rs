@@ -59,7 +59,7 @@ fn slices_of_meshes_are_chains_with_their_scale_and_warnings() {
 }
 
 #[test]
-fn what_is_wrong_with_a_mesh_is_one_sentence_and_status_two() {
+fn a_faulty_mesh_gives_one_sentence_and_status_two() {
     let directory = tempfile::tempdir().unwrap();
     let cut = directory.path().join("cut.stl");
     let mut bytes = vec![0; 84];

@@ -1,7 +1,7 @@
-//! Both real DEMs from `chta run` to path and picture, for several transects, reachable and not.
+//! Both real DEMs from `chta run` to path and picture, for several transects with and without a path.
 //!
-//! The files are read from ../shared/dem and skipped with a printed reason where they are absent; the same kinds of file and slope
-//! are covered by made-up terrain in `shipped_scenarios.rs` and `terrain_files.rs`.
+//! The files are read from ../shared/dem; a test without its file prints why it is skipped. The same kinds of files and slopes are
+//! tested with synthetic terrain in `shipped_scenarios.rs` and `terrain_files.rs`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot run the program should stop")]
 
@@ -10,7 +10,7 @@ use std::{fs, path::PathBuf};
 use assert_cmd::Command;
 use serde_json::Value;
 
-/// One transect and what is known of its answer.
+/// One transect and its expected result.
 struct Transect {
     from: [f64; 2],
     to: [f64; 2],
@@ -52,19 +52,19 @@ fn run_all(dem: &str, body: &str, spacing_m: f64, transects: &[Transect]) {
         .unwrap();
         let out = folder.path().join("out");
         let output = Command::cargo_bin("chta").unwrap().arg("run").arg(&scenario).arg("-o").arg(&out).output().unwrap();
-        let told = String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout);
-        assert_eq!(output.status.code(), Some(*status), "transect {i} of {}: {told}", dem.display());
+        let message = String::from_utf8_lossy(&output.stderr).into_owned() + &String::from_utf8_lossy(&output.stdout);
+        assert_eq!(output.status.code(), Some(*status), "transect {i} of {}: {message}", dem.display());
 
         let result: Value = serde_json::from_str(&fs::read_to_string(out.join("result.json")).unwrap()).unwrap();
         let svg = fs::read_to_string(out.join("path.svg")).unwrap();
-        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "transect {i}: no whole picture");
+        assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "transect {i}: an incomplete picture");
         let chain = fs::read_to_string(out.join("chain.csv")).unwrap();
         assert!(chain.lines().filter(|line| !line.starts_with('#')).count() > 20, "transect {i}: a short chain");
         let length_m = (to[0] - from[0]).hypot(to[1] - from[1]);
         if *status == 0 {
             let hops = result["path"].as_array().unwrap();
             assert_eq!(result["verified"], true, "transect {i}: not flown again");
-            // At 10 m/s no hop carries farther than v^2 / g and a little for falling ground.
+            // At 10 m/s the range of a hop is v^2 / g, plus some on falling ground.
             assert!(
                 f64::from(u32::try_from(hops.len()).unwrap()) >= (length_m / 75.0).ceil(),
                 "transect {i}: only {} hops over {length_m} m",
@@ -81,7 +81,7 @@ fn run_all(dem: &str, body: &str, spacing_m: f64, transects: &[Transect]) {
         } else {
             let refused = !result["endpoint_refusals"].as_array().unwrap().is_empty();
             let stopped = result["frontier"].is_object();
-            assert!(refused != stopped, "transect {i}: no reason, or two: {result}");
+            assert!(refused != stopped, "transect {i}: not exactly one reason: {result}");
         }
     }
 }

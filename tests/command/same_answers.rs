@@ -1,6 +1,6 @@
 //! `.ci/same_answers`: its commands use every subcommand with every option, and it finds a planted change of one byte.
 //!
-//! It needs python3 and a Unix shell; where python3 is absent, the tests print why they skip.
+//! It needs python3 and a Unix shell; without python3 the tests print why they are skipped.
 
 #![cfg(all(feature = "cli", unix))]
 #![allow(clippy::unwrap_used, reason = "a test that cannot run the program should stop")]
@@ -10,7 +10,7 @@ use std::process::Command;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_chta");
 
-/// What the script prints, if python3 is there to run it.
+/// The output of the script; `None` without python3.
 fn same_answers(arguments: &[&str]) -> Option<String> {
     if Command::new("python3").arg("--version").output().is_err() {
         println!("skipped: no python3 to run .ci/same_answers with");

@@ -1,7 +1,7 @@
-//! Sentences of the library name keys and facts, never options of the command; and no decision is made on a sentence.
+//! Messages of the library name keys and facts, never options of the command; and no code decides by the text of a message.
 //!
-//! Both are looked for in the sources, without their tests: options and commands in the text and the documentation of everything
-//! outside `src/cli`, decisions in the code of all of `src`.
+//! Both are checked in the sources without their tests: options and commands in the text and documentation of everything outside
+//! `src/cli`, decisions in all code of `src`.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot read the sources should stop")]
 
@@ -18,19 +18,19 @@ fn sources() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-/// A Rust source, taken apart. Each part keeps its line, from 1.
+/// A parsed Rust source. Each part keeps its line, from 1.
 #[derive(Debug, Default)]
 struct Source {
-    /// String literals, lines that are joined by a backslash in one.
+    /// String literals; lines continued by a backslash are joined.
     literals: Vec<(usize, String)>,
     /// Lines of documentation.
     docs: Vec<(usize, String)>,
-    /// The code, every literal empty and every comment gone, with the lines kept.
+    /// The code with empty literals and without comments, line by line.
     code: String,
 }
 
 impl Source {
-    /// Takes a source apart.
+    /// Parses a source.
     fn parse(text: &str) -> Self {
         let chars: Vec<char> = text.chars().collect();
         let (mut source, mut at, mut line) = (Self::default(), 0, 1);
@@ -55,7 +55,7 @@ impl Source {
                 source.code.push_str("\"\"");
                 at = end;
             } else if chars[at] == '\'' && (chars.get(at + 1) == Some(&'\\') || chars.get(at + 2) == Some(&'\'')) {
-                // A character, not a lifetime: it ends at the next quote behind its first character.
+                // A character literal, not a lifetime: it ends at the next quote after its first character.
                 at += 2 + usize::from(chars[at + 1] == '\\');
                 at += chars[at..].iter().take_while(|&&c| c != '\'').count() + 1;
                 source.code.push_str("' '");
@@ -72,7 +72,7 @@ impl Source {
         source
     }
 
-    /// The same without modules that are compiled for tests alone.
+    /// The same without modules for tests.
     fn without_tests(mut self) -> Self {
         loop {
             let next = for_tests(&self.code).next().map(|(begin, _)| begin);
@@ -93,7 +93,7 @@ impl Source {
     }
 }
 
-/// The modules of a code that are compiled for tests alone: where each begins, with its attributes, and from its name on.
+/// The test modules of a code: for each, where it begins, including its attributes, and the text from its name on.
 fn for_tests(code: &str) -> impl Iterator<Item = (usize, &str)> {
     const ATTRIBUTE: &str = "#[cfg(test)]";
     code.match_indices(ATTRIBUTE).filter_map(|(begin, _)| {
@@ -110,7 +110,7 @@ fn line_of(text: &str, byte: usize) -> usize {
     text[..byte].matches('\n').count() + 1
 }
 
-/// The string literal that begins at a character, and where it ends.
+/// The string literal that begins at a character, and its end.
 fn string_at(chars: &[char], at: usize) -> Option<(String, usize)> {
     let is_name = |c: char| c.is_alphanumeric() || c == '_';
     let prefix = chars[at..].iter().take_while(|c| matches!(c, 'r' | 'b' | 'c')).count();
@@ -144,7 +144,7 @@ fn string_at(chars: &[char], at: usize) -> Option<(String, usize)> {
     }
 }
 
-/// All sources below a folder that are not for tests alone, by their path from there.
+/// All sources below a folder except those for tests, by their path from there.
 fn all_sources(folder: &Path) -> Vec<(PathBuf, Source)> {
     fn add(folder: &Path, files: &mut Vec<PathBuf>) {
         for entry in fs::read_dir(folder).unwrap() {
@@ -161,7 +161,7 @@ fn all_sources(folder: &Path) -> Vec<(PathBuf, Source)> {
     files.sort();
     let texts: Vec<_> = files.iter().map(|file| fs::read_to_string(file).unwrap()).collect();
     let parsed: Vec<_> = texts.iter().map(|text| Source::parse(text)).collect();
-    // Modules that another file declares for tests alone.
+    // Test modules that another file declares.
     let mut left_out = BTreeSet::new();
     for (file, source) in files.iter().zip(&parsed) {
         let is_root = file.file_stem().is_some_and(|stem| stem == "mod" || stem == "lib");
@@ -184,10 +184,10 @@ fn commands() -> Vec<String> {
     names.map(|name| name.split(['(', ',', ' ']).next().unwrap().to_lowercase()).collect()
 }
 
-/// Options of other programs, which a sentence may tell to run.
+/// Options of other programs, which a message may recommend.
 const FOREIGN: [(&str, &str); 3] = [("gdal_calc.py", "--outfile"), ("gdal_calc.py", "--calc"), ("cargo install", "--features")];
 
-/// The options that a text names, but those of other programs that it names before.
+/// The options in a text, except those of other programs named before them.
 fn options(text: &str) -> Vec<String> {
     let word = |c: char| c.is_ascii_lowercase() || c == '-' || c.is_ascii_digit();
     let named = text.match_indices("--").filter_map(|(at, _)| {
@@ -196,7 +196,7 @@ fn options(text: &str) -> Vec<String> {
             return None;
         }
         let rest = &text[at + 2..];
-        // The name may be filled in.
+        // The name may be a format argument.
         let name = &rest[..rest.find(|c| !word(c)).unwrap_or(rest.len())];
         let is_name = name.len() > 1 && !name.starts_with('-') && !name.contains("--") || rest.starts_with('{');
         let foreign = |(program, option): &(&str, &str)| text[..at].contains(program) && text[at..].starts_with(option);
@@ -205,13 +205,13 @@ fn options(text: &str) -> Vec<String> {
     named.collect()
 }
 
-/// The commands that a text tells to run.
+/// The commands that a text recommends.
 fn commands_in<'a>(text: &str, commands: &'a [String]) -> impl Iterator<Item = &'a String> {
     let words: Vec<String> = text.split(|c: char| !(c.is_alphanumeric() || c == '_')).map(str::to_owned).collect();
     commands.iter().filter(move |name| words.windows(2).any(|pair| pair[0] == "chta" && pair[1] == **name))
 }
 
-/// What a source outside `cli/` says of the command line, with its line.
+/// References to the command line in a source outside `cli/`, with their lines.
 fn of_the_command_line(source: &Source, commands: &[String]) -> Vec<(usize, String)> {
     let mut found = Vec::new();
     for (line, text) in &source.literals {
@@ -219,7 +219,7 @@ fn of_the_command_line(source: &Source, commands: &[String]) -> Vec<(usize, Stri
         found.extend(commands_in(text, commands).map(|name| (*line, format!("chta {name}"))));
     }
     for (line, text) in &source.docs {
-        // Documentation may speak about the command, by its name.
+        // Documentation may refer to the command by its name.
         if !text.contains("`chta ") {
             found.extend(options(text).into_iter().map(|option| (*line, option)));
         }
@@ -228,11 +228,11 @@ fn of_the_command_line(source: &Source, commands: &[String]) -> Vec<(usize, Stri
     found
 }
 
-/// What a sentence is called.
+/// Names of variables that hold a message.
 const SENTENCES: [&str; 13] =
     ["message", "sentence", "reason", "help", "hint", "warning", "doubt", "problem", "error", "err", "e", "refusal", "told"];
 
-/// What decides by the content of a text.
+/// Functions that decide by the content of a text.
 const DECISIONS: [&str; 9] = [
     ".contains(",
     ".starts_with(",
@@ -245,8 +245,8 @@ const DECISIONS: [&str; 9] = [
     ".eq_ignore_ascii_case(",
 ];
 
-/// The lines that decide by the text of a message: what `to_string` or `format!` gives, what is called a message or a problem, and
-/// variables that hold the text of one.
+/// The lines that decide by the text of a message: a result of `to_string` or `format!`, anything named as a message or a problem,
+/// and variables that hold the text of one.
 fn decisions(source: &Source) -> Vec<usize> {
     let code = &source.code;
     let mut names: BTreeSet<&str> = SENTENCES.into_iter().collect();
@@ -278,7 +278,7 @@ fn decisions(source: &Source) -> Vec<usize> {
     found.into_iter().collect()
 }
 
-/// Whether code ends in an expression that is a sentence, by its name or because it is made there.
+/// Whether code ends in an expression that is a message, by its name or because it is created there.
 fn is_sentence(code: &str, names: &BTreeSet<&str>) -> bool {
     let name = code.rsplit(|c: char| !(c.is_alphanumeric() || c == '_')).next().unwrap_or_default();
     names.contains(name) || is_made_text(code)
@@ -312,7 +312,7 @@ fn sentences_of_the_library_name_no_option_and_no_command() {
 }
 
 #[test]
-fn an_option_in_a_sentence_of_the_library_would_be_found() {
+fn a_planted_option_in_a_sentence_of_the_library_is_found() {
     let commands = commands();
     let planted = "//! Drawn --o--a--/ here.\n/// As `chta map --stride` does.\n/// Give --stride.\n// not --looked at\n#[error(\"too far: give \\\n        \
                    --stride {stride}\")]\nfn a() -> char {\n    let b = r#\"or \"ask\" `chta check`\"#;\n    let c = '\"';\n    \
@@ -335,7 +335,7 @@ fn no_decision_is_made_on_the_text_of_a_message() {
 }
 
 #[test]
-fn a_decision_on_the_text_of_a_message_would_be_found() {
+fn a_planted_decision_on_the_text_of_a_message_is_found() {
     for planted in [
         "problems.iter().any(|problem| problem.message.contains(\"body.\"))",
         "if error.to_string().contains(\"off\") {}",
@@ -361,7 +361,7 @@ fn a_decision_on_the_text_of_a_message_would_be_found() {
     }
 }
 
-/// The problems of a scenario, by key and kind, in their order.
+/// The problems of a scenario by key and kind, in order.
 fn problems(source: &str) -> Vec<(String, ProblemKind)> {
     let problems = Scenario::new(Entries::from_toml(source)).unwrap_err();
     problems.iter().map(|problem| (format!("{}.{}", problem.key.table, problem.key.name), problem.kind)).collect()
@@ -381,7 +381,7 @@ fn a_value_that_reads_like_another_key_hides_no_problem_of_that_key() {
             format!("{body}[terrain]\ndem = \"a.tif\"\n[search]\nrisk = \"start_m\"\n"),
             vec![("terrain.start_m", Missing), ("search.risk", Value)],
         ),
-        // A value that is refused is reported alone: whether the key would then be missing is not known.
+        // An invalid value is reported alone: whether its key counts as given is unknown.
         ("[body]\ngravity_m_s2 = -1\n".to_owned(), vec![("body.gravity_m_s2", Value)]),
         ("[body]\nradius_m = -1\n".to_owned(), vec![("body.radius_m", Value), ("body.gravity_m_s2", Missing)]),
         ("[body]\ngravity = 3.7\n".to_owned(), vec![("body.gravity", Unknown)]),
@@ -389,13 +389,13 @@ fn a_value_that_reads_like_another_key_hides_no_problem_of_that_key() {
     ] {
         let found = problems(&source);
         let found: Vec<(&str, ProblemKind)> = found.iter().map(|(key, kind)| (key.as_str(), *kind)).collect();
-        // Missing keys have no place in the file, so they are last.
+        // Missing keys have no position in the file, so they are last.
         assert_eq!(found.len(), expected.len(), "{source}\n{found:?}");
         assert!(expected.iter().all(|problem| found.contains(problem)), "{source}\n{found:?}");
     }
 }
 
-/// What the command says on standard error where it refuses.
+/// The text on standard error of a refusal.
 #[cfg(feature = "cli")]
 fn refused(args: &[&str]) -> String {
     let ran = std::process::Command::new(env!("CARGO_BIN_EXE_chta"))

@@ -34,7 +34,7 @@ const ANSWERS: [(&str, i32, Option<u64>); 12] = [
     ("vertices", 1, None),
 ];
 
-/// Scenario, bounds on its fewest hops; all of them meet.
+/// Scenario, bounds on its fewest hops; all of them are equal.
 const PROVED: [(&str, Option<u64>); 10] = [
     ("mars_crater_field", Some(9)),
     ("lunar_rille", Some(26)),
@@ -61,7 +61,7 @@ fn every_shipped_scenario_is_proved() {
     }
 }
 
-/// Of three journeys proved impossible, the one limit without which there is a path, and how it is left out.
+/// For each of three journeys proved impossible, the one limit without which there is a path, and how to remove it.
 #[test]
 fn one_limit_alone_stops_each_of_three_journeys() {
     let without = [
@@ -109,7 +109,7 @@ fn every_shipped_scenario_runs_to_its_answer_and_repeats_from_its_result() {
 }
 
 #[test]
-fn no_shipped_scenario_is_left_out_here() {
+fn every_shipped_scenario_has_an_answer_in_this_test() {
     for file in fs::read_dir(root().join("data/scenarios")).unwrap() {
         let path = file.unwrap().path();
         let name = path.file_stem().unwrap().to_str().unwrap();

@@ -1,4 +1,4 @@
-//! `chta simulate`: its documents, its files, its refusals, and what the experiments show.
+//! `chta simulate`: its documents, files and refusals, and the results of the experiments.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 
@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::desk::{Desk, Ran};
 use serde_json::Value;
 
-/// Errors that leave some of every kind of end: what a desk's scenario gains.
+/// Errors that give some trials of every outcome, added to the scenario of the test's folder.
 const ERRORS: &str = "\n[uncertainty]\ntakeoff_speed_sigma_fraction = 0.01\ntakeoff_angle_sigma_deg = 0.3\nposition_sigma_m = 0.05\n\
     drift_along_sigma_m = 0.1\ngoal_tolerance_m = 2.0\ntrials = 1500\nseed = 4\n";
 
@@ -73,41 +73,41 @@ fn without_errors_every_trial_arrives() {
     }
 }
 
-/// A rate of 1 tells nothing where nothing goes wrong: it is said on standard error and in the document, once.
+/// Without any errors a success rate of 1 has no meaning; a warning on standard error and in the document says so once.
 #[test]
-fn trials_without_errors_are_told_to_tell_nothing() {
+fn trials_without_errors_give_a_warning() {
     let desk = Desk::with_dem();
     desk.write("zeros.toml", desk.read("scenario.toml") + "\n[uncertainty]\ntakeoff_angle_sigma_deg = 0\ntrials = 20\n");
-    let told = "no errors are given, so that every trial flies the plan exactly";
+    let warning = "no errors are given, so that every trial flies the plan exactly";
     for scenario in ["scenario.toml", "zeros.toml"] {
         let words = ["simulate", scenario, "--trials", "20"];
         let ran = desk.run(&words);
-        assert_eq!((ran.status, ran.stderr.matches(told).count()), (0, 1), "{}", ran.stderr);
+        assert_eq!((ran.status, ran.stderr.matches(warning).count()), (0, 1), "{}", ran.stderr);
         assert!(ran.stderr.contains("give [uncertainty]"), "{}", ran.stderr);
         let warnings = desk.json(&words)["warnings"].clone();
         assert_eq!(warnings.as_array().unwrap().len(), 1, "{warnings}");
-        assert!(warnings[0].as_str().unwrap().starts_with(told), "{warnings}");
+        assert!(warnings[0].as_str().unwrap().starts_with(warning), "{warnings}");
     }
     let ran = desk.run(&["run", "zeros.toml", "-o", "out"]);
-    assert_eq!((ran.status, ran.stderr.matches(told).count()), (0, 1), "{}", ran.stderr);
+    assert_eq!((ran.status, ran.stderr.matches(warning).count()), (0, 1), "{}", ran.stderr);
     let risk = desk.run(&["simulate", "zeros.toml", "--experiment", "risk-trade"]);
-    assert_eq!((risk.status, risk.stderr.matches(told).count()), (0, 1), "{}", risk.stderr);
+    assert_eq!((risk.status, risk.stderr.matches(warning).count()), (0, 1), "{}", risk.stderr);
     for set in ["uncertainty.takeoff_angle_sigma_deg=0.1", "uncertainty.friction_sigma=0.01"] {
         let ran = desk.run(&["simulate", "scenario.toml", "--trials", "20", "--set", set]);
-        assert!(!ran.stderr.contains(told) && ran.stderr.contains("goal_tolerance_m is 0 or absent"), "{set}: {}", ran.stderr);
+        assert!(!ran.stderr.contains(warning) && ran.stderr.contains("goal_tolerance_m is 0 or absent"), "{set}: {}", ran.stderr);
     }
 }
 
-/// Replanned landings are compared with the plan of their own trial, and their places belong to different plans.
+/// With replanning, landings are compared with the plan of their own trial, and the landings of one hop belong to different plans.
 #[test]
-fn the_text_says_what_distances_and_ellipses_are_of() {
+fn the_text_names_the_meaning_of_distances_and_ellipses() {
     let desk = desk();
     let planned = desk.run(&["simulate", "map.toml", "--trials", "50"]).stdout;
     assert!(planned.contains("\ndistance from the planned landing (m)\n") && planned.contains("95 % ellipse"), "{planned}");
     let replanned = desk.run(&["simulate", "map.toml", "--trials", "50", "--policy", "replan"]).stdout;
     assert!(replanned.contains("\ndistance from the landing planned for the hop at its take-off"), "{replanned}");
     assert!(!replanned.contains("ellipse"), "{replanned}");
-    // The document keeps what interface.md lists.
+    // The document keeps the keys of interface.md.
     let document = desk.json(&["simulate", "map.toml", "--trials", "50", "--policy", "replan"]);
     assert!(document["landings"][0]["ellipse95"]["semi_major_m"].as_f64() > Some(0.0), "{document}");
 }
@@ -155,7 +155,7 @@ fn the_table_of_landings_agrees_with_the_document() {
         }
         let ended = rows.iter().filter(|row| !row[column("outcome")].is_empty()).count();
         assert!(ended > 0 && ended <= 1500, "{scenario}: {ended} rows end a trial");
-        // To standard output, in place of the answer.
+        // To standard output, in place of the text.
         let ran = desk.run(&["simulate", scenario, "-o", "-"]);
         assert_eq!(ran, Ran { status: 0, stdout: table, stderr: String::new() });
     }
@@ -175,7 +175,7 @@ fn both_policies_fly_the_same_draws() {
 }
 
 #[test]
-fn a_rate_known_well_enough_stops_the_trials() {
+fn a_precise_rate_stops_the_trials() {
     let desk = desk();
     let words = ["simulate", "scenario.toml", "--trials", "50000", "--until-half-width", "0.02"];
     let document = desk.json(&words);
@@ -183,14 +183,14 @@ fn a_rate_known_well_enough_stops_the_trials() {
     let trials = document["trials"].as_u64().unwrap();
     assert!(trials < 50_000 && trials.is_multiple_of(1000), "{trials}");
     assert!(half_width(&document) <= 0.02);
-    // It stops after whole thousands only; the rate is noted earlier too.
+    // It stops only after complete batches; the rate is noted earlier too.
     let is_stop = |point: &&Value| point["trials"].as_u64().is_some_and(|trials| trials.is_multiple_of(1000));
     let before: Vec<_> = document["convergence"].as_array().unwrap().iter().filter(is_stop).rev().skip(1).collect();
     assert!(before.iter().all(|point| half_width(point) > 0.02), "it could have stopped before");
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_by_name() {
+fn invalid_options_are_refused_by_name() {
     let desk = desk();
     let refused = |args: &[&str], parts: &[&str]| desk.refused(&[&["simulate", "scenario.toml"], args].concat(), parts);
     refused(&["--trials", "0"], &["trials is 0", "at least 1"]);
@@ -242,7 +242,7 @@ fn landings_as_parquet_have_the_rows_of_the_table() {
 }
 
 #[test]
-fn without_a_nominal_path_the_answer_is_no() {
+fn without_a_nominal_path_the_status_is_1() {
     let desk = desk();
     let words = ["simulate", "scenario.toml", "--set", "surface.friction_coefficient=0.05"];
     let ran = desk.run(&[&words[..], &["-o", "landings.csv", "--plot", "trials.svg"]].concat());
@@ -254,7 +254,7 @@ fn without_a_nominal_path_the_answer_is_no() {
 }
 
 #[test]
-fn a_run_flies_what_its_scenario_asks_for_and_leaves_nothing_stale() {
+fn a_run_simulates_as_its_scenario_states_and_removes_stale_files() {
     let desk = desk();
     assert_eq!(desk.run(&["run", "map.toml", "-o", "out"]).status, 0);
     let simulation: Value = serde_json::from_str(&desk.read("out/simulation.json")).unwrap();
@@ -284,7 +284,7 @@ fn worst_drift_grows_from_landing_to_landing_under_every_reading() {
             let medians: Vec<f64> = landings.iter().map(|landing| number(&landing["q50_m"])).collect();
             assert!(medians.windows(2).all(|two| two[0] < two[1]), "{reading}, seed {seed}: {medians:?}");
         }
-        // The first hop has noise alone: sigma sqrt(8 / pi) sqrt(0.1) m on the mean in three dimensions, 0.505 m.
+        // The first hop has only noise: sigma sqrt(8 / pi) sqrt(0.1) m for the mean in three dimensions, 0.505 m.
         let document = desk.json(&["simulate", &shipped("paper_76m.toml"), "--experiment", "worst-drift"]);
         assert!((number(&document["landings"][0]["mean_m"]) - 0.505).abs() < 0.06);
     }
@@ -305,8 +305,8 @@ fn narrow_cones_lower_the_spread_of_a_landing_and_raise_the_error_at_the_goal() 
     }
 }
 
-/// On a chain and over a DEM: replanned trials of a scenario that weighs risk reach the goal no less often than the plan flown
-/// blindly, and more often than trials that are replanned without regard to it.
+/// On a chain and over a DEM: for a scenario that weighs risk, replanned trials reach the goal at least as often as open-loop
+/// trials, and more often than trials replanned without regard to risk.
 #[test]
 fn replanning_weighs_risk_as_the_plan_does() {
     for name in ["rolling_surely.toml", "mars_crater_field_surely.toml"] {
@@ -337,7 +337,7 @@ fn a_more_reliable_path_is_flown_more_reliably() {
     assert!(interval(&paths[1])[0] > interval(plain)[1], "{} beside {plain}", paths[1]);
     assert!(reliable["hops"].as_u64() > plain["hops"].as_u64());
     assert!(interval(reliable)[0] > interval(&paths[1])[1], "{reliable} beside {}", paths[1]);
-    // The scenario plans the most reliable.
+    // The scenario asks for the most reliable path.
     let flown = Desk::new().json(&["simulate", &scenario, "--trials", "1000"]);
     assert_eq!((&flown["hops"], &flown["success_rate"]), (&reliable["hops"], &reliable["success_rate"]));
 }

@@ -1,4 +1,4 @@
-//! `chta trade` and `chta compare`: every cell against a run of its own, files, threads, bad input.
+//! `chta trade` and `chta compare`: every cell against a separate run, files, threads, bad input.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 
@@ -11,7 +11,7 @@ fn json(desk: &Desk, args: &[&str]) -> Value {
     serde_json::from_str(&ran.stdout).unwrap()
 }
 
-/// What `check` says with the keys of a row set one by one.
+/// The result of `check` with the keys of a row set one by one.
 fn checked(desk: &Desk, target: &[&str], row: &Value, keys: &[&str], more: &[&str]) -> Value {
     let settings: Vec<String> = keys.iter().map(|key| format!("{key}={}", row[*key].as_f64().unwrap())).collect();
     let mut args = vec!["check", "--format", "json"];
@@ -23,7 +23,7 @@ fn checked(desk: &Desk, target: &[&str], row: &Value, keys: &[&str], more: &[&st
     json(desk, &args)
 }
 
-/// A trade whose every row agrees with `check`; the verdicts it came to.
+/// Runs a trade whose rows must all agree with `check`; returns the verdicts.
 fn agrees(desk: &Desk, target: &[&str], vary: &[(&str, &str)], more: &[&str]) -> Vec<String> {
     let ranges: Vec<String> = vary.iter().map(|(key, range)| format!("{key}={range}")).collect();
     let mut args = vec!["trade", "--format", "json", "--quiet"];
@@ -47,12 +47,12 @@ fn agrees(desk: &Desk, target: &[&str], vary: &[(&str, &str)], more: &[&str]) ->
 }
 
 #[test]
-fn every_cell_is_what_check_says_with_its_values_set() {
+fn every_cell_agrees_with_check_for_its_values() {
     let desk = Desk::with_dem();
     let speeds = ("hopper.takeoff_speed_max_m_s", "3:9:3");
     let grid = agrees(&desk, &["scenario.toml"], &[speeds, ("surface.friction_coefficient", "0.1:0.7:3")], &[]);
     assert!(grid.iter().any(|verdict| verdict == "traversable") && grid.iter().any(|verdict| verdict != "traversable"), "{grid:?}");
-    // A slice carries its friction in the chain, which each value has to replace.
+    // The chain of a slice carries its friction, which each value must replace.
     let sliced = agrees(&desk, &["map.toml"], &[("surface.friction_coefficient", "0.2:0.8:3")], &[]);
     assert!(sliced.iter().any(|verdict| verdict == "traversable") && sliced.iter().any(|verdict| verdict != "traversable"));
     for vary in [
@@ -69,7 +69,7 @@ fn every_cell_is_what_check_says_with_its_values_set() {
 }
 
 #[test]
-fn with_a_proof_cells_are_what_check_proves() {
+fn with_a_proof_every_cell_agrees_with_check() {
     let desk = Desk::new();
     let verdicts = agrees(&desk, &["scenario.toml"], &[("surface.friction_coefficient", "0.1:0.7:3")], &["--prove"]);
     assert_eq!(verdicts.first().map(String::as_str), Some("untraversable"));
@@ -114,7 +114,7 @@ fn threads_and_files_change_no_byte() {
     assert_eq!(desk.read("trade.svg"), again.read("trade.svg"));
     assert!(desk.read("trade.svg").starts_with("<svg"));
 
-    // CSV and JSON say the same.
+    // CSV and JSON agree.
     let mut lines = csv.lines();
     assert_eq!(lines.next(), Some("hopper.takeoff_speed_max_m_s,surface.friction_coefficient,verdict,hops"));
     let rows: Value = serde_json::from_str(&document).unwrap();
@@ -190,9 +190,9 @@ fn what_cannot_be_varied_is_refused_in_one_sentence() {
 }
 
 #[test]
-fn compared_scenarios_are_what_plan_says_of_each() {
+fn compared_scenarios_agree_with_plan() {
     let desk = Desk::with_dem();
-    // Slopes of 0.2 on ice of 0.1.
+    // Slopes of 0.2 on ground with friction 0.1.
     desk.write("ice.toml", crate::desk::SCENARIO.replace("friction_coefficient = 0.6", "friction_coefficient = 0.1"));
     let files = ["scenario.toml", "map.toml", "ice.toml"];
     let all = json(&desk, &["compare", files[0], files[1], files[2], "--format", "json", "-o", "all.csv", "--plot", "all.svg"]);
@@ -222,9 +222,9 @@ fn compared_scenarios_are_what_plan_says_of_each() {
     let one_thread = json(&desk, &["compare", files[0], files[1], files[2], "--format", "json", "--threads", "1"]);
     assert_eq!(one_thread, all);
     let text = desk.run(&["compare", files[0], files[2]]);
-    assert_eq!((text.status, text.stderr.as_str()), (0, ""), "no path is no failure of a comparison");
+    assert_eq!((text.status, text.stderr.as_str()), (0, ""), "a scenario without a path must not fail the comparison");
     assert!(text.stdout.contains("(2) ice.toml: ice") && text.stdout.contains("no-path-found"), "{}", text.stdout);
-    assert_eq!(desk.run(&["compare", files[0]]).status, 2, "one is no comparison");
+    assert_eq!(desk.run(&["compare", files[0]]).status, 2, "a single scenario cannot be compared");
     let chain = desk.run(&["compare", "scenario.toml", "chain.csv"]);
     assert!(chain.status == 2 && chain.stderr.contains("chain.csv: expected a scenario"), "{chain:?}");
 }

@@ -1,6 +1,6 @@
 //! Keep-out zones, friction rasters and fans from the command line.
 
-#![allow(clippy::unwrap_used, reason = "a test that cannot set its stage should stop")]
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 #![expect(clippy::print_stderr, reason = "a test that is skipped says why")]
 
 use std::{fs, path::Path, process::Output};
@@ -60,7 +60,7 @@ fn a_zone_is_flown_over_but_not_landed_on_and_a_run_repeats_it() {
     let document = json(&kept);
     assert_eq!((kept.status.code(), &document["verified"]), (Some(0), &Value::Bool(true)), "{document}");
     let hops = document["path"].as_array().unwrap();
-    // 17.6 m a hop at most: the zone of 11.75 m is flown over. Map x is chain x + 2 m.
+    // At most 17.6 m per hop: the zone of 11.75 m can be flown over. Map x is chain x + 2 m.
     for hop in hops {
         let landing = hop["landing_map_x_m"].as_f64().unwrap();
         assert!(!(21.5 + 1e-6..=33.25 - 1e-6).contains(&landing), "lands at {landing} m");
@@ -79,18 +79,18 @@ fn a_zone_is_flown_over_but_not_landed_on_and_a_run_repeats_it() {
         let without_comments = |text: String| text.lines().filter(|line| !line.starts_with('#')).collect::<Vec<_>>().join("\n");
         assert_eq!(without_comments(read("out")), without_comments(read("again")), "{name}");
     }
-    // The chain carries its zones itself; the file of the scenario is then not read, and that is said.
+    // The chain carries its zones itself; the scenario's file is then not read, and a warning says so.
     let from_chain =
         chta(at, &["check", "out/chain.csv", "--scenario", "kept.toml", "--start", "0", "--goal", "56", "--format", "json"]);
     assert_eq!(json(&from_chain)["hops"], document["hops"]);
     assert!(text(&from_chain.stderr).contains("surface.keep_out"));
-    // 30 m are too wide for one hop.
+    // One hop cannot cross 30 m.
     assert_eq!(chta(at, &["check", "open.toml"]).status.code(), Some(0));
     assert_eq!(chta(at, &["check", "wide.toml"]).status.code(), Some(1));
 }
 
 #[test]
-fn a_start_or_goal_in_a_zone_is_told_so_and_a_steep_one_too() {
+fn a_start_or_goal_in_a_zone_or_on_a_steep_slope_is_reported() {
     let folder = stage(&[("zones.geojson", &zone(0.0, 20.0)), ("kept.toml", &scenario("keep_out = \"zones.geojson\""))]);
     let output = chta(folder.path(), &["check", "kept.toml", "--format", "json"]);
     let answer = json(&output);
@@ -98,7 +98,7 @@ fn a_start_or_goal_in_a_zone_is_told_so_and_a_steep_one_too() {
     let refusal = &answer["endpoint_refusals"][0];
     assert_eq!((&refusal["endpoint"], &refusal["limit"]), (&Value::from("start"), &Value::from("keep-out")), "{answer}");
     assert!((refusal["nearest_usable_x_m"].as_f64().unwrap() - 18.0).abs() < 1.0, "{answer}");
-    // Rest slope under its own name: the same start on a wall.
+    // A rest slope is reported under its own name: the same start on a wall.
     let chain = "x_m,z_m\n0,0\n10,0\n11,30\n21,30\n";
     fs::write(folder.path().join("wall.csv"), chain).unwrap();
     fs::write(folder.path().join("bare.toml"), format!("{HOPPER}[surface]\nfriction_coefficient = 0.8\n")).unwrap();
@@ -150,7 +150,7 @@ fn friction_rasters_reach_the_chain_and_fill_their_gaps_with_the_constant() {
 }
 
 #[test]
-fn a_fan_over_a_plain_gets_everywhere_in_as_few_hops_as_the_length_asks() {
+fn a_fan_over_a_plain_reaches_every_end_with_the_fewest_hops() {
     let folder = stage(&[
         ("zones.geojson", &zone(40.0, 58.0)),
         ("open.toml", &scenario("")),
@@ -172,7 +172,7 @@ fn a_fan_over_a_plain_gets_everywhere_in_as_few_hops_as_the_length_asks() {
         let (length_m, cut) = if k % 2 == 0 { (30.0, Value::from("border")) } else { (31.0, Value::Null) };
         assert!((ray["length_m"].as_f64().unwrap() - length_m).abs() < 1e-9 && ray["cut"] == cut, "{ray}");
         assert_eq!(ray["heading_deg"].as_f64().unwrap(), 45.0 * f64::from(k));
-        // 18 m sin(2 (90 deg - atan 0.8)) = 17.56 m a hop, and a node between 13.44 and 17.56 m: two hops.
+        // 18 m sin(2 (90 deg - atan 0.8)) = 17.56 m per hop, and a node between 13.44 and 17.56 m: two hops.
         assert_eq!(
             (&ray["hops_to_end"], &ray["hops_to_farthest"], &ray["first_refusing_limit"]),
             (&Value::from(2), &Value::from(2), &Value::Null)
@@ -195,7 +195,7 @@ fn a_fan_over_a_plain_gets_everywhere_in_as_few_hops_as_the_length_asks() {
         let other = fan(&["--scenario", "open.toml", "--threads", threads]);
         assert_eq!(text(&other.stdout), text(&open.stdout));
     }
-    // A zone 18 m wide to the east: its near border is the last stop that way.
+    // A zone 18 m wide to the east: the fan ends at its near border in that direction.
     let kept = json(&fan(&["--scenario", "kept.toml", "-o", "fan.csv"]));
     let east = &kept["rays"][2];
     assert!((east["farthest_m"].as_f64().unwrap() - 10.0).abs() < 1e-9 && east["hops_to_end"].is_null(), "{east}");

@@ -111,7 +111,7 @@ fn the_binding_limits_move_their_end_and_no_other_limit_does() {
 }
 
 #[test]
-fn a_limit_that_refuses_alone_refuses_alone_and_not_without_itself() {
+fn a_limit_that_refuses_alone_is_the_only_cause() {
     let draw = &mut Draw::seeded(12);
     let mut seen = std::collections::BTreeSet::new();
     for _ in 0..6000 {
@@ -134,7 +134,7 @@ fn a_limit_that_refuses_alone_refuses_alone_and_not_without_itself() {
 }
 
 #[test]
-fn two_limits_in_conflict_leave_nothing_between_them_and_less_of_a_gap_without_either() {
+fn two_conflicting_limits_have_a_gap_that_shrinks_without_either() {
     let draw = &mut Draw::seeded(13);
     let mut seen = std::collections::BTreeSet::new();
     for _ in 0..8000 {

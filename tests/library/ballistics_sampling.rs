@@ -366,7 +366,7 @@ fn for_random_pairs(seed: u64, worlds: u32, mut check: impl FnMut(&mut Draw, &Ho
 }
 
 #[test]
-fn the_kernel_gives_what_the_explained_set_gives() {
+fn the_kernel_gives_the_lofts_of_the_explained_set() {
     let (mut feasible, mut refused) = (0, 0);
     for_random_pairs(4, 2000, |_, test, takeoff, landing| {
         let set = test.takeoff_set(takeoff, landing).unwrap();
@@ -455,7 +455,7 @@ fn gravity_times_four_and_speeds_times_two_change_no_bit() {
 }
 
 #[test]
-fn energy_is_kept_and_the_tangents_add_up() {
+fn energy_is_conserved_and_the_tangents_add_up() {
     let mut arcs = 0;
     for_random_pairs(7, 1500, |draw, test, takeoff, landing| {
         let set = test.takeoff_set(takeoff, landing).unwrap();
@@ -527,7 +527,7 @@ fn limits_that_touch_leave_exactly_one_arc() {
 }
 
 #[test]
-fn a_landing_exactly_as_high_as_the_apex_limit_is_allowed_from_below() {
+fn a_landing_exactly_at_the_apex_limit_is_allowed_from_below() {
     // 3 m up a wall 1 m away: flights still rising at the landing have it as their highest point.
     let points = [ChainPoint::new(0.0, 0.0), ChainPoint::new(1.0, 3.0)];
     let chain = uniform(&points, line((-90.0, 90.0), 100.0, (-90.0, 90.0), 100.0));

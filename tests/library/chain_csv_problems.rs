@@ -13,20 +13,20 @@ fn problems_of(source: &[u8]) -> CsvProblems {
 }
 
 fn assert_problem(problem: &CsvProblem, (line, column, underlined, name, words): Expected<'_>) {
-    let told = problem.to_string();
-    assert_eq!((problem.line, problem.column), (line, column), "{told}");
-    assert_eq!(&problem.text[problem.span.clone()], underlined, "{told}");
-    assert_eq!(problem.name.as_deref(), name, "{told}");
+    let text = problem.to_string();
+    assert_eq!((problem.line, problem.column), (line, column), "{text}");
+    assert_eq!(&problem.text[problem.span.clone()], underlined, "{text}");
+    assert_eq!(problem.name.as_deref(), name, "{text}");
     for word in words {
-        assert!(told.contains(word), "`{word}` is missing in: {told}");
+        assert!(text.contains(word), "`{word}` is missing in: {text}");
     }
-    assert!(!told.contains('\n') && told.starts_with("line ") && !problem.help.is_empty(), "{told}");
+    assert!(!text.contains('\n') && text.starts_with("line ") && !problem.help.is_empty(), "{text}");
 }
 
 fn assert_problems(source: &str, expected: &[Expected<'_>]) {
     let CsvProblems { problems, more } = problems_of(source.as_bytes());
-    let told: Vec<String> = problems.iter().map(ToString::to_string).collect();
-    assert_eq!((problems.len(), more), (expected.len(), 0), "{source:?} gave {told:#?}");
+    let text: Vec<String> = problems.iter().map(ToString::to_string).collect();
+    assert_eq!((problems.len(), more), (expected.len(), 0), "{source:?} gave {text:#?}");
     for (problem, &expected) in problems.iter().zip(expected) {
         assert_problem(problem, expected);
     }
@@ -35,7 +35,7 @@ fn assert_problems(source: &str, expected: &[Expected<'_>]) {
 const SIX: &str = "takeoff_min_deg,takeoff_max_deg,takeoff_speed_max_m_s,landing_min_deg,landing_max_deg,landing_speed_max_m_s";
 
 #[test]
-fn files_without_a_chain() {
+fn files_without_a_chain_are_refused() {
     assert_problems("", &[(1, None, "", None, &["an empty file", "x_m,z_m"])]);
     assert_problems("\u{feff}\r\n", &[(1, None, "", None, &["an empty file"])]);
     assert_problems("# a note\n", &[(1, None, "# a note", None, &["comments only", "x_m,z_m"])]);
@@ -45,7 +45,7 @@ fn files_without_a_chain() {
 }
 
 #[test]
-fn headers_that_name_the_wrong_columns() {
+fn headers_with_wrong_columns_are_refused() {
     assert_problems(
         "x,elevation\n0,0\n1,1\n",
         &[
@@ -66,7 +66,7 @@ fn other_separators_are_recognised() {
 }
 
 #[test]
-fn fields_that_are_no_finite_numbers() {
+fn fields_that_are_not_finite_numbers_are_refused() {
     assert_problems(
         "# drawn\nx_m,z_m\n0,abc\n1,NaN\n2,-inf\n3,1e999\n4,\n5,5 m\n6,\"1,5\"\n7,0x10\n 8 , \"x\" \n",
         &[
@@ -84,7 +84,7 @@ fn fields_that_are_no_finite_numbers() {
 }
 
 #[test]
-fn values_out_of_their_range() {
+fn values_out_of_their_range_are_refused() {
     assert_problems(
         "x_m,z_m,friction_coefficient,cross_slope_deg,keep_out\n0,0,-0.1,90.1,2\n1,0,inf,-1,yes\n2,0,,,\n",
         &[
@@ -108,7 +108,7 @@ fn values_out_of_their_range() {
 }
 
 #[test]
-fn vertices_out_of_order() {
+fn vertices_out_of_order_are_refused() {
     assert_problems(
         "x_m,z_m\n0,0\n2,1\n2.0,3\nx,0\n1,0\n3,0\n",
         &[
@@ -129,7 +129,7 @@ fn vertices_out_of_order() {
 }
 
 #[test]
-fn ragged_rows() {
+fn ragged_rows_are_refused() {
     assert_problems(
         "x_m,z_m,keep_out\n0,0,1\n1,5,0,0\n2\n3,0,\n",
         &[
@@ -140,7 +140,7 @@ fn ragged_rows() {
 }
 
 #[test]
-fn a_ragged_row_says_nothing_of_its_columns() {
+fn a_ragged_row_gives_no_problems_of_columns() {
     // Neither "column filled" nor "both forms" is reported.
     let header = format!("x_m,z_m,friction_coefficient,{SIX}");
     let words = &["found 2 fields", "expected 9 as in the header"];
@@ -149,7 +149,7 @@ fn a_ragged_row_says_nothing_of_its_columns() {
 }
 
 #[test]
-fn half_a_set_of_columns() {
+fn half_a_set_of_columns_is_refused() {
     assert_problems(
         "x_m,z_m,landing_max_deg,takeoff_min_deg,takeoff_max_deg,map_x_m,landing_min_deg\n0,0,-60,10,90,5,\n1,0,,,,6,\n",
         &[
@@ -174,7 +174,7 @@ fn half_a_set_of_columns() {
 }
 
 #[test]
-fn both_forms() {
+fn both_forms_in_one_file_are_refused() {
     let header = format!("x_m,z_m,friction_coefficient,{SIX}");
     assert_problems(
         &format!("{header}\n0,0,0.6,60,90,5,-90,-60,5\n1,0,,,,,,,\n"),
@@ -193,7 +193,7 @@ fn both_forms() {
 }
 
 #[test]
-fn blanks_and_last_rows() {
+fn blanks_and_filled_last_rows_are_refused() {
     assert_problems(
         "x_m,z_m,friction_coefficient,map_x_m,map_y_m\n0,0,,0,0\n1,0,0.6,1,\n2,0,0.6,2,2\n3,0,,,3\n",
         &[
@@ -215,7 +215,7 @@ fn blanks_and_last_rows() {
 }
 
 #[test]
-fn cones_the_wrong_way_round() {
+fn reversed_cones_are_refused() {
     assert_problems(
         &format!("x_m,z_m,{SIX}\n0,0,90,60,0,-60,-90,5\n1,0,,,,,,\n"),
         &[
@@ -226,7 +226,7 @@ fn cones_the_wrong_way_round() {
 }
 
 #[test]
-fn files_that_are_no_text() {
+fn files_that_are_not_text_are_refused() {
     for (source, line, words) in [
         (&b"x_m,z_m\n0,0\n1,\xff\n"[..], 3, ["0xff at offset 14", "UTF-8"]),
         (&b"x_m,z_m\r\n0,\0\r\n"[..], 2, ["0x00 at offset 11", "UTF-8"]),
@@ -260,7 +260,7 @@ fn a_line_without_end_is_refused_in_little_space() {
 }
 
 #[test]
-fn the_list_of_problems_has_an_end() {
+fn the_list_of_problems_is_cut_off() {
     let source = format!("x_m,z_m\n{}", "a,b\n".repeat(1000));
     let problems = problems_of(source.as_bytes());
     assert_eq!((problems.problems.len(), problems.more), (50, 1950));
@@ -269,13 +269,13 @@ fn the_list_of_problems_has_an_end() {
 }
 
 #[test]
-fn messages_obey_no_terminal() {
+fn control_characters_are_escaped_in_messages() {
     let CsvProblems { problems, .. } = problems_of(b"x_m,z_m\n0,\x1b[31mred\n1,1\n");
     assert!(problems[0].to_string().contains(r"\u{1b}[31mred"), "{}", problems[0]);
 }
 
 #[test]
-fn columns_nobody_knows_are_warned_of() {
+fn unknown_columns_give_warnings() {
     let file = read_chain_csv(b"note,x_m,z_m,friction,,keep_out\n\"a, b\",0,0,1,,\n,1,1,,,\n").unwrap();
     assert_eq!(
         file.warnings,
@@ -292,7 +292,7 @@ fn columns_nobody_knows_are_warned_of() {
 }
 
 #[test]
-fn one_direction_alone_is_warned_of() {
+fn a_chain_with_one_direction_gives_a_warning() {
     let forward = format!("x_m,z_m,{SIX}\n0,0,60,93.5,10,-93.5,-60,0\n1,0,,,,,,\n");
     assert_eq!(read_chain_csv(forward.as_bytes()).unwrap().warnings, ["no hop goes towards -x: the chain has no reverse_ columns"]);
     let reverse = forward.replace("takeoff", "reverse_takeoff").replace("landing", "reverse_landing");
@@ -303,7 +303,7 @@ fn one_direction_alone_is_warned_of() {
 }
 
 #[test]
-fn problems_of_pairs_are_told_alike() {
+fn problems_of_pairs_have_the_same_form() {
     let problems = read_pairs_csv(b"goal_x_m,start_x_m\n5,a\n,1\n").unwrap_err().problems;
     assert_problem(&problems[0], (2, Some(3), "a", Some("start_x_m"), &["found `a`", "a finite number"]));
     assert_problem(&problems[1], (3, Some(1), "", Some("goal_x_m"), &["found nothing"]));

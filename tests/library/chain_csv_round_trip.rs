@@ -17,7 +17,7 @@ fn written(chain: &PolygonalChain) -> Result<String, ChainWriteError> {
 }
 
 /// Numbers that are difficult to print and parse.
-fn ugly_number() -> impl Strategy<Value = f64> {
+fn extreme_number() -> impl Strategy<Value = f64> {
     prop_oneof![
         select(
             &[
@@ -41,7 +41,7 @@ fn ugly_number() -> impl Strategy<Value = f64> {
 }
 
 /// Angles as typed (degrees) and as derived (radians), up to 270 degrees.
-fn ugly_angle() -> impl Strategy<Value = Angle> {
+fn extreme_angle() -> impl Strategy<Value = Angle> {
     prop_oneof![
         (-270..=270_i32).prop_map(|degrees| Angle::from_degrees(f64::from(degrees))),
         (-4.71..4.71_f64).prop_map(Angle::from_radians),
@@ -50,8 +50,8 @@ fn ugly_angle() -> impl Strategy<Value = Angle> {
 }
 
 fn cone() -> impl Strategy<Value = ContactRule> {
-    let speed = prop_oneof![Just(0.0), 0.0..20.0_f64, ugly_number().prop_map(f64::abs)];
-    (ugly_angle(), ugly_angle(), speed).prop_map(|(a, b, speed)| {
+    let speed = prop_oneof![Just(0.0), 0.0..20.0_f64, extreme_number().prop_map(f64::abs)];
+    (extreme_angle(), extreme_angle(), speed).prop_map(|(a, b, speed)| {
         let (min, max) = if a <= b { (a, b) } else { (b, a) };
         ContactRule::new(AngleInterval { min, max }, speed)
     })
@@ -65,7 +65,7 @@ fn limits() -> impl Strategy<Value = LineConstraints> {
 fn grounds(count: usize) -> BoxedStrategy<Vec<SegmentGround>> {
     let surface = (any::<bool>(), any::<bool>()).prop_flat_map(move |(friction, cross)| {
         let angle = prop_oneof![Just(0.0), 0.0..1.57_f64, Just(std::f64::consts::FRAC_PI_2)];
-        vec((ugly_number(), angle), count).prop_map(move |all| {
+        vec((extreme_number(), angle), count).prop_map(move |all| {
             let form = |(mu, chi): (f64, f64)| GroundForm::Surface {
                 friction: if friction { FrictionCone::new(mu.abs()).ok() } else { None },
                 cross_slope: Angle::from_radians(if cross { chi } else { 0.0 }),
@@ -91,14 +91,14 @@ fn grounds(count: usize) -> BoxedStrategy<Vec<SegmentGround>> {
 }
 
 fn chains() -> impl Strategy<Value = PolygonalChain> {
-    let vertices = vec((ugly_number(), ugly_number()), 2..12).prop_map(|mut points| {
+    let vertices = vec((extreme_number(), extreme_number()), 2..12).prop_map(|mut points| {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points.dedup_by(|a, b| a.0 == b.0);
         points.into_iter().map(|(x, z)| ChainPoint::new(x, z)).collect::<Vec<_>>()
     });
     let of = |vertices: Vec<ChainPoint>| {
         let count = vertices.len();
-        let map = proptest::option::of(vec((ugly_number(), ugly_number()), count));
+        let map = proptest::option::of(vec((extreme_number(), extreme_number()), count));
         (Just(vertices), grounds(count.saturating_sub(1)), map)
     };
     vertices.prop_flat_map(of).prop_filter_map("a slope overflows", |(vertices, grounds, map)| {
@@ -133,7 +133,7 @@ fn rule(min_deg: f64, max_deg: f64, speed_m_s: f64) -> ContactRule {
 }
 
 #[test]
-fn files_look_as_the_contract_says() {
+fn written_files_have_the_documented_form() {
     let limits = LineConstraints { takeoff: rule(63.5, 93.5, 10.0), landing: rule(-93.5, -60.0, 0.0) };
     assert_eq!(
         written(&one_segment(vec![explicit(Some(limits), None)])).unwrap(),
@@ -152,7 +152,7 @@ fn files_look_as_the_contract_says() {
 }
 
 #[test]
-fn columns_go_in_any_order_and_dress() {
+fn columns_in_any_order_and_notation_are_read() {
     let plain = b"x_m,z_m,friction_coefficient,keep_out,map_x_m,map_y_m\n0,0,0.6,1,5,6\n1,2,0.5,0,7,8\n2,2,,,9,10\n";
     let odd = "\u{feff}# dressed\r\n\"map_y_m\", keep_out ,z_m,note,x_m,map_x_m,friction_coefficient\r\n\r\n\"6\",1.0, 0 ,\"a,\r\n\"\"b\",0,5,+.6\r\n\
                8,0,2e0,,1,7,0.50\r\n#\r\n10,,2,,2.,9,";
@@ -177,8 +177,8 @@ fn what_a_file_cannot_state_is_speed_zero_or_refused() {
 
     let refusal = |grounds| written(&one_segment(grounds)).unwrap_err();
     let unlimited = LineConstraints { takeoff: rule(60.0, 90.0, f64::INFINITY), ..good };
-    let told = refusal(vec![explicit(Some(good), None), explicit(Some(unlimited), None)]).to_string();
-    assert!(told.contains("segment 2 has the takeoff_speed_max_m_s inf, expected a finite speed"), "{told}");
+    let message = refusal(vec![explicit(Some(good), None), explicit(Some(unlimited), None)]).to_string();
+    assert!(message.contains("segment 2 has the takeoff_speed_max_m_s inf, expected a finite speed"), "{message}");
     let beyond = LineConstraints { landing: rule(-300.0, 0.0, 1.0), ..good };
     assert!(matches!(
         refusal(vec![explicit(None, Some(beyond))]),
@@ -196,11 +196,11 @@ fn what_a_file_cannot_state_is_speed_zero_or_refused() {
 fn files_on_disk_are_named_in_errors() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("chain.csv");
-    let told = read_chain_csv_file(&path).unwrap_err().to_string();
-    assert!(told.contains("chain.csv: cannot be read"), "{told}");
+    let message = read_chain_csv_file(&path).unwrap_err().to_string();
+    assert!(message.contains("chain.csv: cannot be read"), "{message}");
     std::fs::write(&path, "x_m,z_m\n0,a\n0,b\n").unwrap();
-    let told = read_chain_csv_file(&path).unwrap_err().to_string();
-    assert_eq!(told.lines().filter(|line| line.contains("chain.csv: line ")).count(), 3, "{told}");
+    let message = read_chain_csv_file(&path).unwrap_err().to_string();
+    assert_eq!(message.lines().filter(|line| line.contains("chain.csv: line ")).count(), 3, "{message}");
     std::fs::write(&path, "x_m,z_m\n0,1\n2,3\n").unwrap();
     assert_eq!(read_chain_csv_file(&path).unwrap().chain.slopes(), [1.0]);
 }

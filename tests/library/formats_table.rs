@@ -76,7 +76,7 @@ fn verdict(path: &Path) -> String {
 }
 
 #[test]
-fn the_table_of_the_documentation_is_what_real_runs_say() {
+fn the_table_of_the_documentation_agrees_with_real_runs() {
     let Some(files) = files() else { return };
     let mut table = "| file | verdict |\n|---|---|\n".to_owned();
     for (name, path) in &files {

@@ -225,7 +225,7 @@ fn on_tiny_chains_the_search_finds_the_best_of_all_paths() {
 }
 
 #[test]
-fn some_journeys_must_first_go_back() {
+fn some_journeys_must_begin_backwards() {
     let draw = &mut Draw::seeded(33);
     let mut needed = 0;
     for _ in 0..4000 {
@@ -330,7 +330,7 @@ fn smallest_gap_agrees(test: &HopTest, nodes: &NodeSet, reached: &[usize], front
 }
 
 #[test]
-fn staying_where_one_is_takes_no_hop_even_where_nothing_is_allowed() {
+fn a_goal_at_the_start_takes_no_hop_even_if_no_contact_is_allowed() {
     let still = line((-90.0, 90.0), 0.0, (-90.0, 90.0), 0.0);
     let chain = crate::support::uniform(&[ChainPoint::new(0.0, 0.0), ChainPoint::new(10.0, 1.0)], still);
     let test = HopTest::new(chain.with_hopper(&Hopper::UNLIMITED, Gravity::new(1.62).unwrap()).unwrap());
@@ -433,7 +433,7 @@ fn automatic_spacing_answers_with_the_first_that_finds_a_path() {
 }
 
 #[test]
-fn node_spacing_puts_as_few_points_as_keep_it() {
+fn node_spacing_uses_the_fewest_points_that_keep_it() {
     let draw = &mut Draw::seeded(37);
     for _ in 0..300 {
         let world = World::draw(draw, 5);
@@ -475,7 +475,7 @@ fn too_many_nodes_are_refused_before_they_are_made() {
 }
 
 #[test]
-fn slower_or_more_limited_never_takes_fewer_hops() {
+fn lower_speeds_or_more_limits_never_give_fewer_hops() {
     let draw = &mut Draw::seeded(39);
     let mut compared = 0;
     for _ in 0..600 {

@@ -44,7 +44,7 @@ fn compare_pairs(world: &World, what: &str) -> (usize, usize) {
 }
 
 #[test]
-fn every_pair_of_random_grids_has_the_answer_of_slice_and_hop() {
+fn every_pair_of_random_grids_has_the_result_of_the_hop_test() {
     let mut draw = Draw::seeded(7);
     let (mut yes, mut no) = (0, 0);
     for number in 0..40 {
@@ -140,7 +140,7 @@ fn cut_outs_of_the_moon_have_the_hops_of_every_pair() {
 
 /// Zones as polygons and as a mask, friction from a raster with holes: every pair has the verdict of the slice and the hop test.
 #[test]
-fn every_pair_under_zones_and_friction_has_the_answer_of_slice_and_hop() {
+fn every_pair_under_zones_and_friction_has_the_result_of_the_hop_test() {
     let folder = tempfile::tempdir().unwrap();
     let mut draw = Draw::seeded(21);
     let (mut yes, mut no) = (0, 0);
@@ -184,7 +184,7 @@ fn every_pair_under_zones_and_friction_has_the_answer_of_slice_and_hop() {
 }
 
 #[test]
-fn ways_back_and_strides_have_the_hops_of_every_pair() {
+fn return_paths_and_strides_have_the_hops_of_every_pair() {
     let mut draw = Draw::seeded(33);
     let mut unlike = 0;
     for number in 0..6 {
@@ -209,7 +209,7 @@ fn ways_back_and_strides_have_the_hops_of_every_pair() {
 /// themselves.
 #[test]
 #[expect(clippy::cast_precision_loss, reason = "small numbers")]
-fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
+fn efforts_are_the_least_of_all_paths_of_fewest_hops() {
     use chta::{
         ballistics::{Arc, LineOfSight, TakeoffChoice},
         graph::Effort,
@@ -288,7 +288,7 @@ fn efforts_are_the_least_of_all_ways_of_fewest_hops() {
 }
 
 #[test]
-fn raising_a_speed_limit_never_makes_a_post_unreachable_nor_farther() {
+fn a_higher_speed_limit_never_makes_a_post_unreachable_or_farther() {
     let mut draw = Draw::seeded(77);
     for _ in 0..4 {
         let dem = random_dem(&mut draw, 20);

@@ -154,7 +154,7 @@ fn gdals_files_of_every_projection_give_gdals_coordinates() {
 }
 
 #[test]
-fn epsg_and_iau_codes_mean_what_gdal_says_and_are_found_again() {
+fn epsg_and_iau_codes_state_the_maps_of_gdal_and_are_found_again() {
     if !has_gdal() {
         return;
     }
@@ -194,7 +194,7 @@ fn epsg_and_iau_codes_mean_what_gdal_says_and_are_found_again() {
 }
 
 #[test]
-fn real_files_have_gdals_coordinates_and_those_of_their_readme() {
+fn real_files_have_the_coordinates_of_gdal_and_of_their_readme() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem");
     for (name, code) in
         [("lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif", "IAU_2015:30135"), ("lola_dem_north.tif", "IAU_2015:30130")]
@@ -221,7 +221,7 @@ fn real_files_have_gdals_coordinates_and_those_of_their_readme() {
 }
 
 #[test]
-fn the_prj_text_and_the_keys_that_we_write_mean_the_same_to_gdal() {
+fn the_written_prj_text_and_keys_state_the_same_map_to_gdal() {
     if !has_gdal() {
         return;
     }

@@ -312,7 +312,7 @@ fn a_path_of_a_map_must_join_its_ends() {
 
 /// The three forms of the hop test: slice and hop test, the table of offsets, and the walk over the triangles that replanning uses.
 #[test]
-fn a_pair_has_the_same_windows_whichever_way_it_is_asked() {
+fn a_pair_has_the_same_windows_in_all_three_forms() {
     let mut compared = 0;
     some_hops(5, |hops, _, hop| {
         let ground = hops.ground();

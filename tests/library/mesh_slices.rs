@@ -154,7 +154,7 @@ fn read_shared(name: &str, scale: f64, triangles: usize) -> Option<Mesh> {
 }
 
 #[test]
-fn boxes_around_the_meshes_are_those_that_another_reader_found() {
+fn bounding_boxes_of_the_meshes_agree_with_another_reader() {
     // Computed in Python with struct and float.
     for (name, triangles, x, y, z) in [
         (
@@ -222,7 +222,7 @@ fn cave_windows_and_ryugu_are_sliced_along_their_upper_surface() {
 }
 
 #[test]
-fn the_simple_mesh_is_that_of_the_simple_chain_and_gives_its_vertices() {
+fn the_simple_mesh_gives_the_vertices_of_the_simple_chain() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("data");
     let chain = read_chain_csv_file(folder.join("chains/simple.csv")).unwrap().chain;
     let mesh = read_mesh(&folder.join("mesh/simple.obj"), 1.0).unwrap().mesh;

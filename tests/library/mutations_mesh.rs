@@ -1,5 +1,5 @@
 //! The readers of meshes with ten thousand seeded mutations each: no panic, no long run, and what is still read can be sliced.
-#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and tells what it saw")]
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and prints its counts")]
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};

@@ -1,6 +1,6 @@
 //! The byte readers with ten thousand seeded mutations each: no panic, no long run, no huge memory.
 #![allow(clippy::format_push_string, reason = "a test's text need not be written fast")]
-#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and tells what it saw")]
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and prints its counts")]
 
 use std::time::{Duration, Instant};
 
@@ -183,7 +183,7 @@ fn plain_tiff() -> Vec<u8> {
 }
 
 #[test]
-fn the_plain_geotiff_of_these_tests_says_what_it_should() {
+fn the_plain_geotiff_of_these_tests_has_its_elevations() {
     let dem = read_geotiff_bytes(plain_tiff()).unwrap();
     assert_eq!((dem.rows(), dem.cols(), dem.elevation(0, 0), dem.elevation(2, 3)), (3, 4, Some(0.5), None));
     assert_eq!(dem.georeference().north_west(), MapPoint::new(1001.0, 1999.0));

@@ -161,7 +161,7 @@ fn scale_offset_unit_and_missing_constants_are_applied() {
 }
 
 #[test]
-fn what_is_no_raster_of_elevations_on_a_map_is_refused_by_its_key() {
+fn images_that_are_not_elevation_maps_are_refused_by_key() {
     let of = |image: &'static str, projection: &str| Fixture { image, projection, ..Fixture::default() }.refusal();
     assert!(of("", "").contains("no MAP_SCALE"));
     assert!(of("SCALING_FACTOR = 0\r\n", POLAR).contains("SCALING_FACTOR 0"));
@@ -201,7 +201,7 @@ fn a_detached_label_finds_its_image_and_the_image_names_its_label() {
 }
 
 #[test]
-fn slicing_the_file_reads_as_slicing_the_whole() {
+fn slices_of_windows_of_the_file_equal_those_of_the_whole() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.img");
     std::fs::write(&path, Fixture { prefix: 5, ..Fixture::default() }.attached()).unwrap();
@@ -222,7 +222,7 @@ fn output(program: &str, arguments: &[&str]) -> Option<String> {
 }
 
 #[test]
-fn gdal_places_and_reads_the_same_images() {
+fn gdal_reads_the_same_images_at_the_same_positions() {
     let folder = tempfile::tempdir().unwrap();
     // GDAL supports fewer type names.
     for (sample_type, bits) in [

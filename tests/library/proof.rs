@@ -27,7 +27,7 @@ struct Journey {
 
 impl Journey {
     /// Adversarial chains: explicit constraints that differ by segment and direction, machine limits, bends, tiny segments.
-    fn ugly(draw: &mut Draw) -> Self {
+    fn adversarial(draw: &mut Draw) -> Self {
         let segments = 2 + draw.below(6);
         let (g, size) = (draw.gravity(), draw.log_uniform(1e-1, 1e2));
         let points = draw.profile(segments, size);
@@ -228,7 +228,7 @@ fn untraversable_survives_an_attack_by_points_and_angles() {
     let draw = &mut Draw::seeded(603);
     let (mut attacked, mut broken_open) = (0, 0);
     for i in 0..600 {
-        let journey = Journey::ugly(draw);
+        let journey = Journey::adversarial(draw);
         let found = journey.bounds(300);
         let stations = drawn_stations(draw, &journey, 25);
         let attack = fewest_over(&stations, &journey, &|a, b| flies(&journey, a, b, 24));
@@ -251,7 +251,7 @@ fn no_path_over_random_points_beats_the_lower_bound() {
     let draw = &mut Draw::seeded(604);
     let mut found_paths = 0;
     for i in 0..600 {
-        let journey = Journey::ugly(draw);
+        let journey = Journey::adversarial(draw);
         let found = journey.bounds(200);
         let (stations, test) = (drawn_stations(draw, &journey, 40), journey.test());
         let Some(hops) = fewest_over(&stations, &journey, &|a, b| test.lofts(a, b).is_ok()) else { continue };
@@ -272,7 +272,7 @@ fn no_density_of_points_beats_the_lower_bound() {
     let draw = &mut Draw::seeded(601);
     let (mut untraversable, mut met, mut open) = (0, 0, 0);
     for i in 0..1000 {
-        let journey = Journey::ugly(draw);
+        let journey = Journey::adversarial(draw);
         let found = journey.bounds(300);
         journey.verify(&found);
         assert!(found.lower.is_none() || found.upper().is_none_or(|upper| found.lower.unwrap() <= upper), "journey {i}: {found:?}");

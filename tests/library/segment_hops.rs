@@ -290,7 +290,7 @@ fn machine_limits_end_the_reach_where_hand_calculation_says() {
 }
 
 #[test]
-fn mid_range_hops_fly_the_middle_of_their_own_set_and_are_no_more() {
+fn mid_range_hops_fly_the_middle_of_their_own_set() {
     let draw = &mut Draw::seeded(27);
     let mut middles = 0;
     for i in 0..400 {

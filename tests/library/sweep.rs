@@ -108,7 +108,7 @@ fn some_hopper(draw: &mut Draw, size_m: f64, g: f64) -> Hopper {
 }
 
 #[test]
-fn random_chains_bends_and_points_inside_segments() {
+fn random_chains_with_bends_have_the_verdicts_of_the_hop_test() {
     let draw = &mut Draw::seeded(401);
     let mut compared = Compared::default();
     for _ in 0..200 {
@@ -165,7 +165,7 @@ fn adversaries(draw: &mut Draw) -> Vec<(&'static str, Vec<ChainPoint>)> {
 }
 
 #[test]
-fn adversarial_ground() {
+fn adversarial_ground_has_the_verdicts_of_the_hop_test() {
     let draw = &mut Draw::seeded(402);
     let open = |speed| line((-90.0, 90.0), speed, (-90.0, 90.0), speed);
     let steep = |speed| line((55.0, 90.0), speed, (-90.0, -40.0), speed);
@@ -192,7 +192,7 @@ fn adversarial_ground() {
 /// Where the terrain's loft equals the greatest allowed one to the last digits, rounding decides; the sweep must agree with the hop
 /// test.
 #[test]
-fn touching_limits_are_evaluated_as_pair_by_pair() {
+fn touching_limits_have_the_verdicts_of_the_hop_test() {
     let draw = &mut Draw::seeded(403);
     let (mut touching, mut compared) = (0, Compared::default());
     for _ in 0..150 {
@@ -220,7 +220,7 @@ fn touching_limits_are_evaluated_as_pair_by_pair() {
 
 /// Slices of real DEMs (skipped if absent), at speeds with a long range: friction cones, rough ground, flats and walls.
 #[test]
-fn real_ground() {
+fn real_ground_has_the_verdicts_of_the_hop_test() {
     let mut compared = Compared::default();
     for (name, g, reach_m) in
         [("hirise_DTEEC_010228_1490_crop_120x70.tif", 3.711, 60.0), ("lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif", 1.62, 900.0)]
@@ -340,7 +340,7 @@ const _: () = {
 };
 
 #[test]
-fn a_clone_answers_alike_from_the_same_chain_after_the_first_is_gone() {
+fn a_clone_gives_the_same_results_after_the_original_is_dropped() {
     let points: Vec<_> = (0..40).map(|i| ChainPoint::new(f64::from(i), f64::from(i % 3))).collect();
     let chain = uniform(&points, line((-90.0, 90.0), 4.0, (-90.0, 90.0), 4.0));
     let first = HopTest::new(chain.clone());

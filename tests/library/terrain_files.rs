@@ -86,7 +86,7 @@ fn real_dems_are_sliced_and_every_vertex_lies_between_their_extremes() {
 }
 
 #[test]
-fn every_interoperability_file_is_read_or_refused_with_a_way_out() {
+fn every_interoperability_file_is_read_or_refused_with_a_remedy() {
     let expected = [
         ("asynctiff_BigTIFF.tif", "RGB picture of 3 bands"),
         ("asynctiff_gradient-1c-64b-float.tiff", "no position on a map"),
@@ -108,14 +108,14 @@ fn every_interoperability_file_is_read_or_refused_with_a_way_out() {
 }
 
 #[test]
-fn the_commands_that_refusals_name_do_mend_the_file() {
+fn the_commands_that_refusals_name_repair_the_file() {
     if !has_gdal() {
         return;
     }
     let directory = tempfile::tempdir().unwrap();
     let out = directory.path().join("out.tif");
     let out_text = out.to_str().unwrap();
-    let mend = |name: &str, program: &str, options: &[&str]| -> Option<Dem> {
+    let converted = |name: &str, program: &str, options: &[&str]| -> Option<Dem> {
         let path = shared(name)?;
         let _ = std::fs::remove_file(&out);
         let files = [path.to_str().unwrap(), out_text];
@@ -123,21 +123,25 @@ fn the_commands_that_refusals_name_do_mend_the_file() {
         Some(read_dem(&out).unwrap())
     };
     let point = "interop/geotiffcrate_austrian_capitals_model_tie_point_and_pixel_scale_pixel_is_point.tif";
-    if let Some(dem) = mend(point, "gdal_translate", &["-co", "PHOTOMETRIC=MINISBLACK"]) {
+    if let Some(dem) = converted(point, "gdal_translate", &["-co", "PHOTOMETRIC=MINISBLACK"]) {
         // GDAL's origin is the pixel's corner; the post is half a pixel inside.
         assert_eq!(dem.georeference().north_west(), MapPoint::new(4_302_000.0, 2_811_000.0));
         assert!(dem.georeference().coordinate_system.description.as_deref().unwrap_or_default().contains("ETRS89"));
     }
     let area = "interop/geotiffcrate_austrian_capitals_model_transformation_pixel_is_area.tif";
-    if let Some(dem) = mend(area, "gdal_translate", &["-co", "PHOTOMETRIC=MINISBLACK"]) {
+    if let Some(dem) = converted(area, "gdal_translate", &["-co", "PHOTOMETRIC=MINISBLACK"]) {
         assert_eq!(dem.georeference().north_west(), MapPoint::new(4_302_500.0, 2_810_500.0));
     }
-    if let Some(dem) = mend("interop/asynctiff_predictor-3-gray-f32.tif", "gdal_translate", &["-a_ullr", "0", "200", "200", "0"]) {
+    if let Some(dem) =
+        converted("interop/asynctiff_predictor-3-gray-f32.tif", "gdal_translate", &["-a_ullr", "0", "200", "200", "0"])
+    {
         assert_eq!((dem.rows(), dem.georeference().north_west()), (200, MapPoint::new(0.5, 199.5)));
     }
-    if let Some(dem) =
-        mend("interop/gz_dem_squared.tif", "gdalwarp", &["-r", "bilinear", "-t_srs", "+proj=eqc +lat_ts=38 +R=6371000 +units=m"])
-    {
+    if let Some(dem) = converted(
+        "interop/gz_dem_squared.tif",
+        "gdalwarp",
+        &["-r", "bilinear", "-t_srs", "+proj=eqc +lat_ts=38 +R=6371000 +units=m"],
+    ) {
         assert!(dem.georeference().dx_m() > 10.0 && dem.elevation_range_m().1 > 300.0);
     }
 }
@@ -301,7 +305,7 @@ fn a_real_projection_survives_writing_tag_for_tag_and_gdal_agrees() {
 }
 
 #[test]
-fn files_that_only_begin_well_are_refused_quickly_and_without_memory() {
+fn files_with_only_a_valid_beginning_are_refused_quickly_and_without_memory() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path().join("terrain");
     let refuse = |content: &[u8], expected: &str| {

@@ -34,7 +34,7 @@ use crate::cli::{
 };
 
 /// The terrain of a map, its projection and the scenario.
-struct Inputs {
+struct PreparedMap {
     ground: DemGround,
     projection: Result<MapProjection, NoProjection>,
     scenario: Scenario,
@@ -44,7 +44,7 @@ struct Inputs {
     warnings: Vec<String>,
 }
 
-impl Inputs {
+impl PreparedMap {
     fn dem(&self) -> &Dem {
         self.ground.terrain().dem()
     }
@@ -115,7 +115,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
 }
 
 /// Reads terrain and scenario and finds the posts of start and goals.
-fn prepared(args: &MapArgs) -> Result<(Inputs, Spot, Vec<Spot>), Failure> {
+fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     let MapArgs { dem: file, start, start_lonlat, goal, goal_lonlat, stride, effort, common, .. } = args;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     if *stride == 0 {
@@ -163,7 +163,7 @@ fn prepared(args: &MapArgs) -> Result<(Inputs, Spot, Vec<Spot>), Failure> {
     for overlay in Overlays::files(&scenario) {
         input_files.push(input_file(&base.join(overlay))?);
     }
-    Ok((Inputs { ground, projection, scenario, lattice, document, input_files, warnings }, start, goals))
+    Ok((PreparedMap { ground, projection, scenario, lattice, document, input_files, warnings }, start, goals))
 }
 
 /// Checks that positions at different posts map to different nodes: a stride that merges them would give one answer for both.
@@ -209,8 +209,8 @@ fn refusals(hops: &PostHops, start: Spot, goals: &[Spot]) -> Vec<String> {
 }
 
 /// Searches, with progress on the terminal.
-fn mapped(args: &MapArgs, inputs: &Inputs, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
-    let Inputs { scenario, lattice, .. } = inputs;
+fn mapped(args: &MapArgs, inputs: &PreparedMap, start: Spot, goals: &[Spot]) -> Result<Maps, Failure> {
+    let PreparedMap { scenario, lattice, .. } = inputs;
     let failed = |error: &MapError| Failure::about(&args.dem, error);
     let progress = Progress::new(args.common.quiet);
     let search_started = std::time::Instant::now();
@@ -261,7 +261,7 @@ fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
 /// Flies the path to every reachable goal many times.
 fn simulated(
     args: &MapArgs,
-    inputs: &Inputs,
+    inputs: &PreparedMap,
     maps: &Maps,
     keys: &UncertaintyKeys,
 ) -> Result<Vec<Option<SimulationRecord>>, Failure> {
@@ -316,7 +316,7 @@ fn outputs(args: &MapArgs) -> impl Iterator<Item = &Path> {
 }
 
 /// The record of a goal.
-fn goal_record(inputs: &Inputs, maps: &Maps, goal: &Spot, index: usize) -> GoalRecord {
+fn goal_record(inputs: &PreparedMap, maps: &Maps, goal: &Spot, index: usize) -> GoalRecord {
     let node = inputs.lattice.index(goal.post);
     let reached = |map: &HopMap| Some(map.hops[node]).filter(|&hops| hops >= 0);
     let path = maps.paths[index].as_ref();
@@ -338,13 +338,13 @@ fn goal_record(inputs: &Inputs, maps: &Maps, goal: &Spot, index: usize) -> GoalR
 fn write_files<'a>(
     mut opened_files: Vec<Pending<'a>>,
     args: &'a MapArgs,
-    inputs: &Inputs,
+    inputs: &PreparedMap,
     maps: &Maps,
     answer: &MapAnswer,
     ends: (Spot, &[Spot]),
 ) -> Result<(), Failure> {
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
-    let Inputs { lattice, scenario, projection, .. } = inputs;
+    let PreparedMap { lattice, scenario, projection, .. } = inputs;
     let map = inputs.dem().georeference().every(lattice.stride);
     let raster = |bands: &ResultBands<'_>| result_geotiff_bytes(lattice.rows, lattice.cols, &map, bands).map_err(|e| failed(&e));
     let integer_raster = |name, hops| raster(&ResultBands::Int16(vec![Band { name, samples: hops }], NO_GROUND));
@@ -407,7 +407,7 @@ fn name_of(args: &MapArgs) -> String {
 /// The map as a picture, in the format of the file's extension.
 fn picture(
     args: &MapArgs,
-    inputs: &Inputs,
+    inputs: &PreparedMap,
     maps: &Maps,
     answer: &MapAnswer,
     (start, goals): (Spot, &[Spot]),
@@ -438,7 +438,7 @@ fn picture(
 }
 
 /// Which posts of the lattice lie in a keep-out zone.
-fn kept_out(inputs: &Inputs, zones: &KeepOut) -> Vec<bool> {
+fn kept_out(inputs: &PreparedMap, zones: &KeepOut) -> Vec<bool> {
     let NodeLattice { rows, cols, stride, .. } = inputs.lattice;
     let nodes = inputs.dem().georeference().every(stride);
     (0..rows * cols).map(|index| zones.keeps_out(nodes.post(index / cols, index % cols))).collect()

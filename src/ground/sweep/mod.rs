@@ -135,7 +135,7 @@ impl Sweep {
     }
 }
 
-/// What a verdict on one landing looks at.
+/// The inputs of the verdict on one landing.
 struct Landing<'s> {
     table: &'s LandingTable,
     lanes: &'s Lanes,

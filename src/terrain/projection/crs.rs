@@ -153,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_give_back_the_projection_of_every_form_with_its_code() {
+    fn keys_restore_the_projection_of_every_form_with_its_code() {
         for text in [
             "EPSG:32633",
             "epsg:32733",
@@ -246,7 +246,7 @@ mod tests {
     }
 
     #[test]
-    fn an_epsg_code_in_well_known_text_is_kept_only_where_it_means_the_same_map() {
+    fn an_epsg_code_in_well_known_text_is_kept_only_if_it_states_the_same_map() {
         let utm = MapProjection::from_code("EPSG:32633").unwrap().wkt();
         let with =
             |id: &str| MapProjection::from_wkt(&utm.replace("UNIT[\"Meter\",1.0]", &format!("UNIT[\"Meter\",1.0],{id}"))).unwrap();
@@ -256,7 +256,7 @@ mod tests {
     }
 
     #[test]
-    fn texts_that_state_no_usable_map_are_refused_by_what_is_wrong() {
+    fn texts_without_a_usable_map_are_refused_with_the_reason() {
         let read = |text: &str| text.parse::<MapProjection>().expect_err(text);
         macro_rules! refused {
             ($text:expr, $kind:pat, $word:expr) => {

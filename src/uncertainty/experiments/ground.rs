@@ -76,7 +76,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_way_down_is_found_from_above_and_from_below() {
+    fn the_first_contact_is_found_from_above_and_from_below() {
         let points = [(0.0, 0.0), (4.0, 1.0), (6.0, 0.2), (9.0, 2.5), (10.0, 2.4), (15.0, 0.0), (20.0, 0.5)];
         let chain = PolygonalChain::bare(points.iter().map(|&(x, z)| ChainPoint::new(x, z)).collect()).unwrap();
         let (mut compared, mut beyond) = (0, 0);

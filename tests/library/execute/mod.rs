@@ -206,7 +206,7 @@ fn a_needle_passed_too_low_is_named_and_one_that_is_hit_stops_the_flight() {
 }
 
 #[test]
-fn a_hop_that_leaves_the_chain_or_the_direction_of_travel_is_told() {
+fn a_hop_that_leaves_the_chain_or_the_direction_of_travel_is_reported() {
     let (flight, violations) = flown_over_the_needle(1.5, 0.0, |hop| hop.takeoff_speed_m_s *= 1.5);
     assert_eq!(flight.unwrap().contact, None, "it flies past the chain's end at 6 m");
     let miss = violations.iter().find(|v| v.limit == ViolatedLimit::LandingPoint).unwrap();

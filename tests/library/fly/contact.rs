@@ -70,7 +70,7 @@ fn height_on(chain: &ConstrainedChain, x_m: f64) -> Option<f64> {
 }
 
 #[test]
-fn contact_with_random_chains_is_the_first_a_dense_look_finds() {
+fn contact_with_random_chains_is_the_first_that_dense_sampling_finds() {
     let mut draw = Draw::seeded(2026);
     let (mut landed, mut lost, mut stayed) = (0, 0, 0);
     for _ in 0..60 {
@@ -120,7 +120,7 @@ fn rough_map() -> Dem {
 }
 
 #[test]
-fn contact_with_a_map_is_the_first_a_dense_look_finds() {
+fn contact_with_a_map_is_the_first_that_dense_sampling_finds() {
     let mut draw = Draw::seeded(7);
     let scene =
         Scene::of_dem(rough_map(), [(2.0, 20.0), (47.0, 21.0)], Hopper::with_speeds(10.0, 10.0).unwrap(), friction(5.0), 1.6);

@@ -153,7 +153,7 @@ fn zones_gaps_and_borders_lose_the_robot() {
 }
 
 #[test]
-fn a_bend_loses_those_that_fly_over_it() {
+fn trials_that_fly_over_a_bend_are_lost() {
     let points = [0.0, 100.0, 140.0, 400.0].map(|x| ChainPoint::new(x, 2.0)).to_vec();
     let mut scene = Scene::flat();
     let bent = PolygonalChain::bare(points).unwrap().with_bends(vec![chta::quantity::VertexId(2)]).unwrap();
@@ -164,7 +164,7 @@ fn a_bend_loses_those_that_fly_over_it() {
 }
 
 #[test]
-fn a_rate_known_well_enough_ends_the_run_after_whole_thousands() {
+fn a_precise_rate_ends_the_run_after_a_whole_batch() {
     let scene = Scene::flat();
     let speed = Uncertainty { takeoff_speed_sigma_m_s: 0.1, ..Uncertainty::NONE };
     let options = TrialOptions { trials: 50_000, until_half_width: Some(0.012), trajectories: 3, ..HUNDRED };
@@ -212,7 +212,7 @@ impl Progress for Impatient {
 }
 
 #[test]
-fn what_makes_no_sense_is_refused_by_name() {
+fn invalid_options_are_refused_by_name() {
     let scene = Scene::flat();
     let planned = scene.planned();
     let simulation = planned.simulation(Uncertainty::NONE);

@@ -153,7 +153,7 @@ fn replanning_makes_up_for_drift() {
 
 /// Friction and height errors change the actual ground; the robot plans by its map.
 #[test]
-fn the_robot_does_not_know_what_ground_it_drew() {
+fn the_robot_plans_by_its_map_not_by_the_drawn_ground() {
     for scene in [Scene::rolling(), Scene::craters()] {
         let planned = scene.planned();
         let position = Uncertainty { position_sigma_m: 0.5, ..Uncertainty::NONE };

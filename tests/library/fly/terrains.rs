@@ -43,7 +43,7 @@ fn holds(file: &Path, body: &str, ends: [(f64, f64); 2], spacing_m: f64) {
 }
 
 #[test]
-fn shipped_terrains() {
+fn plans_on_shipped_terrains_hold_without_errors() {
     let data = Path::new(env!("CARGO_MANIFEST_DIR")).join("data/terrain");
     holds(&data.join("mars_crater_field.tif"), "mars", [(12.0, 84.0), (176.0, 30.0)], 1.0);
     // Along a row, a column and a diagonal of posts.
@@ -67,7 +67,7 @@ fn real(name: &str) -> Option<PathBuf> {
 }
 
 #[test]
-fn real_terrains() {
+fn plans_on_real_terrains_hold_without_errors() {
     if let Some(mars) = real("hirise_DTEEC_010228_1490_crop_120x70.tif") {
         holds(&mars, "mars", [(5.0, 20.0), (60.0, 100.0)], 1.0);
     }

@@ -67,7 +67,7 @@ fn petgraph_finds_the_same_costs() {
 }
 
 #[test]
-fn petgraph_reaches_the_same_nodes_in_as_many_hops() {
+fn petgraph_reaches_the_same_nodes_with_the_same_hop_counts() {
     let draw = &mut Draw::seeded(41);
     let mut reached = 0;
     for _ in 0..600 {
@@ -129,7 +129,7 @@ fn any_number_of_threads_gives_the_same_answer() {
 }
 
 #[test]
-fn many_questions_have_the_answers_of_one_by_one() {
+fn many_questions_at_once_have_the_answers_of_single_ones() {
     let draw = &mut Draw::seeded(43);
     let (mut shared, mut paths, mut later) = (0, 0, 0);
     for _ in 0..250 {
