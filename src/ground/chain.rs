@@ -124,4 +124,8 @@ impl Surface for ConstrainedChain {
     fn resolution_m(&self) -> f64 {
         0.0
     }
+
+    fn slope_rounding(&self) -> f64 {
+        0.0
+    }
 }

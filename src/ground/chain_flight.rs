@@ -290,6 +290,10 @@ impl Surface for ChainGround {
     fn resolution_m(&self) -> f64 {
         0.0
     }
+
+    fn slope_rounding(&self) -> f64 {
+        0.0
+    }
 }
 
 impl Windows for ChainGround {

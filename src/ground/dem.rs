@@ -13,7 +13,7 @@ use crate::{
     },
     hop::HopTest,
     quantity::{ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
-    terrain::{OverlaidDem, Profile, ProfileFacet, TerrainError, Triangles},
+    terrain::{OverlaidDem, Profile, ProfileFacet, ProfilePoint, TerrainError, Triangles},
     world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
 };
 
@@ -21,11 +21,14 @@ use crate::{
 /// ground just flown over and a take-off the ground ahead, even if a border runs through the contact itself.
 pub(super) const BESIDE_M: f64 = 1e-6;
 
-/// [`facets`](Surface::facets) probes two points, one on each side of the line: `resolution_m` to the side and this many times
-/// `resolution_m` along it. A line at less than 1/4096 rad to an edge therefore counts as running along it. Lines between posts up
+/// [`facets`](Surface::facets) probes two points, one on each side of the line: `aside_posts` post spacings to the side and this many
+/// times as far along it. A line at less than 1/4096 rad to an edge therefore counts as running along it. Lines between posts up
 /// to some 500 posts apart make larger angles with every other edge. A larger value could probe past the facet under the contact
 /// when the line does not start at a post.
 const FACET_LOOK: f64 = 4096.0;
+
+/// Length of the line next to a contact over which the overlays are laid, in post spacings.
+const BESIDE_POSTS: f64 = 0.5;
 
 /// Rounding error of a height or a coordinate, in units in the last place.
 const ULPS: f64 = 4.0;
@@ -43,6 +46,8 @@ pub struct DemGround {
     height_rounding_m: f64,
     position_rounding_m: f64,
     resolution_m: f64,
+    /// Farther from a line of the lattice than its tolerance, post spacings.
+    aside_posts: f64,
     /// How this ground differs from the map in one trial; by default, not at all.
     pub(super) realization: Realization,
 }
@@ -84,10 +89,12 @@ impl DemGround {
         let (bounds, map) = (dem.bounds(), dem.georeference());
         let farthest_m = [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y].into_iter().map(f64::abs).fold(0.0, f64::max);
         let position_rounding_m = ULPS * f64::EPSILON * farthest_m;
+        let step_m = map.dx_m().min(map.dy_m());
         Self {
             height_rounding_m: ULPS * f64::EPSILON * low_m.abs().max(high_m.abs()),
             position_rounding_m,
-            resolution_m: 4.0 * (ON_THE_LINE * map.dx_m().min(map.dy_m())).max(position_rounding_m),
+            resolution_m: 4.0 * (ON_THE_LINE * step_m).max(position_rounding_m),
+            aside_posts: 4.0 * ON_THE_LINE.max(position_rounding_m / step_m),
             envelope: FlightEnvelope::new(hopper, gravity),
             surface: *surface,
             realization: Realization::default(),
@@ -236,19 +243,56 @@ impl DemGround {
         (reached_m >= end_m).then_some(lofts)
     }
 
-    /// A facet with the given gradient, for the checker.
-    fn facet(&self, gradient: Gradient, heading: Vector2<f64>, beside: MapPoint) -> Option<Facet> {
-        let constraints = self.constraints(gradient, heading, beside).ok()?;
-        let hold = match self.nominal_friction(beside) {
-            Some(cone) => Hold::Friction { normal: Vector3::new(-gradient.x, -gradient.y, 1.0).normalize(), cone },
-            None => Hold::Stated {
-                line: constraints.stated(Direction::Forward),
-                takeoff: constraints.check_contact(Contact::Takeoff, Direction::Forward),
-                landing: constraints.check_contact(Contact::Landing, Direction::Forward),
-            },
+    /// What the nominal ground allows on a facet next to a contact, and its friction; `None` where an overlay ends.
+    ///
+    /// The overlays are laid over a short line on that side of the contact, as over a slice, so that borders of zones and friction take
+    /// effect from the same points on.
+    fn overlaid(
+        &self,
+        at: MapPoint,
+        heading: Vector2<f64>,
+        side: Side,
+        gradient: Gradient,
+    ) -> Option<(SegmentConstraints, Option<FrictionCone>)> {
+        let length = self.moved(heading, BESIDE_POSTS);
+        let (begin, end) = match side {
+            Side::Ahead => (at, at + length),
+            Side::Behind => (at - length, at),
         };
-        Some(Facet { refusal: constraints.refusal(), hold })
+        let point = |x_m, map| ProfilePoint { x_m, z_m: 0.0, map };
+        let bare = ProfileFacet::from_gradient(gradient, heading);
+        let mut profile = Profile { points: vec![point(0.0, begin), point(length.norm(), end)], facets: vec![bare], heading };
+        self.terrain.overlays().lay(&mut profile, self.constant_friction()).ok()?;
+        let facet = match side {
+            Side::Ahead => profile.facets.first(),
+            Side::Behind => profile.facets.last(),
+        }?;
+        let friction = facet.friction.or(self.constant_friction());
+        let form = GroundForm::Surface { friction, cross_slope: facet.cross_slope };
+        let ground = SegmentGround { form, keep_out: facet.keep_out };
+        let slope = gradient.dot(&heading);
+        let constraints = resolve_constraints(SegmentId(0), slope, &ground, self.hopper(), &self.surface).ok()?;
+        Some((constraints, friction))
     }
+
+    /// A step in a direction, of this length in post spacings.
+    fn moved(&self, direction: Vector2<f64>, posts: f64) -> Vector2<f64> {
+        let map = self.terrain.dem().georeference();
+        direction * (posts / (direction.x.abs() / map.dx_m()).max(direction.y.abs() / map.dy_m()))
+    }
+}
+
+/// A facet with the given gradient, constraints and friction, for the checker.
+fn facet_of(gradient: Gradient, (constraints, friction): (SegmentConstraints, Option<FrictionCone>)) -> Facet {
+    let hold = match friction {
+        Some(cone) => Hold::Friction { normal: Vector3::new(-gradient.x, -gradient.y, 1.0).normalize(), cone },
+        None => Hold::Stated {
+            line: constraints.stated(Direction::Forward),
+            takeoff: constraints.check_contact(Contact::Takeoff, Direction::Forward),
+            landing: constraints.check_contact(Contact::Landing, Direction::Forward),
+        },
+    };
+    Facet { refusal: constraints.refusal(), hold }
 }
 
 impl Surface for DemGround {
@@ -301,7 +345,7 @@ impl Surface for DemGround {
             return;
         };
         // A line along an edge has ground if either of its two triangles has.
-        let across = Vector2::new(-heading.y, heading.x) * self.resolution_m;
+        let across = self.moved(Vector2::new(-heading.y, heading.x), self.aside_posts);
         let mut before_m = 0.0;
         for (row, col, to_m) in posts {
             let middle = from.at + heading * (0.5 * (before_m + to_m));
@@ -320,15 +364,15 @@ impl Surface for DemGround {
             Side::Ahead => heading,
             Side::Behind => -heading,
         };
-        let beside = at.at + towards * BESIDE_M;
         // One point on each side of the line, farther from it than the tolerance of the lattice, and far enough along it that a
         // line which only starts next to an edge has left the edge.
-        let along = at.at + towards * BESIDE_M.max(FACET_LOOK * self.resolution_m);
-        let across = Vector2::new(-heading.y, heading.x) * self.resolution_m;
+        let along = at.at + self.moved(towards, FACET_LOOK * self.aside_posts);
+        let across = self.moved(Vector2::new(-heading.y, heading.x), self.aside_posts);
         let gradients = [along + across, along - across].map(|point| triangles.at(point, triangles.nominal()).map(|(_, g)| g));
         let [left, right] = gradients;
         let right = right.filter(|right| left != Some(*right));
-        [left, right].map(|gradient| gradient.and_then(|gradient| self.facet(gradient, heading, beside)))
+        let overlaid = |gradient| self.overlaid(at.at, heading, side, gradient);
+        [left, right].map(|gradient| gradient.and_then(|gradient| overlaid(gradient).map(|known| facet_of(gradient, known))))
     }
 
     fn height_rounding_m(&self) -> f64 {
@@ -341,6 +385,11 @@ impl Surface for DemGround {
 
     fn resolution_m(&self) -> f64 {
         self.resolution_m
+    }
+
+    fn slope_rounding(&self) -> f64 {
+        let map = self.terrain.dem().georeference();
+        2.0 * (self.height_rounding_m + self.position_rounding_m) / map.dx_m().min(map.dy_m())
     }
 }
 

@@ -179,6 +179,9 @@ pub trait Surface {
 
     /// Positions closer than this are one position, m: shorter elements carry no information.
     fn resolution_m(&self) -> f64;
+
+    /// Rounding error of the slope of a facet, and of the direction of a line of travel, rad.
+    fn slope_rounding(&self) -> f64;
 }
 
 /// The feasible take-off windows between two contacts.

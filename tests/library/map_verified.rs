@@ -14,10 +14,10 @@ use chta::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     ground::{DemGround, MapPosition, Surface, Windows},
     path::{Hop, HopPath, StatedValue, ViolatedLimit, Violation, execute},
-    quantity::MapPoint,
+    quantity::{Angle, AngleInterval, MapPoint},
     reach::map::{HopMap, Post, PostHops, Search, joined, path_hops, search, verify},
     terrain::{Dem, GeoReference, OverlaidDem, Overlays, read_dem, read_friction_raster, read_keep_out},
-    world::{Gravity, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
+    world::{Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
 
 const CHOICES: [TakeoffChoice; 3] = TakeoffChoice::ALL;
@@ -319,7 +319,7 @@ fn a_pair_has_the_same_windows_in_all_three_forms() {
         let [from, to]: [MapPosition; 2] = [&hop.takeoff, &hop.landing].map(|point| ground.contact_at(point).unwrap());
         let windows = ground.windows(&from, &to).unwrap();
         let [lofts] = windows.lofts[..] else { panic!("no window for a hop: {hop:?}") };
-        let slope = |angle: chta::quantity::Angle| angle.slope() - windows.sight.slope();
+        let slope = |angle: Angle| angle.slope() - windows.sight.slope();
         let near = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-6 * (1.0 + a.abs().max(b.abs()));
         let (min, max) = (slope(hop.takeoff_angles.min), slope(hop.takeoff_angles.max));
         let vertical = hop.takeoff_angles.max.degrees() > 89.999;
@@ -353,4 +353,65 @@ fn the_checker_agrees_on_the_slice_and_on_the_dem() {
         compared += 1;
     });
     assert!(compared > 500, "only {compared} hops");
+}
+
+/// Situations in which a checker that looks beside a contact may look at the wrong ground: each path holds.
+#[test]
+fn contacts_next_to_edges_borders_and_limits_hold_when_flown_again() {
+    let one_hop = |world: &World, from: Post, to: Post, what: &str| {
+        let hops = PostHops::new(world.ground(), 1).unwrap();
+        let map = map_from(&hops, from);
+        let path = path_to(&hops, &map, to, TakeoffChoice::LeastSpeed).unwrap_or_else(|| panic!("{what}: no path"));
+        let violations = verify(&hops, &path, from, to).violations;
+        assert!(violations.is_empty(), "{what}: {violations:?}");
+    };
+    let dem = |rows: &[&[f64]], origin: (f64, f64), (dx_m, dy_m): (f64, f64)| {
+        let north_west = MapPoint::new(origin.0, origin.1 + dy_m * (rows.len() - 1) as f64);
+        let map = GeoReference::local(north_west, dx_m, dy_m).unwrap();
+        Dem::new(rows.len(), rows[0].len(), rows.concat(), map).unwrap()
+    };
+    let speeds = |v: f64| Hopper::with_speeds(v, v).unwrap();
+    let row = |number: usize, col: usize| Post { row: number, col };
+    // Post spacings that differ by a factor of five, along an edge beside a gap.
+    let gap = [0.0, 0.0, f64::NAN];
+    let world = World::new(dem(&[&gap, &gap, &gap], (0.0, 0.0), (5.0, 1.0)), speeds(2.0), friction(1.0), 1.0);
+    one_hop(&world, row(2, 1), row(0, 1), "beside a gap");
+    // Borders of a zone just ahead of a take-off and just behind a landing.
+    let folder = tempfile::tempdir().unwrap();
+    let flat = [0.0; 4];
+    for (number, (west, east)) in [(1e-7, 2.5), (1e-9, 2.5), (0.5, 2.999_999_5), (-1.0, 0.0), (3.0, 4.0)].into_iter().enumerate() {
+        let mut world = World::new(dem(&[&flat, &flat, &flat], (0.0, 0.0), (1.0, 1.0)), speeds(1.8), friction(1.0), 1.0);
+        let file = folder.path().join(format!("zone_{number}.geojson"));
+        let ring = format!("[[{west},0.5],[{east},0.5],[{east},1.5],[{west},1.5],[{west},0.5]]");
+        std::fs::write(&file, format!(r#"{{"type": "Polygon", "coordinates": [{ring}]}}"#)).unwrap();
+        world.keep_out = Some(read_keep_out(&file, None, world.dem.bounds()).unwrap());
+        one_hop(&world, row(1, 0), row(1, 3), &format!("zone from {west} to {east}"));
+    }
+    // Friction cells of a kilometre whose borders run through posts.
+    let mut world = World::new(
+        dem(&[&flat, &flat, &flat], (0.0, 0.0), (1000.0, 1000.0)),
+        speeds(2400f64.sqrt()),
+        SurfaceProperties { rest: RestSlope::Unlimited, ..friction(1.0) },
+        1.0,
+    );
+    let raster = folder.path().join("friction.asc");
+    let header = "ncols 3\nnrows 2\nxllcenter 500\nyllcenter 500\ncellsize 1000\n";
+    std::fs::write(&raster, format!("{header}.3 .9 .3\n.3 .9 .3\n")).unwrap();
+    world.friction = Some(read_friction_raster(&raster, None).unwrap());
+    one_hop(&world, row(2, 1), row(2, 2), "friction cells of a kilometre");
+    // Angles stated from the slope, on a facet exactly at the rest slope.
+    let rising = [100.0, 100.2, 100.4];
+    let surface = SurfaceProperties {
+        grip: Some(Grip::FromSlope {
+            takeoff: AngleInterval::from_degrees(0.0, 90.0),
+            landing: AngleInterval::from_degrees(-90.0, 0.0),
+        }),
+        rest: RestSlope::AtMost(Angle::from_degrees(11.309_932_474_020_215)),
+    };
+    let world = World::new(dem(&[&rising, &rising, &rising], (0.0, 0.0), (1.0, 1.0)), speeds(2.0), surface, 1.0);
+    one_hop(&world, row(2, 0), row(2, 1), "exactly at the rest slope");
+    // Coordinates that are coarse beside the posts.
+    let world =
+        World::new(dem(&[&[0.03, 0.03, 0.0], &[0.03, 0.05, 0.05]], (5e6, 5e6), (0.1, 0.1)), speeds(0.4743), friction(1.0), 1.0);
+    one_hop(&world, row(1, 2), row(1, 0), "coarse coordinates");
 }

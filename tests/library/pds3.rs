@@ -197,7 +197,7 @@ fn a_detached_label_finds_its_image_and_the_image_names_its_label() {
     std::fs::write(folder.path().join("made.lbl"), fixture.label("\"../MADE.IMG\"")).unwrap();
     assert!(read_dem(&folder.path().join("made.lbl")).unwrap_err().to_string().contains("plain name"));
     std::fs::write(folder.path().join("made.lbl"), fixture.label("\"OTHER.IMG\"")).unwrap();
-    assert!(read_dem(&folder.path().join("made.lbl")).unwrap_err().to_string().contains("not there"));
+    assert!(read_dem(&folder.path().join("made.lbl")).unwrap_err().to_string().contains("does not exist"));
 }
 
 #[test]

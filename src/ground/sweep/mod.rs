@@ -31,7 +31,7 @@ use crate::{
 ///
 /// # Examples
 /// ```
-/// use chta::{chain::*, hop::*, quantity::*, world::*};
+/// use chta::{chain::*, ground::{LandingTable, Sweep}, hop::*, quantity::*, world::*};
 /// let points = (0..=20).map(|i| ChainPoint::new(f64::from(i), 0.0)).collect();
 /// let hopper = Hopper::with_speeds(4.0, 4.0).unwrap();
 /// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(1.0).unwrap())), rest: RestSlope::AsFrictionHolds };

@@ -204,7 +204,7 @@ impl<S: Surface> Checker<'_, S> {
     /// Checks of one facet under a contact.
     fn facet(&mut self, facet: &Facet, meeting: Meeting, x_m: f64) {
         let before = self.violations.len();
-        if let Some(refusal) = facet.refusal.filter(|refusal| !only_rounding(*refusal)) {
+        if let Some(refusal) = facet.refusal.filter(|refusal| !self.is_rounding(*refusal)) {
             self.note(ViolatedLimit::Limit(refusal.limit(meeting.contact)), refusal_measure(refusal), x_m);
         }
         match facet.hold {
@@ -227,9 +227,16 @@ impl<S: Surface> Checker<'_, S> {
         }
         if self.violations.len() == before
             && let Some(Err(refusal)) = facet.hold.stated(meeting.contact)
+            && !self.is_rounding(refusal)
         {
             self.note(ViolatedLimit::Limit(refusal.limit(meeting.contact)), refusal_measure(refusal), x_m);
         }
+    }
+
+    /// Whether a refusal is within rounding: a facet exactly at the rest slope.
+    fn is_rounding(&self, refusal: GroundRefusal) -> bool {
+        let tolerance_rad = ANGLE_TOLERANCE_RAD + self.surface.slope_rounding();
+        matches!(refusal, GroundRefusal::TooSteep { tilt, max } if tilt.radians() - max.radians() <= tolerance_rad)
     }
 
     /// The speed limit of a contact.
@@ -250,7 +257,8 @@ impl<S: Surface> Checker<'_, S> {
         // The ground pushes along the flight at a take-off and against it at a landing.
         let push = if meeting.contact == Contact::Takeoff { flight } else { -flight };
         let off_rad = libm::atan2(normal.cross(&push).norm(), normal.dot(&push));
-        let held = off_rad <= cone.half_angle().radians() + meeting.angle_tolerance_rad;
+        let tolerance_rad = meeting.angle_tolerance_rad + self.surface.slope_rounding();
+        let held = off_rad <= cone.half_angle().radians() + tolerance_rad;
         if !held {
             let limit = if meeting.contact == Contact::Takeoff { Limit::TakeoffCone } else { Limit::LandingCone };
             self.note_limit(limit, off_rad.to_degrees(), cone.half_angle().degrees(), "deg", x_m);
@@ -261,7 +269,8 @@ impl<S: Surface> Checker<'_, S> {
     fn cone(&mut self, angles: AngleInterval, meeting: Meeting, x_m: f64) {
         let limit = if meeting.contact == Contact::Takeoff { Limit::TakeoffCone } else { Limit::LandingCone };
         let (min, max) = (angles.min.radians().max(-FRAC_PI_2), angles.max.radians().min(FRAC_PI_2));
-        self.angle_between(limit, meeting.angle_rad, (min, max), meeting.angle_tolerance_rad, x_m);
+        let tolerance_rad = meeting.angle_tolerance_rad + self.surface.slope_rounding();
+        self.angle_between(limit, meeting.angle_rad, (min, max), tolerance_rad, x_m);
     }
 
     /// An angle must lie between two others, both included.
@@ -439,11 +448,6 @@ const fn speed_max_m_s(takeoff_m_s: f64, landing_m_s: f64, contact: Contact) -> 
         Contact::Takeoff => takeoff_m_s,
         Contact::Landing => landing_m_s,
     }
-}
-
-/// Whether a refusal is within rounding: a facet exactly at the rest slope.
-fn only_rounding(refusal: GroundRefusal) -> bool {
-    matches!(refusal, GroundRefusal::TooSteep { tilt, max } if tilt.radians() - max.radians() <= ANGLE_TOLERANCE_RAD)
 }
 
 /// Uncertainty of the landing time: that of the position over the speed.

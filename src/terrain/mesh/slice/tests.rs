@@ -103,7 +103,7 @@ fn a_block_on_a_floor_has_walls_on_its_lower_sides() {
     // At a right angle to the plane, a wall has no cross-slope.
     assert!(slice.profile.facets.iter().all(|facet| facet.cross_slope.degrees() < 1e-12));
     let warnings = slice.warnings();
-    assert!(warnings[0].contains("in 1 places, over 4.000 of 10.000 m (40.0 %): the uppermost is used"), "{warnings:?}");
+    assert!(warnings[0].contains("in 1 places, over 4.000 of 10.000 m (40.0 %): the uppermost counts there"), "{warnings:?}");
     assert!(
         warnings[1].contains("jumps in 2 places")
             && warnings[1].contains("wall of 2.000 m at x = 3.000 m, map (3.000, 5.250), from z = 0.000 m")
