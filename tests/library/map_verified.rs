@@ -366,7 +366,7 @@ fn contacts_next_to_edges_borders_and_limits_hold_when_flown_again() {
         assert!(violations.is_empty(), "{what}: {violations:?}");
     };
     let dem = |rows: &[&[f64]], origin: (f64, f64), (dx_m, dy_m): (f64, f64)| {
-        let north_west = MapPoint::new(origin.0, origin.1 + dy_m * (rows.len() - 1) as f64);
+        let north_west = MapPoint::new(origin.0, origin.1 + dy_m * f64::from(u32::try_from(rows.len() - 1).unwrap()));
         let map = GeoReference::local(north_west, dx_m, dy_m).unwrap();
         Dem::new(rows.len(), rows[0].len(), rows.concat(), map).unwrap()
     };
