@@ -24,7 +24,7 @@ use crate::{
     world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
 
-/// Tests one take-off against many landings under all limits, with the results of [`HopTest::lofts`](super::HopTest::lofts)
+/// Tests one take-off against many landings under all limits, with the results of [`HopTest::lofts`](crate::hop::HopTest::lofts)
 /// at a fraction of its cost.
 ///
 /// Holds working memory that is reused from one sweep to the next: make one per thread.
@@ -57,7 +57,7 @@ pub struct Sweep {
     overflight: Overflight,
 }
 
-/// Two lofts closer than this fraction of their size are compared by [`HopTest::lofts`](super::HopTest::lofts): far more than
+/// Two lofts closer than this fraction of their size are compared by [`HopTest::lofts`](crate::hop::HopTest::lofts): far more than
 /// rounding, far less than matters.
 const TOUCHING: f64 = 1e-11;
 
@@ -71,7 +71,7 @@ impl Sweep {
 
     /// Evaluates every landing of a range of the table's stations that lies in a direction from the take-off, nearest first.
     ///
-    /// `visit` gets the index of each landing and the result of [`HopTest::lofts`](super::HopTest::lofts) for the pair.
+    /// `visit` gets the index of each landing and the result of [`HopTest::lofts`](crate::hop::HopTest::lofts) for the pair.
     /// Feasibility and the refusing limit are always the same, since that function itself decides where two limits touch
     /// within rounding. The lofts are equal to the last bit, or to some 1e-15 where vertices are more than thirty times
     /// closer together than their neighbours.
