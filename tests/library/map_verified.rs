@@ -7,6 +7,7 @@
 use std::path::Path;
 
 use crate::{
+    execute::with_arc,
     map_world::{World, friction, random_dem, random_hopper, random_surface},
     support::Draw,
 };
@@ -167,16 +168,7 @@ fn names(violations: &[Violation], limit: ViolatedLimit) -> bool {
 /// The hop with another take-off slope and the speed that still meets the landing.
 fn with_slope(hop: &Hop, slope: f64, gravity_m_s2: f64) -> Hop {
     let sight = LineOfSight::new(hop.run_m(), hop.landing.point_m.z - hop.takeoff.point_m.z);
-    let arc = Arc::new(sight, slope - sight.slope(), gravity_m_s2);
-    Hop {
-        takeoff_angle: arc.takeoff_angle(),
-        takeoff_speed_m_s: arc.takeoff_speed_m_s(),
-        landing_angle: arc.landing_angle(),
-        landing_speed_m_s: arc.landing_speed_m_s(),
-        flight_time_s: arc.flight_time_s(),
-        apex_z_m: hop.takeoff.point_m.z + arc.apex_height_m(),
-        ..*hop
-    }
+    with_arc(hop, &Arc::new(sight, slope - sight.slope(), gravity_m_s2))
 }
 
 /// Hops of random maps, each with its ground.

@@ -16,6 +16,19 @@ use chta::{
     world::{Direction, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
 
+/// The hop with the angles, speeds, time and apex of another arc.
+pub(crate) fn with_arc(hop: &Hop, arc: &Arc) -> Hop {
+    Hop {
+        takeoff_angle: arc.takeoff_angle(),
+        takeoff_speed_m_s: arc.takeoff_speed_m_s(),
+        landing_angle: arc.landing_angle(),
+        landing_speed_m_s: arc.landing_speed_m_s(),
+        flight_time_s: arc.flight_time_s(),
+        apex_z_m: hop.takeoff.point_m.z + arc.apex_height_m(),
+        ..*hop
+    }
+}
+
 /// The independence on which the check rests, verified in the source.
 #[test]
 fn the_checker_imports_nothing_of_the_closed_forms_or_the_graph() {

@@ -10,7 +10,10 @@ use chta::{
     world::{Contact, Direction, Limit, RestSlope},
 };
 
-use super::world::{Dice, World};
+use super::{
+    with_arc,
+    world::{Dice, World},
+};
 
 /// The number of spoiled hops, by the limit that must be named.
 #[derive(Default)]
@@ -61,19 +64,6 @@ impl Case<'_> {
     fn at_angle(&self, radians: f64) -> Hop {
         let sight = self.sight();
         with_arc(self.hop, &Arc::new(sight, radians.tan() - sight.slope(), self.world.gravity_m_s2))
-    }
-}
-
-/// The hop with another arc's numbers.
-fn with_arc(hop: &Hop, arc: &Arc) -> Hop {
-    Hop {
-        takeoff_angle: arc.takeoff_angle(),
-        takeoff_speed_m_s: arc.takeoff_speed_m_s(),
-        landing_angle: arc.landing_angle(),
-        landing_speed_m_s: arc.landing_speed_m_s(),
-        flight_time_s: arc.flight_time_s(),
-        apex_z_m: hop.takeoff.point_m.z + arc.apex_height_m(),
-        ..*hop
     }
 }
 
