@@ -73,6 +73,9 @@ pub enum Stage {
     Trade,
 }
 
+/// The unit of the stages that are counted in tested pairs.
+const PAIRS: &str = "pairs";
+
 impl Stage {
     /// All of them.
     pub const ALL: [Self; 11] = [
@@ -109,7 +112,7 @@ impl Stage {
     /// What [`Step::done`] counts.
     pub const fn unit(self) -> &'static str {
         match self {
-            Self::Search | Self::Reachability | Self::CostToGo | Self::Reliability | Self::Proof => "pairs",
+            Self::Search | Self::Reachability | Self::CostToGo | Self::Reliability | Self::Proof => PAIRS,
             Self::Requirement => "values",
             Self::MapLayers => "posts",
             Self::Mobility => "blocks",
@@ -120,8 +123,8 @@ impl Stage {
     }
 
     /// Whether the stage is counted in pairs.
-    const fn counts_pairs(self) -> bool {
-        matches!(self, Self::Search | Self::Reachability | Self::CostToGo | Self::Reliability | Self::Proof)
+    fn counts_pairs(self) -> bool {
+        self.unit() == PAIRS
     }
 }
 

@@ -186,9 +186,7 @@ fn typed(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: 
         (false, None) => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
     };
     if !is_scenario {
-        for key in
-            ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"]
-        {
+        for key in SLICED_TERRAIN {
             source.entries.forget("terrain", key);
         }
         for key in ["friction_raster", "keep_out"] {
@@ -321,21 +319,13 @@ pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure
     Ok((validated(source.entries, &source.name, &source.text)?, source.base))
 }
 
+/// The keys of a terrain that is sliced.
+const SLICED_TERRAIN: [&str; 9] =
+    ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"];
+
 /// Removes the scenario's terrain, where the command line gives another.
 fn forget_terrain(entries: &mut Entries) {
-    let maps = [
-        "dem",
-        "mesh",
-        "mesh_scale",
-        "chain",
-        "start_m",
-        "goal_m",
-        "start_lonlat_deg",
-        "goal_lonlat_deg",
-        "via_m",
-        "via_lonlat_deg",
-    ];
-    for key in maps.into_iter().chain(["start_x_m", "goal_x_m"]) {
+    for key in SLICED_TERRAIN.into_iter().chain(["chain", "start_x_m", "goal_x_m"]) {
         entries.forget("terrain", key);
     }
 }

@@ -138,13 +138,17 @@ impl CostToGo {
     /// (between a node and positions near it the risk changes little, but feasibility may change). Without a policy, and if
     /// no such successor is feasible: the [cheapest leg](Self::cheapest_leg).
     pub fn best_leg(&self, test: &HopTest, from: &Station) -> Option<Leg> {
+        self.reliable_leg(test, from).or_else(|| self.cheapest_leg(test, from).map(|(leg, _)| leg))
+    }
+
+    /// The most reliable successor of the nearest node that is feasible from a station; `None` without a policy.
+    fn reliable_leg(&self, test: &HopTest, from: &Station) -> Option<Leg> {
+        let policy = self.policy.as_ref()?;
         let graph = self.graph(test);
-        let leg_to = |node: &NodeId| {
+        policy.successors(self.nearest_node(from.point.x_m)).iter().find_map(|node| {
             let landing = *self.nodes.station(*node);
             graph.edge(from, &landing).ok().map(|edge| Leg { takeoff: *from, landing, edge })
-        };
-        let reliable = self.reliable_successors(self.nearest_node(from.point.x_m)).iter().find_map(leg_to);
-        reliable.or_else(|| self.cheapest_leg(test, from).map(|(leg, _)| leg))
+        })
     }
 
     /// The first leg of the cheapest path from any station of the chain, and the cost of that path.

@@ -244,17 +244,10 @@ pub(super) fn steps_from(graph: &HopGraph, node: usize, counter: &mut PairCounte
     for target in graph.landings(takeoff).filter(|&target| target != node) {
         counter.pair()?;
         if let Ok(edge) = graph.edge(takeoff, nodes.station(NodeId(target))) {
-            steps.push(Step { target, hops: hops_of(edge) });
+            steps.push(Step { target, hops: edge.hops() });
         }
     }
     Ok(steps)
-}
-
-const fn hops_of(edge: Edge) -> u64 {
-    match edge {
-        Edge::Hop(_) => 1,
-        Edge::Along(along) => along.hops(),
-    }
 }
 
 /// The least number of hops from every node to the goal, against the direction of the edges.

@@ -284,15 +284,15 @@ impl Surface for ChainGround {
     }
 
     fn position_rounding_m(&self) -> f64 {
-        0.0
+        self.test.chain().position_rounding_m()
     }
 
     fn resolution_m(&self) -> f64 {
-        0.0
+        self.test.chain().resolution_m()
     }
 
     fn slope_rounding(&self) -> f64 {
-        0.0
+        self.test.chain().slope_rounding()
     }
 }
 

@@ -24,6 +24,7 @@ mod map_projection;
 mod map_verified;
 mod map_world;
 mod mesh_slices;
+mod mutations;
 mod mutations_chain_csv;
 mod mutations_mesh;
 mod mutations_scenario;

@@ -1,5 +1,6 @@
 //! Ten thousand mutated files of each form: no panic, and accepted files read back equal after writing.
 
+use crate::mutations::{copy, mutated, replace_digit, truncate_or_redraw};
 use chta::chain::csv::{read_chain_csv, read_pairs_csv, write_chain_csv};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
@@ -22,40 +23,20 @@ const PAIRS: &str = "start_x_m,goal_x_m\n0,9\n2.5,4\n1e0,\"0.5\"\n";
 /// Bytes with a meaning in CSV, which pass the first check more often than random bytes.
 const TELLING: &[u8] = b",\n\r\"#;\t 0123456789.-+eE\0\xff\xefx_mnaif";
 
-/// Mutates a file, mostly in one position, else in up to four.
 fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
-    let mut bytes = original.to_vec();
-    let places = if rng.random_bool(0.6) { 1 } else { rng.random_range(2..=4) };
-    for _ in 0..places {
-        if bytes.is_empty() {
-            break;
-        }
-        let at = rng.random_range(0..bytes.len());
-        let end = rng.random_range(at..=bytes.len().min(at + 30));
+    mutated(rng, original, |rng, bytes, range| {
+        let at = range.start;
         match rng.random_range(0..10) {
             0 => bytes[at] ^= 1 << rng.random_range(0..8),
             1 => bytes[at] = TELLING[rng.random_range(0..TELLING.len())],
             2 => bytes.insert(at, TELLING[rng.random_range(0..TELLING.len())]),
             3 => drop(bytes.remove(at)),
-            4 => drop(bytes.drain(at..end)),
-            5 => {
-                let piece = bytes[at..end].to_vec();
-                let to = rng.random_range(0..=bytes.len());
-                bytes.splice(to..to, piece);
-            }
-            // Another digit: the change that most likely passes every check.
-            6..9 => {
-                let digits: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i].is_ascii_digit()).collect();
-                if !digits.is_empty() {
-                    bytes[digits[rng.random_range(0..digits.len())]] = rng.random_range(b'0'..=b'9');
-                }
-            }
-            // Rare, so that most of a file remains.
-            _ if rng.random_bool(0.2) => bytes.truncate(at),
-            _ => bytes[at] = rng.random(),
+            4 => drop(bytes.drain(range)),
+            5 => copy(rng, bytes, range),
+            6..9 => replace_digit(rng, bytes),
+            _ => truncate_or_redraw(rng, bytes, at),
         }
-    }
-    bytes
+    })
 }
 
 /// Mutates a chain 10 000 times; returns how many were still accepted.

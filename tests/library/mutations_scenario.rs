@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot read its own JSON should stop")]
 
+use crate::mutations::{copy, mutated, replace_digit, truncate_or_redraw};
 use chta::scenario::{Entries, Place, Scenario, ScenarioProblems, scenario_document};
 use rand::{RngExt, SeedableRng, rngs::ChaCha8Rng};
 
@@ -23,33 +24,16 @@ const TELLING: &[u8] = b"[]{}\"'=.,:#\\\n\r\t 0123456789-+eE_inaftx\0\xff\xc3";
 const TELLING_WORDS: [&str; 12] =
     ["nan", "inf", "-inf", "1e400", "9223372036854775808", "-0.0", "null", "{}", "[[1]]", "true", "\"auto\"", "1979-05-27"];
 
-/// Mutates a text, mostly in one position, else in up to four.
 fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
-    let mut bytes = original.to_vec();
-    let places = if rng.random_bool(0.6) { 1 } else { rng.random_range(2..=4) };
-    for _ in 0..places {
-        if bytes.is_empty() {
-            break;
-        }
-        let at = rng.random_range(0..bytes.len());
-        let end = rng.random_range(at..=bytes.len().min(at + 30));
+    mutated(rng, original, |rng, bytes, range| {
+        let at = range.start;
         match rng.random_range(0..10) {
             0 => bytes[at] = TELLING[rng.random_range(0..TELLING.len())],
             1 => bytes.insert(at, TELLING[rng.random_range(0..TELLING.len())]),
             2 => drop(bytes.remove(at)),
-            3 => drop(bytes.drain(at..end)),
-            4 => {
-                let piece = bytes[at..end].to_vec();
-                let to = rng.random_range(0..=bytes.len());
-                bytes.splice(to..to, piece);
-            }
-            // A number in place of a number: the change that most likely passes every check.
-            5 | 6 => {
-                let digits: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i].is_ascii_digit()).collect();
-                if !digits.is_empty() {
-                    bytes[digits[rng.random_range(0..digits.len())]] = rng.random_range(b'0'..=b'9');
-                }
-            }
+            3 => drop(bytes.drain(range)),
+            4 => copy(rng, bytes, range),
+            5 | 6 => replace_digit(rng, bytes),
             7 | 8 => {
                 let values: Vec<usize> = (1..bytes.len()).filter(|&i| matches!(bytes[i - 1], b'=' | b':')).collect();
                 if !values.is_empty() {
@@ -58,11 +42,9 @@ fn spoiled(rng: &mut ChaCha8Rng, original: &[u8]) -> Vec<u8> {
                     bytes.splice(from..to, TELLING_WORDS[rng.random_range(0..TELLING_WORDS.len())].bytes());
                 }
             }
-            _ if rng.random_bool(0.2) => bytes.truncate(at),
-            _ => bytes[at] = rng.random(),
+            _ => truncate_or_redraw(rng, bytes, at),
         }
-    }
-    bytes
+    })
 }
 
 /// Validates the keys; returns `true` if they are accepted.

@@ -217,7 +217,7 @@ fn maps() {
         holds(&[Stage::MapLayers], 10, |progress| search_map(&hops, start, asked, progress));
     }
     holds(&[Stage::Mobility], 25, |progress| {
-        // No number is equal to itself where there is none.
+        // NaN, which is not equal to itself, marks posts without a value.
         mobility(&hops, progress).map(|found| (found.share, found.directions))
     });
 }

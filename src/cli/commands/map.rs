@@ -343,10 +343,10 @@ fn write_files<'a>(
     answer: &MapAnswer,
     ends: (Spot, &[Spot]),
 ) -> Result<(), Failure> {
-    let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let PreparedMap { lattice, scenario, projection, .. } = inputs;
     let map = inputs.dem().georeference().every(lattice.stride);
-    let raster = |bands: &ResultBands<'_>| result_geotiff_bytes(lattice.rows, lattice.cols, &map, bands).map_err(|e| failed(&e));
+    let raster =
+        |bands: &ResultBands<'_>| result_geotiff_bytes(lattice.rows, lattice.cols, &map, bands).map_err(|e| Failure::of(&e));
     let integer_raster = |name, hops| raster(&ResultBands::Int16(vec![Band { name, samples: hops }], NO_GROUND));
     let mut files: Vec<(&Path, Vec<u8>)> = Vec::new();
     if let Some(file) = &args.output {
@@ -369,7 +369,7 @@ fn write_files<'a>(
     if let Some(file) = &args.paths {
         let known = if projection.is_ok() { MapKnowledge::Projection } else { MapKnowledge::Metres };
         let mut csv = Vec::new();
-        write_paths_csv(answer.goals.iter().map(|goal| &goal.path[..]), known, &mut csv).map_err(|e| failed(&e))?;
+        write_paths_csv(answer.goals.iter().map(|goal| &goal.path[..]), known, &mut csv).map_err(|e| Failure::of(&e))?;
         files.push((file, csv));
     }
     let none = HopPath { hops: Vec::new(), totals: chta::path::Totals::default() };

@@ -95,7 +95,7 @@ impl World {
         (chain.geometry().station(self.start_x_m).unwrap(), chain.geometry().station(self.goal_x_m).unwrap())
     }
 
-    /// The planned path; `None` if there is none, or if it has too many hops for a test.
+    /// The planned path; `None` if no path was found, or if it has too many hops for a test.
     pub(crate) fn plan(&self, test: &HopTest) -> Option<HopPath> {
         let (start, goal) = self.ends(test.chain());
         match search(test, start, goal, &self.options, &()).unwrap().outcome {

@@ -174,24 +174,23 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     }
     let test = loaded.hop_test();
     let (start, goal) = loaded.ends()?;
-    let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
-    let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| failed(&error))?;
+    let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| Failure::of(&error))?;
     let progress = Progress::new(args.common.quiet);
     let reliable_paths =
         most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max), &progress)?;
     // The path planned without regard to risk, over the same nodes.
     let without_risk = SearchOptions { spacing: Some(planned.found.spacing), ..scenario.search.clone() };
-    let found = graph::search(&test, start, goal, &without_risk, &progress).map_err(|error| failed(&error))?;
+    let found = graph::search(&test, start, goal, &without_risk, &progress).map_err(|error| Failure::of(&error))?;
     let Outcome::Path { legs, .. } = &found.outcome else {
         return Err(Failure::message("there is no nominal path to compare with"));
     };
-    let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
+    let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| Failure::of(&error))?;
     let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy), args.common.quiet)?;
     let options = keys.options();
     let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
     for candidate in &reliable_paths {
-        let path =
-            generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split).map_err(|error| failed(&error))?;
+        let path = generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split)
+            .map_err(|error| Failure::of(&error))?;
         let summary = flyer.fly_along(&path, &options)?;
         rows.push(RiskTradeRow::new("surest", path.hops.len(), Some(candidate.success), &summary));
     }
