@@ -248,7 +248,7 @@ pub struct SegmentConstraints {
 }
 
 impl SegmentConstraints {
-    /// From the constraints of the two directions (or the reason why there are none) and a refusal that applies to both.
+    /// From the constraints of the two directions (or the reason for their absence) and a refusal that applies to both.
     pub fn new(
         forward: Result<LineConstraints, GroundRefusal>,
         reverse: Result<LineConstraints, GroundRefusal>,

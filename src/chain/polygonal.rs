@@ -199,7 +199,7 @@ impl PolygonalChain {
     /// heading changes by more than 1e-9 rad.
     ///
     /// # Errors
-    /// [`InvalidChain`]; for slices of valid terrain it only occurs if there are none.
+    /// [`InvalidChain`]; for slices of valid terrain it only occurs if `legs` is empty.
     pub fn from_legs(legs: &[Profile], friction: Option<FrictionCone>) -> Result<Self, InvalidChain> {
         let mut joined = Profile { points: Vec::new(), facets: Vec::new(), heading: nalgebra::Vector2::zeros() };
         let mut bends = Vec::new();
@@ -252,7 +252,7 @@ impl PolygonalChain {
         self.bends.get(next).copied().filter(|v| self.vertices[v.index()].x_m < high_m)
     }
 
-    /// The x of the next bend in a direction, strictly beyond `x_m`; `None` if there is none.
+    /// The x of the next bend in a direction, strictly beyond `x_m`; `None` if no bend follows.
     #[inline]
     pub fn next_bend_m(&self, x_m: f64, direction: Direction) -> Option<f64> {
         let at = |vertex: &VertexId| self.vertices[vertex.index()].x_m;

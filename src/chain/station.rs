@@ -73,7 +73,7 @@ impl Station {
         }
     }
 
-    /// The segment that both stations lie on, ends included; `None` if there is none.
+    /// The segment that both stations lie on, ends included; `None` if they lie on different segments.
     #[inline]
     pub fn shared_segment(&self, other: &Self) -> Option<SegmentId> {
         let range = |site: Site| match site {

@@ -35,7 +35,7 @@ impl Goals {
         &self.stations
     }
 
-    /// The best known path to each goal, in the order in which the goals were given; `None` if there is none.
+    /// The best known path to each goal, in the order in which the goals were given; `None` for a goal without a path.
     pub(super) fn labels(&self) -> Vec<Option<Label>> {
         let mut labels = vec![None; self.labels.len()];
         for (label, &given) in self.labels.iter().zip(&self.given) {

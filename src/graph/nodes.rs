@@ -60,7 +60,7 @@ impl NodeSet {
         Ok(Self { stations: stations.into(), start: NodeId(0), goal, most_per_segment })
     }
 
-    /// The node at a station's x; `None` if there is none.
+    /// The node at a station's x; `None` if no node lies there.
     pub fn find(&self, station: &Station) -> Option<NodeId> {
         let at = first_from(&self.stations, station);
         self.stations.get(at).is_some_and(|s| s.point.x_m == station.point.x_m).then_some(NodeId(at))

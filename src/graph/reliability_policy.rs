@@ -22,7 +22,7 @@ pub(super) struct ReliabilityPolicy {
     /// For every node, at most [`KEPT`] successors.
     successors: Vec<Vec<NodeId>>,
     /// For every node, the weight of the most reliable path to the goal, `-ln` of its estimated success probability; infinite
-    /// if there is none.
+    /// without such a path.
     #[cfg(test)]
     weights: Vec<f64>,
 }

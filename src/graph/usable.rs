@@ -17,7 +17,7 @@ pub struct EndpointRefusal {
     pub refusal: GroundRefusal,
     /// The direction of travel of that reason; the other direction is refused as well.
     pub direction: Direction,
-    /// The nearest usable point of the chain, by x; `None` if there is none.
+    /// The nearest usable point of the chain, by x; `None` if no point of the chain is usable.
     pub nearest: Option<Station>,
 }
 

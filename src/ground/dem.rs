@@ -202,7 +202,7 @@ impl DemGround {
     }
 
     /// The feasible lofts of one hop by a walk over the triangles, without a slice (replanning asks for them many times); `None` if
-    /// there are none.
+    /// the hop is infeasible.
     ///
     /// Equal to [`windows`](Windows::windows) except for rounding; on a line along the common edge of two facets, it uses one of
     /// them.

@@ -71,7 +71,7 @@ impl TakeoffSet {
         &self.limits
     }
 
-    /// The feasible lofts; `None` if there are none.
+    /// The feasible lofts; `None` if the hop is infeasible.
     pub fn lofts(&self) -> Option<SlopeInterval> {
         match self.verdict {
             Verdict::Feasible(lofts, _) => Some(lofts),
@@ -95,7 +95,7 @@ impl TakeoffSet {
         }
     }
 
-    /// The feasible take-off angles; `None` if there are none.
+    /// The feasible take-off angles; `None` if the hop is infeasible.
     pub fn angles(&self) -> Option<AngleInterval> {
         self.angles_of(self.lofts()?)
     }
@@ -105,7 +105,7 @@ impl TakeoffSet {
         lofts.shifted(self.sight.slope()).angles()
     }
 
-    /// The arc selected by `choice`; `None` if there is none.
+    /// The arc selected by `choice`; `None` if the hop is infeasible.
     pub fn arc(&self, choice: TakeoffChoice, gravity_m_s2: f64) -> Option<Arc> {
         Some(Arc::new(self.sight, choice.loft(self.sight, self.lofts()?), gravity_m_s2))
     }

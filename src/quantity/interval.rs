@@ -123,7 +123,7 @@ impl<R: Rounding> Interval<R> {
         Self::new(if near == 0.0 { 0.0 } else { square.lower }, square.upper)
     }
 
-    /// The square roots of all non-negative numbers inside; empty if there are none.
+    /// The square roots of all non-negative numbers inside; empty if all are negative.
     #[inline]
     #[must_use]
     pub fn sqrt(self) -> Self {

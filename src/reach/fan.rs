@@ -67,7 +67,7 @@ pub struct FanRay {
     pub length_m: f64,
     /// Why the slice is shorter than requested; `None` if it is not.
     pub end: Option<SliceEnd>,
-    /// The farthest reachable node, m from the start; 0 if there is none.
+    /// The farthest reachable node, m from the start; 0 if no node is reachable.
     pub farthest_m: f64,
     /// The fewest hops to it.
     pub hops_to_farthest: u64,

@@ -25,7 +25,7 @@ pub struct RequireAnswer {
     pub tries: Vec<RequireTry>,
     /// The number of hops of the path at `reachable_at`.
     pub hops: Option<u64>,
-    /// That path; empty if there is none or it has too many hops to list.
+    /// That path; empty if no path was found or it has too many hops to list.
     pub path: Vec<HopRecord>,
     /// Its totals.
     pub totals: Option<TotalsRecord>,

@@ -76,7 +76,7 @@ impl Posts for Dem {
     }
 }
 
-/// The posts of one window, with indices of the whole raster; there are none outside the window.
+/// The posts of one window, with indices of the whole raster; no post outside the window can be read.
 pub(super) struct Part<'a> {
     file: &'a dyn DemFile,
     window: Window,

@@ -99,7 +99,7 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// The hops of the best known path; `None` if there is none.
+    /// The hops of the best known path; `None` if no path is known.
     pub fn upper(&self) -> Option<u64> {
         self.answer.hops()
     }

@@ -175,7 +175,7 @@ impl PostHops {
         (row < self.lattice.rows && col < self.lattice.cols).then_some(Post { row, col })
     }
 
-    /// The feasible lofts of a hop from a node by an offset that ends on the map; `None` if there are none.
+    /// The feasible lofts of a hop from a node by an offset that ends on the map; `None` if the hop is infeasible.
     ///
     /// # Errors
     /// [`MapError::Ground`] if the exact code cannot build the slice.

@@ -56,7 +56,7 @@ pub struct Flight {
     pub apex_z_m: f64,
     /// The same above the take-off, m.
     pub apex_height_m: f64,
-    /// The least clearance over the vertices flown past; `None` if there are none.
+    /// The least clearance over the vertices flown past; `None` if the flight passes no vertex.
     pub least_clearance: Option<Clearance>,
     /// How many steps it took.
     pub steps: usize,

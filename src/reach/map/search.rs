@@ -280,7 +280,7 @@ impl HopMap {
         }
     }
 
-    /// The nodes of a path of fewest hops between the start and a node, in the order of flight; `None` if there is none.
+    /// The nodes of a path of fewest hops between the start and a node, in the order of flight; `None` if no path was found.
     pub fn path(&self, hops: &PostHops, node: Post) -> Option<Vec<Post>> {
         if self.hops[hops.lattice().index(node)] < 0 {
             return None;

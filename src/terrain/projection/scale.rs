@@ -63,7 +63,7 @@ pub enum TransectScale {
 }
 
 impl TransectScale {
-    /// The error of the factor, its distance from 1; negative if there is none.
+    /// The error of the factor, its distance from 1; negative if no factor was computed.
     fn error(&self) -> f64 {
         match self {
             Self::Local => -1.0,

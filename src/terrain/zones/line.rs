@@ -102,7 +102,7 @@ impl Line {
         }
     }
 
-    /// The x of the vertex at a position, which is added if there is none.
+    /// The x of the vertex at a position, which is added if missing.
     fn vertex_at(&self, profile: &mut Profile, x_m: f64) -> f64 {
         let next = profile.points.partition_point(|point| point.x_m < x_m).clamp(1, profile.points.len() - 1);
         let (before, after) = (profile.points[next - 1], profile.points[next]);

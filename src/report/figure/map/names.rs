@@ -119,7 +119,7 @@ pub(super) fn candidates(text: &str, (x, y): Place, half_mm: f64, panel: &Bounds
 }
 
 /// The best candidate for a label: inside the panel and over no marker or text; among these the one that hides the fewest landings,
-/// then the nearest, then the first. `None` if there is none.
+/// then the nearest, then the first. `None` if no candidate fits.
 pub(super) fn choose<'a>(candidates: &'a [Candidate], panel: &Bounds, taken: &Taken) -> Option<&'a Candidate> {
     // A candidate moved into the panel lies on its edge up to rounding.
     let panel = Bounds { left: panel.left - 1e-6, top: panel.top - 1e-6, right: panel.right + 1e-6, bottom: panel.bottom + 1e-6 };

@@ -180,7 +180,7 @@ impl MapPanel {
         Bounds { left, top, right, bottom }
     }
 
-    /// Draws a bold label on a light background at the best candidate; nothing if there is none.
+    /// Draws a bold label on a light background at the best candidate; nothing if no candidate fits.
     ///
     /// A label away from its marker has a line to it.
     pub(super) fn name_on_one(&self, sheet: &mut Sheet, places: &[Candidate], marker: Option<Place>, taken: &mut Taken) {

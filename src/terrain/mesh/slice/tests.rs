@@ -234,7 +234,7 @@ fn planes_cones_and_paraboloids_give_their_own_profiles() {
     }
 }
 
-/// Elevation of the highest triangle at a map point, by barycentric coordinates; `None` if there is none.
+/// Elevation of the highest triangle at a map point, by barycentric coordinates; `None` if no triangle covers it.
 fn highest(mesh: &Mesh, place: MapPoint) -> Option<f64> {
     let over = |[a, b, c]: [Point3<f64>; 3]| {
         let cross = |p: Point3<f64>, q: Point3<f64>| (p.xy() - place).perp(&(q.xy() - place));
