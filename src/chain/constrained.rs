@@ -16,6 +16,8 @@ pub struct ConstrainedChain {
     segments: Vec<SegmentConstraints>,
     /// Greatest take-off and landing speed over all segments, m/s; they bound the reach of any hop.
     speed_bounds_m_s: (f64, f64),
+    /// The greatest height above or below 0, m; it bounds the rounding error of heights.
+    height_bound_m: f64,
 }
 
 /// Why a chain cannot be analysed.
@@ -95,7 +97,8 @@ impl ConstrainedChain {
             rules.map(super::ContactRule::speed_max_m_s).fold(0.0, f64::max)
         };
         let speed_bounds_m_s = (bound(Contact::Takeoff), bound(Contact::Landing));
-        Ok(Self { geometry, hopper: *hopper, gravity, surface: *surface, segments, speed_bounds_m_s })
+        let height_bound_m = geometry.vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max);
+        Ok(Self { geometry, hopper: *hopper, gravity, surface: *surface, segments, speed_bounds_m_s, height_bound_m })
     }
 
     /// The same geometry and surface for another hopper and gravity.
@@ -104,6 +107,11 @@ impl ConstrainedChain {
     /// [`ConstraintProblems`], as [`new`](Self::new).
     pub fn with_hopper(&self, hopper: &Hopper, gravity: Gravity) -> Result<Self, ConstraintProblems> {
         Self::new(self.geometry.clone(), hopper, gravity, &self.surface)
+    }
+
+    /// The greatest height of a vertex above or below 0, m.
+    pub(crate) const fn height_bound_m(&self) -> f64 {
+        self.height_bound_m
     }
 
     /// The hopper whose limits the constraints hold.

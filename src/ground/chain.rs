@@ -28,7 +28,7 @@ pub(crate) fn heading_of(direction: Direction) -> Vector2<f64> {
 }
 
 /// The next vertex in a direction of travel; `None` at the chain's end.
-fn next_vertex(site: Site, direction: Direction, last: usize) -> Option<usize> {
+pub(super) fn next_vertex(site: Site, direction: Direction, last: usize) -> Option<usize> {
     match (site, direction) {
         (Site::Vertex(v), Direction::Forward) => (v.index() < last).then(|| v.index() + 1),
         (Site::Inside(s), Direction::Forward) => Some(s.index() + 1),
@@ -112,7 +112,7 @@ impl Surface for ConstrainedChain {
     }
 
     fn height_rounding_m(&self) -> f64 {
-        HEIGHT_ULPS * f64::EPSILON * self.geometry().vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max)
+        HEIGHT_ULPS * f64::EPSILON * self.height_bound_m()
     }
 
     /// Stations are exact.

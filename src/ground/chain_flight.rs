@@ -6,14 +6,14 @@ use nalgebra::{Point3, Vector2};
 
 use super::{
     ContactPoint, Element, Facet, FirstContact, Flight, LiftoffVelocity, Side, Surface, TakeoffWindows, TouchdownState, Windows,
-    chain::direction_of,
+    chain::{direction_of, next_vertex},
     first_contact::{ContactFailure, PLACE_TOLERANCE, Realization, check_landing, holds},
 };
 use crate::{
     chain::{ContactRule, GroundForm, GroundRefusal, SegmentConstraints, SegmentGround, Site, Station, resolve_constraints},
     hop::HopTest,
     quantity::{ChainPoint, SegmentId, VertexId},
-    world::{Contact, Direction, FrictionCone, Grip, Hopper},
+    world::{Contact, Direction, FrictionCone, Hopper},
 };
 
 /// The chain as the ground of a trial.
@@ -23,8 +23,6 @@ use crate::{
 #[derive(Clone, Debug)]
 pub struct ChainGround {
     test: HopTest,
-    /// Rounding error of the chain's heights, m.
-    height_rounding_m: f64,
     friction: f64,
     /// The vertices of this trial; empty if they are as planned.
     found: Vec<ChainPoint>,
@@ -127,8 +125,7 @@ impl Ahead {
 impl ChainGround {
     /// The nominal ground of a hop test's chain.
     pub fn new(test: HopTest) -> Self {
-        let height_rounding_m = test.chain().height_rounding_m();
-        Self { test, height_rounding_m, friction: 0.0, found: Vec::new() }
+        Self { test, friction: 0.0, found: Vec::new() }
     }
 
     /// The hop test of the chain.
@@ -153,10 +150,7 @@ impl ChainGround {
         }
         let mut ground: SegmentGround = *chain.geometry().grounds().get(segment)?;
         if let GroundForm::Surface { friction, .. } = &mut ground.form
-            && let Some(cone) = friction.or(match chain.surface().grip {
-                Some(Grip::Friction(cone)) => Some(cone),
-                Some(Grip::FromSlope { .. }) | None => None,
-            })
+            && let Some(cone) = friction.or(chain.surface().constant_friction())
         {
             *friction = FrictionCone::new((cone.coefficient() + self.friction).max(0.0)).ok();
         }
@@ -208,13 +202,7 @@ impl ChainGround {
     fn ahead(&self, from: &Station, direction: Direction) -> Option<Ahead> {
         let geometry = self.test.chain().geometry();
         let end = geometry.segment_count();
-        let next = match (from.site, direction) {
-            (Site::Vertex(v), Direction::Forward) if v.index() < end => v.index() + 1,
-            (Site::Inside(s), Direction::Forward) => s.index() + 1,
-            (Site::Vertex(v), Direction::Reverse) if v.index() > 0 => v.index() - 1,
-            (Site::Inside(s), Direction::Reverse) => s.index(),
-            (Site::Vertex(_), _) => return None,
-        };
+        let next = next_vertex(from.site, direction, end)?;
         let bends = geometry.bends();
         let last = match direction {
             Direction::Forward => bends.get(bends.partition_point(|v| v.index() < next)).map_or(end, |v| v.index()),
@@ -230,7 +218,7 @@ impl ChainGround {
             return false;
         }
         let top_m = liftoff.vertical_m_s * liftoff.vertical_m_s / (2.0 * self.test.gravity_m_s2());
-        let slack_m = PLACE_TOLERANCE * (run_m + top_m + rise_m.abs()) + self.height_rounding_m;
+        let slack_m = PLACE_TOLERANCE * (run_m + top_m + rise_m.abs()) + self.height_rounding_m();
         let misses = |over_m: f64, at_m: f64| over_m.abs() > slack_m * (1.0 + course.slope_at(at_m).abs());
         if misses(course.over_m((run_m, rise_m)), run_m) {
             return false;
@@ -280,7 +268,7 @@ impl Surface for ChainGround {
     }
 
     fn height_rounding_m(&self) -> f64 {
-        self.height_rounding_m
+        self.test.chain().height_rounding_m()
     }
 
     fn position_rounding_m(&self) -> f64 {

@@ -14,7 +14,7 @@ use crate::{
     hop::HopTest,
     quantity::{ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
     terrain::{OverlaidDem, Profile, ProfileFacet, ProfilePoint, TerrainError, Triangles},
-    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, RestSlope, SurfaceProperties},
+    world::{Contact, Direction, FrictionCone, Gravity, Hopper, RestSlope, SurfaceProperties},
 };
 
 /// Distance before a landing, or beyond a take-off, at which friction and keep-out zones are looked up, m. A landing obeys the
@@ -89,7 +89,7 @@ impl DemGround {
         let (bounds, map) = (dem.bounds(), dem.georeference());
         let farthest_m = [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y].into_iter().map(f64::abs).fold(0.0, f64::max);
         let position_rounding_m = ULPS * f64::EPSILON * farthest_m;
-        let step_m = map.dx_m().min(map.dy_m());
+        let step_m = map.step_m();
         Self {
             height_rounding_m: ULPS * f64::EPSILON * low_m.abs().max(high_m.abs()),
             position_rounding_m,
@@ -119,10 +119,7 @@ impl DemGround {
 
     /// The friction where the raster has no data; `None` if the default surface has no friction cone.
     pub const fn constant_friction(&self) -> Option<FrictionCone> {
-        match self.surface.grip {
-            Some(Grip::Friction(cone)) => Some(cone),
-            Some(Grip::FromSlope { .. }) | None => None,
-        }
+        self.surface.constant_friction()
     }
 
     /// The slice from one map point to another as a chain with overlays and resolved constraints.
@@ -389,19 +386,24 @@ impl Surface for DemGround {
 
     fn slope_rounding(&self) -> f64 {
         let map = self.terrain.dem().georeference();
-        2.0 * (self.height_rounding_m + self.position_rounding_m) / map.dx_m().min(map.dy_m())
+        2.0 * (self.height_rounding_m + self.position_rounding_m) / map.step_m()
     }
 }
 
 impl Windows for DemGround {
     /// Slices the DEM between the two positions and runs the hop test on the slice: at most one window.
     fn windows(&self, takeoff: &MapPosition, landing: &MapPosition) -> Option<TakeoffWindows> {
-        let test = HopTest::new(self.chain(takeoff.at, landing.at).ok()?);
-        let geometry = test.chain().geometry();
-        let (start, end) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
-        let sight = test.line_of_sight(&start, &end)?;
-        Some(TakeoffWindows { sight, lofts: test.lofts(&start, &end).into_iter().collect() })
+        let (sight, lofts) = end_to_end(self.chain(takeoff.at, landing.at).ok()?)?;
+        Some(TakeoffWindows { sight, lofts: lofts.into_iter().collect() })
     }
+}
+
+/// The line of sight from the first to the last vertex of a chain, and the feasible lofts between them.
+pub(super) fn end_to_end(chain: ConstrainedChain) -> Option<(LineOfSight, Option<SlopeInterval>)> {
+    let test = HopTest::new(chain);
+    let geometry = test.chain().geometry();
+    let (start, end) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
+    Some((test.line_of_sight(&start, &end)?, test.lofts(&start, &end).ok()))
 }
 
 /// Whether the facet is flat enough to rest on; an absent limit always holds. `friction` is its coefficient, if it has one;

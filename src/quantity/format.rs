@@ -1,4 +1,11 @@
-//! Numbers and their units as text for readers.
+//! Numbers and their units as text for readers, and text of users for messages.
+
+/// The first characters of a user's text for a message, on one line, without control characters.
+pub(crate) fn excerpt(text: &str, longest: usize) -> String {
+    let mut letters = text.chars();
+    let begin: String = letters.by_ref().take(longest).flat_map(char::escape_debug).collect();
+    if letters.next().is_some() { begin + "..." } else { begin }
+}
 
 /// Formats a number for people: at most ten significant digits, no trailing zeros, and an exponent for very large and very
 /// small numbers. Results meant for programs keep all digits.

@@ -14,6 +14,7 @@ mod quadratic;
 mod slope;
 
 pub use angle::{Angle, AngleInterval};
+pub(crate) use format::excerpt;
 pub use format::{format_number, unit_of};
 pub use ids::{NodeId, SegmentId, VertexId};
 #[cfg(test)]

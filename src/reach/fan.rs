@@ -249,7 +249,7 @@ fn slice_ray(request: &FanRequest<'_>, heading: Vector2<f64>) -> Result<(Option<
         MapPoint::new(to.x.clamp(bounds.min.x, bounds.max.x), to.y.clamp(bounds.min.y, bounds.max.y))
     };
     // A shorter slice has nothing to analyse.
-    let least_m = 1e-6 * dem.georeference().dx_m().min(dem.georeference().dy_m());
+    let least_m = 1e-6 * dem.georeference().step_m();
     if length_m <= least_m {
         return Ok((None, end));
     }

@@ -20,7 +20,7 @@ use crate::{
         self, CoordinateSystem, Dem, MapBounds, MapPlace, MapProjection, OverlaidDem, OverlayEffect, Profile, TerrainError,
         check_scale, open_dem, read_friction_raster, read_keep_out, read_mesh, slice_legs, slice_mesh,
     },
-    world::{Body, FrictionCone, Grip},
+    world::{Body, FrictionCone},
 };
 
 /// A chain ready to be analysed, with start and goal if known.
@@ -323,10 +323,7 @@ impl Overlays {
 
 /// The friction of a scenario for the whole ground.
 pub fn friction(scenario: &Scenario) -> Option<FrictionCone> {
-    match scenario.surface.grip {
-        Some(Grip::Friction(cone)) => Some(cone),
-        Some(Grip::FromSlope { .. }) | None => None,
-    }
+    scenario.surface.constant_friction()
 }
 
 /// The SHA-256 of a file, hexadecimal, read in pieces.

@@ -166,6 +166,11 @@ impl GeoReference {
         self.dy_m
     }
 
+    /// The lesser of the two spacings, m.
+    pub(crate) fn step_m(&self) -> f64 {
+        self.dx_m.min(self.dy_m)
+    }
+
     /// Map coordinates of a post, each computed by one product and one sum from the north-west post.
     ///
     /// ```

@@ -62,6 +62,14 @@ pub enum InvalidSurface {
 }
 
 impl SurfaceProperties {
+    /// The friction of the whole ground; `None` if the grip is not a friction cone.
+    pub const fn constant_friction(&self) -> Option<FrictionCone> {
+        match self.grip {
+            Some(Grip::Friction(cone)) => Some(cone),
+            Some(Grip::FromSlope { .. }) | None => None,
+        }
+    }
+
     /// Whether all that is stated has a meaning.
     ///
     /// # Errors

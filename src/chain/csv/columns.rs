@@ -167,12 +167,7 @@ fn help_for_text(text: &str) -> String {
 
 /// User text for a message: short, on one line, without control characters.
 pub(super) fn excerpt(text: &str) -> String {
-    const SHOWN: usize = 40;
-    let mut shown: String = text.chars().take(SHOWN).flat_map(char::escape_debug).collect();
-    if text.chars().nth(SHOWN).is_some() {
-        shown.push_str("...");
-    }
-    shown
+    crate::quantity::excerpt(text, 40)
 }
 
 /// The known name nearest to an unknown one; `None` if none is similar.

@@ -3,9 +3,7 @@
 use super::{Lofts, MapError, Post, PostHops, offsets::Offset};
 use crate::{
     chain::ConstrainedChain,
-    ground::{DemGround, SliceProblem},
-    hop::HopTest,
-    quantity::VertexId,
+    ground::{DemGround, SliceProblem, dem::end_to_end},
     terrain::TerrainError,
 };
 
@@ -15,10 +13,7 @@ impl PostHops {
     pub(super) fn exact(&self, from: Post, offset: &Offset) -> Result<Option<Lofts>, MapError> {
         let Some(to) = self.moved(from, offset.rows, offset.cols) else { return Ok(None) };
         let Some(chain) = self.chain(from, to)? else { return Ok(None) };
-        let test = HopTest::new(chain);
-        let geometry = test.chain().geometry();
-        let (start, end) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
-        Ok(test.line_of_sight(&start, &end).zip(test.lofts(&start, &end).ok()))
+        Ok(end_to_end(chain).and_then(|(sight, lofts)| Some((sight, lofts?))))
     }
 
     /// The slice between two nodes with its constraints; `None` if an elevation on the line is missing.

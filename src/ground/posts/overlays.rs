@@ -48,8 +48,9 @@ impl OverlayTable {
             .collect();
         let mut kept = Vec::with_capacity(rows * cols);
         let mut coefficients = Vec::with_capacity(if friction.is_some() { rows * cols } else { 0 });
+        let posts_m: Vec<f64> = level_row(dem, 0).points.iter().map(|point| point.x_m).collect();
         for line in lines {
-            for facet in at_posts(dem, &line?) {
+            for facet in at_posts(&posts_m, &line?) {
                 kept.push(facet.keep_out);
                 if friction.is_some() {
                     coefficients.push(facet.friction.map_or(f64::NAN, FrictionCone::coefficient));
@@ -61,7 +62,8 @@ impl OverlayTable {
             raster.borders(&mut |border| squares.mark(border));
         }
         if let Some(zones) = keep_out {
-            zones.borders(squares.step_m(), &mut |border| squares.mark(border));
+            // Short pieces of borders have small bounding boxes, so they mark few squares without a border.
+            zones.borders(dem.georeference().step_m(), &mut |border| squares.mark(border));
         }
         Ok(Some(Self { cols, kept, friction: coefficients, borders_before: squares.counted() }))
     }
@@ -112,11 +114,11 @@ fn level_row(dem: &Dem, row: usize) -> Profile {
 }
 
 /// The facet under each post of a row's line: that of the segment after it, for the last post of the segment before it.
-fn at_posts(dem: &Dem, line: &Profile) -> Vec<ProfileFacet> {
-    let mut found = Vec::with_capacity(dem.cols());
-    let mut posts = level_row(dem, 0).points.into_iter().map(|point| point.x_m).peekable();
+fn at_posts(posts_m: &[f64], line: &Profile) -> Vec<ProfileFacet> {
+    let mut found = Vec::with_capacity(posts_m.len());
+    let mut posts = posts_m.iter().peekable();
     for (index, point) in line.points.iter().enumerate() {
-        if posts.next_if(|&x_m| x_m == point.x_m).is_some() {
+        if posts.next_if(|&&x_m| x_m == point.x_m).is_some() {
             found.push(line.facets[index.min(line.facets.len() - 1)]);
         }
     }
@@ -132,12 +134,6 @@ struct Squares<'a> {
 impl<'a> Squares<'a> {
     fn of(dem: &'a Dem) -> Self {
         Self { dem, touched: vec![false; dem.rows() * dem.cols()] }
-    }
-
-    /// Greatest length of a piece of a border, m: short pieces have small bounding boxes, so they mark few squares without a
-    /// border.
-    fn step_m(&self) -> f64 {
-        self.dem.georeference().dx_m().min(self.dem.georeference().dy_m())
     }
 
     /// Marks the squares that a rectangle touches.

@@ -86,7 +86,7 @@ impl PostHops {
             None => None,
         };
         let bounds = dem.bounds();
-        let step_m = dem.georeference().dx_m().min(dem.georeference().dy_m());
+        let step_m = dem.georeference().step_m();
         let (low_m, high_m) = dem.elevation_range_m();
         let largest_m =
             [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y, low_m, high_m].map(f64::abs).into_iter().fold(0.0, f64::max);

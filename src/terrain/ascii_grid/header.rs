@@ -166,8 +166,7 @@ fn looks_like_number(text: &str) -> bool {
 
 /// The beginning of a word, in printable characters and quotes.
 pub(super) fn quoted(text: &str) -> String {
-    let shown: String = text.chars().take(40).flat_map(char::escape_debug).collect();
-    if text.chars().count() > 40 { format!("'{shown}...'") } else { format!("'{shown}'") }
+    format!("'{}'", crate::quantity::excerpt(text, 40))
 }
 
 /// Whether a text begins with a key of the header.

@@ -142,8 +142,7 @@ pub(super) fn unsuitable(found: impl AsRef<str>, expected: &'static str) -> Terr
 
 /// The beginning of a text, in printable characters and quotes.
 pub(super) fn shown(text: &str) -> String {
-    let beginning: String = text.chars().take(40).flat_map(char::escape_debug).collect();
-    if text.chars().count() > 40 { format!("'{beginning}...'") } else { format!("'{beginning}'") }
+    format!("'{}'", crate::quantity::excerpt(text, 40))
 }
 
 struct Reader<'a> {

@@ -5,9 +5,6 @@ use super::definition::{Definition, Ellipsoid, Method};
 /// Codes of `IAU_2015` bodies, and the radii of their spheres, m.
 const IAU_SPHERES: [(u32, f64); 4] = [(199, 2_440_530.0), (299, 6_051_800.0), (301, 1_737_400.0), (499, 3_396_190.0)];
 
-/// The last two digits of the codes of `IAU_2015` maps of spheres that are known here.
-const IAU_MAPS: [u32; 11] = [10, 15, 20, 25, 30, 35, 60, 65, 70, 75, 80];
-
 /// The codes that are known, for a sentence.
 pub(super) const KNOWN_CODES: &str = "EPSG:32601 to 32660 and 32701 to 32760 (UTM on WGS 84), 25828 to 25838, 26901 to 26923, 3031, 3413, 3976, 3995, \
      5041, 5042, 32661, 32761, 3035, or the spherical maps IAU_2015:BB10, BB15, BB20, BB25, BB30, BB35, BB60, BB65, BB70, BB75, BB80 where BB is \
@@ -48,7 +45,7 @@ pub(super) fn iau_code(definition: &Definition) -> Option<String> {
         _ => {}
     }
     let (body, _) = IAU_SPHERES.into_iter().find(|(_, radius_m)| usual.ellipsoid == Ellipsoid::sphere(*radius_m))?;
-    let code = IAU_MAPS.into_iter().map(|map| body * 100 + map).find(|code| iau(*code) == Some(usual))?;
+    let code = (body * 100..body * 100 + 100).find(|code| iau(*code) == Some(usual))?;
     Some(format!("IAU_2015:{code}"))
 }
 
@@ -73,6 +70,11 @@ pub(super) fn by_code(text: &str) -> Option<(String, Definition)> {
         "IAU_2015" => code.parse().ok().and_then(|code| Some((format!("IAU_2015:{code}"), iau(code)?))),
         _ => None,
     }
+}
+
+/// The number of a code of EPSG, `EPSG:32633`.
+pub(super) fn epsg_number(code: &str) -> Option<u16> {
+    code.strip_prefix("EPSG:")?.parse().ok()
 }
 
 /// The definition of an EPSG code of a projected map: UTM on WGS 84, ETRS89 and NAD83, the usual polar maps, and Europe's

@@ -118,8 +118,6 @@ pub enum CrsError {
 impl CrsError {
     /// The beginning of a text, for an error message.
     pub(super) fn excerpt(text: &str) -> String {
-        let mut letters = text.chars();
-        let begin: String = letters.by_ref().take(60).flat_map(char::escape_debug).collect();
-        if letters.next().is_some() { begin + "..." } else { begin }
+        crate::quantity::excerpt(text, 60)
     }
 }

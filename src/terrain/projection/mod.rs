@@ -210,7 +210,7 @@ impl MapProjection {
 
     /// The `GeoKeys` that state it: its EPSG code where it has one, else every number of it. [`MapProjection::of`] reads them back.
     pub fn coordinate_system(&self) -> CoordinateSystem {
-        let epsg = self.code().and_then(|code| code.strip_prefix("EPSG:")?.parse().ok());
+        let epsg = self.code().and_then(codes::epsg_number);
         match epsg {
             Some(code) => geokeys::write_epsg(code, &self.name),
             None => geokeys::write(&self.definition, &self.name),
@@ -219,7 +219,7 @@ impl MapProjection {
 
     /// The same with an EPSG code, which is kept where it means just this projection: the code of another map is no code of this one.
     fn with_epsg(mut self, code: Option<String>) -> Self {
-        let meaning = |code: &String| codes::epsg(code.strip_prefix("EPSG:")?.parse().ok()?);
+        let meaning = |code: &String| codes::epsg_number(code).and_then(codes::epsg);
         self.code = code.filter(|code| meaning(code) == Some(self.definition)).or(self.code);
         self
     }

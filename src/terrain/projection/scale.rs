@@ -307,7 +307,7 @@ fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2]
     let (ground_m, map_m) = ((ends[1] - ends[0]).norm(), (to - from).norm());
     let map = dem.lattice().georeference();
     // The finer of the two spacings, converted to the same length of ground on the new map.
-    let spacing_m = rounded_m(map.dx_m().min(map.dy_m()) * ground_m / map_m);
+    let spacing_m = rounded_m(map.step_m() * ground_m / map_m);
     let margin_m = 10.0 * spacing_m;
     let low = |a: f64, b: f64| rounded_m(a.min(b) - margin_m);
     let high = |a: f64, b: f64| rounded_m(a.max(b) + margin_m);
