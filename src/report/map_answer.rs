@@ -239,7 +239,7 @@ impl MapAnswer {
             );
         }
         for goal in &self.goals {
-            let hops = goal.hops.map_or("not reachable".to_owned(), format_hops);
+            let hops = goal.hops.map_or("not reachable over these posts".to_owned(), format_hops);
             let back = match goal.return_hops {
                 Some(Some(hops)) => format!(", {} back", format_hops(hops)),
                 Some(None) => ", no path back".to_owned(),
