@@ -7,7 +7,7 @@ const IAU_SPHERES: [(u32, f64); 4] = [(199, 2_440_530.0), (299, 6_051_800.0), (3
 
 /// The codes that are known, for a sentence.
 pub(super) const KNOWN_CODES: &str = "EPSG:32601 to 32660 and 32701 to 32760 (UTM on WGS 84), 25828 to 25838, 26901 to 26923, 3031, 3413, 3976, 3995, \
-     5041, 5042, 32661, 32761, 3035, or the spherical maps IAU_2015:BB10, BB15, BB20, BB25, BB30, BB35, BB60, BB65, BB70, BB75, BB80 where BB is \
+     5041, 5042, 32661, 32761, 3035, 3857, Albers maps 3005, 3338, 3577, 5070, 6350, 9473 and ESRI:102001, 102003, 102008, or the spherical maps IAU_2015:BB10, BB15, BB20, BB25, BB30, BB35, BB60, BB65, BB70, BB75, BB80 where BB is \
      199 (Mercury), 299 (Venus), 301 (Moon) or 499 (Mars)";
 
 /// What a code of the IAU (2015) means: the maps on spheres, with latitudes that are planetocentric and planetographic at once.
@@ -33,8 +33,16 @@ pub(super) fn iau(code: u32) -> Option<Definition> {
     })
 }
 
+/// The code that exactly this projection has by its numbers alone: of the IAU, or EPSG:3857.
+pub(super) fn own_code(definition: &Definition) -> Option<String> {
+    match definition.method {
+        Method::PseudoMercator => Some("EPSG:3857".to_owned()),
+        _ => iau_code(definition),
+    }
+}
+
 /// The code of the IAU (2015) for exactly this projection, such as `IAU_2015:30135`; spheres only.
-pub(super) fn iau_code(definition: &Definition) -> Option<String> {
+fn iau_code(definition: &Definition) -> Option<String> {
     let mut usual = *definition;
     if usual.longitude_deg == -180.0 {
         usual.longitude_deg = 180.0;
@@ -67,6 +75,7 @@ pub(super) fn by_code(text: &str) -> Option<(String, Definition)> {
     };
     match authority.as_str() {
         "EPSG" => code.parse().ok().and_then(|code| Some((format!("EPSG:{code}"), epsg(code)?))),
+        "ESRI" => code.parse().ok().and_then(|code| Some((format!("ESRI:{code}"), esri(code)?))),
         "IAU_2015" => code.parse().ok().and_then(|code| Some((format!("IAU_2015:{code}"), iau(code)?))),
         _ => None,
     }
@@ -77,8 +86,8 @@ pub(super) fn epsg_number(code: &str) -> Option<u16> {
     code.strip_prefix("EPSG:")?.parse().ok()
 }
 
-/// The definition of an EPSG code of a projected map: UTM on WGS 84, ETRS89 and NAD83, the usual polar maps, and Europe's
-/// equal-area map.
+/// The definition of an EPSG code of a projected map: UTM on WGS 84, ETRS89 and NAD83, the usual polar maps, the usual
+/// equal-area maps, and the web map.
 pub(super) fn epsg(code: u16) -> Option<Definition> {
     let polar = |latitude_deg: f64, longitude_deg, parallel_deg| Definition {
         parallels_deg: [Some(parallel_deg), None],
@@ -106,8 +115,32 @@ pub(super) fn epsg(code: u16) -> Option<Definition> {
             false_northing_m: 3_210_000.0,
             ..Definition::about(Method::LambertAzimuthalEqualArea, 52.0, 10.0, Ellipsoid::GRS80)
         },
+        3857 => Definition::about(Method::PseudoMercator, 0.0, 0.0, Ellipsoid::WGS84),
+        3005 => Definition { false_easting_m: 1_000_000.0, ..albers([50.0, 58.5], 45.0, -126.0) },
+        3338 => albers([55.0, 65.0], 50.0, -154.0),
+        3577 | 9473 => albers([-18.0, -36.0], 0.0, 132.0),
+        5070 | 6350 => albers([29.5, 45.5], 23.0, -96.0),
         _ => return None,
     })
+}
+
+/// The definition of a code of ESRI: the Albers maps of North America, and the web map.
+fn esri(code: u32) -> Option<Definition> {
+    Some(match code {
+        102_001 => albers([50.0, 70.0], 40.0, -96.0),
+        102_003 => albers([29.5, 45.5], 37.5, -96.0),
+        102_008 => albers([20.0, 60.0], 40.0, -96.0),
+        102_100 => Definition::about(Method::PseudoMercator, 0.0, 0.0, Ellipsoid::WGS84),
+        _ => return None,
+    })
+}
+
+/// An Albers map on the ellipsoid of NAD83 and GDA94.
+fn albers(parallels_deg: [f64; 2], latitude_deg: f64, longitude_deg: f64) -> Definition {
+    Definition {
+        parallels_deg: parallels_deg.map(Some),
+        ..Definition::about(Method::AlbersEqualArea, latitude_deg, longitude_deg, Ellipsoid::GRS80)
+    }
 }
 
 /// A zone of Universal Transverse Mercator.

@@ -7,7 +7,7 @@ use super::crs_error::CrsError;
 use super::definition::Definition;
 use super::proj_text;
 use super::wkt_read::{self, Stated};
-use super::{MapProjection, NoProjection};
+use super::MapProjection;
 
 impl MapProjection {
     /// A projection from the code of an authority: `EPSG:32633`, `IAU_2015:30135`, or its uniform resource name
@@ -77,15 +77,7 @@ impl MapProjection {
     }
 
     fn valid(definition: Definition, name: Option<String>) -> Result<Self, CrsError> {
-        if let Some(fault) = definition.fault() {
-            return Err(CrsError::Invalid { fault });
-        }
-        Self::new(definition, name).map_err(|error| CrsError::Invalid {
-            fault: match error {
-                NoProjection::Unknown(reason) => reason,
-                NoProjection::Local => error.to_string(),
-            },
-        })
+        Self::made(definition, name).map_err(|fault| CrsError::Invalid { fault })
     }
 }
 
@@ -211,10 +203,11 @@ mod tests {
             assert_eq!(definition(&wkt_1(projection, &format!("{parameters},{METRE}"))), expected, "{projection}");
         }
         // As written to a .prj file.
-        for method in Method::ALL.into_iter().filter(|method| *method != Method::PolarStereographic) {
+        let others = Method::ALL.into_iter().filter(|method| !matches!(method, Method::PolarStereographic | Method::PseudoMercator));
+        for method in others {
             let parallels_deg = match method {
                 Method::Equirectangular => [Some(20.0), None],
-                Method::LambertConformalTwoParallels => [Some(5.0), Some(31.0)],
+                Method::LambertConformalTwoParallels | Method::AlbersEqualArea => [Some(5.0), Some(31.0)],
                 _ => [None; 2],
             };
             let no_latitude = matches!(method, Method::Sinusoidal | Method::Mercator | Method::Equirectangular);
@@ -269,10 +262,12 @@ mod tests {
         refused!("{\"type\": \"ProjectedCRS\"}", CrsError::NotRecognised { .. }, "ProjectedCRS");
         refused!("EPSG:4326", CrsError::UnknownCode { .. }, "EPSG:4326");
         refused!("IAU_2015:30136", CrsError::UnknownCode { .. }, "BB35");
-        refused!("ESRI:102003", CrsError::UnknownCode { .. }, "ESRI:102003");
+        refused!("ESRI:102004", CrsError::UnknownCode { .. }, "ESRI:102004");
         refused!("EPSG:-1", CrsError::UnknownCode { .. }, "EPSG:-1");
         refused!("+proj=longlat +R=5", CrsError::NotProjected { .. }, "degrees");
-        refused!("+proj=aea +lat_1=3 +R=5", CrsError::UnknownMethod { .. }, "+proj=aea");
+        refused!("+proj=robin +R=5", CrsError::UnknownMethod { .. }, "+proj=robin");
+        refused!("+proj=aea +lat_1=3 +lat_2=-3 +R=5", CrsError::Invalid { .. }, "no cone");
+        refused!("+proj=merc +R=5 +nadgrids=@null", CrsError::UnknownParameter { .. }, "+nadgrids");
         refused!("+proj=sinu +R=5 +units=us-ft", CrsError::Unit { .. }, "us-ft");
         refused!("+proj=sinu +R=5 +towgs84=1,0,0", CrsError::UnknownParameter { .. }, "+towgs84");
         refused!("+proj=sinu +R=5 +axis=wsu", CrsError::UnknownParameter { .. }, "+axis=wsu");
@@ -288,7 +283,8 @@ mod tests {
         refused!("+proj=stere +lat_0=90 +lat_ts=0 +R=5", CrsError::Invalid { .. }, "parallel at latitude 0");
         refused!("+proj=lcc +lat_2=4 +R=5", CrsError::Invalid { .. }, "missing");
         let moon = |projection: &str, more: &str| wkt_1(projection, &format!("{more}{METRE}"));
-        refused!(&moon("Albers", ""), CrsError::UnknownMethod { .. }, "Albers");
+        refused!(&moon("Robinson", ""), CrsError::UnknownMethod { .. }, "Robinson");
+        refused!(&moon("Albers", ""), CrsError::Invalid { .. }, "parallels");
         refused!(&moon("Sinusoidal", "PARAMETER[\"azimuth\",3],"), CrsError::UnknownParameter { .. }, "azimuth");
         refused!(&moon("Sinusoidal", "PARAMETER[\"scale_factor\",0.9],"), CrsError::Invalid { .. }, "scale of 0.9");
         refused!(&moon("Sinusoidal", "PARAMETER[\"false_easting\"],"), CrsError::NotANumber { .. }, "false_easting");
@@ -308,7 +304,7 @@ mod tests {
         refused!("VERT_CS[\"l\"]", CrsError::NotProjected { .. }, "heights");
         refused!("GARDEN[\"l\"]", CrsError::NotRecognised { .. }, "GARDEN");
         refused!("PROJCS[\"l\"", CrsError::Syntax { .. }, "byte 10");
-        let web = "PROJCS[\"w\",EXTENSION[\"PROJ4\",\"+proj=merc +a=6378137 +b=6378137 +nadgrids=@null +units=m\"]]";
-        refused!(web, CrsError::UnknownParameter { .. }, "+nadgrids");
+        let grid = "PROJCS[\"w\",EXTENSION[\"PROJ4\",\"+proj=merc +a=6378137 +b=6378137 +nadgrids=a.gsb +units=m\"]]";
+        refused!(grid, CrsError::UnknownParameter { .. }, "+nadgrids");
     }
 }

@@ -29,11 +29,16 @@ pub enum Method {
     LambertAzimuthalEqualArea,
     /// Azimuthal equidistant: `aeqd`.
     AzimuthalEquidistant,
+    /// Albers equal-area conic: `aea`.
+    AlbersEqualArea,
+    /// Mercator's equations for a sphere of the equatorial radius, of the latitudes of an ellipsoid (EPSG 1024): `webmerc`. No
+    /// conformal map: EPSG:3857 alone is made with it.
+    PseudoMercator,
 }
 
 impl Method {
     /// All methods.
-    pub(super) const ALL: [Self; 12] = [
+    pub(super) const ALL: [Self; 14] = [
         Self::Equirectangular,
         Self::PolarStereographic,
         Self::ObliqueStereographic,
@@ -46,6 +51,8 @@ impl Method {
         Self::LambertConformalTwoParallels,
         Self::LambertAzimuthalEqualArea,
         Self::AzimuthalEquidistant,
+        Self::AlbersEqualArea,
+        Self::PseudoMercator,
     ];
 
     /// The name of the method.
@@ -62,6 +69,8 @@ impl Method {
             Self::LambertConformalOneParallel | Self::LambertConformalTwoParallels => "Lambert conformal conic",
             Self::LambertAzimuthalEqualArea => "Lambert azimuthal equal-area",
             Self::AzimuthalEquidistant => "azimuthal equidistant",
+            Self::AlbersEqualArea => "Albers equal-area conic",
+            Self::PseudoMercator => "pseudo-Mercator",
         }
     }
 
@@ -85,6 +94,8 @@ impl Method {
             Self::LambertConformalOneParallel | Self::LambertConformalTwoParallels => "lcc",
             Self::LambertAzimuthalEqualArea => "laea",
             Self::AzimuthalEquidistant => "aeqd",
+            Self::AlbersEqualArea => "aea",
+            Self::PseudoMercator => "webmerc",
         }
     }
 
@@ -103,14 +114,14 @@ impl Method {
 
     /// Whether the latitude of its origin is a parameter.
     pub(super) const fn has_latitude(self) -> bool {
-        !matches!(self, Self::Sinusoidal | Self::Mercator)
+        !matches!(self, Self::Sinusoidal | Self::Mercator | Self::PseudoMercator)
     }
 
     /// The names of its standard parallels in a proj string.
     pub(super) const fn parallels(self) -> &'static [&'static str] {
         match self {
             Self::Equirectangular | Self::PolarStereographic | Self::Mercator => &["lat_ts"],
-            Self::LambertConformalTwoParallels => &["lat_1", "lat_2"],
+            Self::LambertConformalTwoParallels | Self::AlbersEqualArea => &["lat_1", "lat_2"],
             _ => &[],
         }
     }
@@ -162,6 +173,10 @@ impl Ellipsoid {
     }
 }
 
+/// EPSG:3857 as PROJ and GDAL write it: a sphere, and `+nadgrids=@null`, by which latitudes stay those of WGS 84.
+pub(super) const WEB_MAP: &str =
+    "+proj=merc +a=6378137 +b=6378137 +lat_ts=0 +lon_0=0 +x_0=0 +y_0=0 +k=1 +units=m +nadgrids=@null +wktext +no_defs";
+
 /// The parameters of a map projection. Latitudes are planetographic here, as projections require.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Definition {
@@ -206,6 +221,9 @@ impl Definition {
     /// assert_eq!(south.proj_string(), "+proj=stere +lat_0=-90 +lon_0=0 +k_0=1 +x_0=0 +y_0=0 +R=1737400 +units=m +no_defs");
     /// ```
     pub fn proj_string(&self) -> String {
+        if self.method == Method::PseudoMercator {
+            return WEB_MAP.to_owned();
+        }
         let mut text = format!("+proj={}", self.method.proj());
         // Writing to a String cannot fail.
         if self.method.has_latitude() {
@@ -226,6 +244,18 @@ impl Definition {
         let (x, y, figure) = (self.false_easting_m, self.false_northing_m, self.ellipsoid.proj());
         let _ = write!(text, " +x_0={x} +y_0={y} {figure} +units=m +no_defs");
         text
+    }
+
+    /// The proj strings of the equations: from map coordinates, and to longitude and planetographic latitude.
+    pub(super) fn equations(&self) -> [String; 2] {
+        let geographic = |figure: Ellipsoid| format!("+proj=longlat {} +no_defs", figure.proj());
+        match self.method {
+            Method::PseudoMercator => {
+                let sphere = Ellipsoid::sphere(self.ellipsoid.semi_major_m);
+                [format!("+proj=merc {} +units=m +no_defs", sphere.proj()), geographic(sphere)]
+            }
+            _ => [self.proj_string(), geographic(self.ellipsoid)],
+        }
     }
 
     /// Why the parameters do not define a projection; `None` if they do.
@@ -250,6 +280,11 @@ impl Definition {
         self.misplaced()
     }
 
+    /// Whether it is EPSG:3857: a pseudo-Mercator map is defined for its numbers alone.
+    fn is_web_map(&self) -> bool {
+        *self == Self::about(Method::PseudoMercator, 0.0, 0.0, Ellipsoid::WGS84)
+    }
+
     /// A number that its method does not have, or one that it lacks: the map would not be what the numbers say.
     fn misplaced(&self) -> Option<String> {
         let Self { latitude_deg, parallels_deg, scale, method, .. } = self;
@@ -262,8 +297,14 @@ impl Definition {
             return Some(format!("more standard parallels than a {name} projection has ({allowed})"));
         }
         match (method, parallels_deg) {
-            (Method::LambertConformalTwoParallels, [None, _] | [_, None]) => {
+            (Method::LambertConformalTwoParallels | Method::AlbersEqualArea, [None, _] | [_, None]) => {
                 Some(format!("one of the two standard parallels of a {name} projection missing"))
+            }
+            (Method::AlbersEqualArea, [Some(first_deg), Some(second_deg)]) if first_deg + second_deg == 0.0 => {
+                Some(format!("standard parallels at {first_deg} and {second_deg}, between which a conic map has no cone"))
+            }
+            (Method::PseudoMercator, _) if !self.is_web_map() => {
+                Some(format!("a {name} projection with an origin or an ellipsoid of its own, which only EPSG:3857 may have"))
             }
             (Method::PolarStereographic, _) if latitude_deg.abs() != 90.0 => Some(format!("a pole at latitude {latitude_deg}")),
             (Method::PolarStereographic, [Some(parallel_deg), _]) if parallel_deg * latitude_deg <= 0.0 => Some(format!(

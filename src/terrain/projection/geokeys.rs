@@ -147,7 +147,7 @@ fn resolve_definition(definition: &mut Definition, system: &CoordinateSystem) ->
             }
             definition.parallels_deg[0] = parallel_1_deg;
         }
-        Method::LambertConformalTwoParallels => {
+        Method::LambertConformalTwoParallels | Method::AlbersEqualArea => {
             let parallels_deg = [parallel_1_deg, double_key(system, key::PARALLEL_2)];
             if parallels_deg.contains(&None) {
                 return Err("its keys lack one of the two standard parallels (3078, 3079)".to_owned());
@@ -185,7 +185,7 @@ fn utm_zone(zone: u16, south: bool, ellipsoid: Ellipsoid) -> (Definition, Option
 
 /// The method with this number in key 3075.
 fn method(number: u16) -> Option<Method> {
-    Method::ALL.into_iter().find(|method| method_number(*method) == number)
+    Method::ALL.into_iter().find(|method| method_number(*method) == number && number != key::USER_DEFINED)
 }
 
 /// The number of a method in key 3075.
@@ -196,6 +196,7 @@ const fn method_number(method: Method) -> u16 {
         Method::LambertConformalTwoParallels => 8,
         Method::LambertConformalOneParallel => 9,
         Method::LambertAzimuthalEqualArea => 10,
+        Method::AlbersEqualArea => 11,
         Method::AzimuthalEquidistant => 12,
         Method::ObliqueStereographic => 14,
         Method::PolarStereographic => 15,
@@ -203,13 +204,19 @@ const fn method_number(method: Method) -> u16 {
         Method::Equirectangular => 17,
         Method::Orthographic => 21,
         Method::Sinusoidal => 24,
+        // No number means it: EPSG:3857 is written by its code.
+        Method::PseudoMercator => key::USER_DEFINED,
     }
 }
 
 /// The keys for latitude, longitude, easting and northing of the origin of a method, as written by GDAL.
 const fn origin_keys(method: Method) -> [u16; 4] {
     match method {
-        Method::TransverseMercator | Method::Mercator | Method::LambertConformalOneParallel | Method::DoubleStereographic => {
+        Method::TransverseMercator
+        | Method::Mercator
+        | Method::LambertConformalOneParallel
+        | Method::DoubleStereographic
+        | Method::AlbersEqualArea => {
             [key::ORIGIN_LATITUDE, key::ORIGIN_LONGITUDE, key::EASTING, key::NORTHING]
         }
         Method::PolarStereographic => [key::ORIGIN_LATITUDE, key::POLE_LONGITUDE, key::EASTING, key::NORTHING],

@@ -14,6 +14,7 @@ mod codes;
 mod crs;
 mod crs_error;
 mod definition;
+mod epsg_units;
 mod geokeys;
 mod proj_text;
 mod scale;
@@ -164,15 +165,18 @@ impl MapProjection {
     /// assert!((place.lon_deg - 90.0).abs() < 1e-12 && (place.lat_deg + 89.967).abs() < 1e-3);
     /// ```
     pub fn new(definition: Definition, name: Option<String>) -> Result<Self, NoProjection> {
+        Self::made(definition, name).map_err(|fault| NoProjection::Unknown(format!("it has {fault}")))
+    }
+
+    /// The same, or what is wrong with the parameters.
+    fn made(definition: Definition, name: Option<String>) -> Result<Self, String> {
         if let Some(fault) = definition.fault() {
-            return Err(NoProjection::Unknown(format!("it has {fault}")));
+            return Err(fault);
         }
-        let refused = |error: proj4rs::errors::Error| NoProjection::Unknown(format!("{}: {error}", definition.proj_string()));
-        let projected = Proj::from_proj_string(&definition.proj_string()).map_err(refused)?;
-        let geographic =
-            Proj::from_proj_string(&format!("+proj=longlat {} +no_defs", definition.ellipsoid.proj())).map_err(refused)?;
+        let refused = |error: proj4rs::errors::Error| format!("parameters without a map, {}: {error}", definition.proj_string());
+        let [projected, geographic] = definition.equations().map(|text| Proj::from_proj_string(&text).map_err(refused));
         let name = name.unwrap_or_else(|| spoken(&definition));
-        Ok(Self { name, code: codes::iau_code(&definition), definition, projected, geographic })
+        Ok(Self { name, code: codes::own_code(&definition), definition, projected: projected?, geographic: geographic? })
     }
 
     /// Its name, for people.

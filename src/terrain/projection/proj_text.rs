@@ -53,6 +53,18 @@ impl<'a> Words<'a> {
         Ok(self.number(key)?.unwrap_or(0.0))
     }
 
+    /// Removes `+nadgrids=@null`; any other grid is left, and refused.
+    fn take_null_grid(&mut self) -> Result<bool, CrsError> {
+        match self.take("nadgrids") {
+            None => Ok(false),
+            Some("@null") => Ok(true),
+            Some(grids) => Err(CrsError::UnknownParameter {
+                item: format!("+nadgrids={}", CrsError::excerpt(grids)),
+                expected: "no shift between datums",
+            }),
+        }
+    }
+
     /// Removes words that do not affect the map as long as they have these values.
     fn take_idle(&mut self) -> Result<(), CrsError> {
         if let Some(unit) = self.take("units").filter(|unit| *unit != "m") {
@@ -97,7 +109,16 @@ pub(super) fn parse(text: &str) -> Result<Definition, CrsError> {
         "geocent" | "cart" => return Err(CrsError::NotProjected { found: format!("+proj={proj}, geocentric coordinates") }),
         _ => {}
     }
-    let ellipsoid = ellipsoid(&mut words)?;
+    let figure = ellipsoid(&mut words)?;
+    // `+nadgrids=@null` on a sphere: latitudes stay those of WGS 84, which is the one pseudo-Mercator map.
+    let on_null_grid = words.take_null_grid()?;
+    let (proj, ellipsoid) = match proj {
+        "merc" if on_null_grid && figure == Ellipsoid::sphere(Ellipsoid::WGS84.semi_major_m) => ("webmerc", Ellipsoid::WGS84),
+        _ if on_null_grid => {
+            return Err(CrsError::UnknownParameter { item: "+nadgrids=@null".to_owned(), expected: "it in EPSG:3857 alone" });
+        }
+        _ => (proj, figure),
+    };
     let meridian_deg = match words.take("pm") {
         None => 0.0,
         Some(name) if name.eq_ignore_ascii_case("greenwich") => 0.0,
@@ -140,6 +161,8 @@ fn by_method(proj: &str, words: &mut Words<'_>, ellipsoid: Ellipsoid) -> Result<
     let true_scale = words.number("lat_ts")?;
     let parallels_deg = match method {
         Method::LambertConformalTwoParallels => [parallels_1, parallel_2],
+        // PROJ's defaults.
+        Method::AlbersEqualArea => [Some(parallels_1.unwrap_or(0.0)), Some(parallel_2.unwrap_or(0.0))],
         Method::Equirectangular => [Some(true_scale.unwrap_or(0.0)), None],
         // PROJ takes the parallel on the side of the pole, whatever its sign, and true scale at the pole is the default.
         Method::PolarStereographic => {
@@ -147,15 +170,16 @@ fn by_method(proj: &str, words: &mut Words<'_>, ellipsoid: Ellipsoid) -> Result<
             [true_scale.filter(|parallel| parallel.abs() != 90.0).map(on_side), None]
         }
         Method::Mercator => [true_scale, None],
+        Method::PseudoMercator => [true_scale.filter(|parallel_deg| *parallel_deg != 0.0), None],
         _ if true_scale.is_some() => return Err(surplus("+lat_ts")),
         _ => [None; 2],
     };
-    let conic = matches!(method, Method::LambertConformalOneParallel | Method::LambertConformalTwoParallels);
+    let conic = matches!(
+        method,
+        Method::LambertConformalOneParallel | Method::LambertConformalTwoParallels | Method::AlbersEqualArea
+    );
     if !conic && (parallels_1.is_some() || parallel_2.is_some()) {
         return Err(surplus(if parallels_1.is_some() { "+lat_1" } else { "+lat_2" }));
-    }
-    if true_scale.is_some() && conic {
-        return Err(surplus("+lat_ts"));
     }
     if method == Method::LambertConformalOneParallel && parallels_1 != Some(latitude_deg) {
         return Err(CrsError::Contradiction {

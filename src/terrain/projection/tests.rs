@@ -7,6 +7,7 @@ const MARS: Ellipsoid = Ellipsoid { semi_major_m: 3_396_190.0, semi_minor_m: 3_3
 fn one_of_each() -> Vec<Definition> {
     Method::ALL
         .into_iter()
+        .filter(|method| *method != Method::PseudoMercator)
         .map(|method| {
             let latitude_deg = match method {
                 Method::PolarStereographic => -90.0,
@@ -15,7 +16,7 @@ fn one_of_each() -> Vec<Definition> {
             };
             let parallels_deg = match method {
                 Method::Equirectangular => [Some(20.0), None],
-                Method::LambertConformalTwoParallels => [Some(5.0), Some(31.0)],
+                Method::LambertConformalTwoParallels | Method::AlbersEqualArea => [Some(5.0), Some(31.0)],
                 _ => [None; 2],
             };
             Definition {

@@ -41,6 +41,10 @@ fn projection(definition: &Definition) -> (&'static str, Vec<(&'static str, f64)
         }
         (Method::LambertAzimuthalEqualArea, _) => ("Lambert_Azimuthal_Equal_Area", vec![latitude]),
         (Method::AzimuthalEquidistant, _) => ("Azimuthal_Equidistant", vec![latitude]),
+        (Method::AlbersEqualArea, _) => {
+            ("Albers", vec![parallel, ("Standard_Parallel_2", parallels_deg[1].unwrap_or(0.0)), latitude])
+        }
+        (Method::PseudoMercator, _) => ("Mercator_Auxiliary_Sphere", vec![parallel, ("Auxiliary_Sphere_Type", 0.0)]),
     };
     // The origin of ESRI's equirectangular map is at the equator.
     let from_equator_m = match method {

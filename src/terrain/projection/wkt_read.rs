@@ -230,6 +230,8 @@ impl Parameters {
                 "falsenorthing" | "northingatfalseorigin" | "northingatprojectioncentre" => {
                     (&mut parameters.northing_m, "the false northing", 1.0, "metres")
                 }
+                // 0 is the sphere of the equatorial radius.
+                "auxiliaryspheretype" if value == 0.0 => continue,
                 "scalefactor" | "scalefactoratnaturalorigin" | "scalefactoratprojectioncentre" => {
                     (&mut parameters.scale, "the scale factor", 1.0, "unity")
                 }
@@ -264,6 +266,10 @@ impl Parameters {
         };
         match method {
             Method::Equirectangular => definition.parallels_deg[0] = Some(self.parallel_1_deg.unwrap_or(0.0)),
+            // ESRI states the equator, and EPSG's method the latitude of its origin, which is 0.
+            Method::PseudoMercator => {
+                definition.parallels_deg[0] = definition.parallels_deg[0].filter(|parallel_deg| *parallel_deg != 0.0);
+            }
             Method::PolarStereographic => self.settle_pole(&mut definition, pole_deg)?,
             Method::ObliqueStereographic if latitude_deg.abs() == 90.0 => definition.method = Method::PolarStereographic,
             // ESRI states the one parallel beside the latitude of the origin, which is the same.
@@ -324,6 +330,8 @@ fn method(name: &str, sphere: bool, two_parallels: bool) -> Option<(Method, Opti
         "lambertconformalconic2sp" | "lambertconicconformal2sp" => Method::LambertConformalTwoParallels,
         "lambertazimuthalequalarea" => Method::LambertAzimuthalEqualArea,
         "lambertazimuthalequalareaspherical" if sphere => Method::LambertAzimuthalEqualArea,
+        "albers" | "albersconicequalarea" | "albersequalarea" => Method::AlbersEqualArea,
+        "mercatorauxiliarysphere" | "popularvisualisationpseudomercator" => Method::PseudoMercator,
         // PROJ before 9.2 states its azimuthal equidistant map as the "modified" one of EPSG (9832).
         "azimuthalequidistant" | "modifiedazimuthalequidistant" => Method::AzimuthalEquidistant,
         _ => return None,
