@@ -16,6 +16,12 @@ use super::help::takes;
 pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
     match of_terrain(error) {
         Some(TerrainError::MapScale { found, mend }) => map_scale(found, mend),
+        Some(TerrainError::UnknownScale { reason, mend }) => {
+            format!(
+                "{reason}, expected a map whose scale can be worked out; mend it with: {mend}; or accept it as it is with {}",
+                accepted()
+            )
+        }
         _ => format!("{error}{}", hint(error)),
     }
 }
@@ -27,6 +33,7 @@ pub(crate) fn names(error: &(dyn Error + 'static), file: &Path) -> bool {
         (Some(TerrainError::InFile { path, .. } | TerrainError::Overlay { path, .. }), _)
         | (_, Some(PipelineError::Read { path, .. })) => same(path),
         // The commands that use these add the name.
+        (Some(TerrainError::UnknownScale { .. }), _) => false,
         (Some(TerrainError::MapScale { mend, .. }), _) => !matches!(mend, ScaleMend::Shorter { .. }),
         _ => false,
     }
@@ -105,14 +112,22 @@ fn map_scale(found: &str, mend: &ScaleMend) -> String {
         ),
         ScaleMend::Shorter { .. } => mend.to_string(),
     };
-    let accept = "terrain.accept_map_scale = true";
-    let accept = if takes("accept-map-scale") { format!("--accept-map-scale ({accept})") } else { accept.to_owned() };
-    format!("{found}, expected 1 within 1 %; mend it with: {mend}; or accept it as it is with {accept}")
+    format!("{found}, expected 1 within 1 %; mend it with: {mend}; or accept it as it is with {}", accepted())
+}
+
+/// How to accept a map's scale as it is.
+fn accepted() -> String {
+    let key = "terrain.accept_map_scale = true";
+    if takes("accept-map-scale") { format!("--accept-map-scale ({key})") } else { key.to_owned() }
 }
 
 #[cfg(test)]
 mod tests {
-    use chta::scenario::{Entries, Scenario};
+    use chta::{
+        quantity::MapPoint,
+        scenario::{Entries, Scenario},
+        terrain::{Dem, GeoReference, geotiff_bytes, read_geotiff_bytes},
+    };
     use clap::CommandFactory;
 
     use super::*;
@@ -143,7 +158,10 @@ mod tests {
     fn every_option_of_a_hint_exists() {
         let command = || "gdalwarp in.tif out.tif".to_owned();
         let scale = |mend| TerrainError::MapScale { found: "the scale is 1.3".to_owned(), mend };
-        let not_projected = TerrainError::NotProjected { found: "degrees".to_owned(), mend: command() };
+        let degrees = GeoReference::local(MapPoint::new(0.0, 9.0), 1.0, 1.0).unwrap();
+        let degrees = Dem::new(2, 2, vec![0.0, 9000.0, 0.0, 9000.0], degrees).unwrap();
+        let not_projected = read_geotiff_bytes(geotiff_bytes(&degrees).unwrap()).unwrap_err();
+        assert!(matches!(not_projected, TerrainError::NotProjected { .. }));
         let in_file = TerrainError::InFile { path: "a.tif".into(), problem: Box::new(not_projected) };
         let errors: [(&str, Box<dyn Error>, &str); 6] = [
             ("map", Box::new(MapError::TooFar { range_m: 9.0, posts: 9.0, offsets: 9, stride: 4 }), "--stride 4"),

@@ -17,8 +17,9 @@ use crate::{
     path::Hop,
     quantity::MapPoint,
     terrain::{
-        self, CoordinateSystem, Dem, MapBounds, MapPlace, MapProjection, OverlaidDem, OverlayEffect, Profile, TerrainError,
-        check_scale, open_dem, read_friction_raster, read_keep_out, read_mesh, slice_legs, slice_mesh,
+        self, CoordinateSystem, Dem, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection, OverlaidDem,
+        OverlayEffect, Profile, TerrainError, check_scale, open_dem, read_friction_raster, read_keep_out, read_mesh, slice_legs,
+        slice_mesh,
     },
     world::{Body, FrictionCone},
 };
@@ -138,7 +139,10 @@ impl Survey {
     pub fn of(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Self, PipelineError> {
         let transect = match source {
             TerrainSource::Dem { path, start, goal } => {
-                Transect::of_dem(&base.join(path), [start, goal], &scenario.via, scenario.accept_map_scale)?
+                let transect = Transect::of_dem(&base.join(path), [start, goal], &scenario.via, scenario.accept_map_scale);
+                let transect = transect.map_err(|error| for_body(&scenario.body, error))?;
+                check_body(&scenario.body, transect.figure)?;
+                transect
             }
             TerrainSource::Mesh { path, scale, start, goal } => {
                 let via: Vec<MapPoint> = scenario.via.iter().filter_map(MapPlace::metres).collect();
@@ -146,6 +150,7 @@ impl Survey {
             }
             TerrainSource::Chain { path } => {
                 let file = csv::read_chain_csv_file(base.join(path))?;
+                check_body(&scenario.body, file.projection.as_ref().map(|projection| projection.definition().ellipsoid))?;
                 return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
             }
         };
@@ -204,6 +209,8 @@ pub struct Transect {
     pub coordinates: Option<CoordinateSystem>,
     /// The map's projection, if known.
     pub projection: Option<MapProjection>,
+    /// The figure of the body that the terrain states.
+    pub figure: Option<Ellipsoid>,
     /// The extent of the terrain.
     pub bounds: MapBounds,
     /// Warnings for the analyst.
@@ -223,7 +230,7 @@ impl Transect {
         let known = projection.as_ref();
         let (from, to) = (from.on_map("from", known, bounds)?, to.on_map("to", known, bounds)?);
         let via = via.iter().map(|place| place.on_map("via", known, bounds)).collect::<Result<Vec<_>, _>>()?;
-        let mut warnings = Vec::new();
+        let mut warnings = map.doubts();
         let mut begin = from;
         for end in via.iter().copied().chain([to]) {
             let scale = check_scale(dem.as_ref(), known, [begin, end], accept_map_scale, file)?;
@@ -232,7 +239,7 @@ impl Transect {
         }
         let legs = slice_legs(dem.as_ref(), from, &via, to)?;
         let coordinates = Some(map.coordinate_system.clone());
-        Ok(Self { legs, coordinates, projection: projection.ok(), bounds, warnings })
+        Ok(Self { legs, coordinates, projection: projection.ok(), figure: map.ellipsoid(), bounds, warnings })
     }
 
     /// Slices a mesh from the first end over the intermediate points to the second.
@@ -249,7 +256,7 @@ impl Transect {
             legs.push(slice.profile);
             begin = end;
         }
-        Ok(Self { legs, coordinates: None, projection: None, bounds: read.mesh.bounds().map, warnings })
+        Ok(Self { legs, coordinates: None, projection: None, figure: None, bounds: read.mesh.bounds().map, warnings })
     }
 }
 
@@ -295,7 +302,13 @@ impl Overlays {
         let raster =
             self.overlays.friction().filter(|raster| !raster.covers(bounds)).map(|raster| raster.without_effect("the DEM"));
         let keep_out = self.overlays.keep_out().filter(|zones| !zones.meets(bounds)).map(|zones| zones.without_effect("the DEM"));
-        raster.into_iter().chain(keep_out).collect()
+        self.not_compared().chain(raster).chain(keep_out).collect()
+    }
+
+    /// A warning for each overlay whose map could not be compared with the terrain's.
+    fn not_compared(&self) -> impl Iterator<Item = String> + '_ {
+        let raster = self.overlays.friction().and_then(FrictionRaster::not_compared);
+        raster.into_iter().chain(self.overlays.keep_out().and_then(KeepOut::not_compared)).map(str::to_owned)
     }
 
     /// A slice of the terrain, leg by leg, as a chain with its friction and its keep-out zones, and a warning for each overlay
@@ -317,7 +330,29 @@ impl Overlays {
         }
         let raster = self.overlays.friction().filter(|_| !effect.friction).map(|raster| raster.without_effect("the transect"));
         let keep_out = self.overlays.keep_out().filter(|_| !effect.keep_out).map(|zones| zones.without_effect("the transect"));
-        Ok((PolygonalChain::from_legs(&legs, constant)?, raster.into_iter().chain(keep_out).collect()))
+        let warnings = self.not_compared().chain(raster).chain(keep_out).collect();
+        Ok((PolygonalChain::from_legs(&legs, constant)?, warnings))
+    }
+}
+
+/// Checks that a map is of the scenario's body; a body without a radius may be any.
+///
+/// # Errors
+/// [`TerrainError::OtherBody`] if the map's figure differs by over 1 %.
+pub fn check_body(body: &BodyChoice, figure: Option<Ellipsoid>) -> Result<(), TerrainError> {
+    match (body.radius_m, figure) {
+        (Some(radius_m), Some(figure)) if !figure.may_be_of(body.name.as_deref(), radius_m) => {
+            Err(TerrainError::OtherBody { figure, body: body.spoken(), radius_m })
+        }
+        _ => Ok(()),
+    }
+}
+
+/// An error of a terrain with the scenario's body, whose radius a command that mends it takes.
+pub fn for_body(body: &BodyChoice, error: TerrainError) -> TerrainError {
+    match body.radius_m {
+        Some(radius_m) => error.for_body(&body.spoken(), radius_m),
+        None => error,
     }
 }
 

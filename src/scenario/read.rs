@@ -23,6 +23,13 @@ pub struct BodyChoice {
     pub radius_m: Option<f64>,
 }
 
+impl BodyChoice {
+    /// Its name, for a sentence.
+    pub fn spoken(&self) -> String {
+        self.name.clone().unwrap_or_else(|| "the body".to_owned())
+    }
+}
+
 /// Where the ground comes from.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TerrainSource {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use super::{LonLat, MapBounds, NoProjection, ScaleMend};
+use super::{DegreesMend, Ellipsoid, LonLat, MapBounds, NoProjection, ScaleMend};
 use crate::quantity::{MapPoint, format_number};
 
 /// Why a DEM or mesh could not be read, written, sliced or generated.
@@ -68,7 +68,7 @@ pub enum TerrainError {
         /// What the file holds.
         found: String,
         /// A command that makes a usable file.
-        mend: String,
+        mend: DegreesMend,
     },
     /// Every problem found in the text of an ASCII or XYZ grid.
     #[error("{}", list_problems(problems, *further))]
@@ -130,6 +130,31 @@ pub enum TerrainError {
         found: String,
         /// What makes a map that is true along the transect.
         mend: ScaleMend,
+    },
+    /// A map whose projection is stated and not supported, so that its scale cannot be worked out.
+    #[error(
+        "{reason}, expected a map whose scale can be worked out; mend it with: {mend}; or take it as it is with terrain.accept_map_scale = true"
+    )]
+    UnknownScale {
+        /// What is not supported.
+        reason: NoProjection,
+        /// A command that makes a map of a supported projection.
+        mend: String,
+    },
+    /// A map of another body than the user's.
+    #[error(
+        "the map is of a body with {}, but {body} has a radius of {radius_m} m, expected one body for both; where the map is wrong, make it again \
+         from its source with +R={radius_m} in every PROJ string; where gravity alone is wanted, over this ground, give body.gravity_m_s2 without \
+         body.name and body.radius_m",
+        figure.described()
+    )]
+    OtherBody {
+        /// The figure of the map.
+        figure: Ellipsoid,
+        /// The body that the user gives.
+        body: String,
+        /// Its radius, m.
+        radius_m: f64,
     },
     /// A line that leaves the part of the map that shows the body.
     #[error(
@@ -209,6 +234,16 @@ impl TerrainError {
     /// The same problem with the name of the file.
     pub(super) fn in_file(self, path: &std::path::Path) -> Self {
         Self::InFile { path: path.to_path_buf(), problem: Box::new(self) }
+    }
+
+    /// The same with the body that the user gives, for a command that mends a map in degrees.
+    #[must_use]
+    pub fn for_body(self, name: &str, radius_m: f64) -> Self {
+        match self {
+            Self::InFile { path, problem } => Self::InFile { path, problem: Box::new(problem.for_body(name, radius_m)) },
+            Self::NotProjected { found, mend } => Self::NotProjected { found, mend: mend.for_body(name, radius_m) },
+            other => other,
+        }
     }
 
     pub(super) fn reading(reason: std::io::Error) -> Self {

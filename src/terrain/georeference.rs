@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::TerrainError;
-use super::projection::{MapProjection, NoProjection, stated_ellipsoid};
+use super::projection::{Ellipsoid, MapProjection, NoProjection, citing_the_code, doubts, stated_ellipsoid};
 use crate::quantity::{MapPoint, format_number};
 
 /// The position of a raster on the map: north up, posts on a rectangular lattice.
@@ -72,7 +72,7 @@ impl MapBounds {
     }
 
     /// Whether the coordinates could be degrees.
-    pub(super) fn may_be_degrees(&self) -> bool {
+    pub(in crate::terrain) fn may_be_degrees(&self) -> bool {
         let Self { min, max } = self;
         min.x >= -180.0 && max.x <= 360.0 && min.y >= -90.0 && max.y <= 90.0
     }
@@ -151,6 +151,16 @@ impl GeoReference {
         MapProjection::of(&self.coordinate_system)
     }
 
+    /// The figure of the body that the file states, whether or not its projection is known.
+    pub fn ellipsoid(&self) -> Option<Ellipsoid> {
+        stated_ellipsoid(&self.coordinate_system)
+    }
+
+    /// Warnings about statements of the file that are likely to be wrong.
+    pub fn doubts(&self) -> Vec<String> {
+        doubts(&self.coordinate_system)
+    }
+
     /// Centre of the north-west post.
     pub fn north_west(&self) -> MapPoint {
         self.north_west
@@ -194,6 +204,12 @@ impl GeoReference {
         Self { dx_m: self.dx_m * step, dy_m: self.dy_m * step, ..self.clone() }
     }
 
+    /// The same with the code of the map in its name, as GDAL shows it, where only the name can hold it: a code of the IAU.
+    #[must_use]
+    pub fn citing_the_code(self) -> Self {
+        Self { coordinate_system: citing_the_code(&self.coordinate_system), ..self }
+    }
+
     /// The rectangle of the outermost posts of a raster with these numbers of rows and columns.
     pub fn bounds(&self, rows: usize, cols: usize) -> MapBounds {
         let south_east = self.post(rows.saturating_sub(1), cols.saturating_sub(1));
@@ -230,12 +246,55 @@ pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
     Ok(())
 }
 
-/// How to convert a map in degrees to metres: a stereographic map centred on the transect, which is true to scale around it.
-pub(super) fn mend_degrees(system: &CoordinateSystem) -> String {
-    let figure = stated_ellipsoid(system).map_or_else(|| "+R=RADIUS_M".to_owned(), |ellipsoid| ellipsoid.proj());
-    format!(
-        "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {figure} +units=m +no_defs' in.tif out.tif, where \
-         LATITUDE and LONGITUDE are the middle of the journey; then give its places as longitude and latitude (scenario: \
-         start_lonlat_deg and goal_lonlat_deg)"
-    )
+/// How to convert a map in degrees to metres: a stereographic map centred on the journey, which is true to scale around it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DegreesMend {
+    /// The figure of the body that the file states.
+    figure: Option<Ellipsoid>,
+    /// Whether the file states a reference system; if not, GDAL has to be told.
+    stated: bool,
+    /// The name and the radius, m, of the body that the user gives.
+    body: Option<(String, f64)>,
+}
+
+impl DegreesMend {
+    /// The same for the body that the user names: its radius counts where the file states none, or one of another body.
+    #[must_use]
+    pub fn for_body(self, name: &str, radius_m: f64) -> Self {
+        Self { body: Some((name.to_owned(), radius_m)), ..self }
+    }
+}
+
+impl fmt::Display for DegreesMend {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { figure, stated, body } = self;
+        let (known, source) = match (figure, body) {
+            (Some(figure), Some((name, radius_m))) if !figure.may_be_of(Some(name.as_str()), *radius_m) => {
+                write!(
+                    formatter,
+                    "the following command, which takes the radius of {name} ({radius_m} m) in place of the file's ({} m): ",
+                    figure.semi_major_m
+                )?;
+                (format!("+R={radius_m}"), true)
+            }
+            (Some(figure), _) => (figure.proj(), !stated),
+            (None, Some((_, radius_m))) => (format!("+R={radius_m}"), true),
+            (None, None) => ("+R=RADIUS_M".to_owned(), true),
+        };
+        formatter.write_str("gdalwarp -r bilinear ")?;
+        if source {
+            write!(formatter, "-s_srs '+proj=longlat {known} +no_defs' ")?;
+        }
+        write!(
+            formatter,
+            "-t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {known} +units=m +no_defs' in.tif out.tif, where LATITUDE and LONGITUDE are \
+             the middle of the journey{}; then give its places as longitude and latitude (scenario: start_lonlat_deg and goal_lonlat_deg)",
+            if known.contains("RADIUS_M") { " and RADIUS_M is the radius of the body" } else { "" }
+        )
+    }
+}
+
+/// How to mend a map in degrees of this reference system.
+pub(super) fn mend_degrees(system: &CoordinateSystem) -> DegreesMend {
+    DegreesMend { figure: stated_ellipsoid(system), stated: !system.key_directory.is_empty(), body: None }
 }

@@ -5,7 +5,7 @@ use chta::{
     quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer, figure::draw_rose},
-    scenario::Overlays,
+    scenario::{Overlays, check_body, for_body},
     terrain::{check_scale, read_dem},
 };
 use nalgebra::Vector2;
@@ -39,7 +39,8 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     use_threads(*threads)?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let Bare { scenario, base, document } = load_bare(file, common, search)?;
-    let dem = read_dem(file).map_err(|e| failed(&e))?;
+    let dem = read_dem(file).map_err(|e| failed(&for_body(&scenario.body, e)))?;
+    check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| Failure::about(file, &e))?;
     let projection = dem.georeference().projection();
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
     let overlays =
@@ -50,11 +51,12 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let request = FanRequest { ground: &ground, from, headings: *headings, length_m: *length, spacing };
     let rays = fan(&request, &Progress::new(common.quiet)).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
-    let mut warnings = overlays.without_effect_on_dem(dem.bounds());
+    let mut warnings = dem.georeference().doubts();
+    warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     for ray in &rays {
         let heading = Angle::from_degrees(ray.heading_deg).radians();
         let end = from + Vector2::new(libm::sin(heading), libm::cos(heading)) * ray.length_m;
-        let scale = check_scale(dem, projection.as_ref(), [from, end], accepted, file).map_err(|e| failed(&e))?;
+        let scale = check_scale(dem, projection.as_ref(), [from, end], accepted, file).map_err(|e| Failure::about(file, &e))?;
         warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
     }
     for warning in &warnings {

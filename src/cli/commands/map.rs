@@ -17,7 +17,7 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Extremes, Overlays, Scenario, UncertaintyKeys, constant_gravity_warnings},
+    scenario::{Extremes, Overlays, Scenario, UncertaintyKeys, check_body, constant_gravity_warnings, for_body},
     terrain::{
         Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
@@ -123,7 +123,8 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     }
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
     let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
-    let dem = read_dem(file).map_err(|e| Failure::of(&e))?;
+    let dem = read_dem(file).map_err(|e| Failure::of(&for_body(&scenario.body, e)))?;
+    check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| failed(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
@@ -153,7 +154,7 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     }
     check_distinct_nodes(&dem, *stride, &named(start, &goals).map(|(_, spot)| spot).collect::<Vec<_>>())
         .map_err(|message| failed(&std::io::Error::other(message)))?;
-    let mut warnings = Vec::new();
+    let mut warnings = dem.georeference().doubts();
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
@@ -344,7 +345,7 @@ fn write_files<'a>(
     ends: (Spot, &[Spot]),
 ) -> Result<(), Failure> {
     let PreparedMap { lattice, scenario, projection, .. } = inputs;
-    let map = inputs.dem().georeference().every(lattice.stride);
+    let map = inputs.dem().georeference().every(lattice.stride).citing_the_code();
     let raster =
         |bands: &ResultBands<'_>| result_geotiff_bytes(lattice.rows, lattice.cols, &map, bands).map_err(|e| Failure::of(&e));
     let integer_raster = |name, hops| raster(&ResultBands::Int16(vec![Band { name, samples: hops }], NO_GROUND));

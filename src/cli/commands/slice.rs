@@ -6,7 +6,7 @@ use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{Overlays, Scenario, Transect, friction, sha256_of},
+    scenario::{BodyChoice, Overlays, Scenario, Transect, check_body, for_body, friction, sha256_of},
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
@@ -25,7 +25,11 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     }
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(terrain, error);
     let accepted = args.accept_map_scale || given.as_ref().is_some_and(|(scenario, _)| scenario.accept_map_scale);
-    let transect = read_transect(args, accepted)?;
+    let body = given.as_ref().map(|(scenario, _)| &scenario.body);
+    let transect = read_transect(args, accepted, body)?;
+    if let Some(body) = body {
+        check_body(body, transect.figure).map_err(|e| failed(&e))?;
+    }
     claims::reads(terrain);
     for warning in &transect.warnings {
         output::warn(*quiet, warning);
@@ -73,11 +77,14 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The ground along the slice, with the warnings about it.
-fn read_transect(args: &SliceArgs, accept_map_scale: bool) -> Result<Transect, Failure> {
+fn read_transect(args: &SliceArgs, accept_map_scale: bool, body: Option<&BodyChoice>) -> Result<Transect, Failure> {
     let SliceArgs { terrain, via, via_lonlat, mesh_scale, .. } = args;
     let from = place("from", args.from, args.from_lonlat)?;
     let to = place("to", args.to, args.to_lonlat)?;
-    let failed = |error: TerrainError| Failure::about(terrain, &error);
+    let failed = |error: TerrainError| match body {
+        Some(body) => Failure::about(terrain, &for_body(body, error)),
+        None => Failure::about(terrain, &error),
+    };
     let of_mesh = || match (&from, &to) {
         (MapPlace::Metres(from), MapPlace::Metres(to)) if via_lonlat.is_empty() => {
             Transect::of_mesh(terrain, mesh_scale.unwrap_or(1.0), [*from, *to], via).map_err(failed)

@@ -1,8 +1,8 @@
 //! The `GeoKeys` and the tags of the transform: the position of the posts, and their units.
 
-use super::{key, tag};
+use super::{key, tag, units};
 use crate::quantity::MapPoint;
-use crate::terrain::georeference::mend_degrees;
+use crate::terrain::projection::states_a_map;
 use crate::terrain::{CoordinateSystem, GeoReference, TerrainError, TransformTags};
 
 /// A rotation or shear below this fraction of the spacing is attributed to rounding in the file.
@@ -52,8 +52,8 @@ impl GeoTags {
     /// # Errors
     /// [`TerrainError::Unsuitable`] for degrees, other units than metres, rotated or mirrored transforms, or no transform.
     pub(super) fn place(self, rows: usize) -> Result<Placement, TerrainError> {
-        check_units(&self.coordinate_system)?;
-        let states_metres = short_key(&self.coordinate_system, key::MODEL_TYPE) == Some(key::PROJECTED);
+        units::check(&self.coordinate_system)?;
+        let states_metres = states_a_map(&self.coordinate_system);
         let post_at_tie = short_key(&self.coordinate_system, key::RASTER_TYPE) == Some(key::PIXEL_IS_POINT);
         let lattice = Lattice::of(&self.transform, if post_at_tie { 0.0 } else { 0.5 })?;
         let south_up = lattice.step_y > 0.0;
@@ -125,67 +125,8 @@ impl Lattice {
     }
 }
 
-fn unsuitable(found: String, expected: &'static str, mend: &str) -> TerrainError {
+pub(super) fn unsuitable(found: String, expected: &'static str, mend: &str) -> TerrainError {
     TerrainError::Unsuitable { found, expected, mend: mend.to_owned() }
-}
-
-fn not_projected(found: &str, system: &CoordinateSystem) -> TerrainError {
-    TerrainError::NotProjected { found: found.to_owned(), mend: mend_degrees(system) }
-}
-
-fn check_units(system: &CoordinateSystem) -> Result<(), TerrainError> {
-    match short_key(system, key::MODEL_TYPE) {
-        Some(key::GEOGRAPHIC) => return Err(not_projected("a map in degrees of longitude and latitude", system)),
-        Some(key::GEOCENTRIC) => return Err(not_projected("geocentric coordinates", system)),
-        _ => {}
-    }
-    check_linear_units(system)?;
-    match short_key(system, key::VERTICAL_UNITS) {
-        None | Some(key::METRE) => Ok(()),
-        Some(unit) => Err(unsuitable(
-            format!("elevations in {}", unit_name(unit)),
-            "elevations in metres",
-            "gdal_calc.py -A in.tif --outfile=metres.tif --calc='A*METRES_PER_UNIT', then gdal_translate -a_srs HORIZONTAL_CRS metres.tif out.tif",
-        )),
-    }
-}
-
-fn check_linear_units(system: &CoordinateSystem) -> Result<(), TerrainError> {
-    let found = match short_key(system, key::LINEAR_UNITS) {
-        Some(key::METRE) => return Ok(()),
-        Some(key::USER_DEFINED) => match double_key(system, key::LINEAR_UNIT_SIZE) {
-            Some(1.0) => return Ok(()),
-            Some(size_m) => format!("map units of {size_m} m"),
-            None => "map units that are not stated".to_owned(),
-        },
-        Some(unit) => format!("map coordinates in {}", unit_name(unit)),
-        // Metres are the default; the citations of maps in feet mention it ("NAD83 / Texas Central (ftUS)").
-        None if system.description.as_deref().is_some_and(speaks_of_feet) => "map coordinates in feet".to_owned(),
-        None => return Ok(()),
-    };
-    Err(unsuitable(
-        found,
-        "a projected map in metres",
-        "gdalwarp -r bilinear -t_srs 'THE SAME PROJECTION WITH +units=m' in.tif out.tif",
-    ))
-}
-
-fn speaks_of_feet(description: &str) -> bool {
-    let lower = description.to_ascii_lowercase();
-    lower.split(|letter: char| !letter.is_ascii_alphabetic()).any(|word| matches!(word, "ft" | "ftus" | "feet" | "foot"))
-}
-
-fn unit_name(code: u16) -> String {
-    match code {
-        9002 => "feet".to_owned(),
-        9003 => "US survey feet".to_owned(),
-        9030 => "nautical miles".to_owned(),
-        9036 => "kilometres".to_owned(),
-        9101 => "radians".to_owned(),
-        9102 => "degrees".to_owned(),
-        key::USER_DEFINED => "a user-defined unit".to_owned(),
-        other => format!("unit EPSG:{other}"),
-    }
 }
 
 /// The entry of a key: location, count, and value or offset.
@@ -211,7 +152,7 @@ pub(in crate::terrain) fn double_key(system: &CoordinateSystem, wanted: u16) -> 
     }
 }
 
-fn text_key(system: &CoordinateSystem, wanted: u16) -> Option<&str> {
+pub(in crate::terrain) fn text_key(system: &CoordinateSystem, wanted: u16) -> Option<&str> {
     match entry(system, wanted)? {
         [tag::ASCII_PARAMETERS, count, offset] => {
             let start = usize::from(offset);
@@ -317,7 +258,7 @@ mod tests {
         assert!(GeoTags { coordinate_system: own_unit.clone(), transform: scaled() }.place(2).is_ok());
         own_unit.double_parameters = vec![1000.0];
         assert!(GeoTags { coordinate_system: own_unit, transform: scaled() }.place(2).is_err());
-        assert!(speaks_of_feet("NAD83 / Texas Central (ftUS)") && !speaks_of_feet("Craft 1"));
+        assert_eq!((units::feet("NAD83 / Texas Central (ftUS)"), units::feet("Craft 1")), (Some(9003), None));
     }
 
     #[test]

@@ -7,9 +7,10 @@ mod keys;
 mod metadata;
 mod read;
 mod samples;
+mod units;
 mod write;
 
-pub(super) use keys::{double_key, short_key};
+pub(super) use keys::{double_key, short_key, text_key};
 pub(super) use read::GeoTiffReader;
 pub use read::read_geotiff_bytes;
 #[cfg(feature = "gdal")]
@@ -35,15 +36,20 @@ mod key {
     pub(super) const RASTER_TYPE: u16 = 1025;
     pub(super) const CITATION: u16 = 1026;
     pub(super) const GEOGRAPHIC_CITATION: u16 = 2049;
+    pub(super) const GEOGRAPHIC_CRS: u16 = 2048;
     pub(super) const PROJECTED_CRS: u16 = 3072;
     pub(super) const PROJECTED_CITATION: u16 = 3073;
     pub(super) const LINEAR_UNITS: u16 = 3076;
     pub(super) const LINEAR_UNIT_SIZE: u16 = 3077;
+    pub(super) const VERTICAL_CRS: u16 = 4096;
+    pub(super) const VERTICAL_CITATION: u16 = 4097;
     pub(super) const VERTICAL_UNITS: u16 = 4099;
 
+    pub(super) const UNDEFINED: u16 = 0;
     pub(super) const PROJECTED: u16 = 1;
     pub(super) const GEOGRAPHIC: u16 = 2;
     pub(super) const GEOCENTRIC: u16 = 3;
+    pub(super) const PIXEL_IS_AREA: u16 = 1;
     pub(super) const PIXEL_IS_POINT: u16 = 2;
     pub(super) const METRE: u16 = 9001;
     pub(super) const USER_DEFINED: u16 = 32767;

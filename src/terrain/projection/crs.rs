@@ -2,12 +2,12 @@
 
 use std::str::FromStr;
 
+use super::MapProjection;
 use super::codes;
 use super::crs_error::CrsError;
 use super::definition::Definition;
 use super::proj_text;
 use super::wkt_read::{self, Stated};
-use super::MapProjection;
 
 impl MapProjection {
     /// A projection from the code of an authority: `EPSG:32633`, `IAU_2015:30135`, or its uniform resource name
@@ -203,7 +203,8 @@ mod tests {
             assert_eq!(definition(&wkt_1(projection, &format!("{parameters},{METRE}"))), expected, "{projection}");
         }
         // As written to a .prj file.
-        let others = Method::ALL.into_iter().filter(|method| !matches!(method, Method::PolarStereographic | Method::PseudoMercator));
+        let others =
+            Method::ALL.into_iter().filter(|method| !matches!(method, Method::PolarStereographic | Method::PseudoMercator));
         for method in others {
             let parallels_deg = match method {
                 Method::Equirectangular => [Some(20.0), None],

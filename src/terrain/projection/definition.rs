@@ -127,6 +127,9 @@ impl Method {
     }
 }
 
+/// How far two statements of a radius may differ, as a fraction: conventions for one body differ by 0.3 % (Mars), bodies by far more.
+pub(super) const RADIUS_TOLERANCE: f64 = 0.01;
+
 /// The figure of a body: a sphere, or a sphere flattened at its poles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipsoid {
@@ -138,7 +141,8 @@ pub struct Ellipsoid {
 
 impl Ellipsoid {
     /// WGS 84.
-    pub(super) const WGS84: Self = Self { semi_major_m: 6_378_137.0, semi_minor_m: 6_378_137.0 * (1.0 - 1.0 / 298.257_223_563) };
+    pub(in crate::terrain) const WGS84: Self =
+        Self { semi_major_m: 6_378_137.0, semi_minor_m: 6_378_137.0 * (1.0 - 1.0 / 298.257_223_563) };
     /// GRS 1980.
     pub(super) const GRS80: Self = Self { semi_major_m: 6_378_137.0, semi_minor_m: 6_378_137.0 * (1.0 - 1.0 / 298.257_222_101) };
 
@@ -151,6 +155,42 @@ impl Ellipsoid {
     pub fn with_inverse_flattening(semi_major_m: f64, inverse_flattening: f64) -> Self {
         let flattening = if inverse_flattening == 0.0 { 0.0 } else { 1.0 / inverse_flattening };
         Self { semi_major_m, semi_minor_m: semi_major_m * (1.0 - flattening) }
+    }
+
+    /// Whether a radius lies between its axes, or beyond them by at most this fraction.
+    pub(crate) fn is_within(&self, radius_m: f64, tolerance: f64) -> bool {
+        (self.semi_minor_m * (1.0 - tolerance)..=self.semi_major_m * (1.0 + tolerance)).contains(&radius_m)
+    }
+
+    /// Whether a map of this figure may be one of a body with this name and mean radius, m: to 1 % of the radius, or of the longest and
+    /// shortest axis of a known body that is far from a sphere (IAU WGCCRE 2015; Bennu: Lauretta et al. 2019, Ryugu: Watanabe et al. 2019,
+    /// 67P: Jorda et al. 2016).
+    pub fn may_be_of(&self, name: Option<&str>, radius_m: f64) -> bool {
+        const AXES_M: [(&str, f64, f64); 10] = [
+            ("phobos", 9_100.0, 13_000.0),
+            ("deimos", 5_100.0, 7_800.0),
+            ("ceres", 446_000.0, 487_300.0),
+            ("vesta", 223_200.0, 289_000.0),
+            ("enceladus", 248_300.0, 256_600.0),
+            ("bennu", 228.0, 283.0),
+            ("ryugu", 438.0, 502.0),
+            ("eros", 5_500.0, 17_000.0),
+            ("67p", 1_200.0, 2_500.0),
+            ("mars", 3_376_200.0, 3_396_190.0),
+        ];
+        let known = AXES_M.into_iter().find(|(body, low_m, high_m)| Some(*body) == name && (low_m..=high_m).contains(&&radius_m));
+        let (low_m, high_m) = known.map_or((radius_m, radius_m), |(_, low_m, high_m)| (low_m, high_m));
+        self.semi_major_m >= low_m * (1.0 - RADIUS_TOLERANCE) && self.semi_minor_m <= high_m * (1.0 + RADIUS_TOLERANCE)
+    }
+
+    /// Its radii as a phrase.
+    pub(in crate::terrain) fn described(&self) -> String {
+        let Self { semi_major_m, semi_minor_m } = self;
+        if self.is_sphere() {
+            format!("a radius of {semi_major_m} m")
+        } else {
+            format!("radii of {semi_major_m} m (equator) and {semi_minor_m} m (poles)")
+        }
     }
 
     /// Whether it is a sphere.
@@ -278,6 +318,14 @@ impl Definition {
             return Some(format!("a {} projection with both a standard parallel and a scale of {scale}", method.name()));
         }
         self.misplaced()
+    }
+
+    /// Whether the numbers of one may stand for the other: GDAL states ESRI's web map by those of a Mercator map.
+    pub(super) fn replaces(&self, other: &Self) -> bool {
+        matches!(
+            (self.method, other.method),
+            (Method::Mercator, Method::PseudoMercator) | (Method::PseudoMercator, Method::Mercator)
+        )
     }
 
     /// Whether it is EPSG:3857: a pseudo-Mercator map is defined for its numbers alone.

@@ -1,7 +1,7 @@
 //! Converts `GeoKeys` (OGC GeoTIFF 1.1) to a projection and back.
 
-use super::codes;
 use super::definition::{Definition, Ellipsoid, Method};
+use super::{MapProjection, codes, epsg_units, stated};
 use crate::terrain::CoordinateSystem;
 use crate::terrain::geotiff::{double_key, short_key};
 
@@ -11,13 +11,18 @@ mod key {
     pub(super) const CITATION: u16 = 1026;
     pub(super) const GEOGRAPHIC_CRS: u16 = 2048;
     pub(super) const DATUM: u16 = 2050;
+    pub(super) const PRIME_MERIDIAN_CODE: u16 = 2051;
+    pub(super) const RADIUS_UNITS: u16 = 2052;
+    pub(super) const RADIUS_UNIT_SIZE: u16 = 2053;
     pub(super) const ANGULAR_UNITS: u16 = 2054;
+    pub(super) const ANGULAR_UNIT_SIZE: u16 = 2055;
     pub(super) const ELLIPSOID: u16 = 2056;
     pub(super) const SEMI_MAJOR: u16 = 2057;
     pub(super) const SEMI_MINOR: u16 = 2058;
     pub(super) const INVERSE_FLATTENING: u16 = 2059;
     pub(super) const PRIME_MERIDIAN: u16 = 2061;
     pub(super) const PROJECTED_CRS: u16 = 3072;
+    pub(super) const PROJECTED_CITATION: u16 = 3073;
     pub(super) const PROJECTION: u16 = 3074;
     pub(super) const METHOD: u16 = 3075;
     pub(super) const LINEAR_UNITS: u16 = 3076;
@@ -40,7 +45,10 @@ mod key {
     pub(super) const POLE_LONGITUDE: u16 = 3095;
 
     pub(super) const USER_DEFINED: u16 = 32767;
+    pub(super) const GREENWICH: u16 = 8901;
     pub(super) const DEGREE: u16 = 9102;
+    /// "Degree (supplier to define representation)".
+    pub(super) const DEGREE_IN_ANY_FORM: u16 = 9122;
     pub(super) const METRE: u16 = 9001;
 }
 
@@ -60,21 +68,49 @@ pub(super) enum Reading {
     Unknown(String),
 }
 
+/// Whether the keys state a projected map. Files without a model type, or with one of their own, may do so by other keys.
+pub(super) fn states_a_map(system: &CoordinateSystem) -> bool {
+    const PROJECTED: u16 = 1;
+    const UNDEFINED: u16 = 0;
+    let by_other_keys = || {
+        let coded = short_key(system, key::PROJECTED_CRS).is_some_and(|code| code != UNDEFINED && code != key::USER_DEFINED);
+        let told = stated::pe_string(system).is_some_and(|text| text.starts_with("PROJ"));
+        coded || told || short_key(system, key::METHOD).is_some()
+    };
+    match short_key(system, key::MODEL_TYPE) {
+        Some(PROJECTED) => true,
+        None | Some(UNDEFINED | key::USER_DEFINED) => by_other_keys(),
+        Some(_) => false,
+    }
+}
+
+/// The code of the map, unless it is user-defined.
+pub(super) fn projected_code(system: &CoordinateSystem) -> Option<u16> {
+    short_key(system, key::PROJECTED_CRS).filter(|code| *code != key::USER_DEFINED && *code != 0)
+}
+
 /// Reads the keys.
 pub(super) fn read(system: &CoordinateSystem) -> Reading {
-    const PROJECTED: u16 = 1;
-    if short_key(system, key::MODEL_TYPE) != Some(PROJECTED) {
+    if !states_a_map(system) {
         return Reading::Local;
     }
-    let code = short_key(system, key::PROJECTED_CRS).filter(|code| *code != key::USER_DEFINED);
-    if let Some(code) = code {
-        return match codes::epsg(code) {
-            Some(definition) => Reading::Known { definition, epsg: Some(code) },
-            None => Reading::Unknown(format!("its EPSG code {code} is not supported")),
+    if let Some((code, definition)) = by_code(system) {
+        return Reading::Known { definition, epsg: Some(code) };
+    }
+    if let Some(code) = projected_code(system) {
+        return Reading::Unknown(format!("its EPSG code {code} is not supported"));
+    }
+    if let Some(text) = stated::pe_string(system) {
+        return match MapProjection::from_wkt(text) {
+            Ok(map) => Reading::Known { definition: *map.definition(), epsg: map.code().and_then(codes::epsg_number) },
+            Err(reason) => Reading::Unknown(format!("its text after 'ESRI PE String =': {reason}")),
         };
     }
     if short_key(system, key::METHOD).is_none() && short_key(system, key::PROJECTION).is_none() {
-        return Reading::Local;
+        return match short_key(system, key::PROJECTED_CRS) {
+            None => Reading::Local,
+            Some(_) => Reading::Unknown("its keys say that it is user-defined, and name no method (3075)".to_owned()),
+        };
     }
     match user_defined(system) {
         Ok((definition, epsg)) => match definition.fault() {
@@ -85,10 +121,38 @@ pub(super) fn read(system: &CoordinateSystem) -> Reading {
     }
 }
 
+/// The map of the code, if it is known.
+pub(super) fn by_code(system: &CoordinateSystem) -> Option<(u16, Definition)> {
+    let code = projected_code(system)?;
+    Some((code, codes::epsg(code)?))
+}
+
+/// The map of the method and its numbers, if they are given and known.
+pub(super) fn by_numbers(system: &CoordinateSystem) -> Option<Definition> {
+    short_key(system, key::METHOD)?;
+    let figure = ellipsoid(system).ok().or_else(|| Some(by_code(system)?.1.ellipsoid))?;
+    by_method(system, figure).ok()
+}
+
+/// The UTM zone of key 3074, if there is one.
+pub(super) fn utm_by_key(system: &CoordinateSystem) -> Option<Definition> {
+    let figure = ellipsoid(system).ok().or_else(|| Some(by_code(system)?.1.ellipsoid))?;
+    Some(utm_of(short_key(system, key::PROJECTION)?, figure)?.0)
+}
+
 /// The ellipsoid of the keys, projected or not.
 pub(super) fn ellipsoid(system: &CoordinateSystem) -> Result<Ellipsoid, String> {
     if let Some(semi_major_m) = double_key(system, key::SEMI_MAJOR) {
-        let semi_minor_m = double_key(system, key::SEMI_MINOR);
+        let size_m = match short_key(system, key::RADIUS_UNITS) {
+            None | Some(0 | key::METRE) => 1.0,
+            Some(key::USER_DEFINED) => double_key(system, key::RADIUS_UNIT_SIZE)
+                .ok_or("its radii (2057) are in a user-defined unit without a size (2053)")?,
+            Some(unit) => epsg_units::length_unit(unit)
+                .1
+                .ok_or_else(|| format!("its radii (2057) are in the unit EPSG:{unit} (key 2052), which is not known here"))?,
+        };
+        let semi_major_m = semi_major_m * size_m;
+        let semi_minor_m = double_key(system, key::SEMI_MINOR).map(|length| length * size_m);
         let inverse_flattening = double_key(system, key::INVERSE_FLATTENING);
         return match (semi_minor_m, inverse_flattening) {
             (Some(semi_minor_m), _) => Ok(Ellipsoid { semi_major_m, semi_minor_m }),
@@ -104,22 +168,50 @@ pub(super) fn ellipsoid(system: &CoordinateSystem) -> Result<Ellipsoid, String> 
 
 /// A projection with explicit parameters, with its EPSG code if it is a UTM zone of WGS 84.
 fn user_defined(system: &CoordinateSystem) -> Result<(Definition, Option<u16>), String> {
-    match short_key(system, key::ANGULAR_UNITS) {
-        None | Some(key::DEGREE) => {}
-        Some(unit) => return Err(format!("its angles are in the unit EPSG:{unit}, not in degrees")),
-    }
     let ellipsoid = ellipsoid(system)?;
-    match short_key(system, key::PROJECTION) {
-        Some(zone @ 16_001..=16_060) => return Ok(utm_zone(zone - 16_000, false, ellipsoid)),
-        Some(zone @ 16_101..=16_160) => return Ok(utm_zone(zone - 16_100, true, ellipsoid)),
-        _ => {}
+    if let Some(utm) = short_key(system, key::PROJECTION).and_then(|code| utm_of(code, ellipsoid)) {
+        return Ok(utm);
     }
+    Ok((by_method(system, ellipsoid)?, None))
+}
+
+/// The UTM zone of a code of key 3074.
+fn utm_of(code: u16, ellipsoid: Ellipsoid) -> Option<(Definition, Option<u16>)> {
+    match code {
+        16_001..=16_060 => Some(utm_zone(code - 16_000, false, ellipsoid)),
+        16_101..=16_160 => Some(utm_zone(code - 16_100, true, ellipsoid)),
+        _ => None,
+    }
+}
+
+/// How far east of the reference meridian longitudes are counted from, degrees.
+fn prime_meridian_deg(system: &CoordinateSystem) -> Result<f64, String> {
+    match (double_key(system, key::PRIME_MERIDIAN), short_key(system, key::PRIME_MERIDIAN_CODE)) {
+        (Some(longitude_deg), _) => Ok(longitude_deg),
+        (None, None | Some(0 | key::GREENWICH)) => Ok(0.0),
+        (None, Some(code)) => Err(format!("its prime meridian (key 2051) is number {code}, whose longitude is not known here")),
+    }
+}
+
+/// Refuses angles in another unit than the degree.
+fn check_angles(system: &CoordinateSystem) -> Result<(), String> {
+    match (short_key(system, key::ANGULAR_UNITS), double_key(system, key::ANGULAR_UNIT_SIZE)) {
+        (None | Some(0 | key::DEGREE | key::DEGREE_IN_ANY_FORM), _) => Ok(()),
+        (Some(key::USER_DEFINED), Some(size)) if (size.to_degrees() - 1.0).abs() < 1.0e-8 => Ok(()),
+        (Some(unit), _) => Err(format!("its angles are in the unit EPSG:{unit}, not in degrees")),
+    }
+}
+
+/// A projection from its method and numbers.
+fn by_method(system: &CoordinateSystem, ellipsoid: Ellipsoid) -> Result<Definition, String> {
+    check_angles(system)?;
     let number = short_key(system, key::METHOD).ok_or("its keys name no method (3075)")?;
-    let method = method(number).ok_or_else(|| format!("its projection method (key 3075) is number {number}"))?;
+    let method =
+        method(number).ok_or_else(|| format!("its projection method (key 3075) is number {number}{}", method_name(number)))?;
     let only = |keys: &[u16], what: &str| one_of(system, keys, what);
     let latitudes = [key::ORIGIN_LATITUDE, key::FALSE_ORIGIN_LATITUDE, key::CENTER_LATITUDE];
     let longitudes = [key::ORIGIN_LONGITUDE, key::FALSE_ORIGIN_LONGITUDE, key::CENTER_LONGITUDE, key::POLE_LONGITUDE];
-    let meridian_deg = double_key(system, key::PRIME_MERIDIAN).unwrap_or(0.0);
+    let meridian_deg = prime_meridian_deg(system)?;
     let longitude_deg = only(&longitudes, "longitudes of the origin")?.unwrap_or(0.0) + meridian_deg;
     let latitude_deg = only(&latitudes, "latitudes of the origin")?.unwrap_or(0.0);
     let eastings = [key::EASTING, key::FALSE_ORIGIN_EASTING, key::CENTER_EASTING];
@@ -133,7 +225,30 @@ fn user_defined(system: &CoordinateSystem) -> Result<(Definition, Option<u16>), 
         definition.scale = only(&[key::ORIGIN_SCALE, key::CENTER_SCALE], "scales")?.unwrap_or(1.0);
     }
     resolve_definition(&mut definition, system)?;
-    Ok((definition, None))
+    Ok(definition)
+}
+
+/// The names of methods that are not supported (OGC GeoTIFF 1.1, annex C; GDAL).
+fn method_name(number: u16) -> &'static str {
+    match number {
+        2 => ", transverse Mercator of the oblique Alaska grid",
+        3 => ", oblique Mercator",
+        4 => ", oblique Mercator (Laborde)",
+        5 => ", oblique Mercator (Rosenmund)",
+        6 => ", oblique Mercator (spherical)",
+        13 => ", equidistant conic",
+        18 => ", Cassini-Soldner",
+        19 => ", gnomonic",
+        20 => ", Miller cylindrical",
+        22 => ", polyconic",
+        23 => ", Robinson",
+        25 => ", Van der Grinten",
+        26 => ", New Zealand map grid",
+        27 => ", transverse Mercator to the south",
+        28 => ", cylindrical equal-area",
+        9815 => ", oblique Mercator (azimuth at the centre)",
+        _ => "",
+    }
 }
 
 /// Fills in what depends on the method: standard parallels, and the form in which a pole is given.
@@ -216,9 +331,7 @@ const fn origin_keys(method: Method) -> [u16; 4] {
         | Method::Mercator
         | Method::LambertConformalOneParallel
         | Method::DoubleStereographic
-        | Method::AlbersEqualArea => {
-            [key::ORIGIN_LATITUDE, key::ORIGIN_LONGITUDE, key::EASTING, key::NORTHING]
-        }
+        | Method::AlbersEqualArea => [key::ORIGIN_LATITUDE, key::ORIGIN_LONGITUDE, key::EASTING, key::NORTHING],
         Method::PolarStereographic => [key::ORIGIN_LATITUDE, key::POLE_LONGITUDE, key::EASTING, key::NORTHING],
         Method::LambertConformalTwoParallels => {
             [key::FALSE_ORIGIN_LATITUDE, key::FALSE_ORIGIN_LONGITUDE, key::FALSE_ORIGIN_EASTING, key::FALSE_ORIGIN_NORTHING]
@@ -269,12 +382,42 @@ pub(super) fn write_epsg(code: u16, name: &str) -> CoordinateSystem {
     directory(&[(key::PROJECTED_CRS, code)], &[], name)
 }
 
+/// The same keys with another citation, which GDAL shows as the name of the map.
+pub(super) fn with_citation(system: &CoordinateSystem, name: &str) -> CoordinateSystem {
+    const TEXTS: u16 = 34737;
+    let name = plain_text(name);
+    let number = |count: usize| u16::try_from(count).ok();
+    let entries = || {
+        let header = system.key_directory.get(..3)?;
+        let mut entries: Vec<[u16; 4]> =
+            system.key_directory.get(4..)?.chunks_exact(4).filter_map(|entry| entry.try_into().ok()).collect();
+        entries.retain(|entry| entry[0] != key::CITATION && entry[0] != key::PROJECTED_CITATION);
+        entries.push([key::CITATION, TEXTS, number(name.len() + 1)?, number(system.ascii_parameters.len())?]);
+        entries.sort_by_key(|entry| entry[0]);
+        let count = number(entries.len())?;
+        Some(header.iter().copied().chain([count]).chain(entries.into_iter().flatten()).collect())
+    };
+    match entries() {
+        Some(key_directory) => CoordinateSystem {
+            key_directory,
+            double_parameters: system.double_parameters.clone(),
+            ascii_parameters: format!("{}{name}|", system.ascii_parameters),
+            description: Some(name),
+        },
+        None => system.clone(),
+    }
+}
+
+/// A text as it may stand among the keys, where a `|` ends it.
+fn plain_text(name: &str) -> String {
+    name.replace(|letter: char| !letter.is_ascii() || letter.is_ascii_control() || letter == '|', "_")
+}
+
 /// The directory of a projected map in metres with all entries in the order of their numbers.
 fn directory(stated: &[(u16, u16)], doubles: &[(u16, f64)], name: &str) -> CoordinateSystem {
     const DOUBLES: u16 = 34736;
     const TEXTS: u16 = 34737;
-    // A `|` ends a text among the keys.
-    let name = name.replace(|letter: char| !letter.is_ascii() || letter.is_ascii_control() || letter == '|', "_");
+    let name = plain_text(name);
     let text_length = u16::try_from(name.len() + 1).unwrap_or(u16::MAX);
     let mut entries =
         vec![[key::MODEL_TYPE, 0, 1, 1], [key::CITATION, TEXTS, text_length, 0], [key::LINEAR_UNITS, 0, 1, key::METRE]];

@@ -18,6 +18,7 @@ mod epsg_units;
 mod geokeys;
 mod proj_text;
 mod scale;
+mod stated;
 mod wkt;
 mod wkt_read;
 mod wkt_tree;
@@ -29,8 +30,10 @@ use proj4rs::{Proj, transform::transform};
 
 pub use self::crs_error::CrsError;
 pub use self::definition::{Definition, Ellipsoid, Method};
+pub(super) use self::epsg_units::{Vertical, is_compound, is_geodetic, is_map_in_metres, length_unit, vertical};
 use self::geokeys::Reading;
 pub use self::scale::{ScaleExtreme, ScaleMend, TransectScale, check_map_scale, check_scale};
+pub(super) use self::stated::{contradiction, doubts};
 use super::{CoordinateSystem, MapBounds, TerrainError};
 use crate::quantity::MapPoint;
 
@@ -228,6 +231,25 @@ impl MapProjection {
         self
     }
 
+    /// Whether another projection gives every place the same map coordinates, to a tenth of a metre around the origin. Numbers may
+    /// differ: longitudes by a turn, a scale and a parallel of true scale, ellipsoids by a hair.
+    pub(crate) fn is_same_map(&self, other: &Self) -> bool {
+        const TOLERANCE_M: f64 = 0.1;
+        let Definition { latitude_deg, longitude_deg, .. } = self.definition;
+        let at_pole = latitude_deg.abs() == 90.0;
+        [-5.0, 2.0, 7.0].into_iter().all(|north_deg: f64| {
+            [-2.0, 1.0, 3.0].into_iter().all(|east_deg| {
+                let lat_deg =
+                    if at_pole { (latitude_deg.abs() - north_deg.abs()).copysign(latitude_deg) } else { latitude_deg + north_deg };
+                let place = LonLat { lon_deg: longitude_deg + east_deg, lat_deg: lat_deg.clamp(-89.0, 89.0) };
+                match (self.map_point(place), other.map_point(place)) {
+                    (Some(own), Some(others)) => (own - others).norm() <= TOLERANCE_M,
+                    (own, others) => own.is_none() && others.is_none(),
+                }
+            })
+        })
+    }
+
     /// Longitude and latitude of a map point; `None` if it corresponds to no point of the body.
     pub fn lon_lat(&self, at: MapPoint) -> Option<LonLat> {
         let (lon, lat) = self.inverse(at)?;
@@ -327,6 +349,34 @@ impl PartialEq for MapProjection {
     }
 }
 
+/// The keys of a file with the code of its map in their citation, for a map with a code that keys cannot hold: that of the IAU.
+pub(super) fn citing_the_code(system: &CoordinateSystem) -> CoordinateSystem {
+    let Ok(map) = MapProjection::of(system) else { return system.clone() };
+    let said = system.description.as_deref().unwrap_or_default();
+    match map.code() {
+        Some(code) if codes::epsg_number(code).is_none() && !said.contains(code) && !said.contains('[') => {
+            let name = named(system).map_or_else(|| code.to_owned(), |name| format!("{name} ({code})"));
+            geokeys::with_citation(system, &name)
+        }
+        _ => system.clone(),
+    }
+}
+
+/// Whether the keys of a file state a projected map.
+pub(super) fn states_a_map(system: &CoordinateSystem) -> bool {
+    geokeys::states_a_map(system)
+}
+
+/// The EPSG code of a file's projected map, known or not.
+pub(super) fn projected_code(system: &CoordinateSystem) -> Option<u16> {
+    geokeys::projected_code(system)
+}
+
+/// Whether a file's well-known text states longitudes and latitudes.
+pub(super) fn states_degrees_in_text(system: &CoordinateSystem) -> bool {
+    stated::pe_string(system).is_some_and(|text| text.starts_with("GEO"))
+}
+
 /// The ellipsoid of a file's geographic coordinates.
 pub(super) fn stated_ellipsoid(system: &CoordinateSystem) -> Option<Ellipsoid> {
     geokeys::ellipsoid(system).ok()
@@ -334,7 +384,10 @@ pub(super) fn stated_ellipsoid(system: &CoordinateSystem) -> Option<Ellipsoid> {
 
 /// The file's own name for its map, unless it is "unknown".
 fn named(system: &CoordinateSystem) -> Option<String> {
-    system.description.clone().filter(|name| !name.eq_ignore_ascii_case("unknown") && !name.starts_with("GCS Name"))
+    let plain = |name: &String| {
+        !name.eq_ignore_ascii_case("unknown") && !name.starts_with("GCS Name") && !name.starts_with("ESRI PE String")
+    };
+    system.description.clone().filter(plain)
 }
 
 /// A description of a projection.

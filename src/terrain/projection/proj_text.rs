@@ -174,10 +174,8 @@ fn by_method(proj: &str, words: &mut Words<'_>, ellipsoid: Ellipsoid) -> Result<
         _ if true_scale.is_some() => return Err(surplus("+lat_ts")),
         _ => [None; 2],
     };
-    let conic = matches!(
-        method,
-        Method::LambertConformalOneParallel | Method::LambertConformalTwoParallels | Method::AlbersEqualArea
-    );
+    let conic =
+        matches!(method, Method::LambertConformalOneParallel | Method::LambertConformalTwoParallels | Method::AlbersEqualArea);
     if !conic && (parallels_1.is_some() || parallel_2.is_some()) {
         return Err(surplus(if parallels_1.is_some() { "+lat_1" } else { "+lat_2" }));
     }

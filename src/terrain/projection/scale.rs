@@ -4,9 +4,9 @@ use std::fmt;
 
 use nalgebra::Vector2;
 
-use super::{Definition, LonLat, MapProjection, Method, NoProjection};
+use super::{Definition, LonLat, MapProjection, Method, NoProjection, projected_code};
 use crate::quantity::MapPoint;
-use crate::terrain::{DemFile, MapBounds, TerrainError};
+use crate::terrain::{DemFile, GeoReference, MapBounds, TerrainError};
 
 /// The largest error of a map's scale along a transect for which a slice is made.
 const SCALE_TOLERANCE: f64 = 0.01;
@@ -145,7 +145,8 @@ impl MapProjection {
 ///
 /// # Errors
 /// [`TerrainError::MapScale`] if the scale is off by more than 1 % and this was not accepted, with a `gdalwarp` command for a
-/// map that is true to scale along this transect; [`TerrainError::OffTheBody`] if the line leaves the map of the body.
+/// map that is true to scale along this transect; [`TerrainError::UnknownScale`] if the file states a projection that is not
+/// supported and this was not accepted; [`TerrainError::OffTheBody`] if the line leaves the map of the body.
 pub fn check_scale(
     dem: &dyn DemFile,
     projection: Result<&MapProjection, &NoProjection>,
@@ -155,8 +156,7 @@ pub fn check_scale(
 ) -> Result<TransectScale, TerrainError> {
     let projection = match projection {
         Ok(projection) => projection,
-        Err(NoProjection::Local) => return Ok(TransectScale::Local),
-        Err(unknown @ NoProjection::Unknown(_)) => return Ok(TransectScale::Unknown(unknown.to_string())),
+        Err(reason) => return without_scale(dem, reason, accepted, file),
     };
     check_line(dem, projection, [from, to], accepted, "the transect", &|| mend(dem, projection, [from, to], file))
 }
@@ -175,8 +175,7 @@ pub fn check_map_scale(
 ) -> Result<TransectScale, TerrainError> {
     let projection = match projection {
         Ok(projection) => projection,
-        Err(NoProjection::Local) => return Ok(TransectScale::Local),
-        Err(unknown @ NoProjection::Unknown(_)) => return Ok(TransectScale::Unknown(unknown.to_string())),
+        Err(reason) => return without_scale(dem, reason, accepted, file),
     };
     let mut worst = TransectScale::Local;
     for corner in corners(dem) {
@@ -187,6 +186,40 @@ pub fn check_map_scale(
         }
     }
     Ok(worst)
+}
+
+/// The scale of a map without a supported projection: a local map is true to scale, another is taken only if the user accepts it.
+fn without_scale(
+    dem: &dyn DemFile,
+    reason: &NoProjection,
+    accepted: bool,
+    file: &std::path::Path,
+) -> Result<TransectScale, TerrainError> {
+    match reason {
+        NoProjection::Local => Ok(TransectScale::Local),
+        unknown if accepted => Ok(TransectScale::Unknown(unknown.to_string())),
+        unknown => {
+            let map = dem.lattice().georeference();
+            let mend = mend_unknown(map, &shell_word(&file.display().to_string()));
+            Err(TerrainError::UnknownScale { reason: unknown.clone(), mend })
+        }
+    }
+}
+
+/// The command for a map of a supported projection.
+fn mend_unknown(map: &GeoReference, file: &str) -> String {
+    let stereographic = |figure: &str, from: &str| {
+        format!(
+            "gdalwarp -r bilinear {from}-t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {figure} +units=m +no_defs' {file} out.tif, where \
+             LATITUDE and LONGITUDE are the middle of the journey (gdalinfo {file} prints those of the map's corners); then give its places as \
+             longitude and latitude"
+        )
+    };
+    match (map.ellipsoid(), projected_code(&map.coordinate_system)) {
+        (_, Some(_)) => stereographic("+datum=WGS84", ""),
+        (Some(figure), None) => stereographic(&figure.proj(), ""),
+        (None, None) => stereographic("+R=RADIUS_M", "-s_srs 'PROJ STRING OF THE MAP' "),
+    }
 }
 
 /// The corners of a DEM's outermost posts.

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use super::{
-    cells::{borders_of, cells_at, cells_on, disagreement, has_cell},
+    cells::{borders_of, cells_at, cells_on, has_cell},
     keep_out::{name_of, of_raster},
     line::{Line, Stretch},
+    same_map::{self, SameMap},
 };
 use crate::{
     quantity::MapPoint,
@@ -21,6 +22,8 @@ const WHAT: &str = "friction raster";
 pub struct FrictionRaster {
     path: PathBuf,
     raster: Dem,
+    /// Why its map could not be compared with the terrain's.
+    not_compared: Option<String>,
 }
 
 /// Reads a raster of friction coefficients (`GeoTIFF`, ESRI ASCII grid) on the terrain's map; `coordinates` is the terrain's
@@ -32,9 +35,13 @@ pub struct FrictionRaster {
 pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>) -> Result<FrictionRaster, TerrainError> {
     let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
     let raster = read_dem(path).map_err(|error| failed(of_raster(error)))?;
-    if let Some(difference) = coordinates.and_then(|terrain| disagreement(&raster.georeference().coordinate_system, terrain)) {
-        return Err(failed(format!("the raster lies on another map ({difference}); warp it with: gdalwarp -r near -t_srs ..")));
-    }
+    let same = same_map::of_raster(&raster.georeference().coordinate_system, coordinates).map_err(|difference| {
+        failed(format!("the raster lies on another map ({difference}); {}", same_map::mend_raster(coordinates)))
+    })?;
+    let not_compared = match same {
+        SameMap::Agreed => None,
+        SameMap::NotCompared(reason) => Some(format!("{WHAT} '{}': {reason}", name_of(path))),
+    };
     let negative = raster.elevations().position(|value| value.is_some_and(|value| value < 0.0));
     if let Some((index, value)) = negative.and_then(|index| Some((index, raster.elevations().nth(index)??))) {
         return Err(failed(format!(
@@ -44,7 +51,7 @@ pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>)
             index % raster.cols()
         )));
     }
-    Ok(FrictionRaster { path: path.to_path_buf(), raster })
+    Ok(FrictionRaster { path: path.to_path_buf(), raster, not_compared })
 }
 
 impl FrictionRaster {
@@ -52,6 +59,11 @@ impl FrictionRaster {
     /// the raster.
     pub(crate) fn borders(&self, visit: &mut dyn FnMut(MapBounds)) {
         borders_of(&self.raster, &|value: Option<f64>| value, visit);
+    }
+
+    /// The warning if its map could not be compared with the terrain's.
+    pub(crate) fn not_compared(&self) -> Option<&str> {
+        self.not_compared.as_deref()
     }
 
     /// The warning if it has no data along `on`, such as "the transect".

@@ -4,27 +4,33 @@ use geojson::{Geometry, GeometryValue};
 use serde_json::Value;
 
 use super::polygons::Polygon;
+use super::same_map::{SameMap, mend_zones, of_geojson};
 use crate::{
     quantity::MapPoint,
     terrain::{CoordinateSystem, MapBounds},
 };
 
-/// How to convert zones in degrees to the terrain's map.
-const MEND_DEGREES: &str = "bring the zones onto the terrain's map with: ogr2ogr -t_srs MAP.prj out.geojson in.geojson";
-
-/// The polygons of a file, which holds a geometry, a feature or a collection of either.
+/// The polygons of a file, which holds a geometry, a feature or a collection of either, and how its map compares with the terrain's.
 ///
 /// # Errors
 /// One sentence: which feature (from 1), what is wrong, how to correct it.
-pub(super) fn polygons(bytes: &[u8], terrain: Option<&CoordinateSystem>, bounds: MapBounds) -> Result<Vec<Polygon>, String> {
+pub(super) fn polygons(
+    bytes: &[u8],
+    terrain: Option<&CoordinateSystem>,
+    bounds: MapBounds,
+) -> Result<(Vec<Polygon>, SameMap), String> {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let root: Value = serde_json::from_slice(bytes).map_err(|error| {
         format!(
             "this is not JSON ({error}), expected GeoJSON with polygons; export them with: ogr2ogr -f GeoJSON out.geojson in.shp"
         )
     })?;
-    if let Some(crs) = root.get("crs").filter(|crs| !crs.is_null()) {
-        check_crs(crs, terrain)?;
+    // A collection, its features and their geometries may each state it.
+    let mut same = SameMap::Agreed;
+    for crs in stated_systems(&root) {
+        if let not_compared @ SameMap::NotCompared(_) = of_geojson(crs, terrain)? {
+            same = not_compared;
+        }
     }
     let mut found = Vec::new();
     match root.get("type").and_then(Value::as_str) {
@@ -46,8 +52,18 @@ pub(super) fn polygons(bytes: &[u8], terrain: Option<&CoordinateSystem>, bounds:
     if found.is_empty() {
         return Err("found no polygon, expected at least one; leave out keep_out if nothing is kept out".to_owned());
     }
-    check_place(&found, bounds)?;
-    Ok(found)
+    check_place(&found, bounds, terrain)?;
+    Ok((found, same))
+}
+
+/// The `crs` members of a collection, of its features and of their geometries; equal neighbours once.
+fn stated_systems(root: &Value) -> Vec<&Value> {
+    let members = |name: &str| root.get(name).and_then(Value::as_array).into_iter().flatten();
+    let parts = members("features").chain(members("geometries")).chain([root]);
+    let mut found: Vec<&Value> =
+        parts.flat_map(|part| [part.get("crs"), part.pointer("/geometry/crs")]).flatten().filter(|crs| !crs.is_null()).collect();
+    found.dedup();
+    found
 }
 
 /// The polygons of a feature.
@@ -129,26 +145,8 @@ fn has_area(ring: &[MapPoint]) -> bool {
     ring.iter().any(|point| edge.perp(&(point - first)) != 0.0)
 }
 
-/// Refuses a `crs` member (`GeoJSON` 2008) that means degrees, or has another code than the terrain.
-fn check_crs(crs: &Value, terrain: Option<&CoordinateSystem>) -> Result<(), String> {
-    let name = crs.pointer("/properties/name").and_then(Value::as_str).unwrap_or_default();
-    let upper = name.to_uppercase();
-    let code = upper.rsplit(':').next().and_then(|code| code.parse::<u16>().ok()).filter(|_| upper.contains("EPSG"));
-    if upper.contains("CRS84") || code.is_some_and(|code| (4001..=4999).contains(&code)) {
-        return Err(format!("its crs is {name}, in degrees, expected the terrain's map in metres; {MEND_DEGREES}"));
-    }
-    // 3072 is the ProjectedCRSGeoKey of the terrain; 32767 means user-defined.
-    let own = terrain.and_then(|system| system.key_directory.chunks_exact(4).skip(1).find(|key| key[0] == 3072 && key[1] == 0));
-    match (code, own.map(|key| key[3]).filter(|code| *code != 32767)) {
-        (Some(found), Some(expected)) if found != expected => {
-            Err(format!("its crs is EPSG:{found}, expected EPSG:{expected}, that of the terrain; {MEND_DEGREES}"))
-        }
-        _ => Ok(()),
-    }
-}
-
 /// Refuses zones that all lie off the terrain: they would have no effect, and probably have another map or are in degrees.
-fn check_place(polygons: &[Polygon], terrain: MapBounds) -> Result<(), String> {
+fn check_place(polygons: &[Polygon], terrain: MapBounds, system: Option<&CoordinateSystem>) -> Result<(), String> {
     let meets = |zone: MapBounds| {
         zone.min.x <= terrain.max.x && terrain.min.x <= zone.max.x && zone.min.y <= terrain.max.y && terrain.min.y <= zone.max.y
     };
@@ -160,7 +158,8 @@ fn check_place(polygons: &[Polygon], terrain: MapBounds) -> Result<(), String> {
     else {
         return Ok(());
     };
-    let degrees = all.min.x >= -180.0 && all.max.x <= 360.0 && all.min.y >= -90.0 && all.max.y <= 90.0;
+    // Beside a small local map the numbers of both are small, and say nothing.
+    let degrees = all.may_be_degrees() && !terrain.may_be_degrees();
     let why = if degrees { "; they look like degrees" } else { "" };
-    Err(format!("all zones lie off the terrain{why}: they have {all}, expected some of {terrain}; {MEND_DEGREES}"))
+    Err(format!("all zones lie off the terrain{why}: they have {all}, expected some of {terrain}; {}", mend_zones(system, degrees)))
 }

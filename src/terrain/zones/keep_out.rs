@@ -6,10 +6,11 @@ use std::{
 };
 
 use super::{
-    cells::{borders_of, cell_bounds, cells_at, cells_on, disagreement, has_cell, is_on},
+    cells::{borders_of, cell_bounds, cells_at, cells_on, has_cell, is_on},
     geojson::polygons,
     line::{Line, Stretch, covered},
     polygons::Polygon,
+    same_map::{self, SameMap},
 };
 use crate::{
     quantity::MapPoint,
@@ -27,6 +28,8 @@ const LARGEST_BYTES: u64 = 1 << 30;
 pub struct KeepOut {
     path: PathBuf,
     zones: Zones,
+    /// Why its map could not be compared with the terrain's.
+    not_compared: Option<String>,
 }
 
 #[derive(Clone, Debug)]
@@ -48,21 +51,26 @@ enum Zones {
 /// has coordinates in degrees or on another map, or lies wholly off the terrain.
 pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds: MapBounds) -> Result<KeepOut, TerrainError> {
     let failed = |problem: String| TerrainError::Overlay { what: WHAT, path: path.to_path_buf(), problem };
-    let zones = if looks_like_json(path).map_err(|error| failed(unread(&error)))? {
+    let (zones, same) = if looks_like_json(path).map_err(|error| failed(unread(&error)))? {
         let size = fs::metadata(path).map_err(|error| failed(unread(&error)))?.len();
         if size > LARGEST_BYTES {
             return Err(failed(format!("the file has {size} bytes, expected at most {LARGEST_BYTES}: simplify the polygons")));
         }
         let bytes = fs::read(path).map_err(|error| failed(unread(&error)))?;
-        Zones::Polygons(polygons(&bytes, coordinates, bounds).map_err(failed)?)
+        let (polygons, same) = polygons(&bytes, coordinates, bounds).map_err(failed)?;
+        (Zones::Polygons(polygons), same)
     } else {
         let mask = read_dem(path).map_err(|error| failed(of_raster(error)))?;
-        if let Some(difference) = coordinates.and_then(|terrain| disagreement(&mask.georeference().coordinate_system, terrain)) {
-            return Err(failed(format!("the mask lies on another map ({difference}); warp it with: gdalwarp -r near -t_srs ..")));
-        }
-        Zones::Mask(Box::new(mask))
+        let same = same_map::of_raster(&mask.georeference().coordinate_system, coordinates).map_err(|difference| {
+            failed(format!("the mask lies on another map ({difference}); {}", same_map::mend_raster(coordinates)))
+        })?;
+        (Zones::Mask(Box::new(mask)), same)
     };
-    Ok(KeepOut { path: path.to_path_buf(), zones })
+    let not_compared = match same {
+        SameMap::Agreed => None,
+        SameMap::NotCompared(reason) => Some(format!("{WHAT} '{}': {reason}", name_of(path))),
+    };
+    Ok(KeepOut { path: path.to_path_buf(), zones, not_compared })
 }
 
 impl KeepOut {
@@ -121,6 +129,11 @@ impl KeepOut {
         let stretches: Vec<Stretch<bool>> = covered(&line, parts);
         line.lay(profile, &stretches, |profile, segment, inside| profile.facets[segment].keep_out |= inside);
         Ok(stretches.iter().any(|stretch| stretch.value))
+    }
+
+    /// The warning if its map could not be compared with the terrain's.
+    pub(crate) fn not_compared(&self) -> Option<&str> {
+        self.not_compared.as_deref()
     }
 
     /// The warning if no zone meets `on`, such as "the transect".

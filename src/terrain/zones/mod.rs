@@ -16,6 +16,7 @@ mod geojson;
 mod keep_out;
 mod line;
 mod polygons;
+mod same_map;
 
 pub use friction::{FrictionRaster, read_friction_raster};
 pub use keep_out::{KeepOut, read_keep_out};
