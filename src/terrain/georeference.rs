@@ -268,28 +268,22 @@ impl DegreesMend {
 impl fmt::Display for DegreesMend {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { figure, stated, body } = self;
-        let (known, source) = match (figure, body) {
+        let (known, source, why) = match (figure, body) {
             (Some(figure), Some((name, radius_m))) if !figure.may_be_of(Some(name.as_str()), *radius_m) => {
-                write!(
-                    formatter,
-                    "the following command, which takes the radius of {name} ({radius_m} m) in place of the file's ({} m): ",
-                    figure.semi_major_m
-                )?;
-                (format!("+R={radius_m}"), true)
+                let why = format!("; {radius_m} m is the radius of {name}, while the file claims {}", figure.described());
+                (format!("+R={radius_m}"), true, why)
             }
-            (Some(figure), _) => (figure.proj(), !stated),
-            (None, Some((_, radius_m))) => (format!("+R={radius_m}"), true),
-            (None, None) => ("+R=RADIUS_M".to_owned(), true),
+            (Some(figure), _) => (figure.proj(), !stated, String::new()),
+            (None, Some((_, radius_m))) => (format!("+R={radius_m}"), true, String::new()),
+            (None, None) => ("+R=RADIUS_M".to_owned(), true, ", and RADIUS_M is the radius of the body".to_owned()),
         };
-        formatter.write_str("gdalwarp -r bilinear ")?;
-        if source {
-            write!(formatter, "-s_srs '+proj=longlat {known} +no_defs' ")?;
-        }
+        let source = if source { format!("-s_srs '+proj=longlat {known} +no_defs' ") } else { String::new() };
         write!(
             formatter,
-            "-t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {known} +units=m +no_defs' in.tif out.tif, where LATITUDE and LONGITUDE are \
-             the middle of the journey{}; then give its places as longitude and latitude (scenario: start_lonlat_deg and goal_lonlat_deg)",
-            if known.contains("RADIUS_M") { " and RADIUS_M is the radius of the body" } else { "" }
+            "gdalwarp -r bilinear {source}-t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {known} +units=m +no_defs' in.tif out.tif, where \
+             LATITUDE and LONGITUDE are the middle of the journey{why} (a map over more than some degrees needs -te -REACH -REACH REACH REACH as \
+             well, in metres about that place); then give its places as longitude and latitude (scenario: \
+             start_lonlat_deg and goal_lonlat_deg)"
         )
     }
 }

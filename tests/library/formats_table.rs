@@ -60,7 +60,13 @@ fn verdict(path: &Path) -> String {
         Ok(dem) => {
             let (low_m, high_m) = dem.elevation_range_m();
             let map = dem.georeference();
-            let system = map.coordinate_system.description.as_deref().unwrap_or("none stated");
+            let system = match map.projection() {
+                Ok(projection) => {
+                    let code = projection.code().map_or_else(String::new, |code| format!(" ({code})"));
+                    format!("{}{code}", projection.name())
+                }
+                Err(_) => map.coordinate_system.description.clone().unwrap_or_else(|| "none stated".to_owned()),
+            };
             format!(
                 "read: {} rows, {} columns, {low_m} to {high_m} m; north-west post ({}, {}) m, spacing {} by {} m; map: {system}",
                 dem.rows(),

@@ -246,3 +246,192 @@ pub(super) fn feet(text: &str) -> Option<u16> {
     let survey = words.any(|word| matches!(word, "ftus" | "usft" | "us" | "survey"));
     named.then_some(if survey { 9003 } else { 9002 })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Keys with numbers, and texts (key, text).
+    fn keys(numbers: &[(u16, u16)], texts: &[(u16, &str)], doubles: &[(u16, f64)]) -> CoordinateSystem {
+        let mut system = CoordinateSystem::default();
+        let mut entries: Vec<[u16; 4]> = numbers.iter().map(|(key, value)| [*key, 0, 1, *value]).collect();
+        for (key, text) in texts {
+            let offset = u16::try_from(system.ascii_parameters.len()).unwrap();
+            entries.push([*key, 34737, u16::try_from(text.len() + 1).unwrap(), offset]);
+            system.ascii_parameters += &format!("{text}|");
+        }
+        for (key, value) in doubles {
+            entries.push([*key, 34736, 1, u16::try_from(system.double_parameters.len()).unwrap()]);
+            system.double_parameters.push(*value);
+        }
+        entries.sort_unstable();
+        system.key_directory = vec![1, 1, 0, u16::try_from(entries.len()).unwrap()];
+        system.key_directory.extend(entries.into_iter().flatten());
+        system
+    }
+
+    const UTM: [(u16, u16); 2] = [(1024, 1), (3072, 32614)];
+
+    /// Each row: further keys, further texts, and the words of the refusal; no words: read. GDAL 3.6 (gdalinfo, "Unit Type") says the
+    /// same unit of every row with a code of EPSG.
+    #[test]
+    fn the_unit_of_elevations_follows_from_key_code_and_citation() {
+        let us = "A*0.3048006";
+        for (numbers, texts, words) in [
+            (&[(4096, 6360)][..], &[][..], &["US survey feet", us, "-a_srs EPSG:32614"][..]),
+            (&[(4096, 8228)], &[], &["elevations in feet", "A*0.3048'"]),
+            (&[(4096, 5702)], &[], &["US survey feet", us]),
+            (&[(4096, 5754)], &[], &["British feet (1936)", "A*0.3048007491'"]),
+            (&[(4096, 6131)], &[], &["elevations in feet"]),
+            (&[(4096, 5703)], &[], &[]),
+            (&[(4096, 5773), (4099, 9001)], &[], &[]),
+            (&[(4099, 9001)], &[], &[]),
+            (&[(4099, 9002)], &[], &["elevations in feet", "A*0.3048'"]),
+            (&[(4099, 9036)], &[], &["elevations in kilometres", "A*1000'"]),
+            (&[(4099, 1025)], &[], &["elevations in millimetres", "A*0.001'"]),
+            (&[(4099, 9005)], &[], &["Clarke's feet"]),
+            (&[(4099, 9999)], &[], &["EPSG:9999", "not known", "METRES_PER_UNIT"]),
+            (&[(4099, 32767)], &[], &["user-defined", "METRES_PER_UNIT"]),
+            // Unknown, user-defined and old codes (GeoTIFF 1.0: the unit stands beside them) imply no unit.
+            (&[(4096, 9999)], &[], &["EPSG:9999 (key 4096)", "without a unit", "-a_srs EPSG:32614"]),
+            (&[(4096, 5103)], &[], &["EPSG:5103 (key 4096)", "without a unit"]),
+            (&[(4096, 5103), (4099, 9001)], &[], &[]),
+            (&[(4096, 32767)], &[], &["user-defined reference system", "without a unit"]),
+            (&[(4096, 32767)], &[(4097, "site datum (ft)")], &["elevations in feet", "site datum (ft)"]),
+            (&[(4096, 32767), (4099, 9001)], &[(4097, "site datum")], &[]),
+            // Downwards.
+            (&[(4096, 5715)], &[], &["depths", "A*-1'"]),
+            (&[(4096, 6358)], &[], &["depths", "EPSG:6358"]),
+            // Twice.
+            (&[(4096, 6360), (4099, 9001)], &[], &["metres (key 4099)", "US survey feet", "6360"]),
+            (&[(4096, 5703), (4099, 9003)], &[], &["US survey feet (key 4099)", "metres by the code EPSG:5703"]),
+            (&[(4096, 6360), (4099, 9003)], &[], &["elevations in US survey feet", us]),
+            (&[(4099, 9001)], &[(4097, "NAVD88 height (ftUS)")], &["metres (key 4099)", "NAVD88 height (ftUS)"]),
+            // By citation alone: of the heights, not of the map.
+            (&[], &[(1026, "WGS 84 / UTM zone 14N + NAVD88 height (ftUS)")], &["elevations in US survey feet", us]),
+            (&[(4096, 6360)], &[(1026, "WGS 84 / UTM zone 14N + NAVD88 height (ftUS)")], &["elevations in US survey feet"]),
+            (&[], &[(1026, "WGS 84 / UTM zone 14N + NAVD88 height")], &[]),
+        ] {
+            let system = keys(&[&UTM[..], numbers].concat(), texts, &[]);
+            told(&system, words, &format!("{numbers:?} {texts:?}"));
+        }
+        // Over degrees as well, and before them: the command that mends degrees drops the unit of the heights.
+        told(&keys(&[(1024, 2), (2048, 4326), (4096, 6360)], &[], &[]), &["elevations in US survey feet"], "degrees");
+    }
+
+    fn told(system: &CoordinateSystem, words: &[&str], row: &str) {
+        match (check(system), words) {
+            (Ok(()), []) => {}
+            (Ok(()), _) => panic!("{row}: read, expected a refusal with {words:?}"),
+            (Err(error), []) => panic!("{row}: {error}"),
+            (Err(error), _) => {
+                let message = error.to_string();
+                assert!(words.iter().all(|word| message.contains(word)) && message.contains("gdal"), "{row}: {message}\n{words:?}");
+            }
+        }
+    }
+
+    /// Each row: keys, texts, numbers, and the words of the refusal; no words: read.
+    #[test]
+    fn what_is_stated_of_the_map_and_not_known_is_refused() {
+        let web = "ESRI PE String = PROJCS[\"WGS_1984_Web_Mercator_Auxiliary_Sphere\",GEOGCS[\"GCS_WGS_1984\",DATUM[\"D_WGS_1984\",\
+                   SPHEROID[\"WGS_1984\",6378137.0,298.257223563]],PRIMEM[\"Greenwich\",0.0],UNIT[\"Degree\",0.0174532925199433]],\
+                   PROJECTION[\"Mercator_Auxiliary_Sphere\"],PARAMETER[\"Standard_Parallel_1\",0.0],\
+                   PARAMETER[\"Auxiliary_Sphere_Type\",0.0],UNIT[\"Meter\",1.0]]";
+        let degrees = "ESRI PE String = GEOGCS[\"g\",DATUM[\"d\",SPHEROID[\"s\",1737400,0]],PRIMEM[\"p\",0],UNIT[\"Degree\",0.0174532925199433]]";
+        let moon = [(2057, 1_737_400.0), (2058, 1_737_400.0)];
+        for (numbers, texts, doubles, words) in [
+            (&[][..], &[][..], &[][..], &[][..]),
+            (&[(1024, 1)], &[], &[], &[]),
+            (&[(1024, 32767)], &[(1026, "site")], &[], &[]),
+            (&[(3076, 9001)], &[(1026, "Mars local grid")], &[], &[]),
+            (&[(1024, 7)], &[], &[], &["kind 7 (key 1024)"]),
+            (&[(1024, 2)], &[], &[], &["degrees"]),
+            (&[(1024, 3)], &[], &[], &["geocentric"]),
+            // Degrees without a kind of map.
+            (&[(2048, 4326)], &[], &[], &["degrees"]),
+            (&[(1024, 32767)], &[(2049, degrees)], &[], &["degrees"]),
+            (&[(1024, 1), (3072, 4326)], &[], &[], &["EPSG:4326 (key 3072)", "longitude and latitude"]),
+            (&[(1024, 1), (3072, 4326), (3076, 9001)], &[], &[], &["EPSG:4326 (key 3072)"]),
+            (&[(1024, 1), (3072, 6349)], &[], &[], &["EPSG:6349", "heights in units of its own"]),
+            (&[(1024, 1), (3072, 8720), (3076, 9001)], &[], &[], &["EPSG:8720", "heights in units of its own"]),
+            // Units of the map.
+            (&[(1024, 1), (3072, 2278)], &[], &[], &["EPSG:2278", "without a unit (key 3076)"]),
+            (&[(1024, 1), (3072, 32600)], &[], &[], &["EPSG:32600", "without a unit (key 3076)"]),
+            (&[(1024, 1), (3072, 27700)], &[], &[], &[]),
+            (&[(1024, 1), (3072, 32614), (3076, 9003)], &[], &[], &["US survey feet", "gdalwarp"]),
+            (&[(1024, 1), (3076, 9999)], &[], &[], &["EPSG:9999", "not known"]),
+            (&[(1024, 1), (3076, 32767)], &[], &[], &["not stated"]),
+            (&[(1024, 1), (3076, 32767)], &[], &[(3077, 0.3048)], &["0.3048 m"]),
+            (&[(1024, 1), (3076, 32767)], &[], &[(3077, 1.0)], &[]),
+            (&[(1024, 1)], &[(3073, "NAD83 / Texas South Central (ftUS)")], &[], &["map coordinates in US survey feet"]),
+            (&[(1024, 1)], &[(3073, "PCS Name = site|LUnits = Intl_Foot|")], &[], &["Intl_Foot"]),
+            (&[(1024, 1)], &[(3073, "PCS Name = site|LUnits = US_Survey_Yards|")], &[], &["US_Survey_Yards"]),
+            (&[(1024, 1)], &[(3073, "PCS Name = site|LUnits = Meter|")], &[], &[]),
+            (&[(1024, 1), (3076, 9001)], &[(1026, "NAD83 / Texas (ftUS)")], &[], &["metres (key 3076)", "US survey feet"]),
+            (&[(3076, 9002)], &[(1026, "site")], &[], &["map coordinates in feet", "-a_ullr"]),
+            // Said twice.
+            (&[(1024, 1), (3072, 32614), (2048, 4326)], &[], &[(2057, 6_378_137.0)], &[]),
+            (&[(1024, 1), (3072, 32614)], &[], &moon, &["32614 (key 3072)", "1737400 m (key 2057)"]),
+            (&[(1024, 1), (3072, 32767), (2048, 4326)], &[], &moon, &["4326 (key 2048)", "1737400"]),
+            (&[(1024, 1), (3072, 32633)], &[(1026, "WGS 84 / UTM zone 34N")], &[], &["UTM zone 34N", "+lon_0=15"]),
+            (&[(1024, 1), (3072, 32633)], &[(3073, "WGS_1984_UTM_Zone_33S")], &[], &["UTM zone 33S"]),
+            (&[(1024, 1), (3072, 32633)], &[(1026, "WGS 84 / UTM zone 33N")], &[], &[]),
+            (&[(1024, 1), (3072, 32633)], &[(1026, "UTM 33 N, EPSG:32634")], &[], &["EPSG:32634"]),
+            (&[(1024, 1), (3072, 3031)], &[(1026, "WGS 84 / UTM zone 33N")], &[], &["UTM zone 33N", "+proj=stere"]),
+            (&[(1024, 1), (3072, 26914)], &[(1026, "NAD83 / UTM zone 14N")], &[], &[]),
+            (&[(1024, 1), (3072, 32633)], &[(3073, web)], &[], &["EPSG:32633", "ESRI PE String"]),
+            (&[(1024, 1), (3072, 3857)], &[(3073, web)], &[], &[]),
+            (
+                &[(1024, 32767), (3072, 32767), (3075, 7), (2048, 4326)],
+                &[(3073, web)],
+                &[(2057, 6_378_137.0), (2059, 298.257_223_563)],
+                &[],
+            ),
+            (
+                &[(1024, 1), (3072, 32633), (3075, 1)],
+                &[],
+                &[(3080, 21.0), (3092, 0.9996), (3082, 5e5)],
+                &["EPSG:32633", "keys 3075 to 3095"],
+            ),
+            (&[(1024, 1), (3072, 32633), (3075, 1)], &[], &[(3080, 15.0), (3092, 0.9996), (3082, 5e5)], &[]),
+            (
+                &[(1024, 1), (3072, 32767), (3074, 16033), (3075, 1), (2056, 7030)],
+                &[],
+                &[(3080, 21.0), (3092, 0.9996), (3082, 5e5)],
+                &["key 3074"],
+            ),
+        ] {
+            told(&keys(numbers, texts, doubles), words, &format!("{numbers:?} {texts:?} {doubles:?}"));
+        }
+    }
+
+    #[test]
+    fn kinds_of_posts_that_are_not_known_are_refused() {
+        for (number, read) in [(1, true), (2, true), (0, false), (3, false), (32767, false)] {
+            let found = check(&keys(&[(1024, 1), (1025, number)], &[], &[]));
+            assert_eq!(found.is_ok(), read, "{number}");
+            assert!(found.err().is_none_or(|error| error.to_string().contains("AREA_OR_POINT")));
+        }
+    }
+
+    /// The names of bodies beside radii: warnings only, since the numbers are what counts.
+    #[test]
+    fn a_citation_that_names_another_body_is_doubted() {
+        for (text, radius_m, doubted) in [
+            ("Moon 2000 south polar", 1_737_400.0, false),
+            ("Moon 2000 south polar", 6_378_137.0, true),
+            ("Mars sinusoidal", 3_396_190.0, false),
+            ("Mars sinusoidal", 1_737_400.0, true),
+            ("GCS Name = WGS 84|Datum = WGS 84|", 1_737_400.0, true),
+            ("GCS Name = unknown|", 1_737_400.0, false),
+            ("Phobos", 13_000.0, false),
+            ("Eros", 5_500.0, false),
+            ("moonstone quarry", 6_378_137.0, false),
+        ] {
+            let key = if text.starts_with("GCS") { 2049 } else { 1026 };
+            let system = keys(&[(1024, 1)], &[(key, text)], &[(2057, radius_m), (2058, radius_m)]);
+            assert_eq!(crate::terrain::projection::doubts(&system).len(), usize::from(doubted), "{text} {radius_m}");
+        }
+    }
+}

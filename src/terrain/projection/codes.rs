@@ -10,12 +10,17 @@ pub(super) const KNOWN_CODES: &str = "EPSG:32601 to 32660 and 32701 to 32760 (UT
      5041, 5042, 32661, 32761, 3035, 3857, Albers maps 3005, 3338, 3577, 5070, 6350, 9473 and ESRI:102001, 102003, 102008, or the spherical maps IAU_2015:BB10, BB15, BB20, BB25, BB30, BB35, BB60, BB65, BB70, BB75, BB80 where BB is \
      199 (Mercury), 299 (Venus), 301 (Moon) or 499 (Mars)";
 
+/// The radius of the sphere of a body of the IAU, m, by its number.
+pub(in crate::terrain) fn iau_radius_m(body: u32) -> Option<f64> {
+    IAU_SPHERES.into_iter().find(|(known, _)| *known == body).map(|(_, radius_m)| radius_m)
+}
+
 /// What a code of the IAU (2015) means: the maps on spheres, with latitudes that are planetocentric and planetographic at once.
 ///
 /// The code is 100 times the body's NAIF number, plus the map's number (<https://github.com/USGS-Astrogeology/GDAL_scripts>, `IAU_2015` in
 /// PROJ since version 9.0).
 pub(super) fn iau(code: u32) -> Option<Definition> {
-    let (_, radius_m) = IAU_SPHERES.into_iter().find(|(body, _)| *body == code / 100)?;
+    let (_, radius_m) = (code / 100, iau_radius_m(code / 100)?);
     let about =
         |method, latitude_deg, longitude_deg| Definition::about(method, latitude_deg, longitude_deg, Ellipsoid::sphere(radius_m));
     let number = code % 100;

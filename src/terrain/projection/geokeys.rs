@@ -304,7 +304,7 @@ fn method(number: u16) -> Option<Method> {
 }
 
 /// The number of a method in key 3075.
-const fn method_number(method: Method) -> u16 {
+pub(super) const fn method_number(method: Method) -> u16 {
     match method {
         Method::TransverseMercator => 1,
         Method::Mercator => 7,

@@ -28,6 +28,7 @@ use std::fmt;
 use nalgebra::Vector3;
 use proj4rs::{Proj, transform::transform};
 
+pub(super) use self::codes::iau_radius_m;
 pub use self::crs_error::CrsError;
 pub use self::definition::{Definition, Ellipsoid, Method};
 pub(super) use self::epsg_units::{Vertical, is_compound, is_geodetic, is_map_in_metres, length_unit, vertical};

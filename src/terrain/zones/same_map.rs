@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use super::cells::disagreement;
-use crate::terrain::projection::{is_geodetic, projected_code, states_a_map};
+use crate::terrain::projection::{iau_radius_m, is_geodetic, projected_code, states_a_map};
 use crate::terrain::{CoordinateSystem, Ellipsoid, MapProjection, NoProjection};
 
 /// The command that brings zones onto the terrain's map.
@@ -42,14 +42,24 @@ pub(super) fn of_geojson(crs: &Value, terrain: Option<&CoordinateSystem>) -> Res
     let code = code_of(&name);
     let mend = || mend_zones(terrain, false);
     let stated = code.clone().unwrap_or_else(|| name.clone());
+    let own = terrain.map_or(Err(NoProjection::Local), MapProjection::of);
     if code.as_deref().is_some_and(is_in_degrees) {
+        let figure = code.as_deref().and_then(iau_sphere);
+        if let (Some(figure), Ok(own)) = (figure, &own)
+            && of_other_body(figure, own)
+        {
+            return Err(format!(
+                "its crs is {stated}, in degrees of another body than the terrain's, {}, expected the terrain's map in metres; draw the zones \
+                 on it",
+                shown(own)
+            ));
+        }
         let of_earth = code.as_deref().is_some_and(|code| code.starts_with("OGC:") || code.starts_with("EPSG:"));
         return Err(format!(
             "its crs is {stated}, in degrees, expected the terrain's map in metres; {}",
             mend_zones(terrain, of_earth)
         ));
     }
-    let own = terrain.map_or(Err(NoProjection::Local), MapProjection::of);
     let own_code = terrain.and_then(projected_code).map(|code| format!("EPSG:{code}"));
     // The same code of a map that is not supported is still the same.
     if code.is_some() && code == own_code {
@@ -58,6 +68,10 @@ pub(super) fn of_geojson(crs: &Value, terrain: Option<&CoordinateSystem>) -> Res
     let theirs = code.as_deref().unwrap_or(&name).parse::<MapProjection>();
     match (theirs, own) {
         (Ok(theirs), Ok(own)) if own.is_same_map(&theirs) => Ok(SameMap::Agreed),
+        (Ok(theirs), Ok(own)) if of_other_body(theirs.definition().ellipsoid, &own) => Err(format!(
+            "its crs is {stated}, of another body than the terrain's, {}, expected the terrain's map; draw the zones on it, or {MEND_LABEL}",
+            shown(&own)
+        )),
         (Ok(_), Ok(own)) => Err(format!("its crs is {stated}, expected that of the terrain, {}; {}", shown(&own), mend())),
         (theirs, Err(NoProjection::Local)) => {
             let known = if theirs.is_ok() { "" } else { " (which is not known here)" };
@@ -79,6 +93,11 @@ pub(super) fn of_geojson(crs: &Value, terrain: Option<&CoordinateSystem>) -> Res
             mend()
         )),
     }
+}
+
+/// Whether a figure is of another body than a map: GDAL converts nothing between two bodies.
+fn of_other_body(figure: Ellipsoid, own: &MapProjection) -> bool {
+    !figure.may_be_of(None, own.definition().ellipsoid.semi_major_m)
 }
 
 /// A map by its code, or by its proj string.
@@ -142,6 +161,12 @@ pub(super) fn mend_raster(terrain: Option<&CoordinateSystem>) -> String {
     let own = terrain.and_then(|system| MapProjection::of(system).ok());
     let target = own.map_or_else(|| "'PROJ STRING OF THE TERRAIN'".to_owned(), |map| format!("'{}'", map.proj_string()));
     format!("warp it with: gdalwarp -r near -t_srs {target} in.tif out.tif")
+}
+
+/// The sphere of a body that a code of the IAU is of, if it is known here.
+fn iau_sphere(code: &str) -> Option<Ellipsoid> {
+    let number: u32 = code.strip_prefix("IAU_2015:")?.parse().ok()?;
+    iau_radius_m(number / 100).map(Ellipsoid::sphere)
 }
 
 /// Compares the map of a raster with the terrain's; a raster that states none is on the terrain's map.

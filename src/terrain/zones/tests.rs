@@ -368,3 +368,106 @@ fn rasters_that_end_early_or_lie_on_another_map_are_refused() {
     let (_folder, path) = grid_file(&negative);
     assert!(read_friction_raster(&path, None).unwrap_err().to_string().contains("row 0, column 1"));
 }
+
+/// Each row: the `crs` member, the terrain's map, and what follows: read, a word of the refusal, or a warning. The codes are those of
+/// `projinfo`: 30130 and 30135 are the polar maps of the Moon, nn00, nn01 and nn02 degrees, 499nn Mars.
+#[test]
+fn the_reference_system_of_zones_is_compared_with_the_terrains() {
+    enum Expected {
+        Read,
+        Refused(&'static str),
+        Warned(&'static str),
+    }
+    use crate::terrain::{CoordinateSystem, MapProjection};
+    use Expected::{Read, Refused, Warned};
+    let moon = "IAU_2015:30135";
+    let named = |name: &str| format!(r#"{{"type":"name","properties":{{"name":"{name}"}}}}"#);
+    let local = "";
+    let unsupported = "robinson";
+    let system = |text: &str| match text {
+        "" => CoordinateSystem::default(),
+        "robinson" => {
+            CoordinateSystem { key_directory: vec![1, 1, 0, 2, 1024, 0, 1, 1, 3075, 0, 1, 23], ..CoordinateSystem::default() }
+        }
+        "EPSG:27700" => {
+            CoordinateSystem { key_directory: vec![1, 1, 0, 2, 1024, 0, 1, 1, 3072, 0, 1, 27700], ..CoordinateSystem::default() }
+        }
+        text => text.parse::<MapProjection>().unwrap().coordinate_system(),
+    };
+    for (crs, terrain, expected) in [
+        (named("urn:ogc:def:crs:IAU:2015:30135"), moon, Read),
+        (named("IAU_2015:30135"), moon, Read),
+        (named("iau_2015:30135"), moon, Read),
+        (named("http://www.opengis.net/def/crs/IAU/2015/30135"), moon, Read),
+        (named("+proj=stere +lat_0=-90 +lon_0=0 +R=1737400"), moon, Read),
+        (named("urn:ogc:def:crs:IAU:2015:30130"), moon, Refused("IAU_2015:30130")),
+        (named("urn:ogc:def:crs:IAU:2015:30110"), moon, Refused("IAU_2015:30135")),
+        (named("urn:ogc:def:crs:IAU:2015:30100"), moon, Refused("in degrees")),
+        (named("urn:ogc:def:crs:IAU:2015:30101"), moon, Refused("in degrees")),
+        (named("urn:ogc:def:crs:IAU:2015:30102"), local, Refused("in degrees")),
+        (named("urn:ogc:def:crs:IAU:2015:49900"), moon, Refused("another body")),
+        (named("urn:ogc:def:crs:IAU:2015:49935"), moon, Refused("another body")),
+        (named("EPSG:3857"), moon, Refused("another body")),
+        (named("urn:ogc:def:crs:EPSG::3857"), "EPSG:32633", Refused("ogr2ogr -t_srs '+proj=tmerc")),
+        (named("urn:ogc:def:crs:OGC:1.3:CRS84"), moon, Refused("-s_srs '+proj=longlat +R=1737400")),
+        (named("urn:ogc:def:crs:OGC:1.3:CRS84"), "EPSG:32633", Refused("ogr2ogr -t_srs")),
+        (named("OGC:CRS84"), local, Refused("in degrees")),
+        (named("EPSG:4326"), local, Refused("in degrees")),
+        (named("EPSG:4979"), moon, Refused("in degrees")),
+        (named("http://www.opengis.net/gml/srs/epsg.xml#4326"), local, Refused("in degrees")),
+        (named("EPSG:32633"), "EPSG:32633", Read),
+        (named("EPSG:25833"), "EPSG:32633", Read),
+        (named("EPSG:32633"), "+proj=utm +zone=33 +ellps=GRS80", Read),
+        (named("EPSG:32634"), "+proj=utm +zone=33 +ellps=GRS80", Refused("EPSG:32634")),
+        // A projected code among the geographic ones.
+        (named("EPSG:4087"), moon, Refused("not known here")),
+        (named("EPSG:27700"), "EPSG:27700", Read),
+        (named("EPSG:27700"), "EPSG:32633", Refused("not known here")),
+        (named("EPSG:32633"), "EPSG:27700", Refused("EPSG:27700")),
+        (named("my own grid"), moon, Refused("my own grid")),
+        (named("my own grid"), local, Warned("not checked")),
+        (named("EPSG:32633"), local, Warned("not checked")),
+        (named("IAU_2015:30135"), unsupported, Warned("not checked")),
+        (r#"{"type":"EPSG","properties":{"code":4326}}"#.to_owned(), local, Refused("in degrees")),
+        (r#"{"type":"EPSG","properties":{"code":32633}}"#.to_owned(), "EPSG:32633", Read),
+        (
+            r#"{"type":"link","properties":{"href":"http://spatialreference.org/ref/epsg/4326/"}}"#.to_owned(),
+            local,
+            Refused("in degrees"),
+        ),
+        (r#"{"type":"name"}"#.to_owned(), moon, Refused("neither a name nor a code")),
+        ("null".to_owned(), moon, Read),
+    ] {
+        let polygon = r#""geometry":{"type":"Polygon","coordinates":[[[1,1],[2,1],[2,2],[1,1]]]}"#;
+        // On the collection and on its one feature.
+        for text in [
+            format!(r#"{{"type":"FeatureCollection","crs":{crs},"features":[{{"type":"Feature",{polygon}}}]}}"#),
+            format!(r#"{{"type":"FeatureCollection","features":[{{"type":"Feature","crs":{crs},{polygon}}}]}}"#),
+        ] {
+            let (_folder, path) = file(&text);
+            let bounds = MapBounds { min: MapPoint::new(0.0, 0.0), max: MapPoint::new(9.0, 9.0) };
+            let found = read_keep_out(&path, Some(&system(terrain)), bounds);
+            match (found, &expected) {
+                (Ok(zones), Read) => assert_eq!(zones.not_compared(), None, "{crs} {terrain}"),
+                (Ok(zones), Warned(word)) => {
+                    assert!(zones.not_compared().is_some_and(|text| text.contains(word)), "{crs} {terrain}")
+                }
+                (Err(error), Refused(word)) => assert!(error.to_string().contains(word), "{crs} {terrain}: {error}"),
+                (Err(error), _) => panic!("{crs} {terrain}: {error}"),
+                (Ok(_), Refused(_)) => panic!("{crs} {terrain}: read"),
+            }
+        }
+    }
+}
+
+/// Beside a small local map the numbers of zones in metres are small as well.
+#[test]
+fn zones_beside_a_small_local_map_do_not_look_like_degrees() {
+    let small = MapBounds { min: MapPoint::new(0.0, 0.0), max: MapPoint::new(60.0, 60.0) };
+    let large = MapBounds { min: MapPoint::new(1000.0, 1000.0), max: MapPoint::new(2000.0, 2000.0) };
+    let (_folder, path) = file(r#"{"type":"Polygon","coordinates":[[[70,70],[80,70],[80,80],[70,70]]]}"#);
+    for (bounds, degrees) in [(small, false), (large, true)] {
+        let message = read_keep_out(&path, None, bounds).unwrap_err().to_string();
+        assert!(message.contains("off the terrain") && message.contains("look like degrees") == degrees, "{message}");
+    }
+}
