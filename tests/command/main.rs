@@ -19,5 +19,6 @@ mod same_answers;
 mod sentences;
 mod shipped_scenarios;
 mod simulate_command;
+mod stated_maps;
 mod trade_compare;
 mod zones_and_fan;

@@ -35,6 +35,7 @@ pub(super) use self::epsg_units::{Vertical, is_compound, is_geodetic, is_map_in_
 use self::geokeys::Reading;
 pub use self::scale::{ScaleExtreme, ScaleMend, TransectScale, check_map_scale, check_scale};
 pub(super) use self::stated::{contradiction, doubts};
+use super::geotiff::short_key;
 use super::{CoordinateSystem, MapBounds, TerrainError};
 use crate::quantity::MapPoint;
 
@@ -116,6 +117,9 @@ impl fmt::Display for NoProjection {
         }
     }
 }
+
+/// The key of the code of longitudes and latitudes.
+const GEOGRAPHIC_CRS: u16 = 2048;
 
 /// How far beyond the border of a map rounding may put a point on it, m.
 const ROUNDING_M: f64 = 1.0e-6;
@@ -378,9 +382,15 @@ pub(super) fn states_degrees_in_text(system: &CoordinateSystem) -> bool {
     stated::pe_string(system).is_some_and(|text| text.starts_with("GEO"))
 }
 
-/// The ellipsoid of a file's geographic coordinates.
+/// The figure of the body that a file states: by radii, by codes, or by its map. A code of EPSG that is not supported is of the Earth.
 pub(super) fn stated_ellipsoid(system: &CoordinateSystem) -> Option<Ellipsoid> {
-    geokeys::ellipsoid(system).ok()
+    let by_map = || MapProjection::of(system).ok().map(|map| map.definition.ellipsoid);
+    let of_earth = || {
+        let map = geokeys::projected_code(system).is_some_and(is_map_in_metres);
+        let places = short_key(system, GEOGRAPHIC_CRS).is_some_and(is_geodetic);
+        (map || places).then_some(Ellipsoid::WGS84)
+    };
+    geokeys::ellipsoid(system).ok().or_else(by_map).or_else(of_earth)
 }
 
 /// The file's own name for its map, unless it is "unknown".

@@ -1,7 +1,7 @@
 //! What a file says of its map more than once: by code, by numbers, by citations. Two statements that cannot both be true are reported.
 
 use super::definition::{Ellipsoid, RADIUS_TOLERANCE};
-use super::{MapProjection, codes, epsg_units, geokeys};
+use super::{MapProjection, codes, epsg_units, geokeys, stated_ellipsoid};
 use crate::terrain::CoordinateSystem;
 use crate::terrain::geotiff::{double_key, short_key, text_key};
 use crate::world::KNOWN_BODIES;
@@ -118,7 +118,7 @@ fn cited_map(text: &str) -> Option<(String, super::Definition)> {
 
 /// Statements that are likely to be wrong: citations that name another body than the radii are of.
 pub(in crate::terrain) fn doubts(system: &CoordinateSystem) -> Vec<String> {
-    let Ok(figure) = geokeys::ellipsoid(system) else { return Vec::new() };
+    let Some(figure) = stated_ellipsoid(system) else { return Vec::new() };
     let mut doubts: Vec<String> = citations(system)
         .filter_map(|(key, text)| {
             let body = KNOWN_BODIES.iter().find(|body| names(text, body.name))?;
