@@ -15,6 +15,7 @@ use chta::{
         Entries, JourneyEnd as End, LackingKey, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem,
         ScenarioProblems, Survey, SweptKey, TerrainSource, Trade, prepare, scenario_document, sha256_of,
     },
+    terrain::sidecar_files,
 };
 
 use super::{
@@ -237,9 +238,12 @@ fn validate_and_prepare(
     for warning in &prepared.warnings {
         output::warn(quiet, warning);
     }
-    let mut inputs = vec![input_file(&file)?];
+    let mut inputs = match terrain {
+        TerrainSource::Dem { .. } => raster_files(&file)?,
+        TerrainSource::Mesh { .. } | TerrainSource::Chain { .. } => vec![input_file(&file)?],
+    };
     for overlay in Overlays::files(&scenario) {
-        inputs.push(input_file(&base.join(overlay))?);
+        inputs.extend(raster_files(&base.join(overlay))?);
     }
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
     Ok(Loaded { scenario, prepared, document, inputs, base, ends })
@@ -312,6 +316,11 @@ pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
     Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
 }
 
+/// A raster and the files beside it that were read, for a result.
+pub(crate) fn raster_files(path: &Path) -> Result<Vec<InputFile>, Failure> {
+    [path.to_path_buf()].into_iter().chain(sidecar_files(path)).map(|file| input_file(&file)).collect()
+}
+
 /// Reads a scenario with the folder of its paths but without its terrain, for commands that have their own.
 pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure> {
     let mut source = read_source(path)?;
@@ -368,7 +377,7 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
 
 /// Options override the scenario: `--set` first, then named options.
 fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) {
-    let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, accept_map_scale, quiet: _ } = common;
+    let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, accept_map_scale, no_data, quiet: _ } = common;
     // The keys that an option replaces are removed from the file's keys only, not from those set by the same command line.
     if body.is_some() {
         entries.forget("body", "gravity_m_s2");
@@ -391,6 +400,10 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
     }
     if let Some(clearance) = clearance_m {
         entries.set_by_option("--clearance-m", "hopper", "clearance_m", (*clearance).into());
+    }
+    if let Some(no_data) = no_data {
+        let value = no_data.parse().map_or_else(|_| toml::Value::from(no_data.clone()), toml::Value::Float);
+        entries.set_by_option("--no-data", "terrain", "no_data", value);
     }
     if *accept_map_scale {
         entries.set_by_option("--accept-map-scale", "terrain", "accept_map_scale", true.into());

@@ -40,6 +40,8 @@ pub enum Kind {
         /// The greatest.
         max: u64,
     },
+    /// A number, or `"none"`.
+    NumberOrNone,
     /// One of these words.
     Word(&'static [&'static str]),
     /// Any text.
@@ -84,6 +86,7 @@ impl Kind {
             Self::LonLats => "a list of positions, each [longitude, latitude] in degrees, [[lon, lat], ...]".to_owned(),
             Self::MapPoints => "a list of points, each two finite numbers in metres, [[x, y], ...]".to_owned(),
             Self::CountOrAuto => "a whole number from 0 to 100000, or \"auto\"".to_owned(),
+            Self::NumberOrNone => "a number, or \"none\"".to_owned(),
             Self::Count { min, max } if *max == MOST => format!("a whole number of at least {min}"),
             Self::Count { min, max } => format!("a whole number from {min} to {max}"),
             Self::Word(words) => format!("one of {}", words.join(", ")),
@@ -121,7 +124,7 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 54] = [
+pub const CATALOGUE: [Key; 55] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the warning where constant gravity is a bad model"),
@@ -159,6 +162,12 @@ pub const CATALOGUE: [Key; 54] = [
     key("terrain", "mesh", Kind::Text, "triangulated surface, z up, path from this file"),
     key("terrain", "mesh_scale", LENGTH, "metres per unit of the mesh; absent: 1"),
     key("terrain", "chain", Kind::Text, "chain CSV, path from this file"),
+    key(
+        "terrain",
+        "no_data",
+        Kind::NumberOrNone,
+        "stored number that marks missing elevations, or \"none\"; absent: what the file states, and no usual mark as ground",
+    ),
     key("terrain", "start_m", Kind::MapPoint, "start on the map, [x, y], m"),
     key("terrain", "goal_m", Kind::MapPoint, "goal on the map, [x, y], m"),
     key("terrain", "start_lonlat_deg", Kind::LonLat, "instead: start as [longitude, planetocentric latitude], degrees"),
@@ -251,6 +260,7 @@ mod tests {
             "friction_coefficient",
             "points_per_segment",
             "mesh_scale",
+            "no_data",
             "risk_extra_hops_max",
             "takeoff_speed_sigma_fraction",
             "friction_sigma",

@@ -6,7 +6,7 @@ use super::{Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
     graph::{PointSpacing, ReliabilityUse},
     quantity::{Angle, AngleInterval},
-    terrain::MapPlace,
+    terrain::{MapPlace, NoDataRule},
     world::{Grip, RestSlope},
 };
 
@@ -123,6 +123,15 @@ fn terrain(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
         ("goal_m", ends.as_ref().and_then(|[_, goal]| metres(goal))),
         ("start_lonlat_deg", ends.as_ref().and_then(|[start, _]| degrees(start))),
         ("goal_lonlat_deg", ends.as_ref().and_then(|[_, goal]| degrees(goal))),
+        (
+            "no_data",
+            match scenario.no_data {
+                NoDataRule::AsStated => None,
+                NoDataRule::Nothing => Some("none".into()),
+                // JSON has no NaN and no infinity: they are written as text.
+                NoDataRule::Value(mark) => Some(finite(mark.value()).unwrap_or_else(|| mark.value().to_string().into())),
+            },
+        ),
         ("accept_map_scale", scenario.accept_map_scale.then_some(true.into())),
         ("via_m", list(&metres)),
         ("via_lonlat_deg", list(&degrees)),

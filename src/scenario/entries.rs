@@ -5,6 +5,7 @@ use std::{collections::BTreeMap, ops::Range};
 use toml::de::{DeTable, DeValue};
 
 use super::{CATALOGUE, Key, KeyPath, Kind, ProblemKind, ScenarioProblem};
+use crate::terrain::NoDataRule;
 
 /// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -225,6 +226,11 @@ impl Entries {
         self.value(table, name).and_then(toml::Value::as_bool).unwrap_or(false)
     }
 
+    /// A rule for missing data; as the file states, if none was given.
+    pub(super) fn no_data(&self, table: &str, name: &str) -> NoDataRule {
+        self.value(table, name).and_then(no_data).unwrap_or_default()
+    }
+
     /// Two numbers; `None` if they were not given.
     pub(super) fn pair(&self, table: &str, name: &str) -> Option<[f64; 2]> {
         self.value(table, name).and_then(pair)
@@ -369,6 +375,15 @@ fn number(value: &toml::Value) -> Option<f64> {
     }
 }
 
+/// A rule for missing data: a number, its text, or `none`.
+fn no_data(value: &toml::Value) -> Option<NoDataRule> {
+    match value.as_str() {
+        Some(text) if text.eq_ignore_ascii_case("none") => Some(NoDataRule::Nothing),
+        Some(text) => text.parse().ok().map(NoDataRule::Value),
+        None => number(value).map(|number| NoDataRule::Value(number.into())),
+    }
+}
+
 /// A whole number of at least 0.
 fn count(value: &toml::Value) -> Option<u64> {
     value.as_integer().and_then(|integer| u64::try_from(integer).ok())
@@ -396,6 +411,7 @@ pub(super) fn fits(value: &toml::Value, kind: Kind) -> bool {
         Kind::LonLats => value.as_array().is_some_and(|places| places.iter().all(|place| fits(place, Kind::LonLat))),
         Kind::MapPoints => value.as_array().is_some_and(|points| points.iter().all(|point| fits(point, Kind::MapPoint))),
         Kind::CountOrAuto => value.as_str() == Some("auto") || value.as_integer().is_some_and(|k| (0..=100_000).contains(&k)),
+        Kind::NumberOrNone => no_data(value).is_some(),
         Kind::Count { min, max } => count(value).is_some_and(|n| (min..=max).contains(&n)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),

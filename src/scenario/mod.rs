@@ -15,8 +15,8 @@ pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
 pub use pipeline::{
-    Extremes, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, check_body, constant_gravity_warnings, for_body,
-    friction, prepare, sha256_of,
+    DemReading, Extremes, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, check_body, constant_gravity_warnings,
+    for_body, friction, prepare, sha256_of,
 };
 pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};

@@ -17,9 +17,9 @@ use crate::{
     path::Hop,
     quantity::MapPoint,
     terrain::{
-        self, CoordinateSystem, Dem, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection, OverlaidDem,
-        OverlayEffect, Profile, TerrainError, check_scale, open_dem, read_friction_raster, read_keep_out, read_mesh, slice_legs,
-        slice_mesh,
+        self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection,
+        NoDataRule, OverlaidDem, OverlayEffect, Profile, TerrainError, check_scale, read_friction_raster, read_keep_out,
+        read_mesh_with, slice_legs, slice_mesh,
     },
     world::{Body, FrictionCone},
 };
@@ -139,17 +139,17 @@ impl Survey {
     pub fn of(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Self, PipelineError> {
         let transect = match source {
             TerrainSource::Dem { path, start, goal } => {
-                let transect = Transect::of_dem(&base.join(path), [start, goal], &scenario.via, scenario.accept_map_scale);
+                let transect = Transect::of_dem(&base.join(path), [start, goal], &scenario.via, DemReading::of(scenario));
                 let transect = transect.map_err(|error| for_body(&scenario.body, error))?;
                 check_body(&scenario.body, transect.figure)?;
                 transect
             }
             TerrainSource::Mesh { path, scale, start, goal } => {
                 let via: Vec<MapPoint> = scenario.via.iter().filter_map(MapPlace::metres).collect();
-                Transect::of_mesh(&base.join(path), *scale, [*start, *goal], &via)?
+                Transect::of_mesh(&base.join(path), (*scale, scenario.no_data), [*start, *goal], &via)?
             }
             TerrainSource::Chain { path } => {
-                let file = csv::read_chain_csv_file(base.join(path))?;
+                let file = csv::read_chain_csv_file_with(base.join(path), scenario.no_data)?;
                 check_body(&scenario.body, file.projection.as_ref().map(|projection| projection.definition().ellipsoid))?;
                 return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
             }
@@ -200,6 +200,23 @@ fn resolved(
     Ok(Prepared { chain, start, goal, projection, warnings })
 }
 
+/// How an elevation raster is read.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DemReading {
+    /// What the file does not say itself.
+    pub options: DemOptions,
+    /// Whether a map whose scale is off by over 1 % is accepted.
+    pub accept_map_scale: bool,
+}
+
+impl DemReading {
+    /// As a scenario states.
+    pub fn of(scenario: &Scenario) -> Self {
+        let options = DemOptions::default().no_data(scenario.no_data);
+        Self { options, accept_map_scale: scenario.accept_map_scale }
+    }
+}
+
 /// The ground along a journey, leg by leg, and its map.
 #[derive(Clone, Debug)]
 pub struct Transect {
@@ -222,9 +239,10 @@ impl Transect {
     /// every leg is within 1 % or accepted. Reads only the posts beside the slices.
     ///
     /// # Errors
-    /// As [`open_dem`], [`MapPlace::on_map`], [`check_scale`] and [`slice_legs`].
-    pub fn of_dem(file: &Path, [from, to]: [&MapPlace; 2], via: &[MapPlace], accept_map_scale: bool) -> Result<Self, TerrainError> {
-        let dem = open_dem(file)?;
+    /// As [`open_dem`](terrain::open_dem), [`MapPlace::on_map`], [`check_scale`] and [`slice_legs`].
+    pub fn of_dem(file: &Path, [from, to]: [&MapPlace; 2], via: &[MapPlace], reading: DemReading) -> Result<Self, TerrainError> {
+        let DemReading { options, accept_map_scale } = reading;
+        let dem = options.open(file)?;
         let (map, bounds) = (dem.lattice().georeference(), dem.lattice().bounds());
         let projection = map.projection();
         let known = projection.as_ref();
@@ -238,16 +256,24 @@ impl Transect {
             begin = end;
         }
         let legs = slice_legs(dem.as_ref(), from, &via, to)?;
+        let heights = legs.iter().flat_map(|leg| &leg.points).map(|point| point.z_m);
+        let range_m = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)));
+        warnings.extend(dem.warnings(range_m));
         let coordinates = Some(map.coordinate_system.clone());
         Ok(Self { legs, coordinates, projection: projection.ok(), figure: map.ellipsoid(), bounds, warnings })
     }
 
-    /// Slices a mesh from the first end over the intermediate points to the second.
+    /// Slices a mesh, with its metres per unit and its mark of missing data, from the first end over the intermediate points to the second.
     ///
     /// # Errors
-    /// As [`read_mesh`] and [`slice_mesh`].
-    pub fn of_mesh(file: &Path, scale: f64, [from, to]: [MapPoint; 2], via: &[MapPoint]) -> Result<Self, TerrainError> {
-        let read = read_mesh(file, scale)?;
+    /// As [`read_mesh_with`] and [`slice_mesh`].
+    pub fn of_mesh(
+        file: &Path,
+        (scale, no_data): (f64, NoDataRule),
+        [from, to]: [MapPoint; 2],
+        via: &[MapPoint],
+    ) -> Result<Self, TerrainError> {
+        let read = read_mesh_with(file, scale, no_data)?;
         let (mut legs, mut warnings) = (Vec::new(), read.warnings);
         let mut begin = from;
         for end in via.iter().copied().chain([to]) {

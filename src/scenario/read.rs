@@ -8,7 +8,7 @@ use crate::{
     graph::{Effort, PointSpacing, ReliabilityUse, SearchOptions},
     hop::Split,
     quantity::{Angle, AngleInterval, MapPoint},
-    terrain::{LonLat, MapPlace},
+    terrain::{LonLat, MapPlace, NoDataRule},
     world::{Body, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES, RestSlope, SurfaceProperties},
 };
 
@@ -95,6 +95,8 @@ pub struct Scenario {
     pub terrain: Option<TerrainSource>,
     /// Whether a map whose scale along the transect is off by over 1 % is accepted.
     pub accept_map_scale: bool,
+    /// What marks missing elevations in the terrain's file.
+    pub no_data: NoDataRule,
     /// Intermediate points on the map, where a slice bends.
     pub via: Vec<MapPlace>,
     /// Start along the chain, m, if the scenario gives it.
@@ -148,6 +150,7 @@ impl Scenario {
             keep_out,
             terrain,
             accept_map_scale: entries.flag("terrain", "accept_map_scale"),
+            no_data: entries.no_data("terrain", "no_data"),
             via,
             start_x_m: entries.number("terrain", "start_x_m"),
             goal_x_m: entries.number("terrain", "goal_x_m"),

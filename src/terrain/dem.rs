@@ -1,5 +1,9 @@
 //! The elevation raster in memory.
 
+use std::sync::Arc;
+
+use super::sidecar::Sidecars;
+use super::stored::StoredStep;
 use super::{GeoReference, MapBounds, PostLattice, TerrainError, lattice::check_sides};
 
 /// The largest absolute elevation, m: larger numbers are undeclared no-data values (no body has such elevations; the usual
@@ -13,6 +17,10 @@ pub const ELEVATION_LIMIT_M: f64 = 1.0e9;
 pub struct Dem {
     lattice: PostLattice,
     posts: Posts,
+    /// The step of the numbers in the file.
+    step: StoredStep,
+    /// The files beside the raster that were read, and what the analyst should know of them.
+    sidecars: Arc<Sidecars>,
 }
 
 /// The stored elevations of a raster, row after row from the north; NaN is a gap.
@@ -39,6 +47,14 @@ impl Posts {
         }
     }
 
+    /// Sets the posts that a mask does not show to gaps.
+    pub(super) fn blank(&mut self, shown: &[bool]) {
+        match self {
+            Self::Single(values) => values.iter_mut().zip(shown).filter(|(_, shown)| !**shown).for_each(|(z, _)| *z = f32::NAN),
+            Self::Double(values) => values.iter_mut().zip(shown).filter(|(_, shown)| !**shown).for_each(|(z, _)| *z = f64::NAN),
+        }
+    }
+
     fn at(&self, index: usize) -> Option<f64> {
         let value = match self {
             Self::Single(values) => values.get(index).map(|&value| f64::from(value)),
@@ -49,7 +65,7 @@ impl Posts {
 
     /// Converts to single precision if no elevation changes.
     #[expect(clippy::cast_possible_truncation, reason = "taken only where the way back gives the same number")]
-    fn narrowed(self) -> Self {
+    pub(super) fn narrowed(self) -> Self {
         match self {
             Self::Double(values) if values.iter().all(|&z| z.is_nan() || f64::from(z as f32) == z) => {
                 Self::Single(values.into_iter().map(|z| z as f32).collect())
@@ -97,9 +113,33 @@ impl Dem {
                 posts.len()
             )));
         }
-        let dem = Self { lattice: PostLattice::new(rows, cols, georeference)?, posts };
+        Self::from_lattice(PostLattice::new(rows, cols, georeference)?, posts)
+    }
+
+    /// The same on a lattice of as many posts.
+    pub(super) fn from_lattice(lattice: PostLattice, posts: Posts) -> Result<Self, TerrainError> {
+        let dem = Self { lattice, posts, step: StoredStep::Fine, sidecars: Arc::default() };
         dem.check_elevations()?;
         Ok(dem)
+    }
+
+    /// The same with the step of its file's numbers, and the files beside it.
+    pub(super) fn with_notes(self, step: StoredStep, sidecars: Arc<Sidecars>) -> Self {
+        Self { step, sidecars, ..self }
+    }
+
+    /// What an analyst should know of the file: sidecar files without effect, and a step of the stored numbers that makes slopes.
+    pub fn warnings(&self) -> Vec<String> {
+        let step = self.step.warning(self.elevation_range_m(), self.georeference().step_m());
+        self.sidecars.warnings().iter().cloned().chain(step).collect()
+    }
+
+    pub(super) fn step(&self) -> StoredStep {
+        self.step
+    }
+
+    pub(super) fn sidecars(&self) -> &Sidecars {
+        &self.sidecars
     }
 
     fn check_elevations(&self) -> Result<(), TerrainError> {
@@ -206,7 +246,7 @@ pub(super) fn check_elevation(z_m: f64, row: usize, col: usize) -> Result<(), Te
     }
     Err(TerrainError::InvalidDem(format!(
         "row {row}, column {col} (from 0, from the north-west) holds {z_m:e} m, expected an elevation within {ELEVATION_LIMIT_M:e} m; \
-         if it marks missing data, say so with: gdal_translate -a_nodata {z_m:e} in.tif out.tif"
+         if it marks missing data, say so with terrain.no_data = {z_m:e}, or with: gdal_translate -a_nodata {z_m:e} in.tif out.tif"
     )))
 }
 

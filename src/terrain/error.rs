@@ -3,7 +3,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use super::{DegreesMend, Ellipsoid, LonLat, MapBounds, NoProjection, ScaleMend};
+use super::{DegreesMend, Ellipsoid, LonLat, MapBounds, NoProjection, ScaleMend, VoidTaken};
 use crate::quantity::{MapPoint, format_number};
 
 /// Why a DEM or mesh could not be read, written, sliced or generated.
@@ -28,6 +28,17 @@ pub enum TerrainError {
         /// What was found, what was expected and how to correct it.
         problem: String,
     },
+    /// A sidecar file that cannot be used with its raster.
+    #[error("its sidecar file '{}': {problem}", path.display())]
+    Sidecar {
+        /// The file.
+        path: PathBuf,
+        /// What was found, what was expected and how to correct it.
+        problem: String,
+    },
+    /// A usual mark of missing data that nothing states and that is not ground either.
+    #[error("{0}")]
+    Void(Box<VoidTaken>),
     /// The operating system refused to read or write.
     #[error("cannot be {action}: {reason}")]
     Io {

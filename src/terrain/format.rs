@@ -3,14 +3,16 @@
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::ascii_grid::AsciiGridReader;
 #[cfg(not(feature = "gdal"))]
 use super::foreign;
 use super::geotiff::GeoTiffReader;
 use super::pds3::Pds3Reader;
+use super::sidecar::Sidecars;
 use super::xyz::XyzReader;
-use super::{Dem, DemFile, TerrainError};
+use super::{Dem, DemFile, NoDataRule, TerrainError};
 
 /// Number of bytes of a file that readers get to recognise their format.
 const PROBE_BYTES: u64 = 4096;
@@ -27,20 +29,20 @@ pub trait DemReader: Sync {
     ///
     /// # Errors
     /// [`TerrainError`] with what was found, what was expected, and how to correct it.
-    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError>;
+    fn read_bytes(&self, bytes: Vec<u8>, context: &ReadContext) -> Result<Dem, TerrainError>;
 
     /// Reads a file from disk.
     ///
     /// # Errors
     /// As [`DemReader::read_bytes`], and if the file cannot be read.
-    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError>;
+    fn read_path(&self, path: &Path, context: &ReadContext) -> Result<Dem, TerrainError>;
 
     /// Opens a file from disk to read parts of it. Formats that can only be read as a whole are read as a whole.
     ///
     /// # Errors
     /// As [`DemReader::read_path`], except for problems of posts that are not requested.
-    fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
-        Ok(Box::new(self.read_path(path)?))
+    fn open_path(&self, path: &Path, context: ReadContext) -> Result<Box<dyn DemFile>, TerrainError> {
+        Ok(Box::new(self.read_path(path, &context)?))
     }
 }
 
@@ -64,7 +66,7 @@ pub const FORMATS: [(&str, &str); 4] = [
 /// [`TerrainError::InFile`] with the cause: the file cannot be read, has no known format, is damaged, or does not hold
 /// elevations in metres on a north-up map in metres.
 pub fn read_dem(path: &Path) -> Result<Dem, TerrainError> {
-    reader_of(path).and_then(|reader| reader.read_path(path)).map_err(|error| error.in_file(path))
+    DemOptions::default().read(path)
 }
 
 /// Opens a DEM file with any extension to read parts of it: from a GeoTIFF or PDS3 image only the parts requested, from a
@@ -73,7 +75,67 @@ pub fn read_dem(path: &Path) -> Result<Dem, TerrainError> {
 /// # Errors
 /// As [`read_dem`], but problems of posts that are not requested are not detected.
 pub fn open_dem(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
-    reader_of(path).and_then(|reader| reader.open_path(path)).map_err(|error| error.in_file(path))
+    DemOptions::default().open(path)
+}
+
+/// How a DEM file is read, where the file does not say everything itself.
+///
+/// # Examples
+/// A trench at -9 999 m in a file that states no no-data value: a usual mark of missing data, but ground here.
+/// ```
+/// use chta::terrain::{DemOptions, NoDataRule};
+/// let file = tempfile::NamedTempFile::new().unwrap();
+/// std::fs::write(file.path(), "0 0 -9999\n1 0 -5000\n0 1 -5001\n1 1 -5000\n").unwrap();
+/// assert!(DemOptions::default().read(file.path()).unwrap_err().to_string().contains("terrain.no_data"));
+/// let dem = DemOptions::default().no_data(NoDataRule::Nothing).read(file.path())?;
+/// assert_eq!(dem.elevation(1, 0), Some(-9999.0));
+/// # Ok::<(), chta::terrain::TerrainError>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct DemOptions {
+    no_data: NoDataRule,
+}
+
+impl DemOptions {
+    /// The same with this rule for missing elevations.
+    #[must_use]
+    pub const fn no_data(self, no_data: NoDataRule) -> Self {
+        Self { no_data }
+    }
+
+    /// The rule for missing elevations.
+    pub const fn no_data_rule(self) -> NoDataRule {
+        self.no_data
+    }
+
+    /// Reads a whole file.
+    ///
+    /// # Errors
+    /// As [`read_dem`].
+    pub fn read(self, path: &Path) -> Result<Dem, TerrainError> {
+        let read = || reader_of(path)?.read_path(path, &self.context(path)?);
+        read().map_err(|error| error.in_file(path))
+    }
+
+    /// Opens a file to read parts of it.
+    ///
+    /// # Errors
+    /// As [`open_dem`].
+    pub fn open(self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
+        let open = || reader_of(path)?.open_path(path, self.context(path)?);
+        open().map_err(|error| error.in_file(path))
+    }
+
+    fn context(self, path: &Path) -> Result<ReadContext, TerrainError> {
+        Ok(ReadContext { no_data: self.no_data, sidecars: Arc::new(Sidecars::beside(path)?) })
+    }
+}
+
+/// What the user and the files beside a raster state of it.
+#[derive(Clone, Debug, Default)]
+pub struct ReadContext {
+    pub(super) no_data: NoDataRule,
+    pub(super) sidecars: Arc<Sidecars>,
 }
 
 fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {

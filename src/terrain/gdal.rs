@@ -8,10 +8,13 @@ use std::path::Path;
 use gdal::raster::{GdalDataType, ResampleAlg};
 use gdal::{Dataset, DriverManager};
 
-use super::georeference::refuse_degrees;
+use super::dem::Posts;
+use super::format::ReadContext;
 use super::geotiff::{Placed, place_by_tags};
+use super::parts::{CheckedParts, StoredParts};
+use super::stored::{Scaling, StoredRaster, StoredStep};
 use super::window::turn_round;
-use super::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
+use super::{Dem, DemFile, DemReader, NoDataRule, PostLattice, TerrainError, Window};
 
 /// The reader of GDAL's formats.
 pub(super) struct GdalReader;
@@ -26,30 +29,34 @@ impl DemReader for GdalReader {
         true
     }
 
-    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError> {
+    fn read_bytes(&self, bytes: Vec<u8>, context: &ReadContext) -> Result<Dem, TerrainError> {
         let mut file = tempfile::NamedTempFile::new().map_err(TerrainError::writing)?;
         file.write_all(&bytes).map_err(TerrainError::writing)?;
-        self.read_path(file.path())
+        self.read_path(file.path(), context)
     }
 
-    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
-        let open = OpenRaster::open(path)?;
+    fn read_path(&self, path: &Path, context: &ReadContext) -> Result<Dem, TerrainError> {
+        let open = OpenRaster::open(path, context)?;
         let (rows, cols) = (open.lattice.rows(), open.lattice.cols());
-        let posts = open.window(Window { first_row: 0, first_col: 0, rows, cols })?;
-        let dem = Dem::new(rows, cols, posts, open.lattice.georeference().clone())?;
-        if !open.states_metres {
-            refuse_degrees(&dem)?;
-        }
-        Ok(dem)
+        let posts = Posts::Double(open.window(Window { first_row: 0, first_col: 0, rows, cols })?);
+        let georeference = open.lattice.georeference().clone();
+        let OpenRaster { states_metres, south_up, .. } = open;
+        let (scaling, step) = (open.scaling(), open.step());
+        StoredRaster { rows, cols, posts, georeference, states_metres, south_up, scaling, step }.finish(&gdal_context(context))
     }
 
-    fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
-        let open = OpenRaster::open(path)?;
+    fn open_path(&self, path: &Path, context: ReadContext) -> Result<Box<dyn DemFile>, TerrainError> {
+        let open = OpenRaster::open(path, &context)?;
         if !open.states_metres && open.lattice.bounds().may_be_degrees() {
-            return Ok(Box::new(self.read_path(path)?));
+            return Ok(Box::new(self.read_path(path, &context)?));
         }
-        Ok(Box::new(open))
+        Ok(Box::new(CheckedParts::new(open, gdal_context(&context))))
     }
+}
+
+/// GDAL reads sidecar files itself.
+fn gdal_context(context: &ReadContext) -> ReadContext {
+    ReadContext { no_data: context.no_data, ..ReadContext::default() }
 }
 
 /// Whether GDAL can open this file as a raster.
@@ -67,10 +74,12 @@ struct OpenRaster {
     offset: f64,
     /// 1, or 1000 if the band is in km.
     metres_per_unit: f64,
+    no_data: NoDataRule,
+    step: StoredStep,
 }
 
 impl OpenRaster {
-    fn open(path: &Path) -> Result<Self, TerrainError> {
+    fn open(path: &Path, context: &ReadContext) -> Result<Self, TerrainError> {
         let dataset = Dataset::open(path).map_err(|error| refused(&error))?;
         if dataset.raster_count() != 1 {
             return Err(unsuitable(
@@ -102,7 +111,14 @@ impl OpenRaster {
         let (scale, offset) = (band.scale().unwrap_or(1.0), band.offset().unwrap_or(0.0));
         let Placed { georeference, south_up, states_metres } = place_by_tags(skeleton(&dataset)?, rows)?;
         let lattice = PostLattice::new(rows, cols, georeference)?;
-        Ok(Self { dataset, lattice, south_up, states_metres, scale, offset, metres_per_unit })
+        let scaling = Scaling { scale: scale * metres_per_unit, offset_m: offset * metres_per_unit };
+        let step = match band.band_type() {
+            GdalDataType::Float32 => StoredStep::Single(scaling),
+            GdalDataType::Float64 => StoredStep::Fine,
+            _ => StoredStep::Fixed(scaling.scale.abs()),
+        };
+        let no_data = context.no_data;
+        Ok(Self { dataset, lattice, south_up, states_metres, scale, offset, metres_per_unit, no_data, step })
     }
 }
 
@@ -133,9 +149,21 @@ fn unsuitable(found: String, expected: &'static str, mend: &str) -> TerrainError
     TerrainError::Unsuitable { found, expected, mend: mend.to_owned() }
 }
 
-impl DemFile for OpenRaster {
+impl StoredParts for OpenRaster {
     fn lattice(&self) -> &PostLattice {
         &self.lattice
+    }
+
+    fn south_up(&self) -> bool {
+        self.south_up
+    }
+
+    fn scaling(&self) -> Scaling {
+        Scaling { scale: self.scale * self.metres_per_unit, offset_m: self.offset * self.metres_per_unit }
+    }
+
+    fn step(&self) -> StoredStep {
+        self.step
     }
 
     fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError> {
@@ -151,7 +179,12 @@ impl DemFile for OpenRaster {
         };
         let (mut posts, shown) = read().map_err(|error| refused(&error))?;
         for (post, shown) in posts.iter_mut().zip(shown) {
-            *post = if shown == 0 { f64::NAN } else { (*post * self.scale + self.offset) * self.metres_per_unit };
+            let gap = match self.no_data {
+                NoDataRule::AsStated => shown == 0,
+                NoDataRule::Nothing => false,
+                NoDataRule::Value(mark) => mark.is_double(*post),
+            };
+            *post = if gap { f64::NAN } else { (*post * self.scale + self.offset) * self.metres_per_unit };
         }
         turn_round(&mut posts, cols, self.south_up);
         Ok(posts)

@@ -28,12 +28,17 @@ mod georeference;
 mod geotiff;
 mod lattice;
 mod mesh;
+mod no_data;
 mod overlaid;
+mod parts;
 mod pds3;
 mod profile;
 mod projection;
+mod sidecar;
 mod slice;
+mod stored;
 mod synth;
+mod void;
 mod walk;
 mod window;
 mod xyz;
@@ -42,14 +47,15 @@ mod zones;
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M, Samples};
 pub use error::{AsciiProblem, TerrainError};
-pub use format::{DemReader, FORMATS, open_dem, read_dem};
+pub use format::{DemOptions, DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, DegreesMend, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{Band, ResultBands, geotiff_bytes, read_geotiff_bytes, result_geotiff_bytes, write_geotiff};
 pub use lattice::PostLattice;
 pub use mesh::{
     Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
-    slice_mesh,
+    read_mesh_with, slice_mesh,
 };
+pub use no_data::{InvalidNoData, NoData, NoDataRule};
 pub use overlaid::{OverlaidDem, OverlayEffect, Overlays};
 pub use pds3::read_pds3_bytes;
 pub use profile::{Profile, ProfileFacet, ProfilePoint};
@@ -57,8 +63,11 @@ pub use projection::{
     CrsError, Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, ScaleMend, TransectScale,
     check_map_scale, check_scale,
 };
+pub use sidecar::sidecar_files;
 pub use slice::{slice, slice_file, slice_legs};
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
+pub(crate) use void::find_void_of_chain;
+pub use void::{VoidPlace, VoidTaken};
 pub use walk::{FacetSpan, FacetWalk, Triangles};
 pub use window::{DemFile, Window};
 pub use xyz::read_xyz_bytes;

@@ -47,9 +47,17 @@ pub trait DemFile {
     /// # Errors
     /// [`TerrainError`] if the file cannot be read or is damaged there, or holds an invalid elevation.
     fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError>;
+
+    /// What an analyst should know of the file, where elevations in this range were read.
+    fn warnings(&self, range_m: (f64, f64)) -> Vec<String>;
 }
 
 impl DemFile for Dem {
+    fn warnings(&self, range_m: (f64, f64)) -> Vec<String> {
+        let step = self.step().warning(range_m, self.georeference().step_m());
+        self.sidecars().warnings().iter().cloned().chain(step).collect()
+    }
+
     fn lattice(&self) -> &PostLattice {
         self.lattice()
     }

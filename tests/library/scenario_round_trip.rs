@@ -49,6 +49,9 @@ fn value(key: &Key) -> BoxedStrategy<String> {
             (min..=max.min(50)).prop_map(|count| count.to_string()),
         ]
         .boxed(),
+        Kind::NumberOrNone => {
+            prop_oneof![Just("\"none\"".to_owned()), Just("\"-3.40282e+38\"".to_owned()), number(-1e6, 1e6)].boxed()
+        }
         Kind::Word(words) => proptest::sample::select(words).prop_map(|word| format!("\"{word}\"")).boxed(),
         Kind::Text if key.name == "name" => Just("\"Mars\"".to_owned()).boxed(),
         Kind::Text => {
@@ -132,6 +135,7 @@ fn every_key_reaches_the_document() {
         Kind::AngleRange => "[12.5, 60.25]",
         Kind::MapPoint | Kind::LonLat => "[12.5, -3.0]",
         Kind::Flag => "true",
+        Kind::NumberOrNone => "-9999.5",
         Kind::MapPoints | Kind::LonLats => "[[12.5, -3.0], [1.0, 2.0]]",
         Kind::CountOrAuto | Kind::Count { .. } => "7",
         Kind::Word(words) => words[words.len() - 1],

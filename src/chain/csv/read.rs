@@ -7,11 +7,12 @@ use super::{
     columns::{BEND, CROSS_SLOPE, FORWARD, FRICTION, KEEP_OUT, MAP_X, MAP_Y, REVERSE, SIX, X, Z},
     problem::read_file,
     table::{Cell, Table},
+    voids,
 };
 use crate::{
     chain::{ChainProblem, ContactRule, GroundForm, LineConstraints, PolygonalChain, SegmentGround},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
-    terrain::MapProjection,
+    terrain::{MapProjection, NoDataRule},
     world::{Direction, FrictionCone},
 };
 
@@ -44,6 +45,16 @@ pub struct ChainFile {
 /// assert!(messages[1].starts_with("line 4, column 1 (x_m): found `1`, expected more than 2, the x_m of line 3"));
 /// ```
 pub fn read_chain_csv(source: &[u8]) -> Result<ChainFile, CsvProblems> {
+    read_chain_csv_with(source, NoDataRule::AsStated)
+}
+
+/// Reads a chain from the text of a CSV, as [`read_chain_csv`], with a rule for heights that mark missing data.
+///
+/// A chain has no gaps, so a height that marks missing data is a problem. With [`NoDataRule::Nothing`], none does.
+///
+/// # Errors
+/// [`CsvProblems`] with every problem of the file, each with its line and field.
+pub fn read_chain_csv_with(source: &[u8], no_data: NoDataRule) -> Result<ChainFile, CsvProblems> {
     let mut problems = CsvProblems::default();
     let Some(table) = Table::read(source, &CHAIN_COLUMNS, &mut problems) else { return Err(problems.sorted()) };
     let mut reading = Reading::of(table);
@@ -53,6 +64,7 @@ pub fn read_chain_csv(source: &[u8]) -> Result<ChainFile, CsvProblems> {
     reading.check_last_row(&mut problems);
     reading.check_cones(&mut problems);
     reading.check_geometry(&mut problems);
+    voids::check(&reading.table, no_data, &mut problems);
     if !problems.is_empty() {
         return Err(problems.sorted());
     }
@@ -95,7 +107,15 @@ fn stated_projection(source: &[u8], warnings: &mut Vec<String>) -> Option<MapPro
 /// # Errors
 /// [`CsvFileError`] if the file cannot be read or has problems.
 pub fn read_chain_csv_file(path: impl AsRef<Path>) -> Result<ChainFile, CsvFileError> {
-    read_file(path.as_ref().to_owned(), read_chain_csv)
+    read_chain_csv_file_with(path, NoDataRule::AsStated)
+}
+
+/// Reads a chain file; see [`read_chain_csv_with`].
+///
+/// # Errors
+/// [`CsvFileError`] if the file cannot be read or has problems.
+pub fn read_chain_csv_file_with(path: impl AsRef<Path>, no_data: NoDataRule) -> Result<ChainFile, CsvFileError> {
+    read_file(path.as_ref().to_owned(), |source| read_chain_csv_with(source, no_data))
 }
 
 /// The columns of the two forms of stating segments; a file fills the columns of one form only.

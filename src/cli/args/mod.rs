@@ -5,7 +5,11 @@ mod terrains;
 
 use std::path::PathBuf;
 
-use chta::{graph::proof::DEFAULT_BUDGET_CELLS, quantity::MapPoint, terrain::LonLat};
+use chta::{
+    graph::proof::DEFAULT_BUDGET_CELLS,
+    quantity::MapPoint,
+    terrain::{LonLat, NoDataRule},
+};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 pub(crate) use journeys::{CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs};
@@ -71,6 +75,9 @@ pub(crate) struct CommonArgs {
     /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
+    /// Stored number that marks missing elevations, or none: all numbers are elevations [default: as the file states]
+    #[arg(long, value_name = "VALUE|none", allow_negative_numbers = true)]
+    pub(crate) no_data: Option<String>,
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -150,6 +157,14 @@ fn map_point(text: &str) -> Result<MapPoint, String> {
     let wanted = || format!("found `{text}`, expected two finite numbers in metres, X,Y, such as 12.5,-30");
     let (x, y) = text.split_once(',').ok_or_else(wanted)?;
     Ok(MapPoint::new(number(x).ok_or_else(wanted)?, number(y).ok_or_else(wanted)?))
+}
+
+/// Reads `VALUE` or `none`.
+fn no_data_rule(text: &str) -> Result<NoDataRule, String> {
+    if text.eq_ignore_ascii_case("none") {
+        return Ok(NoDataRule::Nothing);
+    }
+    text.parse().map(NoDataRule::Value).map_err(|_| format!("found `{text}`, expected a number, or none"))
 }
 
 /// Reads `LON,LAT`.

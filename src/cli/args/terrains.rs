@@ -2,10 +2,13 @@
 
 use std::path::PathBuf;
 
-use chta::{quantity::MapPoint, terrain::LonLat};
+use chta::{
+    quantity::MapPoint,
+    terrain::{LonLat, NoDataRule},
+};
 use clap::{Args as ClapArgs, ValueEnum};
 
-use super::{AnswerArgs, CommonArgs, SearchArgs, lon_lat, map_point};
+use super::{AnswerArgs, CommonArgs, SearchArgs, lon_lat, map_point, no_data_rule};
 
 /// Cut terrain along a vertical plane into a polygonal chain (CSV)
 #[derive(Debug, ClapArgs)]
@@ -41,6 +44,9 @@ pub(crate) struct SliceArgs {
     /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
+    /// Stored number that marks missing elevations, or none: all numbers are elevations [default: as the file states]
+    #[arg(long, value_name = "VALUE|none", value_parser = no_data_rule, allow_negative_numbers = true)]
+    pub(crate) no_data: Option<NoDataRule>,
     /// Chain CSV to write; - or absent: standard output
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,

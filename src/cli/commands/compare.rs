@@ -71,6 +71,7 @@ impl Compared {
             gravity_m_s2: None,
             clearance_m: None,
             accept_map_scale: args.accept_map_scale,
+            no_data: None,
             quiet: args.quiet,
         };
         let loaded = load(file, &common, None, EndOptions::NONE)?;

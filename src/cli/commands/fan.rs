@@ -5,8 +5,8 @@ use chta::{
     quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer, figure::draw_rose},
-    scenario::{Overlays, check_body, for_body},
-    terrain::{check_scale, read_dem},
+    scenario::{DemReading, Overlays, check_body, for_body},
+    terrain::check_scale,
 };
 use nalgebra::Vector2;
 
@@ -14,7 +14,7 @@ use super::{captions::conditions, search::use_threads, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, FanArgs, Format},
-    load::{Bare, input_file, load_bare},
+    load::{Bare, load_bare, raster_files},
     output,
     progress::Progress,
 };
@@ -39,8 +39,10 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     use_threads(*threads)?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let Bare { scenario, base, document } = load_bare(file, common, search)?;
-    let dem = read_dem(file).map_err(|e| failed(&for_body(&scenario.body, e)))?;
+    let dem = DemReading::of(&scenario).options.read(file).map_err(|e| failed(&for_body(&scenario.body, e)))?;
     check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| Failure::about(file, &e))?;
+    let mut of_file = dem.warnings();
+    of_file.extend(dem.georeference().doubts());
     let projection = dem.georeference().projection();
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
     let overlays =
@@ -51,7 +53,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let request = FanRequest { ground: &ground, from, headings: *headings, length_m: *length, spacing };
     let rays = fan(&request, &Progress::new(common.quiet)).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
-    let mut warnings = dem.georeference().doubts();
+    let mut warnings = of_file;
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     for ray in &rays {
         let heading = Angle::from_degrees(ray.heading_deg).radians();
@@ -86,9 +88,9 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let text = match format {
         Format::Text => answer.text(),
         Format::Json => {
-            let mut inputs = vec![input_file(file)?];
+            let mut inputs = raster_files(file)?;
             for overlay in Overlays::files(&scenario) {
-                inputs.push(input_file(&base.join(overlay))?);
+                inputs.extend(raster_files(&base.join(overlay))?);
             }
             Document::new("fan", document, inputs, warnings, answer).on_map(projection.as_ref().ok()).to_json()?
         }

@@ -17,10 +17,8 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Extremes, Overlays, Scenario, UncertaintyKeys, check_body, constant_gravity_warnings, for_body},
-    terrain::{
-        Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
-    },
+    scenario::{DemReading, Extremes, Overlays, Scenario, UncertaintyKeys, check_body, constant_gravity_warnings, for_body},
+    terrain::{Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, result_geotiff_bytes},
     uncertainty::{Mission, Policy, Simulation, SimulationError},
 };
 
@@ -28,7 +26,7 @@ use super::{captions::conditions, map_profiles, plan::passed, search::use_thread
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
-    load::{Bare, input_file, load_bare},
+    load::{Bare, load_bare, raster_files},
     output::{self, Pending},
     progress::Progress,
 };
@@ -123,7 +121,7 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     }
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
     let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
-    let dem = read_dem(file).map_err(|e| Failure::of(&for_body(&scenario.body, e)))?;
+    let dem = DemReading::of(&scenario).options.read(file).map_err(|e| Failure::of(&for_body(&scenario.body, e)))?;
     check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| failed(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
@@ -154,15 +152,16 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     }
     check_distinct_nodes(&dem, *stride, &named(start, &goals).map(|(_, spot)| spot).collect::<Vec<_>>())
         .map_err(|message| failed(&std::io::Error::other(message)))?;
-    let mut warnings = dem.georeference().doubts();
+    let mut warnings = dem.warnings();
+    warnings.extend(dem.georeference().doubts());
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
     warnings.extend(scale.warning());
     let ground = overlays.ground(dem, &scenario);
-    let mut input_files = vec![input_file(file)?];
+    let mut input_files = raster_files(file)?;
     for overlay in Overlays::files(&scenario) {
-        input_files.push(input_file(&base.join(overlay))?);
+        input_files.extend(raster_files(&base.join(overlay))?);
     }
     Ok((PreparedMap { ground, projection, scenario, lattice, document, input_files, warnings }, start, goals))
 }

@@ -27,6 +27,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         gravity_m_s2: None,
         clearance_m: None,
         accept_map_scale: *accept_map_scale,
+        no_data: None,
         quiet: *quiet,
     };
     let loaded = load(scenario, &common, None, EndOptions::NONE)?;

@@ -6,7 +6,7 @@ use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{BodyChoice, Overlays, Scenario, Transect, check_body, for_body, friction, sha256_of},
+    scenario::{BodyChoice, DemReading, Overlays, Scenario, Transect, check_body, for_body, friction, sha256_of},
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
@@ -24,9 +24,13 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
         output::warn(*quiet, &format!("--scenario {name} {reason}"));
     }
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(terrain, error);
-    let accepted = args.accept_map_scale || given.as_ref().is_some_and(|(scenario, _)| scenario.accept_map_scale);
+    let mut reading = given.as_ref().map_or_else(DemReading::default, |(scenario, _)| DemReading::of(scenario));
+    reading.accept_map_scale |= args.accept_map_scale;
+    if let Some(no_data) = args.no_data {
+        reading.options = reading.options.no_data(no_data);
+    }
     let body = given.as_ref().map(|(scenario, _)| &scenario.body);
-    let transect = read_transect(args, accepted, body)?;
+    let transect = read_transect(args, reading, body)?;
     if let Some(body) = body {
         check_body(body, transect.figure).map_err(|e| failed(&e))?;
     }
@@ -77,7 +81,7 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The ground along the slice, with the warnings about it.
-fn read_transect(args: &SliceArgs, accept_map_scale: bool, body: Option<&BodyChoice>) -> Result<Transect, Failure> {
+fn read_transect(args: &SliceArgs, reading: DemReading, body: Option<&BodyChoice>) -> Result<Transect, Failure> {
     let SliceArgs { terrain, via, via_lonlat, mesh_scale, .. } = args;
     let from = place("from", args.from, args.from_lonlat)?;
     let to = place("to", args.to, args.to_lonlat)?;
@@ -87,7 +91,8 @@ fn read_transect(args: &SliceArgs, accept_map_scale: bool, body: Option<&BodyCho
     };
     let of_mesh = || match (&from, &to) {
         (MapPlace::Metres(from), MapPlace::Metres(to)) if via_lonlat.is_empty() => {
-            Transect::of_mesh(terrain, mesh_scale.unwrap_or(1.0), [*from, *to], via).map_err(failed)
+            Transect::of_mesh(terrain, (mesh_scale.unwrap_or(1.0), reading.options.no_data_rule()), [*from, *to], via)
+                .map_err(failed)
         }
         _ => Err(Failure::message(
             "--from-lonlat, --to-lonlat, --via-lonlat: a mesh has no projection; give --from X,Y, --to X,Y and --via X,Y",
@@ -98,7 +103,7 @@ fn read_transect(args: &SliceArgs, accept_map_scale: bool, body: Option<&BodyCho
     }
     let between: Vec<MapPlace> =
         via.iter().copied().map(MapPlace::Metres).chain(via_lonlat.iter().copied().map(MapPlace::LonLat)).collect();
-    let transect = match Transect::of_dem(terrain, [&from, &to], &between, accept_map_scale) {
+    let transect = match Transect::of_dem(terrain, [&from, &to], &between, reading) {
         // A damaged mesh is reported by the mesh readers, which know the reason.
         Err(_) if named_as_mesh(terrain) => return of_mesh(),
         transect => transect.map_err(failed)?,

@@ -5,9 +5,10 @@ use std::io::{self, BufRead};
 
 use super::read::Problems;
 use super::tokens::{Token, Tokens};
+use crate::terrain::NoData;
 
 /// The no-data value if the header gives none (from the definition of the format).
-const DEFAULT_NO_DATA: f64 = -9999.0;
+pub(super) const DEFAULT_NO_DATA: f64 = -9999.0;
 
 /// Some editors write a byte order mark before the first key.
 const BYTE_ORDER_MARK: char = '\u{feff}';
@@ -24,7 +25,8 @@ pub(super) struct Header {
     pub(super) south_west: [f64; 2],
     pub(super) dx_m: f64,
     pub(super) dy_m: f64,
-    pub(super) no_data: f64,
+    /// `NODATA_value`, if given.
+    pub(super) no_data: Option<NoData>,
 }
 
 type Fields = BTreeMap<&'static str, Token>;
@@ -70,14 +72,19 @@ fn check_header(fields: &Fields, place: (usize, usize), problems: &mut Problems)
     let x = corner_or_centre(fields, "xllcorner", "xllcenter", dx_m, place, problems);
     let y = corner_or_centre(fields, "yllcorner", "yllcenter", dy_m, place, problems);
     let no_data = match fields.get("nodata_value") {
-        None => Some(DEFAULT_NO_DATA),
-        Some(token) if token.text.to_ascii_lowercase().contains("nan") => Some(f64::NAN),
-        Some(_) => number(fields, "nodata_value", place, problems),
+        None => None,
+        Some(token) => {
+            let value = token.text.parse::<NoData>().ok();
+            if value.is_none() {
+                problems.add(token, &format!("nodata_value {}", quoted(&token.text)), number_hint(&token.text));
+            }
+            value
+        }
     };
     if problems.count() > before {
         return None;
     }
-    Some(Header { rows: rows?, cols: cols?, south_west: [x?, y?], dx_m: dx_m?, dy_m: dy_m?, no_data: no_data? })
+    Some(Header { rows: rows?, cols: cols?, south_west: [x?, y?], dx_m: dx_m?, dy_m: dy_m?, no_data })
 }
 
 /// `cellsize`, or `dx` and `dy`.

@@ -4,11 +4,13 @@ use std::fs::File;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-use super::header::{Header, begins_with_key, number_hint, quoted, read_header};
+use super::header::{DEFAULT_NO_DATA, Header, begins_with_key, number_hint, quoted, read_header};
 use super::tokens::{Token, Tokens};
 use crate::quantity::MapPoint;
-use crate::terrain::georeference::refuse_degrees;
-use crate::terrain::{AsciiProblem, Dem, DemReader, GeoReference, TerrainError};
+use crate::terrain::dem::Posts;
+use crate::terrain::format::ReadContext;
+use crate::terrain::stored::{Decimals, Scaling, StoredRaster, StoredStep};
+use crate::terrain::{AsciiProblem, Dem, DemReader, GeoReference, NoData, NoDataRule, TerrainError};
 
 /// At most this many problems are listed; the others are counted.
 const LISTED_PROBLEMS: usize = 20;
@@ -28,14 +30,14 @@ impl DemReader for AsciiGridReader {
         begins_with_key(beginning)
     }
 
-    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError> {
-        read_ascii_grid_bytes(&bytes)
+    fn read_bytes(&self, bytes: Vec<u8>, context: &ReadContext) -> Result<Dem, TerrainError> {
+        read_text(&bytes[..], bytes.len() as u64, context)
     }
 
-    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
+    fn read_path(&self, path: &Path, context: &ReadContext) -> Result<Dem, TerrainError> {
         let file = File::open(path).map_err(TerrainError::reading)?;
         let length = file.metadata().map_err(TerrainError::reading)?.len();
-        read_text(BufReader::new(file), length)
+        read_text(BufReader::new(file), length, context)
     }
 }
 
@@ -57,17 +59,25 @@ impl DemReader for AsciiGridReader {
 /// # Ok::<(), chta::terrain::TerrainError>(())
 /// ```
 pub fn read_ascii_grid_bytes(bytes: &[u8]) -> Result<Dem, TerrainError> {
-    read_text(bytes, bytes.len() as u64)
+    read_text(bytes, bytes.len() as u64, &ReadContext::default())
 }
 
-fn read_text(source: impl BufRead, length: u64) -> Result<Dem, TerrainError> {
+fn read_text(source: impl BufRead, length: u64, context: &ReadContext) -> Result<Dem, TerrainError> {
     let mut problems = Problems::default();
     let mut tokens = Tokens::new(source);
     let header = read_header(&mut tokens, &mut problems).map_err(TerrainError::reading)?;
     let Some(header) = header else { return Err(problems.into_error()) };
     let posts = check_size(&header, length, &tokens, &mut problems);
     let Some(posts) = posts else { return Err(problems.into_error()) };
-    let elevations = read_elevations(&mut tokens, &header, posts, &mut problems).map_err(TerrainError::reading)?;
+    let no_data = context.sidecars.no_data(context.no_data, header.no_data)?;
+    // The format defines -9999 where nothing states another value, and the user does not either.
+    let no_data = match context.no_data {
+        NoDataRule::AsStated => no_data.or(Some(DEFAULT_NO_DATA.into())),
+        NoDataRule::Nothing | NoDataRule::Value(_) => no_data,
+    };
+    let scaling = context.sidecars.scaling(None)?;
+    let elevations = Elevations { header: &header, posts, no_data, scaling };
+    let (posts, decimals) = elevations.read(&mut tokens, &mut problems).map_err(TerrainError::reading)?;
     if problems.count() > 0 {
         return Err(problems.into_error());
     }
@@ -75,9 +85,17 @@ fn read_text(source: impl BufRead, length: u64) -> Result<Dem, TerrainError> {
     #[expect(clippy::cast_precision_loss, reason = "rows stay far below 2^53: each takes two bytes of the file")]
     let north = header.south_west[1] + (header.rows - 1) as f64 * header.dy_m;
     let georeference = GeoReference::local(MapPoint::new(header.south_west[0], north), header.dx_m, header.dy_m)?;
-    let dem = Dem::new(header.rows, header.cols, elevations, georeference)?;
-    refuse_degrees(&dem)?;
-    Ok(dem)
+    StoredRaster {
+        rows: header.rows,
+        cols: header.cols,
+        posts: Posts::Double(posts),
+        georeference,
+        states_metres: false,
+        south_up: false,
+        scaling,
+        step: StoredStep::of_decimals(decimals, scaling),
+    }
+    .finish(context)
 }
 
 /// A post takes at least a digit and a space, so a header that promises more than the file can hold is refused before memory
@@ -95,51 +113,65 @@ fn check_size<R: BufRead>(header: &Header, length: u64, tokens: &Tokens<R>, prob
     posts
 }
 
-fn read_elevations<R: BufRead>(
-    tokens: &mut Tokens<R>,
-    header: &Header,
+/// How the words after the header become elevations.
+struct Elevations<'a> {
+    header: &'a Header,
     posts: usize,
-    problems: &mut Problems,
-) -> std::io::Result<Vec<f64>> {
-    let mut elevations = Vec::with_capacity(posts.min(FIRST_RESERVE));
-    let mut surplus = 0_usize;
-    let mut first_surplus = None;
-    while let Some(token) = tokens.next()? {
-        if elevations.len() == posts {
-            surplus += 1;
-            first_surplus.get_or_insert(token);
-            continue;
+    no_data: Option<NoData>,
+    scaling: Scaling,
+}
+
+impl Elevations<'_> {
+    /// All elevations, and the most decimals that one of them has.
+    fn read<R: BufRead>(&self, tokens: &mut Tokens<R>, problems: &mut Problems) -> std::io::Result<(Vec<f64>, Decimals)> {
+        let Self { header, posts, no_data, scaling } = *self;
+        let mut decimals = Decimals::default();
+        let mut elevations = Vec::with_capacity(posts.min(FIRST_RESERVE));
+        let mut surplus = 0_usize;
+        let mut first_surplus = None;
+        while let Some(token) = tokens.next()? {
+            if elevations.len() == posts {
+                surplus += 1;
+                first_surplus.get_or_insert(token);
+                continue;
+            }
+            let value = parse_elevation(&token, no_data, scaling);
+            if value.is_some_and(|value| !value.is_nan()) {
+                decimals.see(&token.text);
+            }
+            if value.is_none() {
+                let (row, col) = (elevations.len() / header.cols + 1, elevations.len() % header.cols + 1);
+                let expected =
+                    format!("{} for row {row} of {}, column {col} of {}", number_hint(&token.text), header.rows, header.cols);
+                problems.add(&token, &quoted(&token.text), &expected);
+            }
+            elevations.push(value.unwrap_or(f64::NAN));
         }
-        let value = parse_elevation(&token, header.no_data);
-        if value.is_none() {
-            let (row, col) = (elevations.len() / header.cols + 1, elevations.len() % header.cols + 1);
-            let expected =
-                format!("{} for row {row} of {}, column {col} of {}", number_hint(&token.text), header.rows, header.cols);
-            problems.add(&token, &quoted(&token.text), &expected);
+        if let Some(token) = first_surplus {
+            problems.add(
+                &token,
+                &format!("{surplus} values too many"),
+                &format!("{posts} (nrows {} times ncols {}); mend the header or remove them", header.rows, header.cols),
+            );
         }
-        elevations.push(value.unwrap_or(f64::NAN));
+        if elevations.len() < posts {
+            problems.add_at(
+                tokens.place(),
+                &format!("the end of the file after {} values", elevations.len()),
+                &format!("{posts} (nrows {} times ncols {}); the file is cut short or its header wrong", header.rows, header.cols),
+            );
+        }
+        Ok((elevations, decimals))
     }
-    if let Some(token) = first_surplus {
-        problems.add(
-            &token,
-            &format!("{surplus} values too many"),
-            &format!("{posts} (nrows {} times ncols {}); mend the header or remove them", header.rows, header.cols),
-        );
-    }
-    if elevations.len() < posts {
-        problems.add_at(
-            tokens.place(),
-            &format!("the end of the file after {} values", elevations.len()),
-            &format!("{posts} (nrows {} times ncols {}); the file is cut short or its header wrong", header.rows, header.cols),
-        );
-    }
-    Ok(elevations)
 }
 
 /// NaN for no-data, `None` for an invalid elevation.
-fn parse_elevation(token: &Token, no_data: f64) -> Option<f64> {
+fn parse_elevation(token: &Token, no_data: Option<NoData>, scaling: Scaling) -> Option<f64> {
     let value = token.text.parse::<f64>().ok()?;
-    if value.is_nan() || value == no_data { Some(f64::NAN) } else { value.is_finite().then_some(value) }
+    if value.is_nan() || no_data.is_some_and(|mark| mark.is_double(value)) {
+        return Some(f64::NAN);
+    }
+    value.is_finite().then(|| if scaling == Scaling::NONE { value } else { scaling.apply(value) })
 }
 
 /// Problems in the order in which they are found.

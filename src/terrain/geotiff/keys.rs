@@ -3,6 +3,7 @@
 use super::{key, tag, units};
 use crate::quantity::MapPoint;
 use crate::terrain::projection::states_a_map;
+use crate::terrain::sidecar::Transform;
 use crate::terrain::{CoordinateSystem, GeoReference, TerrainError, TransformTags};
 
 /// A rotation or shear below this fraction of the spacing is attributed to rounding in the file.
@@ -47,15 +48,23 @@ impl GeoTags {
         }
     }
 
-    /// Checks units and transform, and computes the position of the raster's posts.
+    /// Checks units and transform, and computes the position of the raster's posts. A raster that states no transform has the one
+    /// that stands beside it.
     ///
     /// # Errors
     /// [`TerrainError::Unsuitable`] for degrees, other units than metres, rotated or mirrored transforms, or no transform.
-    pub(super) fn place(self, rows: usize) -> Result<Placement, TerrainError> {
+    pub(super) fn place(self, rows: usize, beside: Option<Transform>) -> Result<Placement, TerrainError> {
         units::check(&self.coordinate_system)?;
         let states_metres = states_a_map(&self.coordinate_system);
         let post_at_tie = short_key(&self.coordinate_system, key::RASTER_TYPE) == Some(key::PIXEL_IS_POINT);
-        let lattice = Lattice::of(&self.transform, if post_at_tie { 0.0 } else { 0.5 })?;
+        let states_none = self.transform.pixel_scale.is_empty()
+            && self.transform.tie_points.is_empty()
+            && self.transform.transformation.is_empty();
+        let lattice = match beside.filter(|_| states_none) {
+            // World files and the like give the centres of the posts.
+            Some([a, b, c, d, e, f]) => Lattice::of_matrix([a, b, c, d, e, f], 0.0)?,
+            None => Lattice::of(&self.transform, if post_at_tie { 0.0 } else { 0.5 })?,
+        };
         let south_up = lattice.step_y > 0.0;
         #[expect(clippy::cast_precision_loss, reason = "rows stay below 2^32")]
         let last_row = (rows.saturating_sub(1)) as f64;
@@ -210,7 +219,7 @@ mod tests {
     }
 
     fn place(entries: &[[u16; 4]], transform: TransformTags) -> Result<Placement, TerrainError> {
-        GeoTags { coordinate_system: keys(entries), transform }.place(11)
+        GeoTags { coordinate_system: keys(entries), transform }.place(11, None)
     }
 
     #[test]
@@ -255,9 +264,9 @@ mod tests {
         }
         let mut own_unit = keys(&[[1024, 0, 1, 1], [3076, 0, 1, 32767], [3077, 34736, 1, 0]]);
         own_unit.double_parameters = vec![1.0];
-        assert!(GeoTags { coordinate_system: own_unit.clone(), transform: scaled() }.place(2).is_ok());
+        assert!(GeoTags { coordinate_system: own_unit.clone(), transform: scaled() }.place(2, None).is_ok());
         own_unit.double_parameters = vec![1000.0];
-        assert!(GeoTags { coordinate_system: own_unit, transform: scaled() }.place(2).is_err());
+        assert!(GeoTags { coordinate_system: own_unit, transform: scaled() }.place(2, None).is_err());
         assert_eq!((units::feet("NAD83 / Texas Central (ftUS)"), units::feet("Craft 1")), (Some(9003), None));
     }
 

@@ -11,8 +11,8 @@ mod units;
 mod write;
 
 pub(super) use keys::{double_key, short_key, text_key};
-pub(super) use read::GeoTiffReader;
 pub use read::read_geotiff_bytes;
+pub(super) use read::{GeoTiffReader, TiffImage};
 #[cfg(feature = "gdal")]
 pub(super) use read::{Placed, place_by_tags};
 pub use write::{Band, ResultBands, geotiff_bytes, result_geotiff_bytes, write_geotiff};

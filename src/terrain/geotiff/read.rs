@@ -7,10 +7,13 @@ use tiff_reader::{OpenOptions, TiffError, TiffFile};
 
 use super::image::{Images, damaged};
 use super::keys::{GeoTags, Placement};
-use super::metadata::{NoData, Scaling, read_scaling};
+use super::metadata::{read_no_data, read_scaling};
 use super::samples::{Decoder, Elevations, largest_unpacked};
 use super::tag;
-use crate::terrain::georeference::refuse_degrees;
+use crate::terrain::dem::Posts;
+use crate::terrain::format::ReadContext;
+use crate::terrain::parts::{CheckedParts, StoredParts};
+use crate::terrain::stored::{Scaling, StoredRaster, StoredStep};
 use crate::terrain::window::turn_round;
 use crate::terrain::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
 
@@ -26,17 +29,18 @@ impl DemReader for GeoTiffReader {
         [b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| beginning.starts_with(*magic))
     }
 
-    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError> {
-        read_geotiff_bytes(bytes)
+    fn read_bytes(&self, bytes: Vec<u8>, context: &ReadContext) -> Result<Dem, TerrainError> {
+        let options = whole_options(bytes.len() as u64);
+        read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?, context)
     }
 
-    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
+    fn read_path(&self, path: &Path, context: &ReadContext) -> Result<Dem, TerrainError> {
         let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
-        read_tiff(&TiffFile::open_with_options(path, whole_options(length)).map_err(open_error)?)
+        read_tiff(&TiffFile::open_with_options(path, whole_options(length)).map_err(open_error)?, context)
     }
 
-    fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
-        open_tiff(path)
+    fn open_path(&self, path: &Path, context: ReadContext) -> Result<Box<dyn DemFile>, TerrainError> {
+        open_tiff(path, context)
     }
 }
 
@@ -52,8 +56,7 @@ impl DemReader for GeoTiffReader {
 /// bands or images, degrees, other units, or a rotated map or none; [`TerrainError::InvalidDem`] if the numbers do not form a
 /// raster.
 pub fn read_geotiff_bytes(bytes: Vec<u8>) -> Result<Dem, TerrainError> {
-    let options = whole_options(bytes.len() as u64);
-    read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?)
+    GeoTiffReader.read_bytes(bytes, &ReadContext::default())
 }
 
 /// Stricter limits than the defaults: a DEM has few images, and its data must not unpack to more than the file's length can
@@ -78,34 +81,43 @@ fn open_error(error: TiffError) -> TerrainError {
     }
 }
 
-fn read_tiff(file: &TiffFile) -> Result<Dem, TerrainError> {
+fn read_tiff(file: &TiffFile, context: &ReadContext) -> Result<Dem, TerrainError> {
     let images = Images::of(file)?;
-    let (decoder, Placement { georeference, south_up, states_metres }) = check_tags(file, &images)?;
+    let (decoder, Placement { georeference, south_up, states_metres }) = check_tags(file, &images, context)?;
     let (rows, cols) = (images.layout.height, images.layout.width);
-    let dem = match decoder.all(file, &images)? {
+    let posts = match decoder.all(file, &images)? {
         Elevations::Single(mut posts) => {
             turn_round(&mut posts, cols, south_up);
-            Dem::from_single(rows, cols, posts, georeference)?
+            Posts::Single(posts)
         }
         Elevations::Double(mut posts) => {
             turn_round(&mut posts, cols, south_up);
-            Dem::new(rows, cols, posts, georeference)?
+            Posts::Double(posts)
         }
     };
-    if !states_metres {
-        refuse_degrees(&dem)?;
-    }
-    Ok(dem)
+    let (scaling, step) = (decoder.scaling, step(&images, decoder.scaling));
+    StoredRaster { rows, cols, posts, georeference, states_metres, south_up, scaling, step }.finish(context)
 }
 
 /// The interpretation of the samples and their position.
-fn check_tags(file: &TiffFile, images: &Images<'_>) -> Result<(Decoder, Placement), TerrainError> {
+fn check_tags(file: &TiffFile, images: &Images<'_>, context: &ReadContext) -> Result<(Decoder, Placement), TerrainError> {
+    let ReadContext { no_data: rule, sidecars } = context;
     let tags = GeoTags::of(images.elevations);
-    let no_data = tags.transform.no_data.as_deref().map(NoData::parse).transpose()?.flatten();
+    let own = tags.transform.no_data.as_deref().map(read_no_data).transpose()?.flatten();
+    let no_data = sidecars.no_data(*rule, own)?;
     let metadata = images.elevations.tag(tag::GDAL_METADATA).and_then(|tag| tag.value.as_str());
-    let scaling = metadata.map_or(Ok(Scaling::NONE), read_scaling)?;
-    let placement = tags.place(images.layout.height)?;
+    let scaling = sidecars.scaling(metadata.map(read_scaling).transpose()?.flatten())?;
+    let placement = tags.place(images.layout.height, sidecars.transform())?;
     Ok((Decoder::new(file, images, no_data, scaling)?, placement))
+}
+
+/// The step of the stored samples.
+fn step(images: &Images<'_>, scaling: Scaling) -> StoredStep {
+    match (images.layout.sample_format, images.layout.bits_per_sample) {
+        (3, 32) => StoredStep::Single(scaling),
+        (3, _) => StoredStep::Fine,
+        _ => StoredStep::Fixed(scaling.scale.abs()),
+    }
 }
 
 /// A GeoTIFF whose tiles or strips are decoded on demand.
@@ -114,32 +126,36 @@ struct OpenGeoTiff {
     decoder: Decoder,
     lattice: PostLattice,
     south_up: bool,
+    step: StoredStep,
 }
 
 /// The size of the cache of decoded blocks, in bytes and in blocks: a transect only returns to adjacent blocks.
 const KEPT_BYTES: usize = 8 << 20;
 const KEPT_BLOCKS: usize = 4;
 
-fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
+fn open_tiff(path: &Path, context: ReadContext) -> Result<Box<dyn DemFile>, TerrainError> {
     let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
     let mut options = open_options(length);
     let block = {
         let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
         let images = Images::of(&file)?;
-        let (_, Placement { georeference, states_metres, .. }) = check_tags(&file, &images)?;
+        let (_, Placement { georeference, states_metres, .. }) = check_tags(&file, &images, &context)?;
         let (rows, cols) = (images.layout.height, images.layout.width);
         // Degrees can only be detected from the relief of the whole raster.
-        if !states_metres && georeference.bounds(rows, cols).may_be_degrees() {
-            return Ok(Box::new(read_tiff(&file)?));
+        if !states_metres && !context.sidecars.states_map() && georeference.bounds(rows, cols).may_be_degrees() {
+            return Ok(Box::new(read_tiff(&file, &context)?));
         }
         block_bytes(&images)
     };
     options.block_cache_bytes = block.saturating_mul(KEPT_BLOCKS).max(KEPT_BYTES);
     let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
     let images = Images::of(&file)?;
-    let (decoder, Placement { georeference, south_up, .. }) = check_tags(&file, &images)?;
-    let lattice = PostLattice::new(images.layout.height, images.layout.width, georeference)?;
-    Ok(Box::new(OpenGeoTiff { file, decoder, lattice, south_up }))
+    let (decoder, Placement { georeference, south_up, .. }) = check_tags(&file, &images, &context)?;
+    let (rows, cols) = (images.layout.height, images.layout.width);
+    let (georeference, _) = context.sidecars.place(georeference, (rows, cols), south_up)?;
+    let lattice = PostLattice::new(rows, cols, georeference)?;
+    let step = step(&images, decoder.scaling);
+    Ok(Box::new(CheckedParts::new(OpenGeoTiff { file, decoder, lattice, south_up, step }, context)))
 }
 
 /// Number of bytes of a decoded tile or strip.
@@ -153,9 +169,21 @@ fn block_bytes(images: &Images<'_>) -> usize {
     rows.saturating_mul(cols).saturating_mul(usize::from(images.layout.bits_per_sample).div_ceil(8))
 }
 
-impl DemFile for OpenGeoTiff {
+impl StoredParts for OpenGeoTiff {
     fn lattice(&self) -> &PostLattice {
         &self.lattice
+    }
+
+    fn south_up(&self) -> bool {
+        self.south_up
+    }
+
+    fn scaling(&self) -> Scaling {
+        self.decoder.scaling
+    }
+
+    fn step(&self) -> StoredStep {
+        self.step
     }
 
     fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError> {
@@ -180,6 +208,49 @@ pub(in crate::terrain) struct Placed {
 pub(in crate::terrain) fn place_by_tags(bytes: Vec<u8>, rows: usize) -> Result<Placed, TerrainError> {
     let options = open_options(bytes.len() as u64);
     let file = TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?;
-    let Placement { georeference, south_up, states_metres } = GeoTags::of(Images::of(&file)?.elevations).place(rows)?;
+    let Placement { georeference, south_up, states_metres } = GeoTags::of(Images::of(&file)?.elevations).place(rows, None)?;
     Ok(Placed { georeference, south_up, states_metres })
+}
+
+/// A single image without a place, of which windows are read: a mask beside a raster.
+pub(in crate::terrain) struct TiffImage(TiffFile);
+
+impl std::fmt::Debug for TiffImage {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter.write_str("TiffImage")
+    }
+}
+
+impl TiffImage {
+    /// # Errors
+    /// As [`read_geotiff_bytes`], for what makes a TIFF.
+    pub(in crate::terrain) fn open(path: &Path) -> Result<Self, TerrainError> {
+        let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
+        let file = TiffFile::open_with_options(path, open_options(length)).map_err(open_error)?;
+        let checked = file.ifds().first().ok_or_else(|| damaged("it has no image".to_owned()))?;
+        checked.raster_layout().map_err(|error| damaged(error.to_string()))?;
+        Ok(Self(file))
+    }
+
+    /// Whether its samples can be those of a mask.
+    pub(in crate::terrain) fn is_mask(&self) -> bool {
+        self.0.ifds().first().is_some_and(|image| {
+            image.samples_per_pixel() == 1 && image.raster_layout().is_ok_and(|layout| layout.bits_per_sample <= 8)
+        })
+    }
+
+    /// Number of rows and columns.
+    pub(in crate::terrain) fn size(&self) -> (usize, usize) {
+        let layout = self.0.ifds().first().and_then(|image| image.raster_layout().ok());
+        layout.map_or((0, 0), |layout| (layout.height, layout.width))
+    }
+
+    /// The samples of a window.
+    ///
+    /// # Errors
+    /// [`TerrainError::Damaged`].
+    pub(in crate::terrain) fn bytes(&self, window: Window) -> Result<Vec<u8>, TerrainError> {
+        let image = self.0.ifds().first().ok_or_else(|| damaged("it has no image".to_owned()))?;
+        super::samples::bytes(&self.0, image, window)
+    }
 }

@@ -3,8 +3,8 @@
 use tiff_reader::{Ifd, RasterLayout, TiffFile, TiffSample};
 
 use super::image::{Images, damaged};
-use super::metadata::{NoData, Scaling};
-use crate::terrain::{TerrainError, Window};
+use crate::terrain::stored::Scaling;
+use crate::terrain::{NoData, TerrainError, Window};
 
 /// The least number of rows decoded at once: enough work for the decoder's threads, little memory compared with the raster.
 const ROWS_AT_ONCE: usize = 256;
@@ -197,6 +197,11 @@ fn check_size(file: &TiffFile, images: &Images<'_>) -> Result<(), TerrainError> 
 fn block_lengths(image: &Ifd) -> Vec<u64> {
     let lengths = if image.is_tiled() { image.tile_byte_counts() } else { image.strip_byte_counts() };
     lengths.unwrap_or_default()
+}
+
+/// The 8-bit samples of a window of an image.
+pub(super) fn bytes(file: &TiffFile, image: &Ifd, window: Window) -> Result<Vec<u8>, TerrainError> {
+    Reading { file, image, window }.samples()
 }
 
 /// A window of one image.

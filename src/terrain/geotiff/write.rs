@@ -214,7 +214,7 @@ fn fill_tile<T: Copy>(tile: &mut [T], raster: &Raster<'_, T>, first_row: usize, 
 /// The tags of the map: the original ones if they still describe the raster, else the north-west post as the tie point.
 fn map_tags(map: &GeoReference, rows: usize) -> Vec<Tag> {
     let system = &map.coordinate_system;
-    let old = GeoTags { coordinate_system: system.clone(), transform: map.transform_tags.clone() }.place(rows);
+    let old = GeoTags { coordinate_system: system.clone(), transform: map.transform_tags.clone() }.place(rows, None);
     let still_true = old.is_ok_and(|placement| !placement.south_up && placement.georeference == *map);
     let mut tags = Vec::new();
     let directory = if still_true {

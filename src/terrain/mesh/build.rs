@@ -3,7 +3,7 @@
 use nalgebra::Point3;
 
 use super::model::{Mesh, normal_of};
-use crate::terrain::TerrainError;
+use crate::terrain::{NoData, TerrainError};
 
 /// A mesh under construction.
 #[derive(Debug)]
@@ -71,6 +71,26 @@ impl MeshBuilder {
             }
         }
         self.triangles.extend(fan);
+        Ok(())
+    }
+
+    /// Removes the triangles that have a corner at a height which marks missing data.
+    ///
+    /// # Errors
+    /// [`TerrainError::InvalidMesh`] if no triangle is left.
+    pub(super) fn remove_missing(&mut self, mark: NoData) -> Result<(), TerrainError> {
+        let scale = self.scale;
+        let missing: Vec<bool> = self.vertices.iter().map(|vertex| mark.is_double(vertex.z / scale)).collect();
+        let before = self.triangles.len();
+        self.triangles.retain(|corners| corners.iter().all(|corner| !missing[*corner as usize]));
+        if self.triangles.is_empty() && before > 0 {
+            return Err(TerrainError::InvalidMesh(format!(
+                "every triangle of the mesh has a corner at {mark}, which terrain.no_data states as missing, expected triangles of ground; \
+                 state another value"
+            )));
+        }
+        // The vertices stay, so that indices stay, but their heights, which no triangle uses, may be beyond all limits.
+        self.vertices.iter_mut().zip(&missing).filter(|(_, missing)| **missing).for_each(|(vertex, _)| vertex.z = 0.0);
         Ok(())
     }
 

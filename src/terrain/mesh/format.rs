@@ -5,8 +5,8 @@ use std::io::Read;
 use std::path::Path;
 
 use super::build::MeshBuilder;
-use super::{Mesh, obj, ply, stl};
-use crate::terrain::TerrainError;
+use super::{Mesh, obj, ply, stl, voids};
+use crate::terrain::{NoDataRule, TerrainError};
 
 /// Number of bytes of a file that are examined to recognise a mesh: comments may precede the first statement.
 const PROBE_BYTES: u64 = 1 << 16;
@@ -67,8 +67,17 @@ pub fn looks_like_mesh(path: &Path) -> bool {
 /// [`TerrainError::InFile`] with the cause: the file cannot be read, has no known format, is damaged, or holds no valid
 /// surface.
 pub fn read_mesh(path: &Path, scale: f64) -> Result<MeshFile, TerrainError> {
+    read_mesh_with(path, scale, NoDataRule::AsStated)
+}
+
+/// Reads a mesh file as [`read_mesh`], with a rule for heights, in the file's unit, that mark missing data: triangles at a stated
+/// mark are left out.
+///
+/// # Errors
+/// As [`read_mesh`], and [`TerrainError::Void`] for a usual mark that is not stated and is no ground.
+pub fn read_mesh_with(path: &Path, scale: f64, no_data: NoDataRule) -> Result<MeshFile, TerrainError> {
     let bytes = fs::read(path).map_err(|error| TerrainError::reading(error).in_file(path))?;
-    read_mesh_bytes(&bytes, scale).map_err(|error| error.in_file(path))
+    read_bytes(&bytes, scale, no_data).map_err(|error| error.in_file(path))
 }
 
 /// Reads a whole mesh file from memory. Memory use is a small multiple of its length, whatever counts the file declares.
@@ -86,6 +95,10 @@ pub fn read_mesh(path: &Path, scale: f64) -> Result<MeshFile, TerrainError> {
 /// # Ok::<(), chta::terrain::TerrainError>(())
 /// ```
 pub fn read_mesh_bytes(bytes: &[u8], scale: f64) -> Result<MeshFile, TerrainError> {
+    read_bytes(bytes, scale, NoDataRule::AsStated)
+}
+
+fn read_bytes(bytes: &[u8], scale: f64, no_data: NoDataRule) -> Result<MeshFile, TerrainError> {
     if !(scale > 0.0 && scale.is_finite()) {
         return Err(TerrainError::InvalidMesh(format!("mesh_scale is {scale}, expected metres per unit of the file, more than 0")));
     }
@@ -97,7 +110,13 @@ pub fn read_mesh_bytes(bytes: &[u8], scale: f64) -> Result<MeshFile, TerrainErro
         Some(MeshFormat::Ply) => ply::read(bytes, &mut builder),
         None => Err(not_recognised(bytes)),
     }?;
+    if let NoDataRule::Value(mark) = no_data {
+        builder.remove_missing(mark)?;
+    }
     let (mesh, warnings) = builder.finish()?;
+    if no_data == NoDataRule::AsStated {
+        voids::refuse_voids(&mesh, scale)?;
+    }
     Ok(MeshFile { mesh, warnings })
 }
 

@@ -24,7 +24,8 @@ mod ply;
 mod slice;
 mod stl;
 mod text;
+mod voids;
 
-pub use format::{MESH_FORMATS, MeshFile, looks_like_mesh, read_mesh, read_mesh_bytes};
+pub use format::{MESH_FORMATS, MeshFile, looks_like_mesh, read_mesh, read_mesh_bytes, read_mesh_with};
 pub use model::{Mesh, MeshBounds};
 pub use slice::{Layers, MeshSlice, WALL_RUN_M, Wall, slice_mesh};

@@ -7,7 +7,11 @@ use std::path::{Path, PathBuf};
 use super::image::ImageObject;
 use super::label::{LONGEST_LABEL, Label, shown, unsuitable};
 use super::projection::place;
-use crate::terrain::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
+use crate::terrain::dem::Posts;
+use crate::terrain::format::ReadContext;
+use crate::terrain::parts::{CheckedParts, StoredParts};
+use crate::terrain::stored::{Scaling, StoredRaster, StoredStep};
+use crate::terrain::{Dem, DemFile, DemReader, NoData, NoDataRule, PostLattice, TerrainError, Window};
 
 /// The reader of the PDS3 format.
 pub(in crate::terrain) struct Pds3Reader;
@@ -23,16 +27,22 @@ impl DemReader for Pds3Reader {
             && head.windows(14).any(|window| window == b"PDS_VERSION_ID")
     }
 
-    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError> {
-        read_pds3_bytes(bytes)
+    fn read_bytes(&self, bytes: Vec<u8>, context: &ReadContext) -> Result<Dem, TerrainError> {
+        let label = Label::parse(&bytes[..bytes.len().min(LONGEST_LABEL)])?;
+        let image = ImageObject::of(&label)?;
+        if let Some(name) = &image.file {
+            let found = format!("its image in another file, {}", shown(name));
+            return Err(unsuitable(found, "label and image on disk side by side"));
+        }
+        OpenPds3::new(&label, image, Source::Bytes(bytes), context)?.read_all(context)
     }
 
-    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
-        open_file(path)?.read_all()
+    fn read_path(&self, path: &Path, context: &ReadContext) -> Result<Dem, TerrainError> {
+        open_file(path, context)?.read_all(context)
     }
 
-    fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
-        Ok(Box::new(open_file(path)?))
+    fn open_path(&self, path: &Path, context: ReadContext) -> Result<Box<dyn DemFile>, TerrainError> {
+        Ok(Box::new(CheckedParts::new(open_file(path, &context)?, context)))
     }
 }
 
@@ -47,15 +57,10 @@ impl DemReader for Pds3Reader {
 /// another file, or does not describe a north-up map of elevations; [`TerrainError::InvalidDem`] if the numbers do not form a
 /// raster.
 pub fn read_pds3_bytes(bytes: Vec<u8>) -> Result<Dem, TerrainError> {
-    let label = Label::parse(&bytes[..bytes.len().min(LONGEST_LABEL)])?;
-    let image = ImageObject::of(&label)?;
-    if let Some(name) = &image.file {
-        return Err(unsuitable(format!("its image in another file, {}", shown(name)), "label and image on disk side by side"));
-    }
-    OpenPds3::new(&label, image, Source::Bytes(bytes))?.read_all()
+    Pds3Reader.read_bytes(bytes, &ReadContext::default())
 }
 
-fn open_file(path: &Path) -> Result<OpenPds3, TerrainError> {
+fn open_file(path: &Path, context: &ReadContext) -> Result<OpenPds3, TerrainError> {
     let mut beginning = Vec::new();
     let file = File::open(path).map_err(TerrainError::reading)?;
     (&file).take(LONGEST_LABEL as u64).read_to_end(&mut beginning).map_err(TerrainError::reading)?;
@@ -68,7 +73,7 @@ fn open_file(path: &Path) -> Result<OpenPds3, TerrainError> {
             File::open(&beside).map_err(|error| TerrainError::reading(error).in_file(&beside))?
         }
     };
-    OpenPds3::new(&label, image, Source::File(file))
+    OpenPds3::new(&label, image, Source::File(file), context)
 }
 
 /// The file of a detached label: a file of that name in the same folder, in the label's case, in lower or in upper case.
@@ -123,11 +128,21 @@ struct OpenPds3 {
     line_bytes: usize,
     source: Source,
     lattice: PostLattice,
+    /// Of the user or a sidecar file, beside the marks of the label.
+    no_data: Option<NoData>,
 }
 
 impl OpenPds3 {
-    fn new(label: &Label, image: ImageObject, source: Source) -> Result<Self, TerrainError> {
-        let georeference = place(label)?;
+    fn new(label: &Label, mut image: ImageObject, source: Source, context: &ReadContext) -> Result<Self, TerrainError> {
+        let ReadContext { no_data: rule, sidecars } = context;
+        let no_data = sidecars.no_data(*rule, None)?;
+        if *rule != NoDataRule::AsStated {
+            image.marks.clear();
+        }
+        let own = Scaling { scale: image.scale, offset_m: image.offset };
+        let scaling = sidecars.scaling((own != Scaling::NONE).then_some(own))?;
+        (image.scale, image.offset) = (scaling.scale, scaling.offset_m);
+        let (georeference, _) = sidecars.place(place(label)?, (image.rows, image.cols), false)?;
         let length = source.length()?;
         let Some((line_bytes, _)) = image.extent().filter(|(_, end)| *end <= length) else {
             return Err(damaged(format!(
@@ -139,17 +154,27 @@ impl OpenPds3 {
             )));
         };
         let lattice = PostLattice::new(image.rows, image.cols, georeference)?;
-        Ok(Self { image, line_bytes, source, lattice })
+        Ok(Self { image, line_bytes, source, lattice, no_data })
     }
 
-    fn read_all(&self) -> Result<Dem, TerrainError> {
+    fn read_all(&self, context: &ReadContext) -> Result<Dem, TerrainError> {
         let ImageObject { rows, cols, .. } = self.image;
         let mut posts = Vec::new();
         posts.try_reserve_exact(rows * cols).map_err(|error| damaged(error.to_string()))?;
         for row in 0..rows {
             self.append(row, 0, cols, &mut posts)?;
         }
-        Dem::new(rows, cols, posts, self.lattice.georeference().clone())
+        StoredRaster {
+            rows,
+            cols,
+            posts: Posts::Double(posts),
+            georeference: self.lattice.georeference().clone(),
+            states_metres: true,
+            south_up: false,
+            scaling: self.scaling(),
+            step: self.step(),
+        }
+        .finish(context)
     }
 
     /// Appends the elevations of part of a line.
@@ -159,26 +184,34 @@ impl OpenPds3 {
         let skipped = row * self.line_bytes + image.prefix + first_col * width;
         let mut bytes = vec![0; cols * width];
         self.source.read(image.start + skipped as u64, &mut bytes)?;
-        for (index, sample) in bytes.chunks_exact(width).enumerate() {
+        posts.extend(bytes.chunks_exact(width).map(|sample| {
             let stored = image.sample.decode(sample, &image.marks);
-            if stored == -32768.0 && image.sample.is_16_bit_signed() {
-                return Err(unsuitable(
-                    format!(
-                        "the sample -32768 at line {row}, sample {} (from 0), which looks like missing data",
-                        first_col + index
-                    ),
-                    "MISSING_CONSTANT = -32768 in its IMAGE object",
-                ));
-            }
-            posts.push(image.elevation(stored));
-        }
+            if self.no_data.is_some_and(|mark| mark.is_double(stored)) { f64::NAN } else { image.elevation(stored) }
+        }));
         Ok(())
     }
 }
 
-impl DemFile for OpenPds3 {
+impl StoredParts for OpenPds3 {
     fn lattice(&self) -> &PostLattice {
         &self.lattice
+    }
+
+    fn south_up(&self) -> bool {
+        false
+    }
+
+    fn scaling(&self) -> Scaling {
+        let ImageObject { scale, offset, metres_per_unit, .. } = self.image;
+        Scaling { scale: scale * metres_per_unit, offset_m: offset * metres_per_unit }
+    }
+
+    fn step(&self) -> StoredStep {
+        match self.image.sample.float_bits() {
+            None => StoredStep::Fixed(self.scaling().scale.abs()),
+            Some(32) => StoredStep::Single(self.scaling()),
+            Some(_) => StoredStep::Fine,
+        }
     }
 
     fn window(&self, Window { first_row, first_col, rows, cols }: Window) -> Result<Vec<f64>, TerrainError> {

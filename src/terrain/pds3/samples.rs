@@ -65,9 +65,9 @@ impl SampleType {
         self.bytes
     }
 
-    /// The type whose lowest number usually means missing data, declared or not.
-    pub(super) fn is_16_bit_signed(self) -> bool {
-        self.kind == Kind::Signed && self.bytes == 2
+    /// The number of bits of a real; `None` for integers.
+    pub(super) fn float_bits(self) -> Option<usize> {
+        matches!(self.kind, Kind::Real | Kind::VaxReal).then_some(8 * self.bytes)
     }
 
     /// The sample's bits, in the low bits.

@@ -303,6 +303,11 @@ mod tests {
         refused!("GEOCCS[\"g\"]", CrsError::NotProjected { .. }, "geocentric");
         refused!("LOCAL_CS[\"l\"]", CrsError::NotProjected { .. }, "local");
         refused!("VERT_CS[\"l\"]", CrsError::NotProjected { .. }, "heights");
+        let depths = format!(
+            "COMPD_CS[\"c\",{},VERT_CS[\"d\",VERT_DATUM[\"d\",2005],UNIT[\"metre\",1],AXIS[\"Depth\",DOWN]]]",
+            moon("Sinusoidal", "")
+        );
+        refused!(&depths, CrsError::Contradiction { .. }, "downwards");
         refused!("GARDEN[\"l\"]", CrsError::NotRecognised { .. }, "GARDEN");
         refused!("PROJCS[\"l\"", CrsError::Syntax { .. }, "byte 10");
         let grid = "PROJCS[\"w\",EXTENSION[\"PROJ4\",\"+proj=merc +a=6378137 +b=6378137 +nadgrids=a.gsb +units=m\"]]";

@@ -88,6 +88,13 @@ fn projected<'a, 'b>(node: &'a Node<'b>, root: &Node<'_>) -> Result<&'a Node<'b>
         for unit in units {
             check_unit(unit, "elevations", 1.0, "metres")?;
         }
+        let axes = node.children().filter(|child| child.is(&VERTICAL)).filter_map(|vertical| vertical.find(&["AXIS"]));
+        if axes.filter_map(Node::word).any(|direction| direction.eq_ignore_ascii_case("DOWN")) {
+            return Err(CrsError::Contradiction {
+                found: "depths, which are counted downwards".to_owned(),
+                expected: "heights counted upwards",
+            });
+        }
         return inside(node);
     }
     if node.is(&["BOUNDCRS", "SOURCECRS"]) {

@@ -8,7 +8,9 @@ use super::axis::{Axis, OFF_PLACE};
 use super::rows::{Row, begins_with_post, read_rows};
 use crate::quantity::MapPoint;
 use crate::terrain::ascii_grid::Problems;
-use crate::terrain::georeference::refuse_degrees;
+use crate::terrain::dem::Posts;
+use crate::terrain::format::ReadContext;
+use crate::terrain::stored::{Scaling, StoredRaster, StoredStep};
 use crate::terrain::{Dem, DemReader, GeoReference, TerrainError};
 
 /// The greatest number of lattice posts per line, beyond [`FREE_POSTS`]: the lattice of a strip rotated by 45 degrees is
@@ -28,12 +30,12 @@ impl DemReader for XyzReader {
         begins_with_post(beginning)
     }
 
-    fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError> {
-        read_xyz_bytes(&bytes)
+    fn read_bytes(&self, bytes: Vec<u8>, context: &ReadContext) -> Result<Dem, TerrainError> {
+        read_text(&bytes[..], context)
     }
 
-    fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
-        read_text(BufReader::new(File::open(path).map_err(TerrainError::reading)?))
+    fn read_path(&self, path: &Path, context: &ReadContext) -> Result<Dem, TerrainError> {
+        read_text(BufReader::new(File::open(path).map_err(TerrainError::reading)?), context)
     }
 }
 
@@ -56,12 +58,23 @@ impl DemReader for XyzReader {
 /// # Ok::<(), chta::terrain::TerrainError>(())
 /// ```
 pub fn read_xyz_bytes(bytes: &[u8]) -> Result<Dem, TerrainError> {
-    read_text(bytes)
+    read_text(bytes, &ReadContext::default())
 }
 
-fn read_text(source: impl BufRead) -> Result<Dem, TerrainError> {
+fn read_text(source: impl BufRead, context: &ReadContext) -> Result<Dem, TerrainError> {
+    let no_data = context.sidecars.no_data(context.no_data, None)?;
+    let scaling = context.sidecars.scaling(None)?;
     let mut problems = Problems::default();
-    let rows = read_rows(source, &mut problems).map_err(TerrainError::reading)?;
+    let (mut rows, decimals) = read_rows(source, &mut problems).map_err(TerrainError::reading)?;
+    for row in &mut rows {
+        row.z = if no_data.is_some_and(|mark| mark.is_double(row.z)) {
+            f64::NAN
+        } else if scaling == Scaling::NONE {
+            row.z
+        } else {
+            scaling.apply(row.z)
+        };
+    }
     if problems.count() > 0 {
         return Err(problems.into_error());
     }
@@ -78,9 +91,17 @@ fn read_text(source: impl BufRead) -> Result<Dem, TerrainError> {
     }
     #[expect(clippy::cast_precision_loss, reason = "rows stay far below 2^53: posts are bounded by the lines")]
     let north = y.first + (y.count - 1) as f64 * y.step;
-    let dem = Dem::new(y.count, x.count, posts, GeoReference::local(MapPoint::new(x.first, north), x.step, y.step)?)?;
-    refuse_degrees(&dem)?;
-    Ok(dem)
+    StoredRaster {
+        rows: y.count,
+        cols: x.count,
+        posts: Posts::Double(posts),
+        georeference: GeoReference::local(MapPoint::new(x.first, north), x.step, y.step)?,
+        states_metres: false,
+        south_up: false,
+        scaling,
+        step: StoredStep::of_decimals(decimals, scaling),
+    }
+    .finish(context)
 }
 
 /// The raster of all posts, row after row from the north.

@@ -3,6 +3,7 @@
 use std::io::{self, BufRead, Read};
 
 use crate::terrain::ascii_grid::Problems;
+use crate::terrain::stored::Decimals;
 
 /// The longest line accepted.
 const LONGEST_LINE: u64 = 4096;
@@ -63,8 +64,8 @@ pub(super) fn begins_with_post(beginning: &[u8]) -> bool {
 }
 
 /// Reads all posts; problems are added to `problems`.
-pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> io::Result<Vec<Row>> {
-    let mut rows = Vec::new();
+pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> io::Result<(Vec<Row>, Decimals)> {
+    let (mut rows, mut decimals) = (Vec::new(), Decimals::default());
     let mut layout: Option<Columns> = None;
     let mut bytes = Vec::new();
     let mut line = 0;
@@ -72,11 +73,11 @@ pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> io
         bytes.clear();
         line += 1;
         if source.by_ref().take(LONGEST_LINE).read_until(b'\n', &mut bytes)? == 0 {
-            return Ok(rows);
+            return Ok((rows, decimals));
         }
         if !bytes.ends_with(b"\n") && bytes.len() as u64 == LONGEST_LINE {
             problems.add_at((line, 1), "a line of over 4096 bytes", "x, y and z of one post");
-            return Ok(rows);
+            return Ok((rows, decimals));
         }
         let text = String::from_utf8_lossy(&bytes);
         if is_blank(&text) {
@@ -87,15 +88,15 @@ pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> io
         if header {
             continue;
         }
-        rows.extend(row(&text, line, columns, problems));
+        rows.extend(row(&text, line, columns, problems, &mut decimals));
         // If the first lines have many problems, the text is not an XYZ grid.
         if rows.is_empty() && problems.are_many() {
-            return Ok(rows);
+            return Ok((rows, decimals));
         }
     }
 }
 
-fn row(text: &str, line: usize, columns: Columns, problems: &mut Problems) -> Option<Row> {
+fn row(text: &str, line: usize, columns: Columns, problems: &mut Problems, decimals: &mut Decimals) -> Option<Row> {
     let fields = fields(text);
     if fields.len() != columns.count {
         let mend = if text.contains(';') && text.contains(',') { " (replace decimal commas by points)" } else { "" };
@@ -119,12 +120,6 @@ fn row(text: &str, line: usize, columns: Columns, problems: &mut Problems) -> Op
     };
     let (x, y, z) = (number("x", columns.x), number("y", columns.y), number("z", columns.z));
     let z = z.unwrap_or(f64::NAN);
-    if [-9999.0, -32768.0, -32767.0, -99999.0].contains(&z) {
-        problems.add_at(
-            (line, 1),
-            &format!("z {z}, which looks like missing data"),
-            "nan, or no line at all, where there is no elevation",
-        );
-    }
+    decimals.see(fields[columns.z]);
     if problems.count() > before { None } else { Some(Row { line, x: x?, y: y?, z }) }
 }

@@ -7,8 +7,8 @@ use chta::{
     ground::{DemGround, Surface},
     hop::HopTest,
     path::HopPath,
-    scenario::{Overlays, TerrainSource},
-    terrain::{Dem, read_dem},
+    scenario::{DemReading, Overlays, TerrainSource},
+    terrain::Dem,
     uncertainty::{Mission, Policy, Simulation, Summary, TrialOptions},
 };
 
@@ -51,7 +51,7 @@ impl<'a> Flyer<'a> {
         let ground = match &loaded.scenario.terrain {
             Some(TerrainSource::Dem { path, .. }) => {
                 let file = loaded.base.join(path);
-                let dem = read_dem(&file).map_err(|error| Failure::about(&file, &error))?;
+                let dem = DemReading::of(&loaded.scenario).options.read(&file).map_err(|error| Failure::about(&file, &error))?;
                 let coordinates = &dem.georeference().coordinate_system;
                 let overlays = Overlays::read(&loaded.scenario, &loaded.base, Some(coordinates), dem.bounds())
                     .map_err(|error| Failure::of(&error))?;

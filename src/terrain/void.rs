@@ -1,0 +1,341 @@
+//! The judge of void values: whether a number that programs write where nothing was measured is ground.
+//!
+//! A file that marks its gaps by a number and does not state it would turn them into pits or peaks. The judge looks at every block
+//! of equal values that are usual marks. A block is refused if it lies off the range of the valid values that border it by more than
+//! that range: -9999 m between slopes of a trench is ground, a plateau of -9999 m in a plain at 100 m is not.
+//!
+//! ```text
+//!   valid values      100 .. 105          range R = 5
+//!   block             -9999               off by 10099 > R: refused
+//! ```
+
+use std::fmt;
+
+use super::stored::Scaling;
+use crate::quantity::{MapPoint, format_number};
+
+/// A usual mark of missing data that nothing states and that is not ground either.
+#[derive(Clone, Debug, PartialEq)]
+pub struct VoidTaken {
+    /// Its elevation, m.
+    pub z_m: f64,
+    /// The number that the file stores.
+    pub stored: f64,
+    /// Number of values in its block.
+    pub count: usize,
+    /// The first of them.
+    pub place: VoidPlace,
+    /// Lowest and highest elevation around the block, m; `None` if there are none.
+    pub border_m: Option<(f64, f64)>,
+}
+
+/// A place of terrain.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum VoidPlace {
+    /// A post of a raster.
+    Post {
+        /// From 0, from the north.
+        row: usize,
+        /// From 0, from the west.
+        col: usize,
+        /// On the map.
+        at: MapPoint,
+    },
+    /// A vertex of a mesh.
+    Vertex {
+        /// From 1, in the order of the file.
+        number: usize,
+    },
+}
+
+impl fmt::Display for VoidTaken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { z_m, stored, count, place, border_m } = self;
+        write!(f, "the elevation {} m", format_number(*z_m))?;
+        if stored != z_m {
+            write!(f, " (stored as {})", format_number(*stored))?;
+        }
+        let (one, many) = match place {
+            VoidPlace::Post { .. } => ("post", "posts"),
+            VoidPlace::Vertex { .. } => ("vertex", "vertices"),
+        };
+        write!(f, " of {count} {}, ", if *count == 1 { one } else { many })?;
+        if *count > 1 {
+            f.write_str("first ")?;
+        }
+        match place {
+            VoidPlace::Post { row, col, at } => {
+                let (x_m, y_m) = (format_number(at.x), format_number(at.y));
+                write!(f, "at row {row}, column {col} (from 0, from the north-west), map point ({x_m} m, {y_m} m)")?;
+            }
+            VoidPlace::Vertex { number } => write!(f, "number {number} of the file")?,
+        }
+        match border_m {
+            Some((low_m, high_m)) => {
+                let off_m = if z_m < low_m { low_m - z_m } else { z_m - high_m };
+                let (off, low, high) = (format_number(off_m), format_number(*low_m), format_number(*high_m));
+                write!(f, ", lies {off} m off the {many} around ({low} to {high} m)")?;
+            }
+            None => write!(f, ", has no {many} around that it could be compared with")?,
+        }
+        let value = format_number(*stored);
+        write!(
+            f,
+            " and is a usual mark of missing data, expected elevations, or missing data that is stated; state what it is: terrain.no_data = \
+             {value} where it marks missing data, or terrain.no_data = \"none\" where it is an elevation"
+        )
+    }
+}
+
+/// The numbers that programs write for missing elevations, beyond which the names "no-data" and "fill value" are known.
+///
+/// Numbers of 1e9 and above are no elevations in any case ([`ELEVATION_LIMIT_M`](super::ELEVATION_LIMIT_M)).
+const USUAL_MARKS: [f64; 30] = [
+    -9999.0,
+    -32768.0,
+    -32767.0,
+    -99999.0,
+    -10000.0,
+    -999.0,
+    -9999.9,
+    -9999.99,
+    -9999.999,
+    -99999.9,
+    -99999.99,
+    -999.9,
+    -999.99,
+    -999_999.0,
+    -9_999_999.0,
+    -99_999_999.0,
+    -999_999_999.0,
+    -100_000.0,
+    -1_000_000.0,
+    -32766.0,
+    -32765.0,
+    -32764.0,
+    -32752.0,
+    32767.0,
+    32768.0,
+    65535.0,
+    9999.0,
+    99999.0,
+    999_999.0,
+    -8888.0,
+];
+
+/// A value within this fraction of a mark equals it: what casts to 32 bits and scalings leave of it.
+const ROUNDING: f64 = 1.0e-6;
+
+/// A block is ground if it is within this of its border, m: the step of elevations in whole metres.
+const WHOLE_METRE_M: f64 = 1.0;
+
+/// A block of values that are a usual mark and are not ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Void {
+    /// The index of its first value.
+    pub(crate) first: usize,
+    /// Number of its values.
+    pub(crate) count: usize,
+    /// Its elevation, m.
+    pub(crate) z_m: f64,
+    /// The number that is stored.
+    pub(crate) stored: f64,
+    /// Lowest and highest valid value on its border; `None` if nothing borders it.
+    pub(crate) border_m: Option<(f64, f64)>,
+}
+
+/// The marks that some values could be.
+pub(super) struct Marks {
+    /// Elevation and stored number of each mark.
+    marks: Vec<(f64, f64)>,
+}
+
+impl Marks {
+    /// The usual marks within a range of elevations: as elevations, and as numbers that were stored before scaling.
+    pub(super) fn within((low_m, high_m): (f64, f64), scaling: Scaling) -> Self {
+        let both = USUAL_MARKS.into_iter().flat_map(|mark| [(mark, scaling.stored(mark)), (scaling.apply(mark), mark)]);
+        let room = |z_m: f64| z_m.abs() * ROUNDING;
+        let mut marks: Vec<(f64, f64)> =
+            both.filter(|(z_m, _)| *z_m >= low_m - room(*z_m) && *z_m <= high_m + room(*z_m)).collect();
+        marks.dedup_by(|a, b| a.0 == b.0);
+        Self { marks }
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.marks.is_empty()
+    }
+
+    /// The number of the mark that a value equals.
+    pub(super) fn find(&self, z_m: f64) -> Option<usize> {
+        self.marks.iter().position(|(mark_m, _)| (z_m - mark_m).abs() <= ROUNDING * mark_m.abs())
+    }
+}
+
+/// The first block of values that is a mark and not ground, of `count` values with neighbours.
+///
+/// `value` is NaN for a gap; `neighbours` calls its second argument with the index of each neighbour. Blocks of one value are judged
+/// by the valid values around them, and blocks of several different marks side by side as a whole.
+pub(super) fn find_void(
+    count: usize,
+    marks: &Marks,
+    value: impl Fn(usize) -> f64,
+    neighbours: impl Fn(usize, &mut dyn FnMut(usize)),
+) -> Option<Void> {
+    if marks.is_empty() || !(0..count).any(|index| marks.find(value(index)).is_some()) {
+        return None;
+    }
+    let mut seen = vec![false; count];
+    for first in 0..count {
+        let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
+        let same = |z_m: f64| marks.find(z_m) == Some(mark);
+        let block = Block::from(first, &mut seen, &value, &neighbours, same);
+        if let Some(border_m) = block.refused((count, &value, marks)) {
+            return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
+        }
+    }
+    seen.fill(false);
+    for first in 0..count {
+        let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
+        let block = Block::from(first, &mut seen, &value, &neighbours, |z_m| marks.find(z_m).is_some());
+        if block.extent_m.0 != block.extent_m.1
+            && let Some(border_m) = block.refused((count, &value, marks))
+        {
+            return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
+        }
+    }
+    None
+}
+
+/// Connected values, and the valid ones around them.
+struct Block {
+    count: usize,
+    /// Lowest and highest of its values, m.
+    extent_m: (f64, f64),
+    /// Lowest and highest value around it, m; `None` if all around are gaps.
+    border_m: Option<(f64, f64)>,
+}
+
+impl Block {
+    fn from(
+        first: usize,
+        seen: &mut [bool],
+        value: &impl Fn(usize) -> f64,
+        neighbours: &impl Fn(usize, &mut dyn FnMut(usize)),
+        belongs: impl Fn(f64) -> bool,
+    ) -> Self {
+        let mut block = Self { count: 0, extent_m: (value(first), value(first)), border_m: None };
+        let mut waiting = vec![first];
+        seen[first] = true;
+        while let Some(index) = waiting.pop() {
+            block.count += 1;
+            block.extent_m = wider(Some(block.extent_m), value(index));
+            neighbours(index, &mut |near| {
+                let z_m = value(near);
+                if z_m.is_nan() {
+                } else if !belongs(z_m) {
+                    block.border_m = Some(wider(block.border_m, z_m));
+                } else if !seen[near] {
+                    seen[near] = true;
+                    waiting.push(near);
+                }
+            });
+        }
+        block
+    }
+
+    /// The border, if the block lies off it by more than its range. Without a border, all values that are no marks are the border.
+    fn refused(&self, (count, value, marks): (usize, &impl Fn(usize) -> f64, &Marks)) -> Option<Option<(f64, f64)>> {
+        let elsewhere = || {
+            let valid = (0..count).map(value).filter(|z_m| !z_m.is_nan() && marks.find(*z_m).is_none());
+            valid.fold(None, |range, z_m| Some(wider(range, z_m)))
+        };
+        let Some((low_m, high_m)) = self.border_m.or_else(elsewhere) else { return Some(None) };
+        let off_m = (low_m - self.extent_m.1).max(self.extent_m.0 - high_m);
+        (off_m > (high_m - low_m).max(WHOLE_METRE_M)).then_some(Some((low_m, high_m)))
+    }
+}
+
+fn wider(range: Option<(f64, f64)>, z_m: f64) -> (f64, f64) {
+    range.map_or((z_m, z_m), |(low, high)| (low.min(z_m), high.max(z_m)))
+}
+
+/// The neighbours of a post of a raster, diagonals included.
+pub(super) fn around((rows, cols): (usize, usize), index: usize, visit: &mut dyn FnMut(usize)) {
+    let (row, col) = (index / cols, index % cols);
+    for near_row in row.saturating_sub(1)..=(row + 1).min(rows - 1) {
+        for near_col in col.saturating_sub(1)..=(col + 1).min(cols - 1) {
+            if (near_row, near_col) != (row, col) {
+                visit(near_row * cols + near_col);
+            }
+        }
+    }
+}
+
+/// A block of vertices of a chain that are a usual mark of missing data and no ground, judged by the vertices beside it.
+pub(crate) fn find_void_of_chain(z_m: &[f64]) -> Option<Void> {
+    let range = z_m.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(*z_m), high.max(*z_m)));
+    let marks = Marks::within(range, Scaling::NONE);
+    find_void(z_m.len(), &marks, |index| z_m[index], |index, visit| beside(z_m.len(), index, visit))
+}
+
+/// The neighbours of a vertex of a chain.
+fn beside(count: usize, index: usize, visit: &mut dyn FnMut(usize)) {
+    if index > 0 {
+        visit(index - 1);
+    }
+    if index + 1 < count {
+        visit(index + 1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GAP: f64 = f64::NAN;
+
+    /// Lines of values, and the block that is not ground. The rule decides by hand: off the border by more than its range, and more
+    /// than 1 m.
+    #[test]
+    fn blocks_are_judged_by_their_border() {
+        for (values, void) in [
+            (&[100.0, -9999.0, -9999.0, 105.0][..], Some((1, 2))),
+            (&[100.0, -32768.0, 105.0], Some((1, 1))),
+            (&[100.0, 32767.0], Some((1, 1))),
+            (&[100.0, f64::from(-9999.9_f32), 105.0], Some((1, 1))),
+            // A trench, a spike within the range of its border, and one step beside a plain at the same height.
+            (&[-9990.0, -9999.0, -10005.0], None),
+            (&[-9998.0, -9999.0, -10000.0], None),
+            (&[-9998.0, -9999.0, -10000.0, -10001.0], None),
+            (&[-9998.0, -9998.0, -9999.0, -9998.0], None),
+            (&[0.0, -9999.0, -20000.0], None),
+            // Two marks side by side are judged together: neither vouches for the other.
+            (&[100.0, -9999.0, -10000.0, 105.0], Some((1, 2))),
+            (&[100.0, -9999.0, -32768.0, -9999.0, 105.0], Some((2, 1))),
+            // Gaps all around: what is valid elsewhere decides; nothing at all does not vouch.
+            (&[100.0, GAP, -9999.0, GAP, 105.0], Some((2, 1))),
+            (&[-9999.0, -9999.0], Some((0, 2))),
+            (&[-9998.5, -9997.0, -9999.5], None),
+        ] {
+            assert_eq!(find_void_of_chain(values).map(|void| (void.first, void.count)), void, "{values:?}");
+        }
+    }
+
+    #[test]
+    fn a_mark_that_was_scaled_is_found_by_its_stored_number() {
+        let scaling = Scaling { scale: 0.5, offset_m: 1000.0 };
+        let values = [1010.0, scaling.apply(-32768.0), 1012.0];
+        let marks = Marks::within((-15384.0, 1012.0), scaling);
+        let void = find_void(3, &marks, |index| values[index], |index, visit| beside(3, index, visit)).unwrap();
+        assert_eq!((void.first, void.stored, void.border_m), (1, -32768.0, Some((1010.0, 1012.0))));
+    }
+
+    #[test]
+    fn blocks_of_a_raster_join_over_diagonals() {
+        let mut posts = vec![5.0; 25];
+        (posts[6], posts[12], posts[18]) = (-9999.0, -9999.0, -9999.0);
+        let marks = Marks::within((-9999.0, 5.0), Scaling::NONE);
+        let void = find_void(25, &marks, |index| posts[index], |index, visit| around((5, 5), index, visit)).unwrap();
+        assert_eq!((void.first, void.count), (6, 3));
+    }
+}
