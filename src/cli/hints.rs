@@ -4,6 +4,7 @@ use std::{error::Error, path::Path};
 
 use chta::{
     path::TooManyHops,
+    quantity::format_number,
     reach::{FanError, map::MapError},
     report::FurtherMeans,
     scenario::{PipelineError, ProblemKind, ScenarioProblem},
@@ -83,6 +84,9 @@ fn hint(error: &(dyn Error + 'static)) -> String {
             TerrainError::NotProjected { .. } => {
                 "; the options for that: slice --from-lonlat and --to-lonlat, fan --from-lonlat, map --start-lonlat and --goal-lonlat"
                     .to_owned()
+            }
+            TerrainError::Void(void) if takes("no-data") => {
+                format!("; the options for that: --no-data={} and --no-data none", format_number(void.stored))
             }
             _ => String::new(),
         };

@@ -129,6 +129,10 @@ const ROUNDING: f64 = 1.0e-6;
 /// A block is ground if it is within this of its border, m: the step of elevations in whole metres.
 const WHOLE_METRE_M: f64 = 1.0;
 
+/// Ground within this fraction of a mark's own size can reach the mark by its slopes: there a block is compared with the values
+/// behind its border too, which matters on the edge of a raster and at the end of a chain.
+const NEAR_THE_MARK: f64 = 0.01;
+
 /// A block of values that are a usual mark and are not ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Void {
@@ -189,7 +193,7 @@ pub(super) fn find_void(
         let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
         let same = |z_m: f64| marks.find(z_m) == Some(mark);
         let block = Block::from(first, &mut seen, &value, &neighbours, same);
-        if let Some(border_m) = block.refused((count, &value, marks)) {
+        if let Some(border_m) = block.refused((count, &value, marks), &neighbours) {
             return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
         }
     }
@@ -198,7 +202,7 @@ pub(super) fn find_void(
         let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
         let block = Block::from(first, &mut seen, &value, &neighbours, |z_m| marks.find(z_m).is_some());
         if block.extent_m.0 != block.extent_m.1
-            && let Some(border_m) = block.refused((count, &value, marks))
+            && let Some(border_m) = block.refused((count, &value, marks), &neighbours)
         {
             return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
         }
@@ -213,6 +217,8 @@ struct Block {
     extent_m: (f64, f64),
     /// Lowest and highest value around it, m; `None` if all around are gaps.
     border_m: Option<(f64, f64)>,
+    /// The indices of these values.
+    border: Vec<usize>,
 }
 
 impl Block {
@@ -223,7 +229,7 @@ impl Block {
         neighbours: &impl Fn(usize, &mut dyn FnMut(usize)),
         belongs: impl Fn(f64) -> bool,
     ) -> Self {
-        let mut block = Self { count: 0, extent_m: (value(first), value(first)), border_m: None };
+        let mut block = Self { count: 0, extent_m: (value(first), value(first)), border_m: None, border: Vec::new() };
         let mut waiting = vec![first];
         seen[first] = true;
         while let Some(index) = waiting.pop() {
@@ -234,6 +240,7 @@ impl Block {
                 if z_m.is_nan() {
                 } else if !belongs(z_m) {
                     block.border_m = Some(wider(block.border_m, z_m));
+                    block.border.push(near);
                 } else if !seen[near] {
                     seen[near] = true;
                     waiting.push(near);
@@ -244,14 +251,35 @@ impl Block {
     }
 
     /// The border, if the block lies off it by more than its range. Without a border, all values that are no marks are the border.
-    fn refused(&self, (count, value, marks): (usize, &impl Fn(usize) -> f64, &Marks)) -> Option<Option<(f64, f64)>> {
+    fn refused(
+        &self,
+        (count, value, marks): (usize, &impl Fn(usize) -> f64, &Marks),
+        neighbours: &impl Fn(usize, &mut dyn FnMut(usize)),
+    ) -> Option<Option<(f64, f64)>> {
         let elsewhere = || {
             let valid = (0..count).map(value).filter(|z_m| !z_m.is_nan() && marks.find(*z_m).is_none());
             valid.fold(None, |range, z_m| Some(wider(range, z_m)))
         };
         let Some((low_m, high_m)) = self.border_m.or_else(elsewhere) else { return Some(None) };
-        let off_m = (low_m - self.extent_m.1).max(self.extent_m.0 - high_m);
-        (off_m > (high_m - low_m).max(WHOLE_METRE_M)).then_some(Some((low_m, high_m)))
+        let off_m = |(low_m, high_m): (f64, f64)| (low_m - self.extent_m.1).max(self.extent_m.0 - high_m);
+        let off = off_m((low_m, high_m));
+        if off <= (high_m - low_m).max(WHOLE_METRE_M) {
+            return None;
+        }
+        if off <= NEAR_THE_MARK * self.extent_m.0.abs() {
+            let mut wide = (low_m, high_m);
+            for &index in &self.border {
+                neighbours(index, &mut |near| {
+                    if !value(near).is_nan() && !(self.extent_m.0..=self.extent_m.1).contains(&value(near)) {
+                        wide = wider(Some(wide), value(near));
+                    }
+                });
+            }
+            if off_m(wide) <= 2.0 * (wide.1 - wide.0) {
+                return None;
+            }
+        }
+        Some(Some((low_m, high_m)))
     }
 }
 
@@ -308,6 +336,8 @@ mod tests {
             (&[-9998.0, -9999.0, -10000.0], None),
             (&[-9998.0, -9999.0, -10000.0, -10001.0], None),
             (&[-9998.0, -9998.0, -9999.0, -9998.0], None),
+            (&[-9990.0, -9993.0, -9996.0, -9999.0], None),
+            (&[-9000.0, -9001.0, -9999.0], Some((2, 1))),
             (&[0.0, -9999.0, -20000.0], None),
             // Two marks side by side are judged together: neither vouches for the other.
             (&[100.0, -9999.0, -10000.0, 105.0], Some((1, 2))),

@@ -118,13 +118,13 @@ fn vertices_out_of_order_are_refused() {
         ],
     );
     assert_problems(
-        "x_m,z_m\n0,0\n1e-300,1e20\n1,0\n",
-        &[(3, Some(1), "1e-300", Some("x_m"), &["too near the x_m of line 2", "a slope", "apart"])],
+        "x_m,z_m\n0,0\n1e-305,1e8\n1,0\n",
+        &[(3, Some(1), "1e-305", Some("x_m"), &["too near the x_m of line 2", "a slope", "apart"])],
     );
     // An invalid z gives no slope, and does not hide an invalid x.
     assert_problems(
-        "x_m,z_m\n0,0\n1e-300,?\n0,1e20\n",
-        &[(3, Some(8), "?", Some("z_m"), &["found `?`"]), (4, Some(1), "0", Some("x_m"), &["more than 1e-300"])],
+        "x_m,z_m\n0,0\n1e-305,?\n0,1e8\n",
+        &[(3, Some(8), "?", Some("z_m"), &["found `?`"]), (4, Some(1), "0", Some("x_m"), &["more than 1e-305"])],
     );
 }
 

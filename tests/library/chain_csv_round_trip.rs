@@ -91,7 +91,9 @@ fn grounds(count: usize) -> BoxedStrategy<Vec<SegmentGround>> {
 }
 
 fn chains() -> impl Strategy<Value = PolygonalChain> {
-    let vertices = vec((extreme_number(), extreme_number()), 2..12).prop_map(|mut points| {
+    // No body has heights of 1e9 m: the reader refuses them as marks of missing data.
+    let height = extreme_number().prop_map(|z| if z.abs() < 1e9 { z } else { z / f64::MAX });
+    let vertices = vec((extreme_number(), height), 2..12).prop_map(|mut points| {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points.dedup_by(|a, b| a.0 == b.0);
         points.into_iter().map(|(x, z)| ChainPoint::new(x, z)).collect::<Vec<_>>()

@@ -2,6 +2,8 @@
 
 #[path = "../support/mod.rs"]
 mod support;
+#[path = "../support/tiff.rs"]
+mod tiff;
 #[path = "../support/tower.rs"]
 mod tower;
 
@@ -37,6 +39,8 @@ mod proof;
 mod proof_terrain;
 mod scenario_round_trip;
 mod segment_hops;
+mod sidecars;
 mod slice_file;
 mod sweep;
 mod terrain_files;
+mod voids;

@@ -178,7 +178,7 @@ fn images_that_are_not_elevation_maps_are_refused_by_key() {
     let mut gap = Fixture::default().attached();
     let end = gap.len();
     gap[end - 2..].copy_from_slice(&(-32768_i16).to_le_bytes());
-    assert!(read_pds3_bytes(gap).unwrap_err().to_string().contains("MISSING_CONSTANT"));
+    assert!(read_pds3_bytes(gap).unwrap_err().to_string().contains("terrain.no_data = -32768"));
     let other = Fixture::default().label("\"A.IMG\"");
     assert!(read_pds3_bytes(other.into_bytes()).unwrap_err().to_string().contains("side by side"));
 }
