@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 
 use chta::quantity::MapPoint;
-use chta::terrain::{Dem, geotiff_bytes, read_dem, read_pds3_bytes, slice, slice_file};
+use chta::terrain::{Dem, NoProjection, geotiff_bytes, read_dem, read_pds3_bytes, slice, slice_file};
 
 const ROWS: usize = 17;
 const COLS: usize = 23;
@@ -298,4 +298,19 @@ fn the_projection_goes_into_a_geotiff_as_gdal_understands_the_label() {
             assert!((a - b).abs() < 1e-6, "{projection}: {theirs:?} {ours:?}");
         }
     }
+}
+
+/// A projection that a label states and that is not known here, or without radii, is no local map.
+#[test]
+fn a_projection_that_is_not_known_is_stated_as_such() {
+    let of = |projection: &str| Fixture { projection, ..Fixture::default() }.read().georeference().projection();
+    assert!(of(POLAR).is_ok());
+    let robinson = POLAR.replace("POLAR STEREOGRAPHIC", "ROBINSON");
+    let radii = POLAR.lines().filter(|line| !line.contains("AXIS_RADIUS")).map(|line| format!("{line}\n")).collect::<String>();
+    for (projection, word) in [(robinson, "ROBINSON"), (radii, "radius")] {
+        let reason = of(&projection).unwrap_err();
+        assert!(matches!(reason, NoProjection::Unknown(_)) && reason.to_string().contains(word), "{reason}");
+    }
+    let none = POLAR.lines().filter(|line| !line.contains("PROJECTION_TYPE")).map(|line| format!("{line}\n")).collect::<String>();
+    assert_eq!(of(&none), Err(NoProjection::Local));
 }

@@ -59,7 +59,10 @@ struct Method {
     parameters: Vec<(u16, f64)>,
 }
 
-/// The map as `GeoTIFF` keys, so that all outputs can carry it; only a name if the projection or the radii are not known.
+/// "User-defined", which as a method means one that the keys cannot state.
+const USER_DEFINED: u16 = 32767;
+
+/// The map as `GeoTIFF` keys, so that all outputs can carry it; without numbers where the projection or the radii are not known.
 fn coordinate_system(label: &Label) -> Result<CoordinateSystem, TerrainError> {
     let Some(projection) = label.value(OBJECT, "MAP_PROJECTION_TYPE")? else { return Ok(CoordinateSystem::default()) };
     let name = projection.text.to_ascii_uppercase();
@@ -69,26 +72,26 @@ fn coordinate_system(label: &Label) -> Result<CoordinateSystem, TerrainError> {
     let latitude = label.number(OBJECT, "CENTER_LATITUDE")?.unwrap_or(0.0);
     let longitude = label.number(OBJECT, "CENTER_LONGITUDE")?.unwrap_or(0.0) * if west { -1.0 } else { 1.0 };
     let radii = (radius_m(label, "A_AXIS_RADIUS")?, radius_m(label, "C_AXIS_RADIUS")?);
-    let (Some(method), (Some(equator_m), pole_m)) = (method(&name, latitude, longitude), radii) else {
-        return Ok(CoordinateSystem { description, ..CoordinateSystem::default() });
-    };
-    let pole_m = pole_m.unwrap_or(equator_m);
-    let mut doubles = vec![equator_m, pole_m];
+    // A projection that is not known is stated as such, so that it is not taken for a local map.
+    let method = method(&name, latitude, longitude).unwrap_or(Method { code: USER_DEFINED, parameters: Vec::new() });
+    let mut doubles = Vec::new();
     // Projected, user-defined throughout, degrees and metres (OGC GeoTIFF 1.1).
     let mut entries = vec![
         [1024, 0, 1, 1],
         [1025, 0, 1, 2],
-        [2048, 0, 1, 32767],
-        [2050, 0, 1, 32767],
+        [2048, 0, 1, USER_DEFINED],
+        [2050, 0, 1, USER_DEFINED],
         [2054, 0, 1, 9102],
-        [2056, 0, 1, 32767],
-        [2057, 34736, 1, 0],
-        [2058, 34736, 1, 1],
-        [3072, 0, 1, 32767],
-        [3074, 0, 1, 32767],
+        [2056, 0, 1, USER_DEFINED],
+        [3072, 0, 1, USER_DEFINED],
+        [3074, 0, 1, USER_DEFINED],
         [3075, 0, 1, method.code],
         [3076, 0, 1, 9001],
     ];
+    if let (Some(equator_m), pole_m) = radii {
+        entries.extend([[2057, 34736, 1, 0], [2058, 34736, 1, 1]]);
+        doubles.extend([equator_m, pole_m.unwrap_or(equator_m)]);
+    }
     for (key, value) in method.parameters.into_iter().chain([(3082, 0.0), (3083, 0.0)]) {
         entries.push([key, 34736, 1, u16::try_from(doubles.len()).unwrap_or(u16::MAX)]);
         doubles.push(value);

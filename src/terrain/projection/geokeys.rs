@@ -206,6 +206,10 @@ fn check_angles(system: &CoordinateSystem) -> Result<(), String> {
 fn by_method(system: &CoordinateSystem, ellipsoid: Ellipsoid) -> Result<Definition, String> {
     check_angles(system)?;
     let number = short_key(system, key::METHOD).ok_or("its keys name no method (3075)")?;
+    if number == key::USER_DEFINED {
+        let name = system.description.as_deref().unwrap_or("without a name");
+        return Err(format!("its projection method (key 3075) is user-defined: '{name}'"));
+    }
     let method =
         method(number).ok_or_else(|| format!("its projection method (key 3075) is number {number}{}", method_name(number)))?;
     let only = |keys: &[u16], what: &str| one_of(system, keys, what);
