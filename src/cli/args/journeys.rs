@@ -84,7 +84,7 @@ pub(crate) struct PlanArgs {
     /// Path in three dimensions (GeoJSON) to write, for a chain on a map
     #[arg(long, value_name = "FILE")]
     pub(crate) geojson: Option<PathBuf>,
-    /// Picture (SVG) to write, with or without a path
+    /// Picture (SVG or PNG) to write, with or without a path
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     /// Fly the path again by direct simulation and check every limit
@@ -132,10 +132,10 @@ pub(crate) struct SimulateArgs {
     /// One row per landing, .csv or .parquet; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Picture of the trials (SVG): trajectories, landing errors, outcomes, convergence
+    /// Picture of the trials (SVG or PNG): trajectories, landing errors, outcomes, convergence
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
-    /// Picture of the landings on the map (SVG), with 95 % ellipses, for a DEM
+    /// Picture of the landings on the map (SVG or PNG), with 95 % ellipses, for a DEM
     #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
     pub(crate) plot_map: Option<PathBuf>,
     #[command(flatten)]
@@ -188,7 +188,7 @@ pub(crate) struct TradeArgs {
     /// Rows to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Picture to write (.svg or .png): a heat map with the number of every cell
+    /// Picture (SVG or PNG) to write: a heat map with the number of every cell
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
@@ -211,7 +211,7 @@ pub(crate) struct CompareArgs {
     /// Table to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Picture to write (.svg or .png): all paths overlaid
+    /// Picture (SVG or PNG) to write: all paths overlaid
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]

@@ -78,7 +78,7 @@ pub(crate) struct FanArgs {
     /// Table (CSV) to write; -: to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Rose picture (SVG) to write
+    /// Rose picture (SVG or PNG) to write
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]

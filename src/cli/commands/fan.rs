@@ -25,7 +25,7 @@ const POINTS_PER_SEGMENT: PointSpacing = PointSpacing::PerSegment(1);
 /// Analyses all directions.
 pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let FanArgs {
-        dem: file,
+        dem: dem_file,
         from,
         from_lonlat,
         headings,
@@ -38,12 +38,14 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     } = args;
     use_threads(*threads)?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
-    let Bare { scenario, base, document } = load_bare(file, common, search)?;
-    let dem = read_dem(file).map_err(|e| failed(&e))?;
+    let Bare { scenario, base, document } = load_bare(dem_file, common, search)?;
+    let dem = read_dem(dem_file).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
+    // Opened before the computation, which may take long.
+    let picture = plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
     let ground = overlays.ground(dem, &scenario);
     let dem = ground.terrain().dem();
@@ -54,7 +56,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     for ray in &rays {
         let heading = Angle::from_degrees(ray.heading_deg).radians();
         let end = from + Vector2::new(libm::sin(heading), libm::cos(heading)) * ray.length_m;
-        let scale = check_scale(dem, projection.as_ref(), [from, end], accepted, file).map_err(|e| failed(&e))?;
+        let scale = check_scale(dem, projection.as_ref(), [from, end], accepted, dem_file).map_err(|e| failed(&e))?;
         warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
     }
     for warning in &warnings {
@@ -69,11 +71,12 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     if table.is_some() {
         answer.write_csv(&mut csv).map_err(|e| failed(&e))?;
     }
-    if let Some(path) = plot {
-        let name = file.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    if let Some(file) = picture {
+        let name = dem_file.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let title = format!("How far in how few hops: {name}");
-        let svg = draw_rose(&answer, &title, &subtitle(&answer, &scenario)).map_err(|e| failed(&e))?;
-        output::to_file(path, svg.as_bytes())?;
+        let rose = draw_rose(&answer, &title, &subtitle(&answer, &scenario));
+        let encoded = output::encoded(Ok(rose), file.path())?;
+        output::finish(vec![(file, encoded)])?;
     }
     if let Some(path) = table {
         output::to_file_or_stdout(Some(path), &csv)?;
@@ -84,7 +87,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let text = match format {
         Format::Text => answer.text(),
         Format::Json => {
-            let mut inputs = vec![input_file(file)?];
+            let mut inputs = vec![input_file(dem_file)?];
             for overlay in Overlays::files(&scenario) {
                 inputs.push(input_file(&base.join(overlay))?);
             }

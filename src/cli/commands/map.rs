@@ -292,7 +292,7 @@ fn format_share(what: &str, step: &Step, elapsed_s: f64) -> Option<String> {
 
 /// Checks that each output has an extension that its readers recognise.
 fn check_extensions(args: &MapArgs) -> Result<(), Failure> {
-    let MapArgs { output, effort_output, return_output, mobility, paths, geojson, .. } = args;
+    let MapArgs { output, effort_output, return_output, mobility, paths, geojson, profiles, plot, .. } = args;
     let rasters =
         [("-o", output), ("--effort-output", effort_output), ("--return-output", return_output), ("--mobility", mobility)];
     let rasters = rasters.map(|(option, file)| (option, file, &["tif", "tiff"][..]));
@@ -305,6 +305,9 @@ fn check_extensions(args: &MapArgs) -> Result<(), Failure> {
             let message = format!("{option} {}: expected a file that ends in .{}", file.display(), endings.join(" or ."));
             return Err(Failure::message(message));
         }
+    }
+    for (option, file) in [("--profiles", profiles), ("--plot", plot)] {
+        file.as_deref().map_or(Ok(()), |file| output::check_picture(option, file))?;
     }
     Ok(())
 }

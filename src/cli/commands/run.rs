@@ -1,6 +1,6 @@
 //! `chta run`: everything a scenario asks for.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use chta::{chain::csv::write_chain_csv, report::CrsRecord};
 
@@ -15,6 +15,9 @@ use crate::cli::{
 
 /// The kind of the answer, which `run` accepts as input to repeat it.
 const RESULT: &str = "result.json";
+
+/// The picture of the plan.
+const PICTURE: &str = "path.svg";
 
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
@@ -44,7 +47,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         ("chain.csv", chain_csv),
         ("path.csv", planned.csv(&loaded)?),
         (RESULT, planned.document("run", &loaded)?.into_bytes()),
-        ("path.svg", planned.picture(&loaded, &test, ends)?.into_bytes()),
+        (PICTURE, planned.picture(&loaded, &test, ends, Path::new(PICTURE))?),
     ];
     if let Some(geojson) = planned.geojson(&loaded) {
         files.push(("path.geojson", geojson.into_bytes()));
