@@ -1,6 +1,7 @@
 //! The scenario: TOML as typed, then validated, and the pipeline from terrain to a chain ready for analysis.
 
 mod alike;
+mod backslashes;
 mod catalogue;
 mod document;
 mod entries;
