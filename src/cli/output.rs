@@ -14,7 +14,7 @@ use chta::{
     terrain::MapProjection,
 };
 
-use super::{Failure, claims, interrupt};
+use super::{Failure, claims, inputs, interrupt};
 
 /// Writes data to standard output. A closed pipe is not an error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
@@ -163,6 +163,6 @@ pub(crate) fn to_geojson_file(path: &Path, geojson: &str, projection: Option<&Ma
 pub(crate) fn warn(quiet: bool, warning: &str) {
     if !quiet {
         // An error on writing to standard error cannot be reported.
-        let _ = writeln!(io::stderr(), "warning: {warning}");
+        let _ = writeln!(io::stderr(), "warning: {}", inputs::shown(warning));
     }
 }

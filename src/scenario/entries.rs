@@ -195,8 +195,27 @@ impl Entries {
         }
     }
 
+    /// The keys that name a file, each with its path.
+    pub fn files(&self) -> Vec<(&'static Key, String)> {
+        let files = CATALOGUE.iter().filter(|key| key.names_a_file());
+        files.filter_map(|key| Some((key, self.text(key.table, key.name)?.to_owned()))).collect()
+    }
+
+    /// Gives a key that names a file another path.
+    pub fn redirect(&mut self, key: &Key, path: &str) {
+        if let Some(entry) = self.given.get_mut(&(key.table.to_owned(), key.name.to_owned())) {
+            entry.value = path.into();
+        }
+    }
+
+    /// The problem of a key whose file cannot be used, at the position where the key was given.
+    pub fn file_problem(&self, key: &Key, message: String, help: String) -> ScenarioProblem {
+        let place = self.place(key.table, key.name).unwrap_or(Place::Nowhere);
+        ScenarioProblem { key: KeyPath::new(key.table, key.name), kind: ProblemKind::Value, place, message, help }
+    }
+
     /// Whether the text could not be parsed.
-    pub(super) fn is_unreadable(&self) -> bool {
+    pub fn is_unreadable(&self) -> bool {
         self.unreadable
     }
 

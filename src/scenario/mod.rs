@@ -5,6 +5,7 @@ mod backslashes;
 mod catalogue;
 mod document;
 mod entries;
+mod file_kind;
 mod pipeline;
 mod problem;
 mod read;
@@ -15,6 +16,7 @@ pub use alike::ask_the_same;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
+pub use file_kind::FileKind;
 pub use pipeline::{
     Extremes, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, constant_gravity_warnings, friction, prepare,
     sha256_of,

@@ -76,6 +76,11 @@ pub fn open_dem(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
     reader_of(path).and_then(|reader| reader.open_path(path)).map_err(|error| error.in_file(path))
 }
 
+/// The name of the format of a file with this beginning, if one of the readers knows it.
+pub(crate) fn format_name(beginning: &[u8]) -> Option<&'static str> {
+    READERS.iter().find(|reader| reader.recognises(beginning)).map(|reader| reader.name())
+}
+
 fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {
     let beginning = read_beginning(path)?;
     if let Some(reader) = READERS.iter().copied().find(|reader| reader.recognises(&beginning)) {

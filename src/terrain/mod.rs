@@ -19,7 +19,6 @@
 mod ascii_grid;
 mod dem;
 mod error;
-#[cfg(not(feature = "gdal"))]
 mod foreign;
 mod format;
 #[cfg(feature = "gdal")]
@@ -42,10 +41,13 @@ mod zones;
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M, Samples};
 pub use error::{AsciiProblem, TerrainError};
+pub(crate) use foreign::name as foreign_format;
+pub(crate) use format::format_name as raster_format;
 pub use format::{DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{Band, ResultBands, geotiff_bytes, read_geotiff_bytes, result_geotiff_bytes, write_geotiff};
 pub use lattice::PostLattice;
+pub(crate) use mesh::{binary_stl_length, format_name as mesh_format};
 pub use mesh::{
     Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
     slice_mesh,
@@ -62,4 +64,4 @@ pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerr
 pub use walk::{FacetSpan, FacetWalk, Triangles};
 pub use window::{DemFile, Window};
 pub use xyz::read_xyz_bytes;
-pub use zones::{FrictionRaster, KeepOut, read_friction_raster, read_keep_out};
+pub use zones::{FrictionRaster, KeepOut, VectorFormat, read_friction_raster, read_keep_out};

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use chta::graph::proof::DEFAULT_BUDGET_CELLS;
 use clap::Args as ClapArgs;
 
-use super::{AnswerArgs, CommonArgs, Format, JourneyArgs, ProveArgs, SearchArgs, cell_count};
+use super::{AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, cell_count, max_gib};
 
 /// Do everything a scenario asks for: chain.csv, path.csv, path.geojson (on a map), result.json and path.svg
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta run data/scenarios/mars_crater_field.toml -o out")]
 pub(crate) struct RunArgs {
-    /// Scenario (TOML), or a result.json to repeat
+    /// Scenario (TOML), or a result.json to repeat; -: standard input
     #[arg(value_name = "SCENARIO")]
     pub(crate) scenario: PathBuf,
     /// Folder for the results, created if it does not exist
@@ -25,6 +25,9 @@ pub(crate) struct RunArgs {
     /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -34,7 +37,7 @@ pub(crate) struct RunArgs {
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json")]
 pub(crate) struct HopArgs {
-    /// Chain (CSV), scenario (TOML) or result (JSON)
+    /// Chain (CSV), scenario (TOML) or result (JSON); -: standard input
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Where the hop takes off, along the chain, m [default: the scenario's start]
@@ -224,6 +227,9 @@ pub(crate) struct CompareArgs {
     /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,

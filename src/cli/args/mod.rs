@@ -8,6 +8,8 @@ use std::path::PathBuf;
 use chta::{graph::proof::DEFAULT_BUDGET_CELLS, quantity::MapPoint, terrain::LonLat};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
+use super::inputs::{DEFAULT_MAX_GIB, max_gib};
+
 pub(crate) use journeys::{CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs};
 pub(crate) use terrains::{DepthLawArg, FanArgs, MapArgs, SliceArgs, SynthArgs};
 
@@ -71,6 +73,9 @@ pub(crate) struct CommonArgs {
     /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -104,7 +109,7 @@ pub(crate) struct ProveArgs {
 /// A chain, and where the journey over it begins and ends.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct JourneyArgs {
-    /// Chain (CSV), scenario (TOML) or result (JSON)
+    /// Chain (CSV), scenario (TOML) or result (JSON); -: standard input
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Start along the chain, m [default: the scenario's]

@@ -14,9 +14,11 @@ use super::{captions::conditions, search::use_threads, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, FanArgs, Format},
+    inputs,
     load::{Bare, input_file, load_bare},
     output,
     progress::Progress,
+    wrong_thing::Role,
 };
 
 /// The meaning of `auto` here, where there is no single path to refine for.
@@ -36,9 +38,11 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         search,
         common,
     } = args;
+    inputs::look_at(common.input_max_gib, &[(Some(dem_file), Role::Dem), (common.scenario.as_deref(), Role::ScenarioOption)])?;
     use_threads(*threads)?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
-    let Bare { scenario, base, document } = load_bare(dem_file, common, search)?;
+    let Bare { dem: dem_file, scenario, base, document } = load_bare(dem_file, common, search)?;
+    let dem_file = dem_file.as_path();
     let dem = read_dem(dem_file).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;

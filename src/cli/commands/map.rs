@@ -28,9 +28,11 @@ use super::{captions::conditions, map_profiles, plan::passed, search::use_thread
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
+    inputs,
     load::{Bare, input_file, load_bare},
     output::{self, Pending},
     progress::Progress,
+    wrong_thing::Role,
 };
 
 /// The terrain of a map, its projection and the scenario.
@@ -74,6 +76,8 @@ struct Maps {
 
 /// Computes and writes the map.
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
+    let MapArgs { dem, common, .. } = args;
+    inputs::look_at(common.input_max_gib, &[(Some(dem), Role::Dem), (common.scenario.as_deref(), Role::ScenarioOption)])?;
     use_threads(args.answer.threads)?;
     let (inputs, start, goals) = prepared(args)?;
     check_extensions(args)?;
@@ -117,12 +121,13 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
 /// Reads terrain and scenario and finds the posts of start and goals.
 fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     let MapArgs { dem: file, start, start_lonlat, goal, goal_lonlat, stride, effort, common, .. } = args;
-    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     if *stride == 0 {
         return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
     }
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
-    let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
+    let Bare { dem: file, scenario, base, document } = load_bare(file, common, &searched)?;
+    let file = file.as_path();
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     let dem = read_dem(file).map_err(|e| Failure::of(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;

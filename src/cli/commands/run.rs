@@ -9,8 +9,10 @@ use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, CommonArgs, Format, RunArgs},
     claims,
-    load::{EndOptions, load},
+    inputs,
+    load::load_scenario,
     output::{self, Pending},
+    wrong_thing::Role,
 };
 
 /// The kind of the answer, which `run` accepts as input to repeat it.
@@ -21,7 +23,8 @@ const PICTURE: &str = "path.svg";
 
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
-    let RunArgs { scenario, output: folder, answer: AnswerArgs { threads, format }, set, accept_map_scale, quiet } = args;
+    let RunArgs { scenario, output: folder, answer: AnswerArgs { threads, format }, set, accept_map_scale, input_max_gib, quiet } = args;
+    inputs::look_at(*input_max_gib, &[(Some(scenario), Role::Scenario)])?;
     use_threads(*threads)?;
     let common = CommonArgs {
         scenario: None,
@@ -30,9 +33,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         gravity_m_s2: None,
         clearance_m: None,
         accept_map_scale: *accept_map_scale,
+        input_max_gib: *input_max_gib,
         quiet: *quiet,
     };
-    let loaded = load(scenario, &common, None, EndOptions::NONE)?;
+    let loaded = load_scenario(scenario, &common)?;
     let ends = loaded.ends()?;
     output::check_folder(folder)?;
     let test = loaded.hop_test();

@@ -10,6 +10,7 @@ use super::{
     geojson::polygons,
     line::{Line, Stretch, covered},
     polygons::Polygon,
+    vector::{VectorFormat, refusal},
 };
 use crate::{
     quantity::MapPoint,
@@ -55,6 +56,8 @@ pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds
         }
         let bytes = fs::read(path).map_err(|error| failed(unread(&error)))?;
         Zones::Polygons(polygons(&bytes, coordinates, bounds).map_err(failed)?)
+    } else if let Some(format) = vector_format(path).map_err(|error| failed(unread(&error)))? {
+        return Err(failed(refusal(format, path, coordinates)));
     } else {
         let mask = read_dem(path).map_err(|error| failed(of_raster(error)))?;
         if let Some(difference) = coordinates.and_then(|terrain| disagreement(&mask.georeference().coordinate_system, terrain)) {
@@ -165,11 +168,22 @@ impl KeepOut {
     }
 }
 
-/// Whether a file begins like JSON.
-fn looks_like_json(path: &Path) -> std::io::Result<bool> {
+/// The first bytes of a file.
+fn beginning_of(path: &Path) -> std::io::Result<Vec<u8>> {
     use std::io::Read;
     let mut beginning = Vec::new();
     fs::File::open(path)?.take(4096).read_to_end(&mut beginning)?;
+    Ok(beginning)
+}
+
+/// The format of shapes that a file has, other than `GeoJSON`.
+fn vector_format(path: &Path) -> std::io::Result<Option<VectorFormat>> {
+    Ok(VectorFormat::of(&beginning_of(path)?, path))
+}
+
+/// Whether a file begins like JSON.
+fn looks_like_json(path: &Path) -> std::io::Result<bool> {
+    let beginning = beginning_of(path)?;
     let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&beginning);
     let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
     Ok(matches!(first, Some(b'{' | b'[')))
