@@ -19,6 +19,17 @@ use super::{
     wrong_thing::{Role, refusal},
 };
 
+/// Why the file of a key cannot be used.
+#[derive(Debug)]
+pub(crate) struct KeyProblem {
+    /// What was found and expected.
+    pub(crate) found: String,
+    /// How to mend it.
+    pub(crate) help: String,
+    /// Whether it cannot be read at all; else it is something else than asked for.
+    pub(crate) is_unreadable: bool,
+}
+
 /// Bytes in a GiB.
 const GIB: f64 = 1_073_741_824.0;
 
@@ -104,7 +115,11 @@ pub(crate) fn forget() {
 ///
 /// `max_gib` is the most that is read from a pipe.
 pub(crate) fn look_at(max_gib: f64, files: &[(Option<&Path>, Role)]) -> Result<(), Failure> {
-    #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the option is checked; the cast saturates beyond")]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the option is checked; the cast saturates beyond"
+    )]
     MAX_BYTES.store((max_gib * GIB) as u64, Ordering::Relaxed);
     let given = || files.iter().filter_map(|(path, role)| Some((((*path)?), *role)));
     for (path, role) in given() {
@@ -154,7 +169,9 @@ fn check_readable(path: &Path) -> Result<(), String> {
         return Ok(());
     }
     let reason = |error: io::Error| match fs::read_link(path) {
-        Ok(target) if error.kind() == io::ErrorKind::NotFound => format!("it is a link to {}, which does not exist", target.display()),
+        Ok(target) if error.kind() == io::ErrorKind::NotFound => {
+            format!("it is a link to {}, which does not exist", target.display())
+        }
         _ => error.to_string(),
     };
     let mut file = File::open(path).map_err(reason)?;
@@ -197,19 +214,20 @@ fn wrong_kind(kind: &FileKind, role: Role, path: &Path) -> Option<(String, Strin
     (!role.takes(kind)).then(|| refusal(kind, role, path))
 }
 
-/// The problem of a file that a key of a scenario names: what was found, and how to mend it.
+/// What a file that a key of a scenario names is, or its problem.
 ///
 /// # Errors
 /// The failure of a pipe.
-pub(crate) fn of_key(path: &Path, role: Role) -> Result<Result<Input, (String, String)>, Failure> {
+pub(crate) fn of_key(path: &Path, role: Role) -> Result<Result<Input, KeyProblem>, Failure> {
     if let Err(reason) = check_readable(path) {
         let found = format!("{} is {}, which cannot be read ({reason}); expected {}", role.name(), path.display(), role.expected());
-        return Ok(Err((found, readable_help(path))));
+        return Ok(Err(KeyProblem { found, help: readable_help(path), is_unreadable: true }));
     }
     if !is_stream(path) {
         let kind = FileKind::of(path).unwrap_or(FileKind::Binary);
-        if let Some((found, mend)) = wrong_kind(&kind, role, path) {
-            return Ok(Err((format!("{}: {found}", path.display()), mend)));
+        if let Some((found, help)) = wrong_kind(&kind, role, path) {
+            let found = format!("{}: {found}", path.display());
+            return Ok(Err(KeyProblem { found, help, is_unreadable: false }));
         }
     }
     open(path, role).map(Ok)
@@ -218,7 +236,8 @@ pub(crate) fn of_key(path: &Path, role: Role) -> Result<Result<Input, (String, S
 /// Reads a pipe into a temporary file, once.
 fn of_stream(path: &Path, role: Role) -> Result<Input, Failure> {
     let name = path.display();
-    let known = lock(&STREAMS).iter().find(|stream| same_stream(&stream.input.given, path)).map(|known| (known.input.clone(), known.role));
+    let known =
+        lock(&STREAMS).iter().find(|stream| same_stream(&stream.input.given, path)).map(|known| (known.input.clone(), known.role));
     match known {
         Some((input, first)) if first == role => return Ok(input),
         Some((_, first)) => {
@@ -289,7 +308,11 @@ impl Bounds {
             FileKind::GeoJson | FileKind::Json => (LARGEST_GEOJSON, "simplify the polygons"),
             _ => (u64::MAX, ""),
         };
-        let reason = if own < option { what.to_owned() } else { format!("is it endless? For more give --input-max-gib {}", 2.0 * gib(option)) };
+        let reason = if own < option {
+            what.to_owned()
+        } else {
+            format!("is it endless? For more give --input-max-gib {}", (20.0 * gib(option)).ceil() / 10.0)
+        };
         let longest_line = match kind {
             FileKind::Raster("ESRI ASCII grid") => Some(LONGEST_GRID_LINE),
             FileKind::Raster("XYZ grid") | FileKind::Mesh(_, true) | FileKind::ChainCsv | FileKind::PairsCsv => Some(LONGEST_LINE),
@@ -308,7 +331,8 @@ fn copy_bounded(beginning: Vec<u8>, source: &mut dyn Read, copy: &mut File, path
         total += piece.len() as u64;
         if total > bounds.most {
             let Bounds { most, reason, .. } = bounds;
-            let message = format!("{}: more than {} comes through the pipe, expected at most that: {reason}", path.display(), amount(*most));
+            let message =
+                format!("{}: more than {} comes through the pipe, expected at most that: {reason}", path.display(), amount(*most));
             return Err(Failure::message(message));
         }
         if let Some(longest) = bounds.longest_line {
@@ -348,10 +372,7 @@ fn detached_image(kind: &FileKind, beginning: &[u8]) -> Option<String> {
 
 /// Whether a file of this kind is read whole into memory.
 fn is_read_whole(kind: &FileKind) -> bool {
-    matches!(
-        kind,
-        FileKind::ChainCsv | FileKind::PairsCsv | FileKind::Mesh(..) | FileKind::Raster("ESRI ASCII grid" | "XYZ grid")
-    )
+    matches!(kind, FileKind::ChainCsv | FileKind::PairsCsv | FileKind::Mesh(..) | FileKind::Raster("ESRI ASCII grid" | "XYZ grid"))
 }
 
 fn max_bytes() -> u64 {

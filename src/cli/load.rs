@@ -21,7 +21,7 @@ use super::{
     Failure,
     args::{CommonArgs, SearchArgs},
     claims, hints,
-    inputs::{self, Input},
+    inputs::{self, Input, KeyProblem},
     output,
     wrong_thing::Role,
 };
@@ -235,7 +235,7 @@ fn look_at_keys(source: &mut Source, chain_is_a_key: bool) -> Result<(), Failure
     let files = source.entries.files();
     let terrains = files.iter().filter(|(key, _)| key.table == "terrain").count();
     let has_chain = files.iter().any(|(key, _)| key.path() == "terrain.chain");
-    let mut problems = Vec::new();
+    let (mut problems, mut is_wrong) = (Vec::new(), false);
     for (key, path) in files {
         let Some(role) = Role::of_key(key.table, key.name) else { continue };
         // Which of two terrains is meant comes before what they are, and a chain takes no overlays.
@@ -247,10 +247,20 @@ fn look_at_keys(source: &mut Source, chain_is_a_key: bool) -> Result<(), Failure
         match inputs::of_key(&path, role)? {
             Ok(input) if input.is_stream() => source.entries.redirect(key, &input.file.to_string_lossy()),
             Ok(_) => {}
-            Err((found, help)) => problems.push(source.entries.file_problem(key, found, help)),
+            Err(KeyProblem { found, help, is_unreadable }) => {
+                is_wrong |= !is_unreadable;
+                problems.push(source.entries.file_problem(key, found, help));
+            }
         }
     }
-    if problems.is_empty() || source.entries.is_unreadable() { Ok(()) } else { Err(refused(problems, &source.name, &source.text)) }
+    if problems.is_empty() || source.entries.is_unreadable() {
+        return Ok(());
+    }
+    // Of a file that is something else, further problems may be consequences.
+    if !is_wrong && let Err(others) = Scenario::new(source.entries.clone()) {
+        problems.extend(others);
+    }
+    Err(refused(problems, &source.name, &source.text))
 }
 
 /// Prepares a chain from a scenario and its terrain, whose paths start from the given folder.
@@ -467,16 +477,14 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
 
 /// Validates keys; every problem names the file that they came from.
 fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failure> {
-    Scenario::new(entries).map_err(|mut problems: Vec<ScenarioProblem>| {
-        for problem in &mut problems {
-            problem.help.push_str(hints::of_problem(problem));
-        }
-        refused(problems, name, text)
-    })
+    Scenario::new(entries).map_err(|problems| refused(problems, name, text))
 }
 
 /// The failure for problems of keys; it names the file that they came from.
-fn refused(problems: Vec<ScenarioProblem>, name: &str, text: &str) -> Failure {
+fn refused(mut problems: Vec<ScenarioProblem>, name: &str, text: &str) -> Failure {
+    for problem in &mut problems {
+        problem.help.push_str(hints::of_problem(problem));
+    }
     let in_file = problems.iter().any(|problem| !matches!(problem.place, Place::Option(_)));
     let (name, source) = if in_file { (name.to_owned(), text.to_owned()) } else { (String::new(), String::new()) };
     Failure::Scenario(ScenarioProblems { name, source, problems })

@@ -95,7 +95,10 @@ impl Role {
             (_, Kind::Empty | Kind::Text | Kind::Binary) => true,
             (Self::Chain, Kind::ChainCsv | Kind::Scenario | Kind::Result | Kind::Json) => true,
             (Self::Scenario | Self::ScenarioOption, Kind::Scenario | Kind::Result | Kind::Json) => true,
-            (Self::Dem | Self::DemKey | Self::Terrain | Self::KeepOut | Self::Friction, Kind::Raster(_) | Kind::ForeignRaster(_)) => true,
+            (
+                Self::Dem | Self::DemKey | Self::Terrain | Self::KeepOut | Self::Friction,
+                Kind::Raster(_) | Kind::ForeignRaster(_),
+            ) => true,
             // GDAL reads pictures whose samples are elevations.
             (Self::Dem | Self::DemKey | Self::Terrain, Kind::Picture(_)) => cfg!(feature = "gdal"),
             (Self::Terrain | Self::MeshKey, Kind::Mesh(..)) => true,
@@ -122,7 +125,9 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::Document(_) | FileKind::Empty | FileKind::Text | FileKind::Binary, _) => {
             format!("check the path: give {}", role.expected())
         }
-        (FileKind::ForeignMesh(_), Role::Terrain | Role::MeshKey) => "export it as OBJ, STL or PLY, z up, and give that file".to_owned(),
+        (FileKind::ForeignMesh(_), Role::Terrain | Role::MeshKey) => {
+            "export it as OBJ, STL or PLY, z up, and give that file".to_owned()
+        }
         (FileKind::Picture(_), Role::Dem | Role::DemKey | Role::Terrain) => {
             "a picture holds colours or brightness: give the raster of elevations that it was drawn from".to_owned()
         }
@@ -131,7 +136,9 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
             format!("write dem = {toml} in place of mesh, and leave mesh_scale away")
         }
         (FileKind::Mesh(..), Role::DemKey) => format!("write mesh = {toml} in place of dem"),
-        (FileKind::Raster(_) | FileKind::ForeignRaster(_), Role::ChainKey) => format!("write dem = {toml} in place of chain, {ON_MAP}"),
+        (FileKind::Raster(_) | FileKind::ForeignRaster(_), Role::ChainKey) => {
+            format!("write dem = {toml} in place of chain, {ON_MAP}")
+        }
         (FileKind::Mesh(..), Role::ChainKey) => format!("write mesh = {toml} in place of chain, {ON_MAP}"),
         (FileKind::ChainCsv, Role::DemKey | Role::MeshKey) => {
             format!("write chain = {toml} in place of {key}, and start_x_m and goal_x_m in place of start_m and goal_m")
@@ -140,14 +147,17 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
             format!("name in {key} the file itself; a scenario stands where the command takes one, as in `chta run {name} -o out`")
         }
         (FileKind::GeoJson, Role::Friction) => {
-            format!("zones where nothing may land belong in [surface] keep_out = {toml}; friction takes a raster on the terrain's map")
+            format!(
+                "zones where nothing may land belong in [surface] keep_out = {toml}; friction takes a raster on the terrain's map"
+            )
         }
         (_, Role::Friction) => "give a raster on the terrain's map, or friction_coefficient alone".to_owned(),
         (FileKind::ChainCsv, Role::KeepOut) => {
             "a chain has its zones in its own column keep_out; for a dem draw them as polygons in map coordinates".to_owned()
         }
         (_, Role::KeepOut) => {
-            "draw the zones as polygons in the terrain's map coordinates, or give a raster whose pixels other than 0 are kept out".to_owned()
+            "draw the zones as polygons in the terrain's map coordinates, or give a raster whose pixels other than 0 are kept out"
+                .to_owned()
         }
         (FileKind::Shapes(_), _) => format!(
             "shapes are zones: convert them with `ogr2ogr -f GeoJSON {} {name}` and give them to a scenario as [surface] keep_out",
@@ -162,7 +172,9 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::Raster(_) | FileKind::ForeignRaster(_), Role::Chain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
             from_terrain("dem", &name, &toml)
         }
-        (FileKind::Mesh(..), Role::Chain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => from_terrain("mesh", &name, &toml),
+        (FileKind::Mesh(..), Role::Chain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
+            from_terrain("mesh", &name, &toml)
+        }
         (FileKind::Mesh(..), Role::Dem) => {
             format!("a mesh can be cut, not mapped: `chta slice {name} --from X,Y --to X,Y -o chain.csv`")
         }
@@ -204,5 +216,9 @@ fn shell(path: &Path) -> String {
 /// A path as a text of TOML.
 fn toml_text(path: &Path) -> String {
     let text = path.display().to_string();
-    if text.contains(['\\', '"']) && !text.contains('\'') { format!("'{text}'") } else { format!("\"{}\"", text.replace('\\', "/")) }
+    if text.contains(['\\', '"']) && !text.contains('\'') {
+        format!("'{text}'")
+    } else {
+        format!("\"{}\"", text.replace('\\', "/"))
+    }
 }

@@ -147,9 +147,11 @@ impl FileKind {
             Self::Raster("PDS3 image") => "a PDS3 label or image".to_owned(),
             Self::Raster(format) => format!("{} {format}", article(format)),
             Self::Mesh(format, _) => format!("{} {format} mesh", article(format)),
-            Self::ForeignRaster(name) | Self::ForeignMesh(name) | Self::Picture(name) | Self::Packed(name, _) | Self::Document(name) => {
-                (*name).to_owned()
-            }
+            Self::ForeignRaster(name)
+            | Self::ForeignMesh(name)
+            | Self::Picture(name)
+            | Self::Packed(name, _)
+            | Self::Document(name) => (*name).to_owned(),
             Self::ChainCsv => "a chain CSV".to_owned(),
             Self::PairsCsv => "a CSV of pairs of start and goal".to_owned(),
             Self::PathCsv => "a CSV of the hops of a path".to_owned(),
@@ -189,7 +191,8 @@ fn statements(text: &str) -> impl Iterator<Item = &str> {
 /// What a table is by the names in its header.
 fn of_table(text: &str) -> Option<FileKind> {
     let header = statements(text).next()?;
-    let names: Vec<String> = header.split([',', ';', '\t']).map(|name| name.trim().trim_matches('"').to_ascii_lowercase()).collect();
+    let names: Vec<String> =
+        header.split([',', ';', '\t']).map(|name| name.trim().trim_matches('"').to_ascii_lowercase()).collect();
     let has = |name: &str| names.iter().any(|own| own == name);
     let is_map = ["y", "y_m", "northing", "northing_m"].into_iter().any(has);
     match () {
@@ -223,7 +226,8 @@ fn of_text(text: &str) -> Option<FileKind> {
         Some(rest) => rest.split(']').next().is_some_and(|name| is_table(name.trim())),
         None => line.split_once('=').and_then(|(key, _)| key.split_once('.')).is_some_and(|(table, _)| is_table(table.trim())),
     };
-    let inline = |line: &str| line.split_once('=').is_some_and(|(key, value)| is_table(key.trim()) && value.trim_start().starts_with('{'));
+    let inline =
+        |line: &str| line.split_once('=').is_some_and(|(key, value)| is_table(key.trim()) && value.trim_start().starts_with('{'));
     statements(text).any(|line| names_table(line) || inline(line)).then_some(FileKind::Scenario)
 }
 
@@ -255,7 +259,10 @@ fn outermost_keys(text: &str) -> Vec<(String, String)> {
                 '"' => {
                     last = std::mem::take(open);
                     literal = None;
-                    if depth == 1 && after_colon && let Some(key) = keys.last_mut() {
+                    if depth == 1
+                        && after_colon
+                        && let Some(key) = keys.last_mut()
+                    {
                         key.1.clone_from(&last);
                     }
                 }

@@ -20,4 +20,5 @@ mod sentences;
 mod shipped_scenarios;
 mod simulate_command;
 mod trade_compare;
+mod wrong_things;
 mod zones_and_fan;

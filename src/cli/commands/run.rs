@@ -8,8 +8,7 @@ use super::{plan::Planned, search::use_threads, simulate};
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, CommonArgs, Format, RunArgs},
-    claims,
-    inputs,
+    claims, inputs,
     load::load_scenario,
     output::{self, Pending},
     wrong_thing::Role,
@@ -23,7 +22,8 @@ const PICTURE: &str = "path.svg";
 
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
-    let RunArgs { scenario, output: folder, answer: AnswerArgs { threads, format }, set, accept_map_scale, input_max_gib, quiet } = args;
+    let RunArgs { scenario, output: folder, answer: AnswerArgs { threads, format }, set, accept_map_scale, input_max_gib, quiet } =
+        args;
     inputs::look_at(*input_max_gib, &[(Some(scenario), Role::Scenario)])?;
     use_threads(*threads)?;
     let common = CommonArgs {

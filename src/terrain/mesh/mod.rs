@@ -25,7 +25,7 @@ mod slice;
 mod stl;
 mod text;
 
-pub(crate) use format::{binary_stl_length, format_name};
 pub use format::{MESH_FORMATS, MeshFile, looks_like_mesh, read_mesh, read_mesh_bytes};
+pub(crate) use format::{binary_stl_length, format_name};
 pub use model::{Mesh, MeshBounds};
 pub use slice::{Layers, MeshSlice, WALL_RUN_M, Wall, slice_mesh};

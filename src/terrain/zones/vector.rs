@@ -31,7 +31,8 @@ pub enum VectorFormat {
 impl VectorFormat {
     /// The format of a file with this beginning and name.
     pub fn of(beginning: &[u8], path: &Path) -> Option<Self> {
-        let has_extension = |names: &[&str]| path.extension().is_some_and(|own| names.iter().any(|name| own.eq_ignore_ascii_case(name)));
+        let has_extension =
+            |names: &[&str]| path.extension().is_some_and(|own| names.iter().any(|name| own.eq_ignore_ascii_case(name)));
         let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning).trim_ascii_start();
         let contains = |word: &[u8]| text.windows(word.len()).any(|window| window == word);
         if beginning.starts_with(b"\x00\x00\x27\x0a") {

@@ -43,7 +43,10 @@ struct SimulateAnswer {
 
 /// Simulates.
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
-    inputs::look_at(args.common.input_max_gib, &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)])?;
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
     // Set before the terrain is read, since reading starts the threads.
     use_threads(args.answer.threads)?;
     let loaded = load_with(
