@@ -52,6 +52,9 @@ const LONGEST_GRID_LINE: u64 = 1 << 26;
 const LARGEST_SCENARIO: u64 = 1 << 24;
 const LARGEST_GEOJSON: u64 = 1 << 30;
 
+/// The most bytes of content of no known format whose reader is still asked what is wrong with it: it reads all of them.
+const LARGEST_UNKNOWN: u64 = 1 << 30;
+
 /// A file that was looked at.
 #[derive(Clone, Debug)]
 pub(crate) struct Input {
@@ -138,6 +141,12 @@ pub(crate) fn open(path: &Path, role: Role) -> Result<Input, Failure> {
     let kind = FileKind::of(path).map_err(read)?;
     check_kind(&kind, role, path)?;
     let length = fs::metadata(path).map_err(read)?.len();
+    let is_read_blindly = matches!(role, Role::Chain | Role::ChainKey | Role::Pairs | Role::MeshKey);
+    if matches!(kind, FileKind::Text | FileKind::Binary) && is_read_blindly && length > LARGEST_UNKNOWN {
+        let mut beginning = Vec::new();
+        File::open(path).and_then(|file| file.take(24).read_to_end(&mut beginning)).map_err(read)?;
+        return Err(unknown(path, &kind, role, &beginning));
+    }
     if is_read_whole(&kind) && length > max_bytes() {
         return Err(too_large(path, &format!("{:.1} GiB", gib(length))));
     }
@@ -262,13 +271,7 @@ fn of_stream(path: &Path, role: Role) -> Result<Input, Failure> {
     let kind = FileKind::of_beginning(&beginning, ended.then_some(beginning.len() as u64), path);
     check_kind(&kind, role, path)?;
     if !ended && matches!(kind, FileKind::Text | FileKind::Binary) {
-        let shown: String = beginning.iter().take(24).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect();
-        return Err(Failure::message(format!(
-            "{name}: this is {} (it begins with '{shown}'); expected {} as {}: check what is piped",
-            kind.name(),
-            role.expected(),
-            role.name()
-        )));
+        return Err(unknown(path, &kind, role, &beginning));
     }
     if let Some(image) = detached_image(&kind, &beginning) {
         return Err(Failure::message(format!(
@@ -281,6 +284,18 @@ fn of_stream(path: &Path, role: Role) -> Result<Input, Failure> {
     let input = Input { given: path.to_path_buf(), file, kind };
     lock(&STREAMS).push(Stream { input: input.clone(), role });
     Ok(input)
+}
+
+/// Refuses content of no known format with its first bytes.
+fn unknown(path: &Path, kind: &FileKind, role: Role, beginning: &[u8]) -> Failure {
+    let shown: String = beginning.iter().take(24).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect();
+    Failure::message(format!(
+        "{}: this is {} (it begins with '{shown}'); expected {} as {}: check what it holds",
+        path.display(),
+        kind.name(),
+        role.expected(),
+        role.name()
+    ))
 }
 
 /// Whether two names mean the same pipe.

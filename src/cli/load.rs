@@ -8,11 +8,11 @@ use std::{
 };
 
 use chta::{
-    chain::Station,
+    chain::{Station, csv::read_chain_csv_file},
     hop::HopTest,
     report::InputFile,
     scenario::{
-        Entries, JourneyEnd as End, LackingKey, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem,
+        Entries, FileKind, JourneyEnd as End, LackingKey, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem,
         ScenarioProblems, Survey, SweptKey, TerrainSource, Trade, prepare, scenario_document, sha256_of,
     },
 };
@@ -132,6 +132,10 @@ impl Target {
     fn chain(path: &Path) -> Result<Self, Failure> {
         let input = inputs::open(path, Role::Chain)?;
         let is_scenario = input.is_scenario();
+        // What is not even a table is reported before the keys that its analysis would lack.
+        if !is_scenario && input.kind != FileKind::ChainCsv {
+            read_chain_csv_file(&input.file)?;
+        }
         Ok(Self { input, is_scenario })
     }
 }

@@ -14,6 +14,9 @@ mod interrupt;
 mod map_command;
 mod maps_command;
 mod mesh_command;
+mod picture_files;
+#[cfg(unix)]
+mod pipes;
 mod real_terrain;
 mod same_answers;
 mod sentences;
