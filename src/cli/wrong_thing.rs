@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use chta::scenario::FileKind;
+use chta::{scenario::FileKind, terrain::VectorFormat};
+
+use super::inputs::is_stream;
 
 /// A position on the command line or in a scenario that takes a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -120,7 +122,14 @@ pub(crate) fn refusal(kind: &FileKind, role: Role, path: &Path) -> (String, Stri
 fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
     let (name, toml) = (shell(path), toml_text(path));
     let key = role.key().unwrap_or_default();
+    if let (FileKind::ForeignRaster(_), false) = (kind, cfg!(feature = "gdal")) {
+        // It is mended as the GeoTIFF that GDAL makes of it.
+        let converted = path.with_extension("tif");
+        let mend = mend(&FileKind::Raster("GeoTIFF"), role, &converted);
+        return format!("convert it with `gdal_translate {name} {}`; then {mend}", shell(&converted));
+    }
     match (kind, role) {
+        (FileKind::Packed(..), _) if is_stream(path) => "unpack it before it goes into the pipe".to_owned(),
         (FileKind::Packed(_, program), _) => format!("unpack it with `{program} {name}` and give the file in it"),
         (FileKind::Document(_) | FileKind::Empty | FileKind::Text | FileKind::Binary, _) => {
             format!("check the path: give {}", role.expected())
@@ -159,10 +168,12 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
             "draw the zones as polygons in the terrain's map coordinates, or give a raster whose pixels other than 0 are kept out"
                 .to_owned()
         }
-        (FileKind::Shapes(_), _) => format!(
-            "shapes are zones: convert them with `ogr2ogr -f GeoJSON {} {name}` and give them to a scenario as [surface] keep_out",
-            shell(&path.with_extension("geojson"))
-        ),
+        (FileKind::Shapes(VectorFormat::ShapefilePart), _) => "it describes another file beside it: give that one".to_owned(),
+        (FileKind::Shapes(_), _) => {
+            format!(
+                "shapes are zones: name them in a scenario as [surface] keep_out = {toml}, where the command that converts them is given"
+            )
+        }
         (FileKind::GeoJson, _) => format!("zones belong in a scenario: [surface] keep_out = {toml}"),
         // The command line.
         (FileKind::Raster("XYZ grid"), Role::Chain | Role::Pairs) => format!(

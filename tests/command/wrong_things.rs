@@ -286,6 +286,11 @@ fn keys_written_as_the_messages_say_are_accepted() {
         let ran = desk.run(&["check", "key.toml"]);
         assert!(ran.status < 2, "{key} {thing}: {message}{}", ran.stderr);
     }
+    // Shapes in a wrong position are named as zones, where the command that converts them is given.
+    let message = desk.run(&["plan", "zones.gpkg"]).stderr;
+    assert!(message.contains("[surface] keep_out = \"zones.gpkg\""), "{message}");
+    desk.write("named.toml", head.replace("[terrain]\n", "keep_out = \"zones.gpkg\"\n[terrain]\ndem = \"ground.tif\"\n") + on_map);
+    desk.refused(&["check", "named.toml"], &["convert it with: ogr2ogr -f GeoJSON"]);
     // Zones and terrain named where a message says.
     for (args, key) in [
         (&["map", "zones.geojson", "--start", "1,1"][..], "keep_out"),
@@ -309,6 +314,89 @@ fn keys_written_as_the_messages_say_are_accepted() {
         desk.write("named.toml", text);
         let ran = desk.run(&["check", "named.toml"]);
         assert!(ran.status < 2, "{message}{}", ran.stderr);
+    }
+}
+
+#[test]
+fn packed_files_are_unpacked_by_the_command_of_the_message() {
+    let packers: [(&str, &str, &[&str]); 5] = [
+        ("gzip", "ground.tif.gz", &["ground.tif"]),
+        ("bzip2", "ground.tif.bz2", &["ground.tif"]),
+        ("xz", "ground.tif.xz", &["ground.tif"]),
+        ("zstd", "ground.tif.zst", &["-q", "--rm", "ground.tif"]),
+        ("tar", "ground.tar", &["-cf", "ground.tar", "ground.tif"]),
+    ];
+    for (packer, packed, args) in packers.into_iter().filter(|(packer, ..)| installed(packer)) {
+        let desk = Desk::with_dem();
+        assert!(Command::new(packer).current_dir(desk.path()).args(args).status().unwrap().success());
+        fs::remove_file(desk.path().join("ground.tif")).ok();
+        let message = desk.run(&["slice", packed, "--from", "1,1", "--to", "2,2"]).stderr;
+        let [command] = &advised(&message)[..] else { panic!("{message}") };
+        assert_eq!(done(&desk, command), 0, "{message}");
+        assert_eq!(desk.run(&["slice", "ground.tif", "--from", "1,1", "--to", "2,2"]).status, 0, "{message}");
+    }
+}
+
+/// Rasters of formats that are not read: GDAL makes a GeoTIFF of them, which is cut or named as the message says.
+#[test]
+fn foreign_rasters_are_converted_by_the_command_of_the_message() {
+    if !installed("gdal_translate") || cfg!(feature = "gdal") {
+        return;
+    }
+    let formats =
+        [("HFA", "ground.img"), ("VRT", "ground.vrt"), ("ISIS3", "ground.cub"), ("VICAR", "ground.vic"), ("PDS4", "ground.xml")];
+    let desk = Desk::with_dem();
+    let chain = crate::desk::CHAIN;
+    // PDS4 and VICAR keep no place on a map without a projection.
+    let moon = "+proj=eqc +lat_ts=0 +lat_0=0 +lon_0=10 +R=1737400 +units=m +no_defs";
+    let placed = ["-q", "-a_srs", moon, "ground.tif", "source.tiff"];
+    assert!(Command::new("gdal_translate").current_dir(desk.path()).args(placed).status().unwrap().success());
+    fs::remove_file(desk.path().join("ground.tif")).unwrap();
+    for (format, name) in formats {
+        let made = Command::new("gdal_translate")
+            .current_dir(desk.path())
+            .args(["-q", "-of", format, "source.tiff", name])
+            .output()
+            .unwrap();
+        if !made.status.success() {
+            eprintln!("skipped: gdal_translate does not write {format}");
+            continue;
+        }
+        let message = desk.run(&["plan", name]).stderr;
+        let [convert, cut] = &advised(&message)[..] else { panic!("{message}") };
+        assert_eq!((done(&desk, convert), done(&desk, cut)), (0, 0), "{format}: {message}");
+        assert!(desk.read("chain.csv") != chain && desk.read("chain.csv").starts_with("# chta"), "{message}");
+        desk.write("chain.csv", chain);
+        desk.write("key.toml", crate::desk::SCENARIO.replace("chain.csv", name));
+        let message = desk.run(&["check", "key.toml"]).stderr;
+        assert!(message.contains("write dem = \"ground.tif\" in place of chain"), "{message}");
+        fs::remove_file(desk.path().join("ground.tif")).unwrap();
+    }
+}
+
+/// A path with backslashes, written with / as the message says, is read.
+#[test]
+fn a_windows_path_written_as_the_message_says_is_read() {
+    let desk = Desk::with_dem();
+    fs::create_dir(desk.path().join("new")).unwrap();
+    for name in ["ground.tif", "names.tif", "u00.tif", "x.tif"] {
+        fs::copy(desk.path().join("ground.tif"), desk.path().join("new").join(name)).unwrap();
+        // An unknown escape, a line break, two that lack their digits.
+        desk.write("windows.toml", crate::desk::ON_MAP.replace("ground.tif", &format!("new\\{name}")));
+        desk.refused(
+            &["check", "windows.toml"],
+            &["windows.toml:12:7: terrain.dem ", "write / instead of each", &format!("dem = 'new\\{name}'")],
+        );
+        let message = desk.run(&["check", "windows.toml"]).stderr;
+        assert_eq!(message.matches("error: ").count(), 1, "{message}");
+        desk.write("windows.toml", crate::desk::ON_MAP.replace("ground.tif", &format!("new/{name}")));
+        assert!(desk.run(&["check", "windows.toml"]).status < 2, "{name}");
+        // In single quotes the path is read as it stands; on this system it has no folders.
+        if cfg!(unix) {
+            desk.write("windows.toml", crate::desk::ON_MAP.replace("\"ground.tif\"", &format!("'new\\{name}'")));
+            let said = format!("on this system / stands between folders: new/{name}");
+            desk.refused(&["check", "windows.toml"], &["which cannot be read (No such file", &said]);
+        }
     }
 }
 
