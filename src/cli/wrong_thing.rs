@@ -93,22 +93,25 @@ impl Role {
     /// Whether a file of this kind is what the position takes, or its reader says best what is wrong with it.
     pub(crate) fn takes(self, kind: &FileKind) -> bool {
         use FileKind as Kind;
-        match (self, kind) {
-            (_, Kind::Empty | Kind::Text | Kind::Binary) => true,
-            (Self::Chain, Kind::ChainCsv | Kind::Scenario | Kind::Result | Kind::Json) => true,
-            (Self::Scenario | Self::ScenarioOption, Kind::Scenario | Kind::Result | Kind::Json) => true,
-            (
-                Self::Dem | Self::DemKey | Self::Terrain | Self::KeepOut | Self::Friction,
-                Kind::Raster(_) | Kind::ForeignRaster(_),
-            ) => true,
-            // GDAL reads pictures whose samples are elevations.
-            (Self::Dem | Self::DemKey | Self::Terrain, Kind::Picture(_)) => cfg!(feature = "gdal"),
-            (Self::Terrain | Self::MeshKey, Kind::Mesh(..)) => true,
-            (Self::ChainKey, Kind::ChainCsv) | (Self::Pairs, Kind::PairsCsv) => true,
-            // The zones' reader knows the terrain's map, to which they have to be converted.
-            (Self::KeepOut, Kind::GeoJson | Kind::Json | Kind::Shapes(_)) => true,
-            _ => false,
-        }
+        let of_scenario = matches!(kind, Kind::Scenario | Kind::Result | Kind::Json);
+        let of_raster = matches!(kind, Kind::Raster(_) | Kind::ForeignRaster(_));
+        // GDAL reads pictures whose samples are elevations.
+        let of_dem = of_raster || (cfg!(feature = "gdal") && matches!(kind, Kind::Picture(_)));
+        let of_mesh = matches!(kind, Kind::Mesh(..));
+        let is_unknown = matches!(kind, Kind::Empty | Kind::Text | Kind::Binary);
+        is_unknown
+            || match self {
+                Self::Chain => *kind == Kind::ChainCsv || of_scenario,
+                Self::Scenario | Self::ScenarioOption => of_scenario,
+                Self::Dem | Self::DemKey => of_dem,
+                Self::Terrain => of_dem || of_mesh,
+                Self::MeshKey => of_mesh,
+                Self::ChainKey => *kind == Kind::ChainCsv,
+                Self::Pairs => *kind == Kind::PairsCsv,
+                Self::Friction => of_raster,
+                // The zones' reader knows the terrain's map, to which they have to be converted.
+                Self::KeepOut => of_raster || matches!(kind, Kind::GeoJson | Kind::Json | Kind::Shapes(_)),
+            }
     }
 }
 

@@ -144,7 +144,7 @@ mod tests {
 
     #[test]
     fn texts_that_are_meant_as_they_stand_are_left_alone() {
-        for line in [r#"dem = 'C:\Users\x.tif'"#, r#"dem = "C:\\Users\\x.tif""#, r#"dem = "d\u00e9.tif""#, r#"dem = "a/b.tif""#] {
+        for line in [r"dem = 'C:\Users\x.tif'", r#"dem = "C:\\Users\\x.tif""#, r#"dem = "d\u00e9.tif""#, r#"dem = "a/b.tif""#] {
             let entries = Entries::from_toml(&format!("[terrain]\n{line}\n"));
             assert!(entries.problems().is_empty(), "{line}: {:?}", entries.problems());
         }

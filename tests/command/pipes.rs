@@ -41,7 +41,11 @@ fn piped(desk: &Desk, args: &[&str], bytes: &[u8], again: &[u8]) -> Ran {
 }
 
 fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    use std::fmt::Write as _;
+    Sha256::digest(bytes).iter().fold(String::new(), |mut text, byte| {
+        write!(text, "{byte:02x}").unwrap();
+        text
+    })
 }
 
 /// A binary STL of one tilted plate.
@@ -220,6 +224,9 @@ fn what_a_pipe_cannot_give_is_said() {
     }
 }
 
+/// A command line, what comes first through its pipe, what then comes again and again, and words of its refusal.
+type Endless<'a> = (Vec<&'a str>, &'a [u8], &'a [u8], &'a str);
+
 #[test]
 fn endless_inputs_are_refused_and_unknown_ones_at_once() {
     let desk = desk();
@@ -232,7 +239,7 @@ fn endless_inputs_are_refused_and_unknown_ones_at_once() {
     let slice: &[&str] = &["slice", "-", "--from", "1,1", "--to", "5,3"];
     let small = |args: &[&'static str]| [args, &["--input-max-gib", "0.05"]].concat();
     let began = Instant::now();
-    let cases: [(Vec<&str>, &[u8], &[u8], &str); 14] = [
+    let cases: [Endless<'_>; 14] = [
         (slice.to_vec(), b"", &zeros, unknown),
         (slice.to_vec(), b"", b"y\n", unknown),
         (slice.to_vec(), b"", b"x", unknown),
