@@ -62,6 +62,11 @@ pub struct Key {
 }
 
 impl Key {
+    /// Whether its value is the path of a file.
+    pub fn names_a_file(&self) -> bool {
+        matches!((self.table, self.name), ("terrain", "dem" | "mesh" | "chain") | ("surface", "friction_raster" | "keep_out"))
+    }
+
     /// `table.name`.
     pub fn path(&self) -> String {
         format!("{}.{}", self.table, self.name)

@@ -1,9 +1,11 @@
 //! The scenario: TOML as typed, then validated, and the pipeline from terrain to a chain ready for analysis.
 
 mod alike;
+mod backslashes;
 mod catalogue;
 mod document;
 mod entries;
+mod file_kind;
 mod pipeline;
 mod problem;
 mod read;
@@ -14,6 +16,7 @@ pub use alike::ask_the_same;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
+pub use file_kind::FileKind;
 pub use pipeline::{
     DemReading, Extremes, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, check_body, constant_gravity_warnings,
     for_body, friction, prepare, sha256_of,

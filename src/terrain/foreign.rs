@@ -3,10 +3,11 @@
 //!
 //! The `gdal` feature reads them, and all other formats of GDAL (`src/terrain/gdal.rs`).
 
+#[cfg(not(feature = "gdal"))]
 use super::TerrainError;
 
 /// The first bytes of files of a format, and its name.
-const BEGINNINGS: [(&[u8], &str); 9] = [
+const BEGINNINGS: [(&[u8], &str); 12] = [
     (b"Object = IsisCube", "an ISIS cube"),
     (b"LBLSIZE=", "a VICAR image"),
     (b"\x89HDF\r\n", "an HDF5 or NetCDF-4 file"),
@@ -16,10 +17,13 @@ const BEGINNINGS: [(&[u8], &str); 9] = [
     (b"\xff\xd8\xff", "a JPEG picture"),
     (b"SIMPLE  =", "a FITS file"),
     (b"DSBB", "a Surfer grid"),
+    (b"EHFA_HEADER_TAG", "an ERDAS Imagine image"),
+    (b"GRIB", "a GRIB file"),
+    (b"<VRTDataset", "a virtual raster of GDAL"),
 ];
 
 /// The name of a format with an article, if the file begins like one of these.
-pub(super) fn name(beginning: &[u8]) -> Option<&'static str> {
+pub(crate) fn name(beginning: &[u8]) -> Option<&'static str> {
     let text = beginning.trim_ascii_start();
     let label = text.starts_with(b"<") && contains(text, b"Product_Observational");
     if label || (text.starts_with(b"<") && contains(text, b"pds.nasa.gov/pds4")) {
@@ -33,6 +37,7 @@ fn contains(text: &[u8], word: &[u8]) -> bool {
 }
 
 /// The error of a build without GDAL.
+#[cfg(not(feature = "gdal"))]
 pub(super) fn refusal(name: &str) -> TerrainError {
     TerrainError::Unsuitable {
         found: format!("{name}, which this build does not read"),

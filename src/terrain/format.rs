@@ -138,6 +138,11 @@ pub struct ReadContext {
     pub(super) sidecars: Arc<Sidecars>,
 }
 
+/// The name of the format of a file with this beginning, if one of the readers knows it.
+pub(crate) fn format_name(beginning: &[u8]) -> Option<&'static str> {
+    READERS.iter().find(|reader| reader.recognises(beginning)).map(|reader| reader.name())
+}
+
 fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {
     let beginning = read_beginning(path)?;
     if let Some(reader) = READERS.iter().copied().find(|reader| reader.recognises(&beginning)) {

@@ -14,6 +14,9 @@ mod interrupt;
 mod map_command;
 mod maps_command;
 mod mesh_command;
+mod picture_files;
+#[cfg(unix)]
+mod pipes;
 mod real_terrain;
 mod same_answers;
 mod sentences;
@@ -21,4 +24,5 @@ mod shipped_scenarios;
 mod simulate_command;
 mod stated_maps;
 mod trade_compare;
+mod wrong_things;
 mod zones_and_fan;

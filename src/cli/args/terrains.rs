@@ -8,13 +8,13 @@ use chta::{
 };
 use clap::{Args as ClapArgs, ValueEnum};
 
-use super::{AnswerArgs, CommonArgs, SearchArgs, lon_lat, map_point, no_data_rule};
+use super::{AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, SearchArgs, lon_lat, map_point, max_gib, no_data_rule};
 
 /// Cut terrain along a vertical plane into a polygonal chain (CSV)
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta slice data/terrain/mars_crater_field.tif --from 12,12 --to 180,150 -o chain.csv")]
 pub(crate) struct SliceArgs {
-    /// Elevation raster (GeoTIFF or ESRI ASCII grid, map in metres) or mesh (OBJ, STL or PLY, z up)
+    /// Elevation raster (GeoTIFF or ESRI ASCII grid, map in metres) or mesh (OBJ, STL or PLY, z up); -: standard input
     #[arg(value_name = "DEM|MESH")]
     pub(crate) terrain: PathBuf,
     /// Where the slice begins, map coordinates in m
@@ -53,6 +53,9 @@ pub(crate) struct SliceArgs {
     /// The slice as a line in three dimensions (GeoJSON) to write
     #[arg(long, value_name = "FILE")]
     pub(crate) geojson: Option<PathBuf>,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
     /// No warnings on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -66,7 +69,7 @@ pub(crate) struct SliceArgs {
     after_help = "Example:\n  chta fan data/terrain/mars_crater_field.tif --from 100,80 --headings 36 --length 80 \\\n    --scenario data/scenarios/mars_crater_field.toml --plot rose.svg"
 )]
 pub(crate) struct FanArgs {
-    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; -: standard input
     #[arg(value_name = "DEM")]
     pub(crate) dem: PathBuf,
     /// Where all slices begin, map coordinates in m
@@ -84,7 +87,7 @@ pub(crate) struct FanArgs {
     /// Table (CSV) to write; -: to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Rose picture (SVG) to write
+    /// Rose picture (SVG or PNG) to write
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
@@ -104,7 +107,7 @@ pub(crate) struct FanArgs {
     after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
 )]
 pub(crate) struct MapArgs {
-    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; -: standard input
     #[arg(value_name = "DEM")]
     pub(crate) dem: PathBuf,
     /// Start of all paths, map coordinates in m; the nearest post is used

@@ -8,12 +8,18 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, HopArgs},
+    inputs,
     load::{EndOptions, load},
     output,
+    wrong_thing::Role,
 };
 
 /// Tests one hop.
 pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
     let loaded = load(&args.chain, &args.common, None, EndOptions::of_hop(args.from, args.to))?;
     let (takeoff, landing) = loaded.ends()?;
     let test = loaded.hop_test();

@@ -26,9 +26,11 @@ use super::{captions::conditions, map_profiles, plan::passed, search::use_thread
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
+    inputs,
     load::{Bare, load_bare, raster_files},
     output::{self, Pending},
     progress::Progress,
+    wrong_thing::Role,
 };
 
 /// The terrain of a map, its projection and the scenario.
@@ -72,6 +74,8 @@ struct Maps {
 
 /// Computes and writes the map.
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
+    let MapArgs { dem, common, .. } = args;
+    inputs::look_at(common.input_max_gib, &[(Some(dem), Role::Dem), (common.scenario.as_deref(), Role::ScenarioOption)])?;
     use_threads(args.answer.threads)?;
     let (inputs, start, goals) = prepared(args)?;
     check_extensions(args)?;
@@ -115,12 +119,13 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
 /// Reads terrain and scenario and finds the posts of start and goals.
 fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     let MapArgs { dem: file, start, start_lonlat, goal, goal_lonlat, stride, effort, common, .. } = args;
-    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     if *stride == 0 {
         return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
     }
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
-    let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
+    let Bare { dem: file, scenario, base, document } = load_bare(file, common, &searched)?;
+    let file = file.as_path();
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     let dem = DemReading::of(&scenario).options.read(file).map_err(|e| Failure::of(&for_body(&scenario.body, e)))?;
     check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| failed(&e))?;
     let overlays =
@@ -292,7 +297,7 @@ fn format_share(what: &str, step: &Step, elapsed_s: f64) -> Option<String> {
 
 /// Checks that each output has an extension that its readers recognise.
 fn check_extensions(args: &MapArgs) -> Result<(), Failure> {
-    let MapArgs { output, effort_output, return_output, mobility, paths, geojson, .. } = args;
+    let MapArgs { output, effort_output, return_output, mobility, paths, geojson, profiles, plot, .. } = args;
     let rasters =
         [("-o", output), ("--effort-output", effort_output), ("--return-output", return_output), ("--mobility", mobility)];
     let rasters = rasters.map(|(option, file)| (option, file, &["tif", "tiff"][..]));
@@ -305,6 +310,9 @@ fn check_extensions(args: &MapArgs) -> Result<(), Failure> {
             let message = format!("{option} {}: expected a file that ends in .{}", file.display(), endings.join(" or ."));
             return Err(Failure::message(message));
         }
+    }
+    for (option, file) in [("--profiles", profiles), ("--plot", plot)] {
+        file.as_deref().map_or(Ok(()), |file| output::check_picture(option, file))?;
     }
     Ok(())
 }

@@ -14,9 +14,11 @@ use super::search::{proved, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, RequireArgs},
+    inputs,
     load::{EndOptions, Loaded, load},
     output,
     progress::Progress,
+    wrong_thing::Role,
 };
 
 /// A scenario key that makes a hopper more or less capable, with its default range of values.
@@ -56,6 +58,10 @@ struct Tried {
 
 /// Finds the least capability.
 pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
     let (capability, [from, to]) = asked(args)?;
     use_threads(args.answer.threads)?;
     let (mut weakest, strongest) = if capability.more_is_more { (from, to) } else { (to, from) };

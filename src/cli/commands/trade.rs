@@ -17,10 +17,11 @@ use super::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, TradeArgs},
-    hints,
+    hints, inputs,
     load::{EndOptions, Loaded, ToVary, load_to_vary},
     output::{self, Pending, TableFormat},
     progress::Progress,
+    wrong_thing::Role,
 };
 
 /// The failure for an invalid swept key.
@@ -31,6 +32,10 @@ fn refused(error: TradeError) -> Failure {
 
 /// Answers every cell.
 pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
     use_threads(args.answer.threads)?;
     let swept: Vec<_> = args.vary.iter().map(|text| SweptKey::parse(text)).collect::<Result<_, _>>().map_err(refused)?;
     let table = args.output.as_deref().map(TableFormat::of).transpose()?;

@@ -53,6 +53,29 @@ impl MeshFormat {
     }
 }
 
+/// The name of the format of a file with this beginning and length, and whether it is text.
+pub(crate) fn format_name(beginning: &[u8], length: u64) -> Option<(&'static str, bool)> {
+    Some(match MeshFormat::of(beginning, length)? {
+        MeshFormat::Obj => ("OBJ", true),
+        MeshFormat::BinaryStl => ("STL", false),
+        MeshFormat::AsciiStl => ("STL", true),
+        MeshFormat::Ply => ("PLY", beginning.windows(12).take(200).any(|window| window == b"format ascii")),
+    })
+}
+
+/// The length that a binary STL with this header has, bytes, if its first triangles are sane: junk of any length has a number where
+/// an STL has the count of its triangles.
+pub(crate) fn binary_stl_length(beginning: &[u8]) -> Option<u64> {
+    let length = stl::binary_length(beginning)?;
+    let first = beginning.get(stl::HEADER_BYTES..)?.chunks_exact(50).take(20);
+    let sane = |number: &[u8]| {
+        let number = f32::from_le_bytes([number[0], number[1], number[2], number[3]]);
+        number == 0.0 || (1e-20..1e12).contains(&number.abs())
+    };
+    let all_sane = first.flat_map(|triangle| triangle[..48].chunks_exact(4)).all(sane);
+    (length > stl::HEADER_BYTES as u64 && all_sane).then_some(length)
+}
+
 /// Whether a file is a mesh by its content; false if it cannot be read.
 pub fn looks_like_mesh(path: &Path) -> bool {
     let Ok(file) = File::open(path) else { return false };

@@ -20,8 +20,10 @@ use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
     hints::further_means,
+    inputs,
     load::{EndOptions, Loaded, load_with},
     output,
+    wrong_thing::Role,
 };
 use listen::RowFile;
 use pictures::{landing_map, sheet};
@@ -41,6 +43,10 @@ struct SimulateAnswer {
 
 /// Simulates.
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
     // Set before the terrain is read, since reading starts the threads.
     use_threads(args.answer.threads)?;
     let loaded = load_with(
