@@ -34,6 +34,7 @@ mod profile;
 mod projection;
 mod slice;
 mod synth;
+mod text_lines;
 mod walk;
 mod window;
 mod xyz;
