@@ -3,9 +3,10 @@
 use std::path::Path;
 
 use tiff_reader::ifd::ParseBudgets;
-use tiff_reader::{OpenOptions, TiffError, TiffFile};
+use tiff_reader::{OpenOptions, TiffFile};
 
-use super::image::{Images, damaged};
+use super::encoding::unreadable;
+use super::image::Images;
 use super::keys::{GeoTags, Placement};
 use super::metadata::{NoData, Scaling, read_scaling};
 use super::samples::{Decoder, Elevations, largest_unpacked};
@@ -32,7 +33,7 @@ impl DemReader for GeoTiffReader {
 
     fn read_path(&self, path: &Path) -> Result<Dem, TerrainError> {
         let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
-        read_tiff(&TiffFile::open_with_options(path, whole_options(length)).map_err(open_error)?)
+        read_tiff(&TiffFile::open_with_options(path, whole_options(length)).map_err(unreadable)?)
     }
 
     fn open_path(&self, path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
@@ -53,7 +54,7 @@ impl DemReader for GeoTiffReader {
 /// raster.
 pub fn read_geotiff_bytes(bytes: Vec<u8>) -> Result<Dem, TerrainError> {
     let options = whole_options(bytes.len() as u64);
-    read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?)
+    read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(unreadable)?)
 }
 
 /// Stricter limits than the defaults: a DEM has few images, and its data must not unpack to more than the file's length can
@@ -69,13 +70,6 @@ fn open_options(length: u64) -> OpenOptions {
 /// When the file is read as a whole, no block is decoded twice, so a cache would only cost memory and time.
 fn whole_options(length: u64) -> OpenOptions {
     OpenOptions { block_cache_bytes: 0, ..open_options(length) }
-}
-
-fn open_error(error: TiffError) -> TerrainError {
-    match error {
-        TiffError::Io(reason, _) => TerrainError::reading(reason),
-        other => damaged(other.to_string()),
-    }
 }
 
 fn read_tiff(file: &TiffFile) -> Result<Dem, TerrainError> {
@@ -124,7 +118,7 @@ fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
     let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
     let mut options = open_options(length);
     let block = {
-        let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
+        let file = TiffFile::open_with_options(path, options).map_err(unreadable)?;
         let images = Images::of(&file)?;
         let (_, Placement { georeference, states_metres, .. }) = check_tags(&file, &images)?;
         let (rows, cols) = (images.layout.height, images.layout.width);
@@ -135,7 +129,7 @@ fn open_tiff(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
         block_bytes(&images)
     };
     options.block_cache_bytes = block.saturating_mul(KEPT_BLOCKS).max(KEPT_BYTES);
-    let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
+    let file = TiffFile::open_with_options(path, options).map_err(unreadable)?;
     let images = Images::of(&file)?;
     let (decoder, Placement { georeference, south_up, .. }) = check_tags(&file, &images)?;
     let lattice = PostLattice::new(images.layout.height, images.layout.width, georeference)?;
@@ -179,7 +173,7 @@ pub(in crate::terrain) struct Placed {
 #[cfg(feature = "gdal")]
 pub(in crate::terrain) fn place_by_tags(bytes: Vec<u8>, rows: usize) -> Result<Placed, TerrainError> {
     let options = open_options(bytes.len() as u64);
-    let file = TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?;
+    let file = TiffFile::from_bytes_with_options(bytes, options).map_err(unreadable)?;
     let Placement { georeference, south_up, states_metres } = GeoTags::of(Images::of(&file)?.elevations).place(rows)?;
     Ok(Placed { georeference, south_up, states_metres })
 }
