@@ -19,7 +19,6 @@
 mod ascii_grid;
 mod dem;
 mod error;
-#[cfg(not(feature = "gdal"))]
 mod foreign;
 mod format;
 #[cfg(feature = "gdal")]
