@@ -5,7 +5,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use super::image::ImageObject;
-use super::label::{LONGEST_LABEL, Label, shown, unsuitable};
+use super::label::{LONGEST_LABEL, Label, begins_label, shown, unsuitable};
 use super::projection::place;
 use crate::terrain::{Dem, DemFile, DemReader, PostLattice, TerrainError, Window};
 
@@ -18,9 +18,7 @@ impl DemReader for Pds3Reader {
     }
 
     fn recognises(&self, beginning: &[u8]) -> bool {
-        let head = &beginning[..beginning.len().min(512)];
-        (head.starts_with(b"CCSD") || head.trim_ascii_start().starts_with(b"PDS_VERSION_ID"))
-            && head.windows(14).any(|window| window == b"PDS_VERSION_ID")
+        begins_label(beginning)
     }
 
     fn read_bytes(&self, bytes: Vec<u8>) -> Result<Dem, TerrainError> {
