@@ -37,7 +37,10 @@ impl Entries {
     /// The keys of a TOML text. Unknown keys and wrong syntax become problems, listed by [`problems`](Self::problems).
     pub fn from_toml(source: &str) -> Self {
         let mut entries = Self::default();
-        let document = match DeTable::parse(source) {
+        // Positions stay the same: TOML knows no line ends of carriage returns alone, as older editors of the Macintosh write.
+        let returns_alone = source.contains('\r') && !source.contains('\n');
+        let with_feeds = if returns_alone { source.replace('\r', "\n").into() } else { std::borrow::Cow::Borrowed(source) };
+        let document = match DeTable::parse(&with_feeds) {
             Ok(document) => document,
             Err(error) => {
                 entries.problems.push(ScenarioProblem {

@@ -41,7 +41,7 @@ mod zones;
 
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M, Samples};
-pub use error::{AsciiProblem, TerrainError};
+pub use error::{AsciiProblem, GapCause, TerrainError};
 pub use format::{DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{Band, ResultBands, geotiff_bytes, read_geotiff_bytes, result_geotiff_bytes, write_geotiff};
