@@ -2,6 +2,8 @@
 
 #[path = "../support/mod.rs"]
 mod support;
+#[path = "../support/tiff.rs"]
+mod tiff;
 #[path = "../support/tower.rs"]
 mod tower;
 
@@ -27,6 +29,7 @@ mod mesh_slices;
 mod mutations;
 mod mutations_chain_csv;
 mod mutations_mesh;
+mod mutations_overlays;
 mod mutations_scenario;
 mod mutations_terrain;
 mod new_limit;
@@ -38,5 +41,7 @@ mod proof_terrain;
 mod scenario_round_trip;
 mod segment_hops;
 mod slice_file;
+mod sound_files;
 mod sweep;
 mod terrain_files;
+mod truncations;
