@@ -41,9 +41,12 @@ impl Entries {
     /// The keys of a TOML text. Unknown keys and wrong syntax become problems, listed by [`problems`](Self::problems).
     pub fn from_toml(source: &str) -> Self {
         let mut entries = Self::default();
-        let (backslashed, mended) = unreadable_lines(source);
+        // Positions stay the same: TOML knows no line ends of carriage returns alone, as older editors of the Macintosh write.
+        let returns_alone = source.contains('\r') && !source.contains('\n');
+        let with_feeds = if returns_alone { source.replace('\r', "\n").into() } else { std::borrow::Cow::Borrowed(source) };
+        let (backslashed, mended) = unreadable_lines(&with_feeds);
         // Lines with Windows paths are reported; the others are read as if these were right, so that all problems are found at once.
-        let parsed = DeTable::parse(source);
+        let parsed = DeTable::parse(&with_feeds);
         let parsed = if backslashed.is_empty() || parsed.is_ok() { parsed } else { DeTable::parse(&mended).or(parsed) };
         let document = match parsed {
             Ok(document) => document,

@@ -17,6 +17,7 @@
 //! ```
 
 mod build;
+mod ears;
 mod format;
 mod model;
 mod obj;
