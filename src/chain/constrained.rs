@@ -51,7 +51,8 @@ impl ConstrainedChain {
     /// Resolves the constraints of every segment from the chain, the hopper and the scenario's surface.
     ///
     /// The chain's own friction, angles or explicit limits have priority, and the surface supplies what the chain leaves
-    /// open; of two speed limits the smaller applies. The rest slope is compared with the full inclination of the surface,
+    /// open; of two speed limits the smaller applies, and none reaches the escape speed of a body of known radius
+    /// ([`Gravity::speed_cap_m_s`]). The rest slope is compared with the full inclination of the surface,
     /// `n_z = cos chi cos alpha`; a rest slope left to friction is the friction angle of the segment's own coefficient.
     ///
     /// # Errors
@@ -77,7 +78,7 @@ impl ConstrainedChain {
         let mut problems: Vec<(ConstraintProblem, usize)> = Vec::new();
         let mut segments = Vec::with_capacity(geometry.segment_count());
         for (i, (&slope, ground)) in geometry.slopes().iter().zip(geometry.grounds()).enumerate() {
-            match resolve_constraints(SegmentId(i), slope, ground, hopper, surface) {
+            match resolve_constraints(SegmentId(i), slope, ground, hopper, gravity, surface) {
                 Ok(segment) => segments.push(segment),
                 Err(problem) => {
                     let same =
@@ -98,7 +99,8 @@ impl ConstrainedChain {
         };
         let speed_bounds_m_s = (bound(Contact::Takeoff), bound(Contact::Landing));
         let height_bound_m = geometry.vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max);
-        Ok(Self { geometry, hopper: *hopper, gravity, surface: *surface, segments, speed_bounds_m_s, height_bound_m })
+        let hopper = hopper.below_escape(gravity);
+        Ok(Self { geometry, hopper, gravity, surface: *surface, segments, speed_bounds_m_s, height_bound_m })
     }
 
     /// The same geometry and surface for another hopper and gravity.
@@ -168,12 +170,13 @@ impl ConstrainedChain {
 }
 
 /// Resolves the constraints of one segment: what its ground, given by its slope along the plane of travel, allows this
-/// hopper.
+/// hopper under this gravity.
 pub(crate) fn resolve_constraints(
     id: SegmentId,
     slope: f64,
     ground: &SegmentGround,
     hopper: &Hopper,
+    gravity: Gravity,
     surface: &SurfaceProperties,
 ) -> Result<SegmentConstraints, ConstraintProblem> {
     let (takeoff_speed, landing_speed) = (hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s);
@@ -204,6 +207,8 @@ pub(crate) fn resolve_constraints(
     if unbounded(&forward) || unbounded(&reverse) {
         return Err(ConstraintProblem::NoSpeed(id));
     }
+    let cap_m_s = gravity.speed_cap_m_s();
+    let [forward, reverse] = [forward, reverse].map(|line| line.map(|line| line.capped(cap_m_s, cap_m_s)));
     let rest_slope = match surface.rest {
         RestSlope::AsFrictionHolds => friction.map(FrictionCone::coefficient),
         RestSlope::AtMost(angle) => Some(angle.slope()),

@@ -4,6 +4,7 @@ mod alike;
 mod catalogue;
 mod document;
 mod entries;
+mod physics;
 mod pipeline;
 mod problem;
 mod read;
@@ -14,10 +15,8 @@ pub use alike::ask_the_same;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
-pub use pipeline::{
-    Extremes, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, constant_gravity_warnings, friction, prepare,
-    sha256_of,
-};
+pub use physics::{Extent, Extremes, TooLarge, body_warnings, check_extent, constant_gravity_warnings, escape_warnings};
+pub use pipeline::{JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};
 pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};
 pub use trade::{SweptKey, Trade, TradeError, Varied, verdict};

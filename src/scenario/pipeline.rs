@@ -10,17 +10,16 @@ use std::{
 
 use sha2::{Digest, Sha256};
 
-use super::{BodyChoice, Scenario, TerrainSource};
+use super::{Scenario, TerrainSource, physics::{self, Extent, TooLarge}};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     ground::DemGround,
-    path::Hop,
     quantity::MapPoint,
     terrain::{
         self, CoordinateSystem, Dem, MapBounds, MapPlace, MapProjection, OverlaidDem, OverlayEffect, Profile, TerrainError,
         check_scale, open_dem, read_friction_raster, read_keep_out, read_mesh, slice_legs, slice_mesh,
     },
-    world::{Body, FrictionCone},
+    world::FrictionCone,
 };
 
 /// A chain ready to be analysed, with start and goal if known.
@@ -81,6 +80,9 @@ pub enum PipelineError {
         /// The position, and the extent of the chain.
         problem: OffChain,
     },
+    /// A terrain that is larger than the body it is said to lie on.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
     /// A file that cannot be read.
     #[error("{}: cannot be read ({source}): check the path and its permissions", path.display())]
     Read {
@@ -149,9 +151,11 @@ impl Survey {
                 return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
             }
         };
-        let overlays = Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.bounds)?;
+        let mut warnings = transect.warnings;
+        warnings.extend(physics::check_extent(&scenario.body, &transect.extent)?);
+        let overlays = Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.extent.bounds)?;
         let ground = Surveyed::Slice { legs: transect.legs, overlays: Box::new(overlays) };
-        Ok(Self { ground, projection: transect.projection, warnings: transect.warnings })
+        Ok(Self { ground, projection: transect.projection, warnings })
     }
 
     /// The chain under another scenario's hopper, grip, rest slope and ends. That scenario's terrain keys and files are ignored.
@@ -184,8 +188,10 @@ fn resolved(
     geometry: PolygonalChain,
     ends: (Option<f64>, Option<f64>),
     projection: Option<MapProjection>,
-    warnings: Vec<String>,
+    mut warnings: Vec<String>,
 ) -> Result<Prepared, PipelineError> {
+    warnings.extend(physics::body_warnings(&scenario.body));
+    warnings.extend(physics::escape_warnings(scenario, Some(&geometry)));
     let chain = Arc::new(ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)?);
     let station = |which, x_m: Option<f64>| {
         x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
@@ -204,8 +210,8 @@ pub struct Transect {
     pub coordinates: Option<CoordinateSystem>,
     /// The map's projection, if known.
     pub projection: Option<MapProjection>,
-    /// The extent of the terrain.
-    pub bounds: MapBounds,
+    /// The extent of the terrain, and what kind of terrain it is.
+    pub extent: Extent,
     /// Warnings for the analyst.
     pub warnings: Vec<String>,
 }
@@ -232,7 +238,8 @@ impl Transect {
         }
         let legs = slice_legs(dem.as_ref(), from, &via, to)?;
         let coordinates = Some(map.coordinate_system.clone());
-        Ok(Self { legs, coordinates, projection: projection.ok(), bounds, warnings })
+        let extent = Extent::of_dem(bounds, projection.is_ok());
+        Ok(Self { legs, coordinates, projection: projection.ok(), extent, warnings })
     }
 
     /// Slices a mesh from the first end over the intermediate points to the second.
@@ -249,7 +256,8 @@ impl Transect {
             legs.push(slice.profile);
             begin = end;
         }
-        Ok(Self { legs, coordinates: None, projection: None, bounds: read.mesh.bounds().map, warnings })
+        let extent = Extent::of_mesh(&read.mesh.bounds());
+        Ok(Self { legs, coordinates: None, projection: None, extent, warnings })
     }
 }
 
@@ -347,53 +355,4 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
         let _ = write!(text, "{byte:02x}");
         text
     }))
-}
-
-/// The extremes of some hops, for the check whether constant gravity is a good model.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Extremes {
-    /// Greatest horizontal distance, m.
-    pub range_m: f64,
-    /// Greatest height above a take-off, m.
-    pub height_m: f64,
-    /// Greatest speed, m/s.
-    pub speed_m_s: f64,
-}
-
-impl Extremes {
-    /// The extremes of planned hops.
-    pub fn of(hops: &[Hop]) -> Self {
-        let largest = |of: fn(&Hop) -> f64| hops.iter().map(of).fold(0.0, f64::max);
-        Self {
-            range_m: largest(Hop::run_m),
-            height_m: largest(|h| h.apex_z_m - h.takeoff.point_m.z),
-            speed_m_s: largest(|h| h.takeoff_speed_m_s.max(h.landing_speed_m_s)),
-        }
-    }
-}
-
-/// Warnings if constant gravity over flat ground is a bad model, each with its numbers; empty if it is a good one.
-///
-/// A hop gives a warning where its range or its highest point above the take-off is over a hundredth of the body's radius, or a
-/// speed over a tenth of its escape speed `sqrt(2 g R)`. A body of unknown radius gives no warning.
-pub fn constant_gravity_warnings(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
-    let Some(radius_m) = body.radius_m else { return Vec::new() };
-    let name = body.name.as_deref().unwrap_or("the body");
-    let escape_m_s = Body { name: "", gravity: body.gravity, radius_m, source: "" }.escape_speed_m_s();
-    let Extremes { range_m, height_m, speed_m_s } = extremes;
-    let lengths = [("range", range_m), ("highest point above its take-off", height_m)];
-    let mut warnings: Vec<String> = lengths
-        .into_iter()
-        .filter(|(_, length_m)| *length_m > 0.01 * radius_m)
-        .map(|(what, length_m)| {
-            format!("a hop's {what}, {length_m:.3} m, is over 1 % of the radius of {name} ({radius_m} m): constant gravity is a bad model there")
-        })
-        .collect();
-    if speed_m_s > 0.1 * escape_m_s {
-        warnings.push(format!(
-            "a hop's speed, {speed_m_s:.4} m/s, is over a tenth of the escape speed of {name} ({escape_m_s:.4} m/s): constant gravity is \
-             a bad model there"
-        ));
-    }
-    warnings
 }

@@ -103,8 +103,8 @@ pub enum TradeError {
     },
     /// A key without effect on the answer.
     #[error(
-        "{path}: no value from {from} to {to} changes anything here: no verdict depends on this key, or the chain's own limits or friction \
-         rule"
+        "{path}: no value from {from} to {to} changes anything here: no verdict depends on this key, or the chain's own limits, its friction \
+         or the escape speed decide"
     )]
     NoEffect {
         /// The key.

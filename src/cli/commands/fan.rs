@@ -5,7 +5,7 @@ use chta::{
     quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer, figure::draw_rose},
-    scenario::Overlays,
+    scenario::{Extent, Overlays, body_warnings, check_extent, escape_warnings},
     terrain::{check_scale, read_dem},
 };
 use nalgebra::Vector2;
@@ -44,13 +44,17 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
+    let mut warnings = body_warnings(&scenario.body);
+    warnings.extend(escape_warnings(&scenario, None));
+    let extent = Extent::of_dem(dem.bounds(), projection.is_ok());
+    warnings.extend(check_extent(&scenario.body, &extent).map_err(|e| Failure::about(file, &e))?);
     let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
     let ground = overlays.ground(dem, &scenario);
     let dem = ground.terrain().dem();
     let request = FanRequest { ground: &ground, from, headings: *headings, length_m: *length, spacing };
     let rays = fan(&request, &Progress::new(common.quiet)).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
-    let mut warnings = overlays.without_effect_on_dem(dem.bounds());
+    warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     for ray in &rays {
         let heading = Angle::from_degrees(ray.heading_deg).radians();
         let end = from + Vector2::new(libm::sin(heading), libm::cos(heading)) * ray.length_m;

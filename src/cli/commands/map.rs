@@ -17,7 +17,7 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Extremes, Overlays, Scenario, UncertaintyKeys, constant_gravity_warnings},
+    scenario::{Extent, Extremes, Overlays, Scenario, UncertaintyKeys, body_warnings, check_extent, constant_gravity_warnings, escape_warnings},
     terrain::{
         Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
@@ -153,7 +153,10 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     }
     check_distinct_nodes(&dem, *stride, &named(start, &goals).map(|(_, spot)| spot).collect::<Vec<_>>())
         .map_err(|message| failed(&std::io::Error::other(message)))?;
-    let mut warnings = Vec::new();
+    let mut warnings = body_warnings(&scenario.body);
+    warnings.extend(escape_warnings(&scenario, None));
+    let extent = Extent::of_dem(dem.bounds(), projection.is_ok());
+    warnings.extend(check_extent(&scenario.body, &extent).map_err(|e| failed(&e))?);
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
