@@ -67,8 +67,8 @@ pub fn escape_warnings(scenario: &Scenario, chain: Option<&PolygonalChain>) -> V
     let stated = |what: &str, limit_m_s: f64| {
         (limit_m_s > cap_m_s).then(|| {
             format!(
-                "{what} is {} m/s, at or above the escape speed of {}, {escape_m_s:.6} m/s: a hop that fast never lands, so the limit is \
-                 {cap_m_s:.6} m/s",
+                "{what} is {} m/s, at or above the escape speed of {}, {escape_m_s:.6} m/s: a hop that fast never lands, so the limit that \
+                 counts is just below the escape speed",
                 format_number(limit_m_s),
                 scenario.body.said()
             )

@@ -82,6 +82,13 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let mut maps = mapped(args, &inputs, start, &goals)?;
     if let Some(keys) = &keys {
         maps.trials = simulated(args, &inputs, &maps, keys)?;
+        let unreached = maps.paths.iter().zip(&goals).filter(|(path, _)| path.is_none());
+        maps.warnings.extend(unreached.map(|(_, goal)| {
+            format!(
+                "no trials were flown to the goal ({:.3}, {:.3}) m: it is not reachable over these posts, so there is no path to fly",
+                goal.at.x, goal.at.y
+            )
+        }));
     }
     let effort = args.effort.is_some().then_some(inputs.scenario.search.effort);
     let mut answer = MapAnswer::new(&MapSummary {
