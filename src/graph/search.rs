@@ -8,7 +8,7 @@ use super::{
 use crate::{
     ballistics::TakeoffChoice,
     chain::Station,
-    hop::{HopTest, Split},
+    hop::{HopTest, InvalidDeviation, Split},
     progress::{Cancelled, Detail, Meter, Progress, Stage},
 };
 
@@ -31,13 +31,16 @@ pub struct SearchOptions {
     pub split: Split,
 }
 
-/// One edge of the path.
+/// Why there is no answer.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SearchError {
     /// More nodes than fit, or a spacing that is no distance.
     #[error(transparent)]
     Nodes(#[from] NodesError),
+    /// Deviations by which no risk can be estimated.
+    #[error(transparent)]
+    Deviation(#[from] InvalidDeviation),
     /// It was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),

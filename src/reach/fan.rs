@@ -191,6 +191,10 @@ fn ray(request: &FanRequest<'_>, number: u32, meter: &Meter<'_>) -> Result<FanRa
     let start = test.chain().geometry().vertex_station(crate::quantity::VertexId(0));
     let found = reachable_nodes(&test, start, request.spacing, meter).map_err(|error| match error {
         SearchError::Nodes(problem) => FanError::Nodes { heading_deg, problem },
+        // Reachable nodes are found without a risk.
+        SearchError::Deviation(problem) => {
+            FanError::Request { what: problem.what, found: problem.found.to_string(), expected: "a finite number of at least 0" }
+        }
         SearchError::Cancelled(cancelled) => FanError::Cancelled(cancelled),
     })?;
     let farthest = found.nodes.iter().rev().find_map(|(station, hops)| Some((station.point.x_m, (*hops)?)));

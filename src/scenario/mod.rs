@@ -8,6 +8,7 @@ mod physics;
 mod pipeline;
 mod problem;
 mod read;
+mod sense;
 mod trade;
 mod trials;
 
@@ -19,5 +20,6 @@ pub use physics::{Extent, Extremes, TooLarge, body_warnings, check_extent, const
 pub use pipeline::{JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};
 pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};
+pub use sense::TrialGround;
 pub use trade::{SweptKey, Trade, TradeError, Varied, verdict};
 pub use trials::UncertaintyKeys;

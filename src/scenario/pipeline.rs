@@ -198,7 +198,9 @@ fn resolved(
     };
     let start = station(JourneyEnd::Start, scenario.start_x_m.or(ends.0))?;
     let goal = station(JourneyEnd::Goal, scenario.goal_x_m.or(ends.1))?;
-    Ok(Prepared { chain, start, goal, projection, warnings })
+    let mut prepared = Prepared { chain, start, goal, projection, warnings };
+    prepared.warnings.extend(scenario.replaced_keys(&prepared));
+    Ok(prepared)
 }
 
 /// The ground along a journey, leg by leg, and its map.
@@ -325,7 +327,13 @@ impl Overlays {
         }
         let raster = self.overlays.friction().filter(|_| !effect.friction).map(|raster| raster.without_effect("the transect"));
         let keep_out = self.overlays.keep_out().filter(|_| !effect.keep_out).map(|zones| zones.without_effect("the transect"));
-        Ok((PolygonalChain::from_legs(&legs, constant)?, raster.into_iter().chain(keep_out).collect()))
+        let raster_alone = legs.iter().flat_map(|leg| &leg.facets).all(|facet| facet.friction.is_some());
+        let replaced = (constant.is_some() && effect.friction && raster_alone).then(|| {
+            "surface.friction_coefficient has no effect: the friction raster has data under the whole transect; leave it out, or correct \
+             the raster"
+                .to_owned()
+        });
+        Ok((PolygonalChain::from_legs(&legs, constant)?, raster.into_iter().chain(keep_out).chain(replaced).collect()))
     }
 }
 

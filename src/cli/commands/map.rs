@@ -17,7 +17,7 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Extent, Extremes, Overlays, Scenario, UncertaintyKeys, body_warnings, check_extent, constant_gravity_warnings, escape_warnings},
+    scenario::{Extent, Extremes, Overlays, Scenario, TrialGround, UncertaintyKeys, body_warnings, check_extent, constant_gravity_warnings, escape_warnings},
     terrain::{
         Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
@@ -102,7 +102,9 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     });
     answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&inputs, &maps, goal, index)).collect();
     let mut warnings = inputs.warnings.clone();
-    warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
+    if keys.is_some() {
+        warnings.extend(inputs.scenario.trial_warnings(&[Policy::OpenLoop], &trial_ground(&inputs)));
+    }
     warnings.extend(maps.warnings.iter().cloned());
     let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
     warnings.extend(constant_gravity_warnings(&inputs.scenario.body, Extremes::of(&hops)));
@@ -266,6 +268,15 @@ fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
         return Err(Failure::message(message));
     }
     Ok(keys)
+}
+
+/// The ground as the warnings about trials see it.
+fn trial_ground(inputs: &PreparedMap) -> TrialGround {
+    let bounds = inputs.dem().bounds();
+    let constant = inputs.ground.constant_friction().map(|cone| cone.coefficient());
+    // The coefficients of a raster are not looked through.
+    let of_raster = inputs.ground.terrain().overlays().friction().map(|_| f64::INFINITY);
+    TrialGround { friction_max: of_raster.or(constant), extent_m: (bounds.max - bounds.min).norm(), journey_m: None }
 }
 
 /// Flies the path to every reachable goal many times.
