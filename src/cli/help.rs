@@ -44,7 +44,8 @@ pub(super) fn parsed() -> Args {
     // A fan has no path to refine for and no second criterion.
     command = command.mut_subcommand("fan", |fan| {
         fan.mut_arg("points_per_segment", |points| {
-            points.help("Points inside each segment; auto is the same as 1, since there is no single path to refine for [default: 1]")
+            points
+                .help("Points inside each segment; auto is the same as 1, since there is no single path to refine for [default: 1]")
         })
         .mut_arg("effort", |effort| effort.hide(true))
     });

@@ -20,7 +20,9 @@ use chta::{
 use super::{
     Failure,
     args::{CommonArgs, SearchArgs},
-    claims, hints, output,
+    claims,
+    effects::Purpose,
+    hints, output,
 };
 
 /// A scenario with its chain, and the records of both for a result.
@@ -119,8 +121,14 @@ struct Source {
 }
 
 /// Loads a chain, scenario or result with the options beside it.
-pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Loaded, Failure> {
-    load_with(target, common, search, ends, &[])
+pub(crate) fn load(
+    target: &Path,
+    common: &CommonArgs,
+    search: Option<&SearchArgs>,
+    ends: EndOptions,
+    purpose: Purpose,
+) -> Result<Loaded, Failure> {
+    load_with(target, common, search, ends, purpose, &[])
 }
 
 /// Loads the same with keys that a command's own options set: option, table, key and value.
@@ -129,13 +137,15 @@ pub(crate) fn load_with(
     common: &CommonArgs,
     search: Option<&SearchArgs>,
     ends: EndOptions,
+    purpose: Purpose,
     own: &[(&str, &str, &str, toml::Value)],
 ) -> Result<Loaded, Failure> {
     let mut source = typed(target, common, search, ends)?;
     for (option, table, key, value) in own {
         source.entries.set_by_option(option, table, key, value.clone());
     }
-    validate_and_prepare(target, source, common.quiet, ends, &mut prepare)
+    let given = source.entries.clone();
+    validate_and_prepare(target, source, common.quiet, (ends, purpose, &given), &mut prepare)
 }
 
 /// A scenario of which keys are varied: the first cell, loaded, and the source of all other cells.
@@ -163,9 +173,10 @@ pub(crate) fn load_to_vary(
     let (entries, base) = (source.entries.clone(), source.base.clone());
     source.entries = Trade::first_cell(&entries, swept, "--vary").map_err(|error| Failure::message(format!("--vary: {error}")))?;
     let mut kept = None;
-    let first = validate_and_prepare(target, source, common.quiet, ends, &mut |scenario, terrain, base| {
-        kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
-    })?;
+    let first =
+        validate_and_prepare(target, source, common.quiet, (ends, Purpose::Trade, &entries), &mut |scenario, terrain, base| {
+            kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
+        })?;
     let survey = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.display())))?;
     Ok(ToVary { first, survey, entries, base })
 }
@@ -206,15 +217,16 @@ fn typed(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: 
 /// Prepares a chain from a scenario and its terrain, whose paths start from the given folder.
 type Prepare<'a> = &'a mut dyn FnMut(&Scenario, &TerrainSource, &Path) -> Result<Prepared, PipelineError>;
 
-/// Validates keys and prepares their chain.
+/// Validates keys and prepares their chain. `given`: the keys of file and options, without those that a command varies.
 fn validate_and_prepare(
     target: &Path,
     source: Source,
     quiet: bool,
-    ends: EndOptions,
+    (ends, purpose, given): (EndOptions, Purpose, &Entries),
     prepare: Prepare<'_>,
 ) -> Result<Loaded, Failure> {
     let base = source.base;
+    let replaced = Purpose::replaced(&source.entries);
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
         let name = target.display();
@@ -233,7 +245,8 @@ fn validate_and_prepare(
         scenario.terrain = Some(terrain.clone());
     }
     let file = base.join(terrain.path());
-    let prepared = prepare(&scenario, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
+    let mut prepared = prepare(&scenario, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
+    prepared.warnings.extend(purpose.unused(given, &scenario).into_iter().chain(replaced));
     for warning in &prepared.warnings {
         output::warn(quiet, warning);
     }
@@ -263,10 +276,12 @@ pub(crate) struct Bare {
     pub(crate) base: PathBuf,
     /// The scenario for a result.
     pub(crate) document: serde_json::Value,
+    /// Warnings about keys without effect.
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Loads the scenario of the options for hops over this DEM, without its own terrain.
-pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs) -> Result<Bare, Failure> {
+pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, purpose: Purpose) -> Result<Bare, Failure> {
     if is_scenario(dem) {
         let name = dem.display();
         return Err(Failure::message(format!(
@@ -279,15 +294,17 @@ pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs) ->
         None => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
     };
     apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
+    let given = source.entries.clone();
     forget_terrain(&mut source.entries);
     let scenario = validated(source.entries, &source.name, &source.text)?;
+    let warnings = purpose.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
     let lacking = scenario.lacks_on_a_dem();
     if !lacking.is_empty() {
         let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
         return Err(Failure::message(name + &lacking_on_a_dem(&lacking)));
     }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
-    Ok(Bare { scenario, base: source.base, document })
+    Ok(Bare { scenario, base: source.base, document, warnings })
 }
 
 /// The failure for keys that hops over a DEM need, with how to give them.

@@ -3,7 +3,8 @@
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 use super::{
-    Cost, Effort, HopGraph, Leg, NodeSet, ReliabilityOptions, SearchError, SearchOptions, nodes::around, reliability_policy::ReliabilityPolicy,
+    Cost, Effort, HopGraph, Leg, NodeSet, ReliabilityOptions, SearchError, SearchOptions, nodes::around,
+    reliability_policy::ReliabilityPolicy,
 };
 use crate::{
     ballistics::{Arc, LineOfSight},

@@ -27,7 +27,9 @@ pub enum NodesError {
         nodes: u64,
     },
     /// A spacing that is no distance.
-    #[error("the node spacing is {found_m} m, expected a number above 0: give node_spacing_max_m the greatest distance of neighbours")]
+    #[error(
+        "the node spacing is {found_m} m, expected a number above 0: give node_spacing_max_m the greatest distance of neighbours"
+    )]
     Spacing {
         /// What was given, m.
         found_m: f64,

@@ -268,7 +268,8 @@ impl DemGround {
         let form = GroundForm::Surface { friction, cross_slope: facet.cross_slope };
         let ground = SegmentGround { form, keep_out: facet.keep_out };
         let slope = gradient.dot(&heading);
-        let constraints = resolve_constraints(SegmentId(0), slope, &ground, self.hopper(), self.envelope.gravity(), &self.surface).ok()?;
+        let constraints =
+            resolve_constraints(SegmentId(0), slope, &ground, self.hopper(), self.envelope.gravity(), &self.surface).ok()?;
         Some((constraints, friction))
     }
 

@@ -75,10 +75,8 @@ pub fn escape_warnings(scenario: &Scenario, chain: Option<&PolygonalChain>) -> V
         })
     };
     let limits = scenario.hopper.limits();
-    let contacts = [
-        ("takeoff_speed_max_m_s", limits.takeoff_speed_max_m_s, 0),
-        ("landing_speed_max_m_s", limits.landing_speed_max_m_s, 1),
-    ];
+    let contacts =
+        [("takeoff_speed_max_m_s", limits.takeoff_speed_max_m_s, 0), ("landing_speed_max_m_s", limits.landing_speed_max_m_s, 1)];
     let mut warnings = Vec::new();
     for (key, of_hopper_m_s, contact) in contacts {
         if of_hopper_m_s.is_finite() {

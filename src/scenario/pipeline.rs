@@ -10,7 +10,10 @@ use std::{
 
 use sha2::{Digest, Sha256};
 
-use super::{Scenario, TerrainSource, physics::{self, Extent, TooLarge}};
+use super::{
+    Scenario, TerrainSource,
+    physics::{self, Extent, TooLarge},
+};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     ground::DemGround,

@@ -213,7 +213,8 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
             let radius_m = radius.unwrap_or(known.radius_m);
             let times = radius_m / known.radius_m;
             if !(1.0 / OTHER_UNIT..=OTHER_UNIT).contains(&times) {
-                let message = format!("body.radius_m is {radius_m} m, but {} has a mean radius of {} m", known.name, known.radius_m);
+                let message =
+                    format!("body.radius_m is {radius_m} m, but {} has a mean radius of {} m", known.name, known.radius_m);
                 let help = "give it in metres, or remove it: the name gives the radius";
                 entries.problem(("body", "radius_m"), ProblemKind::Conflict, message, help);
             }

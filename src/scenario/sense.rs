@@ -17,11 +17,13 @@ pub struct TrialGround {
     pub extent_m: f64,
     /// The straight distance from start to goal, m, if there is one goal.
     pub journey_m: Option<f64>,
+    /// The hops of the plan; of several plans, the most.
+    pub hops: usize,
 }
 
 impl TrialGround {
-    /// That of a prepared chain.
-    pub fn of_chain(scenario: &Scenario, prepared: &Prepared) -> Self {
+    /// That of a prepared chain and a plan of this many hops.
+    pub fn of_chain(scenario: &Scenario, prepared: &Prepared, hops: usize) -> Self {
         let geometry = prepared.chain.geometry();
         let constant = scenario.surface.constant_friction();
         let frictions = geometry.grounds().iter().filter_map(|ground| match ground.form {
@@ -33,6 +35,7 @@ impl TrialGround {
             friction_max: frictions.map(|cone| cone.coefficient()).reduce(f64::max),
             extent_m: last_m - first_m,
             journey_m: prepared.start.zip(prepared.goal).map(|(start, goal)| (goal.point.x_m - start.point.x_m).abs()),
+            hops,
         }
     }
 }
@@ -68,6 +71,13 @@ impl Scenario {
                     .to_owned(),
             );
         }
+        let limit = keys.hop_limit.filter(|limit| usize::try_from(*limit).is_ok_and(|limit| limit < ground.hops));
+        warnings.extend(limit.map(|limit| {
+            let hops = ground.hops;
+            format!(
+                "uncertainty.hop_limit is {limit}, below the {hops} hops of the plan, so that no trial can fly all of it: raise it"
+            )
+        }));
         warnings.extend(keys.warning().map(str::to_owned));
         warnings.extend(self.beyond_sense(ground));
         warnings
@@ -83,7 +93,7 @@ impl Scenario {
         const SLOPE_MAX: f64 = 1.0;
         let keys = self.uncertainty.unwrap_or_default();
         let errors = &keys.errors;
-        let TrialGround { friction_max, extent_m, journey_m } = *ground;
+        let TrialGround { friction_max, extent_m, journey_m, .. } = *ground;
         let speed_max_m_s = self.hopper.limits().takeoff_speed_max_m_s;
         let over = |key: &str, found: f64, most: f64, unit: &str, what: &str| {
             (found > most).then(|| {
@@ -155,12 +165,16 @@ impl Scenario {
         let grounds = prepared.chain.geometry().grounds();
         let is_chain = matches!(self.terrain, Some(TerrainSource::Chain { .. }));
         // The chain of a slice has the scenario's own friction in its segments.
+        let constant = self.surface.constant_friction();
         let own_grip = grounds.iter().all(|ground| match ground.form {
             GroundForm::Surface { friction, .. } => friction.is_some(),
             GroundForm::Explicit { .. } => true,
         });
-        if is_chain && own_grip && self.surface.grip.is_some() {
-            let key = if self.surface.constant_friction().is_some() {
+        // As in a chain that was sliced under this scenario.
+        let same = constant.is_some()
+            && grounds.iter().all(|ground| matches!(ground.form, GroundForm::Surface { friction, .. } if friction == constant));
+        if is_chain && own_grip && !same && self.surface.grip.is_some() {
+            let key = if constant.is_some() {
                 "surface.friction_coefficient has"
             } else {
                 "surface.takeoff_from_slope_deg and landing_from_slope_deg have"

@@ -24,6 +24,7 @@ use super::{
 use crate::cli::{
     Answer, Failure,
     args::{CheckArgs, Format},
+    effects::Purpose,
     hints::further_means,
     load::{EndOptions, Loaded, load},
     output,
@@ -39,8 +40,13 @@ struct PairsAnswer {
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     // Set before the terrain is read, since reading starts the threads.
     use_threads(args.answer.threads)?;
-    let loaded =
-        load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
+    let loaded = load(
+        &args.journey.chain,
+        &args.common,
+        Some(&args.search),
+        EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Check,
+    )?;
     let mut warnings = Vec::new();
     let pairs = match &args.pairs {
         None => vec![loaded.ends()?],

@@ -15,6 +15,7 @@ use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, CompareArgs, Format},
+    effects::Purpose,
     load::{EndOptions, Loaded, is_scenario, load, relative_name},
     output::{self, Pending, TableFormat},
 };
@@ -73,7 +74,7 @@ impl Compared {
             accept_map_scale: args.accept_map_scale,
             quiet: args.quiet,
         };
-        let loaded = load(file, &common, None, EndOptions::NONE)?;
+        let loaded = load(file, &common, None, EndOptions::NONE, Purpose::Compare)?;
         let ends = loaded.ends()?;
         let test = loaded.hop_test();
         let options = &loaded.scenario.search;

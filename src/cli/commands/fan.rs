@@ -14,6 +14,7 @@ use super::{captions::conditions, search::use_threads, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, FanArgs, Format},
+    effects::Purpose,
     load::{Bare, input_file, load_bare},
     output,
     progress::Progress,
@@ -38,13 +39,13 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     } = args;
     use_threads(*threads)?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
-    let Bare { scenario, base, document } = load_bare(file, common, search)?;
+    let Bare { scenario, base, document, mut warnings } = load_bare(file, common, search, Purpose::Fan)?;
     let dem = read_dem(file).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
-    let mut warnings = body_warnings(&scenario.body);
+    warnings.extend(body_warnings(&scenario.body));
     warnings.extend(escape_warnings(&scenario, None));
     let extent = Extent::of_dem(dem.bounds(), projection.is_ok());
     warnings.extend(check_extent(&scenario.body, &extent).map_err(|e| Failure::about(file, &e))?);

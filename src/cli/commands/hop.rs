@@ -8,13 +8,14 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, HopArgs},
+    effects::Purpose,
     load::{EndOptions, load},
     output,
 };
 
 /// Tests one hop.
 pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
-    let loaded = load(&args.chain, &args.common, None, EndOptions::of_hop(args.from, args.to))?;
+    let loaded = load(&args.chain, &args.common, None, EndOptions::of_hop(args.from, args.to), Purpose::Hop)?;
     let (takeoff, landing) = loaded.ends()?;
     let test = loaded.hop_test();
     let answer = HopAnswer::new(&test, &takeoff, &landing, loaded.scenario.search.takeoff).ok_or_else(|| {

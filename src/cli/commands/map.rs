@@ -17,7 +17,10 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Extent, Extremes, Overlays, Scenario, TrialGround, UncertaintyKeys, body_warnings, check_extent, constant_gravity_warnings, escape_warnings},
+    scenario::{
+        Extent, Extremes, Overlays, Scenario, TrialGround, UncertaintyKeys, body_warnings, check_extent, constant_gravity_warnings,
+        escape_warnings,
+    },
     terrain::{
         Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
@@ -28,6 +31,7 @@ use super::{captions::conditions, map_profiles, plan::passed, search::use_thread
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
+    effects::Purpose,
     load::{Bare, input_file, load_bare},
     output::{self, Pending},
     progress::Progress,
@@ -103,7 +107,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&inputs, &maps, goal, index)).collect();
     let mut warnings = inputs.warnings.clone();
     if keys.is_some() {
-        warnings.extend(inputs.scenario.trial_warnings(&[Policy::OpenLoop], &trial_ground(&inputs)));
+        warnings.extend(inputs.scenario.trial_warnings(&[Policy::OpenLoop], &trial_ground(&inputs, &maps)));
     }
     warnings.extend(maps.warnings.iter().cloned());
     let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
@@ -131,7 +135,9 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
         return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
     }
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
-    let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
+    let has_goals = !(goal.is_empty() && goal_lonlat.is_empty());
+    let purpose = Purpose::Map { goals: has_goals, effort: effort.is_some(), trials: args.simulate };
+    let Bare { scenario, base, document, mut warnings } = load_bare(file, common, &searched, purpose)?;
     let dem = read_dem(file).map_err(|e| Failure::of(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
@@ -162,7 +168,7 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     }
     check_distinct_nodes(&dem, *stride, &named(start, &goals).map(|(_, spot)| spot).collect::<Vec<_>>())
         .map_err(|message| failed(&std::io::Error::other(message)))?;
-    let mut warnings = body_warnings(&scenario.body);
+    warnings.extend(body_warnings(&scenario.body));
     warnings.extend(escape_warnings(&scenario, None));
     let extent = Extent::of_dem(dem.bounds(), projection.is_ok());
     warnings.extend(check_extent(&scenario.body, &extent).map_err(|e| failed(&e))?);
@@ -271,12 +277,13 @@ fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
 }
 
 /// The ground as the warnings about trials see it.
-fn trial_ground(inputs: &PreparedMap) -> TrialGround {
+fn trial_ground(inputs: &PreparedMap, maps: &Maps) -> TrialGround {
     let bounds = inputs.dem().bounds();
+    let hops = maps.paths.iter().flatten().map(|path| path.hops.len()).max().unwrap_or(0);
     let constant = inputs.ground.constant_friction().map(|cone| cone.coefficient());
     // The coefficients of a raster are not looked through.
     let of_raster = inputs.ground.terrain().overlays().friction().map(|_| f64::INFINITY);
-    TrialGround { friction_max: of_raster.or(constant), extent_m: (bounds.max - bounds.min).norm(), journey_m: None }
+    TrialGround { friction_max: of_raster.or(constant), extent_m: (bounds.max - bounds.min).norm(), journey_m: None, hops }
 }
 
 /// Flies the path to every reachable goal many times.

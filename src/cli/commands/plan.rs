@@ -22,6 +22,7 @@ use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs, ProveArgs},
+    effects::Purpose,
     hints::further_means,
     load::{EndOptions, Loaded, load},
     output::{self, Pending},
@@ -204,8 +205,13 @@ pub(super) fn passed(execution: &Execution) -> Result<(), Failure> {
 /// Plans a path.
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     use_threads(args.answer.threads)?;
-    let loaded =
-        load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
+    let loaded = load(
+        &args.journey.chain,
+        &args.common,
+        Some(&args.search),
+        EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Plan,
+    )?;
     let ends = loaded.ends()?;
     if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {
         return Err(Failure::message("--geojson: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"));

@@ -14,6 +14,7 @@ use super::search::{proved, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, RequireArgs},
+    effects::Purpose,
     load::{EndOptions, Loaded, load},
     output,
     progress::Progress,
@@ -209,7 +210,13 @@ fn with_value(args: &RequireArgs, value: f64, quiet: bool) -> Result<Loaded, Fai
     }
     common.set.push(format!("{}={value:?}", args.vary));
     common.quiet = quiet;
-    load(&args.journey.chain, &common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))
+    load(
+        &args.journey.chain,
+        &common,
+        Some(&args.search),
+        EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Require,
+    )
 }
 
 /// The answer as text or as one document.

@@ -9,6 +9,7 @@ use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, CommonArgs, Format, RunArgs},
     claims,
+    effects::Purpose,
     load::{EndOptions, load},
     output::{self, Pending},
 };
@@ -29,7 +30,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         accept_map_scale: *accept_map_scale,
         quiet: *quiet,
     };
-    let loaded = load(scenario, &common, None, EndOptions::NONE)?;
+    let loaded = load(scenario, &common, None, EndOptions::NONE, Purpose::Run)?;
     let ends = loaded.ends()?;
     output::check_folder(folder)?;
     let test = loaded.hop_test();

@@ -24,7 +24,10 @@ pub(crate) fn run(args: &SynthArgs) -> Result<Answer, Failure> {
         }
     };
     let usual = Boulders::default();
-    if args.boulders && args.boulder_diameter_min_m.or(args.boulder_diameter_max_m).is_none() && args.spacing_m > usual.diameter_max_m {
+    if args.boulders
+        && args.boulder_diameter_min_m.or(args.boulder_diameter_max_m).is_none()
+        && args.spacing_m > usual.diameter_max_m
+    {
         return Err(Failure::message(format!(
             "--boulders: found a post spacing of {} m, expected at most {} m, the size of the largest boulder unless another is said: give \
              --spacing-m, or --boulder-diameter-min-m and --boulder-diameter-max-m",

@@ -253,7 +253,8 @@ impl<S: Surface> Checker<'_, S> {
 
     /// The speed limit of a contact.
     fn speed(&mut self, meeting: Meeting, speed_max_m_s: f64, x_m: f64) {
-        let allowed_m_s = tolerant_speed_m_s(speed_max_m_s) * (1.0 + SPEED_ROUNDING + self.run_rounding()) + meeting.speed_rounding_m_s;
+        let allowed_m_s =
+            tolerant_speed_m_s(speed_max_m_s) * (1.0 + SPEED_ROUNDING + self.run_rounding()) + meeting.speed_rounding_m_s;
         let within = meeting.speed_m_s <= allowed_m_s && speed_max_m_s > 0.0;
         if !within {
             let limit = if meeting.contact == Contact::Takeoff { Limit::TakeoffSpeed } else { Limit::LandingSpeed };

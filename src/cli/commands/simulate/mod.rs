@@ -19,6 +19,7 @@ use super::{plan::Planned, search::use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
+    effects::Purpose,
     hints::further_means,
     load::{EndOptions, Loaded, load_with},
     output,
@@ -48,6 +49,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
         &args.common,
         Some(&args.search),
         EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Simulate,
         &trial_options(args),
     )?;
     if let Some(name) = &args.experiment {
@@ -149,13 +151,8 @@ pub(super) fn of_run(loaded: &Loaded, test: &HopTest, planned: &Planned, quiet: 
 
 /// Warnings about the trials of a path of this many hops: settings without effect and deviations beyond sense.
 fn trial_warnings(loaded: &Loaded, policies: &[Policy], hops: usize) -> Vec<String> {
-    let ground = TrialGround::of_chain(&loaded.scenario, &loaded.prepared);
-    let mut warnings = loaded.scenario.trial_warnings(policies, &ground);
-    let limit = loaded.scenario.uncertainty.and_then(|keys| keys.hop_limit);
-    warnings.extend(limit.filter(|limit| usize::try_from(*limit).is_ok_and(|limit| limit < hops)).map(|limit| {
-        format!("uncertainty.hop_limit is {limit}, below the {hops} hops of the plan, so that no trial can fly all of it: raise it")
-    }));
-    warnings
+    let ground = TrialGround::of_chain(&loaded.scenario, &loaded.prepared, hops);
+    loaded.scenario.trial_warnings(policies, &ground)
 }
 
 /// The answer without a path to fly.
