@@ -334,6 +334,37 @@ mod tests {
         assert!(matches!(problems.as_slice(), [(ConstraintProblem::Surface(InvalidSurface::RestSlope { .. }), 0)]), "{problems:?}");
     }
 
+    /// Escape from Bennu is sqrt(2 x 4.892 / 245.03) = 0.1998 m/s: above it no speed limit of hopper or chain counts, below it each
+    /// does, and a missing limit is still missing.
+    #[test]
+    fn no_speed_limit_reaches_escape_from_a_body_of_known_radius() {
+        let bennu = crate::world::Body::named("bennu").unwrap().gravity;
+        let escape_m_s = (2.0_f64 * 4.892 / 245.03).sqrt();
+        let line = |speed_m_s| LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), speed_m_s, speed_m_s);
+        let explicit = |speed_m_s| GroundForm::Explicit { forward: Some(line(speed_m_s)), reverse: None };
+        let surface = SegmentGround::BARE.form;
+        let hopper = |speed_m_s| Hopper::with_speeds(speed_m_s, speed_m_s).unwrap();
+        for (form, hopper, expected_m_s) in [
+            (surface, hopper(0.25), escape_m_s),
+            (surface, hopper(1e5), escape_m_s),
+            (surface, hopper(0.15), 0.15),
+            (explicit(0.3), Hopper::UNLIMITED, escape_m_s),
+            (explicit(0.3), hopper(0.25), escape_m_s),
+            (explicit(0.3), hopper(0.1), 0.1),
+            (explicit(0.12), hopper(0.25), 0.12),
+        ] {
+            let chain = ConstrainedChain::new(one_segment(0.0, form), &hopper, bennu, &friction(0.6)).unwrap();
+            for contact in [Contact::Takeoff, Contact::Landing] {
+                let found = chain.segments()[0].check_contact(contact, Direction::Forward).unwrap().speed_max_m_s();
+                assert!((found - expected_m_s).abs() < 1e-6 && found < escape_m_s, "{form:?} {hopper:?}: {found}");
+            }
+            let limits = chain.hopper().limits();
+            assert!(limits.takeoff_speed_max_m_s.is_infinite() || limits.takeoff_speed_max_m_s < escape_m_s, "{limits:?}");
+        }
+        let missing = ConstrainedChain::new(one_segment(0.0, surface), &Hopper::UNLIMITED, bennu, &friction(0.6)).unwrap_err();
+        assert_eq!(missing.0, [(ConstraintProblem::NoSpeed(SegmentId(0)), 0)]);
+    }
+
     #[test]
     fn speed_zero_is_refused_before_any_formula() {
         let line = LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), 0.0, 5.0);

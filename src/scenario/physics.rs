@@ -135,19 +135,26 @@ impl Extent {
 
 /// A terrain larger than its body.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("the {what} is {extent_m} m wide, expected at most {most_m} m, the {measure} of {body} (mean radius {radius_m} m): {mend}")]
+#[error(
+    "the {what} is {} m wide, expected at most {} m, the {measure} of {body} (mean radius {radius_m} m): {mend}",
+    format_number(*.extent_m),
+    format_number(.most_m.round())
+)]
 pub struct TooLarge {
     /// A mesh or a DEM.
-    what: &'static str,
+    pub what: &'static str,
     /// Its greatest horizontal extent, m.
-    extent_m: String,
+    pub extent_m: f64,
     /// The greatest that the body has room for, m.
-    most_m: String,
+    pub most_m: f64,
     /// What that is.
-    measure: &'static str,
-    body: String,
-    radius_m: f64,
-    mend: &'static str,
+    pub measure: &'static str,
+    /// The body.
+    pub body: String,
+    /// Its mean radius, m.
+    pub radius_m: f64,
+    /// How to mend it.
+    pub mend: &'static str,
 }
 
 /// The longest extent of a body whose shape is unknown, in mean diameters. Of bodies seen from near, Eros is the longest with 2.04,
@@ -198,15 +205,7 @@ pub fn check_extent(body: &BodyChoice, extent: &Extent) -> Result<Option<String>
         ),
     };
     if widest_m > most_m {
-        return Err(TooLarge {
-            what,
-            extent_m: format_number(widest_m),
-            most_m: format_number(most_m.round()),
-            measure,
-            body: body.said(),
-            radius_m,
-            mend,
-        });
+        return Err(TooLarge { what, extent_m: widest_m, most_m, measure, body: body.said(), radius_m, mend });
     }
     if widest_m > diameter_m && extent.of != ExtentOf::Map {
         return Ok(Some(format!(

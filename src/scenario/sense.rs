@@ -6,6 +6,7 @@ use crate::{
     graph::ReliabilityUse,
     quantity::format_number,
     uncertainty::{Policy, Uncertainty},
+    world::FrictionCone,
 };
 
 /// What the warnings about trials need to know of the ground.
@@ -32,7 +33,7 @@ impl TrialGround {
         });
         let (first_m, last_m) = geometry.extent_m();
         Self {
-            friction_max: frictions.map(|cone| cone.coefficient()).reduce(f64::max),
+            friction_max: frictions.map(FrictionCone::coefficient).reduce(f64::max),
             extent_m: last_m - first_m,
             journey_m: prepared.start.zip(prepared.goal).map(|(start, goal)| (goal.point.x_m - start.point.x_m).abs()),
             hops,

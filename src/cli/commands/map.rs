@@ -25,6 +25,7 @@ use chta::{
         Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, read_dem, result_geotiff_bytes,
     },
     uncertainty::{Mission, Policy, Simulation, SimulationError},
+    world::FrictionCone,
 };
 
 use super::{captions::conditions, map_profiles, plan::passed, search::use_threads, slice::place};
@@ -280,7 +281,7 @@ fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
 fn trial_ground(inputs: &PreparedMap, maps: &Maps) -> TrialGround {
     let bounds = inputs.dem().bounds();
     let hops = maps.paths.iter().flatten().map(|path| path.hops.len()).max().unwrap_or(0);
-    let constant = inputs.ground.constant_friction().map(|cone| cone.coefficient());
+    let constant = inputs.ground.constant_friction().map(FrictionCone::coefficient);
     // The coefficients of a raster are not looked through.
     let of_raster = inputs.ground.terrain().overlays().friction().map(|_| f64::INFINITY);
     TrialGround { friction_max: of_raster.or(constant), extent_m: (bounds.max - bounds.min).norm(), journey_m: None, hops }
