@@ -21,7 +21,9 @@ use chta::{
 use super::{
     Failure,
     args::{CommonArgs, SearchArgs},
-    claims, hints,
+    claims,
+    effects::Purpose,
+    hints,
     inputs::{self, Input, KeyProblem},
     output,
     wrong_thing::Role,
@@ -142,15 +144,22 @@ impl Target {
 }
 
 /// Loads a scenario or result as it stands.
-pub(crate) fn load_scenario(target: &Path, common: &CommonArgs) -> Result<Loaded, Failure> {
+pub(crate) fn load_scenario(target: &Path, common: &CommonArgs, purpose: Purpose) -> Result<Loaded, Failure> {
     let target = Target { input: inputs::open(target, Role::Scenario)?, is_scenario: true };
     let source = typed(&target, common, None, EndOptions::NONE)?;
-    validate_and_prepare(&target, source, common.quiet, EndOptions::NONE, &mut prepare)
+    let given = source.entries.clone();
+    validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut prepare)
 }
 
 /// Loads a chain, scenario or result with the options beside it.
-pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Loaded, Failure> {
-    load_with(target, common, search, ends, &[])
+pub(crate) fn load(
+    target: &Path,
+    common: &CommonArgs,
+    search: Option<&SearchArgs>,
+    ends: EndOptions,
+    purpose: Purpose,
+) -> Result<Loaded, Failure> {
+    load_with(target, common, search, ends, purpose, &[])
 }
 
 /// Loads the same with keys that a command's own options set: option, table, key and value.
@@ -159,6 +168,7 @@ pub(crate) fn load_with(
     common: &CommonArgs,
     search: Option<&SearchArgs>,
     ends: EndOptions,
+    purpose: Purpose,
     own: &[(&str, &str, &str, toml::Value)],
 ) -> Result<Loaded, Failure> {
     let target = Target::chain(target)?;
@@ -166,7 +176,8 @@ pub(crate) fn load_with(
     for (option, table, key, value) in own {
         source.entries.set_by_option(option, table, key, value.clone());
     }
-    validate_and_prepare(&target, source, common.quiet, ends, &mut prepare)
+    let given = source.entries.clone();
+    validate_and_prepare(&target, source, common.quiet, (ends, purpose, &given), &mut prepare)
 }
 
 /// A scenario of which keys are varied: the first cell, loaded, and the source of all other cells.
@@ -195,9 +206,10 @@ pub(crate) fn load_to_vary(
     let (entries, base) = (source.entries.clone(), source.base.clone());
     source.entries = Trade::first_cell(&entries, swept, "--vary").map_err(|error| Failure::message(format!("--vary: {error}")))?;
     let mut kept = None;
-    let first = validate_and_prepare(&target, source, common.quiet, ends, &mut |scenario, terrain, base| {
-        kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
-    })?;
+    let first =
+        validate_and_prepare(&target, source, common.quiet, (ends, Purpose::Trade, &entries), &mut |scenario, terrain, base| {
+            kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
+        })?;
     let survey = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.input.given.display())))?;
     Ok(ToVary { first, survey, entries, base })
 }
@@ -271,16 +283,17 @@ fn look_at_keys(source: &mut Source, chain_is_a_key: bool) -> Result<(), Failure
 /// Prepares a chain from a scenario and its terrain, whose paths start from the given folder.
 type Prepare<'a> = &'a mut dyn FnMut(&Scenario, &TerrainSource, &Path) -> Result<Prepared, PipelineError>;
 
-/// Validates keys and prepares their chain.
+/// Validates keys and prepares their chain. `given`: the keys of file and options, without those that a command varies.
 fn validate_and_prepare(
     target: &Target,
     source: Source,
     quiet: bool,
-    ends: EndOptions,
+    (ends, purpose, given): (EndOptions, Purpose, &Entries),
     prepare: Prepare<'_>,
 ) -> Result<Loaded, Failure> {
     let base = source.base;
     let Target { input, is_scenario } = target;
+    let replaced = Purpose::replaced(&source.entries);
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
         let name = input.given.display();
@@ -298,7 +311,8 @@ fn validate_and_prepare(
         scenario.terrain = Some(terrain.clone());
     }
     let file = base.join(terrain.path());
-    let prepared = prepare(&scenario, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
+    let mut prepared = prepare(&scenario, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
+    prepared.warnings.extend(purpose.unused(given, &scenario).into_iter().chain(replaced));
     for warning in &prepared.warnings {
         output::warn(quiet, warning);
     }
@@ -333,23 +347,27 @@ pub(crate) struct Bare {
     pub(crate) base: PathBuf,
     /// The scenario for a result.
     pub(crate) document: serde_json::Value,
+    /// Warnings about keys without effect.
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Loads the scenario of the options for hops over this DEM, without its own terrain.
-pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs) -> Result<Bare, Failure> {
+pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, purpose: Purpose) -> Result<Bare, Failure> {
     let dem = inputs::open(dem, Role::Dem)?.file;
     let mut source = option_source(common.scenario.as_deref())?;
     apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
+    let given = source.entries.clone();
     forget_terrain(&mut source.entries);
     look_at_keys(&mut source, false)?;
     let scenario = validated(source.entries, &source.name, &source.text)?;
+    let warnings = purpose.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
     let lacking = scenario.lacks_on_a_dem();
     if !lacking.is_empty() {
         let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
         return Err(Failure::message(name + &lacking_on_a_dem(&lacking)));
     }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
-    Ok(Bare { dem, scenario, base: source.base, document })
+    Ok(Bare { dem, scenario, base: source.base, document, warnings })
 }
 
 /// The failure for keys that hops over a DEM need, with how to give them.

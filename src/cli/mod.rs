@@ -3,6 +3,7 @@
 mod args;
 mod claims;
 mod commands;
+mod effects;
 mod failure;
 mod help;
 mod hints;

@@ -35,6 +35,8 @@ pub struct Entries {
     problems: Vec<ScenarioProblem>,
     /// The text could not be parsed, so an absent key does not count as missing.
     unreadable: bool,
+    /// Keys that one setting outside the file gave and another replaced by another value, with the sources of both.
+    replaced: Vec<(&'static Key, (String, String))>,
 }
 
 impl Entries {
@@ -276,6 +278,16 @@ impl Entries {
         self.value(table, name).and_then(count)
     }
 
+    /// Every key that was given with a value that it takes, and where, in the order of the keys' names.
+    pub fn given(&self) -> impl Iterator<Item = (&'static Key, &Place)> {
+        self.given.iter().filter_map(|((table, name), entry)| Some((Key::find(table, name)?, &entry.place)))
+    }
+
+    /// Every key that one setting outside the file gave and another replaced by another value, with the sources of both.
+    pub fn replaced(&self) -> impl Iterator<Item = (&'static Key, &(String, String))> {
+        self.replaced.iter().map(|(key, by)| (*key, by))
+    }
+
     /// Whether any key of a table was given.
     pub(super) fn has_table(&self, table: &str) -> bool {
         self.given.keys().any(|(known, _)| known == table)
@@ -310,6 +322,11 @@ impl Entries {
     fn add(&mut self, table: &str, name: &str, value: toml::Value, place: Place, key_place: Place) {
         let Some(key) = Key::find(table, name) else { return self.unknown(table, name, key_place) };
         if fits(&value, key.kind) {
+            if let (Some(Place::Option(before)), Place::Option(now)) = (self.place(table, name), &place)
+                && self.value(table, name) != Some(&value)
+            {
+                self.replaced.push((key, (before, now.clone())));
+            }
             self.given.insert((table.to_owned(), name.to_owned()), Entry { value, place });
         } else {
             self.misfit(key, &value_text(&value), place);

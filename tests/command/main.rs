@@ -9,6 +9,8 @@ mod bends;
 mod cli_answers;
 mod cli_bad_input;
 mod cli_options;
+mod effects;
+mod escape;
 #[cfg(unix)]
 mod interrupt;
 mod map_command;

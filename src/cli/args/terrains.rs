@@ -62,8 +62,6 @@ pub(crate) struct SliceArgs {
 }
 
 /// Slices in all directions from one point: how far and in how few hops one gets in each
-///
-/// Without --points-per-segment, and with auto, each segment has 1 point.
 #[derive(Debug, ClapArgs)]
 #[command(
     after_help = "Example:\n  chta fan data/terrain/mars_crater_field.tif --from 100,80 --headings 36 --length 80 \\\n    --scenario data/scenarios/mars_crater_field.toml --plot rose.svg"
@@ -215,15 +213,15 @@ pub(crate) struct SynthArgs {
     /// With craters
     #[arg(long)]
     pub(crate) craters: bool,
-    /// Smallest crater, m
-    #[arg(long, default_value_t = 4.0, requires = "craters", allow_negative_numbers = true)]
-    pub(crate) crater_diameter_min_m: f64,
-    /// Largest crater, m
-    #[arg(long, default_value_t = 60.0, requires = "craters", allow_negative_numbers = true)]
-    pub(crate) crater_diameter_max_m: f64,
-    /// Craters per square kilometre
-    #[arg(long, default_value_t = 1500.0, requires = "craters", allow_negative_numbers = true)]
-    pub(crate) crater_density_per_km2: f64,
+    /// Smallest crater, m [default: 4, or the post spacing if that is greater]
+    #[arg(long, requires = "craters", allow_negative_numbers = true)]
+    pub(crate) crater_diameter_min_m: Option<f64>,
+    /// Largest crater, m [default: 60, or as the map and the smallest crater allow]
+    #[arg(long, requires = "craters", allow_negative_numbers = true)]
+    pub(crate) crater_diameter_max_m: Option<f64>,
+    /// Craters per square kilometre [default: 1500; fewer where the post spacing leaves out small ones]
+    #[arg(long, requires = "craters", allow_negative_numbers = true)]
+    pub(crate) crater_density_per_km2: Option<f64>,
     /// Exponent of the cumulative counts: 3 young, 2 in equilibrium
     #[arg(long, default_value_t = 2.5, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_power_law_exponent: f64,
@@ -236,9 +234,9 @@ pub(crate) struct SynthArgs {
     /// With a sinuous rille from west to east
     #[arg(long)]
     pub(crate) rille: bool,
-    /// Width of the rille between its upper edges, m
-    #[arg(long, default_value_t = 80.0, requires = "rille", allow_negative_numbers = true)]
-    pub(crate) rille_width_m: f64,
+    /// Width of the rille between its upper edges, m [default: 80, or the post spacing if that is greater]
+    #[arg(long, requires = "rille", allow_negative_numbers = true)]
+    pub(crate) rille_width_m: Option<f64>,
     /// Depth of the rille, m
     #[arg(long, default_value_t = 15.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_depth_m: f64,
@@ -257,12 +255,12 @@ pub(crate) struct SynthArgs {
     /// Share of ground covered by rocks of any size: 0.05 sparse, 0.2 rough
     #[arg(long, default_value_t = 0.1, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) rock_abundance: f64,
-    /// Smallest boulder, m
-    #[arg(long, default_value_t = 1.0, requires = "boulders", allow_negative_numbers = true)]
-    pub(crate) boulder_diameter_min_m: f64,
-    /// Largest boulder, m
-    #[arg(long, default_value_t = 4.0, requires = "boulders", allow_negative_numbers = true)]
-    pub(crate) boulder_diameter_max_m: f64,
+    /// Smallest boulder, m [default: 1, or the post spacing if that is greater]
+    #[arg(long, requires = "boulders", allow_negative_numbers = true)]
+    pub(crate) boulder_diameter_min_m: Option<f64>,
+    /// Largest boulder, m [default: 4, or the smallest boulder if that is greater]
+    #[arg(long, requires = "boulders", allow_negative_numbers = true)]
+    pub(crate) boulder_diameter_max_m: Option<f64>,
     /// Share of a boulder's radius below ground
     #[arg(long, default_value_t = 0.2, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) boulder_burial: f64,

@@ -24,6 +24,7 @@ use super::{
 use crate::cli::{
     Answer, Failure,
     args::{CheckArgs, Format},
+    effects::Purpose,
     hints::further_means,
     inputs,
     load::{EndOptions, Loaded, load},
@@ -47,8 +48,13 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     inputs::look_at(args.common.input_max_gib, &files)?;
     // Set before the terrain is read, since reading starts the threads.
     use_threads(args.answer.threads)?;
-    let loaded =
-        load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
+    let loaded = load(
+        &args.journey.chain,
+        &args.common,
+        Some(&args.search),
+        EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Check,
+    )?;
     let mut warnings = Vec::new();
     let pairs = match &args.pairs {
         None => vec![loaded.ends()?],

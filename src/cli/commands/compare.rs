@@ -15,6 +15,7 @@ use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, CompareArgs, Format},
+    effects::Purpose,
     inputs,
     load::{Loaded, load_scenario, relative_name},
     output::{self, Pending, TableFormat},
@@ -87,7 +88,7 @@ impl Compared {
             input_max_gib: args.input_max_gib,
             quiet: args.quiet,
         };
-        let loaded = load_scenario(file, &common)?;
+        let loaded = load_scenario(file, &common, Purpose::Compare)?;
         let ends = loaded.ends()?;
         let test = loaded.hop_test();
         let options = &loaded.scenario.search;

@@ -8,6 +8,7 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, HopArgs},
+    effects::Purpose,
     inputs,
     load::{EndOptions, load},
     output,
@@ -20,7 +21,7 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
         args.common.input_max_gib,
         &[(Some(&args.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
     )?;
-    let loaded = load(&args.chain, &args.common, None, EndOptions::of_hop(args.from, args.to))?;
+    let loaded = load(&args.chain, &args.common, None, EndOptions::of_hop(args.from, args.to), Purpose::Hop)?;
     let (takeoff, landing) = loaded.ends()?;
     let test = loaded.hop_test();
     let answer = HopAnswer::new(&test, &takeoff, &landing, loaded.scenario.search.takeoff).ok_or_else(|| {

@@ -22,6 +22,7 @@ use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs, ProveArgs},
+    effects::Purpose,
     hints::further_means,
     inputs,
     load::{EndOptions, Loaded, load},
@@ -219,8 +220,13 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
         &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
     )?;
     use_threads(args.answer.threads)?;
-    let loaded =
-        load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
+    let loaded = load(
+        &args.journey.chain,
+        &args.common,
+        Some(&args.search),
+        EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Plan,
+    )?;
     let ends = loaded.ends()?;
     if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {
         return Err(Failure::message("--geojson: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"));

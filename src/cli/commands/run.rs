@@ -8,7 +8,9 @@ use super::{plan::Planned, search::use_threads, simulate};
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, CommonArgs, Format, RunArgs},
-    claims, inputs,
+    claims,
+    effects::Purpose,
+    inputs,
     load::load_scenario,
     output::{self, Pending},
     wrong_thing::Role,
@@ -37,7 +39,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         input_max_gib: *input_max_gib,
         quiet: *quiet,
     };
-    let loaded = load_scenario(scenario, &common)?;
+    let loaded = load_scenario(scenario, &common, Purpose::Run)?;
     let ends = loaded.ends()?;
     output::check_folder(folder)?;
     let test = loaded.hop_test();

@@ -6,7 +6,7 @@ use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{BodyChoice, DemReading, Overlays, Scenario, Transect, check_body, for_body, friction, sha256_of},
+    scenario::{BodyChoice, DemReading, Overlays, Scenario, Transect, check_body, check_extent, for_body, friction, sha256_of},
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
@@ -49,6 +49,11 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     for warning in &transect.warnings {
         output::warn(*quiet, warning);
     }
+    if let Some((scenario, _)) = &given
+        && let Some(warning) = check_extent(&scenario.body, &transect.extent).map_err(|e| failed(&e))?
+    {
+        output::warn(*quiet, &warning);
+    }
     let name = name_of(terrain);
     let mut comments = vec![format!("chta {} slice of {name}, sha256 {}", env!("CARGO_PKG_VERSION"), sha256_of(terrain)?)];
     comments.extend(ends(&transect.legs));
@@ -62,7 +67,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
                 comments.push(format!("under {}, sha256 {}", name_of(&file), sha256_of(&file)?));
             }
             let overlays =
-                Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.bounds).map_err(|e| failed(&e))?;
+                Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.extent.bounds).map_err(|e| failed(&e))?;
             let (chain, without_effect) = overlays.chain_with_warnings(transect.legs).map_err(|e| failed(&e))?;
             for warning in &without_effect {
                 output::warn(*quiet, warning);

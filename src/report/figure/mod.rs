@@ -66,7 +66,7 @@ pub use trials::{
 
 use crate::{
     chain::Station,
-    graph::{Answer, TooManyNodes},
+    graph::{Answer, NodesError},
     hop::HopTest,
     path::HopPath,
 };
@@ -101,7 +101,7 @@ pub struct FigureTitle {
 }
 
 /// The reasons why a figure cannot be drawn.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FigureError {
     /// A path without its hops.
@@ -109,7 +109,7 @@ pub enum FigureError {
     NoHops,
     /// The nodes of the search cannot be generated again.
     #[error(transparent)]
-    TooManyNodes(#[from] TooManyNodes),
+    Nodes(#[from] NodesError),
     /// A raster or the cells of a trade have the wrong size.
     #[error("the {what} has {found} values, expected {rows} rows times {cols} columns")]
     RasterSize {
