@@ -5,6 +5,8 @@ use chta::{
     scenario::{Entries, Key, Place, Scenario},
 };
 
+use super::load::gives_way_to_a_dem;
+
 /// What a command computes from a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Purpose {
@@ -89,7 +91,7 @@ impl Purpose {
             ("hopper", "mass_kg" | "rest_time_s") => {
                 matches!(self, Self::Plan | Self::Run | Self::Require | Self::Compare | Self::Map { goals: true, .. })
             }
-            ("terrain", name) => !on_a_dem || name == "accept_map_scale",
+            ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
             ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
             ("search", "takeoff_angle") => !matches!(self, Self::Trade | Self::Fan | Self::Map { goals: false, effort: false, .. }),

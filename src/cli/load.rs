@@ -409,9 +409,17 @@ pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure
 const SLICED_TERRAIN: [&str; 9] =
     ["dem", "mesh", "mesh_scale", "start_m", "goal_m", "start_lonlat_deg", "goal_lonlat_deg", "via_m", "via_lonlat_deg"];
 
+/// The keys of a terrain that is given as a chain.
+const CHAIN_TERRAIN: [&str; 3] = ["chain", "start_x_m", "goal_x_m"];
+
+/// Whether a key of `[terrain]` gives way to the DEM of a command line.
+pub(crate) fn gives_way_to_a_dem(name: &str) -> bool {
+    SLICED_TERRAIN.contains(&name) || CHAIN_TERRAIN.contains(&name)
+}
+
 /// Removes the scenario's terrain, where the command line gives another.
 fn forget_terrain(entries: &mut Entries) {
-    for key in SLICED_TERRAIN.into_iter().chain(["chain", "start_x_m", "goal_x_m"]) {
+    for key in SLICED_TERRAIN.into_iter().chain(CHAIN_TERRAIN) {
         entries.forget("terrain", key);
     }
 }
