@@ -27,13 +27,14 @@ pub struct ContactLimits {
 }
 
 impl FlightEnvelope {
-    /// For a hopper and a gravity.
+    /// For a hopper and a gravity. The hopper's speed limits are capped below the escape speed, where the gravity's body has a known
+    /// radius.
     pub fn new(hopper: &Hopper, gravity: Gravity) -> Self {
         let mechanical = SlopeInterval {
             lower: hopper.limits().takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
             upper: hopper.limits().takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
         };
-        Self { hopper: *hopper, gravity, mechanical }
+        Self { hopper: hopper.below_escape(gravity), gravity, mechanical }
     }
 
     /// The hopper.

@@ -51,7 +51,8 @@ impl ConstrainedChain {
     /// Resolves the constraints of every segment from the chain, the hopper and the scenario's surface.
     ///
     /// The chain's own friction, angles or explicit limits have priority, and the surface supplies what the chain leaves
-    /// open; of two speed limits the smaller applies. The rest slope is compared with the full inclination of the surface,
+    /// open; of two speed limits the smaller applies, and none reaches the escape speed of a body of known radius
+    /// ([`Gravity::speed_cap_m_s`]). The rest slope is compared with the full inclination of the surface,
     /// `n_z = cos chi cos alpha`; a rest slope left to friction is the friction angle of the segment's own coefficient.
     ///
     /// # Errors
@@ -77,7 +78,7 @@ impl ConstrainedChain {
         let mut problems: Vec<(ConstraintProblem, usize)> = Vec::new();
         let mut segments = Vec::with_capacity(geometry.segment_count());
         for (i, (&slope, ground)) in geometry.slopes().iter().zip(geometry.grounds()).enumerate() {
-            match resolve_constraints(SegmentId(i), slope, ground, hopper, surface) {
+            match resolve_constraints(SegmentId(i), slope, ground, hopper, gravity, surface) {
                 Ok(segment) => segments.push(segment),
                 Err(problem) => {
                     let same =
@@ -98,7 +99,8 @@ impl ConstrainedChain {
         };
         let speed_bounds_m_s = (bound(Contact::Takeoff), bound(Contact::Landing));
         let height_bound_m = geometry.vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max);
-        Ok(Self { geometry, hopper: *hopper, gravity, surface: *surface, segments, speed_bounds_m_s, height_bound_m })
+        let hopper = hopper.below_escape(gravity);
+        Ok(Self { geometry, hopper, gravity, surface: *surface, segments, speed_bounds_m_s, height_bound_m })
     }
 
     /// The same geometry and surface for another hopper and gravity.
@@ -168,12 +170,13 @@ impl ConstrainedChain {
 }
 
 /// Resolves the constraints of one segment: what its ground, given by its slope along the plane of travel, allows this
-/// hopper.
+/// hopper under this gravity.
 pub(crate) fn resolve_constraints(
     id: SegmentId,
     slope: f64,
     ground: &SegmentGround,
     hopper: &Hopper,
+    gravity: Gravity,
     surface: &SurfaceProperties,
 ) -> Result<SegmentConstraints, ConstraintProblem> {
     let (takeoff_speed, landing_speed) = (hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s);
@@ -204,6 +207,8 @@ pub(crate) fn resolve_constraints(
     if unbounded(&forward) || unbounded(&reverse) {
         return Err(ConstraintProblem::NoSpeed(id));
     }
+    let cap_m_s = gravity.speed_cap_m_s();
+    let [forward, reverse] = [forward, reverse].map(|line| line.map(|line| line.capped(cap_m_s, cap_m_s)));
     let rest_slope = match surface.rest {
         RestSlope::AsFrictionHolds => friction.map(FrictionCone::coefficient),
         RestSlope::AtMost(angle) => Some(angle.slope()),
@@ -327,6 +332,37 @@ mod tests {
         let surface = SurfaceProperties { rest: RestSlope::AtMost(Angle::from_degrees(f64::NAN)), ..friction(0.6) };
         let ConstraintProblems(problems) = constrained(one_segment(0.0, SegmentGround::BARE.form), &ten(), &surface).unwrap_err();
         assert!(matches!(problems.as_slice(), [(ConstraintProblem::Surface(InvalidSurface::RestSlope { .. }), 0)]), "{problems:?}");
+    }
+
+    /// Escape from Bennu is sqrt(2 x 4.892 / 245.03) = 0.1998 m/s: above it no speed limit of hopper or chain counts, below it each
+    /// does, and a missing limit is still missing.
+    #[test]
+    fn no_speed_limit_reaches_escape_from_a_body_of_known_radius() {
+        let bennu = crate::world::Body::named("bennu").unwrap().gravity;
+        let escape_m_s = (2.0_f64 * 4.892 / 245.03).sqrt();
+        let line = |speed_m_s| LineConstraints::from_cone(0.0, Angle::from_degrees(30.0), speed_m_s, speed_m_s);
+        let explicit = |speed_m_s| GroundForm::Explicit { forward: Some(line(speed_m_s)), reverse: None };
+        let surface = SegmentGround::BARE.form;
+        let hopper = |speed_m_s| Hopper::with_speeds(speed_m_s, speed_m_s).unwrap();
+        for (form, hopper, expected_m_s) in [
+            (surface, hopper(0.25), escape_m_s),
+            (surface, hopper(1e5), escape_m_s),
+            (surface, hopper(0.15), 0.15),
+            (explicit(0.3), Hopper::UNLIMITED, escape_m_s),
+            (explicit(0.3), hopper(0.25), escape_m_s),
+            (explicit(0.3), hopper(0.1), 0.1),
+            (explicit(0.12), hopper(0.25), 0.12),
+        ] {
+            let chain = ConstrainedChain::new(one_segment(0.0, form), &hopper, bennu, &friction(0.6)).unwrap();
+            for contact in [Contact::Takeoff, Contact::Landing] {
+                let found = chain.segments()[0].check_contact(contact, Direction::Forward).unwrap().speed_max_m_s();
+                assert!((found - expected_m_s).abs() < 1e-6 && found < escape_m_s, "{form:?} {hopper:?}: {found}");
+            }
+            let limits = chain.hopper().limits();
+            assert!(limits.takeoff_speed_max_m_s.is_infinite() || limits.takeoff_speed_max_m_s < escape_m_s, "{limits:?}");
+        }
+        let missing = ConstrainedChain::new(one_segment(0.0, surface), &Hopper::UNLIMITED, bennu, &friction(0.6)).unwrap_err();
+        assert_eq!(missing.0, [(ConstraintProblem::NoSpeed(SegmentId(0)), 0)]);
     }
 
     #[test]

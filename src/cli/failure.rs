@@ -18,7 +18,7 @@ use miette::{
     SourceSpan, SpanContents,
 };
 
-use super::hints;
+use super::{hints, inputs};
 
 /// Why a command ends with status 2.
 #[derive(Debug)]
@@ -58,7 +58,7 @@ impl Failure {
             text.push_str(report.trim_start());
         }
         // An error on writing to standard error cannot be reported.
-        let _ = io::stderr().write_all(text.as_bytes());
+        let _ = io::stderr().write_all(inputs::shown(&text).as_bytes());
     }
 
     /// Every problem with its position.

@@ -41,6 +41,14 @@ pub(super) fn parsed() -> Args {
             sub.after_long_help(format!("{list}\n{example}"))
         });
     }
+    // A fan has no path to refine for and no second criterion.
+    command = command.mut_subcommand("fan", |fan| {
+        fan.mut_arg("points_per_segment", |points| {
+            points
+                .help("Points inside each segment; auto is the same as 1, since there is no single path to refine for [default: 1]")
+        })
+        .mut_arg("effort", |effort| effort.hide(true))
+    });
     let matches = command.get_matches();
     if let Some(name) = matches.subcommand_name() {
         // Parsed once, so it is not set before.

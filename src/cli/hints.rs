@@ -11,7 +11,7 @@ use chta::{
     terrain::{LonLat, ScaleMend, TerrainError},
 };
 
-use super::help::takes;
+use super::{help::takes, inputs};
 
 /// The message of an error, with the options that mend it.
 pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
@@ -23,7 +23,7 @@ pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
                 accepted()
             )
         }
-        _ => format!("{error}{}", hint(error)),
+        _ => format!("{error}{}{}", hint(error), beside_a_pipe(error)),
     }
 }
 
@@ -100,6 +100,17 @@ fn hint(error: &(dyn Error + 'static)) -> String {
         _ => {}
     }
     String::new()
+}
+
+/// The addition for a file through a pipe that lacks what may stand in a file beside it.
+fn beside_a_pipe(error: &(dyn Error + 'static)) -> &'static str {
+    let Some(TerrainError::InFile { path, problem }) = of_terrain(error) else { return "" };
+    let may_stand_beside = matches!(**problem, TerrainError::Unsuitable { .. } | TerrainError::NoProjection { .. });
+    if may_stand_beside && inputs::given_name(path).is_some() {
+        "; it came through a pipe, where no file stands beside it (.tfw, .prj, .aux.xml): if it has one, give the file itself"
+    } else {
+        ""
+    }
 }
 
 /// The remedy for a map whose scale is off.

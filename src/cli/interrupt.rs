@@ -8,7 +8,7 @@ use std::{
 
 use chta::report::abandon_unfinished;
 
-use super::Failure;
+use super::{Failure, inputs};
 
 /// What a program ended by Ctrl-C gives its shell: 128 and the signal's number.
 pub(crate) const STATUS: u8 = 130;
@@ -50,6 +50,7 @@ pub(crate) fn check() -> Result<(), Failure> {
 /// Ends the program at once.
 fn end() -> ! {
     abandon_unfinished();
+    inputs::forget();
     #[expect(clippy::exit, reason = "work that goes on in other threads is not waited for")]
     std::process::exit(i32::from(STATUS));
 }

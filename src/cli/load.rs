@@ -8,11 +8,11 @@ use std::{
 };
 
 use chta::{
-    chain::Station,
+    chain::{Station, csv::read_chain_csv_file},
     hop::HopTest,
     report::InputFile,
     scenario::{
-        Entries, JourneyEnd as End, LackingKey, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem,
+        Entries, FileKind, JourneyEnd as End, LackingKey, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem,
         ScenarioProblems, Survey, SweptKey, TerrainSource, Trade, prepare, scenario_document, sha256_of,
     },
     terrain::sidecar_files,
@@ -21,7 +21,12 @@ use chta::{
 use super::{
     Failure,
     args::{CommonArgs, SearchArgs},
-    claims, hints, output,
+    claims,
+    effects::Purpose,
+    hints,
+    inputs::{self, Input, KeyProblem},
+    output,
+    wrong_thing::Role,
 };
 
 /// A scenario with its chain, and the records of both for a result.
@@ -119,9 +124,42 @@ struct Source {
     base: PathBuf,
 }
 
+/// A file to analyse, and whether it is a scenario or a chain.
+struct Target {
+    input: Input,
+    is_scenario: bool,
+}
+
+impl Target {
+    /// A chain, scenario or result.
+    fn chain(path: &Path) -> Result<Self, Failure> {
+        let input = inputs::open(path, Role::Chain)?;
+        let is_scenario = input.is_scenario();
+        // What is not even a table is reported before the keys that its analysis would lack.
+        if !is_scenario && input.kind != FileKind::ChainCsv {
+            read_chain_csv_file(&input.file)?;
+        }
+        Ok(Self { input, is_scenario })
+    }
+}
+
+/// Loads a scenario or result as it stands.
+pub(crate) fn load_scenario(target: &Path, common: &CommonArgs, purpose: Purpose) -> Result<Loaded, Failure> {
+    let target = Target { input: inputs::open(target, Role::Scenario)?, is_scenario: true };
+    let source = typed(&target, common, None, EndOptions::NONE)?;
+    let given = source.entries.clone();
+    validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut prepare)
+}
+
 /// Loads a chain, scenario or result with the options beside it.
-pub(crate) fn load(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Loaded, Failure> {
-    load_with(target, common, search, ends, &[])
+pub(crate) fn load(
+    target: &Path,
+    common: &CommonArgs,
+    search: Option<&SearchArgs>,
+    ends: EndOptions,
+    purpose: Purpose,
+) -> Result<Loaded, Failure> {
+    load_with(target, common, search, ends, purpose, &[])
 }
 
 /// Loads the same with keys that a command's own options set: option, table, key and value.
@@ -130,13 +168,16 @@ pub(crate) fn load_with(
     common: &CommonArgs,
     search: Option<&SearchArgs>,
     ends: EndOptions,
+    purpose: Purpose,
     own: &[(&str, &str, &str, toml::Value)],
 ) -> Result<Loaded, Failure> {
-    let mut source = typed(target, common, search, ends)?;
+    let target = Target::chain(target)?;
+    let mut source = typed(&target, common, search, ends)?;
     for (option, table, key, value) in own {
         source.entries.set_by_option(option, table, key, value.clone());
     }
-    validate_and_prepare(target, source, common.quiet, ends, &mut prepare)
+    let given = source.entries.clone();
+    validate_and_prepare(&target, source, common.quiet, (ends, purpose, &given), &mut prepare)
 }
 
 /// A scenario of which keys are varied: the first cell, loaded, and the source of all other cells.
@@ -160,31 +201,32 @@ pub(crate) fn load_to_vary(
     ends: EndOptions,
     swept: &[SweptKey],
 ) -> Result<ToVary, Failure> {
-    let mut source = typed(target, common, Some(search), ends)?;
+    let target = Target::chain(target)?;
+    let mut source = typed(&target, common, Some(search), ends)?;
     let (entries, base) = (source.entries.clone(), source.base.clone());
     source.entries = Trade::first_cell(&entries, swept, "--vary").map_err(|error| Failure::message(format!("--vary: {error}")))?;
     let mut kept = None;
-    let first = validate_and_prepare(target, source, common.quiet, ends, &mut |scenario, terrain, base| {
-        kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
-    })?;
-    let survey = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.display())))?;
+    let first =
+        validate_and_prepare(&target, source, common.quiet, (ends, Purpose::Trade, &entries), &mut |scenario, terrain, base| {
+            kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
+        })?;
+    let survey = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.input.given.display())))?;
     Ok(ToVary { first, survey, entries, base })
 }
 
 /// The keys of a chain, scenario or result with the options beside it.
-fn typed(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Source, Failure> {
-    let is_scenario = is_scenario(target);
-    let mut source = match (is_scenario, &common.scenario) {
-        (true, None) => read_source(target)?,
+fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) -> Result<Source, Failure> {
+    let Target { input, is_scenario } = target;
+    let mut source = match (*is_scenario, &common.scenario) {
+        (true, None) => read_source(input)?,
         (true, Some(other)) => {
             return Err(Failure::message(format!(
                 "found two scenarios, {} and --scenario {}, expected one: give a chain CSV as CHAIN, or leave --scenario away",
-                target.display(),
+                input.given.display(),
                 other.display()
             )));
         }
-        (false, Some(scenario)) => read_source(scenario)?,
-        (false, None) => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
+        (false, scenario) => option_source(scenario.as_deref())?,
     };
     if !is_scenario {
         for key in SLICED_TERRAIN {
@@ -196,45 +238,81 @@ fn typed(target: &Path, common: &CommonArgs, search: Option<&SearchArgs>, ends: 
                 output::warn(common.quiet, &warning);
             }
         }
-        source.entries.set_by_option("CHAIN", "terrain", "chain", target.to_string_lossy().into_owned().into());
+        source.entries.set_by_option("CHAIN", "terrain", "chain", input.file.to_string_lossy().into_owned().into());
         // A path on the command line is relative to the working folder.
         source.base = PathBuf::new();
     }
     apply_options(&mut source.entries, common, search, ends);
+    look_at_keys(&mut source, *is_scenario)?;
     Ok(source)
+}
+
+/// Looks at the files that a scenario's keys name, before anything else is checked, and puts what stands in for a pipe in its place.
+fn look_at_keys(source: &mut Source, chain_is_a_key: bool) -> Result<(), Failure> {
+    let files = source.entries.files();
+    let terrains = files.iter().filter(|(key, _)| key.table == "terrain").count();
+    let has_chain = files.iter().any(|(key, _)| key.path() == "terrain.chain");
+    let (mut problems, mut is_wrong) = (Vec::new(), false);
+    for (key, path) in files {
+        let Some(role) = Role::of_key(key.table, key.name) else { continue };
+        // Which of two terrains is meant comes before what they are, and a chain takes no overlays.
+        let is_undecided = key.table == "terrain" && (terrains > 1 || (role == Role::ChainKey && !chain_is_a_key));
+        if is_undecided || (key.table == "surface" && has_chain) {
+            continue;
+        }
+        let path = if path == "-" { PathBuf::from(path) } else { source.base.join(path) };
+        match inputs::of_key(&path, role)? {
+            Ok(input) if input.is_stream() => source.entries.redirect(key, &input.file.to_string_lossy()),
+            Ok(_) => {}
+            Err(KeyProblem { found, help, is_unreadable }) => {
+                is_wrong |= !is_unreadable;
+                problems.push(source.entries.file_problem(key, found, help));
+            }
+        }
+    }
+    if problems.is_empty() || source.entries.is_unreadable() {
+        return Ok(());
+    }
+    // Of a file that is something else, further problems may be consequences.
+    if !is_wrong && let Err(others) = Scenario::new(source.entries.clone()) {
+        problems.extend(others);
+    }
+    Err(refused(problems, &source.name, &source.text))
 }
 
 /// Prepares a chain from a scenario and its terrain, whose paths start from the given folder.
 type Prepare<'a> = &'a mut dyn FnMut(&Scenario, &TerrainSource, &Path) -> Result<Prepared, PipelineError>;
 
-/// Validates keys and prepares their chain.
+/// Validates keys and prepares their chain. `given`: the keys of file and options, without those that a command varies.
 fn validate_and_prepare(
-    target: &Path,
+    target: &Target,
     source: Source,
     quiet: bool,
-    ends: EndOptions,
+    (ends, purpose, given): (EndOptions, Purpose, &Entries),
     prepare: Prepare<'_>,
 ) -> Result<Loaded, Failure> {
     let base = source.base;
+    let Target { input, is_scenario } = target;
+    let replaced = Purpose::replaced(&source.entries);
     let mut scenario = validated(source.entries, &source.name, &source.text)?;
     let mut terrain = scenario.terrain.clone().ok_or_else(|| {
-        let name = target.display();
+        let name = input.given.display();
         // Results of chains name their terrain; those of maps and fans cover all headings and have no chain.
-        let is_result = target.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"));
-        Failure::message(if is_result {
+        Failure::message(if input.is_result() {
             format!("{name}: found no terrain, as in results of `chta map` and `chta fan`: repeat those with their DEM and --scenario {name}")
         } else {
             format!("{name}: found no terrain; add [terrain] with dem, mesh or chain, or give a chain CSV")
         })
     })?;
-    let chain_name = target.to_string_lossy().into_owned();
-    if !is_scenario(target) && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
+    let chain_name = input.file.to_string_lossy().into_owned();
+    if !is_scenario && terrain == (TerrainSource::Chain { path: chain_name.into() }) {
         // The name as given, in case it is not UTF-8.
-        terrain = TerrainSource::Chain { path: target.to_path_buf() };
+        terrain = TerrainSource::Chain { path: input.file.clone() };
         scenario.terrain = Some(terrain.clone());
     }
     let file = base.join(terrain.path());
-    let prepared = prepare(&scenario, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
+    let mut prepared = prepare(&scenario, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
+    prepared.warnings.extend(purpose.unused(given, &scenario).into_iter().chain(replaced));
     for warning in &prepared.warnings {
         output::warn(quiet, warning);
     }
@@ -261,37 +339,35 @@ fn unprepared(error: PipelineError, file: &Path, ends: EndOptions) -> Failure {
 /// A scenario without terrain, for a command that has its own.
 #[derive(Debug)]
 pub(crate) struct Bare {
+    /// The DEM's file.
+    pub(crate) dem: PathBuf,
     /// The scenario as used.
     pub(crate) scenario: Scenario,
     /// The folder that its paths start from.
     pub(crate) base: PathBuf,
     /// The scenario for a result.
     pub(crate) document: serde_json::Value,
+    /// Warnings about keys without effect.
+    pub(crate) warnings: Vec<String>,
 }
 
 /// Loads the scenario of the options for hops over this DEM, without its own terrain.
-pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs) -> Result<Bare, Failure> {
-    if is_scenario(dem) {
-        let name = dem.display();
-        return Err(Failure::message(format!(
-            "{name}: found a scenario in place of the DEM, expected a GeoTIFF or ESRI ASCII grid: give the DEM first, and the scenario \
-             with --scenario {name}"
-        )));
-    }
-    let mut source = match &common.scenario {
-        Some(path) => read_source(path)?,
-        None => Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() },
-    };
+pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, purpose: Purpose) -> Result<Bare, Failure> {
+    let dem = inputs::open(dem, Role::Dem)?.file;
+    let mut source = option_source(common.scenario.as_deref())?;
     apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
+    let given = source.entries.clone();
     forget_terrain(&mut source.entries);
+    look_at_keys(&mut source, false)?;
     let scenario = validated(source.entries, &source.name, &source.text)?;
+    let warnings = purpose.unused(&given, &scenario).into_iter().chain(Purpose::replaced(&given)).collect();
     let lacking = scenario.lacks_on_a_dem();
     if !lacking.is_empty() {
         let name = common.scenario.as_ref().map(|file| format!("{}: ", file.display())).unwrap_or_default();
         return Err(Failure::message(name + &lacking_on_a_dem(&lacking)));
     }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
-    Ok(Bare { scenario, base: source.base, document })
+    Ok(Bare { dem, scenario, base: source.base, document, warnings })
 }
 
 /// The failure for keys that hops over a DEM need, with how to give them.
@@ -323,8 +399,9 @@ pub(crate) fn raster_files(path: &Path) -> Result<Vec<InputFile>, Failure> {
 
 /// Reads a scenario with the folder of its paths but without its terrain, for commands that have their own.
 pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure> {
-    let mut source = read_source(path)?;
+    let mut source = option_source(Some(path))?;
     forget_terrain(&mut source.entries);
+    look_at_keys(&mut source, false)?;
     Ok((validated(source.entries, &source.name, &source.text)?, source.base))
 }
 
@@ -339,16 +416,20 @@ fn forget_terrain(entries: &mut Entries) {
     }
 }
 
-/// Whether a file is a scenario or a result by its extension; any other file is a chain CSV.
-pub(crate) fn is_scenario(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("toml") || extension.eq_ignore_ascii_case("json"))
+/// The keys of the scenario of an option; none without it.
+fn option_source(scenario: Option<&Path>) -> Result<Source, Failure> {
+    match scenario {
+        Some(path) => read_source(&inputs::open(path, Role::ScenarioOption)?),
+        None => Ok(Source { entries: Entries::default(), name: String::new(), text: String::new(), base: PathBuf::new() }),
+    }
 }
 
 /// Reads the keys of a scenario (TOML) or of a result (JSON).
-fn read_source(path: &Path) -> Result<Source, Failure> {
+fn read_source(input: &Input) -> Result<Source, Failure> {
     const LARGEST: u64 = 1 << 24;
+    let path = input.file.as_path();
     claims::reads(path);
-    let name = path.display().to_string();
+    let name = input.given.display().to_string();
     let unread =
         |reason: String, help: &str| Failure::message(format!("{name}: cannot be read ({reason}), expected a scenario: {help}"));
     let size = fs::metadata(path).map_err(|e| unread(e.to_string(), "check the path and its permissions"))?.len();
@@ -360,8 +441,9 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
     let read = fs::File::open(path).and_then(|file| file.take(LARGEST).read_to_end(&mut bytes));
     read.map_err(|e| unread(e.to_string(), "check the path and its permissions"))?;
     let text = String::from_utf8(bytes).map_err(|e| unread(e.to_string(), "write it as TOML in UTF-8"))?;
-    let folder = path.parent().map(Path::to_path_buf).unwrap_or_default();
-    if path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json")) {
+    // A pipe has no folder: its paths start from the working folder.
+    let folder = if input.is_stream() { None } else { path.parent() }.map(Path::to_path_buf).unwrap_or_default();
+    if input.is_result() {
         let result: serde_json::Value =
             serde_json::from_str(&text).map_err(|e| unread(e.to_string(), "give a result.json that chta wrote"))?;
         let scenario = result
@@ -371,13 +453,16 @@ fn read_source(path: &Path) -> Result<Source, Failure> {
         return Ok(Source { entries: Entries::from_json(scenario), name, text: String::new(), base: PathBuf::new() });
     }
     let mut entries = Entries::from_toml(&text);
-    entries.set_default_title(&path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default());
+    if !input.is_stream() {
+        entries.set_default_title(&path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default());
+    }
     Ok(Source { entries, name, text, base: folder })
 }
 
 /// Options override the scenario: `--set` first, then named options.
 fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&SearchArgs>, ends: EndOptions) {
-    let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, accept_map_scale, no_data, quiet: _ } = common;
+    let CommonArgs { scenario: _, set, body, gravity_m_s2, clearance_m, accept_map_scale, no_data, input_max_gib: _, quiet: _ } =
+        common;
     // The keys that an option replaces are removed from the file's keys only, not from those set by the same command line.
     if body.is_some() {
         entries.forget("body", "gravity_m_s2");
@@ -428,18 +513,26 @@ fn apply_options(entries: &mut Entries, common: &CommonArgs, search: Option<&Sea
 
 /// Validates keys; every problem names the file that they came from.
 fn validated(entries: Entries, name: &str, text: &str) -> Result<Scenario, Failure> {
-    Scenario::new(entries).map_err(|mut problems: Vec<ScenarioProblem>| {
-        for problem in &mut problems {
-            problem.help.push_str(hints::of_problem(problem));
-        }
-        let in_file = problems.iter().any(|problem| !matches!(problem.place, Place::Option(_)));
-        let (name, source) = if in_file { (name.to_owned(), text.to_owned()) } else { (String::new(), String::new()) };
-        Failure::Scenario(ScenarioProblems { name, source, problems })
-    })
+    Scenario::new(entries).map_err(|problems| refused(problems, name, text))
+}
+
+/// The failure for problems of keys; it names the file that they came from.
+fn refused(mut problems: Vec<ScenarioProblem>, name: &str, text: &str) -> Failure {
+    for problem in &mut problems {
+        problem.help.push_str(hints::of_problem(problem));
+    }
+    let in_file = problems.iter().any(|problem| !matches!(problem.place, Place::Option(_)));
+    let (name, source) = if in_file { (name.to_owned(), text.to_owned()) } else { (String::new(), String::new()) };
+    Failure::Scenario(ScenarioProblems { name, source, problems })
 }
 
 /// A file's path relative to the working folder, normalised and with `/`, so that results are the same on every platform.
+///
+/// What came through a pipe keeps the name it was given under, such as `-`.
 pub(crate) fn relative_name(path: &Path) -> String {
+    if let Some(given) = inputs::given_name(path) {
+        return given.to_string_lossy().into_owned();
+    }
     let here = std::env::current_dir().unwrap_or_default();
     let absolute = normal(&here.join(path));
     let here = normal(&here);

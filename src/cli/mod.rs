@@ -3,13 +3,16 @@
 mod args;
 mod claims;
 mod commands;
+mod effects;
 mod failure;
 mod help;
 mod hints;
+mod inputs;
 mod interrupt;
 mod load;
 mod output;
 mod progress;
+mod wrong_thing;
 
 use std::process::ExitCode;
 
@@ -43,7 +46,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Synth(args) => commands::synth::run(&args),
         Command::Bodies => commands::bodies::run(),
     };
-    match answer {
+    let status = match answer {
         Ok(Answer::Yes) => ExitCode::SUCCESS,
         Ok(Answer::No) => ExitCode::from(1),
         // Its files under way are gone with what held them.
@@ -52,5 +55,7 @@ pub(crate) fn run() -> ExitCode {
             failure.tell();
             ExitCode::from(2)
         }
-    }
+    };
+    inputs::forget();
+    status
 }

@@ -14,7 +14,7 @@ use chta::{
     terrain::MapProjection,
 };
 
-use super::{Failure, claims, interrupt};
+use super::{Failure, claims, inputs, interrupt};
 
 /// Writes data to standard output. A closed pipe is not an error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
@@ -62,13 +62,23 @@ impl<'a> Pending<'a> {
 
 /// Opens the picture file of an option before the computation begins, after checking its extension.
 pub(crate) fn begin_picture<'a>(option: &str, path: &'a Path) -> Result<Pending<'a>, Failure> {
-    PictureFormat::of(path).map_err(|error| Failure::message(format!("{option}: {error}")))?;
+    check_picture(option, path)?;
     Pending::begin(path)
+}
+
+/// Checks that a picture file has the extension of a format; a device or pipe needs none and gets SVG.
+pub(crate) fn check_picture(option: &str, path: &Path) -> Result<(), Failure> {
+    picture_format(path).map(drop).map_err(|error| Failure::message(format!("{option}: {error}")))
+}
+
+fn picture_format(path: &Path) -> Result<PictureFormat, FigureError> {
+    let special = path.extension().is_none() && path.exists() && !path.is_file() && !path.is_dir();
+    if special { Ok(PictureFormat::Svg) } else { PictureFormat::of(path) }
 }
 
 /// A picture as the bytes of its file, in the format of the file's extension.
 pub(crate) fn encoded(drawn: Result<Picture, FigureError>, file: &Path) -> Result<Vec<u8>, Failure> {
-    drawn.and_then(|picture| picture.encoded_for(file)).map_err(|error| Failure::message(error.to_string()))
+    drawn.and_then(|picture| picture.encoded(picture_format(file)?)).map_err(|error| Failure::message(error.to_string()))
 }
 
 /// The format of a table, by its file's extension.
@@ -153,6 +163,6 @@ pub(crate) fn to_geojson_file(path: &Path, geojson: &str, projection: Option<&Ma
 pub(crate) fn warn(quiet: bool, warning: &str) {
     if !quiet {
         // An error on writing to standard error cannot be reported.
-        let _ = writeln!(io::stderr(), "warning: {warning}");
+        let _ = writeln!(io::stderr(), "warning: {}", inputs::shown(warning));
     }
 }

@@ -6,7 +6,7 @@ use super::{
     Uncertainty,
     draws::{HopDraws, TrialDraws, Wanted},
 };
-use crate::ground::{ContactFailure, FirstContact, HeightField, LiftoffVelocity, Realization, TouchdownState};
+use crate::ground::{ContactFailure, FirstContact, Flight, HeightField, LiftoffVelocity, Realization, TouchdownState};
 
 /// A command, and its planned landing.
 #[derive(Clone, Copy, Debug)]
@@ -110,7 +110,14 @@ impl Errors {
         aim: &G::Contact,
         draws: &HopDraws,
     ) -> FlownHop<G::Contact> {
-        let flight = ground.first_contact(from, liftoff, aim);
+        // An error can lift the speed to that of escape: the hopper does not come back.
+        let speed_m_s = libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s);
+        let escapes = ground.gravity().escape_speed_m_s().is_some_and(|escape_m_s| speed_m_s >= escape_m_s);
+        let flight = if escapes {
+            Flight { end: *from, support_facet: None, time_s: 0.0 }
+        } else {
+            ground.first_contact(from, liftoff, aim)
+        };
         let touchdown = TouchdownState::after(liftoff, flight.time_s, ground.gravity_m_s2());
         let u = &self.uncertainty;
         let displacement_m = [u.drift_along_sigma_m * draws.drift[0], u.drift_across_sigma_m * draws.drift[1]];

@@ -3,7 +3,8 @@
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 use super::{
-    Cost, Effort, HopGraph, Leg, NodeSet, ReliabilityOptions, SearchOptions, nodes::around, reliability_policy::ReliabilityPolicy,
+    Cost, Effort, HopGraph, Leg, NodeSet, ReliabilityOptions, SearchError, SearchOptions, nodes::around,
+    reliability_policy::ReliabilityPolicy,
 };
 use crate::{
     ballistics::{Arc, LineOfSight},
@@ -53,7 +54,7 @@ impl CostToGo {
     /// within the extra hops allowed, weighted as in [`most_reliable_paths`](super::most_reliable_paths).
     ///
     /// # Errors
-    /// [`Cancelled`].
+    /// [`SearchError`]: invalid deviations, or cancelled.
     ///
     /// # Complexity
     /// That of [`of`](Self::of), plus a risk estimate for every edge on some path within the hop budget.
@@ -63,7 +64,8 @@ impl CostToGo {
         options: &SearchOptions,
         reliability: &ReliabilityOptions,
         progress: &dyn Progress,
-    ) -> Result<Self, Cancelled> {
+    ) -> Result<Self, SearchError> {
+        reliability.model.check()?;
         let costs = Self::of(test, nodes, options, progress)?;
         let policy = ReliabilityPolicy::of(&costs.graph(test), &costs.costs, options, reliability, progress)?;
         Ok(Self { policy: Some(policy), ..costs })

@@ -30,7 +30,7 @@ pub use cost::{Cost, Effort};
 pub use cost_to_go::CostToGo;
 pub use edges::{Edge, EdgeReference, HopGraph};
 pub use frontier::{Frontier, NearestMiss};
-pub use nodes::{NodeSet, PointSpacing, TooManyNodes};
+pub use nodes::{NodeSet, NodesError, PointSpacing};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
 pub use reliability::{ReliabilityOptions, ReliabilityUse, ReliablePath, most_reliable_paths, search_most_reliable};

@@ -16,12 +16,24 @@ pub enum PointSpacing {
     AtMostM(f64),
 }
 
-/// More nodes than the program's memory limit allows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{nodes} nodes, expected at most {}: choose fewer points per segment or a wider node spacing", NodeSet::MAX_NODES)]
-pub struct TooManyNodes {
-    /// The number of nodes requested.
-    pub nodes: u64,
+/// Why a spacing gives no nodes.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum NodesError {
+    /// More nodes than the program's memory limit allows.
+    #[error("{nodes} nodes, expected at most {}: choose fewer points per segment or a wider node spacing", NodeSet::MAX_NODES)]
+    TooMany {
+        /// The number of nodes requested.
+        nodes: u64,
+    },
+    /// A spacing that is no distance.
+    #[error(
+        "the node spacing is {found_m} m, expected a number above 0: give node_spacing_max_m the greatest distance of neighbours"
+    )]
+    Spacing {
+        /// What was given, m.
+        found_m: f64,
+    },
 }
 
 /// The nodes of a hop graph, from left to right, no two at the same x. Clones share the stations.
@@ -40,8 +52,8 @@ impl NodeSet {
     /// All vertices, equidistant points inside each segment, start and goal (P section IV-B).
     ///
     /// # Errors
-    /// [`TooManyNodes`] for more than [`NodeSet::MAX_NODES`].
-    pub fn new(chain: &ConstrainedChain, start: Station, goal: Station, spacing: PointSpacing) -> Result<Self, TooManyNodes> {
+    /// [`NodesError`]: more than [`NodeSet::MAX_NODES`], or a spacing that is no distance.
+    pub fn new(chain: &ConstrainedChain, start: Station, goal: Station, spacing: PointSpacing) -> Result<Self, NodesError> {
         let (mut stations, most_per_segment) = stations_of(chain, spacing)?;
         insert(&mut stations, start);
         insert(&mut stations, goal);
@@ -53,8 +65,8 @@ impl NodeSet {
     /// the first vertex and its goal the last.
     ///
     /// # Errors
-    /// [`TooManyNodes`] for more than [`NodeSet::MAX_NODES`], including a separate start and goal.
-    pub fn of_chain(chain: &ConstrainedChain, spacing: PointSpacing) -> Result<Self, TooManyNodes> {
+    /// [`NodesError`]: more than [`NodeSet::MAX_NODES`], or a spacing that is no distance, including a separate start and goal.
+    pub fn of_chain(chain: &ConstrainedChain, spacing: PointSpacing) -> Result<Self, NodesError> {
         let (stations, most_per_segment) = stations_of(chain, spacing)?;
         let goal = NodeId(stations.len() - 1);
         Ok(Self { stations: stations.into(), start: NodeId(0), goal, most_per_segment })
@@ -107,7 +119,12 @@ impl NodeSet {
 }
 
 /// All vertices and equidistant points inside each segment, and the greatest number of points inside one segment.
-fn stations_of(chain: &ConstrainedChain, spacing: PointSpacing) -> Result<(Vec<Station>, u32), TooManyNodes> {
+fn stations_of(chain: &ConstrainedChain, spacing: PointSpacing) -> Result<(Vec<Station>, u32), NodesError> {
+    if let PointSpacing::AtMostM(found_m) = spacing
+        && (found_m.is_nan() || found_m <= 0.0)
+    {
+        return Err(NodesError::Spacing { found_m });
+    }
     let geometry = chain.geometry();
     let inside = |pair: &[ChainPoint]| match spacing {
         PointSpacing::PerSegment(k) => u64::from(k),
@@ -118,7 +135,7 @@ fn stations_of(chain: &ConstrainedChain, spacing: PointSpacing) -> Result<(Vec<S
     let segments = || geometry.vertices().windows(2);
     let nodes = segments().map(inside).fold(geometry.vertices().len() as u64 + 2, u64::saturating_add);
     if nodes > NodeSet::MAX_NODES {
-        return Err(TooManyNodes { nodes });
+        return Err(NodesError::TooMany { nodes });
     }
     let mut stations: Vec<Station> = Vec::with_capacity(usize::try_from(nodes).unwrap_or(0));
     let mut most = 0;
@@ -177,6 +194,5 @@ pub(super) fn around(stations: &[Station], station: &Station, distance_m: f64) -
 /// The number of points inside a stretch that keeps neighbours at most the spacing apart.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates, and is refused above MAX_NODES")]
 fn points_needed(length_m: f64, spacing_m: f64) -> u64 {
-    // Written so that a spacing that is not a number, like one of 0 or less, asks for more points than there may be.
-    if spacing_m > 0.0 { ((length_m / spacing_m).ceil() - 1.0).max(0.0) as u64 } else { u64::MAX }
+    ((length_m / spacing_m).ceil() - 1.0).max(0.0) as u64
 }

@@ -113,7 +113,7 @@ impl Questions {
     /// Searches once from each start that has open questions.
     ///
     /// # Errors
-    /// [`TooManyNodes`] if adding the ends of a question without a path exceeds the limit.
+    /// [`NodesError`](super::NodesError) if adding the ends of a question without a path exceeds the limit.
     pub(super) fn ask(&mut self, round: &Round<'_>, meter: &Meter<'_>) -> Result<(), SearchError> {
         let graph = round.graph(round.nodes);
         let table = Arc::new(LandingTable::new(round.test, round.nodes.shared_stations()));

@@ -69,7 +69,7 @@ pub struct ReliablePath {
 /// within the hop budget). Ties go to the path whose nodes come first.
 ///
 /// # Errors
-/// [`Cancelled`].
+/// [`SearchError`]: invalid deviations, or cancelled.
 ///
 /// # Complexity
 /// With E edges within reach of the budget: E hop tests and E risk estimates, `E (1 + extra)` additions; 12 bytes for each edge.
@@ -79,7 +79,8 @@ pub fn most_reliable_paths(
     options: &SearchOptions,
     reliability: &ReliabilityOptions,
     progress: &dyn Progress,
-) -> Result<Vec<ReliablePath>, Cancelled> {
+) -> Result<Vec<ReliablePath>, SearchError> {
+    reliability.model.check()?;
     let meter = Meter::new(progress, Stage::Reliability);
     meter.report(Detail::None)?;
     let mut counter = meter.counter();
@@ -109,6 +110,7 @@ pub fn search_most_reliable(
     reliability: &ReliabilityOptions,
     progress: &dyn Progress,
 ) -> Result<(super::Answer, Vec<ReliablePath>), SearchError> {
+    reliability.model.check()?;
     let mut answer = search(test, start, goal, options, progress)?;
     let mut paths = Vec::new();
     if let Outcome::Path { legs, cost } = &mut answer.outcome

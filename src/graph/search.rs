@@ -1,14 +1,14 @@
 //! The search for the path of fewest hops, then least effort.
 
 use super::{
-    Cost, Edge, Effort, EndpointRefusal, Frontier, NodeSet, PointSpacing, RefusalCounts, TooManyNodes,
+    Cost, Edge, Effort, EndpointRefusal, Frontier, NodeSet, NodesError, PointSpacing, RefusalCounts,
     local_reach::LocalReach,
     questions::{Questions, Round},
 };
 use crate::{
     ballistics::TakeoffChoice,
     chain::Station,
-    hop::{HopTest, Split},
+    hop::{HopTest, InvalidDeviation, Split},
     progress::{Cancelled, Detail, Meter, Progress, Stage},
 };
 
@@ -31,13 +31,16 @@ pub struct SearchOptions {
     pub split: Split,
 }
 
-/// One edge of the path.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+/// Why there is no answer.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum SearchError {
-    /// More nodes than fit.
+    /// More nodes than fit, or a spacing that is no distance.
     #[error(transparent)]
-    TooManyNodes(#[from] TooManyNodes),
+    Nodes(#[from] NodesError),
+    /// Deviations by which no risk can be estimated.
+    #[error(transparent)]
+    Deviation(#[from] InvalidDeviation),
     /// It was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -129,7 +132,7 @@ pub(crate) fn search_one(
 ) -> Result<Answer, SearchError> {
     let mut answers = search_all(test, &[ends], options, meter)?;
     // One question, one answer.
-    answers.pop().ok_or(SearchError::TooManyNodes(TooManyNodes { nodes: 0 }))
+    answers.pop().ok_or(SearchError::Nodes(NodesError::TooMany { nodes: 0 }))
 }
 
 /// Answers several questions, each a start and a goal, with one search per start.

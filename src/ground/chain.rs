@@ -8,7 +8,7 @@ use super::{ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surf
 use crate::{
     chain::{ConstrainedChain, SegmentConstraints, Site, Station},
     quantity::VertexId,
-    world::{Contact, Direction, Hopper},
+    world::{Contact, Direction, Gravity, Hopper},
 };
 
 /// Rounding error of a height inside a segment (from two products, a quotient and a sum), in units in the last place of the chain's
@@ -52,8 +52,8 @@ impl Surface for ConstrainedChain {
         Self::hopper(self)
     }
 
-    fn gravity_m_s2(&self) -> f64 {
-        self.gravity().m_s2()
+    fn gravity(&self) -> Gravity {
+        Self::gravity(self)
     }
 
     fn contact_point(&self, station: &Station) -> ContactPoint {

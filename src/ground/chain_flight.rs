@@ -13,7 +13,7 @@ use crate::{
     chain::{ContactRule, GroundForm, GroundRefusal, SegmentConstraints, SegmentGround, Site, Station, resolve_constraints},
     hop::HopTest,
     quantity::{ChainPoint, SegmentId, VertexId},
-    world::{Contact, Direction, FrictionCone, Hopper},
+    world::{Contact, Direction, FrictionCone, Gravity, Hopper},
 };
 
 /// The chain as the ground of a trial.
@@ -156,7 +156,7 @@ impl ChainGround {
         }
         let (a, b) = (self.vertices()[segment], self.vertices()[segment + 1]);
         let slope = (b.z_m - a.z_m) / (b.x_m - a.x_m);
-        resolve_constraints(SegmentId(segment), slope, &ground, self.test.hopper(), chain.surface()).ok()
+        resolve_constraints(SegmentId(segment), slope, &ground, self.test.hopper(), chain.gravity(), chain.surface()).ok()
     }
 
     /// Why a segment refuses any contact; `None` if it does not.
@@ -243,8 +243,8 @@ impl Surface for ChainGround {
         self.test.hopper()
     }
 
-    fn gravity_m_s2(&self) -> f64 {
-        self.test.gravity_m_s2()
+    fn gravity(&self) -> Gravity {
+        self.test.chain().gravity()
     }
 
     fn contact_point(&self, position: &ChainPosition) -> ContactPoint {

@@ -190,7 +190,7 @@ impl DemGround {
         let cross_slope = ProfileFacet::from_gradient(gradient, heading).cross_slope;
         let keep_out = self.terrain.overlays().keeps_out(beside);
         let ground = SegmentGround { form: GroundForm::Surface { friction, cross_slope }, keep_out };
-        resolve_constraints(SegmentId(0), gradient.dot(&heading), &ground, self.hopper(), &self.surface)
+        resolve_constraints(SegmentId(0), gradient.dot(&heading), &ground, self.hopper(), self.envelope.gravity(), &self.surface)
     }
 
     /// The rule of a contact on a facet for a heading; `None` if the nominal ground refuses it.
@@ -268,7 +268,8 @@ impl DemGround {
         let form = GroundForm::Surface { friction, cross_slope: facet.cross_slope };
         let ground = SegmentGround { form, keep_out: facet.keep_out };
         let slope = gradient.dot(&heading);
-        let constraints = resolve_constraints(SegmentId(0), slope, &ground, self.hopper(), &self.surface).ok()?;
+        let constraints =
+            resolve_constraints(SegmentId(0), slope, &ground, self.hopper(), self.envelope.gravity(), &self.surface).ok()?;
         Some((constraints, friction))
     }
 
@@ -299,8 +300,8 @@ impl Surface for DemGround {
         self.envelope.hopper()
     }
 
-    fn gravity_m_s2(&self) -> f64 {
-        self.envelope.gravity_m_s2()
+    fn gravity(&self) -> Gravity {
+        self.envelope.gravity()
     }
 
     /// A map point has no distance along a journey: the distance is 0.

@@ -7,7 +7,7 @@ use nalgebra::{Point3, Vector2, Vector3};
 use crate::{
     chain::{ContactRule, GroundRefusal, LineConstraints, Station},
     quantity::{ChainPoint, MapPoint, VertexId},
-    world::{Contact, FrictionCone, Hopper},
+    world::{Contact, FrictionCone, Gravity, Hopper},
 };
 
 /// The coordinates that a [`ContactPoint`] is given in.
@@ -148,8 +148,13 @@ pub trait Surface {
     /// The hopper.
     fn hopper(&self) -> &Hopper;
 
+    /// Gravity, with the radius of its body where that is known.
+    fn gravity(&self) -> Gravity;
+
     /// Gravity, m/s^2.
-    fn gravity_m_s2(&self) -> f64;
+    fn gravity_m_s2(&self) -> f64 {
+        self.gravity().m_s2()
+    }
 
     /// The position of a contact.
     fn contact_point(&self, contact: &Self::Contact) -> ContactPoint;

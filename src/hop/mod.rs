@@ -14,7 +14,7 @@ mod terrain;
 
 pub use conflict::{Conflict, Shortfall};
 pub use hop_test::HopTest;
-pub use risk::{HopDeviations, PlannedHop, RiskModel};
+pub use risk::{HopDeviations, InvalidDeviation, PlannedHop, RiskModel};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
 pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};
 pub(crate) use terrain::flown_past;

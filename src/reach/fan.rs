@@ -4,7 +4,7 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use crate::{
-    graph::{PointSpacing, SearchError, TooManyNodes, reachable_nodes},
+    graph::{NodesError, PointSpacing, SearchError, reachable_nodes},
     ground::{DemGround, SliceProblem},
     hop::HopTest,
     progress::{Cancelled, Detail, Meter, Progress, Stage},
@@ -104,13 +104,13 @@ pub enum FanError {
         /// Why.
         reason: Box<SliceProblem>,
     },
-    /// A slice with too many nodes.
+    /// A slice without nodes: too many, or a spacing that is no distance.
     #[error("heading {heading_deg} deg: {problem}")]
-    TooManyNodes {
+    Nodes {
         /// Which slice.
         heading_deg: f64,
-        /// How many.
-        problem: TooManyNodes,
+        /// Why.
+        problem: NodesError,
     },
     /// The computation was cancelled.
     #[error(transparent)]
@@ -190,7 +190,11 @@ fn ray(request: &FanRequest<'_>, number: u32, meter: &Meter<'_>) -> Result<FanRa
     let test = HopTest::new(chain);
     let start = test.chain().geometry().vertex_station(crate::quantity::VertexId(0));
     let found = reachable_nodes(&test, start, request.spacing, meter).map_err(|error| match error {
-        SearchError::TooManyNodes(problem) => FanError::TooManyNodes { heading_deg, problem },
+        SearchError::Nodes(problem) => FanError::Nodes { heading_deg, problem },
+        // Reachable nodes are found without a risk.
+        SearchError::Deviation(problem) => {
+            FanError::Request { what: problem.what, found: problem.found.to_string(), expected: "a finite number of at least 0" }
+        }
         SearchError::Cancelled(cancelled) => FanError::Cancelled(cancelled),
     })?;
     let farthest = found.nodes.iter().rev().find_map(|(station, hops)| Some((station.point.x_m, (*hops)?)));

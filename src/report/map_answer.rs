@@ -254,7 +254,8 @@ impl MapAnswer {
         if !self.hops_histogram.is_empty() {
             let _ = writeln!(text, "\n{:>6}{:>12}", "hops", "posts");
         }
-        for (hops, posts) in self.hops_histogram.iter().enumerate() {
+        for (first, last, posts) in histogram_rows(&self.hops_histogram) {
+            let hops = if first == last { first.to_string() } else { format!("{first}-{last}") };
             let _ = writeln!(text, "{hops:>6}{posts:>12}");
         }
         for goal in &self.goals {
@@ -264,6 +265,20 @@ impl MapAnswer {
         }
         text
     }
+}
+
+/// The rows of a histogram for reading: first and last count of hops, and the posts. At most [`MOST_ROWS`]: a longer histogram has
+/// several counts in each row, 1, 2, 5, 10, 20, ... of them, except that 0 hops, the start, has its own.
+fn histogram_rows(histogram: &[usize]) -> Vec<(usize, usize, usize)> {
+    const MOST_ROWS: usize = 40;
+    let Some((start, others)) = histogram.split_first() else { return Vec::new() };
+    let widths = (0..).flat_map(|zeros: u32| [1, 2, 5].map(|digit| digit * 10_usize.saturating_pow(zeros)));
+    let width = widths.into_iter().find(|width| others.len().div_ceil(*width) < MOST_ROWS).unwrap_or(1);
+    let summed = others.chunks(width).enumerate().map(|(i, posts)| {
+        let first = 1 + i * width;
+        (first, first + posts.len() - 1, posts.iter().sum())
+    });
+    std::iter::once((0, 0, *start)).chain(summed).collect()
 }
 
 /// A count of hops.
@@ -304,4 +319,25 @@ fn neighbours(lattice: NodeLattice, post: Post) -> impl Iterator<Item = Post> {
     around(post.row, lattice.rows)
         .flat_map(move |row| around(post.col, lattice.cols).map(move |col| Post { row, col }))
         .filter(move |&other| other != post)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::histogram_rows;
+
+    #[test]
+    fn a_long_histogram_has_forty_rows_at_most_and_loses_no_post() {
+        assert!(histogram_rows(&[]).is_empty());
+        assert_eq!(histogram_rows(&[1, 8, 3]), [(0, 0, 1), (1, 1, 8), (2, 2, 3)]);
+        for (counts, rows, width) in
+            [(40, 40, 1), (41, 21, 2), (79, 40, 2), (80, 17, 5), (196, 40, 5), (1000, 21, 50), (32_768, 34, 1000)]
+        {
+            let histogram: Vec<usize> = (1..=counts).collect();
+            let found = histogram_rows(&histogram);
+            assert_eq!((found.len(), found[1].1 - found[1].0 + 1), (rows, width), "{counts} counts");
+            assert_eq!(found.iter().map(|row| row.2).sum::<usize>(), histogram.iter().sum::<usize>(), "{counts} counts");
+            assert_eq!(found.last().map(|row| row.1), Some(counts - 1), "{counts} counts");
+            assert!(found.windows(2).all(|pair| pair[0].1 + 1 == pair[1].0), "{counts} counts: {found:?}");
+        }
+    }
 }

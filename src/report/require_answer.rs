@@ -21,6 +21,10 @@ pub struct RequireAnswer {
     pub from: f64,
     /// The greatest value of the range.
     pub to: f64,
+    /// How close the two values were to come, as a fraction of them.
+    pub resolution: f64,
+    /// Whether they did, or the whole range is decided; false where the values between stayed open within the budget.
+    pub resolution_met: bool,
     /// Every value tried, in the order of the trials.
     pub tries: Vec<RequireTry>,
     /// The number of hops of the path at `reachable_at`.

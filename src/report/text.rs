@@ -120,6 +120,17 @@ pub fn require_text(answer: &RequireAnswer) -> String {
         Some(value) => sheet.line(format_args!("proved unreachable at {}", with_unit(value))),
         None => sheet.line(format_args!("proved unreachable at no value from {from} to {to}")),
     }
+    if !answer.resolution_met {
+        let between = match (answer.unreachable_at, answer.reachable_at) {
+            (Some(a), Some(b)) => format!("the values between {} and {} stayed open", format_number(a.min(b)), with_unit(a.max(b))),
+            (Some(value), None) | (None, Some(value)) => format!("the values on one side of {} stayed open", with_unit(value)),
+            (None, None) => "all values stayed open".to_owned(),
+        };
+        sheet.line(format_args!(
+            "the resolution of {} is not met: {between} with this budget of cells; a larger one may tell more",
+            format_number(answer.resolution)
+        ));
+    }
     if let Some(gap) = &answer.gap {
         gap_lines(&mut sheet, gap);
     }

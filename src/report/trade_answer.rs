@@ -46,6 +46,9 @@ pub struct TradeRow {
     /// With a proof: no path has fewer hops; null if there is no path at all.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<Option<u64>>,
+    /// Whether a speed limit of this cell reaches the escape speed, so that the answer is that of a limit just below it.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub above_escape: bool,
 }
 
 impl TradeRow {
@@ -100,6 +103,19 @@ impl TradeAnswer {
         let closed = self.rows.iter().filter(|row| row.is_closed()).count();
         let proved = if self.proved { format!(", in {closed} it is proved that there is none") } else { String::new() };
         format!("{paths} of {} cells have a path{proved}", self.rows.len())
+    }
+
+    /// A warning about the cells whose speed limit reaches the escape speed, with the first of them; `None` if there is none.
+    pub fn escape_warning(&self) -> Option<String> {
+        let first = self.rows.iter().find(|row| row.above_escape)?;
+        let count = self.rows.iter().filter(|row| row.above_escape).count();
+        let at: Vec<_> = first.values.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+        Some(format!(
+            "{count} of {} cells, the first with {}, have a speed limit at or above the escape speed: a hop that fast never lands, so they \
+             have the answer of a limit just below it",
+            self.rows.len(),
+            at.join(" and ")
+        ))
     }
 
     /// The table as text.

@@ -16,7 +16,7 @@ pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &P
         ..*hopper.limits()
     };
     machine(&a.hopper) == machine(&b.hopper)
-        && a.body.gravity == b.body.gravity
+        && a.body.gravity.m_s2() == b.body.gravity.m_s2()
         && a.search.spacing == b.search.spacing
         && (on_a.start, on_a.goal) == (on_b.start, on_b.goal)
         && on_a.chain.segments() == on_b.chain.segments()

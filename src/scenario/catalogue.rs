@@ -62,6 +62,11 @@ pub struct Key {
 }
 
 impl Key {
+    /// Whether its value is the path of a file.
+    pub fn names_a_file(&self) -> bool {
+        matches!((self.table, self.name), ("terrain", "dem" | "mesh" | "chain") | ("surface", "friction_raster" | "keep_out"))
+    }
+
     /// `table.name`.
     pub fn path(&self) -> String {
         format!("{}.{}", self.table, self.name)
@@ -127,7 +132,7 @@ const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 pub const CATALOGUE: [Key; 55] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
-    key("body", "radius_m", LENGTH, "mean radius, m, for the warning where constant gravity is a bad model"),
+    key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
     key("hopper", "takeoff_speed_max_m_s", SPEED, "greatest take-off speed, m/s"),
     key("hopper", "landing_speed_max_m_s", SPEED, "greatest landing speed, m/s"),
     key("hopper", "clearance_m", FROM_ZERO, "height to keep over every vertex flown past, m; absent: 0"),

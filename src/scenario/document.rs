@@ -48,7 +48,7 @@ fn body(scenario: &Scenario) -> Value {
     object([
         ("name", body.name.clone().map(Value::from)),
         ("gravity_m_s2", Some(body.gravity.m_s2().into())),
-        ("radius_m", body.radius_m.map(Value::from)),
+        ("radius_m", body.radius_m().map(Value::from)),
     ])
 }
 

@@ -4,7 +4,10 @@ use std::{collections::BTreeMap, ops::Range};
 
 use toml::de::{DeTable, DeValue};
 
-use super::{CATALOGUE, Key, KeyPath, Kind, ProblemKind, ScenarioProblem};
+use super::{
+    CATALOGUE, Key, KeyPath, Kind, ProblemKind, ScenarioProblem,
+    backslashes::{Backslashed, control_character, line_at, unreadable_lines},
+};
 use crate::terrain::NoDataRule;
 
 /// The source of a value.
@@ -32,13 +35,22 @@ pub struct Entries {
     problems: Vec<ScenarioProblem>,
     /// The text could not be parsed, so an absent key does not count as missing.
     unreadable: bool,
+    /// Keys that one setting outside the file gave and another replaced by another value, with the sources of both.
+    replaced: Vec<(&'static Key, (String, String))>,
 }
 
 impl Entries {
     /// The keys of a TOML text. Unknown keys and wrong syntax become problems, listed by [`problems`](Self::problems).
     pub fn from_toml(source: &str) -> Self {
         let mut entries = Self::default();
-        let document = match DeTable::parse(source) {
+        // Positions stay the same: TOML knows no line ends of carriage returns alone, as older editors of the Macintosh write.
+        let returns_alone = source.contains('\r') && !source.contains('\n');
+        let with_feeds = if returns_alone { source.replace('\r', "\n").into() } else { std::borrow::Cow::Borrowed(source) };
+        let (backslashed, mended) = unreadable_lines(&with_feeds);
+        // Lines with Windows paths are reported; the others are read as if these were right, so that all problems are found at once.
+        let parsed = DeTable::parse(&with_feeds);
+        let parsed = if backslashed.is_empty() || parsed.is_ok() { parsed } else { DeTable::parse(&mended).or(parsed) };
+        let document = match parsed {
             Ok(document) => document,
             Err(error) => {
                 entries.problems.push(ScenarioProblem {
@@ -58,13 +70,10 @@ impl Entries {
                 DeValue::Table(keys) => {
                     for (name, value) in keys {
                         match plain(value.get_ref()) {
-                            Some(plain) => entries.add(
-                                table.get_ref(),
-                                name.get_ref(),
-                                plain,
-                                Place::File(value.span()),
-                                Place::File(name.span()),
-                            ),
+                            Some(plain) => {
+                                let places = (value.span(), name.span());
+                                entries.add_from_file((table.get_ref(), name.get_ref()), plain, places, (source, &backslashed));
+                            }
                             None => entries.unknown(table.get_ref(), name.get_ref(), Place::File(name.span())),
                         }
                     }
@@ -76,6 +85,37 @@ impl Entries {
             }
         }
         entries
+    }
+
+    /// Checks a value of a file for backslashes, then adds it.
+    fn add_from_file(
+        &mut self,
+        (table, name): (&str, &str),
+        value: toml::Value,
+        (span, name_span): (Range<usize>, Range<usize>),
+        (source, unreadable): (&str, &[Backslashed]),
+    ) {
+        let key = Key::find(table, name);
+        if let Some(line) = unreadable.iter().find(|line| line.line.contains(&span.start)) {
+            let named = key.map_or_else(|| format!("{table}.{name}"), Key::path);
+            let message = format!("{named} has a backslash in double quotes, where TOML takes it for the beginning of an escape");
+            self.problem_at(Place::File(line.text.clone()), (table, name), ProblemKind::Value, message, line.help());
+            if key.is_some() {
+                return;
+            }
+        }
+        let control = key.filter(|key| key.names_a_file()).and_then(|_| control_character(value.as_str()?));
+        match (key, control) {
+            (Some(key), Some(control)) => {
+                let message = format!("{} is a path with {control} in it", key.path());
+                let help = line_at(source, span.start).map_or_else(
+                    || "write the path on one line, with / between folders".to_owned(),
+                    |line| format!("a backslash in double quotes begins an escape: {}", line.help()),
+                );
+                self.problem_at(Place::File(span), (table, name), ProblemKind::Value, message, help);
+            }
+            _ => self.add(table, name, value, Place::File(span), Place::File(name_span)),
+        }
     }
 
     /// The keys of the `scenario` of a result that the program wrote.
@@ -118,6 +158,14 @@ impl Entries {
                 // A title that consists of digits needs no quotes.
                 let takes_text = Key::find(table, name).is_some_and(|key| key.kind == Kind::Text);
                 let value = if takes_text && !typed.is_str() { text() } else { typed };
+                let file = Key::find(table, name).filter(|key| key.names_a_file());
+                if let Some(key) = file.filter(|_| value.as_str().is_some_and(|path| mistaken_path(path).is_some())) {
+                    let mended = line_at(assignment, 0).map_or_else(|| assignment.to_owned(), |line| line.mended);
+                    let what = value.as_str().and_then(mistaken_path).unwrap_or_default();
+                    let message = format!("{} is a path with {what}", key.path());
+                    let help = format!("write / instead of each backslash, or put the text in single quotes: {mended}");
+                    return self.problem_at(option, (table, name), ProblemKind::Value, message, help);
+                }
                 self.add(table, name, value, option.clone(), option);
             }
             None => self.problem_at(
@@ -153,8 +201,27 @@ impl Entries {
         }
     }
 
+    /// The keys that name a file, each with its path.
+    pub fn files(&self) -> Vec<(&'static Key, String)> {
+        let files = CATALOGUE.iter().filter(|key| key.names_a_file());
+        files.filter_map(|key| Some((key, self.text(key.table, key.name)?.to_owned()))).collect()
+    }
+
+    /// Gives a key that names a file another path.
+    pub fn redirect(&mut self, key: &Key, path: &str) {
+        if let Some(entry) = self.given.get_mut(&(key.table.to_owned(), key.name.to_owned())) {
+            entry.value = path.into();
+        }
+    }
+
+    /// The problem of a key whose file cannot be used, at the position where the key was given.
+    pub fn file_problem(&self, key: &Key, message: String, help: String) -> ScenarioProblem {
+        let place = self.place(key.table, key.name).unwrap_or(Place::Nowhere);
+        ScenarioProblem { key: KeyPath::new(key.table, key.name), kind: ProblemKind::Value, place, message, help }
+    }
+
     /// Whether the text could not be parsed.
-    pub(super) fn is_unreadable(&self) -> bool {
+    pub fn is_unreadable(&self) -> bool {
         self.unreadable
     }
 
@@ -211,6 +278,16 @@ impl Entries {
         self.value(table, name).and_then(count)
     }
 
+    /// Every key that was given with a value that it takes, and where, in the order of the keys' names.
+    pub fn given(&self) -> impl Iterator<Item = (&'static Key, &Place)> {
+        self.given.iter().filter_map(|((table, name), entry)| Some((Key::find(table, name)?, &entry.place)))
+    }
+
+    /// Every key that one setting outside the file gave and another replaced by another value, with the sources of both.
+    pub fn replaced(&self) -> impl Iterator<Item = (&'static Key, &(String, String))> {
+        self.replaced.iter().map(|(key, by)| (*key, by))
+    }
+
     /// Whether any key of a table was given.
     pub(super) fn has_table(&self, table: &str) -> bool {
         self.given.keys().any(|(known, _)| known == table)
@@ -245,6 +322,11 @@ impl Entries {
     fn add(&mut self, table: &str, name: &str, value: toml::Value, place: Place, key_place: Place) {
         let Some(key) = Key::find(table, name) else { return self.unknown(table, name, key_place) };
         if fits(&value, key.kind) {
+            if let (Some(Place::Option(before)), Place::Option(now)) = (self.place(table, name), &place)
+                && self.value(table, name) != Some(&value)
+            {
+                self.replaced.push((key, (before, now.clone())));
+            }
             self.given.insert((table.to_owned(), name.to_owned()), Entry { value, place });
         } else {
             self.misfit(key, &value_text(&value), place);
@@ -273,6 +355,16 @@ impl Entries {
             (table, name, _) => (format!("key {}", shortened(&format!("{table}.{name}"))), nearest_key(table, name)),
         };
         self.problem_at(place, (table, name), ProblemKind::Unknown, format!("unknown {given}"), help);
+    }
+}
+
+/// What shows that backslashes in double quotes were taken for escapes, or that the text is not TOML because of them.
+fn mistaken_path(path: &str) -> Option<String> {
+    let quoted = path.starts_with('"') && path.ends_with('"') && path.contains('\\');
+    if quoted {
+        Some("backslashes in double quotes".to_owned())
+    } else {
+        control_character(path).map(|control| format!("{control} in it"))
     }
 }
 

@@ -1,12 +1,16 @@
 //! The scenario: TOML as typed, then validated, and the pipeline from terrain to a chain ready for analysis.
 
 mod alike;
+mod backslashes;
 mod catalogue;
 mod document;
 mod entries;
+mod file_kind;
+mod physics;
 mod pipeline;
 mod problem;
 mod read;
+mod sense;
 mod trade;
 mod trials;
 
@@ -14,11 +18,13 @@ pub use alike::ask_the_same;
 pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
+pub use file_kind::FileKind;
+pub use physics::{Extent, Extremes, TooLarge, body_warnings, check_extent, constant_gravity_warnings, escape_warnings};
 pub use pipeline::{
-    DemReading, Extremes, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, check_body, constant_gravity_warnings,
-    for_body, friction, prepare, sha256_of,
+    DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, check_body, for_body, friction, prepare, sha256_of,
 };
 pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};
+pub use sense::TrialGround;
 pub use trade::{SweptKey, Trade, TradeError, Varied, verdict};
 pub use trials::UncertaintyKeys;

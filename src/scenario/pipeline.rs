@@ -10,18 +10,20 @@ use std::{
 
 use sha2::{Digest, Sha256};
 
-use super::{BodyChoice, Scenario, TerrainSource};
+use super::{
+    BodyChoice, Scenario, TerrainSource,
+    physics::{self, Extent, TooLarge},
+};
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     ground::DemGround,
-    path::Hop,
     quantity::MapPoint,
     terrain::{
         self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection,
         NoDataRule, OverlaidDem, OverlayEffect, Profile, TerrainError, check_scale, read_friction_raster, read_keep_out,
         read_mesh_with, slice_legs, slice_mesh,
     },
-    world::{Body, FrictionCone},
+    world::FrictionCone,
 };
 
 /// A chain ready to be analysed, with start and goal if known.
@@ -82,6 +84,9 @@ pub enum PipelineError {
         /// The position, and the extent of the chain.
         problem: OffChain,
     },
+    /// A terrain that is larger than the body it is said to lie on.
+    #[error(transparent)]
+    TooLarge(#[from] TooLarge),
     /// A file that cannot be read.
     #[error("{}: cannot be read ({source}): check the path and its permissions", path.display())]
     Read {
@@ -154,9 +159,11 @@ impl Survey {
                 return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
             }
         };
-        let overlays = Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.bounds)?;
+        let mut warnings = transect.warnings;
+        warnings.extend(physics::check_extent(&scenario.body, &transect.extent)?);
+        let overlays = Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.extent.bounds)?;
         let ground = Surveyed::Slice { legs: transect.legs, overlays: Box::new(overlays) };
-        Ok(Self { ground, projection: transect.projection, warnings: transect.warnings })
+        Ok(Self { ground, projection: transect.projection, warnings })
     }
 
     /// The chain under another scenario's hopper, grip, rest slope and ends. That scenario's terrain keys and files are ignored.
@@ -189,15 +196,19 @@ fn resolved(
     geometry: PolygonalChain,
     ends: (Option<f64>, Option<f64>),
     projection: Option<MapProjection>,
-    warnings: Vec<String>,
+    mut warnings: Vec<String>,
 ) -> Result<Prepared, PipelineError> {
+    warnings.extend(physics::body_warnings(&scenario.body));
+    warnings.extend(physics::escape_warnings(scenario, Some(&geometry)));
     let chain = Arc::new(ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)?);
     let station = |which, x_m: Option<f64>| {
         x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
     };
     let start = station(JourneyEnd::Start, scenario.start_x_m.or(ends.0))?;
     let goal = station(JourneyEnd::Goal, scenario.goal_x_m.or(ends.1))?;
-    Ok(Prepared { chain, start, goal, projection, warnings })
+    let mut prepared = Prepared { chain, start, goal, projection, warnings };
+    prepared.warnings.extend(scenario.replaced_keys(&prepared));
+    Ok(prepared)
 }
 
 /// How an elevation raster is read.
@@ -228,8 +239,8 @@ pub struct Transect {
     pub projection: Option<MapProjection>,
     /// The figure of the body that the terrain states.
     pub figure: Option<Ellipsoid>,
-    /// The extent of the terrain.
-    pub bounds: MapBounds,
+    /// The extent of the terrain, and what kind of terrain it is.
+    pub extent: Extent,
     /// Warnings for the analyst.
     pub warnings: Vec<String>,
 }
@@ -260,7 +271,8 @@ impl Transect {
         let range_m = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(z_m), high.max(z_m)));
         warnings.extend(dem.warnings(range_m));
         let coordinates = Some(map.coordinate_system.clone());
-        Ok(Self { legs, coordinates, projection: projection.ok(), figure: map.ellipsoid(), bounds, warnings })
+        let extent = Extent::of_dem(bounds, projection.is_ok());
+        Ok(Self { legs, coordinates, projection: projection.ok(), figure: map.ellipsoid(), extent, warnings })
     }
 
     /// Slices a mesh, with its metres per unit and its mark of missing data, from the first end over the intermediate points to the second.
@@ -282,7 +294,8 @@ impl Transect {
             legs.push(slice.profile);
             begin = end;
         }
-        Ok(Self { legs, coordinates: None, projection: None, figure: None, bounds: read.mesh.bounds().map, warnings })
+        let extent = Extent::of_mesh(&read.mesh.bounds());
+        Ok(Self { legs, coordinates: None, projection: None, figure: None, extent, warnings })
     }
 }
 
@@ -356,7 +369,13 @@ impl Overlays {
         }
         let raster = self.overlays.friction().filter(|_| !effect.friction).map(|raster| raster.without_effect("the transect"));
         let keep_out = self.overlays.keep_out().filter(|_| !effect.keep_out).map(|zones| zones.without_effect("the transect"));
-        let warnings = self.not_compared().chain(raster).chain(keep_out).collect();
+        let raster_alone = legs.iter().flat_map(|leg| &leg.facets).all(|facet| facet.friction.is_some());
+        let replaced = (constant.is_some() && effect.friction && raster_alone).then(|| {
+            "surface.friction_coefficient has no effect: the friction raster has data under the whole transect; leave it out, or correct \
+             the raster"
+                .to_owned()
+        });
+        let warnings = self.not_compared().chain(raster).chain(keep_out).chain(replaced).collect();
         Ok((PolygonalChain::from_legs(&legs, constant)?, warnings))
     }
 }
@@ -366,7 +385,7 @@ impl Overlays {
 /// # Errors
 /// [`TerrainError::OtherBody`] if the map's figure differs by over 1 %.
 pub fn check_body(body: &BodyChoice, figure: Option<Ellipsoid>) -> Result<(), TerrainError> {
-    match (body.radius_m, figure) {
+    match (body.radius_m(), figure) {
         (Some(radius_m), Some(figure)) if !figure.may_be_of(body.name.as_deref(), radius_m) => {
             Err(TerrainError::OtherBody { figure, body: body.spoken(), radius_m })
         }
@@ -376,7 +395,7 @@ pub fn check_body(body: &BodyChoice, figure: Option<Ellipsoid>) -> Result<(), Te
 
 /// An error of a terrain with the scenario's body, whose radius a command that mends it takes.
 pub fn for_body(body: &BodyChoice, error: TerrainError) -> TerrainError {
-    match body.radius_m {
+    match body.radius_m() {
         Some(radius_m) => error.for_body(&body.spoken(), radius_m),
         None => error,
     }
@@ -408,53 +427,4 @@ pub fn sha256_of(path: &Path) -> Result<String, PipelineError> {
         let _ = write!(text, "{byte:02x}");
         text
     }))
-}
-
-/// The extremes of some hops, for the check whether constant gravity is a good model.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Extremes {
-    /// Greatest horizontal distance, m.
-    pub range_m: f64,
-    /// Greatest height above a take-off, m.
-    pub height_m: f64,
-    /// Greatest speed, m/s.
-    pub speed_m_s: f64,
-}
-
-impl Extremes {
-    /// The extremes of planned hops.
-    pub fn of(hops: &[Hop]) -> Self {
-        let largest = |of: fn(&Hop) -> f64| hops.iter().map(of).fold(0.0, f64::max);
-        Self {
-            range_m: largest(Hop::run_m),
-            height_m: largest(|h| h.apex_z_m - h.takeoff.point_m.z),
-            speed_m_s: largest(|h| h.takeoff_speed_m_s.max(h.landing_speed_m_s)),
-        }
-    }
-}
-
-/// Warnings if constant gravity over flat ground is a bad model, each with its numbers; empty if it is a good one.
-///
-/// A hop gives a warning where its range or its highest point above the take-off is over a hundredth of the body's radius, or a
-/// speed over a tenth of its escape speed `sqrt(2 g R)`. A body of unknown radius gives no warning.
-pub fn constant_gravity_warnings(body: &BodyChoice, extremes: Extremes) -> Vec<String> {
-    let Some(radius_m) = body.radius_m else { return Vec::new() };
-    let name = body.name.as_deref().unwrap_or("the body");
-    let escape_m_s = Body { name: "", gravity: body.gravity, radius_m, source: "" }.escape_speed_m_s();
-    let Extremes { range_m, height_m, speed_m_s } = extremes;
-    let lengths = [("range", range_m), ("highest point above its take-off", height_m)];
-    let mut warnings: Vec<String> = lengths
-        .into_iter()
-        .filter(|(_, length_m)| *length_m > 0.01 * radius_m)
-        .map(|(what, length_m)| {
-            format!("a hop's {what}, {length_m:.3} m, is over 1 % of the radius of {name} ({radius_m} m): constant gravity is a bad model there")
-        })
-        .collect();
-    if speed_m_s > 0.1 * escape_m_s {
-        warnings.push(format!(
-            "a hop's speed, {speed_m_s:.4} m/s, is over a tenth of the escape speed of {name} ({escape_m_s:.4} m/s): constant gravity is \
-             a bad model there"
-        ));
-    }
-    warnings
 }

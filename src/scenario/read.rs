@@ -17,13 +17,16 @@ use crate::{
 pub struct BodyChoice {
     /// The known body's name.
     pub name: Option<String>,
-    /// Gravity.
+    /// Gravity, with the body's mean radius where known.
     pub gravity: Gravity,
-    /// Mean radius, m, where known.
-    pub radius_m: Option<f64>,
 }
 
 impl BodyChoice {
+    /// Mean radius, m, where known.
+    pub const fn radius_m(&self) -> Option<f64> {
+        self.gravity.body_radius_m()
+    }
+
     /// Its name, for a sentence.
     pub fn spoken(&self) -> String {
         self.name.clone().unwrap_or_else(|| "the body".to_owned())
@@ -189,6 +192,15 @@ pub struct LackingKey {
     pub example: f64,
 }
 
+/// Factor from which on a radius is a mistake of units, beside the name of a known body. A kilometre is a thousand metres; no two
+/// measurements of one body differ by this much.
+const OTHER_UNIT: f64 = 5.0;
+
+/// A gravity with the radius of its body; the catalogue's range of a radius is within that of a gravity's.
+fn of_radius(gravity: Gravity, radius_m: f64) -> Gravity {
+    gravity.with_radius_m(radius_m).unwrap_or(gravity)
+}
+
 /// Gravity and radius: from a known body, from numbers, or from both.
 fn body(entries: &mut Entries) -> Option<BodyChoice> {
     // The catalogue's range is within that of `Gravity`.
@@ -201,13 +213,19 @@ fn body(entries: &mut Entries) -> Option<BodyChoice> {
                 unknown_body(entries, name);
                 return None;
             };
-            Some(BodyChoice {
-                name: Some(known.name.to_owned()),
-                gravity: gravity.unwrap_or(known.gravity),
-                radius_m: Some(radius.unwrap_or(known.radius_m)),
-            })
+            let radius_m = radius.unwrap_or(known.radius_m);
+            let times = radius_m / known.radius_m;
+            if !(1.0 / OTHER_UNIT..=OTHER_UNIT).contains(&times) {
+                let message =
+                    format!("body.radius_m is {radius_m} m, but {} has a mean radius of {} m", known.name, known.radius_m);
+                let help = "give it in metres, or remove it: the name gives the radius";
+                entries.problem(("body", "radius_m"), ProblemKind::Conflict, message, help);
+            }
+            Some(BodyChoice { name: Some(known.name.to_owned()), gravity: of_radius(gravity.unwrap_or(known.gravity), radius_m) })
         }
-        (None, Some(gravity)) => Some(BodyChoice { name: None, gravity, radius_m: radius }),
+        (None, Some(gravity)) => {
+            Some(BodyChoice { name: None, gravity: radius.map_or(gravity, |radius_m| of_radius(gravity, radius_m)) })
+        }
         (None, None) => {
             // A gravity or body with an invalid value or a misspelt key is already reported.
             if !entries.has_unknown("body") && !entries.has_refused("body", &["name", "gravity_m_s2"]) {

@@ -7,6 +7,7 @@ use rayon::prelude::*;
 use super::{
     Entries, Key, Kind, Prepared, Scenario, ScenarioProblem, Survey, ask_the_same,
     entries::{fits, nearest_key},
+    escape_warnings,
 };
 use crate::{
     chain::Station,
@@ -103,8 +104,8 @@ pub enum TradeError {
     },
     /// A key without effect on the answer.
     #[error(
-        "{path}: no value from {from} to {to} changes anything here: no verdict depends on this key, or the chain's own limits or friction \
-         rule"
+        "{path}: no value from {from} to {to} changes anything here: no verdict depends on this key, or the chain's own limits, its friction \
+         or the escape speed decide"
     )]
     NoEffect {
         /// The key.
@@ -351,10 +352,12 @@ impl<'a> Trade<'a> {
         let Some(ends) = start.zip(goal) else {
             return Err(self.refused(values, "found no start or no goal, expected terrain.start_x_m and terrain.goal_x_m"));
         };
+        let above_escape = !escape_warnings(&scenario, Some(chain.geometry())).is_empty();
         let test = HopTest::new(chain);
         let answer = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter).map_err(|error| match error {
             SearchError::Cancelled(cancelled) => TradeError::Cancelled(cancelled),
-            SearchError::TooManyNodes(problem) => self.refused(values, &problem.to_string()),
+            SearchError::Nodes(problem) => self.refused(values, &problem.to_string()),
+            SearchError::Deviation(problem) => self.refused(values, &problem.to_string()),
         })?;
         let keys = self.swept.iter().map(|v| v.key.path());
         Ok(TradeRow {
@@ -362,6 +365,7 @@ impl<'a> Trade<'a> {
             verdict: answer.verdict.name(),
             hops: answer.hops,
             lower_bound: answer.lower_bound,
+            above_escape,
         })
     }
 

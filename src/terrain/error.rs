@@ -214,7 +214,7 @@ pub enum TerrainError {
     /// The plane of a slice meets no triangle over part of the transect.
     #[error(
         "the plane meets no triangle of the mesh from x = {begin_m} m to {end_m} m along the transect, map ({:.6}, {:.6}) m to ({:.6}, {:.6}) m{}, expected \
-         ground all the way; choose another transect, or close the hole in the mesh (narrow cracks: weld its vertices)",
+         ground all the way; {cause}",
         begin.x, begin.y, end.x, end.y, further_gaps(*further)
     )]
     MeshGap {
@@ -228,6 +228,8 @@ pub enum TerrainError {
         end: MapPoint,
         /// Number of further parts without triangles.
         further: usize,
+        /// The likely cause.
+        cause: GapCause,
     },
     /// An option of the synthetic terrain is out of range.
     #[error("synthetic terrain: {option} is {found}, expected {expected}")]
@@ -263,6 +265,41 @@ impl TerrainError {
 
     pub(super) fn writing(reason: std::io::Error) -> Self {
         Self::Io { action: "written", reason }
+    }
+}
+
+/// Why a plane meets no triangle of a mesh, as far as its numbers tell.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GapCause {
+    /// The stretch is narrower than the triangles: vertices that should be one lie apart.
+    Crack,
+    /// Triangles are missing inside the mesh.
+    Hole,
+    /// The transect leaves the mesh.
+    OffTheMesh {
+        /// The area of the mesh.
+        bounds: MapBounds,
+        /// Whether the mesh is so much smaller than the transect that its unit may not be the metre.
+        unit_in_doubt: bool,
+    },
+}
+
+impl fmt::Display for GapCause {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Crack => formatter.write_str(
+                "the stretch is narrower than the triangles beside it: close the crack (weld the mesh's vertices), or choose another transect",
+            ),
+            Self::Hole => formatter.write_str("choose another transect, or close the hole in the mesh"),
+            Self::OffTheMesh { bounds, unit_in_doubt: true } => write!(
+                formatter,
+                "the mesh has only {bounds}: if its unit is not the metre, give mesh_scale, its metres per unit (1000 for km), else choose \
+                 ends on it"
+            ),
+            Self::OffTheMesh { bounds, unit_in_doubt: false } => {
+                write!(formatter, "the mesh has {bounds}: choose ends on it, or check mesh_scale, its metres per unit")
+            }
+        }
     }
 }
 

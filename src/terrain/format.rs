@@ -6,7 +6,6 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::ascii_grid::AsciiGridReader;
-#[cfg(not(feature = "gdal"))]
 use super::foreign;
 use super::geotiff::GeoTiffReader;
 use super::pds3::Pds3Reader;
@@ -138,6 +137,11 @@ pub struct ReadContext {
     pub(super) sidecars: Arc<Sidecars>,
 }
 
+/// The name of the format of a file with this beginning, if one of the readers knows it.
+pub(crate) fn format_name(beginning: &[u8]) -> Option<&'static str> {
+    READERS.iter().find(|reader| reader.recognises(beginning)).map(|reader| reader.name())
+}
+
 fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {
     let beginning = read_beginning(path)?;
     if let Some(reader) = READERS.iter().copied().find(|reader| reader.recognises(&beginning)) {
@@ -147,7 +151,6 @@ fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {
     if !beginning.is_empty() && super::gdal::can_open(path) {
         return Ok(&super::gdal::GdalReader);
     }
-    #[cfg(not(feature = "gdal"))]
     if let Some(name) = foreign::name(&beginning) {
         return Err(foreign::refusal(name));
     }
@@ -156,7 +159,9 @@ fn reader_of(path: &Path) -> Result<&'static dyn DemReader, TerrainError> {
 
 /// The error for an image whose PDS3 label is a separate file next to it.
 fn label_beside(path: &Path) -> Option<TerrainError> {
-    let label = ["lbl", "LBL"].map(|extension| path.with_extension(extension)).into_iter().find(|label| label.is_file())?;
+    let is_label = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("lbl"));
+    let mut labels = ["lbl", "LBL"].map(|extension| path.with_extension(extension)).into_iter();
+    let label = labels.find(|label| label.is_file() && !is_label)?;
     Some(TerrainError::Unsuitable {
         found: "an image without a label in it".to_owned(),
         expected: "the label, which names its image",
@@ -174,6 +179,8 @@ fn read_beginning(path: &Path) -> Result<Vec<u8>, TerrainError> {
 fn not_recognised(beginning: &[u8]) -> TerrainError {
     let found = if beginning.is_empty() {
         "nothing: the file is empty".to_owned()
+    } else if beginning.len() >= 64 && beginning.iter().all(|byte| *byte == 0) {
+        "zero bytes only, as a file does whose download was not finished: copy or download it again".to_owned()
     } else {
         format!(
             "'{}'",
@@ -197,9 +204,12 @@ mod tests {
     #[test]
     fn files_of_no_format_are_refused_with_their_first_bytes() {
         let directory = tempfile::tempdir().unwrap();
-        for (content, expected) in
-            [(&b""[..], "the file is empty"), (b"\x00\x01junk", "\\x00\\x01junk"), (b"x_m,z_m\n0,1\n", "x_m,z_m")]
-        {
+        for (content, expected) in [
+            (&b""[..], "the file is empty"),
+            (b"\x00\x01junk", "\\x00\\x01junk"),
+            (b"x_m,z_m\n0,1\n", "x_m,z_m"),
+            (&[0; 100], "zero bytes only"),
+        ] {
             let path = directory.path().join("a.tif");
             std::fs::write(&path, content).unwrap();
             let message = read_dem(&path).unwrap_err().to_string();

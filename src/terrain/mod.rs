@@ -19,7 +19,6 @@
 mod ascii_grid;
 mod dem;
 mod error;
-#[cfg(not(feature = "gdal"))]
 mod foreign;
 mod format;
 #[cfg(feature = "gdal")]
@@ -38,6 +37,7 @@ mod sidecar;
 mod slice;
 mod stored;
 mod synth;
+mod text_lines;
 mod void;
 mod walk;
 mod window;
@@ -46,7 +46,9 @@ mod zones;
 
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M, Samples};
-pub use error::{AsciiProblem, TerrainError};
+pub use error::{AsciiProblem, GapCause, TerrainError};
+pub(crate) use foreign::name_of as foreign_format;
+pub(crate) use format::format_name as raster_format;
 pub use format::{DemOptions, DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, DegreesMend, GeoReference, MapBounds, TransformTags};
 pub use geotiff::{Band, ResultBands, geotiff_bytes, read_geotiff_bytes, result_geotiff_bytes, write_geotiff};
@@ -55,6 +57,7 @@ pub use mesh::{
     Layers, MESH_FORMATS, Mesh, MeshBounds, MeshFile, MeshSlice, WALL_RUN_M, Wall, looks_like_mesh, read_mesh, read_mesh_bytes,
     read_mesh_with, slice_mesh,
 };
+pub(crate) use mesh::{binary_stl_length, format_name as mesh_format};
 pub use no_data::{InvalidNoData, NoData, NoDataRule};
 pub use overlaid::{OverlaidDem, OverlayEffect, Overlays};
 pub use pds3::read_pds3_bytes;
@@ -71,4 +74,4 @@ pub use void::{VoidPlace, VoidTaken};
 pub use walk::{FacetSpan, FacetWalk, Triangles};
 pub use window::{DemFile, Window};
 pub use xyz::read_xyz_bytes;
-pub use zones::{FrictionRaster, KeepOut, read_friction_raster, read_keep_out};
+pub use zones::{FrictionRaster, KeepOut, VectorFormat, read_friction_raster, read_keep_out};

@@ -52,7 +52,7 @@ pub(super) struct Decimals {
 impl Decimals {
     /// Takes one number into account.
     pub(super) fn see(&mut self, text: &str) {
-        let decimals = text.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+        let decimals = text.split_once(['.', ',']).map_or(0, |(_, decimals)| decimals.len());
         self.most = self.most.max(decimals);
         self.fine |= text.contains(['e', 'E']) || text.len() > 12;
     }

@@ -37,7 +37,8 @@ pub enum TrialOutcome {
     SlidAtLanding,
     /// It met the ground faster than its landing speed limit.
     Damaged,
-    /// It left the chain, its plane of travel (past a bend) or the map, met no-data, or came down or to rest in a keep-out zone.
+    /// It left the chain, its plane of travel (past a bend) or the map, met no-data, came down or to rest in a keep-out zone, or left
+    /// the body: an error made its take-off faster than escape.
     Lost,
     /// No hop leads on from its estimated position (replan).
     Stuck,

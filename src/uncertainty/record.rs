@@ -37,7 +37,7 @@ pub struct HopRecord {
     pub error_m: f64,
     /// Whether it met the ground.
     pub landed: bool,
-    /// The outcome of the trial, if it ended with this hop.
+    /// The outcome of the trial, if this is its last hop.
     pub outcome: Option<TrialOutcome>,
 }
 

@@ -90,6 +90,10 @@ pub(super) fn fly<G: FirstContact>(
             break outcome;
         }
     };
+    // The last hop of a trial has the outcome of the trial, whatever ended it.
+    if let Some(last) = flown.hops.last_mut().filter(|last| last.trial == trial) {
+        last.outcome = Some(outcome);
+    }
     let end_m = journey.ground.point(&journey.position);
     let goal_distance_m = (end_m.xy() - plan.goal).norm();
     flown.trials.push(TrialRecord { trial, outcome, hops: journey.hops, end_m, goal_distance_m });

@@ -7,7 +7,7 @@ use super::Gravity;
 pub struct Body {
     /// Lower-case name.
     pub name: &'static str,
-    /// Surface gravity.
+    /// Surface gravity, with the mean radius.
     pub gravity: Gravity,
     /// Mean radius, m.
     pub radius_m: f64,
@@ -40,12 +40,12 @@ impl Body {
 
     /// A body whose gravity follows from the gravitational parameter and the mean radius, `g = GM / R^2`.
     const fn from_gm(name: &'static str, gm_m3_s2: f64, radius_m: f64, source: &'static str) -> Self {
-        Self { name, gravity: Gravity::known(gm_m3_s2 / (radius_m * radius_m)), radius_m, source }
+        Self { name, gravity: Gravity::known(gm_m3_s2 / (radius_m * radius_m), radius_m), radius_m, source }
     }
 
     /// A body whose gravity is taken as published.
     const fn published(name: &'static str, gravity_m_s2: f64, radius_m: f64, source: &'static str) -> Self {
-        Self { name, gravity: Gravity::known(gravity_m_s2), radius_m, source }
+        Self { name, gravity: Gravity::known(gravity_m_s2, radius_m), radius_m, source }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::Gravity;
 use crate::quantity::Angle;
 
 /// The limits of a ballistic hopper as stated, not yet checked: [`Hopper::new`] does that.
@@ -164,6 +165,16 @@ impl Hopper {
     /// [`InvalidHopper`] if a speed is not above 0.
     pub fn with_speeds(takeoff_speed_max_m_s: f64, landing_speed_max_m_s: f64) -> Result<Self, InvalidHopper> {
         Self::new(HopperLimits::with_speeds(takeoff_speed_max_m_s, landing_speed_max_m_s))
+    }
+
+    /// The same hopper with speed limits below the escape speed of the body under this gravity: a faster hop never lands. A speed
+    /// without limit stays so, since the chain's own limits then apply, which the chain caps in the same way.
+    #[must_use]
+    pub fn below_escape(&self, gravity: Gravity) -> Self {
+        let capped = |speed_m_s: f64| if speed_m_s.is_finite() { speed_m_s.min(gravity.speed_cap_m_s()) } else { speed_m_s };
+        let (takeoff_speed_max_m_s, landing_speed_max_m_s) =
+            (capped(self.limits.takeoff_speed_max_m_s), capped(self.limits.landing_speed_max_m_s));
+        Self { limits: HopperLimits { takeoff_speed_max_m_s, landing_speed_max_m_s, ..self.limits } }
     }
 
     /// Its limits.

@@ -222,7 +222,10 @@ fn synth_and_slice_refuse_invalid_terrain() {
         &["--from", "found `1`, expected two finite numbers in metres, X,Y"],
     );
     desk.refused(&["slice", "ground.tif", "--from", "1,nan", "--to", "2,2"], &["found `1,nan`"]);
-    desk.refused(&["slice", "chain.csv", "--from", "1,1", "--to", "2,2"], &["chain.csv", "not a known elevation format"]);
+    desk.refused(
+        &["slice", "chain.csv", "--from", "1,1", "--to", "2,2"],
+        &["chain.csv: this is a chain CSV; expected an elevation raster", "give it to `chta plan chain.csv"],
+    );
 }
 
 #[test]
@@ -257,7 +260,11 @@ fn outputs_that_cannot_be_written_are_refused_and_leave_nothing() {
             &[&said, "choose a folder that exists, may be written to and has space left"],
         );
         desk.refused(&["plan", "scenario.toml", "-o", output], &[&said]);
-        desk.refused(&["plan", "scenario.toml", "--plot", output], &[&said]);
+        let picture = format!("{}.svg", output.trim_end_matches(".csv"));
+        // A folder is no picture whatever its name.
+        if output != "folder" {
+            desk.refused(&["plan", "scenario.toml", "--plot", &picture], &[&format!("{picture}: cannot be written")]);
+        }
         desk.refused(&["plan", "map.toml", "--geojson", output], &[&said]);
     }
     desk.refused(&["synth", "-o", "none/such.tif"], &["none/such.tif: cannot be written (No such file or directory (os error 2))"]);
@@ -350,14 +357,26 @@ fn all_problems_of_a_scenario_are_reported_at_once_with_line_and_column() {
 
 #[test]
 fn one_fault_of_a_scenario_gives_one_problem() {
-    let desk = Desk::new();
+    let desk = Desk::with_dem();
     let cases = [
         ("name = \"mars\"", "name = \"marz\"", "bad.toml:2:8: body.name is \"marz\"", "the nearest known name is mars"),
         ("name = \"mars\"", "name = mars", "bad.toml:2:8: this is not TOML", "texts stand in quotes"),
         ("name = \"mars\"", "gravity_m_s2 = 0", "bad.toml:2:16: body.gravity_m_s2 is 0", "expected a number from 1e-9 to 1000"),
         ("name = \"mars\"", "nam = \"mars\"", "bad.toml:2:1: unknown key body.nam", "the nearest known key is body.name"),
         ("chain = ", "chian = ", "bad.toml:12:1: unknown key terrain.chian", "the nearest known key is terrain.chain"),
-        ("chain = ", "dem = ", "bad.toml:12:7: terrain has a dem but no start_m", "add start_m = [x, y], in map metres"),
+        (
+            "chain = \"chain.csv\"",
+            "dem = \"ground.tif\"",
+            "bad.toml:12:7: terrain has a dem but no start_m",
+            "add start_m = [x, y], in map metres",
+        ),
+        (
+            "chain = ",
+            "dem = ",
+            "bad.toml:12:7: chain.csv: this is a chain CSV; expected an elevation raster",
+            "write chain = \"chain.csv\" in place of dem",
+        ),
+        ("chain.csv", "none.csv", "bad.toml:12:9: terrain.chain is none.csv, which cannot be read (No such file", "check the path"),
         ("chain = \"chain.csv\"\n", "", "bad.toml:12:13: terrain.start_x_m without a chain", "add chain = \"file.csv\""),
         ("start_x_m = 0", "start_m = [0, 1]", "bad.toml:13:11: terrain.start_m is a map position", "give start_x_m instead"),
         ("start_x_m = 0", "start_x_m = nan", "bad.toml:13:13: terrain.start_x_m is nan", "expected a number"),

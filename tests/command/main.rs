@@ -9,11 +9,16 @@ mod bends;
 mod cli_answers;
 mod cli_bad_input;
 mod cli_options;
+mod effects;
+mod escape;
 #[cfg(unix)]
 mod interrupt;
 mod map_command;
 mod maps_command;
 mod mesh_command;
+mod picture_files;
+#[cfg(unix)]
+mod pipes;
 mod real_terrain;
 mod same_answers;
 mod sentences;
@@ -21,4 +26,5 @@ mod shipped_scenarios;
 mod simulate_command;
 mod stated_maps;
 mod trade_compare;
+mod wrong_things;
 mod zones_and_fan;

@@ -207,8 +207,8 @@ fn missing_keys_of_a_map_are_named() {
     let given = desk.run(&["map", "walled.asc", "--start", "102,205", "--scenario", "grip.toml"]).stderr;
     assert!(!given.contains("surface"), "{given}");
     // A scenario in place of the DEM, with any content.
-    desk.refused(&["map", "grip.toml", "--start", "1,1"], &["grip.toml: found a scenario", "--scenario grip.toml"]);
-    desk.refused(&["fan", "grip.toml", "--from", "1,1", "--length", "3"], &["grip.toml: found a scenario"]);
+    desk.refused(&["map", "grip.toml", "--start", "1,1"], &["grip.toml: this is a scenario (TOML)", "--scenario grip.toml"]);
+    desk.refused(&["fan", "grip.toml", "--from", "1,1", "--length", "3"], &["grip.toml: this is a scenario (TOML)"]);
 }
 
 #[test]

@@ -414,12 +414,13 @@ fn the_command_adds_the_options_that_it_has() {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
     fs::write(folder.join("no_gravity.toml"), "[search]\neffort = \"body.time\"\n").unwrap();
     fs::write(folder.join("no_gravity.csv"), "x_m,z_m\n0,0\n10,2\n").unwrap();
+    fs::write(folder.join("no_gravity.xyz"), "0 0 0\n1 0 0\n0 1 0\n1 1 0\n").unwrap();
     let effort = "search.effort is \"body.time\", expected one of ";
     let gravity = "found no gravity; add [body] with name = \"mars\" or gravity_m_s2 = 3.711";
     let check = refused(&["check", "no_gravity.csv", "--scenario", "no_gravity.toml"]);
     assert!(check.contains(effort) && check.contains(&format!("{gravity}, or use --body or --gravity-m-s2")), "{check}");
     // A slice has neither option.
-    let slice = refused(&["slice", "no_gravity.csv", "--from", "0,0", "--to", "1,1", "--scenario", "no_gravity.toml"]);
+    let slice = refused(&["slice", "no_gravity.xyz", "--from", "0,0", "--to", "1,1", "--scenario", "no_gravity.toml"]);
     assert!(slice.contains(effort) && slice.contains(gravity) && !slice.contains("--body"), "{slice}");
     let set = refused(&["check", "no_gravity.csv", "--set", "hopper"]);
     assert!(set.contains("--set hopper: found no table.key=value; write it as hopper.takeoff_speed_max_m_s=8"), "{set}");

@@ -4,7 +4,7 @@
 
 use std::path::Path;
 
-use crate::desk::{Desk, Ran};
+use crate::desk::Desk;
 use serde_json::Value;
 
 /// Errors that give some trials of every outcome, added to the scenario of the test's folder.
@@ -157,7 +157,9 @@ fn the_table_of_landings_agrees_with_the_document() {
         assert!(ended > 0 && ended <= 1500, "{scenario}: {ended} rows end a trial");
         // To standard output, in place of the text.
         let ran = desk.run(&["simulate", scenario, "-o", "-"]);
-        assert_eq!(ran, Ran { status: 0, stdout: table, stderr: String::new() });
+        assert_eq!((ran.status, ran.stdout), (0, table));
+        assert_eq!(ran.stderr.matches("warning: ").count(), 1, "{}", ran.stderr);
+        assert!(ran.stderr.contains("uncertainty.position_sigma_m = 0.05 has no effect"), "{}", ran.stderr);
     }
 }
 

@@ -226,5 +226,5 @@ fn compared_scenarios_agree_with_plan() {
     assert!(text.stdout.contains("(2) ice.toml: ice") && text.stdout.contains("no-path-found"), "{}", text.stdout);
     assert_eq!(desk.run(&["compare", files[0]]).status, 2, "a single scenario cannot be compared");
     let chain = desk.run(&["compare", "scenario.toml", "chain.csv"]);
-    assert!(chain.status == 2 && chain.stderr.contains("chain.csv: expected a scenario"), "{chain:?}");
+    assert!(chain.status == 2 && chain.stderr.contains("chain.csv: this is a chain CSV; expected a scenario"), "{chain:?}");
 }

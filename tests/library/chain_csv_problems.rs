@@ -49,13 +49,73 @@ fn headers_with_wrong_columns_are_refused() {
     assert_problems(
         "x,elevation\n0,0\n1,1\n",
         &[
-            (1, None, "x,elevation", None, &["without x_m", "is `x` meant? rename it to x_m"]),
+            (1, None, "x,elevation", None, &["without x_m", "is `x` meant? rename it to x_m if its numbers are in m"]),
             (1, None, "x,elevation", None, &["without z_m", "name the column z_m"]),
         ],
     );
     assert_problems(
         "x_m,z_m, z_m\n0,0,0\n1,1,1\n",
         &[(1, Some(10), "z_m", Some("z_m"), &["`z_m` twice", "field 2", "each column once", "remove"])],
+    );
+}
+
+/// Numbers with separators of thousands and decimal commas: the advice never chooses one of two meanings.
+#[test]
+fn numbers_in_other_notations_are_refused_with_every_meaning() {
+    for (text, expected) in [
+        ("\"1,000\"", "its comma separates thousands (then write 1000) or decimals (then write 1.000)"),
+        ("\"-12,345\"", "(then write -12345) or decimals (then write -12.345)"),
+        ("\"12,5\"", "write a decimal point, not a comma: 12.5"),
+        ("\"0,125\"", "write a decimal point, not a comma: 0.125"),
+        ("\"1.234,5\"", "with a decimal point: 1234.5;"),
+        ("\"1,234.5\"", "with a decimal point: 1234.5;"),
+        ("1 000", "with a decimal point: 1000;"),
+        ("1'000", "with a decimal point: 1000;"),
+        ("1\u{a0}000", "with a decimal point: 1000;"),
+        ("1\u{202f}000,5", "found 3 fields"),
+        ("\"1\u{202f}000,5\"", "with a decimal point: 1000.5;"),
+        ("1,000", "a comma between thousands (write 1500, not 1,500)"),
+    ] {
+        let problems = problems_of(format!("x_m,z_m\n0,{text}\n8,0\n").as_bytes()).problems;
+        assert_eq!(problems.len(), 1, "{text}: {problems:?}");
+        assert!(problems[0].to_string().contains(expected), "{text}: {}", problems[0]);
+    }
+}
+
+/// A quantity in another unit is converted, not renamed; beside the known column it is only one more column.
+#[test]
+fn columns_in_other_units_are_refused_with_their_factor() {
+    for (header, expected) in [
+        ("x_ft,z_m", "`x_ft`, in feet, expected a column x_m; multiply its numbers by 0.3048, then name it x_m"),
+        ("x_m,z_km", "`z_km`, in kilometres, expected a column z_m; multiply its numbers by 1000,"),
+        ("x_m,Z [ft]", "multiply its numbers by 0.3048"),
+        (
+            "x_m,z_m,friction_pct",
+            "`friction_pct`, in percent, expected a column friction_coefficient; multiply its numbers by 0.01,",
+        ),
+        ("x_m,z_m,cross_slope_rad", "multiply its numbers by 57.29577951,"),
+        ("x_m,z_m,takeoff_speed_max_km_h", "multiply its numbers by 0.2777777778,"),
+    ] {
+        let row = ["0", "0", "0"][..header.split(',').count()].join(",");
+        let problems = problems_of(format!("{header}\n{row}\n").as_bytes());
+        let text = problems.to_string();
+        assert!(text.contains(expected) && !text.contains("rename it"), "{header}: {text}");
+    }
+    let both = read_chain_csv(b"x_m,z_m,z_ft\n0,0,0\n1,1,3.3\n").unwrap();
+    assert!(both.warnings[0].contains("`z_ft` is ignored"), "{:?}", both.warnings);
+}
+
+#[test]
+fn every_line_end_gives_the_same_chain() {
+    let text = "# note\nx_m,z_m,friction_coefficient\n0,0,0.6\n4,1,0.7\n9,1,\n";
+    let whole = read_chain_csv(text.as_bytes()).unwrap();
+    for end in ["\r\n", "\r"] {
+        assert_eq!(read_chain_csv(text.replace('\n', end).as_bytes()).unwrap(), whole, "{end:?}");
+    }
+    let open = read_chain_csv(text.trim_end().as_bytes()).unwrap();
+    assert_eq!(
+        (open.chain, open.warnings),
+        (whole.chain, vec!["line 5: the file ends within this line, after 3 rows: make sure that it is whole".to_owned()])
     );
 }
 

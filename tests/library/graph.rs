@@ -9,7 +9,7 @@ use chta::{
     ballistics::TakeoffChoice,
     chain::{ConstrainedChain, GroundForm, LineConstraints, PolygonalChain, SegmentGround, Station},
     graph::{
-        AUTO_POINTS_PER_SEGMENT, Answer, Effort, Frontier, NodeSet, Outcome, PointSpacing, SearchOptions, TooManyNodes, is_usable,
+        AUTO_POINTS_PER_SEGMENT, Answer, Effort, Frontier, NodeSet, NodesError, Outcome, PointSpacing, SearchOptions, is_usable,
         search,
     },
     hop::{Conflict, HopTest, Split},
@@ -462,15 +462,20 @@ fn node_spacing_uses_the_fewest_points_that_keep_it() {
 fn too_many_nodes_are_refused_before_they_are_made() {
     let chain = World::draw(&mut Draw::seeded(38), 3).chain();
     let at = |i| chain.geometry().vertex_station(VertexId(i));
-    for spacing in [
-        PointSpacing::PerSegment(u32::MAX),
-        PointSpacing::AtMostM(1e-9),
-        PointSpacing::AtMostM(0.0),
-        PointSpacing::AtMostM(-1.0),
-        PointSpacing::AtMostM(f64::NAN),
-    ] {
-        let TooManyNodes { nodes } = NodeSet::new(&chain, at(0), at(3), spacing).unwrap_err();
-        assert!(nodes > NodeSet::MAX_NODES, "{nodes} nodes for {spacing:?}");
+    for spacing in [PointSpacing::PerSegment(u32::MAX), PointSpacing::AtMostM(1e-9)] {
+        let error = NodeSet::new(&chain, at(0), at(3), spacing).unwrap_err();
+        assert!(matches!(error, NodesError::TooMany { nodes } if nodes > NodeSet::MAX_NODES), "{error:?} for {spacing:?}");
+    }
+}
+
+#[test]
+fn a_spacing_that_is_no_distance_is_said_to_be_that() {
+    let chain = World::draw(&mut Draw::seeded(38), 3).chain();
+    let at = |i| chain.geometry().vertex_station(VertexId(i));
+    for found_m in [0.0, -1.0, f64::NAN, f64::NEG_INFINITY] {
+        let error = NodeSet::new(&chain, at(0), at(3), PointSpacing::AtMostM(found_m)).unwrap_err();
+        assert!(matches!(error, NodesError::Spacing { .. }), "{error:?} for {found_m}");
+        assert!(error.to_string().starts_with(&format!("the node spacing is {found_m} m, expected a number above 0")), "{error}");
     }
 }
 

@@ -1,8 +1,16 @@
-//! What the mutations of chains and of scenarios share.
+//! What the mutations of all readers share.
 
 use std::ops::Range;
 
 use rand::{RngExt, rngs::ChaCha8Rng};
+
+/// Number of mutations of each kind of file: `CHTA_MUTATIONS`, or ten thousand.
+pub(crate) fn rounds() -> usize {
+    match std::env::var("CHTA_MUTATIONS") {
+        Ok(text) => text.parse().unwrap_or_else(|_| panic!("CHTA_MUTATIONS is '{text}', expected a whole number")),
+        Err(_) => 10_000,
+    }
+}
 
 /// Mutates bytes, mostly in one position, else in up to four. `mutate` gets each range: the position and up to 30 bytes after it.
 pub(crate) fn mutated(

@@ -183,6 +183,152 @@ fn images_that_are_not_elevation_maps_are_refused_by_key() {
     assert!(read_pds3_bytes(other.into_bytes()).unwrap_err().to_string().contains("side by side"));
 }
 
+/// Special values: which samples are gaps, and which keys are refused. Known from the data dictionary, the labels of SELENE
+/// products (INVALID_VALUE, OUT_OF_IMAGE_BOUNDS_VALUE), of Mars Express (DTM_MISSING_DN) and of ISIS exports (NULL, VALID_MINIMUM).
+#[test]
+fn special_values_are_gaps_and_unknown_keys_are_refused() {
+    let at = (3, 5);
+    let other = (0, 1);
+    let mark = stored(at.0, at.1);
+    assert!(mark != stored(other.0, other.1));
+    for key in [
+        "MISSING_CONSTANT",
+        "INVALID_VALUE",
+        "OUT_OF_IMAGE_BOUNDS_VALUE",
+        "NULL",
+        "LRO:NULL",
+        "DUMMY_DATA",
+        "NO_DATA_VALUE",
+        "DTM_MISSING_DN",
+        "HIGH_INSTR_SATURATION",
+        "invalid_value",
+    ] {
+        for value in [format!("{mark}"), format!("(-20000, {mark}, -23000)"), format!("16#{mark:04X}#")] {
+            let dem = Fixture { image: &format!("{key} = {value}\r\n"), ..Fixture::default() }.read();
+            assert_eq!(dem.elevation(at.0, at.1), None, "{key} = {value}");
+            assert_eq!(dem.elevation(other.0, other.1), Some(f64::from(stored(other.0, other.1))), "{key} = {value}");
+        }
+    }
+    let range = Fixture { image: "VALID_MINIMUM = 20\r\nVALID_MAXIMUM = 90\r\n", ..Fixture::default() }.read();
+    for row in 0..ROWS {
+        for col in 0..COLS {
+            let inside = (20..=90).contains(&stored(row, col));
+            assert_eq!(range.elevation(row, col).is_some(), inside, "{}", stored(row, col));
+        }
+    }
+    for harmless in [
+        "INVALID_TYPE = (SATURATION, MINUS)",
+        "MINIMUM = 0",
+        "DERIVED_MAXIMUM = 112",
+        "SCENE_MAXIMUM_DN = 5",
+        "MISSING_LINES = 3",
+        "SAMPLE_BIT_MASK = 2#1111111111111111#",
+        "MISSING_CONSTANT = N/A",
+        "RADIANCE_OFFSET = 0.0",
+        "LINE_DISPLAY_DIRECTION = DOWN",
+        "STRETCHED_FLAG = FALSE",
+    ] {
+        holds_the_stored_numbers(&Fixture { image: &format!("{harmless}\r\n"), ..Fixture::default() }.read());
+    }
+    for unknown in [
+        "SHADOW_VALUE = -7",
+        "OCCLUDED_CONSTANT = 3",
+        "BAD_DN = 0",
+        "MYSTERY_SATURATION = 5",
+        "HEIGHT_SCALING_FACTOR = 0.1",
+        "DEM_OFFSET = 1737400",
+        "SAMPLE_BIT_MASK = 2#0000111111111111#",
+        "LINE_DISPLAY_DIRECTION = UP",
+        "INVALID_VALUE = UNKNOWN_TEXT",
+        "OFFSET = 1737.4 <KM>",
+        "UNIT = METER\r\nSCALING_FACTOR = 0.001 <KM/DN>",
+        "UNIT = RADIAN",
+    ] {
+        let refusal = Fixture { image: &format!("{unknown}\r\n"), ..Fixture::default() }.refusal();
+        let key = unknown.lines().last().unwrap().split(' ').next().unwrap();
+        assert!(refusal.contains(key) && !refusal.contains("damaged"), "{unknown}: {refusal}");
+    }
+    // In a group of a mission outside the IMAGE object.
+    for (group, expected) in [
+        ("DTM_MISSING_DN = {}", None),
+        ("MY_MISSING_VALUE = {}", Some("MY_MISSING_VALUE")),
+        ("DTM_SCALING_FACTOR = 2.0", Some("DTM_SCALING_FACTOR")),
+    ] {
+        let text = format!(
+            "{POLAR}END_OBJECT\r\nGROUP = DTM\r\n{}\r\nEND_GROUP\r\nOBJECT = EXTRA\r\n",
+            group.replace("{}", &mark.to_string())
+        );
+        let fixture = Fixture { projection: &text, ..Fixture::default() };
+        match expected {
+            None => assert_eq!(fixture.read().elevation(at.0, at.1), None),
+            Some(key) => assert!(fixture.refusal().contains(key), "{group}"),
+        }
+    }
+}
+
+#[test]
+fn maps_that_are_stated_in_terms_not_known_or_contradictory_are_refused_by_key() {
+    for (from, to, expected) in [
+        ("\"POLAR STEREOGRAPHIC\"", "\"OBLIQUE CYLINDRICAL\"", "MAP_PROJECTION_TYPE 'OBLIQUE CYLINDRICAL'"),
+        ("\"POLAR STEREOGRAPHIC\"", "MERCATOR", "MAP_PROJECTION_TYPE 'MERCATOR'"),
+        ("\"EAST\"", "\"UP\"", "POSITIVE_LONGITUDE_DIRECTION 'UP'"),
+        ("A_AXIS_RADIUS = 1737.4 <KM>", "A_AXIS_RADIUS = 1737400 <KM>", "A_AXIS_RADIUS of 1737400000 m"),
+        ("A_AXIS_RADIUS = 1737.4 <KM>", "A_AXIS_RADIUS = 1737.4 <M>", "for 'MOON', whose radius is 1737400 m"),
+        ("A_AXIS_RADIUS = 1737.4 <KM>", "A_AXIS_RADIUS = 1737.4 <MILES>", "A_AXIS_RADIUS in 'MILES'"),
+        ("B_AXIS_RADIUS = 1737.4", "B_AXIS_RADIUS = 1700", "B_AXIS_RADIUS of 1700000 m"),
+        ("0.02 <KM/PIXEL>", "0.02 <KM/DEGREE>", "MAP_SCALE in 'KM/DEGREE'"),
+        ("0.02 <KM/PIXEL>", "20 <KM/PIXEL>\r\nMAP_RESOLUTION = 1516.17 <PIXEL/DEGREE>", "MAP_RESOLUTION 1516.17 per degree"),
+        (
+            "C_AXIS_RADIUS = 1737.4 <KM>\r\n",
+            "C_AXIS_RADIUS = 1700 <KM>\r\nCOORDINATE_SYSTEM_NAME = \"ODD\"\r\n",
+            "COORDINATE_SYSTEM_NAME 'ODD'",
+        ),
+    ] {
+        let text =
+            POLAR.replace("\nA_AXIS", "\r\nA_AXIS").replace("<KM>\n", "<KM>\r\n").replace("LATITUDE = -90.0", "LATITUDE = -70.0");
+        let projection = text.replace(from, to);
+        assert_ne!(projection, text, "{from}");
+        let refusal = Fixture { projection: &projection, ..Fixture::default() }.refusal();
+        assert!(refusal.contains(expected), "{to}: {refusal}");
+    }
+    // The standard's own values, with blanks or underscores, in any letters.
+    for (from, to) in [
+        ("\"POLAR STEREOGRAPHIC\"", "simple cylindrical"),
+        ("0.02 <KM/PIXEL>", "20 <METERS/PIXEL>\nMAP_RESOLUTION = 1516.17 <PIXEL/DEGREE>"),
+        ("\"EAST\"", "east"),
+        ("MAP_PROJECTION_TYPE", "COORDINATE_SYSTEM_NAME = \"MEAN EARTH/POLAR AXIS OF DE421\"\nMAP_PROJECTION_TYPE"),
+    ] {
+        let to = to.replace("simple cylindrical", "\"simple cylindrical\"");
+        holds_the_stored_numbers(&Fixture { projection: &POLAR.replace(from, &to), ..Fixture::default() }.read());
+    }
+}
+
+/// Labels in small letters, with comments before the version, and with every line end.
+#[test]
+fn labels_are_recognised_as_they_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let fixture = Fixture::default();
+    let label = fixture.label("\"MADE.IMG\"");
+    std::fs::write(folder.path().join("MADE.IMG"), fixture.pixels()).unwrap();
+    for (name, text) in [
+        ("small.lbl", label.to_lowercase()),
+        ("comment.lbl", format!("/* made */\r\n/* by hand */\r\n{label}")),
+        ("envelope.lbl", format!("ccsd3zf0000100000001njpl3if0pdsx00000001\r\n{}", label.to_lowercase())),
+        ("returns.lbl", label.replace("\r\n", "\r")),
+        ("feeds.lbl", label.replace("\r\n", "\n")),
+        ("mark.lbl", format!("\u{feff}{label}")),
+        ("older.lbl", label.replace("PDS_VERSION_ID = PDS3", "ODL_VERSION_ID = ODL3")),
+    ] {
+        let path = folder.path().join(name);
+        std::fs::write(&path, text).unwrap();
+        holds_the_stored_numbers(&read_dem(&path).unwrap_or_else(|error| panic!("{name}: {error}")));
+    }
+    // A label that is none is not told to be given in its own place.
+    let path = folder.path().join("none.lbl");
+    std::fs::write(&path, "no label at all").unwrap();
+    assert!(!read_dem(&path).unwrap_err().to_string().contains("give none.lbl instead"));
+}
+
 #[test]
 fn a_detached_label_finds_its_image_and_the_image_names_its_label() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
 //! An uncompressed TIFF of one strip, tag by tag: files with samples and tags that the library's own writer would not write.
+#![allow(clippy::unwrap_used, reason = "test helpers: a file that cannot be built fails its test")]
 
 /// Samples of one type, row after row from the north.
 pub(crate) enum Samples {
@@ -50,7 +51,21 @@ pub(crate) fn placed(x: f64, y: f64, size: f64) -> [Tag; 2] {
     [Tag::Doubles(33550, vec![size, size, 0.0]), Tag::Doubles(33922, vec![0.0, 0.0, 0.0, x, y, 0.0])]
 }
 
-/// The file.
+/// A 3 x 4 file of 16-bit integers with scale, tie point, keys and no-data. Tags with a short, given as number, kind (3) and value,
+/// are changed or added.
+pub(crate) fn int16_tiff(changed: &[(u16, u16, u16)]) -> Vec<u8> {
+    let samples = Samples::Int16(vec![1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, i16::MIN]);
+    let metadata = "<GDALMetadata><Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.5</Item></GDALMetadata>";
+    let further = [
+        Tag::Shorts(34735, vec![1, 1, 0, 3, 1024, 0, 1, 1, 1025, 0, 1, 1, 3076, 0, 1, 9001]),
+        Tag::Text(42112, metadata.to_owned()),
+        Tag::Text(42113, "-32768".to_owned()),
+    ];
+    let changed = changed.iter().map(|&(tag, _, value)| Tag::Shorts(tag, vec![value]));
+    plain_tiff((3, 4), &samples, placed(1000.0, 2000.0, 2.0).into_iter().chain(further).chain(changed))
+}
+
+/// The file. A further tag replaces an earlier one of its number.
 pub(crate) fn plain_tiff((rows, cols): (u16, u16), samples: &Samples, further: impl IntoIterator<Item = Tag>) -> Vec<u8> {
     let shorts = |values: &[u16]| values.iter().flat_map(|value| value.to_le_bytes()).collect::<Vec<u8>>();
     let short = |value: u16| shorts(&[value]);
@@ -73,6 +88,9 @@ pub(crate) fn plain_tiff((rows, cols): (u16, u16), samples: &Samples, further: i
         Tag::Shorts(code, values) => (code, 3, shorts(&values)),
         Tag::Text(code, text) => (code, 2, [text.as_bytes(), &[0]].concat()),
     }));
+    let mut seen = std::collections::HashSet::new();
+    entries.reverse();
+    entries.retain(|entry| seen.insert(entry.0));
     entries.sort_by_key(|entry| entry.0);
     let directory = 8 + data.len();
     let mut values = directory + 2 + 12 * entries.len() + 4;

@@ -1,6 +1,7 @@
 //! The known columns, their meaning, and the values that each accepts.
 
 use super::degrees::read_degrees;
+use crate::quantity::{Measure, format_number, number_help, split_unit, unit_named};
 
 /// A column that the program reads.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +111,7 @@ impl CsvColumn {
     /// The value of a field; angles are returned in radians.
     pub(super) fn parse(&self, text: &str) -> Result<f64, Fault> {
         let fault = |help: String| Fault { expected: self.expected().to_owned(), help };
-        let number: f64 = text.parse().map_err(|_| fault(help_for_text(text)))?;
+        let number: f64 = text.parse().map_err(|_| fault(number_help(text)))?;
         if !number.is_finite() {
             return Err(fault(self.help_for_infinite(text)));
         }
@@ -152,22 +153,55 @@ impl CsvColumn {
     }
 }
 
-/// How to correct text that is not a number.
-fn help_for_text(text: &str) -> String {
-    let point = text.replacen(',', ".", 1);
-    let number = text.trim_end_matches(|c: char| !(c.is_ascii_digit() || c == '.')).trim_end();
-    if text.contains(',') && point.parse::<f64>().is_ok() {
-        format!("write a decimal point, not a comma: {}", excerpt(&point))
-    } else if text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) && number.parse::<f64>().is_ok() {
-        format!("write the number alone, {}: its unit is given by the column's name", excerpt(number))
-    } else {
-        "write a plain number such as 12.5 or 1e-3".to_owned()
-    }
-}
-
 /// User text for a message: short, on one line, without control characters.
 pub(super) fn excerpt(text: &str) -> String {
     crate::quantity::excerpt(text, 40)
+}
+
+/// A known column whose quantity an unknown name states in another way, and what to do about it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct OtherUnit {
+    pub(super) column: &'static str,
+    /// The unit of the name, for a message.
+    pub(super) unit: String,
+    pub(super) help: String,
+}
+
+/// Whether a name is that of a known column with another unit (`z_ft`, `X [km]`, `friction_pct`), whose numbers must be
+/// converted before the column is renamed.
+pub(super) fn in_other_unit(columns: &[CsvColumn], name: &str) -> Option<OtherUnit> {
+    let (base, text) = split_unit(name);
+    let text = text?;
+    let column = columns.iter().find(|column| {
+        let known = split_unit(column.name).0;
+        known == base || (known == "friction_coefficient" && matches!(base.as_str(), "friction" | "mu"))
+    })?;
+    let expected = match column.kind {
+        Kind::Finite => Measure::Length,
+        Kind::Friction => Measure::Ratio,
+        Kind::Speed => Measure::Speed,
+        Kind::Degrees { .. } => Measure::Angle,
+        Kind::Flag => return None,
+    };
+    let unit = unit_named(&text);
+    if unit.is_some_and(|unit| unit.measure == expected && unit.is_ours()) {
+        return None;
+    }
+    let known = column.name;
+    let (unit, help) = match unit.filter(|unit| unit.measure == expected) {
+        Some(unit) => (
+            unit.name.to_owned(),
+            format!(
+                "multiply its numbers by {}, then name it {known}; a new name alone changes no number",
+                format_number(unit.factor)
+            ),
+        ),
+        None => (
+            format!("'{}'", excerpt(&text)),
+            format!("convert its numbers to the unit of {known}, then name it so; a new name alone changes no number"),
+        ),
+    };
+    Some(OtherUnit { column: known, unit, help })
 }
 
 /// The known name nearest to an unknown one; `None` if none is similar.
@@ -207,6 +241,32 @@ mod tests {
         }
         for i in 0..SIX {
             assert_eq!(CHAIN_COLUMNS[REVERSE + i].name, format!("reverse_{}", CHAIN_COLUMNS[FORWARD + i].name));
+        }
+    }
+
+    /// Factors: the definitions of the units.
+    #[test]
+    fn columns_in_other_units_are_converted_before_they_are_renamed() {
+        for (name, column, help) in [
+            ("x_ft", "x_m", "by 0.3048,"),
+            ("X [km]", "x_m", "by 1000,"),
+            ("z_km", "z_m", "by 1000,"),
+            ("z (us-ft)", "z_m", "by 0.3048006096,"),
+            ("friction_pct", "friction_coefficient", "by 0.01,"),
+            ("friction_coefficient_percent", "friction_coefficient", "by 0.01,"),
+            ("cross_slope_rad", "cross_slope_deg", "by 57.29577951,"),
+            ("takeoff_speed_max_km_h", "takeoff_speed_max_m_s", "by 0.2777777778,"),
+            ("reverse_landing_min_gon", "reverse_landing_min_deg", "by 0.9,"),
+            ("map_x_km", "map_x_m", "by 1000,"),
+            ("z [parsec]", "z_m", "convert its numbers"),
+            ("x_deg", "x_m", "convert its numbers"),
+            ("friction_deg", "friction_coefficient", "convert its numbers"),
+        ] {
+            let found = in_other_unit(&CHAIN_COLUMNS, name).unwrap_or_else(|| panic!("{name}"));
+            assert!(found.column == column && found.help.contains(help), "{name}: {found:?}");
+        }
+        for name in ["x", "x_m", "z [m]", "X (metres)", "friction", "takeoff_speed_max_mps", "note", "length_ft", "keep_out_pct"] {
+            assert_eq!(in_other_unit(&CHAIN_COLUMNS, name), None, "{name}");
         }
     }
 

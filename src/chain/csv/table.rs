@@ -2,9 +2,10 @@
 
 use super::{
     CsvColumn, CsvProblems,
-    columns::{excerpt, nearest},
+    columns::{excerpt, in_other_unit, nearest},
     records::{Place, Record, Records, plain, text_of},
 };
+use crate::quantity::unit_of;
 
 /// How many unknown columns are listed in warnings; the others are only counted.
 const WARNED_AT_MOST: usize = 20;
@@ -96,7 +97,20 @@ impl<'a> Table<'a> {
         }
         table.read_header(problems);
         table.read_rows(&mut records, problems);
+        table.warn_of_open_end();
         Some(table)
+    }
+
+    /// Warns if the file ends within a line, as one does that was cut short: the last number may have had more digits.
+    fn warn_of_open_end(&mut self) {
+        let open = !self.source.ends_with(['\n', '\r']);
+        if let Some(last) = self.rows.last().filter(|_| open && self.complete) {
+            self.warnings.push(format!(
+                "line {}: the file ends within this line, after {} rows: make sure that it is whole",
+                last.line,
+                self.rows.len()
+            ));
+        }
     }
 
     fn text(&self, record: &Record, field: usize) -> &'a str {
@@ -159,10 +173,33 @@ impl<'a> Table<'a> {
                 self.width += 1;
             }
         }
+        self.check_units(problems);
         if unknown > WARNED_AT_MOST {
             self.warnings.push(format!("{} more unknown columns are ignored", unknown - WARNED_AT_MOST));
         }
         self.check_required(problems);
+    }
+
+    fn names(&self) -> impl Iterator<Item = &'a str> {
+        (0..self.header.fields.len()).map(|field| self.text(&self.header, field))
+    }
+
+    /// Refuses a column that states a known quantity in another unit, unless the known column is there as well: leaving it out
+    /// would leave out what it says of the ground.
+    fn check_units(&self, problems: &mut CsvProblems) {
+        for (field, name) in self.names().enumerate() {
+            let Some(other) = in_other_unit(self.columns, name) else { continue };
+            let known = self.columns.iter().position(|column| column.name == other.column);
+            if known.is_some_and(|known| !self.has(known)) {
+                problems.push(|| {
+                    Place::of_field(self.source, &self.header, field).problem(
+                        format!("`{}`, in {}", excerpt(name), other.unit),
+                        format!("a column {}", other.column),
+                        other.help,
+                    )
+                });
+            }
+        }
     }
 
     fn warning_of_unknown(&self, field: usize, name: &str) -> String {
@@ -182,12 +219,19 @@ impl<'a> Table<'a> {
             if !column.required || field.is_some() {
                 continue;
             }
+            // A column of the same quantity in another unit is reported instead.
+            if self.names().any(|name| in_other_unit(self.columns, name).is_some_and(|other| other.column == column.name)) {
+                continue;
+            }
             problems.push(|| {
                 let near = (0..self.header.fields.len()).map(|field| self.text(&self.header, field)).find(|name| {
                     !self.columns.iter().any(|known| known.name == *name) && nearest(self.columns, name) == Some(column.name)
                 });
                 let help = match near {
-                    Some(near) => format!("is `{}` meant? rename it to {}", excerpt(near), column.name),
+                    Some(near) => match unit_of(column.name) {
+                        "" => format!("is `{}` meant? rename it to {}", excerpt(near), column.name),
+                        unit => format!("is `{}` meant? rename it to {} if its numbers are in {unit}", excerpt(near), column.name),
+                    },
                     None => format!("name the column {} in the header", column.name),
                 };
                 let found = format!("a header without {}", column.name);
@@ -250,7 +294,7 @@ impl<'a> Table<'a> {
     fn ragged(&self, record: &Record) -> super::CsvProblem {
         let (found, expected) = (record.fields.len(), self.header.fields.len());
         let help = if found > expected {
-            "is there a decimal comma (write 1.5, not 1,5), or a comma too many?"
+            "is there a decimal comma (write 1.5, not 1,5), a comma between thousands (write 1500, not 1,500), or a comma too many?"
         } else {
             "write every comma, also in the last row, whose segment columns stay empty"
         };

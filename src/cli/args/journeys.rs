@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use chta::graph::proof::DEFAULT_BUDGET_CELLS;
 use clap::Args as ClapArgs;
 
-use super::{AnswerArgs, CommonArgs, Format, JourneyArgs, ProveArgs, SearchArgs, cell_count};
+use super::{AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, cell_count, max_gib};
 
 /// Do everything a scenario asks for: chain.csv, path.csv, path.geojson (on a map), result.json and path.svg
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta run data/scenarios/mars_crater_field.toml -o out")]
 pub(crate) struct RunArgs {
-    /// Scenario (TOML), or a result.json to repeat
+    /// Scenario (TOML), or a result.json to repeat; -: standard input
     #[arg(value_name = "SCENARIO")]
     pub(crate) scenario: PathBuf,
     /// Folder for the results, created if it does not exist
@@ -25,6 +25,9 @@ pub(crate) struct RunArgs {
     /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -34,7 +37,7 @@ pub(crate) struct RunArgs {
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta hop data/scenarios/paper_76m.toml --from 0 --to 20 --format json")]
 pub(crate) struct HopArgs {
-    /// Chain (CSV), scenario (TOML) or result (JSON)
+    /// Chain (CSV), scenario (TOML) or result (JSON); -: standard input
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Where the hop takes off, along the chain, m [default: the scenario's start]
@@ -84,7 +87,7 @@ pub(crate) struct PlanArgs {
     /// Path in three dimensions (GeoJSON) to write, for a chain on a map
     #[arg(long, value_name = "FILE")]
     pub(crate) geojson: Option<PathBuf>,
-    /// Picture (SVG) to write, with or without a path
+    /// Picture (SVG or PNG) to write, with or without a path
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     /// Fly the path again by direct simulation and check every limit
@@ -132,10 +135,10 @@ pub(crate) struct SimulateArgs {
     /// One row per landing, .csv or .parquet; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Picture of the trials (SVG): trajectories, landing errors, outcomes, convergence
+    /// Picture of the trials (SVG or PNG): trajectories, landing errors, outcomes, convergence
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
-    /// Picture of the landings on the map (SVG), with 95 % ellipses, for a DEM
+    /// Picture of the landings on the map (SVG or PNG), with 95 % ellipses, for a DEM
     #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
     pub(crate) plot_map: Option<PathBuf>,
     #[command(flatten)]
@@ -188,7 +191,7 @@ pub(crate) struct TradeArgs {
     /// Rows to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Picture to write (.svg or .png): a heat map with the number of every cell
+    /// Picture (SVG or PNG) to write: a heat map with the number of every cell
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
@@ -211,7 +214,7 @@ pub(crate) struct CompareArgs {
     /// Table to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Picture to write (.svg or .png): all paths overlaid
+    /// Picture (SVG or PNG) to write: all paths overlaid
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
@@ -224,6 +227,9 @@ pub(crate) struct CompareArgs {
     /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged
     #[arg(long)]
     pub(crate) accept_map_scale: bool,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,

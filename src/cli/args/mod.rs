@@ -12,6 +12,8 @@ use chta::{
 };
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
+use super::inputs::{DEFAULT_MAX_GIB, max_gib};
+
 pub(crate) use journeys::{CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs};
 pub(crate) use terrains::{DepthLawArg, FanArgs, MapArgs, SliceArgs, SynthArgs};
 
@@ -78,6 +80,9 @@ pub(crate) struct CommonArgs {
     /// Stored number that marks missing elevations, or none: all numbers are elevations [default: as the file states]
     #[arg(long, value_name = "VALUE|none", allow_negative_numbers = true)]
     pub(crate) no_data: Option<String>,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -111,7 +116,7 @@ pub(crate) struct ProveArgs {
 /// A chain, and where the journey over it begins and ends.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct JourneyArgs {
-    /// Chain (CSV), scenario (TOML) or result (JSON)
+    /// Chain (CSV), scenario (TOML) or result (JSON); -: standard input
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Start along the chain, m [default: the scenario's]

@@ -8,13 +8,13 @@ use chta::{
 };
 use clap::{Args as ClapArgs, ValueEnum};
 
-use super::{AnswerArgs, CommonArgs, SearchArgs, lon_lat, map_point, no_data_rule};
+use super::{AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, SearchArgs, lon_lat, map_point, max_gib, no_data_rule};
 
 /// Cut terrain along a vertical plane into a polygonal chain (CSV)
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta slice data/terrain/mars_crater_field.tif --from 12,12 --to 180,150 -o chain.csv")]
 pub(crate) struct SliceArgs {
-    /// Elevation raster (GeoTIFF or ESRI ASCII grid, map in metres) or mesh (OBJ, STL or PLY, z up)
+    /// Elevation raster (GeoTIFF or ESRI ASCII grid, map in metres) or mesh (OBJ, STL or PLY, z up); -: standard input
     #[arg(value_name = "DEM|MESH")]
     pub(crate) terrain: PathBuf,
     /// Where the slice begins, map coordinates in m
@@ -53,20 +53,21 @@ pub(crate) struct SliceArgs {
     /// The slice as a line in three dimensions (GeoJSON) to write
     #[arg(long, value_name = "FILE")]
     pub(crate) geojson: Option<PathBuf>,
+    /// Most GiB read from a pipe, and from a text or mesh that is read whole
+    #[arg(long, value_name = "GIB", default_value_t = DEFAULT_MAX_GIB, value_parser = max_gib, allow_negative_numbers = true)]
+    pub(crate) input_max_gib: f64,
     /// No warnings on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
 }
 
 /// Slices in all directions from one point: how far and in how few hops one gets in each
-///
-/// Without --points-per-segment, and with auto, each segment has 1 point.
 #[derive(Debug, ClapArgs)]
 #[command(
     after_help = "Example:\n  chta fan data/terrain/mars_crater_field.tif --from 100,80 --headings 36 --length 80 \\\n    --scenario data/scenarios/mars_crater_field.toml --plot rose.svg"
 )]
 pub(crate) struct FanArgs {
-    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; -: standard input
     #[arg(value_name = "DEM")]
     pub(crate) dem: PathBuf,
     /// Where all slices begin, map coordinates in m
@@ -84,7 +85,7 @@ pub(crate) struct FanArgs {
     /// Table (CSV) to write; -: to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
-    /// Rose picture (SVG) to write
+    /// Rose picture (SVG or PNG) to write
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
     #[command(flatten)]
@@ -104,7 +105,7 @@ pub(crate) struct FanArgs {
     after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
 )]
 pub(crate) struct MapArgs {
-    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres
+    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; -: standard input
     #[arg(value_name = "DEM")]
     pub(crate) dem: PathBuf,
     /// Start of all paths, map coordinates in m; the nearest post is used
@@ -212,15 +213,15 @@ pub(crate) struct SynthArgs {
     /// With craters
     #[arg(long)]
     pub(crate) craters: bool,
-    /// Smallest crater, m
-    #[arg(long, default_value_t = 4.0, requires = "craters", allow_negative_numbers = true)]
-    pub(crate) crater_diameter_min_m: f64,
-    /// Largest crater, m
-    #[arg(long, default_value_t = 60.0, requires = "craters", allow_negative_numbers = true)]
-    pub(crate) crater_diameter_max_m: f64,
-    /// Craters per square kilometre
-    #[arg(long, default_value_t = 1500.0, requires = "craters", allow_negative_numbers = true)]
-    pub(crate) crater_density_per_km2: f64,
+    /// Smallest crater, m [default: 4, or the post spacing if that is greater]
+    #[arg(long, requires = "craters", allow_negative_numbers = true)]
+    pub(crate) crater_diameter_min_m: Option<f64>,
+    /// Largest crater, m [default: 60, or as the map and the smallest crater allow]
+    #[arg(long, requires = "craters", allow_negative_numbers = true)]
+    pub(crate) crater_diameter_max_m: Option<f64>,
+    /// Craters per square kilometre [default: 1500; fewer where the post spacing leaves out small ones]
+    #[arg(long, requires = "craters", allow_negative_numbers = true)]
+    pub(crate) crater_density_per_km2: Option<f64>,
     /// Exponent of the cumulative counts: 3 young, 2 in equilibrium
     #[arg(long, default_value_t = 2.5, requires = "craters", allow_negative_numbers = true)]
     pub(crate) crater_power_law_exponent: f64,
@@ -233,9 +234,9 @@ pub(crate) struct SynthArgs {
     /// With a sinuous rille from west to east
     #[arg(long)]
     pub(crate) rille: bool,
-    /// Width of the rille between its upper edges, m
-    #[arg(long, default_value_t = 80.0, requires = "rille", allow_negative_numbers = true)]
-    pub(crate) rille_width_m: f64,
+    /// Width of the rille between its upper edges, m [default: 80, or the post spacing if that is greater]
+    #[arg(long, requires = "rille", allow_negative_numbers = true)]
+    pub(crate) rille_width_m: Option<f64>,
     /// Depth of the rille, m
     #[arg(long, default_value_t = 15.0, requires = "rille", allow_negative_numbers = true)]
     pub(crate) rille_depth_m: f64,
@@ -254,12 +255,12 @@ pub(crate) struct SynthArgs {
     /// Share of ground covered by rocks of any size: 0.05 sparse, 0.2 rough
     #[arg(long, default_value_t = 0.1, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) rock_abundance: f64,
-    /// Smallest boulder, m
-    #[arg(long, default_value_t = 1.0, requires = "boulders", allow_negative_numbers = true)]
-    pub(crate) boulder_diameter_min_m: f64,
-    /// Largest boulder, m
-    #[arg(long, default_value_t = 4.0, requires = "boulders", allow_negative_numbers = true)]
-    pub(crate) boulder_diameter_max_m: f64,
+    /// Smallest boulder, m [default: 1, or the post spacing if that is greater]
+    #[arg(long, requires = "boulders", allow_negative_numbers = true)]
+    pub(crate) boulder_diameter_min_m: Option<f64>,
+    /// Largest boulder, m [default: 4, or the smallest boulder if that is greater]
+    #[arg(long, requires = "boulders", allow_negative_numbers = true)]
+    pub(crate) boulder_diameter_max_m: Option<f64>,
     /// Share of a boulder's radius below ground
     #[arg(long, default_value_t = 0.2, requires = "boulders", allow_negative_numbers = true)]
     pub(crate) boulder_burial: f64,

@@ -24,9 +24,12 @@ use super::{
 use crate::cli::{
     Answer, Failure,
     args::{CheckArgs, Format},
+    effects::Purpose,
     hints::further_means,
+    inputs,
     load::{EndOptions, Loaded, load},
     output,
+    wrong_thing::Role,
 };
 
 /// The answers for many pairs.
@@ -37,14 +40,26 @@ struct PairsAnswer {
 
 /// Checks one pair or many.
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
+    let files = [
+        (Some(args.journey.chain.as_path()), Role::Chain),
+        (args.common.scenario.as_deref(), Role::ScenarioOption),
+        (args.pairs.as_deref(), Role::Pairs),
+    ];
+    inputs::look_at(args.common.input_max_gib, &files)?;
     // Set before the terrain is read, since reading starts the threads.
     use_threads(args.answer.threads)?;
-    let loaded =
-        load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
+    let loaded = load(
+        &args.journey.chain,
+        &args.common,
+        Some(&args.search),
+        EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Check,
+    )?;
     let mut warnings = Vec::new();
     let pairs = match &args.pairs {
         None => vec![loaded.ends()?],
         Some(path) => {
+            let path = &inputs::open(path, Role::Pairs)?.file;
             let file = read_pairs_csv_file(path)?;
             warnings.extend(file.warnings.iter().map(|warning| format!("{}: {warning}", path.display())));
             stations(&loaded, path, &file.pairs)?

@@ -1,6 +1,6 @@
 //! `chta compare`: several scenarios side by side.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use chta::{
     path::{HopPath, generate},
@@ -15,8 +15,11 @@ use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{CommonArgs, CompareArgs, Format},
-    load::{EndOptions, Loaded, is_scenario, load, relative_name},
+    effects::Purpose,
+    inputs,
+    load::{Loaded, load_scenario, relative_name},
     output::{self, Pending, TableFormat},
+    wrong_thing::Role,
 };
 
 /// One scenario with its path.
@@ -29,6 +32,9 @@ struct Compared {
 
 /// Answers each scenario separately and shows the answers side by side.
 pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
+    let files: Vec<_> = args.scenarios.iter().map(|file| (Some(file.as_path()), Role::Scenario)).collect();
+    check_pipes(&args.scenarios)?;
+    inputs::look_at(args.input_max_gib, &files)?;
     let table = args.output.as_deref().map(TableFormat::of).transpose()?;
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
     // Outputs are opened before the computation, which may take long.
@@ -56,14 +62,21 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
     Ok(Answer::Yes)
 }
 
-impl Compared {
-    fn new(file: &Path, args: &CompareArgs) -> Result<Self, Failure> {
-        if !is_scenario(file) {
+/// Refuses a pipe that is given twice: the second reading would find nothing.
+fn check_pipes(scenarios: &[PathBuf]) -> Result<(), Failure> {
+    for (i, file) in scenarios.iter().enumerate() {
+        if inputs::is_stream(file) && scenarios[..i].iter().any(|other| inputs::same_stream(other, file)) {
             return Err(Failure::message(format!(
-                "{}: expected a scenario (.toml) or a result (.json): write one that names the chain in [terrain]",
+                "{}: found twice as SCENARIO, but what comes through a pipe is read only once: give one of the two as a file",
                 file.display()
             )));
         }
+    }
+    Ok(())
+}
+
+impl Compared {
+    fn new(file: &Path, args: &CompareArgs) -> Result<Self, Failure> {
         let common = CommonArgs {
             scenario: None,
             set: args.set.clone(),
@@ -72,9 +85,10 @@ impl Compared {
             clearance_m: None,
             accept_map_scale: args.accept_map_scale,
             no_data: None,
+            input_max_gib: args.input_max_gib,
             quiet: args.quiet,
         };
-        let loaded = load(file, &common, None, EndOptions::NONE)?;
+        let loaded = load_scenario(file, &common, Purpose::Compare)?;
         let ends = loaded.ends()?;
         let test = loaded.hop_test();
         let options = &loaded.scenario.search;

@@ -5,7 +5,7 @@ use chta::{
     quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer, figure::draw_rose},
-    scenario::{DemReading, Overlays, check_body, for_body},
+    scenario::{DemReading, Extent, Overlays, body_warnings, check_body, check_extent, escape_warnings, for_body},
     terrain::check_scale,
 };
 use nalgebra::Vector2;
@@ -14,9 +14,12 @@ use super::{captions::conditions, search::use_threads, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, FanArgs, Format},
+    effects::Purpose,
+    inputs,
     load::{Bare, load_bare, raster_files},
     output,
     progress::Progress,
+    wrong_thing::Role,
 };
 
 /// The meaning of `auto` here, where there is no single path to refine for.
@@ -25,7 +28,7 @@ const POINTS_PER_SEGMENT: PointSpacing = PointSpacing::PerSegment(1);
 /// Analyses all directions.
 pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let FanArgs {
-        dem: file,
+        dem: dem_file,
         from,
         from_lonlat,
         headings,
@@ -36,29 +39,37 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         search,
         common,
     } = args;
+    inputs::look_at(common.input_max_gib, &[(Some(dem_file), Role::Dem), (common.scenario.as_deref(), Role::ScenarioOption)])?;
     use_threads(*threads)?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
-    let Bare { scenario, base, document } = load_bare(file, common, search)?;
-    let dem = DemReading::of(&scenario).options.read(file).map_err(|e| failed(&for_body(&scenario.body, e)))?;
-    check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| Failure::about(file, &e))?;
-    let mut of_file = dem.warnings();
-    of_file.extend(dem.georeference().doubts());
+    let Bare { dem: dem_file, scenario, base, document, mut warnings } = load_bare(dem_file, common, search, Purpose::Fan)?;
+    let dem_file = dem_file.as_path();
+    let dem = DemReading::of(&scenario).options.read(dem_file).map_err(|e| failed(&for_body(&scenario.body, e)))?;
+    check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| Failure::about(dem_file, &e))?;
+    warnings.extend(dem.warnings());
+    warnings.extend(dem.georeference().doubts());
     let projection = dem.georeference().projection();
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
+    // Opened before the computation, which may take long.
+    let picture = plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
+    warnings.extend(body_warnings(&scenario.body));
+    warnings.extend(escape_warnings(&scenario, None));
+    let extent = Extent::of_dem(dem.bounds(), projection.is_ok());
+    warnings.extend(check_extent(&scenario.body, &extent).map_err(|e| Failure::about(dem_file, &e))?);
     let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
     let ground = overlays.ground(dem, &scenario);
     let dem = ground.terrain().dem();
     let request = FanRequest { ground: &ground, from, headings: *headings, length_m: *length, spacing };
     let rays = fan(&request, &Progress::new(common.quiet)).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
-    let mut warnings = of_file;
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     for ray in &rays {
         let heading = Angle::from_degrees(ray.heading_deg).radians();
         let end = from + Vector2::new(libm::sin(heading), libm::cos(heading)) * ray.length_m;
-        let scale = check_scale(dem, projection.as_ref(), [from, end], accepted, file).map_err(|e| Failure::about(file, &e))?;
+        let scale =
+            check_scale(dem, projection.as_ref(), [from, end], accepted, dem_file).map_err(|e| Failure::about(dem_file, &e))?;
         warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
     }
     for warning in &warnings {
@@ -73,11 +84,12 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     if table.is_some() {
         answer.write_csv(&mut csv).map_err(|e| failed(&e))?;
     }
-    if let Some(path) = plot {
-        let name = file.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    if let Some(file) = picture {
+        let name = dem_file.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
         let title = format!("How far in how few hops: {name}");
-        let svg = draw_rose(&answer, &title, &subtitle(&answer, &scenario)).map_err(|e| failed(&e))?;
-        output::to_file(path, svg.as_bytes())?;
+        let rose = draw_rose(&answer, &title, &subtitle(&answer, &scenario));
+        let encoded = output::encoded(Ok(rose), file.path())?;
+        output::finish(vec![(file, encoded)])?;
     }
     if let Some(path) = table {
         output::to_file_or_stdout(Some(path), &csv)?;
@@ -88,7 +100,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let text = match format {
         Format::Text => answer.text(),
         Format::Json => {
-            let mut inputs = raster_files(file)?;
+            let mut inputs = raster_files(dem_file)?;
             for overlay in Overlays::files(&scenario) {
                 inputs.extend(raster_files(&base.join(overlay))?);
             }

@@ -8,13 +8,20 @@ use chta::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, HopArgs},
+    effects::Purpose,
+    inputs,
     load::{EndOptions, load},
     output,
+    wrong_thing::Role,
 };
 
 /// Tests one hop.
 pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
-    let loaded = load(&args.chain, &args.common, None, EndOptions::of_hop(args.from, args.to))?;
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
+    let loaded = load(&args.chain, &args.common, None, EndOptions::of_hop(args.from, args.to), Purpose::Hop)?;
     let (takeoff, landing) = loaded.ends()?;
     let test = loaded.hop_test();
     let answer = HopAnswer::new(&test, &takeoff, &landing, loaded.scenario.search.takeoff).ok_or_else(|| {

@@ -17,18 +17,25 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{DemReading, Extremes, Overlays, Scenario, UncertaintyKeys, check_body, constant_gravity_warnings, for_body},
+    scenario::{
+        DemReading, Extent, Extremes, Overlays, Scenario, TrialGround, UncertaintyKeys, body_warnings, check_body, check_extent,
+        constant_gravity_warnings, escape_warnings, for_body,
+    },
     terrain::{Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, result_geotiff_bytes},
     uncertainty::{Mission, Policy, Simulation, SimulationError},
+    world::FrictionCone,
 };
 
 use super::{captions::conditions, map_profiles, plan::passed, search::use_threads, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
+    effects::Purpose,
+    inputs,
     load::{Bare, load_bare, raster_files},
     output::{self, Pending},
     progress::Progress,
+    wrong_thing::Role,
 };
 
 /// The terrain of a map, its projection and the scenario.
@@ -72,6 +79,8 @@ struct Maps {
 
 /// Computes and writes the map.
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
+    let MapArgs { dem, common, .. } = args;
+    inputs::look_at(common.input_max_gib, &[(Some(dem), Role::Dem), (common.scenario.as_deref(), Role::ScenarioOption)])?;
     use_threads(args.answer.threads)?;
     let (inputs, start, goals) = prepared(args)?;
     check_extensions(args)?;
@@ -80,6 +89,13 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let mut maps = mapped(args, &inputs, start, &goals)?;
     if let Some(keys) = &keys {
         maps.trials = simulated(args, &inputs, &maps, keys)?;
+        let unreached = maps.paths.iter().zip(&goals).filter(|(path, _)| path.is_none());
+        maps.warnings.extend(unreached.map(|(_, goal)| {
+            format!(
+                "no trials were flown to the goal ({:.3}, {:.3}) m: it is not reachable over these posts, so there is no path to fly",
+                goal.at.x, goal.at.y
+            )
+        }));
     }
     let effort = args.effort.is_some().then_some(inputs.scenario.search.effort);
     let mut answer = MapAnswer::new(&MapSummary {
@@ -93,7 +109,9 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     });
     answer.goals = goals.iter().enumerate().map(|(index, goal)| goal_record(&inputs, &maps, goal, index)).collect();
     let mut warnings = inputs.warnings.clone();
-    warnings.extend(keys.and_then(|keys| keys.warning()).map(str::to_owned));
+    if keys.is_some() {
+        warnings.extend(inputs.scenario.trial_warnings(&[Policy::OpenLoop], &trial_ground(&inputs, &maps)));
+    }
     warnings.extend(maps.warnings.iter().cloned());
     let hops: Vec<_> = maps.paths.iter().flatten().flat_map(|path| path.hops.iter().copied()).collect();
     warnings.extend(constant_gravity_warnings(&inputs.scenario.body, Extremes::of(&hops)));
@@ -115,12 +133,15 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
 /// Reads terrain and scenario and finds the posts of start and goals.
 fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     let MapArgs { dem: file, start, start_lonlat, goal, goal_lonlat, stride, effort, common, .. } = args;
-    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     if *stride == 0 {
         return Err(Failure::message("--stride: found 0, expected a whole number of at least 1"));
     }
     let searched = SearchArgs { points_per_segment: None, node_spacing_max_m: None, effort: effort.clone().flatten() };
-    let Bare { scenario, base, document } = load_bare(file, common, &searched)?;
+    let has_goals = !(goal.is_empty() && goal_lonlat.is_empty());
+    let purpose = Purpose::Map { goals: has_goals, effort: effort.is_some(), trials: args.simulate };
+    let Bare { dem: file, scenario, base, document, mut warnings } = load_bare(file, common, &searched, purpose)?;
+    let file = file.as_path();
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
     let dem = DemReading::of(&scenario).options.read(file).map_err(|e| Failure::of(&for_body(&scenario.body, e)))?;
     check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| failed(&e))?;
     let overlays =
@@ -152,8 +173,12 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     }
     check_distinct_nodes(&dem, *stride, &named(start, &goals).map(|(_, spot)| spot).collect::<Vec<_>>())
         .map_err(|message| failed(&std::io::Error::other(message)))?;
-    let mut warnings = dem.warnings();
+    warnings.extend(dem.warnings());
     warnings.extend(dem.georeference().doubts());
+    warnings.extend(body_warnings(&scenario.body));
+    warnings.extend(escape_warnings(&scenario, None));
+    let extent = Extent::of_dem(dem.bounds(), projection.is_ok());
+    warnings.extend(check_extent(&scenario.body, &extent).map_err(|e| failed(&e))?);
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
@@ -258,6 +283,16 @@ fn trial_keys(scenario: &Scenario) -> Result<UncertaintyKeys, Failure> {
     Ok(keys)
 }
 
+/// The ground as the warnings about trials see it.
+fn trial_ground(inputs: &PreparedMap, maps: &Maps) -> TrialGround {
+    let bounds = inputs.dem().bounds();
+    let hops = maps.paths.iter().flatten().map(|path| path.hops.len()).max().unwrap_or(0);
+    let constant = inputs.ground.constant_friction().map(FrictionCone::coefficient);
+    // The coefficients of a raster are not looked through.
+    let of_raster = inputs.ground.terrain().overlays().friction().map(|_| f64::INFINITY);
+    TrialGround { friction_max: of_raster.or(constant), extent_m: (bounds.max - bounds.min).norm(), journey_m: None, hops }
+}
+
 /// Flies the path to every reachable goal many times.
 fn simulated(
     args: &MapArgs,
@@ -292,7 +327,7 @@ fn format_share(what: &str, step: &Step, elapsed_s: f64) -> Option<String> {
 
 /// Checks that each output has an extension that its readers recognise.
 fn check_extensions(args: &MapArgs) -> Result<(), Failure> {
-    let MapArgs { output, effort_output, return_output, mobility, paths, geojson, .. } = args;
+    let MapArgs { output, effort_output, return_output, mobility, paths, geojson, profiles, plot, .. } = args;
     let rasters =
         [("-o", output), ("--effort-output", effort_output), ("--return-output", return_output), ("--mobility", mobility)];
     let rasters = rasters.map(|(option, file)| (option, file, &["tif", "tiff"][..]));
@@ -305,6 +340,9 @@ fn check_extensions(args: &MapArgs) -> Result<(), Failure> {
             let message = format!("{option} {}: expected a file that ends in .{}", file.display(), endings.join(" or ."));
             return Err(Failure::message(message));
         }
+    }
+    for (option, file) in [("--profiles", profiles), ("--plot", plot)] {
+        file.as_deref().map_or(Ok(()), |file| output::check_picture(option, file))?;
     }
     Ok(())
 }

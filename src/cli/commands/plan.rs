@@ -10,7 +10,7 @@ use chta::{
     quantity::AngleInterval,
     report::{
         CheckAnswer, Document, HopRecord, MapKnowledge, ReliablePathRecord, TotalsRecord, check_text,
-        figure::{FigureInput, FigureTitle, draw},
+        figure::{FigureError, FigureInput, FigureTitle, Picture, draw},
         path_geojson, path_text, reliable_paths_text, write_path_csv,
     },
     scenario::{Extremes, Scenario, constant_gravity_warnings},
@@ -22,9 +22,12 @@ use super::search::{Searched, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs, ProveArgs},
+    effects::Purpose,
     hints::further_means,
+    inputs,
     load::{EndOptions, Loaded, load},
     output::{self, Pending},
+    wrong_thing::Role,
 };
 
 /// The answer of a plan: the check, the path, its totals.
@@ -135,8 +138,18 @@ impl Planned {
         Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
     }
 
-    /// The picture.
-    pub(super) fn picture(&self, loaded: &Loaded, test: &HopTest, (start, goal): (Station, Station)) -> Result<String, Failure> {
+    /// The picture, in the format of the file's extension.
+    pub(super) fn picture(
+        &self,
+        loaded: &Loaded,
+        test: &HopTest,
+        ends: (Station, Station),
+        file: &Path,
+    ) -> Result<Vec<u8>, Failure> {
+        output::encoded(self.drawn(loaded, test, ends), file)
+    }
+
+    fn drawn(&self, loaded: &Loaded, test: &HopTest, (start, goal): (Station, Station)) -> Result<Picture, FigureError> {
         let scenario = &loaded.scenario;
         draw(&FigureInput {
             test,
@@ -150,7 +163,6 @@ impl Planned {
                 ground: format_ground(scenario),
             },
         })
-        .map_err(|e| Failure::of(&e))
     }
 }
 
@@ -203,16 +215,25 @@ pub(super) fn passed(execution: &Execution) -> Result<(), Failure> {
 
 /// Plans a path.
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
     use_threads(args.answer.threads)?;
-    let loaded =
-        load(&args.journey.chain, &args.common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))?;
+    let loaded = load(
+        &args.journey.chain,
+        &args.common,
+        Some(&args.search),
+        EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Plan,
+    )?;
     let ends = loaded.ends()?;
     if args.geojson.is_some() && loaded.prepared.chain.geometry().map_points().is_none() {
         return Err(Failure::message("--geojson: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"));
     }
     let csv_to_stdout = args.output.as_deref() == Some(Path::new("-"));
     // Outputs are opened before the search, which may take long.
-    let plot = args.plot.as_deref().map(Pending::begin).transpose()?;
+    let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let geojson = args.geojson.as_deref().map(Pending::begin).transpose()?;
     let prj_text = output::prj(loaded.prepared.projection.as_ref());
     let prj_path = args.geojson.as_deref().filter(|_| prj_text.is_some()).map(|path| path.with_extension("prj"));
@@ -222,7 +243,8 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     let planned = Planned::new(&loaded, &test, Some(args.prove), args.verify, args.common.quiet)?;
     let mut files = Vec::new();
     if let Some(file) = plot {
-        files.push((file, planned.picture(&loaded, &test, ends)?.into_bytes()));
+        let picture = planned.picture(&loaded, &test, ends, file.path())?;
+        files.push((file, picture));
     }
     if let (Some(file), Some(geojson)) = (geojson, planned.geojson(&loaded)) {
         files.push((file, geojson.into_bytes()));

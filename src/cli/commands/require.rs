@@ -14,9 +14,12 @@ use super::search::{proved, use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, RequireArgs},
+    effects::Purpose,
+    inputs,
     load::{EndOptions, Loaded, load},
     output,
     progress::Progress,
+    wrong_thing::Role,
 };
 
 /// A scenario key that makes a hopper more or less capable, with its default range of values.
@@ -56,6 +59,10 @@ struct Tried {
 
 /// Finds the least capability.
 pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
     let (capability, [from, to]) = asked(args)?;
     use_threads(args.answer.threads)?;
     let (mut weakest, strongest) = if capability.more_is_more { (from, to) } else { (to, from) };
@@ -75,8 +82,8 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     let last = with_value(args, weakest, true)?;
     if ask_the_same((&first.scenario, &first.prepared), (&last.scenario, &last.prepared)) {
         return Err(Failure::message(format!(
-            "--vary {}: no value from {from} to {to} changes anything here: the chain's own limits or friction decide, or the range lies \
-             beyond them",
+            "--vary {}: no value from {from} to {to} changes anything here: the chain's own limits, its friction or the escape speed \
+             decide, or the range lies beyond them",
             args.vary
         )));
     }
@@ -105,6 +112,8 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
         reachable_at: threshold.reachable_at,
         from,
         to,
+        resolution: args.resolution,
+        resolution_met: range.is_met(&threshold),
         tries: tries.iter().map(Tried::record).collect(),
         hops: None,
         path: Vec::new(),
@@ -117,7 +126,7 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     }
     // The scenario gets the value that the path needs, so that `chta run` on the result flies that path.
     let shown = reached.map_or(&first, |tried| &tried.loaded);
-    output::to_stdout(written(args, shown, &answer)?.as_bytes())?;
+    output::to_stdout(written(args, (shown, &first), &answer)?.as_bytes())?;
     Ok(if reached.is_some() { Answer::Yes } else { Answer::No })
 }
 
@@ -207,15 +216,23 @@ fn with_value(args: &RequireArgs, value: f64, quiet: bool) -> Result<Loaded, Fai
     }
     common.set.push(format!("{}={value:?}", args.vary));
     common.quiet = quiet;
-    load(&args.journey.chain, &common, Some(&args.search), EndOptions::of_path(args.journey.start, args.journey.goal))
+    load(
+        &args.journey.chain,
+        &common,
+        Some(&args.search),
+        EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Require,
+    )
 }
 
 /// The answer as text or as one document.
-fn written(args: &RequireArgs, loaded: &Loaded, answer: &RequireAnswer) -> Result<String, Failure> {
+///
+/// The warnings are those of the shown value and of the strongest one: a speed limit beyond escape is only in the latter.
+fn written(args: &RequireArgs, (loaded, strongest): (&Loaded, &Loaded), answer: &RequireAnswer) -> Result<String, Failure> {
     if args.answer.format == Format::Text {
         return Ok(require_text(answer));
     }
-    let warnings = loaded.warnings_with([]);
+    let warnings = loaded.warnings_with(strongest.prepared.warnings.iter().cloned());
     let document = Document::new("require", loaded.document.clone(), loaded.inputs.clone(), warnings, answer.clone());
     Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
 }

@@ -1,6 +1,6 @@
 //! `chta run`: everything a scenario asks for.
 
-use std::fs;
+use std::{fs, path::Path};
 
 use chta::{chain::csv::write_chain_csv, report::CrsRecord};
 
@@ -9,16 +9,24 @@ use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, CommonArgs, Format, RunArgs},
     claims,
-    load::{EndOptions, load},
+    effects::Purpose,
+    inputs,
+    load::load_scenario,
     output::{self, Pending},
+    wrong_thing::Role,
 };
 
 /// The kind of the answer, which `run` accepts as input to repeat it.
 const RESULT: &str = "result.json";
 
+/// The picture of the plan.
+const PICTURE: &str = "path.svg";
+
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
-    let RunArgs { scenario, output: folder, answer: AnswerArgs { threads, format }, set, accept_map_scale, quiet } = args;
+    let RunArgs { scenario, output: folder, answer: AnswerArgs { threads, format }, set, accept_map_scale, input_max_gib, quiet } =
+        args;
+    inputs::look_at(*input_max_gib, &[(Some(scenario), Role::Scenario)])?;
     use_threads(*threads)?;
     let common = CommonArgs {
         scenario: None,
@@ -28,9 +36,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         clearance_m: None,
         accept_map_scale: *accept_map_scale,
         no_data: None,
+        input_max_gib: *input_max_gib,
         quiet: *quiet,
     };
-    let loaded = load(scenario, &common, None, EndOptions::NONE)?;
+    let loaded = load_scenario(scenario, &common, Purpose::Run)?;
     let ends = loaded.ends()?;
     output::check_folder(folder)?;
     let test = loaded.hop_test();
@@ -45,7 +54,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         ("chain.csv", chain_csv),
         ("path.csv", planned.csv(&loaded)?),
         (RESULT, planned.document("run", &loaded)?.into_bytes()),
-        ("path.svg", planned.picture(&loaded, &test, ends)?.into_bytes()),
+        (PICTURE, planned.picture(&loaded, &test, ends, Path::new(PICTURE))?),
     ];
     if let Some(geojson) = planned.geojson(&loaded) {
         files.push(("path.geojson", geojson.into_bytes()));

@@ -6,15 +6,25 @@ use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{BodyChoice, DemReading, Overlays, Scenario, Transect, check_body, for_body, friction, sha256_of},
+    scenario::{BodyChoice, DemReading, Overlays, Scenario, Transect, check_body, check_extent, for_body, friction, sha256_of},
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
-use crate::cli::{Answer, Failure, args::SliceArgs, claims, load::scenario_alone, output};
+use crate::cli::{
+    Answer, Failure,
+    args::SliceArgs,
+    claims,
+    inputs::{self, Input},
+    load::scenario_alone,
+    output,
+    wrong_thing::Role,
+};
 
 /// Slices a DEM or a mesh.
 pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
-    let SliceArgs { terrain, via, via_lonlat, scenario, output: file, geojson, quiet, .. } = args;
+    let SliceArgs { terrain, via, via_lonlat, scenario, output: file, geojson, input_max_gib, quiet, .. } = args;
+    inputs::look_at(*input_max_gib, &[(Some(terrain), Role::Terrain), (scenario.as_deref(), Role::ScenarioOption)])?;
+    let terrain = &inputs::open(terrain, Role::Terrain)?;
     let given = scenario.as_deref().map(scenario_alone).transpose()?;
     if let (Some(path), Some((scenario, _))) = (scenario, &given)
         && lays_nothing(scenario)
@@ -23,20 +33,26 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
         let reason = "has no friction_coefficient, so the chain gets no friction: give the scenario again when the chain is used";
         output::warn(*quiet, &format!("--scenario {name} {reason}"));
     }
-    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(terrain, error);
+    let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(&terrain.file, error);
     let mut reading = given.as_ref().map_or_else(DemReading::default, |(scenario, _)| DemReading::of(scenario));
     reading.accept_map_scale |= args.accept_map_scale;
     if let Some(no_data) = args.no_data {
         reading.options = reading.options.no_data(no_data);
     }
     let body = given.as_ref().map(|(scenario, _)| &scenario.body);
-    let transect = read_transect(args, reading, body)?;
+    let transect = read_transect(args, terrain, reading, body)?;
     if let Some(body) = body {
         check_body(body, transect.figure).map_err(|e| failed(&e))?;
     }
+    let terrain = terrain.file.as_path();
     claims::reads(terrain);
     for warning in &transect.warnings {
         output::warn(*quiet, warning);
+    }
+    if let Some((scenario, _)) = &given
+        && let Some(warning) = check_extent(&scenario.body, &transect.extent).map_err(|e| failed(&e))?
+    {
+        output::warn(*quiet, &warning);
     }
     let name = name_of(terrain);
     let mut comments = vec![format!("chta {} slice of {name}, sha256 {}", env!("CARGO_PKG_VERSION"), sha256_of(terrain)?)];
@@ -51,7 +67,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
                 comments.push(format!("under {}, sha256 {}", name_of(&file), sha256_of(&file)?));
             }
             let overlays =
-                Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.bounds).map_err(|e| failed(&e))?;
+                Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.extent.bounds).map_err(|e| failed(&e))?;
             let (chain, without_effect) = overlays.chain_with_warnings(transect.legs).map_err(|e| failed(&e))?;
             for warning in &without_effect {
                 output::warn(*quiet, warning);
@@ -81,8 +97,9 @@ fn name_of(path: &Path) -> String {
 }
 
 /// The ground along the slice, with the warnings about it.
-fn read_transect(args: &SliceArgs, reading: DemReading, body: Option<&BodyChoice>) -> Result<Transect, Failure> {
-    let SliceArgs { terrain, via, via_lonlat, mesh_scale, .. } = args;
+fn read_transect(args: &SliceArgs, input: &Input, reading: DemReading, body: Option<&BodyChoice>) -> Result<Transect, Failure> {
+    let SliceArgs { via, via_lonlat, mesh_scale, .. } = args;
+    let terrain = input.file.as_path();
     let from = place("from", args.from, args.from_lonlat)?;
     let to = place("to", args.to, args.to_lonlat)?;
     let failed = |error: TerrainError| match body {

@@ -23,6 +23,17 @@ pub(crate) fn run(args: &SynthArgs) -> Result<Answer, Failure> {
             )));
         }
     };
+    let usual = Boulders::default();
+    if args.boulders
+        && args.boulder_diameter_min_m.or(args.boulder_diameter_max_m).is_none()
+        && args.spacing_m > usual.diameter_max_m
+    {
+        return Err(Failure::message(format!(
+            "--boulders: found a post spacing of {} m, expected at most {} m, the size of the largest boulder unless another is said: give \
+             --spacing-m, or --boulder-diameter-min-m and --boulder-diameter-max-m",
+            args.spacing_m, usual.diameter_max_m
+        )));
+    }
     let failed = |error: chta::terrain::TerrainError| Failure::of(&error);
     let dem = synthesise(&options(args)).map_err(failed)?;
     let bytes = if ascii {
@@ -53,9 +64,9 @@ fn options(args: &SynthArgs) -> SyntheticTerrain {
         ground_rms_m,
         ground_baseline_m,
         craters,
-        crater_diameter_min_m,
-        crater_diameter_max_m,
-        crater_density_per_km2,
+        crater_diameter_min_m: _,
+        crater_diameter_max_m: _,
+        crater_density_per_km2: _,
         crater_power_law_exponent,
         crater_depth_law,
         crater_degradation_max,
@@ -71,6 +82,8 @@ fn options(args: &SynthArgs) -> SyntheticTerrain {
         boulder_diameter_max_m,
         boulder_burial,
     } = args;
+    let crater_defaults = typed_craters(args);
+    let boulder_diameters_m = typed_boulder_diameters_m(*spacing_m, *boulder_diameter_min_m, *boulder_diameter_max_m);
     SyntheticTerrain {
         rows: *rows,
         cols: *cols,
@@ -86,9 +99,9 @@ fn options(args: &SynthArgs) -> SyntheticTerrain {
             baseline_m: *ground_baseline_m,
         }),
         craters: craters.then_some(Craters {
-            diameter_min_m: *crater_diameter_min_m,
-            diameter_max_m: *crater_diameter_max_m,
-            density_per_km2: *crater_density_per_km2,
+            diameter_min_m: crater_defaults.diameter_min_m,
+            diameter_max_m: crater_defaults.diameter_max_m,
+            density_per_km2: crater_defaults.density_per_km2,
             power_law_exponent: *crater_power_law_exponent,
             depth_law: match crater_depth_law {
                 DepthLawArg::Moon => DepthLaw::Moon,
@@ -97,7 +110,7 @@ fn options(args: &SynthArgs) -> SyntheticTerrain {
             degradation_max: *crater_degradation_max,
         }),
         rille: rille.then_some(Rille {
-            width_m: *rille_width_m,
+            width_m: rille_width_m.unwrap_or_else(|| Rille::default().width_m.max(*spacing_m)),
             depth_m: *rille_depth_m,
             wall_slope: Angle::from_degrees(*rille_wall_slope_deg),
             meander_amplitude_m: *rille_meander_amplitude_m,
@@ -105,9 +118,38 @@ fn options(args: &SynthArgs) -> SyntheticTerrain {
         }),
         boulders: boulders.then_some(Boulders {
             rock_abundance: *rock_abundance,
-            diameter_min_m: *boulder_diameter_min_m,
-            diameter_max_m: *boulder_diameter_max_m,
+            diameter_min_m: boulder_diameters_m[0],
+            diameter_max_m: boulder_diameters_m[1],
             burial: *boulder_burial,
         }),
     }
+}
+
+/// Diameters and density of the craters: those typed, and defaults that fit them, the post spacing and the map, so that no default is
+/// refused. A greater smallest diameter is that of the same population, by its power law.
+fn typed_craters(args: &SynthArgs) -> Craters {
+    let usual = Craters::default();
+    let longest_side = args.rows.max(args.cols).saturating_sub(1);
+    #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
+    let side_m = longest_side as f64 * args.spacing_m;
+    let most_m = args.crater_diameter_max_m.unwrap_or(f64::INFINITY);
+    let least_m = usual.diameter_min_m.max(args.spacing_m);
+    let diameter_min_m = args.crater_diameter_min_m.unwrap_or_else(|| usual.diameter_min_m.min(most_m).max(args.spacing_m));
+    let diameter_max_m = args.crater_diameter_max_m.unwrap_or_else(|| {
+        let usual_span = usual.diameter_max_m / usual.diameter_min_m;
+        usual.diameter_max_m.max(usual_span * diameter_min_m).min(10.0 * side_m).max(diameter_min_m)
+    });
+    let density_per_km2 = args.crater_density_per_km2.unwrap_or_else(|| {
+        let raised = args.crater_diameter_min_m.is_none() && least_m > usual.diameter_min_m;
+        let share = if raised { libm::pow(usual.diameter_min_m / least_m, args.crater_power_law_exponent) } else { 1.0 };
+        usual.density_per_km2 * share
+    });
+    Craters { diameter_min_m, diameter_max_m, density_per_km2, ..usual }
+}
+
+/// Smallest and largest boulder, m: those typed, and defaults that fit them and the post spacing.
+fn typed_boulder_diameters_m(spacing_m: f64, least_m: Option<f64>, most_m: Option<f64>) -> [f64; 2] {
+    let usual = Boulders::default();
+    let min_m = least_m.unwrap_or_else(|| usual.diameter_min_m.min(most_m.unwrap_or(f64::INFINITY)).max(spacing_m));
+    [min_m, most_m.unwrap_or_else(|| usual.diameter_max_m.max(min_m))]
 }

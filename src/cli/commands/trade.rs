@@ -17,10 +17,11 @@ use super::{
 use crate::cli::{
     Answer, Failure,
     args::{Format, TradeArgs},
-    hints,
+    hints, inputs,
     load::{EndOptions, Loaded, ToVary, load_to_vary},
     output::{self, Pending, TableFormat},
     progress::Progress,
+    wrong_thing::Role,
 };
 
 /// The failure for an invalid swept key.
@@ -31,6 +32,10 @@ fn refused(error: TradeError) -> Failure {
 
 /// Answers every cell.
 pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
     use_threads(args.answer.threads)?;
     let swept: Vec<_> = args.vary.iter().map(|text| SweptKey::parse(text)).collect::<Result<_, _>>().map_err(refused)?;
     let table = args.output.as_deref().map(TableFormat::of).transpose()?;
@@ -44,6 +49,9 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     let trade = Trade::new(&entries, &base, &survey, &swept).map_err(refused)?;
     let budget = args.prove.prove.then_some(args.prove.budget);
     let answer = trade.run(budget, &Progress::new(args.common.quiet)).map_err(refused)?;
+    if let Some(warning) = answer.escape_warning() {
+        output::warn(args.common.quiet, &warning);
+    }
     let mut files = Vec::new();
     if let Some(file) = rows {
         let bytes = if table == Some(TableFormat::Json) { document(&first, &answer)?.into_bytes() } else { csv(&answer)? };
@@ -72,7 +80,7 @@ fn csv(answer: &TradeAnswer) -> Result<Vec<u8>, Failure> {
 
 /// The answer as one JSON document; its scenario is that of the first row.
 fn document(first: &Loaded, answer: &TradeAnswer) -> Result<String, Failure> {
-    let warnings = first.warnings_with([]);
+    let warnings = first.warnings_with(answer.escape_warning());
     let document = Document::new("trade", first.document.clone(), first.inputs.clone(), warnings, answer.clone());
     Ok(document.on_map(first.prepared.projection.as_ref()).to_json()?)
 }

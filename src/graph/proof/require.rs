@@ -42,6 +42,16 @@ impl CapabilityRange {
         let middle = self.middle(a, b);
         (a - b).abs() <= self.resolution * scale || middle <= a.min(b) || middle >= a.max(b)
     }
+
+    /// Whether a threshold is as narrow as the resolution asks: its two values are close, or the whole range is decided.
+    pub fn is_met(&self, threshold: &Threshold) -> bool {
+        match (threshold.unreachable_at, threshold.reachable_at) {
+            (Some(unreachable), Some(reachable)) => self.is_close(unreachable, reachable),
+            (Some(unreachable), None) => unreachable == self.strongest,
+            (None, Some(reachable)) => reachable == self.weakest,
+            (None, None) => false,
+        }
+    }
 }
 
 /// Bounds the least capability by bisection, given the verdict at each value.

@@ -41,6 +41,16 @@ pub struct HopDeviations {
     pub height_m: f64,
 }
 
+/// A deviation that is below 0, infinite or NaN.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error("the deviation {what} is {found}, expected a finite number of at least 0: leave it 0 if there is no such error")]
+pub struct InvalidDeviation {
+    /// Its field in [`HopDeviations`].
+    pub what: &'static str,
+    /// What was given, an angle in degrees.
+    pub found: f64,
+}
+
 /// The source of the estimated probability to fail.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum RiskModel {
@@ -70,6 +80,39 @@ pub struct PlannedHop {
 }
 
 impl RiskModel {
+    /// Checks the deviations.
+    ///
+    /// # Errors
+    /// The first [`InvalidDeviation`].
+    ///
+    /// ```
+    /// use chta::hop::{HopDeviations, RiskModel};
+    /// let of = |height_m| RiskModel::Deviations(HopDeviations { height_m, ..HopDeviations::default() });
+    /// assert!(of(0.1).check().is_ok() && of(f64::NAN).check().is_err());
+    /// ```
+    pub fn check(&self) -> Result<(), InvalidDeviation> {
+        let Self::Deviations(deviations) = self else { return Ok(()) };
+        // No destructuring with `..`, so that a new deviation cannot be left unchecked.
+        let HopDeviations { takeoff_speed_m_s, takeoff_speed_fraction, takeoff_angle, place_m, friction, height_m } = *deviations;
+        let all = [
+            ("takeoff_speed_m_s", takeoff_speed_m_s),
+            ("takeoff_speed_fraction", takeoff_speed_fraction),
+            ("takeoff_angle", takeoff_angle.degrees()),
+            ("place_m", place_m),
+            ("friction", friction),
+            ("height_m", height_m),
+        ];
+        match all.into_iter().find(|(_, found)| !(found.is_finite() && *found >= 0.0)) {
+            Some((what, found)) => Err(InvalidDeviation { what, found }),
+            None => Ok(()),
+        }
+    }
+
+    /// Whether every hop has the same probability to fail: deviations that are all 0.
+    pub fn tells_nothing(&self) -> bool {
+        *self == Self::Deviations(HopDeviations::default())
+    }
+
     /// The probability that a hop fails.
     ///
     /// ```text
@@ -81,8 +124,11 @@ impl RiskModel {
     /// probability that a normal deviation of one degree exceeds the lower or the upper margin.
     ///
     /// # Returns
-    /// From 0 to 1; 0 for a feasible hop without deviations.
+    /// From 0 to 1; 0 for a feasible hop without deviations, 1 with deviations that [`check`](Self::check) refuses.
     pub fn failure_probability(&self, test: &HopTest, hop: &PlannedHop) -> f64 {
+        if self.check().is_err() {
+            return 1.0;
+        }
         let success = match self {
             Self::Deviations(deviations) => deviations.success(test, hop),
             Self::Slack => slack_success(hop),

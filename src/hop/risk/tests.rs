@@ -172,3 +172,25 @@ fn a_margin_of_one_degree_on_either_side_is_one_standard_deviation() {
     assert!((failed - 0.317_310_507_863).abs() < 1e-9, "{failed}");
     assert!(RiskModel::Slack.failure_probability(&test, &hop) < 1e-9, "the whole set is wide");
 }
+
+#[test]
+fn deviations_that_are_no_numbers_are_refused_and_never_a_success() {
+    let test = HopTest::new(chain(&[(0.0, 0.0), (40.0, 0.0)], 0.8, 10.0));
+    let hop = planned(&test, 3.0, 14.0, TakeoffChoice::MidRange);
+    for bad in [f64::NAN, f64::INFINITY, -1.0] {
+        let zero = HopDeviations::default();
+        for (what, deviations) in [
+            ("takeoff_speed_m_s", HopDeviations { takeoff_speed_m_s: bad, ..zero }),
+            ("takeoff_speed_fraction", HopDeviations { takeoff_speed_fraction: bad, ..zero }),
+            ("takeoff_angle", HopDeviations { takeoff_angle: Angle::from_radians(bad), ..zero }),
+            ("place_m", HopDeviations { place_m: bad, ..zero }),
+            ("friction", HopDeviations { friction: bad, ..zero }),
+            ("height_m", HopDeviations { height_m: bad, ..zero }),
+        ] {
+            let model = RiskModel::Deviations(deviations);
+            assert_eq!(model.check().unwrap_err().what, what, "{bad}");
+            assert_eq!(model.failure_probability(&test, &hop), 1.0, "{what} {bad}");
+        }
+    }
+    assert!(RiskModel::Slack.check().is_ok() && !RiskModel::Slack.tells_nothing());
+}

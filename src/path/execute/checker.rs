@@ -23,6 +23,10 @@ const TIME_TOLERANCE: f64 = 1e-9;
 /// Relative rounding error of a speed from the formulas that gave it, allowed beyond the crate's tolerance.
 const SPEED_ROUNDING: f64 = 1e-12;
 
+/// Rounding error of a position along the profile, in units in the last place of its x: of each end of a hop when hops are laid end to
+/// end along a segment (a product and a sum).
+const STATION_ULPS: f64 = 4.0;
+
 /// Tolerance of a map position, as a fraction of the size of its coordinates.
 const MAP_TOLERANCE: f64 = 1e-12;
 
@@ -239,9 +243,18 @@ impl<S: Surface> Checker<'_, S> {
         matches!(refusal, GroundRefusal::TooSteep { tilt, max } if tilt.radians() - max.radians() <= tolerance_rad)
     }
 
+    /// Rounding error of the hop's length, as a share of it: far from x = 0, the last digit of the two ends is a part of a short hop. At
+    /// a given angle the height of a flight is proportional to its length, and speed and time to its square root, so that this share
+    /// is also that of those.
+    fn run_rounding(&self) -> f64 {
+        let farthest_m = self.hop.takeoff.along_m.abs().max(self.hop.landing.along_m.abs());
+        self.run_m.filter(|run_m| *run_m > 0.0).map_or(0.0, |run_m| STATION_ULPS * f64::EPSILON * farthest_m / run_m)
+    }
+
     /// The speed limit of a contact.
     fn speed(&mut self, meeting: Meeting, speed_max_m_s: f64, x_m: f64) {
-        let allowed_m_s = tolerant_speed_m_s(speed_max_m_s) * (1.0 + SPEED_ROUNDING) + meeting.speed_rounding_m_s;
+        let allowed_m_s =
+            tolerant_speed_m_s(speed_max_m_s) * (1.0 + SPEED_ROUNDING + self.run_rounding()) + meeting.speed_rounding_m_s;
         let within = meeting.speed_m_s <= allowed_m_s && speed_max_m_s > 0.0;
         if !within {
             let limit = if meeting.contact == Contact::Takeoff { Limit::TakeoffSpeed } else { Limit::LandingSpeed };
@@ -347,13 +360,13 @@ impl<S: Surface> Checker<'_, S> {
     fn machine(&mut self, flight: &Flight) {
         let x_m = self.hop.takeoff.along_m;
         if let Some(height_m) = self.surface.hopper().limits().apex_height_max_m {
-            let within = flight.apex_height_m <= height_m + flight.place_tolerance_m;
+            let within = flight.apex_height_m <= height_m * (1.0 + self.run_rounding()) + flight.place_tolerance_m;
             if !within {
                 self.note_limit(Limit::ApexHeight, flight.apex_height_m, height_m, "m", x_m);
             }
         }
         if let Some(time_s) = self.surface.hopper().limits().flight_time_max_s {
-            let within = flight.flight_time_s <= time_s * (1.0 + TIME_TOLERANCE) + time_rounding_s(flight);
+            let within = flight.flight_time_s <= time_s * (1.0 + TIME_TOLERANCE + self.run_rounding()) + time_rounding_s(flight);
             if !within {
                 self.note_limit(Limit::FlightTime, flight.flight_time_s, time_s, "s", x_m);
             }

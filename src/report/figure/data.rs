@@ -147,7 +147,7 @@ impl FigureData {
     /// Collects the data of the picture.
     ///
     /// # Errors
-    /// [`FigureError::NoHops`] if the answer is a path whose hops were not given; [`FigureError::TooManyNodes`].
+    /// [`FigureError::NoHops`] if the answer is a path whose hops were not given; [`FigureError::Nodes`].
     pub fn new(input: &FigureInput<'_>) -> Result<Self, FigureError> {
         let chain = input.test.chain();
         let nodes = NodeSet::new(chain, input.start, input.goal, input.answer.spacing)?;

@@ -1,4 +1,4 @@
-//! The picture of one analysis, for a mission report: SVG, 170 mm wide.
+//! The picture of one analysis, for a mission report: 170 mm wide.
 //!
 //! ```text
 //!   title, body, limits, verdict
@@ -66,7 +66,7 @@ pub use trials::{
 
 use crate::{
     chain::Station,
-    graph::{Answer, TooManyNodes},
+    graph::{Answer, NodesError},
     hop::HopTest,
     path::HopPath,
 };
@@ -101,7 +101,7 @@ pub struct FigureTitle {
 }
 
 /// The reasons why a figure cannot be drawn.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum FigureError {
     /// A path without its hops.
@@ -109,7 +109,7 @@ pub enum FigureError {
     NoHops,
     /// The nodes of the search cannot be generated again.
     #[error(transparent)]
-    TooManyNodes(#[from] TooManyNodes),
+    Nodes(#[from] NodesError),
     /// A raster or the cells of a trade have the wrong size.
     #[error("the {what} has {found} values, expected {rows} rows times {cols} columns")]
     RasterSize {
@@ -131,7 +131,7 @@ pub enum FigureError {
         points: usize,
     },
     /// The file's extension is not that of a picture format.
-    #[error("'{file}' does not end in .svg or .png, the two formats of pictures")]
+    #[error("'{file}' does not end in .svg or .png, the two formats of pictures: give it one of these endings")]
     UnknownFormat {
         /// The file's name.
         file: String,
@@ -141,7 +141,7 @@ pub enum FigureError {
     Drawing(String),
 }
 
-/// Draws the picture of one analysis as SVG.
+/// Draws the picture of one analysis.
 ///
 /// The same input gives the same bytes. A path of more than [`MOST_HOPS_DRAWN`] hops is thinned to every n-th, which the legend
 /// says.
@@ -162,13 +162,13 @@ pub enum FigureError {
 /// let Outcome::Path { legs, .. } = &answer.outcome else { panic!("no path") };
 /// let path = generate(&test, legs, TakeoffChoice::LeastSpeed, Split::FullReach)?;
 /// let title = FigureTitle { body: "Mars".into(), ..FigureTitle::default() };
-/// let svg = draw(&FigureInput { test: &test, answer: &answer, path: Some(&path), start, goal, title })?;
+/// let svg = draw(&FigureInput { test: &test, answer: &answer, path: Some(&path), start, goal, title })?.to_svg()?;
 /// assert!(svg.starts_with("<svg") && svg.contains("traversable"));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn draw(input: &FigureInput<'_>) -> Result<String, FigureError> {
+pub fn draw(input: &FigureInput<'_>) -> Result<Picture, FigureError> {
     let (sheet, height_mm) = laid_out(input, &FigureData::new(input)?);
-    sheet.to_svg(palette::PAGE_WIDTH_MM, height_mm)
+    Ok(Picture::page(sheet, height_mm))
 }
 
 /// The sheet with all its marks, and its height.

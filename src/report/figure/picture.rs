@@ -115,7 +115,15 @@ impl Picture {
     /// # Errors
     /// As [`PictureFormat::of`], [`Picture::to_svg`] and [`Picture::to_png`].
     pub fn encoded_for(&self, file: &Path) -> Result<Vec<u8>, FigureError> {
-        match PictureFormat::of(file)? {
+        self.encoded(PictureFormat::of(file)?)
+    }
+
+    /// The picture in a format.
+    ///
+    /// # Errors
+    /// As [`Picture::to_svg`] and [`Picture::to_png`].
+    pub fn encoded(&self, format: PictureFormat) -> Result<Vec<u8>, FigureError> {
+        match format {
             PictureFormat::Svg => Ok(self.to_svg()?.into_bytes()),
             PictureFormat::Png => self.to_png(),
         }

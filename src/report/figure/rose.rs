@@ -3,7 +3,7 @@
 use plotters::style::RGBColor;
 
 use super::{
-    FigureError,
+    Picture,
     bands::HopClasses,
     keys::{self, Swatch},
     palette::{AXIS, BLACK, PAGE_WIDTH_MM, RIGHT_MM, SMALL_MM, TEXT_MM, TITLE_MM, VERMILION, WHITE},
@@ -21,11 +21,8 @@ const RADIUS_MM: f64 = 62.0;
 /// The largest angle of an arc drawn as one straight piece, degrees: the error is below 0.01 mm.
 const ARC_STEP_DEG: f64 = 2.0;
 
-/// Draws the rose of a fan as SVG, 170 mm wide, north up, below `title` and `subtitle`.
-///
-/// # Errors
-/// [`FigureError::Drawing`].
-pub fn draw_rose(answer: &FanAnswer, title: &str, subtitle: &str) -> Result<String, FigureError> {
+/// Draws the rose of a fan, 170 mm wide, north up, below `title` and `subtitle`.
+pub fn draw_rose(answer: &FanAnswer, title: &str, subtitle: &str) -> Picture {
     let mut sheet = Sheet::default();
     let mut top_mm = 4.0;
     let mut line = |text: String, size_mm: f64, bold: bool| {
@@ -42,7 +39,7 @@ pub fn draw_rose(answer: &FanAnswer, title: &str, subtitle: &str) -> Result<Stri
     rose.wedges(&mut sheet);
     rose.rings(&mut sheet);
     let end_mm = rose.legend(&mut sheet, rose.centre.1 + RADIUS_MM + 9.0);
-    sheet.to_svg(PAGE_WIDTH_MM, end_mm + 3.0)
+    Picture::page(sheet, end_mm + 3.0)
 }
 
 /// The fan on the page.

@@ -325,7 +325,7 @@ fn texts_stay_on_the_page_and_off_each_other() {
 #[test]
 fn a_path_shows_every_hop_number_limit_and_unit() {
     let case = paper();
-    let svg = case.with(|input| draw(input).unwrap());
+    let svg = case.with(|input| draw(input).unwrap().to_svg().unwrap());
     for words in ["1\n", "2\n", "3\n", "4\n"] {
         let count = svg.matches(&format!(">\n{words}</text>")).count();
         assert_eq!(count, 2, "hop {words} is numbered over its flight and below its bar");
@@ -365,13 +365,13 @@ fn a_journey_without_a_path_shows_how_far_one_gets_and_which_limits_refuse() {
 fn every_svg_is_well_formed_small_and_reproducible() {
     let folder = std::env::var_os("CHTA_FIGURES_TO").map(std::path::PathBuf::from);
     for case in cases() {
-        let svg = case.with(|input| draw(input).unwrap());
+        let svg = case.with(|input| draw(input).unwrap().to_svg().unwrap());
         if let Some(folder) = &folder {
             std::fs::write(folder.join(case.name.replace(' ', "-")).with_extension("svg"), &svg).unwrap();
         }
         check_well_formed(&svg);
         assert!(svg.len() < 1_000_000, "{}: {} bytes", case.name, svg.len());
-        assert_eq!(svg, case.with(|input| draw(input).unwrap()), "{}", case.name);
+        assert_eq!(svg, case.with(|input| draw(input).unwrap().to_svg().unwrap()), "{}", case.name);
         for token in svg.split(|c: char| !(c.is_ascii_digit() || c == '.' || c == '-')) {
             assert!(token.len() <= 10, "{}: the number {token} is long", case.name);
         }
@@ -382,7 +382,7 @@ fn every_svg_is_well_formed_small_and_reproducible() {
 fn names_with_special_characters_are_escaped() {
     let svg = paper().with(|input| {
         let title = FigureTitle { name: "a < b & \"c\" font-size=\"7.5\"".to_owned(), ..FigureTitle::default() };
-        draw(&FigureInput { title, ..input.clone() }).unwrap()
+        draw(&FigureInput { title, ..input.clone() }).unwrap().to_svg().unwrap()
     });
     check_well_formed(&svg);
     assert!(svg.contains("a &lt; b &amp; &quot;c&quot; font-size=&quot;7.5&quot;"));
@@ -390,7 +390,7 @@ fn names_with_special_characters_are_escaped() {
 
 #[test]
 fn curves_are_finer_than_pixels() {
-    let svg = paper().with(|input| draw(input).unwrap());
+    let svg = paper().with(|input| draw(input).unwrap().to_svg().unwrap());
     assert!(svg.starts_with("<svg width=\"170mm\" height=\""), "{}", &svg[..120]);
     let width: f64 = svg.split("viewBox=\"0 0 ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
     let units_per_pixel = width / (170.0 / 25.4 * 96.0);
@@ -415,7 +415,7 @@ fn long_paths_are_thinned_and_say_so() {
     let Subject::Path { hops, .. } = &data.subject else { panic!("no path") };
     assert!(hops.of > 4000 && hops.shown.len() <= MOST_HOPS_DRAWN && hops.shown.len() > MOST_HOPS_DRAWN / 2);
     assert!(texts(&case).contains(&format!("hop, forward (1 in {} of {} shown)", hops.every, hops.of)));
-    assert!(case.with(|input| draw(input).unwrap()).len() < 1_000_000);
+    assert!(case.with(|input| draw(input).unwrap().to_svg().unwrap()).len() < 1_000_000);
 }
 
 #[test]

@@ -38,7 +38,8 @@ pub struct LandingRow {
     pub hop: u32,
     /// The policy flown.
     pub policy: &'static str,
-    /// The outcome of the trial, if it ended with this landing; else empty.
+    /// The outcome of the trial, if this is the landing of its last hop; else empty. A trial whose last hop did not land has no such
+    /// row.
     pub outcome: &'static str,
     /// The numbers, in the order of [`number_columns`].
     pub numbers: [f64; NUMBERS],

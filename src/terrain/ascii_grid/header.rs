@@ -4,8 +4,10 @@ use std::collections::BTreeMap;
 use std::io::{self, BufRead};
 
 use super::read::Problems;
-use super::tokens::{Token, Tokens};
+use super::tokens::{Token, Tokens, begins_comment};
+use crate::quantity::number_help;
 use crate::terrain::NoData;
+use crate::terrain::text_lines::lines_of;
 
 /// The no-data value if the header gives none (from the definition of the format).
 pub(super) const DEFAULT_NO_DATA: f64 = -9999.0;
@@ -15,6 +17,22 @@ const BYTE_ORDER_MARK: char = '\u{feff}';
 
 const KEYS: [&str; 10] =
     ["ncols", "nrows", "xllcorner", "xllcenter", "yllcorner", "yllcenter", "cellsize", "dx", "dy", "nodata_value"];
+
+/// Other spellings of keys.
+const ALIASES: [(&str, &str); 5] = [
+    ("xllcentre", "xllcenter"),
+    ("yllcentre", "yllcenter"),
+    ("nodata", "nodata_value"),
+    ("no_data", "nodata_value"),
+    ("no_data_value", "nodata_value"),
+];
+
+/// The key that a word spells, in any case.
+fn key_of(word: &str) -> Option<&'static str> {
+    let lower = word.to_ascii_lowercase();
+    let alias = ALIASES.iter().find(|(spelling, _)| *spelling == lower).map(|(_, key)| *key);
+    alias.or_else(|| KEYS.into_iter().find(|known| *known == lower))
+}
 
 /// A validated header.
 #[derive(Clone, Copy, Debug)]
@@ -40,9 +58,14 @@ pub(super) fn read_header<R: BufRead>(tokens: &mut Tokens<R>, problems: &mut Pro
             break;
         }
         let Some(key) = tokens.next()? else { break };
-        let lower = key.text.trim_start_matches(BYTE_ORDER_MARK).to_ascii_lowercase();
-        let Some(known) = KEYS.into_iter().find(|known| *known == lower) else {
-            problems.add(&key, &format!("the header key {}", quoted(&key.text)), &format!("one of {}", KEYS.join(", ")));
+        let word = key.text.trim_start_matches(BYTE_ORDER_MARK);
+        let Some(known) = key_of(word) else {
+            let joined = word.split_once(['=', ':', ',', ';']).filter(|(before, _)| key_of(before).is_some());
+            let expected = match joined {
+                Some((before, _)) => format!("{before} and its number with blanks between them, and no other sign"),
+                None => format!("one of {}", KEYS.join(", ")),
+            };
+            problems.add(&key, &format!("the header key {}", quoted(&key.text)), &expected);
             // A text of unknown words is not a grid; it stops after the first twenty.
             if problems.are_many() {
                 return Ok(None);
@@ -76,7 +99,7 @@ fn check_header(fields: &Fields, place: (usize, usize), problems: &mut Problems)
         Some(token) => {
             let value = token.text.parse::<NoData>().ok();
             if value.is_none() {
-                problems.add(token, &format!("nodata_value {}", quoted(&token.text)), number_hint(&token.text));
+                problems.add(token, &format!("nodata_value {}", quoted(&token.text)), &number_hint(&token.text));
             }
             value
         }
@@ -153,14 +176,17 @@ fn number(fields: &Fields, key: &'static str, place: (usize, usize), problems: &
     };
     let value = token.text.parse::<f64>().ok().filter(|value| value.is_finite());
     if value.is_none() {
-        problems.add(token, &format!("{key} {}", quoted(&token.text)), number_hint(&token.text));
+        problems.add(token, &format!("{key} {}", quoted(&token.text)), &number_hint(&token.text));
     }
     value
 }
 
 /// The expectation to print for a word that is not a number.
-pub(super) fn number_hint(text: &str) -> &'static str {
-    if text.contains(',') { "a finite number with a decimal point (replace decimal commas by points)" } else { "a finite number" }
+pub(super) fn number_hint(text: &str) -> String {
+    if text.parse::<f64>().is_ok() || !text.contains(|c: char| c.is_ascii_digit()) {
+        return "a finite number".to_owned();
+    }
+    format!("a finite number ({})", number_help(text))
 }
 
 /// Words that begin like a number end the header, so that `1,5` is reported as a malformed number.
@@ -176,15 +202,13 @@ pub(super) fn quoted(text: &str) -> String {
     format!("'{}'", crate::quantity::excerpt(text, 40))
 }
 
-/// Whether a text begins with a key of the header.
+/// Whether a text begins with a key of the header, after comments; any sign may follow the key, so that the reader can name a
+/// wrong one.
 pub(super) fn begins_with_key(beginning: &[u8]) -> bool {
     let beginning = beginning.strip_prefix("\u{feff}".as_bytes()).unwrap_or(beginning);
-    let word: Vec<u8> = beginning
-        .iter()
-        .copied()
-        .skip_while(u8::is_ascii_whitespace)
-        .take_while(|byte| !byte.is_ascii_whitespace())
-        .take(KEYS.iter().map(|key| key.len()).max().unwrap_or(0) + 1)
-        .collect();
-    KEYS.iter().any(|key| word.eq_ignore_ascii_case(key.as_bytes()))
+    let mut lines = lines_of(beginning).map(<[u8]>::trim_ascii_start).filter(|line| !line.is_empty());
+    lines.find(|line| !begins_comment(line)).is_some_and(|line| {
+        let end = line.iter().position(|byte| !byte.is_ascii_alphanumeric() && *byte != b'_').unwrap_or(line.len());
+        std::str::from_utf8(&line[..end]).is_ok_and(|word| key_of(word).is_some())
+    })
 }

@@ -14,18 +14,28 @@ pub(super) struct Token {
     pub(super) column: usize,
 }
 
-/// Reads words separated by white space.
+/// What begins a comment, which reaches to the end of its line.
+const COMMENTS: [&[u8]; 5] = [b"#", b"//", b"%", b"!", b";"];
+
+/// Whether a word begins a comment.
+pub(super) fn begins_comment(word: &[u8]) -> bool {
+    COMMENTS.iter().any(|sign| word.starts_with(sign))
+}
+
+/// Reads words separated by white space. Lines end with a line feed, a carriage return, or both.
 pub(super) struct Tokens<R> {
     source: R,
     line: usize,
     column: usize,
+    /// Whether the last byte was a carriage return, whose line feed begins no further line.
+    after_return: bool,
     word: Vec<u8>,
     peeked: Option<Token>,
 }
 
 impl<R: BufRead> Tokens<R> {
     pub(super) fn new(source: R) -> Self {
-        Self { source, line: 1, column: 1, word: Vec::new(), peeked: None }
+        Self { source, line: 1, column: 1, after_return: false, word: Vec::new(), peeked: None }
     }
 
     /// The next word without consuming it.
@@ -50,6 +60,30 @@ impl<R: BufRead> Tokens<R> {
     }
 
     fn read_word(&mut self) -> io::Result<Option<Token>> {
+        loop {
+            let token = self.read_any_word()?;
+            if !begins_comment(&self.word) {
+                return Ok(token);
+            }
+            self.skip_line()?;
+        }
+    }
+
+    fn skip_line(&mut self) -> io::Result<()> {
+        loop {
+            let buffer = self.source.fill_buf()?;
+            let end = buffer.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+            let used = end.unwrap_or(buffer.len());
+            let ended = end.is_some() || buffer.is_empty();
+            self.source.consume(used);
+            self.column += used;
+            if ended {
+                return Ok(());
+            }
+        }
+    }
+
+    fn read_any_word(&mut self) -> io::Result<Option<Token>> {
         self.word.clear();
         let (mut line, mut column) = (0, 0);
         loop {
@@ -74,12 +108,15 @@ impl<R: BufRead> Tokens<R> {
                     }
                 }
                 used += 1;
-                if byte == b'\n' {
-                    self.line += 1;
-                    self.column = 1;
-                } else {
-                    self.column += 1;
+                match byte {
+                    b'\n' if self.after_return => {}
+                    b'\n' | b'\r' => {
+                        self.line += 1;
+                        self.column = 1;
+                    }
+                    _ => self.column += 1,
                 }
+                self.after_return = byte == b'\r';
             }
             self.source.consume(used);
             if ended {

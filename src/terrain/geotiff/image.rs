@@ -2,6 +2,7 @@
 
 use tiff_reader::{Ifd, RasterLayout, TiffFile};
 
+use super::encoding::{refuse_undecodable, unreadable};
 use super::tag;
 use crate::terrain::TerrainError;
 
@@ -33,10 +34,14 @@ impl<'a> Images<'a> {
             }
         };
         refuse_colours(elevations)?;
-        let layout = elevations.raster_layout().map_err(|error| damaged(error.to_string()))?;
+        refuse_undecodable(elevations)?;
+        let layout = elevations.raster_layout().map_err(unreadable)?;
         let mask = file.ifds().iter().find(|image| {
             kind(image) & (REDUCED | MASK) == MASK && image.width() == elevations.width() && image.height() == elevations.height()
         });
+        if let Some(mask) = mask {
+            refuse_undecodable(mask)?;
+        }
         Ok(Self { elevations, layout, mask })
     }
 }
@@ -64,6 +69,15 @@ fn refuse_colours(image: &Ifd) -> Result<(), TerrainError> {
         0 => (
             "a picture whose samples count darkness (WhiteIsZero)".to_owned(),
             "gdal_translate -co PHOTOMETRIC=MINISBLACK in.tif out.tif, if its stored numbers are elevations",
+        ),
+        4 => (
+            "a transparency mask".to_owned(),
+            "use the file of the elevations; if the stored numbers are elevations: gdal_translate -co PHOTOMETRIC=MINISBLACK in.tif \
+             out.tif",
+        ),
+        other if other > 10 => (
+            format!("a picture with photometric interpretation {other} (such as raw camera data)"),
+            "gdal_translate -b 1 -co PHOTOMETRIC=MINISBLACK in.tif out.tif, if its stored numbers are elevations",
         ),
         _ if bands > 1 => (format!("{bands} bands"), "gdal_translate -b 1 in.tif out.tif (or whichever band holds the elevations)"),
         _ => return Ok(()),

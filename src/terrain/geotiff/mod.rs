@@ -2,6 +2,7 @@
 //!
 //! Only this module uses the crates `tiff-reader` and `tiff-writer`.
 
+mod encoding;
 mod image;
 mod keys;
 mod metadata;

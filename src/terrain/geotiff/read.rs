@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use tiff_reader::ifd::ParseBudgets;
-use tiff_reader::{OpenOptions, TiffError, TiffFile};
+use tiff_reader::{OpenOptions, TiffFile};
 
+use super::encoding::unreadable;
 use super::image::{Images, damaged};
 use super::keys::{GeoTags, Placement};
 use super::metadata::{read_no_data, read_scaling};
@@ -31,12 +32,12 @@ impl DemReader for GeoTiffReader {
 
     fn read_bytes(&self, bytes: Vec<u8>, context: &ReadContext) -> Result<Dem, TerrainError> {
         let options = whole_options(bytes.len() as u64);
-        read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?, context)
+        read_tiff(&TiffFile::from_bytes_with_options(bytes, options).map_err(unreadable)?, context)
     }
 
     fn read_path(&self, path: &Path, context: &ReadContext) -> Result<Dem, TerrainError> {
         let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
-        read_tiff(&TiffFile::open_with_options(path, whole_options(length)).map_err(open_error)?, context)
+        read_tiff(&TiffFile::open_with_options(path, whole_options(length)).map_err(unreadable)?, context)
     }
 
     fn open_path(&self, path: &Path, context: ReadContext) -> Result<Box<dyn DemFile>, TerrainError> {
@@ -72,13 +73,6 @@ fn open_options(length: u64) -> OpenOptions {
 /// When the file is read as a whole, no block is decoded twice, so a cache would only cost memory and time.
 fn whole_options(length: u64) -> OpenOptions {
     OpenOptions { block_cache_bytes: 0, ..open_options(length) }
-}
-
-fn open_error(error: TiffError) -> TerrainError {
-    match error {
-        TiffError::Io(reason, _) => TerrainError::reading(reason),
-        other => damaged(other.to_string()),
-    }
 }
 
 fn read_tiff(file: &TiffFile, context: &ReadContext) -> Result<Dem, TerrainError> {
@@ -137,7 +131,7 @@ fn open_tiff(path: &Path, context: ReadContext) -> Result<Box<dyn DemFile>, Terr
     let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
     let mut options = open_options(length);
     let block = {
-        let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
+        let file = TiffFile::open_with_options(path, options).map_err(unreadable)?;
         let images = Images::of(&file)?;
         let (_, Placement { georeference, states_metres, .. }) = check_tags(&file, &images, &context)?;
         let (rows, cols) = (images.layout.height, images.layout.width);
@@ -148,7 +142,7 @@ fn open_tiff(path: &Path, context: ReadContext) -> Result<Box<dyn DemFile>, Terr
         block_bytes(&images)
     };
     options.block_cache_bytes = block.saturating_mul(KEPT_BLOCKS).max(KEPT_BYTES);
-    let file = TiffFile::open_with_options(path, options).map_err(open_error)?;
+    let file = TiffFile::open_with_options(path, options).map_err(unreadable)?;
     let images = Images::of(&file)?;
     let (decoder, Placement { georeference, south_up, .. }) = check_tags(&file, &images, &context)?;
     let (rows, cols) = (images.layout.height, images.layout.width);
@@ -207,7 +201,7 @@ pub(in crate::terrain) struct Placed {
 #[cfg(feature = "gdal")]
 pub(in crate::terrain) fn place_by_tags(bytes: Vec<u8>, rows: usize) -> Result<Placed, TerrainError> {
     let options = open_options(bytes.len() as u64);
-    let file = TiffFile::from_bytes_with_options(bytes, options).map_err(open_error)?;
+    let file = TiffFile::from_bytes_with_options(bytes, options).map_err(unreadable)?;
     let Placement { georeference, south_up, states_metres } = GeoTags::of(Images::of(&file)?.elevations).place(rows, None)?;
     Ok(Placed { georeference, south_up, states_metres })
 }
@@ -226,7 +220,7 @@ impl TiffImage {
     /// As [`read_geotiff_bytes`], for what makes a TIFF.
     pub(in crate::terrain) fn open(path: &Path) -> Result<Self, TerrainError> {
         let length = std::fs::metadata(path).map_err(TerrainError::reading)?.len();
-        let file = TiffFile::open_with_options(path, open_options(length)).map_err(open_error)?;
+        let file = TiffFile::open_with_options(path, open_options(length)).map_err(unreadable)?;
         let checked = file.ifds().first().ok_or_else(|| damaged("it has no image".to_owned()))?;
         checked.raster_layout().map_err(|error| damaged(error.to_string()))?;
         Ok(Self(file))

@@ -2,6 +2,7 @@
 
 use tiff_reader::{Ifd, RasterLayout, TiffFile, TiffSample};
 
+use super::encoding::unreadable;
 use super::image::{Images, damaged};
 use crate::terrain::stored::Scaling;
 use crate::terrain::{NoData, TerrainError, Window};
@@ -215,7 +216,7 @@ impl Reading<'_> {
     fn samples<T: TiffSample>(&self) -> Result<Vec<T>, TerrainError> {
         let Window { first_row, first_col, rows, cols } = self.window;
         let read = self.file.read_window_from_ifd::<T>(self.image, first_row, first_col, rows, cols);
-        let samples = read.map_err(|error| damaged(error.to_string()))?;
+        let samples = read.map_err(unreadable)?;
         let (samples, _) = samples.into_raw_vec_and_offset();
         if samples.len() == rows * cols {
             Ok(samples)

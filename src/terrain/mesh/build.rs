@@ -2,6 +2,7 @@
 
 use nalgebra::Point3;
 
+use super::ears;
 use super::model::{Mesh, normal_of};
 use crate::terrain::{NoData, TerrainError};
 
@@ -13,11 +14,15 @@ pub(super) struct MeshBuilder {
     triangles: Vec<[u32; 3]>,
     /// Number of polygons with more than three corners.
     polygons: usize,
+    /// Number of those that are not convex.
+    concave: usize,
+    /// What the reader left out, one sentence each.
+    warnings: Vec<String>,
 }
 
 impl MeshBuilder {
     pub(super) fn new(scale: f64) -> Self {
-        Self { scale, vertices: Vec::new(), triangles: Vec::new(), polygons: 0 }
+        Self { scale, vertices: Vec::new(), triangles: Vec::new(), polygons: 0, concave: 0, warnings: Vec::new() }
     }
 
     /// Adds a vertex in the file's units.
@@ -38,11 +43,20 @@ impl MeshBuilder {
         self.vertices.len()
     }
 
-    /// Adds a polygon, divided into a fan of triangles from its first corner.
+    /// Adds a warning for the user.
+    pub(super) fn warn(&mut self, warning: String) {
+        self.warnings.push(warning);
+    }
+
+    /// Number of triangles so far.
+    pub(super) fn triangle_count(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Adds a polygon, divided into a fan of triangles from its first corner, or into ears if the fan would fold over itself.
     ///
     /// # Errors
-    /// What is wrong with it: fewer than three corners, a vertex that is not defined (yet), or a fan that would fold over
-    /// itself.
+    /// What is wrong with it: fewer than three corners, a vertex that is not defined (yet), or a border that crosses itself.
     pub(super) fn polygon(&mut self, corners: &[u32]) -> Result<(), String> {
         if let Some(corner) = corners.iter().find(|corner| **corner as usize >= self.vertices.len()) {
             return Err(format!("found a face with vertex {}, expected 1 to {}", u64::from(*corner) + 1, self.vertices.len()));
@@ -63,11 +77,11 @@ impl MeshBuilder {
             if let Some(longest) = longest
                 && normals.iter().any(|normal| normal.dot(longest) < -1.0e-9 * longest.norm_squared())
             {
-                return Err(format!(
-                    "found a face of {} corners that is not convex, expected triangles or convex polygons; triangulate the mesh before \
-                     the export",
-                    corners.len()
-                ));
+                let points: Vec<_> = corners.iter().map(|corner| self.vertices[*corner as usize]).collect();
+                let triangles = ears::cut(&points)?;
+                self.concave += 1;
+                self.triangles.extend(triangles.into_iter().map(|triangle| triangle.map(|at| corners[at])));
+                return Ok(());
             }
         }
         self.triangles.extend(fan);
@@ -98,12 +112,15 @@ impl MeshBuilder {
     pub(super) fn finish(self) -> Result<(Mesh, Vec<String>), TerrainError> {
         let whole = self.triangles.len();
         let mesh = Mesh::new(self.vertices, self.triangles)?;
-        let mut warnings = Vec::new();
+        let mut warnings = self.warnings;
         if self.polygons > 0 {
             warnings.push(format!(
                 "{} faces of the mesh have more than three corners and were cut into triangles from their first corner",
                 self.polygons
             ));
+        }
+        if self.concave > 0 {
+            warnings.push(format!("{} of these faces are not convex and were cut along diagonals inside them", self.concave));
         }
         if mesh.dropped_triangles() > 0 {
             warnings.push(format!("{} of {whole} triangles of the mesh have no area and were dropped", mesh.dropped_triangles()));
@@ -138,13 +155,23 @@ mod tests {
     }
 
     #[test]
+    fn a_concave_face_is_cut_inside() {
+        // An arrow head: from its wing, the fan folds over the notch.
+        let mut builder = square();
+        builder.polygon(&[3, 0, 1, 4]).unwrap();
+        let (mesh, warnings) = builder.finish().unwrap();
+        assert_eq!(mesh.indices(), [[4, 3, 0], [0, 1, 4]]);
+        assert!(warnings[1].contains("1 of these faces are not convex"), "{warnings:?}");
+    }
+
+    #[test]
     fn faces_that_form_no_triangles_are_refused() {
         let mut builder = square();
         assert!(builder.polygon(&[0, 1]).unwrap_err().contains("2 corners"));
         assert!(builder.polygon(&[]).unwrap_err().contains("without corners"));
         assert!(builder.polygon(&[0, 1, 5]).unwrap_err().contains("vertex 6, expected 1 to 5"));
-        // An arrow head: from its wing, the fan folds over the notch.
-        assert!(builder.polygon(&[3, 0, 1, 4]).is_err_and(|reason| reason.contains("not convex")));
+        // A bow tie has no inside.
+        assert!(builder.polygon(&[0, 2, 1, 3]).is_err_and(|reason| reason.contains("crosses itself")));
         assert!(builder.vertex(0.0, f64::NAN, 0.0).is_err());
     }
 }

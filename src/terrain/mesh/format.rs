@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::build::MeshBuilder;
 use super::{Mesh, obj, ply, stl, voids};
-use crate::terrain::{NoDataRule, TerrainError};
+use crate::terrain::{NoDataRule, TerrainError, foreign};
 
 /// Number of bytes of a file that are examined to recognise a mesh: comments may precede the first statement.
 const PROBE_BYTES: u64 = 1 << 16;
@@ -39,18 +39,53 @@ impl MeshFormat {
     /// The format of a file with this beginning and length. The title of a binary STL may begin with `solid`, so it is tested
     /// first.
     fn of(beginning: &[u8], length: u64) -> Option<Self> {
-        if ply::recognises(beginning) {
+        let text = without_mark(beginning);
+        if ply::recognises(text) {
             Some(Self::Ply)
-        } else if stl::recognises_binary(beginning, length) {
+        } else if !is_raster(beginning) && stl::recognises_binary(beginning, length) {
             Some(Self::BinaryStl)
-        } else if stl::recognises_ascii(beginning) {
+        } else if stl::recognises_ascii(text) {
             Some(Self::AsciiStl)
-        } else if obj::recognises(beginning) {
+        } else if obj::recognises(text) {
             Some(Self::Obj)
         } else {
             None
         }
     }
+}
+
+/// The name of the format of a file with this beginning and length, and whether it is text.
+pub(crate) fn format_name(beginning: &[u8], length: u64) -> Option<(&'static str, bool)> {
+    Some(match MeshFormat::of(beginning, length)? {
+        MeshFormat::Obj => ("OBJ", true),
+        MeshFormat::BinaryStl => ("STL", false),
+        MeshFormat::AsciiStl => ("STL", true),
+        MeshFormat::Ply => ("PLY", beginning.windows(12).take(200).any(|window| window == b"format ascii")),
+    })
+}
+
+/// The length that a binary STL with this header has, bytes, if its first triangles are sane: junk of any length has a number where
+/// an STL has the count of its triangles.
+pub(crate) fn binary_stl_length(beginning: &[u8]) -> Option<u64> {
+    let length = stl::binary_length(beginning)?;
+    let first = beginning.get(stl::HEADER_BYTES..)?.chunks_exact(50).take(20);
+    let sane = |number: &[u8]| {
+        let number = f32::from_le_bytes([number[0], number[1], number[2], number[3]]);
+        number == 0.0 || (1e-20..1e12).contains(&number.abs())
+    };
+    let all_sane = first.flat_map(|triangle| triangle[..48].chunks_exact(4)).all(sane);
+    (length > stl::HEADER_BYTES as u64 && all_sane).then_some(length)
+}
+
+/// A text without its byte order mark.
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
+}
+
+/// Whether a file begins like a raster or another known format, whose numbers must not be taken for triangles.
+fn is_raster(beginning: &[u8]) -> bool {
+    [&b"II*\0"[..], b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| beginning.starts_with(magic))
+        || foreign::name(beginning).is_some()
 }
 
 /// Whether a file is a mesh by its content; false if it cannot be read.
@@ -103,13 +138,23 @@ fn read_bytes(bytes: &[u8], scale: f64, no_data: NoDataRule) -> Result<MeshFile,
         return Err(TerrainError::InvalidMesh(format!("mesh_scale is {scale}, expected metres per unit of the file, more than 0")));
     }
     let mut builder = MeshBuilder::new(scale);
-    match MeshFormat::of(bytes, bytes.len() as u64) {
-        Some(MeshFormat::Obj) => obj::read(bytes, &mut builder),
+    let text = without_mark(bytes);
+    let format = MeshFormat::of(bytes, bytes.len() as u64);
+    match format {
+        Some(MeshFormat::Obj) => obj::read(text, &mut builder),
         Some(MeshFormat::BinaryStl) => stl::read_binary(bytes, &mut builder),
-        Some(MeshFormat::AsciiStl) => stl::read_ascii(bytes, &mut builder),
-        Some(MeshFormat::Ply) => ply::read(bytes, &mut builder),
+        Some(MeshFormat::AsciiStl) => stl::read_ascii(text, &mut builder),
+        Some(MeshFormat::Ply) => ply::read(text, &mut builder),
         None => Err(not_recognised(bytes)),
     }?;
+    // The other formats state where they end. A last number that was cut short is a number as well.
+    if format == Some(MeshFormat::Obj) && !bytes.ends_with(b"\n") && !bytes.ends_with(b"\r") {
+        builder.warn(format!(
+            "the OBJ ends within a line, after {} vertices and {} triangles: make sure that it is whole",
+            builder.vertex_count(),
+            builder.triangle_count()
+        ));
+    }
     if let NoDataRule::Value(mark) = no_data {
         builder.remove_missing(mark)?;
     }
@@ -121,6 +166,14 @@ fn read_bytes(bytes: &[u8], scale: f64, no_data: NoDataRule) -> Result<MeshFile,
 }
 
 fn not_recognised(bytes: &[u8]) -> TerrainError {
+    if let Some(other) = foreign::name(bytes) {
+        return foreign::not_a_mesh(other);
+    }
+    if let Some(length) = stl::binary_length(bytes).filter(|_| stl::is_titled_like_text(bytes)) {
+        let triangles = (length - stl::HEADER_BYTES as u64) / stl::TRIANGLE_BYTES;
+        let reason = format!("it declares {triangles} triangles in {length} bytes, but the file has {} bytes", bytes.len());
+        return TerrainError::Damaged { format: stl::BINARY, reason };
+    }
     let shown: String = bytes.iter().take(24).flat_map(|&byte| std::ascii::escape_default(byte)).map(char::from).collect();
     let mut found = if bytes.is_empty() { "nothing: the file is empty".to_owned() } else { format!("'{shown}'") };
     if let Some(length) = stl::binary_length(bytes).filter(|_| bytes.contains(&0)) {

@@ -17,6 +17,7 @@
 //! ```
 
 mod build;
+mod ears;
 mod format;
 mod model;
 mod obj;
@@ -27,5 +28,6 @@ mod text;
 mod voids;
 
 pub use format::{MESH_FORMATS, MeshFile, looks_like_mesh, read_mesh, read_mesh_bytes, read_mesh_with};
+pub(crate) use format::{binary_stl_length, format_name};
 pub use model::{Mesh, MeshBounds};
 pub use slice::{Layers, MeshSlice, WALL_RUN_M, Wall, slice_mesh};

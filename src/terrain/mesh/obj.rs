@@ -27,12 +27,19 @@ const WITHOUT_SURFACE: [&str; 17] = [
     "bevel",
 ];
 
+/// Statements of curves and curved surfaces, and of files to be read in.
+const FREE_FORM: [&str; 19] = [
+    "cstype", "deg", "bmat", "step", "curv", "curv2", "surf", "parm", "trim", "hole", "scrv", "sp", "end", "con", "ctech", "stech",
+    "bzp", "bsp", "call",
+];
+
 /// Whether a text begins like an OBJ: its first line, not counting empty lines and comments, is a statement.
 pub(super) fn recognises(beginning: &[u8]) -> bool {
     let first = lines(beginning).find(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     first.is_some_and(|(_, line)| {
         let word = line.split_ascii_whitespace().next().unwrap_or_default();
-        (["v", "f"].contains(&word) || WITHOUT_SURFACE.contains(&word)) && line.len() > word.len()
+        (["v", "f", "fo"].contains(&word) || WITHOUT_SURFACE.contains(&word) || FREE_FORM.contains(&word))
+            && line.len() > word.len()
     })
 }
 
@@ -49,6 +56,13 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Terrai
         if let Some(before) = line.strip_suffix('\\') {
             begun = Some((number, before.to_owned()));
             continue;
+        }
+        if let Some(word) = line.split_ascii_whitespace().next().filter(|word| FREE_FORM.contains(word)) {
+            return Err(TerrainError::Unsuitable {
+                found: format!("curved geometry (the statement '{word}' in line {number} of the OBJ)"),
+                expected: "polygons (v and f)",
+                mend: "an export of the model as polygons".to_owned(),
+            });
         }
         statement(&line, builder, &mut corners).map_err(|problem| in_line(NAME, number, &problem))?;
     }
@@ -69,7 +83,7 @@ fn statement(line: &str, builder: &mut MeshBuilder, corners: &mut Vec<u32>) -> R
             let [x, y, z] = three(&mut words)?;
             builder.vertex(x, y, z).map(|_| ())
         }
-        Some("f") => {
+        Some("f" | "fo") => {
             corners.clear();
             for word in words {
                 corners.push(corner(word, builder.vertex_count())?);
@@ -78,7 +92,7 @@ fn statement(line: &str, builder: &mut MeshBuilder, corners: &mut Vec<u32>) -> R
         }
         Some(word) if WITHOUT_SURFACE.contains(&word) => Ok(()),
         Some(word) => Err(format!(
-            "found the statement '{}', expected v, f or one without a surface; export the mesh as polygons, not as curved surfaces",
+            "found the statement '{}', expected v, f or one without a surface; export the mesh as polygons",
             shown(word)
         )),
     }
@@ -110,14 +124,31 @@ mod tests {
 
     #[test]
     fn all_forms_of_a_corner_are_read() {
-        for face in
-            ["f 1 2 3", "f 1/1 2/2 3/3 # face", "f 1//9 2//9 3//9", "f 1/4/9 2/4/9 3/4/9", "f -4 -3 -2", "f 1 \\\n 2 \\\n 3"]
-        {
+        for face in [
+            "f 1 2 3",
+            "f 1/1 2/2 3/3 # face",
+            "f 1//9 2//9 3//9",
+            "f 1/4/9 2/4/9 3/4/9",
+            "f -4 -3 -2",
+            "f 1 \\\n 2 \\\n 3",
+            "fo 1 2 3",
+        ] {
             assert_eq!(
                 mesh(&format!("# ours\nmtllib a.mtl\n\n{POINTS}g rock\nusemtl grey\n{face}\r\n")).unwrap(),
                 [[0, 1, 2]],
                 "{face}"
             );
+            assert_eq!(mesh(&format!("{POINTS}{face}\n").replace('\n', "\r")).unwrap(), [[0, 1, 2]], "{face}");
+        }
+    }
+
+    #[test]
+    fn curved_surfaces_are_named() {
+        for statement in ["cstype bspline", "surf 0 1 0 1 1 2 3", "curv 0 1 1 2", "call other.obj"] {
+            let message = mesh(&format!("{POINTS}{statement}\n")).unwrap_err();
+            let word = statement.split(' ').next().unwrap();
+            assert!(message.contains(&format!("'{word}' in line 5")) && message.contains("polygons"), "{message}");
+            assert!(recognises(statement.as_bytes()), "{statement}");
         }
     }
 
@@ -135,7 +166,8 @@ mod tests {
             ("v 1 2 nan", "finite"),
             ("v 1 inf 2", "finite"),
             ("v 1 2 three", "found 'three', expected a number"),
-            ("surf 0 1 0 1", "statement 'surf'"),
+            ("v 1,5 2 3", "not a comma: 1.5"),
+            ("surface 0 1 0 1", "statement 'surface'"),
             ("\u{0}\u{1}\u{fffd}", "statement"),
             ("f 1 2 \\", "backslash"),
         ] {

@@ -18,13 +18,44 @@ pub(super) fn binary_length(header: &[u8]) -> Option<u64> {
     Some(HEADER_BYTES as u64 + TRIANGLE_BYTES * u64::from(count))
 }
 
-/// Whether a file with this beginning and length is a binary STL: its number of triangles and its length must agree.
+/// Whether a file with this beginning and length is a binary STL: its number of triangles and its length agree, or bytes follow
+/// the last triangle and what comes before them looks like triangles. (In a text, bytes 80 to 83 would count over a hundred
+/// million triangles.)
 pub(super) fn recognises_binary(beginning: &[u8], length: u64) -> bool {
-    binary_length(beginning) == Some(length)
+    match binary_length(beginning) {
+        Some(stated) if stated == length => true,
+        Some(stated) => HEADER_BYTES as u64 + TRIANGLE_BYTES <= stated && stated < length && holds_triangles(beginning),
+        None => false,
+    }
+}
+
+/// Whether the numbers after the header can be coordinates, and some triangle has an area.
+fn holds_triangles(beginning: &[u8]) -> bool {
+    let count = binary_length(beginning).map_or(0, |length| (length - HEADER_BYTES as u64) / TRIANGLE_BYTES);
+    let triangles = beginning.get(HEADER_BYTES..).unwrap_or_default().chunks_exact(50);
+    let mut with_area = false;
+    for triangle in triangles.take(usize::try_from(count).unwrap_or(usize::MAX)) {
+        let numbers: Vec<f32> =
+            triangle.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).collect();
+        if !numbers.iter().all(|number| *number == 0.0 || (1.0e-12..1.0e12).contains(&number.abs())) {
+            return false;
+        }
+        let corner = |at: usize| (numbers[at], numbers[at + 1], numbers[at + 2]);
+        with_area |= corner(3) != corner(6) && corner(6) != corner(9) && corner(9) != corner(3);
+    }
+    with_area
+}
+
+/// Whether a file is a binary STL that calls itself `solid`, as texts do.
+pub(super) fn is_titled_like_text(beginning: &[u8]) -> bool {
+    beginning.get(..5).is_some_and(|title| title.eq_ignore_ascii_case(b"solid")) && beginning.contains(&0)
 }
 
 /// Whether a text begins like an STL.
 pub(super) fn recognises_ascii(beginning: &[u8]) -> bool {
+    if beginning.contains(&0) {
+        return false;
+    }
     let mut lines = lines(beginning).filter(|(_, line)| !line.is_empty());
     let title = lines.next().is_some_and(|(_, line)| is_word(&line, "solid"));
     title && lines.next().is_none_or(|(_, line)| is_word(&line, "facet") || is_word(&line, "endsolid"))
@@ -35,11 +66,17 @@ fn is_word(line: &str, word: &str) -> bool {
     line.split_ascii_whitespace().next().is_some_and(|first| first.eq_ignore_ascii_case(word))
 }
 
-/// Reads a binary STL whose length was checked.
+/// Reads a binary STL whose length was checked. Bytes after its last triangle are left out, with a warning.
 pub(super) fn read_binary(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), TerrainError> {
-    let triangles = bytes.get(HEADER_BYTES..).unwrap_or_default().chunks_exact(50);
+    let length = usize::try_from(binary_length(bytes).unwrap_or_default()).unwrap_or(usize::MAX).min(bytes.len());
+    if length < bytes.len() {
+        builder.warn(format!("{} bytes after the last triangle of the {BINARY} are left out", bytes.len() - length));
+    }
+    let triangles = bytes.get(HEADER_BYTES..length).unwrap_or_default().chunks_exact(50);
     for (index, triangle) in triangles.enumerate() {
-        let damaged = |problem| TerrainError::Damaged { format: BINARY, reason: format!("triangle {}: {problem}", index + 1) };
+        let damaged = |problem| {
+            TerrainError::InvalidMesh(format!("triangle {} of the {BINARY}: {problem}; export the mesh again", index + 1))
+        };
         let mut numbers = triangle.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).skip(3);
         let mut corners = [0; 3];
         for corner in &mut corners {
@@ -145,6 +182,20 @@ mod tests {
         }
         bytes.extend([0, 0]);
         assert!(recognises_binary(&bytes, bytes.len() as u64) && !recognises_binary(&bytes, 133));
+        assert!(!recognises_ascii(&bytes));
+        for tail in [&b"\n"[..], b"\r\n", &[0; 378], b"some words of the exporter"] {
+            let longer = [&bytes, tail].concat();
+            assert!(recognises_binary(&longer, longer.len() as u64));
+            let mut builder = MeshBuilder::new(1.0);
+            read_binary(&longer, &mut builder).unwrap();
+            let (mesh, warnings) = builder.finish().unwrap();
+            assert_eq!(mesh.triangle_count(), 1);
+            assert_eq!(warnings, [format!("{} bytes after the last triangle of the binary STL are left out", tail.len())]);
+        }
+        // No triangles, and numbers that are no coordinates.
+        assert!(
+            !recognises_binary(&[0; 200], 200) && !recognises_binary(&[&[0; 80][..], &[1, 0, 0, 0], &[0x7f; 60]].concat(), 144)
+        );
         let mut builder = MeshBuilder::new(10.0);
         read_binary(&bytes, &mut builder).unwrap();
         let (mesh, _) = builder.finish().unwrap();

@@ -1,15 +1,17 @@
 //! Lines and numbers of the text formats.
 
+use crate::quantity::number_help;
 use crate::terrain::TerrainError;
+use crate::terrain::text_lines::lines_of;
 
 /// A problem in a line of a mesh's text.
 pub(super) fn in_line(format: &'static str, line: usize, problem: &str) -> TerrainError {
     TerrainError::MeshText { format, line, problem: problem.to_owned() }
 }
 
-/// Lines with their numbers from 1. Bytes that are not UTF-8, which occur in comments and names, are replaced.
+/// Lines with their numbers from 1, whatever ends them. Bytes that are not UTF-8, which occur in comments and names, are replaced.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = (usize, std::borrow::Cow<'_, str>)> {
-    bytes.split(|&byte| byte == b'\n').enumerate().map(|(index, line)| (index + 1, String::from_utf8_lossy(line.trim_ascii())))
+    lines_of(bytes).enumerate().map(|(index, line)| (index + 1, String::from_utf8_lossy(line.trim_ascii())))
 }
 
 /// A word of the file for a message.
@@ -22,7 +24,7 @@ pub(super) fn three<'a>(words: &mut impl Iterator<Item = &'a str>) -> Result<[f6
     let mut numbers = [0.0; 3];
     for number in &mut numbers {
         let word = words.next().ok_or_else(|| "the line ends, expected three numbers".to_owned())?;
-        *number = word.parse().map_err(|_| format!("found '{}', expected a number", shown(word)))?;
+        *number = word.parse().map_err(|_| format!("found '{}', expected a number; {}", shown(word), number_help(word)))?;
     }
     Ok(numbers)
 }

@@ -1,21 +1,9 @@
 //! The IMAGE object: number, type and position of the samples.
 
 use super::label::{Label, shown, unsuitable};
-use super::samples::{Mark, SampleType, mark};
+use super::marks::marks;
+use super::samples::{Mark, SampleType};
 use crate::terrain::TerrainError;
-
-/// Keys whose values mean no elevation.
-const MARKS: [&str; 9] = [
-    "MISSING_CONSTANT",
-    "MISSING",
-    "INVALID_CONSTANT",
-    "NULL_CONSTANT",
-    "UNKNOWN_CONSTANT",
-    "NOT_APPLICABLE_CONSTANT",
-    "CORE_NULL",
-    "CORE_LOW_REPR_SATURATION",
-    "CORE_HIGH_REPR_SATURATION",
-];
 
 /// The position and meaning of an image's samples.
 #[derive(Clone, Debug)]
@@ -43,7 +31,9 @@ impl ImageObject {
             return Err(unsuitable("no IMAGE object", "one (tables, spectra and cubes hold no raster of elevations)"));
         }
         for (key, others) in [("BANDS", "1 band"), ("ENCODING_TYPE", "an image without encoding")] {
-            if let Some(value) = label.value("IMAGE", key)?.filter(|value| !matches!(value.text.as_str(), "1" | "N/A" | "NONE")) {
+            if let Some(value) =
+                label.value("IMAGE", key)?.filter(|value| !matches!(value.text.to_ascii_uppercase().as_str(), "1" | "N/A" | "NONE"))
+            {
                 return Err(unsuitable(format!("{key} {}", shown(&value.text)), others));
             }
         }
@@ -52,12 +42,8 @@ impl ImageObject {
         let count = |key: &str| label.count("IMAGE", key)?.ok_or_else(|| missing(key));
         let sample_type = label.value("IMAGE", "SAMPLE_TYPE")?.ok_or_else(|| missing("SAMPLE_TYPE"))?;
         let (file, start) = pointer(label)?;
-        let mut marks = Vec::new();
-        for key in MARKS {
-            for value in label.values("IMAGE", key)?.unwrap_or_default().iter().filter(|value| value.text != "N/A") {
-                marks.push(mark(key, value)?);
-            }
-        }
+        let sample = SampleType::of(&sample_type.text, count("SAMPLE_BITS")?)?;
+        let metres_per_unit = metres_per_unit(label)?;
         let scale = label.number("IMAGE", "SCALING_FACTOR")?.unwrap_or(1.0);
         if scale == 0.0 {
             return Err(unsuitable("SCALING_FACTOR 0", "another number"));
@@ -65,15 +51,15 @@ impl ImageObject {
         Ok(Self {
             rows: count("LINES")?,
             cols: count("LINE_SAMPLES")?,
-            sample: SampleType::of(&sample_type.text, count("SAMPLE_BITS")?)?,
+            sample,
             file,
             start,
             prefix: label.count("IMAGE", "LINE_PREFIX_BYTES")?.unwrap_or(0),
             suffix: label.count("IMAGE", "LINE_SUFFIX_BYTES")?.unwrap_or(0),
-            marks,
+            marks: marks(label, sample)?,
             scale,
             offset: label.number("IMAGE", "OFFSET")?.unwrap_or(0.0),
-            metres_per_unit: metres_per_unit(label)?,
+            metres_per_unit,
         })
     }
 
@@ -111,11 +97,24 @@ fn pointer(label: &Label) -> Result<(Option<String>, u64), TerrainError> {
     Ok((file, number.checked_mul(record as u64).ok_or_else(wrong)?))
 }
 
+/// Metres per unit of the elevations: UNIT, which SCALING_FACTOR and OFFSET must not contradict with a unit of their own.
 fn metres_per_unit(label: &Label) -> Result<f64, TerrainError> {
-    let Some(unit) = label.value("IMAGE", "UNIT")? else { return Ok(1.0) };
-    match unit.text.to_ascii_uppercase().as_str() {
-        "M" | "METER" | "METERS" | "METRE" | "METRES" | "N/A" => Ok(1.0),
+    let metres = |key: &str, text: &str| match text.to_ascii_uppercase().trim() {
+        "M" | "METER" | "METERS" | "METRE" | "METRES" => Ok(1.0),
         "KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES" => Ok(1000.0),
-        _ => Err(unsuitable(format!("UNIT {}", shown(&unit.text)), "METER or KILOMETER")),
+        _ => Err(unsuitable(format!("{key} {}", shown(text)), "METER or KILOMETER")),
+    };
+    let unit = label.value("IMAGE", "UNIT")?.filter(|unit| !unit.text.eq_ignore_ascii_case("N/A"));
+    let stated = unit.map(|unit| metres("UNIT", &unit.text)).transpose()?;
+    for key in ["SCALING_FACTOR", "OFFSET"] {
+        let Some(own) = label.value("IMAGE", key)?.and_then(|value| value.unit.clone()) else { continue };
+        // A factor may be given per stored number: <M/DN>.
+        let length = own.split('/').next().unwrap_or_default();
+        let own_metres: f64 = metres(key, length)?;
+        if own_metres.to_bits() != stated.unwrap_or(1.0_f64).to_bits() {
+            let unit = unit.map_or_else(|| "no UNIT".to_owned(), |unit| format!("UNIT {}", shown(&unit.text)));
+            return Err(unsuitable(format!("{key} in {} but {unit}", shown(&own)), "one unit for UNIT, SCALING_FACTOR and OFFSET"));
+        }
     }
+    Ok(stated.unwrap_or(1.0))
 }

@@ -73,6 +73,11 @@ impl Label {
         }
     }
 
+    /// All statements, each with the names of the objects around it (outermost first), its key and its values.
+    pub(super) fn statements(&self) -> impl Iterator<Item = (&[String], &str, &[Value])> {
+        self.statements.iter().map(|statement| (&*statement.objects, &*statement.key, &*statement.values))
+    }
+
     /// Whether the label has an object of the name, anywhere.
     pub(super) fn has(&self, object: &str) -> bool {
         self.statements.iter().any(|statement| statement.objects.iter().any(|name| name == object))
@@ -130,6 +135,15 @@ impl Label {
     }
 }
 
+/// Whether a file begins like a label: with its version, after comments and an envelope.
+pub(super) fn begins_label(beginning: &[u8]) -> bool {
+    let mut reader = Reader { bytes: beginning, at: 0, line: 1 };
+    reader.skip_envelope();
+    reader.skip_space();
+    let key = reader.word();
+    ["PDS_VERSION_ID", "ODL_VERSION_ID"].iter().any(|version| key.eq_ignore_ascii_case(version)) && reader.equals()
+}
+
 /// The error for a valid label without usable elevations.
 pub(super) fn unsuitable(found: impl AsRef<str>, expected: &'static str) -> TerrainError {
     let found = found.as_ref();
@@ -161,7 +175,8 @@ impl Reader<'_> {
     }
 
     fn step(&mut self) {
-        if self.peek() == Some(b'\n') {
+        let next = self.bytes.get(self.at + 1);
+        if self.peek() == Some(b'\n') || (self.peek() == Some(b'\r') && next != Some(&b'\n')) {
             self.line += 1;
         }
         self.at += 1;
@@ -169,8 +184,11 @@ impl Reader<'_> {
 
     /// Old labels begin with a line of their own format ("CCSD3ZF...").
     fn skip_envelope(&mut self) {
-        if self.bytes.starts_with(b"CCSD") {
-            while self.peek().is_some_and(|byte| byte != b'\n') {
+        if self.bytes.starts_with(b"\xef\xbb\xbf") {
+            self.at += 3;
+        }
+        if self.bytes[self.at..].get(..4).is_some_and(|start| start.eq_ignore_ascii_case(b"CCSD")) {
+            while self.peek().is_some_and(|byte| !matches!(byte, b'\n' | b'\r')) {
                 self.step();
             }
         }

@@ -1,8 +1,9 @@
 //! The `IMAGE_MAP_PROJECTION` object: the position of the posts, and their map.
 
 use super::label::{Label, shown, unsuitable};
-use crate::quantity::MapPoint;
+use crate::quantity::{MapPoint, format_number};
 use crate::terrain::{CoordinateSystem, GeoReference, TerrainError};
+use crate::world::Body;
 
 const OBJECT: &str = "IMAGE_MAP_PROJECTION";
 
@@ -45,10 +46,11 @@ fn scale_m(label: &Label) -> Result<Option<f64>, TerrainError> {
         return Ok(None);
     };
     let unit = value.unit.clone().unwrap_or_else(|| "KM/PIXEL".to_owned());
-    let length = unit.split('/').next().unwrap_or_default().trim();
-    match length {
-        "M" | "METER" | "METERS" => Ok(Some(number)),
-        "KM" | "KILOMETER" | "KILOMETERS" => Ok(Some(number * 1000.0)),
+    let (length, per) = unit.split_once('/').unwrap_or((&unit, "PIXEL"));
+    let per_post = matches!(per.trim(), "PIXEL" | "PIXELS" | "PIX" | "PX" | "P" | "SAMPLE" | "POST");
+    match length.trim() {
+        "M" | "METER" | "METERS" | "METRE" | "METRES" if per_post => Ok(Some(number)),
+        "KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES" if per_post => Ok(Some(number * 1000.0)),
         _ => Err(unsuitable(format!("MAP_SCALE in {}", shown(&unit)), "<KM/PIXEL> or <M/PIXEL>")),
     }
 }
@@ -68,12 +70,13 @@ fn coordinate_system(label: &Label) -> Result<CoordinateSystem, TerrainError> {
     let name = projection.text.to_ascii_uppercase();
     let target = label.value("", "TARGET_NAME")?.map(|target| target.text.clone()).unwrap_or_default();
     let description = Some(format!("{target} {name}").trim().to_owned());
-    let west = label.value(OBJECT, "POSITIVE_LONGITUDE_DIRECTION")?.is_some_and(|way| way.text.eq_ignore_ascii_case("WEST"));
+    let west = points_west(label)?;
     let latitude = label.number(OBJECT, "CENTER_LATITUDE")?.unwrap_or(0.0);
     let longitude = label.number(OBJECT, "CENTER_LONGITUDE")?.unwrap_or(0.0) * if west { -1.0 } else { 1.0 };
-    let radii = (radius_m(label, "A_AXIS_RADIUS")?, radius_m(label, "C_AXIS_RADIUS")?);
     // A projection that is not known is stated as such, so that it is not taken for a local map.
     let method = method(&name, latitude, longitude).unwrap_or(Method { code: USER_DEFINED, parameters: Vec::new() });
+    let axes = Axes::of(label)?;
+    axes.check(&target)?;
     let mut doubles = Vec::new();
     // Projected, user-defined throughout, degrees and metres (OGC GeoTIFF 1.1).
     let mut entries = vec![
@@ -88,9 +91,12 @@ fn coordinate_system(label: &Label) -> Result<CoordinateSystem, TerrainError> {
         [3075, 0, 1, method.code],
         [3076, 0, 1, 9001],
     ];
-    if let (Some(equator_m), pole_m) = radii {
+    if let Some(equator_m) = axes.equator_m {
+        let pole_m = axes.pole_m.unwrap_or(equator_m);
+        check_latitude(label, latitude, equator_m, pole_m)?;
+        check_resolution(label, equator_m)?;
         entries.extend([[2057, 34736, 1, 0], [2058, 34736, 1, 1]]);
-        doubles.extend([equator_m, pole_m.unwrap_or(equator_m)]);
+        doubles.extend([equator_m, pole_m]);
     }
     for (key, value) in method.parameters.into_iter().chain([(3082, 0.0), (3083, 0.0)]) {
         entries.push([key, 34736, 1, u16::try_from(doubles.len()).unwrap_or(u16::MAX)]);
@@ -108,10 +114,98 @@ fn coordinate_system(label: &Label) -> Result<CoordinateSystem, TerrainError> {
     Ok(CoordinateSystem { key_directory, double_parameters: doubles, ascii_parameters, description })
 }
 
+/// The radii of the body, m.
+struct Axes {
+    equator_m: Option<f64>,
+    other_equator_m: Option<f64>,
+    pole_m: Option<f64>,
+}
+
+/// No body that is mapped here is larger, m: Jupiter's equator is 71 492 km.
+const LARGEST_RADIUS_M: f64 = 1.0e8;
+
+/// The deviation of a radius from the mean one of its body that the shape can explain: km for m is off by a factor of 1000.
+const SHAPE: f64 = 2.0;
+
+impl Axes {
+    fn of(label: &Label) -> Result<Self, TerrainError> {
+        Ok(Self {
+            equator_m: radius_m(label, "A_AXIS_RADIUS")?,
+            other_equator_m: radius_m(label, "B_AXIS_RADIUS")?,
+            pole_m: radius_m(label, "C_AXIS_RADIUS")?,
+        })
+    }
+
+    /// Refuses radii that contradict each other or the body.
+    fn check(&self, target: &str) -> Result<(), TerrainError> {
+        let mean_m = Body::named(target).map(|body| body.radius_m);
+        let named = [("A", self.equator_m), ("B", self.other_equator_m), ("C", self.pole_m)];
+        for (axis, radius_m) in named.into_iter().filter_map(|(axis, radius_m)| Some((axis, radius_m?))) {
+            let found = format!("{axis}_AXIS_RADIUS of {} m", format_number(radius_m));
+            if !(radius_m > 0.0 && radius_m < LARGEST_RADIUS_M) {
+                return Err(unsuitable(found, "a radius of a body, in km unless its unit says <M>"));
+            }
+            if let Some(mean_m) = mean_m.filter(|mean_m| !(mean_m / SHAPE..mean_m * SHAPE).contains(&radius_m)) {
+                let found = format!("{found} for {}, whose radius is {} m", shown(target), format_number(mean_m));
+                return Err(unsuitable(found, "radii of the body, in km unless their unit says <M>"));
+            }
+        }
+        match (self.equator_m, self.other_equator_m) {
+            (Some(a), Some(b)) if (a - b).abs() > 1.0e-6 * a => {
+                let found = format!("A_AXIS_RADIUS of {} m and B_AXIS_RADIUS of {} m", format_number(a), format_number(b));
+                Err(unsuitable(found, "a body with a round equator"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Whether longitudes grow towards the west.
+fn points_west(label: &Label) -> Result<bool, TerrainError> {
+    let Some(way) = label.value(OBJECT, "POSITIVE_LONGITUDE_DIRECTION")? else { return Ok(false) };
+    match way.text.to_ascii_uppercase().as_str() {
+        "EAST" | "N/A" => Ok(false),
+        "WEST" => Ok(true),
+        _ => Err(unsuitable(format!("POSITIVE_LONGITUDE_DIRECTION {}", shown(&way.text)), "EAST or WEST")),
+    }
+}
+
+/// On an ellipsoid, a centre between equator and pole has another latitude in each system.
+fn check_latitude(label: &Label, latitude: f64, equator_m: f64, pole_m: f64) -> Result<(), TerrainError> {
+    let Some(system) = label.value(OBJECT, "COORDINATE_SYSTEM_NAME")? else { return Ok(()) };
+    let upper = system.text.to_ascii_uppercase();
+    let known = ["PLANETOCENTRIC", "PLANETOGRAPHIC", "N/A", "MEAN EARTH", "IAU"].iter().any(|name| upper.starts_with(name));
+    let round = (equator_m - pole_m).abs() <= 1.0e-6 * equator_m;
+    if known || round || latitude == 0.0 || latitude.abs() == 90.0 {
+        return Ok(());
+    }
+    let found = format!("COORDINATE_SYSTEM_NAME {} on a body whose radii differ", shown(&system.text));
+    Err(unsuitable(found, "PLANETOCENTRIC or PLANETOGRAPHIC"))
+}
+
+/// Refuses a MAP_RESOLUTION and a MAP_SCALE that are not of one size: a degree of the equator has as many metres on all maps
+/// that are true to scale somewhere.
+fn check_resolution(label: &Label, equator_m: f64) -> Result<(), TerrainError> {
+    let resolution =
+        label.value(OBJECT, "MAP_RESOLUTION")?.filter(|value| value.unit.as_deref().is_none_or(|unit| unit.contains("DEG")));
+    let per_degree = resolution.and_then(|value| value.text.parse::<f64>().ok()).filter(|per_degree| *per_degree > 0.0);
+    let (Some(per_degree), Some(scale_m)) = (per_degree, scale_m(label)?) else { return Ok(()) };
+    let implied_m = equator_m * std::f64::consts::PI / 180.0 / per_degree;
+    if (scale_m / SHAPE..scale_m * SHAPE).contains(&implied_m) {
+        return Ok(());
+    }
+    let found = format!(
+        "MAP_SCALE of {} m but MAP_RESOLUTION {per_degree} per degree, which is {} m",
+        format_number(scale_m),
+        format_number(implied_m)
+    );
+    Err(unsuitable(found, "one size of posts"))
+}
+
 fn method(name: &str, latitude: f64, longitude: f64) -> Option<Method> {
-    let (code, parameters) = match name {
+    let (code, parameters) = match name.replace([' ', '-'], "_").as_str() {
         "SIMPLE_CYLINDRICAL" | "EQUIRECTANGULAR" => (17, vec![(3078, latitude), (3088, longitude), (3089, 0.0)]),
-        "POLAR_STEREOGRAPHIC" | "POLAR STEREOGRAPHIC" => (15, vec![(3081, latitude), (3092, 1.0), (3095, longitude)]),
+        "POLAR_STEREOGRAPHIC" => (15, vec![(3081, latitude), (3092, 1.0), (3095, longitude)]),
         "STEREOGRAPHIC" => (14, vec![(3088, longitude), (3089, latitude), (3092, 1.0)]),
         "SINUSOIDAL" => (24, vec![(3088, longitude)]),
         "ORTHOGRAPHIC" => (21, vec![(3088, longitude), (3089, latitude)]),
@@ -125,8 +219,8 @@ fn method(name: &str, latitude: f64, longitude: f64) -> Option<Method> {
 fn radius_m(label: &Label, key: &str) -> Result<Option<f64>, TerrainError> {
     let (Some(value), Some(number)) = (label.value(OBJECT, key)?, label.number(OBJECT, key)?) else { return Ok(None) };
     match value.unit.as_deref().unwrap_or("KM") {
-        "KM" | "KILOMETER" | "KILOMETERS" => Ok(Some(number * 1000.0)),
-        "M" | "METER" | "METERS" => Ok(Some(number)),
+        "KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES" => Ok(Some(number * 1000.0)),
+        "M" | "METER" | "METERS" | "METRE" | "METRES" => Ok(Some(number)),
         unit => Err(unsuitable(format!("{key} in {}", shown(unit)), "<KM>")),
     }
 }

@@ -5,7 +5,7 @@ use std::io::{Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
 use super::image::ImageObject;
-use super::label::{LONGEST_LABEL, Label, shown, unsuitable};
+use super::label::{LONGEST_LABEL, Label, begins_label, shown, unsuitable};
 use super::projection::place;
 use crate::terrain::dem::Posts;
 use crate::terrain::format::ReadContext;
@@ -22,9 +22,7 @@ impl DemReader for Pds3Reader {
     }
 
     fn recognises(&self, beginning: &[u8]) -> bool {
-        let head = &beginning[..beginning.len().min(512)];
-        (head.starts_with(b"CCSD") || head.trim_ascii_start().starts_with(b"PDS_VERSION_ID"))
-            && head.windows(14).any(|window| window == b"PDS_VERSION_ID")
+        begins_label(beginning)
     }
 
     fn read_bytes(&self, bytes: Vec<u8>, context: &ReadContext) -> Result<Dem, TerrainError> {

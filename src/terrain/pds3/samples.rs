@@ -26,6 +26,10 @@ pub(super) enum Mark {
     Bits(u64),
     /// A number.
     Number(f64),
+    /// Every number below this.
+    Below(f64),
+    /// Every number above this.
+    Above(f64),
 }
 
 impl SampleType {
@@ -89,6 +93,14 @@ impl SampleType {
         }
     }
 
+    /// The number that a mark stands for.
+    pub(super) fn number_of(self, mark: Mark) -> f64 {
+        match mark {
+            Mark::Bits(bits) => self.number(bits),
+            Mark::Number(number) | Mark::Below(number) | Mark::Above(number) => number,
+        }
+    }
+
     /// The stored number; NaN if it is a gap.
     #[expect(clippy::cast_possible_truncation, reason = "a mark is cast to the samples' type, as the writer did")]
     pub(super) fn decode(self, sample: &[u8], marks: &[Mark]) -> f64 {
@@ -98,6 +110,8 @@ impl SampleType {
         let is_mark = |mark: &Mark| match *mark {
             Mark::Bits(pattern) => pattern == bits,
             Mark::Number(value) => number == value || (narrow && number == f64::from(value as f32)),
+            Mark::Below(least) => number < if narrow { f64::from(least as f32) } else { least },
+            Mark::Above(greatest) => number > if narrow { f64::from(greatest as f32) } else { greatest },
         };
         if marks.iter().any(is_mark) { f64::NAN } else { number }
     }

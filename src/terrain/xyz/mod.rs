@@ -1,8 +1,9 @@
 //! The XYZ grid: a text with one post per line, in any order; the lattice is derived from the coordinates.
 //!
-//! `rows` reads the lines, `axis` finds the spacing of one coordinate, `read` arranges the posts in a raster.
+//! `header` finds the columns, `rows` reads the lines, `axis` finds the spacing of one coordinate, `read` arranges the posts in a raster.
 
 mod axis;
+mod header;
 mod read;
 mod rows;
 

@@ -11,6 +11,7 @@ use super::{
     line::{Line, Stretch, covered},
     polygons::Polygon,
     same_map::{self, SameMap},
+    vector::{VectorFormat, refusal},
 };
 use crate::{
     quantity::MapPoint,
@@ -59,6 +60,8 @@ pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds
         let bytes = fs::read(path).map_err(|error| failed(unread(&error)))?;
         let (polygons, same) = polygons(&bytes, coordinates, bounds).map_err(failed)?;
         (Zones::Polygons(polygons), same)
+    } else if let Some(format) = vector_format(path).map_err(|error| failed(unread(&error)))? {
+        return Err(failed(refusal(format, path, coordinates)));
     } else {
         let mask = read_dem(path).map_err(|error| failed(of_raster(error)))?;
         let same = same_map::of_raster(&mask.georeference().coordinate_system, coordinates).map_err(|difference| {
@@ -178,11 +181,22 @@ impl KeepOut {
     }
 }
 
-/// Whether a file begins like JSON.
-fn looks_like_json(path: &Path) -> std::io::Result<bool> {
+/// The first bytes of a file.
+fn beginning_of(path: &Path) -> std::io::Result<Vec<u8>> {
     use std::io::Read;
     let mut beginning = Vec::new();
     fs::File::open(path)?.take(4096).read_to_end(&mut beginning)?;
+    Ok(beginning)
+}
+
+/// The format of shapes that a file has, other than `GeoJSON`.
+fn vector_format(path: &Path) -> std::io::Result<Option<VectorFormat>> {
+    Ok(VectorFormat::of(&beginning_of(path)?, path))
+}
+
+/// Whether a file begins like JSON.
+fn looks_like_json(path: &Path) -> std::io::Result<bool> {
+    let beginning = beginning_of(path)?;
     let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&beginning);
     let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
     Ok(matches!(first, Some(b'{' | b'[')))

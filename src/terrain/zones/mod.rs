@@ -17,9 +17,11 @@ mod keep_out;
 mod line;
 mod polygons;
 mod same_map;
+mod vector;
 
 pub use friction::{FrictionRaster, read_friction_raster};
 pub use keep_out::{KeepOut, read_keep_out};
+pub use vector::VectorFormat;
 
 #[cfg(test)]
 mod tests;

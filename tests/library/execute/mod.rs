@@ -230,3 +230,34 @@ fn a_hop_that_leaves_the_chain_or_the_direction_of_travel_is_reported() {
     let (_, violations) = flown_over_the_needle(1.5, 0.0, |hop| hop.direction = Direction::Reverse);
     assert_eq!(limits(&violations), [ViolatedLimit::StatedValue(StatedValue::Direction)]);
 }
+
+/// A plan made under Bennu's gravity alone hops 500 m in one hop of 0.215 m/s. Flown again under Bennu, whose escape speed is
+/// sqrt(2 x 4.892 / 245.03) = 0.1998 m/s, it breaks both speed limits, whatever the hopper's own limits are; down a cliff only the
+/// landing is that fast.
+#[test]
+fn a_hop_at_escape_speed_breaks_the_speed_limits_of_a_body_of_known_radius() {
+    use chta::world::{Body, FrictionCone};
+    let bennu = Body::named("bennu").unwrap().gravity;
+    let alone = Gravity::new(bennu.m_s2()).unwrap();
+    let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(5.0).unwrap())), rest: RestSlope::Unlimited };
+    let hopper = Hopper::with_speeds(1.0, 1.0).unwrap();
+    for (points, broken) in [
+        ([(0.0, 0.0), (499.0, 0.0), (500.0, 0.0)], &[Limit::TakeoffSpeed, Limit::LandingSpeed][..]),
+        ([(0.0, 400.0), (299.0, 0.0), (300.0, 0.0)], &[Limit::LandingSpeed]),
+        ([(0.0, 0.0), (99.0, 0.0), (100.0, 0.0)], &[]),
+    ] {
+        let points = points.map(|(x_m, z_m)| ChainPoint::new(x_m, z_m)).to_vec();
+        let chain =
+            |gravity| ConstrainedChain::new(PolygonalChain::bare(points.clone()).unwrap(), &hopper, gravity, &surface).unwrap();
+        let test = HopTest::new(chain(alone));
+        let ends = [0, 2].map(|vertex| test.chain().geometry().vertex_station(VertexId(vertex)));
+        let lofts = test.lofts(&ends[0], &ends[1]).unwrap();
+        let leg = chta::graph::Leg { takeoff: ends[0], landing: ends[1], edge: chta::graph::Edge::Hop(lofts) };
+        let path = chta::path::generate(&test, &[leg], Default::default(), chta::hop::Split::FullReach).unwrap();
+        assert!(execute(test.chain(), &path, None).passes(), "{points:?}");
+        let violations = execute(&chain(bennu), &path, None).violations;
+        let named: Vec<ViolatedLimit> =
+            limits(&violations).into_iter().filter(|limit| matches!(limit, ViolatedLimit::Limit(_))).collect();
+        assert_eq!(named, broken.iter().map(|limit| ViolatedLimit::Limit(*limit)).collect::<Vec<_>>(), "{points:?}");
+    }
+}

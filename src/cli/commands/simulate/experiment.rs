@@ -177,7 +177,8 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| Failure::of(&error))?;
     let progress = Progress::new(args.common.quiet);
     let reliable_paths =
-        most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max), &progress)?;
+        most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max), &progress)
+            .map_err(|error| Failure::of(&error))?;
     // The path planned without regard to risk, over the same nodes.
     let without_risk = SearchOptions { spacing: Some(planned.found.spacing), ..scenario.search.clone() };
     let found = graph::search(&test, start, goal, &without_risk, &progress).map_err(|error| Failure::of(&error))?;

@@ -10,7 +10,7 @@ use std::path::Path;
 use chta::{
     hop::HopTest,
     report::{CheckAnswer, Document, SimulationRecord, check_text},
-    scenario::UncertaintyKeys,
+    scenario::{TrialGround, UncertaintyKeys},
     uncertainty::{Policy, TrialOptions},
 };
 use serde::Serialize;
@@ -19,9 +19,12 @@ use super::{plan::Planned, search::use_threads};
 use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
+    effects::Purpose,
     hints::further_means,
+    inputs,
     load::{EndOptions, Loaded, load_with},
     output,
+    wrong_thing::Role,
 };
 use listen::RowFile;
 use pictures::{landing_map, sheet};
@@ -41,6 +44,10 @@ struct SimulateAnswer {
 
 /// Simulates.
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
+    inputs::look_at(
+        args.common.input_max_gib,
+        &[(Some(&args.journey.chain), Role::Chain), (args.common.scenario.as_deref(), Role::ScenarioOption)],
+    )?;
     // Set before the terrain is read, since reading starts the threads.
     use_threads(args.answer.threads)?;
     let loaded = load_with(
@@ -48,6 +55,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
         &args.common,
         Some(&args.search),
         EndOptions::of_path(args.journey.start, args.journey.goal),
+        Purpose::Simulate,
         &trial_options(args),
     )?;
     if let Some(name) = &args.experiment {
@@ -73,11 +81,11 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let Some(path) = &planned.path else {
         return no_path(args, &loaded, &planned);
     };
-    let warnings: Vec<String> = keys.warning().map(str::to_owned).into_iter().collect();
+    let policies: &[Policy] = if args.compare { &Policy::ALL } else { std::slice::from_ref(&keys.policy) };
+    let warnings = trial_warnings(&loaded, policies, path.hops.len());
     for warning in &warnings {
         output::warn(args.common.quiet, warning);
     }
-    let policies: &[Policy] = if args.compare { &Policy::ALL } else { std::slice::from_ref(&keys.policy) };
     let flyer = Flyer::new(&loaded, &test, path, &planned.found, policies, args.common.quiet)?;
     let flown = flyer.fly(policies, &trials_asked(args, &keys), rows, args.common.quiet)?;
     let mut files = Vec::new();
@@ -130,11 +138,11 @@ pub(super) const RUN_FILES: [&str; 3] = ["simulation.json", "trials.svg", "landi
 pub(super) fn of_run(loaded: &Loaded, test: &HopTest, planned: &Planned, quiet: bool) -> Result<RunTrials, Failure> {
     let mut trials = RunTrials { text: String::new(), files: Vec::new() };
     let (Some(keys), Some(path)) = (loaded.scenario.uncertainty, &planned.path) else { return Ok(trials) };
-    let warnings: Vec<String> = keys.warning().map(str::to_owned).into_iter().collect();
+    let policies = std::slice::from_ref(&keys.policy);
+    let warnings = trial_warnings(loaded, policies, path.hops.len());
     for warning in &warnings {
         output::warn(quiet, warning);
     }
-    let policies = std::slice::from_ref(&keys.policy);
     let flyer = Flyer::new(loaded, test, path, &planned.found, policies, quiet)?;
     let flown = flyer.fly(policies, &keys.options(), None, quiet)?;
     let [answer, sheet_name, map_name] = RUN_FILES;
@@ -145,6 +153,12 @@ pub(super) fn of_run(loaded: &Loaded, test: &HopTest, planned: &Planned, quiet: 
     trials.files.push((sheet_name, sheet(&flyer, &flown, Path::new(sheet_name))?));
     trials.files.extend(landing_map(&flyer, &flown, Path::new(map_name))?.map(|picture| (map_name, picture)));
     Ok(trials)
+}
+
+/// Warnings about the trials of a path of this many hops: settings without effect and deviations beyond sense.
+fn trial_warnings(loaded: &Loaded, policies: &[Policy], hops: usize) -> Vec<String> {
+    let ground = TrialGround::of_chain(&loaded.scenario, &loaded.prepared, hops);
+    loaded.scenario.trial_warnings(policies, &ground)
 }
 
 /// The answer without a path to fly.

@@ -66,10 +66,11 @@ impl<'a> Flyer<'a> {
             let progress = Progress::new(quiet);
             progress.say("ranking the successors of every node".to_owned());
             let to_go = match loaded.scenario.reliability() {
-                Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability, &progress),
-                None => CostToGo::of(test, nodes, options, &progress),
+                Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability, &progress)
+                    .map_err(|error| Failure::of(&error))?,
+                None => CostToGo::of(test, nodes, options, &progress)?,
             };
-            Ok(Arc::new(to_go?))
+            Ok(Arc::new(to_go))
         });
         Ok(Self { loaded, test, path, ground, to_go: to_go.transpose()? })
     }

@@ -30,10 +30,34 @@ fn corner_and_centre_forms_of_one_grid_are_equal() {
     for header in [
         "NROWS 2\nNCols 3\nXLLCENTER 11\nyllcenter -19\nCELLSIZE 2\nnodata_VALUE -1\n",
         "ncols 3 nrows 2 xllcorner 10 yllcenter -19 dx 2 dy 2 NODATA_value -1.0\n",
+        "# made\n// by\n% hand\nncols 3 # columns\nnrows 2\n! corner\nxllcorner 10\nyllcorner -20\ncellsize 2\nNODATA -1\n",
+        "ncols 3\rnrows 2\rxllcentre 11\ryllcentre -19\rcellsize 2\rno_data -1\r",
         "\u{feff}ncols 3\r\nnrows 2\r\nxllcorner 1e1\r\nyllcorner -2e1\r\ncellsize +2.0\r\nNODATA_value -1\r\n",
     ] {
         assert_eq!(read(&format!("{header}{rows}")).unwrap(), corner);
         assert!(AsciiGridReader.recognises(header.as_bytes()), "{header}");
+    }
+}
+
+#[test]
+fn keys_with_other_signs_are_recognised_and_named() {
+    for (header, expected) in [
+        ("ncols=3\nnrows=2\n", "ncols and its number with blanks"),
+        ("NCOLS: 3\nnrows: 2\n", "line 1, column 1: found the header key 'NCOLS:'"),
+        ("ncols,3\nnrows,2\n", "blanks between them"),
+    ] {
+        assert!(AsciiGridReader.recognises(header.as_bytes()), "{header}");
+        let (found, _) = problems(header);
+        assert!(found[0].to_string().contains(expected), "{}", found[0]);
+    }
+    assert!(!AsciiGridReader.recognises(b"ncolsx 3"));
+}
+
+#[test]
+fn lines_are_counted_with_every_line_end() {
+    for end in ["\n", "\r\n", "\r"] {
+        let text = format!("{HEADER}1 2 3\n4 abc 6\n").replace('\n', end);
+        assert!(only_problem(&text).starts_with("line 8, column 3"), "{end:?}");
     }
 }
 
@@ -67,7 +91,11 @@ fn every_problem_is_listed_with_its_place() {
     assert_eq!(further, 0);
     let places: Vec<(usize, usize)> = found.iter().map(|problem| (problem.line, problem.column)).collect();
     assert_eq!(places, [(7, 1), (7, 7), (8, 3)]);
-    assert!(found[0].to_string().contains("'1,5'") && found[0].to_string().contains("decimal commas"), "{}", found[0]);
+    assert!(
+        found[0].to_string().contains("'1,5'") && found[0].to_string().contains("write a decimal point, not a comma: 1.5"),
+        "{}",
+        found[0]
+    );
     assert!(found[1].to_string().contains("row 1 of 2, column 3 of 3"), "{}", found[1]);
     let (found, _) = problems("ncols 3\nnrows x\nxllcorner 0\ncellsize -1\nncols 4\ncell 3\n1 2 3");
     let text = found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");
@@ -103,7 +131,8 @@ fn headers_that_contradict_themselves_are_refused() {
         ("xllcorner 10", "xllcorner 10\nxllcenter 11", "xllcorner and xllcenter"),
         ("ncols 3", "ncols 1", "at least 2"),
         ("ncols 3", "ncols 3.0", "whole number"),
-        ("xllcorner 10", "xllcorner 10,5", "decimal commas"),
+        ("xllcorner 10", "xllcorner 10,5", "not a comma: 10.5"),
+        ("xllcorner 10", "xllcorner 1,000", "thousands (then write 1000) or decimals (then write 1.000)"),
         ("xllcorner 10", "xllcorner inf", "finite"),
         ("NODATA_value -1", "NODATA_value none", "'none'"),
     ] {

@@ -85,14 +85,18 @@ pub(super) struct Header {
 }
 
 impl Header {
-    /// Reads the header and returns the body after it.
+    /// Reads the header and returns the body after it. Its lines end as its first line does: in a binary body, a line feed
+    /// after a carriage return may be a number.
     pub(super) fn read(bytes: &[u8]) -> Result<(Self, &[u8]), TerrainError> {
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        let first = bytes.iter().position(|byte| matches!(byte, b'\n' | b'\r')).unwrap_or(bytes.len());
+        let returns_alone = bytes.get(first) == Some(&b'\r') && bytes.get(first + 1) != Some(&b'\n');
+        let line_end = if returns_alone { b'\r' } else { b'\n' };
         let mut rest = bytes;
         let mut number = 0;
         loop {
-            let end = rest.iter().position(|&byte| byte == b'\n').ok_or_else(|| damaged("the header has no end_header"))?;
+            let end = rest.iter().position(|&byte| byte == line_end).ok_or_else(|| damaged("the header has no end_header"))?;
             let line = String::from_utf8_lossy(rest[..end].trim_ascii()).into_owned();
             rest = &rest[end + 1..];
             number += 1;
@@ -115,7 +119,13 @@ impl Header {
                     element.properties.push(property);
                 }
                 ["end_header"] => {
-                    let encoding = encoding.ok_or_else(|| damaged("the header has no line 'format'"))?;
+                    let encoding = encoding.ok_or_else(|| {
+                        in_line(
+                            NAME,
+                            number,
+                            "found the end of a header without a line 'format', expected one such as 'format ascii 1.0'",
+                        )
+                    })?;
                     return Ok((Self { encoding, elements }, rest));
                 }
                 _ => return Err(in_line(NAME, number, &format!("found '{}', expected a line of a header", shown(&line)))),

@@ -12,11 +12,21 @@ pub(super) const NAME: &str = "PLY";
 
 /// Whether a file begins like a PLY.
 pub(super) fn recognises(beginning: &[u8]) -> bool {
-    beginning.starts_with(b"ply\n") || beginning.starts_with(b"ply\r")
+    beginning.strip_prefix(b"ply").is_some_and(|rest| rest.first().is_some_and(u8::is_ascii_whitespace))
 }
 
 pub(super) fn damaged(reason: impl Into<String>) -> TerrainError {
     TerrainError::Damaged { format: NAME, reason: reason.into() }
+}
+
+/// The error of a sound file whose content is no surface of polygons.
+pub(super) fn unsuitable(found: impl Into<String>, expected: &'static str, mend: &str) -> TerrainError {
+    TerrainError::Unsuitable { found: found.into(), expected, mend: mend.to_owned() }
+}
+
+/// The error of one row.
+fn in_row(element: &str, row: u64, problem: &str) -> TerrainError {
+    TerrainError::InvalidMesh(format!("{element} {} of the PLY: {problem}", row + 1))
 }
 
 /// Reads a PLY: its elements `vertex` (x, y, z) and `face` (a list of vertices); others are skipped.
@@ -29,11 +39,7 @@ pub(super) fn read(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), Terrai
             "vertex" => read_vertices(element, &mut values, builder)?,
             "face" => read_faces(element, &mut values, builder)?,
             "tristrips" => {
-                return Err(TerrainError::Unsuitable {
-                    found: "the PLY has triangle strips".to_owned(),
-                    expected: "an element face of polygons",
-                    mend: "an export as triangles".to_owned(),
-                });
+                return Err(unsuitable("the PLY has triangle strips", "an element face of polygons", "an export as triangles"));
             }
             _ => read_rows(element, &mut values, &mut |_, _| {}, &mut |_| Ok(()))?,
         }
@@ -84,7 +90,10 @@ fn read_rows(
 fn read_vertices(element: &Element, values: &mut Values<'_>, builder: &mut MeshBuilder) -> Result<(), TerrainError> {
     let find = |name: &str| {
         let found = element.properties.iter().position(|property| property.name == name && property.list.is_none());
-        found.ok_or_else(|| damaged(format!("element 'vertex' has no property {name}")))
+        found.ok_or_else(|| {
+            let found = format!("a PLY whose element 'vertex' has no property {name}");
+            unsuitable(found, "x, y and z of every vertex, each a number", "an export as a mesh with its vertices' positions")
+        })
     };
     let axes = [find("x")?, find("y")?, find("z")?];
     let point = std::cell::Cell::new([f64::NAN; 3]);
@@ -97,7 +106,7 @@ fn read_vertices(element: &Element, values: &mut Values<'_>, builder: &mut MeshB
     };
     let mut end_row = |row| {
         let [x, y, z] = point.get();
-        builder.vertex(x, y, z).map(|_| ()).map_err(|problem| damaged(format!("vertex {}: {problem}", row + 1)))
+        builder.vertex(x, y, z).map(|_| ()).map_err(|problem| in_row("vertex", row, &problem))
     };
     read_rows(element, values, &mut take, &mut end_row)
 }
@@ -106,9 +115,11 @@ fn read_faces(element: &Element, values: &mut Values<'_>, builder: &mut MeshBuil
     let names = ["vertex_indices", "vertex_index"];
     let is_corners = |property: &Property| property.list.is_some() && names.contains(&property.name.as_str());
     let list = element.properties.iter().position(is_corners);
-    let list = list.ok_or_else(|| damaged("element 'face' has no list vertex_indices"))?;
+    let whole = "an element face with a list vertex_indices of whole numbers";
+    let mend = "an export as triangles, such as property list uchar int vertex_indices";
+    let list = list.ok_or_else(|| unsuitable("a PLY whose element 'face' has no list vertex_indices", whole, mend))?;
     if matches!(element.properties[list].kind, Kind::F32 | Kind::F64) {
-        return Err(damaged("the list vertex_indices holds fractions, expected whole numbers"));
+        return Err(unsuitable("a PLY whose list vertex_indices holds fractions", whole, mend));
     }
     let corners = std::cell::RefCell::new(Vec::new());
     let mut take = |number, value| {
@@ -117,7 +128,7 @@ fn read_faces(element: &Element, values: &mut Values<'_>, builder: &mut MeshBuil
         }
     };
     let mut end_row = |row| {
-        let at_face = |problem: String| damaged(format!("face {}: {problem}", row + 1));
+        let at_face = |problem: String| in_row("face", row, &problem);
         let named: Result<Vec<u32>, String> = corners.borrow_mut().drain(..).map(vertex_index).collect();
         builder.polygon(&named.map_err(at_face)?).map_err(at_face)
     };

@@ -48,7 +48,16 @@ fn text_and_both_byte_orders_give_the_same_mesh() {
     assert_eq!(text.1, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(mesh(&binary(false)).unwrap(), text);
     assert_eq!(mesh(&binary(true)).unwrap(), text);
-    assert_eq!(mesh(format!("{HEADER}{BODY}").replace('\n', "\r\n").as_bytes()).unwrap(), text);
+    for end in ["\r\n", "\r"] {
+        assert_eq!(mesh(format!("{HEADER}{BODY}").replace('\n', end).as_bytes()).unwrap(), text);
+        for big in [false, true] {
+            let header = HEADER.replace("ascii", if big { "binary_big_endian" } else { "binary_little_endian" });
+            let body = binary(big)[header.len()..].to_vec();
+            let bytes = [header.replace('\n', end).into_bytes(), body].concat();
+            assert!(recognises(&bytes));
+            assert_eq!(mesh(&bytes).unwrap(), text, "{end:?} {big}");
+        }
+    }
 }
 
 #[test]
@@ -78,7 +87,7 @@ fn faults_are_named() {
     for (from, to, expected) in [
         ("ascii 1.0", "ascii 2.0", "line 2"),
         ("ascii 1.0", "binary 1.0", "found the format 'binary'"),
-        ("format ascii 1.0\n", "", "no line 'format'"),
+        ("format ascii 1.0\n", "", "without a line 'format'"),
         ("property float z", "property float w", "no property z"),
         ("property float z", "property quad z", "the type 'quad'"),
         ("property float z", "property list uchar float z", "no property z"),
@@ -86,11 +95,11 @@ fn faults_are_named() {
         ("int vertex_indices", "float vertex_indices", "holds fractions"),
         ("uchar int vertex_indices", "float int vertex_indices", "count is a fraction"),
         ("element face", "element tristrips", "triangle strips"),
-        ("1 0 255 1.5", "1 0 255 nan", "vertex 2"),
+        ("1 0 255 1.5", "1 0 255 nan", "vertex 2 of the PLY"),
         ("1 0 255 1.5", "1 0 255 high", "found 'high', expected a number"),
-        ("4 0 1 2 3", "4 0 1 2 4", "face 1: found a face with vertex 5"),
-        ("4 0 1 2 3", "4 0 1 2 -1", "face 1: found the vertex -1"),
-        ("4 0 1 2 3", "2 0 1", "face 1: found a face of 2 corners"),
+        ("4 0 1 2 3", "4 0 1 2 4", "face 1 of the PLY: found a face with vertex 5"),
+        ("4 0 1 2 3", "4 0 1 2 -1", "face 1 of the PLY: found the vertex -1"),
+        ("4 0 1 2 3", "2 0 1", "face 1 of the PLY: found a face of 2 corners"),
         ("4 0 1 2 3", "-4 0 1 2 3", "list of -4 values"),
         ("end_header\n", "", "expected a line of a header"),
     ] {

@@ -5,14 +5,14 @@ use nalgebra::Vector3;
 use super::cut::{Cut, Plane, Segment, Upright};
 use super::envelope::Piece;
 use super::{Layers, MeshSlice, WALL_RUN_M, Wall};
-use crate::quantity::Angle;
-use crate::terrain::{Profile, ProfileFacet, ProfilePoint, TerrainError};
+use crate::quantity::{Angle, MapPoint};
+use crate::terrain::{GapCause, Mesh, Profile, ProfileFacet, ProfilePoint, TerrainError};
 
 /// The run of a wall as a fraction of the segment at its foot, at most; that segment may have a wall at its other end too.
 const LARGEST_RUN: f64 = 0.25;
 
 /// The first stretch of the transect without a triangle, in the direction of travel.
-pub(super) fn first_gap(pieces: &[Piece], plane: &Plane, backwards: bool) -> Option<TerrainError> {
+pub(super) fn first_gap(mesh: &Mesh, pieces: &[Piece], plane: &Plane, backwards: bool) -> Option<TerrainError> {
     let begins = pieces.iter().map(|piece| piece.x_m[0]).chain([plane.length_m]);
     let ends = [0.0].into_iter().chain(pieces.iter().map(|piece| piece.x_m[1]));
     let mut gaps: Vec<(f64, f64)> = ends.zip(begins).filter(|(end, begin)| end < begin).collect();
@@ -28,7 +28,27 @@ pub(super) fn first_gap(pieces: &[Piece], plane: &Plane, backwards: bool) -> Opt
         begin: plane.map_point(begin),
         end: plane.map_point(end),
         further: gaps.len() - 1,
+        cause: cause_of_gap(mesh, plane, low, high),
     })
+}
+
+/// A transect that is this many times as long as the mesh is wide was probably given in another unit.
+const UNIT_IN_DOUBT: f64 = 20.0;
+
+/// A crack is narrower than this fraction of an edge of a triangle.
+const NARROW: f64 = 0.1;
+
+/// The likely cause of a stretch without a triangle.
+fn cause_of_gap(mesh: &Mesh, plane: &Plane, low_m: f64, high_m: f64) -> GapCause {
+    let bounds = mesh.bounds().map;
+    let inside = |at: MapPoint| bounds.min.x <= at.x && at.x <= bounds.max.x && bounds.min.y <= at.y && at.y <= bounds.max.y;
+    // The ends of a stretch inside the mesh lie on triangles, exactly or rounded.
+    if !inside(plane.map_point(0.5 * (low_m + high_m))) {
+        let width_m = (bounds.max.x - bounds.min.x).max(bounds.max.y - bounds.min.y);
+        let reach_m = [plane.first, plane.last].map(|at| at.x.abs().max(at.y.abs())).into_iter().fold(plane.length_m, f64::max);
+        return GapCause::OffTheMesh { bounds, unit_in_doubt: reach_m > UNIT_IN_DOUBT * width_m };
+    }
+    if high_m - low_m < NARROW * mesh.median_edge_m() { GapCause::Crack } else { GapCause::Hole }
 }
 
 /// The stretches where the uppermost and the lowermost surface differ.

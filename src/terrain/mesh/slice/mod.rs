@@ -130,7 +130,7 @@ pub fn slice_mesh(mesh: &Mesh, from: MapPoint, to: MapPoint) -> Result<MeshSlice
     let plane = Plane { first, last, heading, length_m, tolerance_m };
     let cut = Cut::new(mesh, &plane);
     let upper = envelope(&cut.segments, Side::Upper, tolerance_m);
-    if let Some(gap) = envelope_profile::first_gap(&upper, &plane, backwards) {
+    if let Some(gap) = envelope_profile::first_gap(mesh, &upper, &plane, backwards) {
         return Err(gap);
     }
     let lower = envelope(&cut.segments, Side::Lower, tolerance_m);

@@ -162,7 +162,7 @@ fn the_gap_is_named_from_either_side() {
     let strips =
         mesh(&[&level([0.0, 3.0], [0.0, 4.0], 0.0), &level([5.0, 7.0], [0.0, 4.0], 0.0), &level([8.0, 9.0], [0.0, 4.0], 1.0)]);
     let gap = |from: MapPoint, to: MapPoint| match slice_mesh(&strips, from, to).unwrap_err() {
-        TerrainError::MeshGap { begin_m, end_m, begin, end, further } => (begin_m, end_m, begin, end, further),
+        TerrainError::MeshGap { begin_m, end_m, begin, end, further, .. } => (begin_m, end_m, begin, end, further),
         other => panic!("{other}"),
     };
     assert_eq!(gap(at(1.0, 2.0), at(9.0, 2.0)), (2.0, 4.0, at(3.0, 2.0), at(5.0, 2.0), 1));
@@ -174,6 +174,23 @@ fn the_gap_is_named_from_either_side() {
     assert!(check(&strips, at(5.0, 2.0), at(7.0, 2.0)).profile.points.len() >= 2);
     assert!(matches!(slice_mesh(&strips, at(1.0, 1.0), at(1.0, 1.0)), Err(TerrainError::SamePoint { .. })));
     assert!(matches!(slice_mesh(&strips, at(f64::NAN, 1.0), at(1.0, 1.0)), Err(TerrainError::OffTheMap { .. })));
+}
+
+#[test]
+fn the_advice_about_a_gap_is_what_is_likely() {
+    let strips =
+        mesh(&[&level([0.0, 3.0], [0.0, 4.0], 0.0), &level([5.0, 7.0], [0.0, 4.0], 0.0), &level([7.01, 9.0], [0.0, 4.0], 1.0)]);
+    for (from, to, expected, absent) in [
+        ((6.0, 2.0), (8.0, 2.0), "weld", "mesh_scale"),
+        ((1.0, 2.0), (6.0, 2.0), "close the hole", "weld"),
+        ((1.0, 2.0), (20.0, 2.0), "choose another transect, or close the hole", "weld"),
+        ((8.0, 2.0), (20.0, 2.0), "x from 0 to 9 m and y from 0 to 4 m: choose ends on it", "weld"),
+        ((8.0, 2.0), (9000.0, 2.0), "if its unit is not the metre, give mesh_scale, its metres per unit (1000 for km)", "weld"),
+        ((4000.0, 2000.0), (4001.0, 2000.0), "if its unit is not the metre", "weld"),
+    ] {
+        let message = slice_mesh(&strips, at(from.0, from.1), at(to.0, to.1)).unwrap_err().to_string();
+        assert!(message.contains(expected) && !message.contains(absent), "{from:?} {to:?}: {message}");
+    }
 }
 
 /// A rectangle [0, 12] x [0, 9] in jittered triangles under a height.

@@ -1,0 +1,161 @@
+//! Keys that a command does not use: who gives one on the command line is told so.
+
+use chta::{
+    graph::ReliabilityUse,
+    scenario::{Entries, Key, Place, Scenario},
+};
+
+/// What a command computes from a scenario.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Purpose {
+    /// One pair, limit by limit.
+    Hop,
+    /// Whether a path exists.
+    Check,
+    /// A path.
+    Plan,
+    /// A path, and its trials.
+    Run,
+    /// Trials of a path.
+    Simulate,
+    /// The least capability.
+    Require,
+    /// A verdict for each value.
+    Trade,
+    /// Paths side by side.
+    Compare,
+    /// Slices from one point.
+    Fan,
+    /// Hops over a DEM.
+    Map {
+        /// With paths to goals.
+        goals: bool,
+        /// With least effort.
+        effort: bool,
+        /// With trials along these paths.
+        trials: bool,
+    },
+}
+
+/// Keys of `[uncertainty]` that the estimate of a hop's risk uses.
+const OF_RISK: [&str; 8] = [
+    "takeoff_speed_sigma_m_s",
+    "takeoff_speed_sigma_fraction",
+    "takeoff_angle_sigma_deg",
+    "position_sigma_m",
+    "drift_along_sigma_m",
+    "friction_sigma",
+    "height_sigma_m",
+    "goal_tolerance_m",
+];
+
+impl Purpose {
+    /// Every purpose, with all that it can compute.
+    const ALL: [Self; 10] = [
+        Self::Hop,
+        Self::Check,
+        Self::Plan,
+        Self::Run,
+        Self::Simulate,
+        Self::Require,
+        Self::Trade,
+        Self::Compare,
+        Self::Fan,
+        Self::Map { goals: true, effort: true, trials: true },
+    ];
+
+    /// The command's name.
+    const fn command(self) -> &'static str {
+        match self {
+            Self::Hop => "hop",
+            Self::Check => "check",
+            Self::Plan => "plan",
+            Self::Run => "run",
+            Self::Simulate => "simulate",
+            Self::Require => "require",
+            Self::Trade => "trade",
+            Self::Compare => "compare",
+            Self::Fan => "fan",
+            Self::Map { .. } => "map",
+        }
+    }
+
+    /// Whether its answer can depend on a key, where the choice of a path weighs risk or does not.
+    fn uses(self, key: &Key, weighs_risk: bool) -> bool {
+        let on_a_dem = matches!(self, Self::Fan | Self::Map { .. });
+        let flies = matches!(self, Self::Run | Self::Simulate | Self::Map { trials: true, .. });
+        let by_risk = matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare);
+        match (key.table, key.name) {
+            ("hopper", "mass_kg" | "rest_time_s") => {
+                matches!(self, Self::Plan | Self::Run | Self::Require | Self::Compare | Self::Map { goals: true, .. })
+            }
+            ("terrain", name) => !on_a_dem || name == "accept_map_scale",
+            ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
+            ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
+            ("search", "takeoff_angle") => !matches!(self, Self::Trade | Self::Fan | Self::Map { goals: false, effort: false, .. }),
+            ("search", "split") => !on_a_dem && !matches!(self, Self::Hop | Self::Trade),
+            ("search", "risk" | "risk_extra_hops_max") => by_risk,
+            ("uncertainty", name) => flies || (by_risk && weighs_risk && OF_RISK.contains(&name)),
+            _ => true,
+        }
+    }
+
+    /// Warnings about keys that were given and that this purpose does not use: those of the command line, and a risk that a scenario
+    /// wants weighed. A scenario serves many commands, so other keys of a file are not reported.
+    pub(crate) fn unused(self, entries: &Entries, scenario: &Scenario) -> Vec<String> {
+        let weighs_risk = scenario.risk != ReliabilityUse::Ignored;
+        let mut warnings = Vec::new();
+        for (key, place) in entries.given() {
+            if self.uses(key, weighs_risk) {
+                continue;
+            }
+            let wants_risk = weighs_risk && (key.table, key.name) == ("search", "risk") && self != Self::Hop;
+            let said = match place {
+                Place::Option(option) => format!("{option}: {}", key.path()),
+                Place::File(_) | Place::Nowhere if wants_risk => format!("{} = \"{}\"", key.path(), scenario.risk.name()),
+                Place::File(_) | Place::Nowhere => continue,
+            };
+            let (command, users) = (self.command(), Self::users(key, weighs_risk, self));
+            warnings.push(format!("{said} has no effect on this answer of chta {command}{users}"));
+        }
+        warnings
+    }
+
+    /// Warnings about keys that the command line gives twice: the last one counts, and a named option before `--set`.
+    pub(crate) fn replaced(entries: &Entries) -> Vec<String> {
+        let said = |(key, by): (&Key, &(String, String))| format!("{}: {} is replaced by {}", by.0, key.path(), by.1);
+        entries.replaced().map(said).collect()
+    }
+
+    /// The commands that use a key, for the end of a warning.
+    fn users(key: &Key, weighs_risk: bool, called: Self) -> String {
+        let users: Vec<&str> = Self::ALL.into_iter().filter(|purpose| purpose.uses(key, weighs_risk)).map(Self::command).collect();
+        let own = users.contains(&called.command());
+        match (own, called) {
+            (true, Self::Map { .. }) => ": it is used with --goal, --effort or --simulate".to_owned(),
+            _ => format!(": it is used by {}", users.join(", ")),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use chta::scenario::CATALOGUE;
+
+    use super::*;
+    use crate::cli::help::offers;
+
+    #[test]
+    fn every_key_is_used_by_a_command_and_every_command_exists() {
+        for key in &CATALOGUE {
+            let users: Vec<_> = Purpose::ALL.into_iter().filter(|purpose| purpose.uses(key, false)).collect();
+            assert!(!users.is_empty(), "{} is used by no command", key.path());
+        }
+        for purpose in Purpose::ALL {
+            assert!(offers(purpose.command(), "set") || purpose == Purpose::Run, "{purpose:?}");
+        }
+        for option in ["goal", "effort", "simulate"] {
+            assert!(offers("map", option), "map has no --{option}");
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Settings without effect on the trials that are flown, and deviations beyond sense.
+
+use super::{Prepared, Scenario, TerrainSource};
+use crate::{
+    chain::GroundForm,
+    graph::ReliabilityUse,
+    quantity::format_number,
+    uncertainty::{Policy, Uncertainty},
+    world::FrictionCone,
+};
+
+/// What the warnings about trials need to know of the ground.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TrialGround {
+    /// The greatest friction coefficient of the ground; `None` if no contact depends on friction; infinite if it is not known.
+    pub friction_max: Option<f64>,
+    /// The extent of the ground, m.
+    pub extent_m: f64,
+    /// The straight distance from start to goal, m, if there is one goal.
+    pub journey_m: Option<f64>,
+    /// The hops of the plan; of several plans, the most.
+    pub hops: usize,
+}
+
+impl TrialGround {
+    /// That of a prepared chain and a plan of this many hops.
+    pub fn of_chain(scenario: &Scenario, prepared: &Prepared, hops: usize) -> Self {
+        let geometry = prepared.chain.geometry();
+        let constant = scenario.surface.constant_friction();
+        let frictions = geometry.grounds().iter().filter_map(|ground| match ground.form {
+            GroundForm::Surface { friction, .. } => friction.or(constant),
+            GroundForm::Explicit { .. } => None,
+        });
+        let (first_m, last_m) = geometry.extent_m();
+        Self {
+            friction_max: frictions.map(FrictionCone::coefficient).reduce(f64::max),
+            extent_m: last_m - first_m,
+            journey_m: prepared.start.zip(prepared.goal).map(|(start, goal)| (goal.point.x_m - start.point.x_m).abs()),
+            hops,
+        }
+    }
+}
+
+impl Scenario {
+    /// Warnings about trials under these policies: settings that they do not feel, deviations beyond sense, no errors at all.
+    pub fn trial_warnings(&self, policies: &[Policy], ground: &TrialGround) -> Vec<String> {
+        let keys = self.uncertainty.unwrap_or_default();
+        let Uncertainty { position_sigma_m, friction_sigma, .. } = keys.errors;
+        let mut warnings: Vec<String> = Vec::new();
+        let felt = Uncertainty {
+            position_sigma_m: if policies.contains(&Policy::Replan) { position_sigma_m } else { 0.0 },
+            friction_sigma: if ground.friction_max.is_some() { friction_sigma } else { 0.0 },
+            ..keys.errors
+        };
+        if felt.position_sigma_m != position_sigma_m {
+            warnings.push(format!(
+                "uncertainty.position_sigma_m = {} has no effect on trials under the policy open-loop, which flies its commands wherever the \
+                 robot is: set uncertainty.policy = \"replan\", or leave it out",
+                format_number(position_sigma_m)
+            ));
+        }
+        if felt.friction_sigma != friction_sigma {
+            warnings.push(format!(
+                "uncertainty.friction_sigma = {} has no effect: the limits of this ground are stated as angles, and no friction coefficient \
+                 decides a contact; leave it out, or give the ground a friction coefficient",
+                format_number(friction_sigma)
+            ));
+        }
+        if felt == Uncertainty::NONE && keys.errors != Uncertainty::NONE {
+            warnings.push(
+                "no error that is given has an effect on these trials, so that every trial flies the plan exactly and the rate has no meaning"
+                    .to_owned(),
+            );
+        }
+        let limit = keys.hop_limit.filter(|limit| usize::try_from(*limit).is_ok_and(|limit| limit < ground.hops));
+        warnings.extend(limit.map(|limit| {
+            let hops = ground.hops;
+            format!(
+                "uncertainty.hop_limit is {limit}, below the {hops} hops of the plan, so that no trial can fly all of it: raise it"
+            )
+        }));
+        warnings.extend(keys.warning().map(str::to_owned));
+        warnings.extend(self.beyond_sense(ground));
+        warnings
+    }
+
+    /// Warnings about deviations that no working machine and no useful map has: most often a mistake of units.
+    fn beyond_sense(&self, ground: &TrialGround) -> Vec<String> {
+        /// A tenth is much for a hopper; half is a percentage taken for a share, or no control at all.
+        const FRACTION_MAX: f64 = 0.5;
+        /// Two thirds of the draws lie within the deviation: at 45 degrees a third of the hops go anywhere.
+        const ANGLE_MAX_DEG: f64 = 45.0;
+        /// The deviation of the slope error, height over correlation length: beyond 1 the map says nothing about slopes.
+        const SLOPE_MAX: f64 = 1.0;
+        let keys = self.uncertainty.unwrap_or_default();
+        let errors = &keys.errors;
+        let TrialGround { friction_max, extent_m, journey_m, .. } = *ground;
+        let speed_max_m_s = self.hopper.limits().takeoff_speed_max_m_s;
+        let over = |key: &str, found: f64, most: f64, unit: &str, what: &str| {
+            (found > most).then(|| {
+                format!(
+                    "uncertainty.{key} is {}, over {}{unit}, {what}: check its unit; so large an error leaves nothing of the plan",
+                    format_number(found),
+                    format_number(most)
+                )
+            })
+        };
+        let extent = "the whole extent of the terrain";
+        let of_angle = "beyond which a hop may go anywhere";
+        let goal_tolerance = journey_m.filter(|journey_m| *journey_m > 0.0 && keys.goal_tolerance_m >= *journey_m).map(|journey_m| {
+            format!(
+                "uncertainty.goal_tolerance_m is {} m, no less than the {} m from start to goal: the start itself counts as reached",
+                format_number(keys.goal_tolerance_m),
+                format_number(journey_m)
+            )
+        });
+        let slope = if errors.height_correlation_m > 0.0 { errors.height_sigma_m / errors.height_correlation_m } else { 0.0 };
+        let steep = (slope > SLOPE_MAX).then(|| {
+            format!(
+                "uncertainty.height_sigma_m of {} m over height_correlation_m of {} m means slope errors with a deviation of {:.0} deg, over \
+                 45 deg: check both units; the map then says nothing about slopes",
+                format_number(errors.height_sigma_m),
+                format_number(errors.height_correlation_m),
+                libm::atan(slope).to_degrees()
+            )
+        });
+        [
+            over(
+                "takeoff_speed_sigma_m_s",
+                errors.takeoff_speed_sigma_m_s,
+                speed_max_m_s,
+                " m/s",
+                "the greatest take-off speed of the hopper",
+            ),
+            over(
+                "takeoff_speed_sigma_fraction",
+                errors.takeoff_speed_sigma_fraction,
+                FRACTION_MAX,
+                "",
+                "half the commanded speed (0.02 is 2 %)",
+            ),
+            over("takeoff_angle_sigma_deg", errors.takeoff_angle_sigma.degrees(), ANGLE_MAX_DEG, " deg", of_angle),
+            over("heading_sigma_deg", errors.heading_sigma.degrees(), ANGLE_MAX_DEG, " deg", of_angle),
+            over("position_sigma_m", errors.position_sigma_m, extent_m, " m", extent),
+            over("drift_along_sigma_m", errors.drift_along_sigma_m, extent_m, " m", extent),
+            over("drift_across_sigma_m", errors.drift_across_sigma_m, extent_m, " m", extent),
+            over(
+                "friction_sigma",
+                errors.friction_sigma,
+                friction_max.unwrap_or(f64::INFINITY),
+                "",
+                "the greatest friction coefficient of the ground",
+            ),
+            over("height_sigma_m", errors.height_sigma_m, extent_m, " m", extent),
+            steep,
+            goal_tolerance,
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+
+    /// Warnings about keys that others of this scenario, or the chain, replace.
+    pub fn replaced_keys(&self, prepared: &Prepared) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let grounds = prepared.chain.geometry().grounds();
+        let is_chain = matches!(self.terrain, Some(TerrainSource::Chain { .. }));
+        // The chain of a slice has the scenario's own friction in its segments.
+        let constant = self.surface.constant_friction();
+        let own_grip = grounds.iter().all(|ground| match ground.form {
+            GroundForm::Surface { friction, .. } => friction.is_some(),
+            GroundForm::Explicit { .. } => true,
+        });
+        // As in a chain that was sliced under this scenario.
+        let same = constant.is_some()
+            && grounds.iter().all(|ground| matches!(ground.form, GroundForm::Surface { friction, .. } if friction == constant));
+        if is_chain && own_grip && !same && self.surface.grip.is_some() {
+            let key = if constant.is_some() {
+                "surface.friction_coefficient has"
+            } else {
+                "surface.takeoff_from_slope_deg and landing_from_slope_deg have"
+            };
+            warnings.push(format!(
+                "{key} no effect: every segment of the chain states its own friction or angles, which count; change those columns of the \
+                 chain, or leave the key out"
+            ));
+        }
+        if self.accept_map_scale && !matches!(self.terrain, Some(TerrainSource::Dem { .. }) | None) {
+            warnings.push("terrain.accept_map_scale has no effect: only a dem has a map whose scale can be off".to_owned());
+        }
+        if self.risk != ReliabilityUse::Ignored && self.reliability_with(0).model.tells_nothing() {
+            warnings.push(format!(
+                "search.risk = \"{}\" has no effect: [uncertainty] has no error that the estimate of a hop's risk uses; give it one, such as \
+                 takeoff_speed_sigma_fraction = 0.01, or leave [uncertainty] out to weigh the slack of angles",
+                self.risk.name()
+            ));
+        }
+        warnings
+    }
+}

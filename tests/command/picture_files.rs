@@ -1,0 +1,57 @@
+//! Every option that names a picture writes what the file's name says, and refuses a name that says neither SVG nor PNG.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
+
+use std::fs;
+
+use crate::desk::Desk;
+
+/// Every option of every command that names a picture, with a command line that ends in it.
+const PICTURES: [&[&str]; 10] = [
+    &["plan", "scenario.toml", "--plot"],
+    &["plan", "scenario.toml", "--set", "hopper.takeoff_speed_max_m_s=1", "--plot"],
+    &["check", "scenario.toml", "--prove", "--plot"],
+    &["fan", "ground.tif", "--from", "5,5", "--length", "4", "--headings", "4", "--scenario", "map.toml", "--plot"],
+    &["map", "ground.tif", "--start", "5,5", "--goal", "12,12", "--scenario", "map.toml", "--plot"],
+    &["map", "ground.tif", "--start", "5,5", "--goal", "12,12", "--scenario", "map.toml", "--profiles"],
+    &["simulate", "map.toml", "--trials", "20", "--plot"],
+    &["simulate", "map.toml", "--trials", "20", "--plot-map"],
+    &["trade", "scenario.toml", "--vary", "hopper.takeoff_speed_max_m_s=4:10:3", "--plot"],
+    &["compare", "scenario.toml", "map.toml", "--plot"],
+];
+
+#[test]
+fn a_picture_is_what_its_name_says() {
+    let desk = Desk::with_dem();
+    for line in PICTURES {
+        for (name, beginning) in
+            [("a.svg", &b"<svg"[..]), ("a.SVG", b"<svg"), ("a.png", b"\x89PNG\r\n\x1a\n"), ("b.Png", b"\x89PNG\r\n\x1a\n")]
+        {
+            let ran = desk.run(&[line, &[name]].concat());
+            assert!(ran.status < 2, "{line:?} {name}: {}", ran.stderr);
+            let bytes = fs::read(desk.path().join(name)).unwrap();
+            assert!(bytes.starts_with(beginning), "{line:?} {name} begins with {:?}", &bytes[..8]);
+            fs::remove_file(desk.path().join(name)).unwrap();
+        }
+        for name in ["a.jpg", "a.pdf", "a", "a.svgz", ".png", "a.png.tmp"] {
+            let refused = format!("{}: '{name}' does not end in .svg or .png", line.last().unwrap());
+            desk.refused(&[line, &[name]].concat(), &[&refused, "give it one of these endings"]);
+        }
+    }
+}
+
+/// The options that the help calls a picture are those of the table.
+#[test]
+fn no_option_for_a_picture_is_forgotten() {
+    let desk = Desk::new();
+    for command in ["run", "slice", "fan", "map", "hop", "check", "plan", "simulate", "require", "trade", "compare", "synth"] {
+        let help = desk.run(&[command, "--help"]).stdout;
+        for (at, _) in help.match_indices("SVG or PNG") {
+            let before = &help[..at];
+            let option = before.rsplit("--").next().unwrap().split([' ', '\n']).next().unwrap();
+            let known = PICTURES.iter().any(|line| line[0] == command && line.last().unwrap().trim_start_matches("--") == option);
+            assert!(known, "{command} --{option}");
+        }
+        assert!(!help.contains("(SVG)") && !help.contains(".svg or .png"), "{command}");
+    }
+}

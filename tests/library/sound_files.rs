@@ -1,0 +1,146 @@
+//! Sound files that are not read as they stand: each is named, with a command that makes a readable one, and never called
+//! damaged. Where GDAL is installed, the command is run and the result compared with the elevations that were written.
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::tiff::int16_tiff;
+use chta::terrain::{read_dem, read_geotiff_bytes, read_mesh_bytes};
+
+/// Tags and their values in TIFF 6.0 and libtiff; what is named.
+#[test]
+fn tiffs_in_encodings_that_are_not_decoded_are_named() {
+    const COMPRESSION: u16 = 259;
+    const BITS: u16 = 258;
+    const FORMAT: u16 = 339;
+    const PREDICTOR: u16 = 317;
+    const PHOTOMETRIC: u16 = 262;
+    let table: Vec<(&[(u16, u16, u16)], &str)> = vec![
+        (&[(COMPRESSION, 3, 2)], "CCITT run-length"),
+        (&[(COMPRESSION, 3, 3)], "CCITT fax 3"),
+        (&[(COMPRESSION, 3, 4)], "CCITT fax 4"),
+        (&[(COMPRESSION, 3, 6)], "old JPEG"),
+        (&[(COMPRESSION, 3, 7)], "JPEG compression (TIFF code 7)"),
+        (&[(COMPRESSION, 3, 34712)], "JPEG 2000"),
+        (&[(COMPRESSION, 3, 34925)], "LZMA"),
+        (&[(COMPRESSION, 3, 50001)], "WebP"),
+        (&[(COMPRESSION, 3, 50002)], "JPEG XL"),
+        (&[(COMPRESSION, 3, 4711)], "not known here (TIFF code 4711)"),
+        (&[(FORMAT, 3, 3), (BITS, 3, 16)], "floats of 16 bits"),
+        (&[(FORMAT, 3, 3), (BITS, 3, 24)], "floats of 24 bits"),
+        (&[(FORMAT, 3, 1), (BITS, 3, 24)], "unsigned integers of 24 bits"),
+        (&[(FORMAT, 3, 1), (BITS, 3, 20)], "unsigned integers of 20 bits"),
+        (&[(FORMAT, 3, 2), (BITS, 3, 12)], "signed integers of 12 bits"),
+        (&[(FORMAT, 3, 2), (BITS, 3, 4)], "signed integers of 4 bits"),
+        (&[(FORMAT, 3, 5), (BITS, 3, 32)], "complex numbers of 32 bits"),
+        (&[(FORMAT, 3, 6), (BITS, 3, 64)], "complex numbers of 64 bits"),
+        (&[(FORMAT, 3, 3), (BITS, 3, 128)], "samples of 128 bits"),
+        (&[(FORMAT, 3, 9)], "sample format 9"),
+        (&[(PREDICTOR, 3, 3)], "the predictor of floats (predictor 3)"),
+        (&[(PREDICTOR, 3, 7)], "not known here (predictor 7)"),
+        (&[(PREDICTOR, 3, 2), (FORMAT, 3, 1), (BITS, 3, 12)], "samples of 12 bits stored with horizontal differences"),
+        (&[(PHOTOMETRIC, 3, 32803)], "photometric interpretation 32803"),
+        (&[(PHOTOMETRIC, 3, 4)], "transparency mask"),
+        (&[(284, 3, 3)], "planar configuration 3"),
+    ];
+    for (changed, expected) in table {
+        let message = read_geotiff_bytes(int16_tiff(changed)).unwrap_err().to_string();
+        assert!(message.contains(expected) && message.contains("mend it with:"), "{changed:?}: {message}");
+        assert!(!message.contains("damaged"), "{changed:?}: {message}");
+    }
+}
+
+fn run(program: &str, arguments: &[&str]) -> bool {
+    match Command::new(program).args(arguments).env("GDAL_PAM_ENABLED", "NO").output() {
+        Ok(output) => output.status.success(),
+        Err(_) => false,
+    }
+}
+
+/// The mending line of every message, run by the shell on the file that it is about.
+#[test]
+fn the_commands_for_sound_tiffs_give_the_elevations_that_were_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let name = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let rows: Vec<String> = (0..9).map(|row| (0..8).map(|col| format!("{} ", (row * 3 + col * 5) % 17)).collect()).collect();
+    let text = format!("ncols 8\nnrows 9\nxllcorner 1000\nyllcorner 2000\ncellsize 1\n{}\n", rows.join("\n"));
+    std::fs::write(name("grid.asc"), &text).unwrap();
+    if !run("gdal_translate", &["--version"]) {
+        eprintln!("skipped: gdal_translate is not installed");
+        return;
+    }
+    let truth: Vec<Option<f64>> = read_dem(Path::new(&name("grid.asc"))).unwrap().elevations().collect();
+    for (options, expected) in [
+        ("-ot Float32 -co NBITS=16", "floats of 16 bits"),
+        ("-ot Float32 -co COMPRESS=LZMA", "LZMA"),
+        ("-ot Int16 -co COMPRESS=LZMA -co PREDICTOR=2", "LZMA"),
+        ("-ot UInt32 -co NBITS=24", "24 bits"),
+        ("-ot UInt32 -co NBITS=20", "20 bits"),
+        ("-ot CFloat32", "complex"),
+        ("-ot CInt16", "complex"),
+        ("-ot Float64 -co COMPRESS=LERC", ""),
+        ("-ot Float32 -co COMPRESS=LERC_ZSTD", ""),
+        ("-ot Int16 -co COMPRESS=LERC_DEFLATE", ""),
+    ] {
+        let (made, mended) = (name("in.tif"), name("out.tif"));
+        let mut arguments = vec!["-q"];
+        arguments.extend(options.split(' '));
+        let source = name("grid.asc");
+        arguments.extend([source.as_str(), made.as_str()]);
+        if !run("gdal_translate", &arguments) {
+            eprintln!("skipped: this GDAL does not write {options}");
+            continue;
+        }
+        let read = read_dem(Path::new(&made));
+        let dem = if expected.is_empty() {
+            read.unwrap_or_else(|error| panic!("{options}: {error}"))
+        } else {
+            let message = read.unwrap_err().to_string();
+            assert!(message.contains(expected) && !message.contains("damaged"), "{options}: {message}");
+            let command = message.split("mend it with: ").nth(1).unwrap().split(',').next().unwrap();
+            let words: Vec<String> =
+                command.split(' ').map(|word| word.replace("in.tif", &made).replace("out.tif", &mended)).collect();
+            let words: Vec<&str> = words.iter().map(String::as_str).collect();
+            assert!(run(words[0], &words[1..]), "{command}");
+            read_dem(Path::new(&mended)).unwrap_or_else(|error| panic!("{options}: {error}"))
+        };
+        assert!(dem.elevations().eq(truth.iter().copied()), "{options}");
+        let _ = std::fs::remove_file(&mended);
+        std::fs::remove_file(&made).unwrap();
+    }
+}
+
+/// Meshes as modelling programs write them; the truth is the number of triangles and, for concave faces, their area.
+#[test]
+fn meshes_that_other_programs_read_are_read() {
+    let mut titled = crate::mutations_mesh::binary_stl();
+    titled[..21].copy_from_slice(b"solid by a CAD system");
+    let more = |tail: &[u8]| [titled.clone(), tail.to_vec()].concat();
+    let dart = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\n";
+    let ply_dart = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n\
+                    property list uchar int vertex_indices\nend_header\n0 0 0\n4 0 0\n4 4 0\n3 1 0\n4 0 1 2 3\n";
+    for (name, bytes, triangles, warning) in [
+        ("titled solid", titled.clone(), 24, ""),
+        ("a line feed after the last triangle", more(b"\n"), 24, "1 bytes after the last triangle"),
+        ("a block of zeros after the last triangle", more(&[0; 512]), 24, "512 bytes after the last triangle"),
+        ("concave OBJ", format!("{dart}f 1 2 3 4\n").into_bytes(), 2, "1 of these faces are not convex"),
+        ("concave OBJ from behind", format!("{dart}f -2 -3 -4 -1\n").into_bytes(), 2, "not convex"),
+        ("concave PLY", ply_dart.as_bytes().to_vec(), 2, "not convex"),
+        ("PLY with returns", ply_dart.replace('\n', "\r").into_bytes(), 2, "not convex"),
+        ("PLY with a mark", format!("\u{feff}{ply_dart}").into_bytes(), 2, "not convex"),
+        ("OBJ with returns", format!("{dart}f 1 2 3 4\n").replace('\n', "\r").into_bytes(), 2, "not convex"),
+    ] {
+        let file = read_mesh_bytes(&bytes, 1.0).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(file.mesh.triangle_count(), triangles, "{name}");
+        let said = file.warnings.join("; ");
+        assert!(said.contains(warning) && said.is_empty() == warning.is_empty(), "{name}: {said}");
+        if name.contains("concave") {
+            // (0, 0), (4, 0), (4, 4), (3, 1): 4 by the shoelace formula.
+            let area: f64 = file.mesh.triangles().map(|[a, b, c]| 0.5 * (b - a).cross(&(c - a)).norm()).sum();
+            assert!((area - 4.0).abs() < 1e-12, "{name}: {area}");
+        }
+    }
+    let cut = read_mesh_bytes(&titled[..1000], 1.0).unwrap_err().to_string();
+    assert!(cut.contains("binary STL is damaged") && cut.contains("24 triangles in 1284 bytes, but the file has 1000"), "{cut}");
+}
