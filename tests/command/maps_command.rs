@@ -234,7 +234,7 @@ fn a_slice_without_a_code_has_a_prj_file_and_opens_at_its_position() {
     assert_eq!(coordinates.len(), chain.len());
     assert!(coordinates.iter().zip(&chain).all(|(position, row)| position[2] == row[1]));
     // The chain keeps its map, so a plan over it has longitudes and latitudes.
-    std::fs::write(folder.path().join("s.toml"), HOPPER).unwrap();
+    std::fs::write(folder.path().join("s.toml"), HOPPER.replace("moon", "mars")).unwrap();
     let (status, planned, text) = chta(
         folder.path(),
         &[

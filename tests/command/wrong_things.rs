@@ -454,7 +454,7 @@ fn zones_in_other_formats_are_converted_by_the_command_of_the_message() {
         desk.write("zones.kml", drawn);
         for name in ["zones.kml", "zones.shp", "zones.gpkg", "zones.shx", "zones.dbf"] {
             let scenario =
-                |file: &str| format!("[body]\nname = \"moon\"\n[surface]\nfriction_coefficient = 0.6\nkeep_out = \"{file}\"\n");
+                |file: &str| format!("[body]\ngravity_m_s2 = 1.62\n[surface]\nfriction_coefficient = 0.6\nkeep_out = \"{file}\"\n");
             desk.write("zone.toml", scenario(name));
             let slice = ["slice", "map.tif", "--from", "1,6", "--to", "15,6", "--scenario", "zone.toml"];
             let message = desk.run(&slice).stderr;

@@ -132,6 +132,8 @@ fn systems() -> Vec<(String, (f64, f64), f64)> {
         mars("+proj=merc +lat_ts=33 +lon_0=20", (4.0e5, 6.0e5), 2.0e5),
         moon("+proj=lcc +lat_1=30 +lat_2=50 +lat_0=40 +lon_0=10 +x_0=3 +y_0=4", (4.0e5, 1.0e5), 2.0e5),
         mars("+proj=lcc +lat_1=30 +lat_0=30 +lon_0=10 +k_0=0.99", (4.0e5, 1.0e5), 2.0e5),
+        moon("+proj=aea +lat_1=20 +lat_2=40 +lat_0=30 +lon_0=10 +x_0=3 +y_0=4", (4.0e5, 1.0e5), 2.0e5),
+        mars("+proj=aea +lat_1=-20 +lat_2=-40 +lat_0=-30 +lon_0=10", (4.0e5, 1.0e5), 2.0e5),
         moon("+proj=laea +lat_0=30 +lon_0=10", (4.0e5, 1.0e5), 2.0e5),
         mars("+proj=laea +lat_0=30 +lon_0=10", (4.0e5, 1.0e5), 2.0e5),
         moon("+proj=aeqd +lat_0=30 +lon_0=10", (4.0e5, 1.0e5), 2.0e5),
@@ -169,6 +171,10 @@ fn epsg_and_iau_codes_state_the_maps_of_gdal_and_are_found_again() {
         ("EPSG:3976", (4.0e5, 1.0e5), 3.0e5),
         ("EPSG:3995", (4.0e5, 1.0e5), 3.0e5),
         ("EPSG:3035", (4.3e6, 2.8e6), 2.0e5),
+        ("EPSG:5070", (4.0e5, 1.6e6), 2.0e5),
+        ("EPSG:3577", (4.0e5, -3.0e6), 2.0e5),
+        ("EPSG:3338", (4.0e5, 1.1e6), 2.0e5),
+        ("EPSG:3005", (1.2e6, 7.0e5), 2.0e5),
         ("EPSG:32661", (2.3e6, 2.1e6), 2.0e5),
         ("EPSG:32761", (2.3e6, 2.1e6), 2.0e5),
     ];
@@ -179,7 +185,8 @@ fn epsg_and_iau_codes_state_the_maps_of_gdal_and_are_found_again() {
         let srs = run("gdalsrsinfo", &["-o", "proj4", code], "");
         let srs: Vec<&str> =
             srs.split_whitespace().filter(|word| !word.starts_with("+towgs84") && !word.starts_with("+datum")).collect();
-        let figure = if code.starts_with("EPSG:2") || code == "EPSG:3035" { "+ellps=GRS80" } else { "+ellps=WGS84" };
+        let of_grs80 = ["EPSG:2", "EPSG:3035", "EPSG:5070", "EPSG:3577", "EPSG:3338", "EPSG:3005"];
+        let figure = if of_grs80.iter().any(|start| code.starts_with(start)) { "+ellps=GRS80" } else { "+ellps=WGS84" };
         let plain: Vec<&str> = srs.into_iter().filter(|word| !word.starts_with("+ellps")).chain([figure]).collect();
         agree(code, &projection, &plain.join(" "), at, reach_m);
     }

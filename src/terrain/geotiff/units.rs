@@ -118,30 +118,32 @@ fn check_elevations(system: &CoordinateSystem) -> Result<(), TerrainError> {
             let (name, size_m) = length_unit(unit);
             Err(in_unit(system, &format!("elevations in {name}"), size_m))
         }
-        (None, Some(code), None) => Err(match cited {
-            Some((text, feet)) => {
+        (None, ..) => match (cited, reference, implied) {
+            (Some((text, feet)), Some(code), Some(Vertical::Metres)) => Err(said_twice(
+                system,
+                &format!(
+                    "elevations in metres by the code {} and in {} (citation '{text}')",
+                    by_reference(code),
+                    length_unit(feet).0
+                ),
+            )),
+            (Some((text, feet)), ..) => {
                 let (name, size_m) = length_unit(feet);
-                in_unit(system, &format!("elevations in {name} (citation '{text}')"), size_m)
+                Err(in_unit(system, &format!("elevations in {name} (citation '{text}')"), size_m))
             }
-            None => {
+            (None, Some(code), None) => {
                 let which = if code == key::USER_DEFINED {
                     "heights of a user-defined reference system (key 4096)".to_owned()
                 } else {
                     format!("heights of the reference system {}, whose unit is not known here,", by_reference(code))
                 };
-                unsuitable(
+                Err(unsuitable(
                     format!("{which} without a unit (key 4099)"),
                     "elevations in metres",
                     &format!("gdal_translate -a_srs {} in.tif out.tif, if the elevations are in metres", horizontal(system)),
-                )
+                ))
             }
-        }),
-        (None, ..) => match cited {
-            Some((text, feet)) => {
-                let (name, size_m) = length_unit(feet);
-                Err(in_unit(system, &format!("elevations in {name} (citation '{text}')"), size_m))
-            }
-            None => Ok(()),
+            (None, ..) => Ok(()),
         },
     }
 }
@@ -258,7 +260,8 @@ mod tests {
         for (key, text) in texts {
             let offset = u16::try_from(system.ascii_parameters.len()).unwrap();
             entries.push([*key, 34737, u16::try_from(text.len() + 1).unwrap(), offset]);
-            system.ascii_parameters += &format!("{text}|");
+            system.ascii_parameters += text;
+            system.ascii_parameters.push('|');
         }
         for (key, value) in doubles {
             entries.push([*key, 34736, 1, u16::try_from(system.double_parameters.len()).unwrap()]);
@@ -307,6 +310,7 @@ mod tests {
             (&[(4096, 5703), (4099, 9003)], &[], &["US survey feet (key 4099)", "metres by the code EPSG:5703"]),
             (&[(4096, 6360), (4099, 9003)], &[], &["elevations in US survey feet", us]),
             (&[(4099, 9001)], &[(4097, "NAVD88 height (ftUS)")], &["metres (key 4099)", "NAVD88 height (ftUS)"]),
+            (&[(4096, 5703)], &[(4097, "NAVD88 height (ftUS)")], &["metres by the code EPSG:5703", "US survey feet"]),
             // By citation alone: of the heights, not of the map.
             (&[], &[(1026, "WGS 84 / UTM zone 14N + NAVD88 height (ftUS)")], &["elevations in US survey feet", us]),
             (&[(4096, 6360)], &[(1026, "WGS 84 / UTM zone 14N + NAVD88 height (ftUS)")], &["elevations in US survey feet"]),

@@ -171,9 +171,8 @@ pub(super) fn named_ellipsoid(name: &str) -> Option<Ellipsoid> {
 pub(super) fn ellipsoid(code: u16) -> Option<Ellipsoid> {
     match code {
         4326 | 6326 | 7030 => Some(Ellipsoid::WGS84),
-        4258 | 4269 | 6258 | 6269 | 7019 => Some(Ellipsoid::GRS80),
-        // GDA94, NZGD2000, NAD83(CSRS), NAD83(2011).
-        4283 | 6283 | 4167 | 6167 | 4617 | 6140 | 6318 | 1116 => Some(Ellipsoid::GRS80),
+        // ETRS89, NAD83, GDA94, NZGD2000, NAD83(CSRS), NAD83(2011).
+        4258 | 4269 | 6258 | 6269 | 7019 | 4283 | 6283 | 4167 | 6167 | 4617 | 6140 | 6318 | 1116 => Some(Ellipsoid::GRS80),
         // NAD27 on Clarke 1866; ED50 on International 1924; OSGB36 on Airy 1830.
         4267 | 6267 | 7008 => Some(Ellipsoid { semi_major_m: 6_378_206.4, semi_minor_m: 6_356_583.8 }),
         4230 | 6230 | 7022 => Some(Ellipsoid::with_inverse_flattening(6_378_388.0, 297.0)),

@@ -197,8 +197,8 @@ fn without_scale(
 ) -> Result<TransectScale, TerrainError> {
     match reason {
         NoProjection::Local => Ok(TransectScale::Local),
-        unknown if accepted => Ok(TransectScale::Unknown(unknown.to_string())),
-        unknown => {
+        unknown @ NoProjection::Unknown(_) if accepted => Ok(TransectScale::Unknown(unknown.to_string())),
+        unknown @ NoProjection::Unknown(_) => {
             let map = dem.lattice().georeference();
             let mend = mend_unknown(map, &shell_word(&file.display().to_string()));
             Err(TerrainError::UnknownScale { reason: unknown.clone(), mend })

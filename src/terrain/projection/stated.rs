@@ -9,7 +9,7 @@ use crate::world::KNOWN_BODIES;
 /// Radii of the Earth's ellipsoids, m: all geodetic codes of EPSG are of the Earth.
 const EARTH: Ellipsoid = Ellipsoid::WGS84;
 
-/// Keys with texts about the map: GTCitation, PCSCitation, GeogCitation.
+/// Keys with texts about the map: general, projected, geographic.
 const CITATIONS: [u16; 3] = [1026, 3073, 2049];
 
 /// The prefix of well-known text among the citations, as ESRI and GDAL write it where the keys cannot state a map.
@@ -34,7 +34,7 @@ pub(in crate::terrain) fn contradiction(system: &CoordinateSystem) -> Option<Str
 /// A code of the Earth beside the radius of another body.
 fn radii_contradict(system: &CoordinateSystem) -> Option<String> {
     let radius_m = double_key(system, 2057)?;
-    if EARTH.is_within(radius_m, RADIUS_TOLERANCE) || !(radius_m > 0.0) {
+    if EARTH.is_within(radius_m, RADIUS_TOLERANCE) || radius_m.is_nan() || radius_m <= 0.0 {
         return None;
     }
     let coded = [3072, 2048, 2050, 2056].into_iter().find_map(|key| {

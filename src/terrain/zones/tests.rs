@@ -450,7 +450,7 @@ fn the_reference_system_of_zones_is_compared_with_the_terrains() {
             match (found, &expected) {
                 (Ok(zones), Read) => assert_eq!(zones.not_compared(), None, "{crs} {terrain}"),
                 (Ok(zones), Warned(word)) => {
-                    assert!(zones.not_compared().is_some_and(|text| text.contains(word)), "{crs} {terrain}")
+                    assert!(zones.not_compared().is_some_and(|text| text.contains(word)), "{crs} {terrain}");
                 }
                 (Err(error), Refused(word)) => assert!(error.to_string().contains(word), "{crs} {terrain}: {error}"),
                 (Err(error), _) => panic!("{crs} {terrain}: {error}"),
