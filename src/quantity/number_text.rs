@@ -90,7 +90,10 @@ fn without_thousands(text: &str) -> Option<String> {
     let last = others.len().checked_sub(1)?;
     let grouped = (1..=3).contains(&first.len())
         && is_digits(first)
-        && others.iter().enumerate().all(|(at, part)| is_digits(part) && (part.len() == 3 || (at < last && part.len() == 2 && separator == ',')));
+        && others
+            .iter()
+            .enumerate()
+            .all(|(at, part)| is_digits(part) && (part.len() == 3 || (at < last && part.len() == 2 && separator == ',')));
     let certain = GROUPERS.contains(&separator) || others.len() > 1 || fraction.is_some();
     if !grouped || !certain || fraction.is_some_and(|fraction| fraction.is_empty() || !is_digits(fraction)) {
         return None;

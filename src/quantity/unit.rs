@@ -39,7 +39,10 @@ const UNITS: [(&[&str], Unit); 22] = [
     (&["mm", "millimetre", "millimetres", "millimeter", "millimeters"], unit("millimetres", Measure::Length, 0.001)),
     (&["um", "micron", "microns", "micrometre", "micrometer"], unit("micrometres", Measure::Length, 1.0e-6)),
     (&["ft", "foot", "feet", "ift", "'"], unit("feet", Measure::Length, 0.3048)),
-    (&["ftus", "us-ft", "usft", "us_ft", "sft", "survey foot", "us survey foot", "us survey feet"], unit("US survey feet", Measure::Length, 1200.0 / 3937.0)),
+    (
+        &["ftus", "us-ft", "usft", "us_ft", "sft", "survey foot", "us survey foot", "us survey feet"],
+        unit("US survey feet", Measure::Length, 1200.0 / 3937.0),
+    ),
     (&["in", "inch", "inches", "\""], unit("inches", Measure::Length, 0.0254)),
     (&["yd", "yard", "yards"], unit("yards", Measure::Length, 0.9144)),
     (&["mi", "mile", "miles"], unit("miles", Measure::Length, 1609.344)),

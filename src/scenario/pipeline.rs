@@ -206,6 +206,8 @@ pub struct Transect {
     pub projection: Option<MapProjection>,
     /// The extent of the terrain.
     pub bounds: MapBounds,
+    /// How much terrain the file holds, such as "120 rows and 70 columns of posts": a file that was cut short holds less.
+    pub size: String,
     /// Warnings for the analyst.
     pub warnings: Vec<String>,
 }
@@ -232,7 +234,8 @@ impl Transect {
         }
         let legs = slice_legs(dem.as_ref(), from, &via, to)?;
         let coordinates = Some(map.coordinate_system.clone());
-        Ok(Self { legs, coordinates, projection: projection.ok(), bounds, warnings })
+        let size = format!("{} rows and {} columns of posts", dem.lattice().rows(), dem.lattice().cols());
+        Ok(Self { legs, coordinates, projection: projection.ok(), bounds, size, warnings })
     }
 
     /// Slices a mesh from the first end over the intermediate points to the second.
@@ -249,7 +252,8 @@ impl Transect {
             legs.push(slice.profile);
             begin = end;
         }
-        Ok(Self { legs, coordinates: None, projection: None, bounds: read.mesh.bounds().map, warnings })
+        let size = format!("a mesh of {} triangles", read.mesh.triangle_count());
+        Ok(Self { legs, coordinates: None, projection: None, bounds: read.mesh.bounds().map, size, warnings })
     }
 }
 

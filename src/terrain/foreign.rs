@@ -29,7 +29,8 @@ const fn other(name: &'static str, mend: &'static str) -> Foreign {
     Foreign { name, mend: Mend::By(mend) }
 }
 
-const GRID_POINTS: &str = "pdal translate in.las out.tif -w writers.gdal --writers.gdal.resolution=METRES --writers.gdal.output_type=mean";
+const GRID_POINTS: &str =
+    "pdal translate in.las out.tif -w writers.gdal --writers.gdal.resolution=METRES --writers.gdal.output_type=mean";
 const EXPORT_MESH: &str = "an export of the model as OBJ, STL or PLY, with z up";
 const SAVE_AS_TEXT: &str = "saving the table as CSV UTF-8";
 const UTF_16: Foreign = other("a text in UTF-16", "iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
@@ -76,7 +77,13 @@ const BEGINNINGS: [(&[u8], Foreign); 58] = [
     (b"LASF", other("a LAS or LAZ point cloud", GRID_POINTS)),
     (b"ASTM-E57", other("an E57 point cloud", GRID_POINTS)),
     (b"# .PCD", other("a PCD point cloud", GRID_POINTS)),
-    (b"\0\0\x27\x0a", other("a shapefile", "an elevation raster or mesh; zones go into keep_out as GeoJSON (ogr2ogr -f GeoJSON out.geojson in.shp)")),
+    (
+        b"\0\0\x27\x0a",
+        other(
+            "a shapefile",
+            "an elevation raster or mesh; zones go into keep_out as GeoJSON (ogr2ogr -f GeoJSON out.geojson in.shp)",
+        ),
+    ),
     (b"%PDF", other("a PDF document", "the file of the elevations themselves")),
     (b"\xd0\xcf\x11\xe0", other("an Office document", SAVE_AS_TEXT)),
     (b"PAR1", other("a Parquet table", SAVE_AS_TEXT)),
@@ -123,7 +130,10 @@ pub(super) fn name(beginning: &[u8]) -> Option<Foreign> {
         Some(b'{' | b'[') if contains(text, b"\"coordinates\"") || contains(text, b"\"FeatureCollection\"") => {
             Some(other("GeoJSON", "an elevation raster or mesh; zones go into keep_out"))
         }
-        Some(b'{') => Some(other("a JSON text", "the file of the elevations; if a server sent this as its answer, read it and download again")),
+        Some(b'{') => Some(other(
+            "a JSON text",
+            "the file of the elevations; if a server sent this as its answer, read it and download again",
+        )),
         _ => None,
     }
 }
@@ -233,8 +243,8 @@ mod tests {
             (b"LASF\0\0", Some("a LAS or LAZ point cloud")),
             (b"\x4c\0\0\0\x01\x14\x02\0\0", Some("a Windows shortcut")),
             (b"\xff\xfen\0c\0o\0l\0s\0", Some("a text in UTF-16")),
-            (b"n\0c\0o\0l\0s\0 \05\0", Some("a text in UTF-16")),
-            (b"\0n\0c\0o\0l\0s\0 \05", Some("a text in UTF-16")),
+            (b"n\0c\0o\0l\0s\0 \0x\0", Some("a text in UTF-16")),
+            (b"\0n\0c\0o\0l\0s\0 \0x", Some("a text in UTF-16")),
             (b"{\"type\": \"FeatureCollection\", \"features\": []}", Some("GeoJSON")),
             (b"{\"message\": \"not found\"}", Some("a JSON text")),
             (b"glTF\x02\0\0\0", Some("a glTF model")),

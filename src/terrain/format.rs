@@ -137,9 +137,12 @@ mod tests {
     #[test]
     fn files_of_no_format_are_refused_with_their_first_bytes() {
         let directory = tempfile::tempdir().unwrap();
-        for (content, expected) in
-            [(&b""[..], "the file is empty"), (b"\x00\x01junk", "\\x00\\x01junk"), (b"x_m,z_m\n0,1\n", "x_m,z_m"), (&[0; 100], "zero bytes only")]
-        {
+        for (content, expected) in [
+            (&b""[..], "the file is empty"),
+            (b"\x00\x01junk", "\\x00\\x01junk"),
+            (b"x_m,z_m\n0,1\n", "x_m,z_m"),
+            (&[0; 100], "zero bytes only"),
+        ] {
             let path = directory.path().join("a.tif");
             std::fs::write(&path, content).unwrap();
             let message = read_dem(&path).unwrap_err().to_string();

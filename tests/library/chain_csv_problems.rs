@@ -89,7 +89,10 @@ fn columns_in_other_units_are_refused_with_their_factor() {
         ("x_ft,z_m", "`x_ft`, in feet, expected a column x_m; multiply its numbers by 0.3048, then name it x_m"),
         ("x_m,z_km", "`z_km`, in kilometres, expected a column z_m; multiply its numbers by 1000,"),
         ("x_m,Z [ft]", "multiply its numbers by 0.3048"),
-        ("x_m,z_m,friction_pct", "`friction_pct`, in percent, expected a column friction_coefficient; multiply its numbers by 0.01,"),
+        (
+            "x_m,z_m,friction_pct",
+            "`friction_pct`, in percent, expected a column friction_coefficient; multiply its numbers by 0.01,",
+        ),
         ("x_m,z_m,cross_slope_rad", "multiply its numbers by 57.29577951,"),
         ("x_m,z_m,takeoff_speed_max_km_h", "multiply its numbers by 0.2777777778,"),
     ] {
@@ -110,7 +113,10 @@ fn every_line_end_gives_the_same_chain() {
         assert_eq!(read_chain_csv(text.replace('\n', end).as_bytes()).unwrap(), whole, "{end:?}");
     }
     let open = read_chain_csv(text.trim_end().as_bytes()).unwrap();
-    assert_eq!((open.chain, open.warnings), (whole.chain, vec!["line 5: the file ends within this line, after 3 rows: make sure that it is whole".to_owned()]));
+    assert_eq!(
+        (open.chain, open.warnings),
+        (whole.chain, vec!["line 5: the file ends within this line, after 3 rows: make sure that it is whole".to_owned()])
+    );
 }
 
 #[test]

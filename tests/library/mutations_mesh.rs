@@ -161,7 +161,8 @@ fn mutated_objs_with_concave_faces_never_panic() {
     for row in 0..3 {
         let at = |col: u32, line: u32| 1 + col + 5 * line;
         // Two squares in a row form a face of six corners, an L of three squares one of eight.
-        writeln!(faces, "f {} {} {} {} {} {}", at(0, row), at(1, row), at(2, row), at(2, row + 1), at(1, row + 1), at(0, row + 1)).unwrap();
+        writeln!(faces, "f {} {} {} {} {} {}", at(0, row), at(1, row), at(2, row), at(2, row + 1), at(1, row + 1), at(0, row + 1))
+            .unwrap();
         writeln!(faces, "f {} {} {} {} {}", at(2, row), at(4, row), at(4, row + 1), at(3, row), at(2, row + 1)).unwrap();
     }
     let whole = format!("{vertices}{faces}").into_bytes();

@@ -184,7 +184,7 @@ fn images_that_are_not_elevation_maps_are_refused_by_key() {
 }
 
 /// Special values: which samples are gaps, and which keys are refused. Known from the data dictionary, the labels of SELENE
-/// products (INVALID_VALUE, OUT_OF_IMAGE_BOUNDS_VALUE), of Mars Express (DTM_MISSING_DN) and of ISIS exports (NULL, VALID_MINIMUM).
+/// products (the first keys of the list), of Mars Express (`DTM_MISSING_DN`) and of ISIS exports (`NULL`, `VALID_MINIMUM`).
 #[test]
 fn special_values_are_gaps_and_unknown_keys_are_refused() {
     let at = (3, 5);
@@ -249,8 +249,15 @@ fn special_values_are_gaps_and_unknown_keys_are_refused() {
         assert!(refusal.contains(key) && !refusal.contains("damaged"), "{unknown}: {refusal}");
     }
     // In a group of a mission outside the IMAGE object.
-    for (group, expected) in [("DTM_MISSING_DN = {}", None), ("MY_MISSING_VALUE = {}", Some("MY_MISSING_VALUE")), ("DTM_SCALING_FACTOR = 2.0", Some("DTM_SCALING_FACTOR"))] {
-        let text = format!("{POLAR}END_OBJECT\r\nGROUP = DTM\r\n{}\r\nEND_GROUP\r\nOBJECT = EXTRA\r\n", group.replace("{}", &mark.to_string()));
+    for (group, expected) in [
+        ("DTM_MISSING_DN = {}", None),
+        ("MY_MISSING_VALUE = {}", Some("MY_MISSING_VALUE")),
+        ("DTM_SCALING_FACTOR = 2.0", Some("DTM_SCALING_FACTOR")),
+    ] {
+        let text = format!(
+            "{POLAR}END_OBJECT\r\nGROUP = DTM\r\n{}\r\nEND_GROUP\r\nOBJECT = EXTRA\r\n",
+            group.replace("{}", &mark.to_string())
+        );
         let fixture = Fixture { projection: &text, ..Fixture::default() };
         match expected {
             None => assert_eq!(fixture.read().elevation(at.0, at.1), None),
@@ -277,7 +284,8 @@ fn maps_that_are_stated_in_terms_not_known_or_contradictory_are_refused_by_key()
             "COORDINATE_SYSTEM_NAME 'ODD'",
         ),
     ] {
-        let text = POLAR.replace("\nA_AXIS", "\r\nA_AXIS").replace("<KM>\n", "<KM>\r\n").replace("LATITUDE = -90.0", "LATITUDE = -70.0");
+        let text =
+            POLAR.replace("\nA_AXIS", "\r\nA_AXIS").replace("<KM>\n", "<KM>\r\n").replace("LATITUDE = -90.0", "LATITUDE = -70.0");
         let projection = text.replace(from, to);
         assert_ne!(projection, text, "{from}");
         let refusal = Fixture { projection: &projection, ..Fixture::default() }.refusal();

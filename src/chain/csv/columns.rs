@@ -191,7 +191,10 @@ pub(super) fn in_other_unit(columns: &[CsvColumn], name: &str) -> Option<OtherUn
     let (unit, help) = match unit.filter(|unit| unit.measure == expected) {
         Some(unit) => (
             unit.name.to_owned(),
-            format!("multiply its numbers by {}, then name it {known}; a new name alone changes no number", format_number(unit.factor)),
+            format!(
+                "multiply its numbers by {}, then name it {known}; a new name alone changes no number",
+                format_number(unit.factor)
+            ),
         ),
         None => (
             format!("'{}'", excerpt(&text)),

@@ -25,13 +25,16 @@ pub(super) fn cut(corners: &[Point3<f64>]) -> Result<Vec<[usize; 3]>, String> {
         ));
     }
     let crossing = || {
-        format!("found a face of {count} corners whose border crosses itself, expected one inside; triangulate the mesh before the export")
+        format!(
+            "found a face of {count} corners whose border crosses itself, expected one inside; triangulate the mesh before the export"
+        )
     };
     let flat = flattened(corners).ok_or_else(crossing)?;
     let mut left: Vec<usize> = (0..count).collect();
     let mut triangles = Vec::with_capacity(count - 2);
     while left.len() > 3 {
-        let ear = (0..left.len()).find(|&at| is_ear(&flat, &left, at)).or_else(|| (0..left.len()).find(|&at| is_flat(&flat, &left, at)));
+        let ear =
+            (0..left.len()).find(|&at| is_ear(&flat, &left, at)).or_else(|| (0..left.len()).find(|&at| is_flat(&flat, &left, at)));
         let ear = ear.ok_or_else(crossing)?;
         triangles.push(around(&left, ear));
         left.remove(ear);
@@ -121,7 +124,9 @@ mod tests {
     #[test]
     fn borders_that_cross_themselves_and_very_large_faces_are_refused() {
         assert!(cut(&polygon(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])).unwrap_err().contains("crosses itself"));
-        assert!(cut(&polygon(&[(0.0, 0.0), (3.0, 0.0), (1.0, 2.0), (1.0, -1.0), (2.0, 2.0)])).unwrap_err().contains("crosses itself"));
+        assert!(
+            cut(&polygon(&[(0.0, 0.0), (3.0, 0.0), (1.0, 2.0), (1.0, -1.0), (2.0, 2.0)])).unwrap_err().contains("crosses itself")
+        );
         let star: Vec<(f64, f64)> = (0..80_u32)
             .map(|k| {
                 let (angle, radius) = (f64::from(k) * std::f64::consts::TAU / 80.0, if k % 2 == 0 { 2.0 } else { 1.0 });

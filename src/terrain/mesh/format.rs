@@ -61,7 +61,8 @@ fn without_mark(bytes: &[u8]) -> &[u8] {
 
 /// Whether a file begins like a raster or another known format, whose numbers must not be taken for triangles.
 fn is_raster(beginning: &[u8]) -> bool {
-    [&b"II*\0"[..], b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| beginning.starts_with(magic)) || foreign::name(beginning).is_some()
+    [&b"II*\0"[..], b"MM\0*", b"II+\0", b"MM\0+"].iter().any(|magic| beginning.starts_with(magic))
+        || foreign::name(beginning).is_some()
 }
 
 /// Whether a file is a mesh by its content; false if it cannot be read.

@@ -38,7 +38,8 @@ pub(super) fn recognises(beginning: &[u8]) -> bool {
     let first = lines(beginning).find(|(_, line)| !line.is_empty() && !line.starts_with('#'));
     first.is_some_and(|(_, line)| {
         let word = line.split_ascii_whitespace().next().unwrap_or_default();
-        (["v", "f", "fo"].contains(&word) || WITHOUT_SURFACE.contains(&word) || FREE_FORM.contains(&word)) && line.len() > word.len()
+        (["v", "f", "fo"].contains(&word) || WITHOUT_SURFACE.contains(&word) || FREE_FORM.contains(&word))
+            && line.len() > word.len()
     })
 }
 
@@ -123,9 +124,15 @@ mod tests {
 
     #[test]
     fn all_forms_of_a_corner_are_read() {
-        for face in
-            ["f 1 2 3", "f 1/1 2/2 3/3 # face", "f 1//9 2//9 3//9", "f 1/4/9 2/4/9 3/4/9", "f -4 -3 -2", "f 1 \\\n 2 \\\n 3", "fo 1 2 3"]
-        {
+        for face in [
+            "f 1 2 3",
+            "f 1/1 2/2 3/3 # face",
+            "f 1//9 2//9 3//9",
+            "f 1/4/9 2/4/9 3/4/9",
+            "f -4 -3 -2",
+            "f 1 \\\n 2 \\\n 3",
+            "fo 1 2 3",
+        ] {
             assert_eq!(
                 mesh(&format!("# ours\nmtllib a.mtl\n\n{POINTS}g rock\nusemtl grey\n{face}\r\n")).unwrap(),
                 [[0, 1, 2]],

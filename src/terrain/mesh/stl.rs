@@ -74,8 +74,9 @@ pub(super) fn read_binary(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(),
     }
     let triangles = bytes.get(HEADER_BYTES..length).unwrap_or_default().chunks_exact(50);
     for (index, triangle) in triangles.enumerate() {
-        let damaged =
-            |problem| TerrainError::InvalidMesh(format!("triangle {} of the {BINARY}: {problem}; export the mesh again", index + 1));
+        let damaged = |problem| {
+            TerrainError::InvalidMesh(format!("triangle {} of the {BINARY}: {problem}; export the mesh again", index + 1))
+        };
         let mut numbers = triangle.chunks_exact(4).map(|four| f32::from_le_bytes([four[0], four[1], four[2], four[3]])).skip(3);
         let mut corners = [0; 3];
         for corner in &mut corners {
@@ -192,7 +193,9 @@ mod tests {
             assert_eq!(warnings, [format!("{} bytes after the last triangle of the binary STL are left out", tail.len())]);
         }
         // No triangles, and numbers that are no coordinates.
-        assert!(!recognises_binary(&[0; 200], 200) && !recognises_binary(&[&[0; 80][..], &[1, 0, 0, 0], &[0x7f; 60]].concat(), 144));
+        assert!(
+            !recognises_binary(&[0; 200], 200) && !recognises_binary(&[&[0; 80][..], &[1, 0, 0, 0], &[0x7f; 60]].concat(), 144)
+        );
         let mut builder = MeshBuilder::new(10.0);
         read_binary(&bytes, &mut builder).unwrap();
         let (mesh, _) = builder.finish().unwrap();

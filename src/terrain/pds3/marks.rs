@@ -51,18 +51,48 @@ const NO_VALUE: [&str; 4] = ["N/A", "NULL", "NONE", "NOT_APPLICABLE"];
 
 /// Words of keys that describe an image without changing what its samples mean: statistics, names, counts.
 const HARMLESS: [&str; 34] = [
-    "MAXIMUM", "MINIMUM", "MAX", "MIN", "MEAN", "MEDIAN", "MODE", "AVERAGE", "STANDARD", "DEVIATION", "VARIANCE", "SIGMA", "RMS",
-    "CHECKSUM", "MD5", "TYPE", "FLAG", "DESC", "DESCRIPTION", "NAME", "NOTE", "COUNT", "COUNTS", "PIXELS", "LINES", "SAMPLES",
-    "PERCENT", "PERCENTAGE", "UNIT", "FORMAT", "ID", "STRETCH", "STRETCHED", "QUALITY",
+    "MAXIMUM",
+    "MINIMUM",
+    "MAX",
+    "MIN",
+    "MEAN",
+    "MEDIAN",
+    "MODE",
+    "AVERAGE",
+    "STANDARD",
+    "DEVIATION",
+    "VARIANCE",
+    "SIGMA",
+    "RMS",
+    "CHECKSUM",
+    "MD5",
+    "TYPE",
+    "FLAG",
+    "DESC",
+    "DESCRIPTION",
+    "NAME",
+    "NOTE",
+    "COUNT",
+    "COUNTS",
+    "PIXELS",
+    "LINES",
+    "SAMPLES",
+    "PERCENT",
+    "PERCENTAGE",
+    "UNIT",
+    "FORMAT",
+    "ID",
+    "STRETCH",
+    "STRETCHED",
+    "QUALITY",
 ];
 
 /// Last words of keys that name special values of samples.
 const SPECIAL_ENDINGS: [&str; 9] = ["VALUE", "VALUES", "CONSTANT", "CONSTANTS", "DN", "NULL", "SATURATION", "NODATA", "DUMMY"];
 
 /// Words, one of which makes such a key one of missing samples, outside the IMAGE object.
-const SPECIAL_WORDS: [&str; 12] = [
-    "MISSING", "INVALID", "NULL", "NODATA", "FILL", "DUMMY", "VOID", "BLANK", "BACKGROUND", "SATURATION", "SPECIAL", "BOUNDS",
-];
+const SPECIAL_WORDS: [&str; 12] =
+    ["MISSING", "INVALID", "NULL", "NODATA", "FILL", "DUMMY", "VOID", "BLANK", "BACKGROUND", "SATURATION", "SPECIAL", "BOUNDS"];
 
 /// Endings of keys that convert samples.
 const CONVERSIONS: [(&str, f64); 5] =

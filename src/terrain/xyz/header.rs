@@ -237,7 +237,9 @@ mod tests {
 
     #[test]
     fn chain_tables_are_not_taken_for_grids() {
-        for text in ["x_m,z_m\n0,1\n", "x_m,z_m,friction_coefficient\n0,1,0.6\n", "", "# x_m\nx_m,z_m\n0,1\n", "<html>", "v 0 0 1\n"] {
+        for text in
+            ["x_m,z_m\n0,1\n", "x_m,z_m,friction_coefficient\n0,1,0.6\n", "", "# x_m\nx_m,z_m\n0,1\n", "<html>", "v 0 0 1\n"]
+        {
             assert!(!begins_with_post(text.as_bytes()), "{text}");
         }
     }

@@ -128,11 +128,7 @@ fn row(
     let needed = columns.x.max(columns.y).max(columns.z) + 1;
     let fits = if separator == Separator::Blank { fields.len() >= needed } else { fields.len() == columns.count };
     if !fits {
-        let mend = if separator == Separator::Comma {
-            " (with decimal commas, separate the columns by semicolons)"
-        } else {
-            ""
-        };
+        let mend = if separator == Separator::Comma { " (with decimal commas, separate the columns by semicolons)" } else { "" };
         problems.add_at((line, 1), &format!("{} fields", fields.len()), &format!("{}{mend}", columns.count));
         return;
     }

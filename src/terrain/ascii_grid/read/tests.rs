@@ -91,7 +91,11 @@ fn every_problem_is_listed_with_its_place() {
     assert_eq!(further, 0);
     let places: Vec<(usize, usize)> = found.iter().map(|problem| (problem.line, problem.column)).collect();
     assert_eq!(places, [(7, 1), (7, 7), (8, 3)]);
-    assert!(found[0].to_string().contains("'1,5'") && found[0].to_string().contains("write a decimal point, not a comma: 1.5"), "{}", found[0]);
+    assert!(
+        found[0].to_string().contains("'1,5'") && found[0].to_string().contains("write a decimal point, not a comma: 1.5"),
+        "{}",
+        found[0]
+    );
     assert!(found[1].to_string().contains("row 1 of 2, column 3 of 3"), "{}", found[1]);
     let (found, _) = problems("ncols 3\nnrows x\nxllcorner 0\ncellsize -1\nncols 4\ncell 3\n1 2 3");
     let text = found.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n");

@@ -119,7 +119,13 @@ impl Header {
                     element.properties.push(property);
                 }
                 ["end_header"] => {
-                    let encoding = encoding.ok_or_else(|| in_line(NAME, number, "found the end of a header without a line 'format', expected one such as 'format ascii 1.0'"))?;
+                    let encoding = encoding.ok_or_else(|| {
+                        in_line(
+                            NAME,
+                            number,
+                            "found the end of a header without a line 'format', expected one such as 'format ascii 1.0'",
+                        )
+                    })?;
                     return Ok((Self { encoding, elements }, rest));
                 }
                 _ => return Err(in_line(NAME, number, &format!("found '{}', expected a line of a header", shown(&line)))),
