@@ -241,6 +241,8 @@ pub struct Transect {
     pub figure: Option<Ellipsoid>,
     /// The extent of the terrain, and what kind of terrain it is.
     pub extent: Extent,
+    /// How much terrain the file holds, such as "120 rows and 70 columns of posts": a file that was cut short holds less.
+    pub size: String,
     /// Warnings for the analyst.
     pub warnings: Vec<String>,
 }
@@ -272,7 +274,8 @@ impl Transect {
         warnings.extend(dem.warnings(range_m));
         let coordinates = Some(map.coordinate_system.clone());
         let extent = Extent::of_dem(bounds, projection.is_ok());
-        Ok(Self { legs, coordinates, projection: projection.ok(), figure: map.ellipsoid(), extent, warnings })
+        let size = format!("{} rows and {} columns of posts", dem.lattice().rows(), dem.lattice().cols());
+        Ok(Self { legs, coordinates, projection: projection.ok(), figure: map.ellipsoid(), extent, size, warnings })
     }
 
     /// Slices a mesh, with its metres per unit and its mark of missing data, from the first end over the intermediate points to the second.
@@ -295,7 +298,8 @@ impl Transect {
             begin = end;
         }
         let extent = Extent::of_mesh(&read.mesh.bounds());
-        Ok(Self { legs, coordinates: None, projection: None, figure: None, extent, warnings })
+        let size = format!("a mesh of {} triangles", read.mesh.triangle_count());
+        Ok(Self { legs, coordinates: None, projection: None, figure: None, extent, size, warnings })
     }
 }
 

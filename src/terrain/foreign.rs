@@ -29,8 +29,7 @@ const fn other(name: &'static str, mend: &'static str) -> Foreign {
     Foreign { name, mend: Mend::By(mend) }
 }
 
-const GRID_POINTS: &str =
-    "pdal translate in.las out.tif -w writers.gdal --writers.gdal.resolution=METRES --writers.gdal.output_type=mean";
+const GRID_POINTS: &str = "a grid of its ground points as a GeoTIFF, such as writers.gdal of PDAL makes";
 const EXPORT_MESH: &str = "an export of the model as OBJ, STL or PLY, with z up";
 const SAVE_AS_TEXT: &str = "saving the table as CSV UTF-8";
 const UTF_16: Foreign = other("a text in UTF-16", "iconv -f UTF-16 -t UTF-8 in.txt > out.txt");
@@ -248,8 +247,8 @@ mod tests {
             (b"LASF\0\0", Some("a LAS or LAZ point cloud")),
             (b"\x4c\0\0\0\x01\x14\x02\0\0", Some("a Windows shortcut")),
             (b"\xff\xfen\0c\0o\0l\0s\0", Some("a text in UTF-16")),
-            (b"n\0c\0o\0l\0s\0 \05\0", Some("a text in UTF-16")),
-            (b"\0n\0c\0o\0l\0s\0 \05", Some("a text in UTF-16")),
+            (b"n\0c\0o\0l\0s\0 \0x\0", Some("a text in UTF-16")),
+            (b"\0n\0c\0o\0l\0s\0 \0x", Some("a text in UTF-16")),
             (b"{\"type\": \"FeatureCollection\", \"features\": []}", Some("GeoJSON")),
             (b"{\"message\": \"not found\"}", Some("a JSON text")),
             (b"glTF\x02\0\0\0", Some("a glTF model")),

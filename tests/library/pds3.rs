@@ -184,7 +184,7 @@ fn images_that_are_not_elevation_maps_are_refused_by_key() {
 }
 
 /// Special values: which samples are gaps, and which keys are refused. Known from the data dictionary, the labels of SELENE
-/// products (INVALID_VALUE, OUT_OF_IMAGE_BOUNDS_VALUE), of Mars Express (DTM_MISSING_DN) and of ISIS exports (NULL, VALID_MINIMUM).
+/// products (the first keys of the list), of Mars Express (`DTM_MISSING_DN`) and of ISIS exports (`NULL`, `VALID_MINIMUM`).
 #[test]
 fn special_values_are_gaps_and_unknown_keys_are_refused() {
     let at = (3, 5);

@@ -56,6 +56,7 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
     }
     let name = name_of(terrain);
     let mut comments = vec![format!("chta {} slice of {name}, sha256 {}", env!("CARGO_PKG_VERSION"), sha256_of(terrain)?)];
+    comments.push(format!("of {}", transect.size));
     comments.extend(ends(&transect.legs));
     comments.extend(via.iter().map(|point| format!("via ({}, {}) m", point.x, point.y)));
     comments.extend(via_lonlat.iter().map(|place| format!("via longitude {}, latitude {} deg", place.lon_deg, place.lat_deg)));

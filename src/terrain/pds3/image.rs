@@ -97,7 +97,8 @@ fn pointer(label: &Label) -> Result<(Option<String>, u64), TerrainError> {
     Ok((file, number.checked_mul(record as u64).ok_or_else(wrong)?))
 }
 
-/// Metres per unit of the elevations: UNIT, which SCALING_FACTOR and OFFSET must not contradict with a unit of their own.
+/// Metres per unit of the elevations: UNIT, which `SCALING_FACTOR` and OFFSET must not
+/// contradict with a unit of their own.
 fn metres_per_unit(label: &Label) -> Result<f64, TerrainError> {
     let metres = |key: &str, text: &str| match text.to_ascii_uppercase().trim() {
         "M" | "METER" | "METERS" | "METRE" | "METRES" => Ok(1.0),

@@ -91,8 +91,8 @@ fn coordinate_system(label: &Label) -> Result<CoordinateSystem, TerrainError> {
         [3075, 0, 1, method.code],
         [3076, 0, 1, 9001],
     ];
-    if let Some(equator_m) = axes.equator_m {
-        let pole_m = axes.pole_m.unwrap_or(equator_m);
+    if let Some(equator_m) = axes.a_m {
+        let pole_m = axes.c_m.unwrap_or(equator_m);
         check_latitude(label, latitude, equator_m, pole_m)?;
         check_resolution(label, equator_m)?;
         entries.extend([[2057, 34736, 1, 0], [2058, 34736, 1, 1]]);
@@ -114,11 +114,12 @@ fn coordinate_system(label: &Label) -> Result<CoordinateSystem, TerrainError> {
     Ok(CoordinateSystem { key_directory, double_parameters: doubles, ascii_parameters, description })
 }
 
-/// The radii of the body, m.
+/// The radii of the body, m: two of the equator, and that of the poles.
+#[expect(clippy::struct_field_names, reason = "the axes of the standard, with their unit")]
 struct Axes {
-    equator_m: Option<f64>,
-    other_equator_m: Option<f64>,
-    pole_m: Option<f64>,
+    a_m: Option<f64>,
+    b_m: Option<f64>,
+    c_m: Option<f64>,
 }
 
 /// No body that is mapped here is larger, m: Jupiter's equator is 71 492 km.
@@ -130,16 +131,16 @@ const SHAPE: f64 = 2.0;
 impl Axes {
     fn of(label: &Label) -> Result<Self, TerrainError> {
         Ok(Self {
-            equator_m: radius_m(label, "A_AXIS_RADIUS")?,
-            other_equator_m: radius_m(label, "B_AXIS_RADIUS")?,
-            pole_m: radius_m(label, "C_AXIS_RADIUS")?,
+            a_m: radius_m(label, "A_AXIS_RADIUS")?,
+            b_m: radius_m(label, "B_AXIS_RADIUS")?,
+            c_m: radius_m(label, "C_AXIS_RADIUS")?,
         })
     }
 
     /// Refuses radii that contradict each other or the body.
     fn check(&self, target: &str) -> Result<(), TerrainError> {
         let mean_m = Body::named(target).map(|body| body.radius_m);
-        let named = [("A", self.equator_m), ("B", self.other_equator_m), ("C", self.pole_m)];
+        let named = [("A", self.a_m), ("B", self.b_m), ("C", self.c_m)];
         for (axis, radius_m) in named.into_iter().filter_map(|(axis, radius_m)| Some((axis, radius_m?))) {
             let found = format!("{axis}_AXIS_RADIUS of {} m", format_number(radius_m));
             if !(radius_m > 0.0 && radius_m < LARGEST_RADIUS_M) {
@@ -150,7 +151,7 @@ impl Axes {
                 return Err(unsuitable(found, "radii of the body, in km unless their unit says <M>"));
             }
         }
-        match (self.equator_m, self.other_equator_m) {
+        match (self.a_m, self.b_m) {
             (Some(a), Some(b)) if (a - b).abs() > 1.0e-6 * a => {
                 let found = format!("A_AXIS_RADIUS of {} m and B_AXIS_RADIUS of {} m", format_number(a), format_number(b));
                 Err(unsuitable(found, "a body with a round equator"))
@@ -183,7 +184,7 @@ fn check_latitude(label: &Label, latitude: f64, equator_m: f64, pole_m: f64) -> 
     Err(unsuitable(found, "PLANETOCENTRIC or PLANETOGRAPHIC"))
 }
 
-/// Refuses a MAP_RESOLUTION and a MAP_SCALE that are not of one size: a degree of the equator has as many metres on all maps
+/// Refuses a `MAP_RESOLUTION` and a `MAP_SCALE` that are not of one size: a degree of the equator has as many metres on all maps
 /// that are true to scale somewhere.
 fn check_resolution(label: &Label, equator_m: f64) -> Result<(), TerrainError> {
     let resolution =

@@ -42,8 +42,9 @@ const NARROW: f64 = 0.1;
 fn cause_of_gap(mesh: &Mesh, plane: &Plane, low_m: f64, high_m: f64) -> GapCause {
     let bounds = mesh.bounds().map;
     let inside = |at: MapPoint| bounds.min.x <= at.x && at.x <= bounds.max.x && bounds.min.y <= at.y && at.y <= bounds.max.y;
-    // The ends of a stretch inside the mesh lie on triangles, exactly or rounded.
-    if !inside(plane.map_point(0.5 * (low_m + high_m))) {
+    // A stretch at an end of the transect lies between no two triangles.
+    let at_end = low_m <= 0.0 || high_m >= plane.length_m;
+    if at_end || !inside(plane.map_point(0.5 * (low_m + high_m))) {
         let width_m = (bounds.max.x - bounds.min.x).max(bounds.max.y - bounds.min.y);
         let reach_m = [plane.first, plane.last].map(|at| at.x.abs().max(at.y.abs())).into_iter().fold(plane.length_m, f64::max);
         return GapCause::OffTheMesh { bounds, unit_in_doubt: reach_m > UNIT_IN_DOUBT * width_m };

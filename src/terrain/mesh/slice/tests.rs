@@ -184,6 +184,7 @@ fn the_advice_about_a_gap_is_what_is_likely() {
         ((6.0, 2.0), (8.0, 2.0), "weld", "mesh_scale"),
         ((1.0, 2.0), (6.0, 2.0), "close the hole", "weld"),
         ((1.0, 2.0), (20.0, 2.0), "choose another transect, or close the hole", "weld"),
+        ((4.5, 2.0), (6.0, 2.0), "choose ends on it", "weld"),
         ((8.0, 2.0), (20.0, 2.0), "x from 0 to 9 m and y from 0 to 4 m: choose ends on it", "weld"),
         ((8.0, 2.0), (9000.0, 2.0), "if its unit is not the metre, give mesh_scale, its metres per unit (1000 for km)", "weld"),
         ((4000.0, 2000.0), (4001.0, 2000.0), "if its unit is not the metre", "weld"),
