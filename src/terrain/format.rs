@@ -84,7 +84,7 @@ pub fn open_dem(path: &Path) -> Result<Box<dyn DemFile>, TerrainError> {
 /// ```
 /// use chta::terrain::{DemOptions, NoDataRule};
 /// let file = tempfile::NamedTempFile::new().unwrap();
-/// std::fs::write(file.path(), "0 0 -9999\n1 0 -5000\n0 1 -5001\n1 1 -5000\n").unwrap();
+/// std::fs::write(file.path(), "7000 0 -9999\n8000 0 -5000\n7000 1000 -5001\n8000 1000 -5000\n").unwrap();
 /// assert!(DemOptions::default().read(file.path()).unwrap_err().to_string().contains("terrain.no_data"));
 /// let dem = DemOptions::default().no_data(NoDataRule::Nothing).read(file.path())?;
 /// assert_eq!(dem.elevation(1, 0), Some(-9999.0));

@@ -23,6 +23,9 @@ const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
 /// The bound of inputs, tested in `pipes.rs`.
 const ON_LARGE_INPUTS: [&str; 1] = ["--input-max-gib"];
 
+/// The mark of missing data, tested in `missing_data.rs`.
+const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
+
 /// An option, a command line without it, and one with it.
 type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
 
@@ -858,7 +861,7 @@ fn every_option_changes_the_output() {
     for (command, trials) in all {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
         let elsewhere = |option: &str| {
-            ON_A_PROJECTED_MAP.contains(&option) || ON_THE_TIME_ALONE.contains(&option) || ON_LARGE_INPUTS.contains(&option)
+            [&ON_A_PROJECTED_MAP[..], &ON_THE_TIME_ALONE, &ON_LARGE_INPUTS, &ON_MISSING_DATA].concat().contains(&option)
         };
         let here: BTreeSet<_> = options(command).into_iter().filter(|option| !elsewhere(option)).collect();
         assert_eq!(tried, here, "{command}: an option without a trial, or the reverse");

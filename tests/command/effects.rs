@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 53] = [
+const TELLING: [(&str, &str); 54] = [
     ("body.name", "earth"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -30,6 +30,7 @@ const TELLING: [(&str, &str); 53] = [
     ("terrain.mesh", "none.csv"),
     ("terrain.chain", "none.csv"),
     ("terrain.mesh_scale", "2"),
+    ("terrain.no_data", "none"),
     ("terrain.start_m", "[3, 3]"),
     ("terrain.goal_m", "[3, 3]"),
     ("terrain.start_lonlat_deg", "[3, 3]"),
@@ -121,6 +122,7 @@ fn every_key_changes_the_answer_or_is_said_to_have_no_effect() {
         match key {
             // A permission, a budget that no better path uses up, a choice among equals, a criterion after others.
             "terrain.accept_map_scale"
+            | "terrain.no_data"
             | "search.risk_extra_hops_max"
             | "search.effort"
             | "search.split"

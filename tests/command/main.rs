@@ -16,6 +16,7 @@ mod interrupt;
 mod map_command;
 mod maps_command;
 mod mesh_command;
+mod missing_data;
 mod picture_files;
 #[cfg(unix)]
 mod pipes;

@@ -25,6 +25,7 @@ mod map_equality;
 mod map_projection;
 mod map_verified;
 mod map_world;
+mod mended;
 mod mesh_slices;
 mod mutations;
 mod mutations_chain_csv;

@@ -54,6 +54,12 @@ fn kind(image: &Ifd) -> u32 {
     image.tag(tag::NEW_SUBFILE_TYPE).and_then(|tag| tag.value.as_u32()).unwrap_or(0)
 }
 
+/// Whether the last band is stated to be opacity (`ExtraSamples` 1 or 2).
+fn has_alpha(image: &Ifd) -> bool {
+    let extra = image.tag(tag::EXTRA_SAMPLES).and_then(|tag| tag.value.as_u16_slice().map(<[u16]>::to_vec));
+    extra.is_some_and(|extra| extra.last().is_some_and(|kind| matches!(kind, 1 | 2)))
+}
+
 /// One band of numbers can be elevations; colours, palettes and negatives are pictures.
 fn refuse_colours(image: &Ifd) -> Result<(), TerrainError> {
     let bands = image.samples_per_pixel();
@@ -79,7 +85,15 @@ fn refuse_colours(image: &Ifd) -> Result<(), TerrainError> {
             format!("a picture with photometric interpretation {other} (such as raw camera data)"),
             "gdal_translate -b 1 -co PHOTOMETRIC=MINISBLACK in.tif out.tif, if its stored numbers are elevations",
         ),
-        _ if bands > 1 => (format!("{bands} bands"), "gdal_translate -b 1 in.tif out.tif (or whichever band holds the elevations)"),
+        _ if bands > 1 && has_alpha(image) => (
+            format!("{bands} bands, of which the last marks the valid posts (alpha)"),
+            "gdal_translate -b 1 -mask 2 --config GDAL_TIFF_INTERNAL_MASK YES in.tif out.tif (the elevations' band, and that of the marks)",
+        ),
+        _ if bands > 1 => (
+            format!("{bands} bands"),
+            "gdal_translate -b 1 in.tif out.tif (or whichever band holds the elevations; if another band marks the valid posts, keep it with \
+             -mask BAND --config GDAL_TIFF_INTERNAL_MASK YES, else missing posts become ground)",
+        ),
         _ => return Ok(()),
     };
     Err(TerrainError::Unsuitable { found, expected: "one band of elevations", mend: mend.to_owned() })

@@ -88,11 +88,14 @@ impl Lattice {
     fn of(tags: &TransformTags, half: f64) -> Result<Self, TerrainError> {
         if let ([scale_x, scale_y, ..], [i, j, _, x, y, _, ..]) = (&tags.pixel_scale[..], &tags.tie_points[..]) {
             if !(*scale_x > 0.0 && *scale_y > 0.0) {
-                return Err(unsuitable(
-                    format!("a pixel scale of ({scale_x}, {scale_y})"),
-                    "scales above 0",
-                    "gdal_translate -a_ullr WEST NORTH EAST SOUTH in.tif out.tif",
-                ));
+                let found = format!("a pixel scale of ({scale_x}, {scale_y})");
+                let mend = if *scale_x < 0.0 && *scale_y > 0.0 {
+                    // New borders would leave the columns in their order and mirror the map.
+                    "gdalwarp -r near in.tif out.tif (the columns run from east to west)"
+                } else {
+                    "a raster made again from its source (programs differ in how they read such a scale)"
+                };
+                return Err(unsuitable(found, "scales above 0", mend));
             }
             let first = MapPoint::new(x + (half - i) * scale_x, y - (half - j) * scale_y);
             return Ok(Self { first, step_x: *scale_x, step_y: -scale_y });

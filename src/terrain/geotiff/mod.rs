@@ -21,6 +21,7 @@ pub use write::{Band, ResultBands, geotiff_bytes, result_geotiff_bytes, write_ge
 /// Numbers of the tags that are read or written here (TIFF 6.0; OGC GeoTIFF 1.1, annex; GDAL's own).
 mod tag {
     pub(super) const NEW_SUBFILE_TYPE: u16 = 254;
+    pub(super) const EXTRA_SAMPLES: u16 = 338;
     pub(super) const PIXEL_SCALE: u16 = 33550;
     pub(super) const TIE_POINTS: u16 = 33922;
     pub(super) const TRANSFORMATION: u16 = 34264;
