@@ -449,9 +449,14 @@ fn the_projection_goes_into_a_geotiff_as_gdal_understands_the_label() {
 fn a_projection_that_is_not_known_is_stated_as_such() {
     let of = |projection: &str| Fixture { projection, ..Fixture::default() }.read().georeference().projection();
     assert!(of(POLAR).is_ok());
-    let robinson = POLAR.replace("POLAR STEREOGRAPHIC", "ROBINSON");
+    let named = |name: &str| POLAR.replace("POLAR STEREOGRAPHIC", name);
     let radii = POLAR.lines().filter(|line| !line.contains("AXIS_RADIUS")).map(|line| format!("{line}\n")).collect::<String>();
-    for (projection, word) in [(robinson, "ROBINSON"), (radii, "radius")] {
+    for (projection, word) in [
+        (named("ROBINSON"), "ROBINSON"),
+        (named("OBLIQUE CYLINDRICAL"), "OBLIQUE CYLINDRICAL"),
+        (named("MERCATOR"), "MERCATOR"),
+        (radii, "radius"),
+    ] {
         let reason = of(&projection).unwrap_err();
         assert!(matches!(reason, NoProjection::Unknown(_)) && reason.to_string().contains(word), "{reason}");
     }
