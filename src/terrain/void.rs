@@ -193,7 +193,7 @@ pub(super) fn find_void(
         let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
         let same = |z_m: f64| marks.find(z_m) == Some(mark);
         let block = Block::from(first, &mut seen, &value, &neighbours, same);
-        if let Some(border_m) = block.refused((count, &value, marks), &neighbours) {
+        if let Err(OffBorder(border_m)) = block.check((count, &value, marks), &neighbours) {
             return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
         }
     }
@@ -202,13 +202,16 @@ pub(super) fn find_void(
         let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
         let block = Block::from(first, &mut seen, &value, &neighbours, |z_m| marks.find(z_m).is_some());
         if block.extent_m.0 != block.extent_m.1
-            && let Some(border_m) = block.refused((count, &value, marks), &neighbours)
+            && let Err(OffBorder(border_m)) = block.check((count, &value, marks), &neighbours)
         {
             return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
         }
     }
     None
 }
+
+/// The border, lowest and highest, m, that a block lies off; `None` if there is no valid value at all.
+struct OffBorder(Option<(f64, f64)>);
 
 /// Connected values, and the valid ones around them.
 struct Block {
@@ -250,21 +253,22 @@ impl Block {
         block
     }
 
-    /// The border, if the block lies off it by more than its range. Without a border, all values that are no marks are the border.
-    fn refused(
+    /// Checks that the block does not lie off its border by more than the border's range. Without a border, all values that are no
+    /// marks are the border.
+    fn check(
         &self,
         (count, value, marks): (usize, &impl Fn(usize) -> f64, &Marks),
         neighbours: &impl Fn(usize, &mut dyn FnMut(usize)),
-    ) -> Option<Option<(f64, f64)>> {
+    ) -> Result<(), OffBorder> {
         let elsewhere = || {
             let valid = (0..count).map(value).filter(|z_m| !z_m.is_nan() && marks.find(*z_m).is_none());
             valid.fold(None, |range, z_m| Some(wider(range, z_m)))
         };
-        let Some((low_m, high_m)) = self.border_m.or_else(elsewhere) else { return Some(None) };
+        let Some((low_m, high_m)) = self.border_m.or_else(elsewhere) else { return Err(OffBorder(None)) };
         let off_m = |(low_m, high_m): (f64, f64)| (low_m - self.extent_m.1).max(self.extent_m.0 - high_m);
         let off = off_m((low_m, high_m));
         if off <= (high_m - low_m).max(WHOLE_METRE_M) {
-            return None;
+            return Ok(());
         }
         if off <= NEAR_THE_MARK * self.extent_m.0.abs() {
             let mut wide = (low_m, high_m);
@@ -276,10 +280,10 @@ impl Block {
                 });
             }
             if off_m(wide) <= 2.0 * (wide.1 - wide.0) {
-                return None;
+                return Ok(());
             }
         }
-        Some(Some((low_m, high_m)))
+        Err(OffBorder(Some((low_m, high_m))))
     }
 }
 
@@ -362,7 +366,7 @@ mod tests {
 
     #[test]
     fn blocks_of_a_raster_join_over_diagonals() {
-        let mut posts = vec![5.0; 25];
+        let mut posts = [5.0; 25];
         (posts[6], posts[12], posts[18]) = (-9999.0, -9999.0, -9999.0);
         let marks = Marks::within((-9999.0, 5.0), Scaling::NONE);
         let void = find_void(25, &marks, |index| posts[index], |index, visit| around((5, 5), index, visit)).unwrap();

@@ -1,4 +1,5 @@
 //! Commands of messages about rasters, run, with the mended file compared with the truth.
+#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "test helpers: a file that cannot be made fails its test")]
 
 use std::path::Path;
 use std::process::Command;

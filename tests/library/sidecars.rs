@@ -1,4 +1,5 @@
 //! Files beside a raster: what they state is read, and what contradicts the raster or is not understood is refused by name.
+#![allow(clippy::unwrap_used, clippy::format_collect, reason = "test helpers: a file that cannot be made fails its test")]
 
 use std::path::{Path, PathBuf};
 
@@ -69,7 +70,7 @@ fn no_data_scale_and_offset_of_aux_xml_are_read_for_every_format() {
         let dem =
             read(extension, vec![], &[(".aux.xml", band("<NoDataValue>7</NoDataValue><Scale>0.1</Scale><Offset>100</Offset>"))]);
         let found: Vec<Option<f64>> = dem.unwrap_or_else(|error| panic!("{extension}: {error}")).elevations().collect();
-        let expected = HEIGHTS.map(|z| (z != 7.0).then(|| z * 0.1 + 100.0));
+        let expected = HEIGHTS.map(|z| (z != 7.0).then_some(z * 0.1 + 100.0));
         assert_eq!(found, expected, "{extension}");
     }
 }

@@ -1,4 +1,4 @@
-//! `.aux.xml`: the statements that GDAL and ArcGIS keep beside a raster (persistent auxiliary metadata).
+//! `.aux.xml`: the statements that GDAL and `ArcGIS` keep beside a raster (persistent auxiliary metadata).
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Files beside a raster that change its meaning, as GDAL and ArcGIS write them.
+//! Files beside a raster that change its meaning, as GDAL and `ArcGIS` write them.
 //!
 //! | file | what it states | what is done |
 //! |---|---|---|
@@ -99,7 +99,7 @@ impl Sidecars {
                     found.projection = Some(From { path: file.clone(), value: projection });
                 }
                 // Two sidecar files: the second is compared once the place of the raster is known.
-                Some(Ok(projection)) => found.compare_later(&file, projection),
+                Some(Ok(projection)) => found.compare_later(&file, &projection),
                 Some(Err(reason)) => found.unclear.push(From { path: file.clone(), value: reason }),
                 None => {}
             }
@@ -130,7 +130,7 @@ impl Sidecars {
         Ok(())
     }
 
-    fn compare_later(&mut self, file: &Path, projection: MapProjection) {
+    fn compare_later(&mut self, file: &Path, projection: &MapProjection) {
         let agrees = self.projection.as_ref().is_some_and(|known| known.value.definition() == projection.definition());
         if !agrees {
             let reason = format!("it states another reference system ({}) than the other sidecar file", projection.name());
