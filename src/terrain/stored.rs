@@ -41,9 +41,13 @@ pub(super) enum StoredStep {
     Single(Scaling),
 }
 
+/// From this many numbers on, the decimals of a text are its rounding: fewer numbers may be exact.
+const ROUNDING_SHOWS: usize = 100;
+
 /// The most decimals of the numbers of a text.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Decimals {
+    count: usize,
     most: usize,
     /// Whether a number has an exponent, or more digits than a 32-bit float: its decimals say nothing of its step.
     fine: bool,
@@ -53,6 +57,7 @@ impl Decimals {
     /// Takes one number into account.
     pub(super) fn see(&mut self, text: &str) {
         let decimals = text.split_once(['.', ',']).map_or(0, |(_, decimals)| decimals.len());
+        self.count += 1;
         self.most = self.most.max(decimals);
         self.fine |= text.contains(['e', 'E']) || text.len() > 12;
     }
@@ -63,9 +68,9 @@ const STEEP_STEP: f64 = 0.01;
 
 impl StoredStep {
     /// The step of numbers with so many decimals.
-    pub(super) fn of_decimals(Decimals { most, fine }: Decimals, scaling: Scaling) -> Self {
+    pub(super) fn of_decimals(Decimals { count, most, fine }: Decimals, scaling: Scaling) -> Self {
         match i32::try_from(most) {
-            Ok(most) if !fine => Self::Fixed(10_f64.powi(-most) * scaling.scale.abs()),
+            Ok(most) if !fine && count >= ROUNDING_SHOWS => Self::Fixed(10_f64.powi(-most) * scaling.scale.abs()),
             _ => Self::Fine,
         }
     }

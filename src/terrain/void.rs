@@ -48,41 +48,46 @@ pub enum VoidPlace {
     },
 }
 
-impl fmt::Display for VoidTaken {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl VoidTaken {
+    /// What was found, without the ways out.
+    pub fn found(&self) -> String {
         let Self { z_m, stored, count, place, border_m } = self;
-        write!(f, "the elevation {} m", format_number(*z_m))?;
-        if stored != z_m {
-            write!(f, " (stored as {})", format_number(*stored))?;
-        }
+        let scaled = if stored == z_m { String::new() } else { format!(" (stored as {})", format_number(*stored)) };
         let (one, many) = match place {
             VoidPlace::Post { .. } => ("post", "posts"),
             VoidPlace::Vertex { .. } => ("vertex", "vertices"),
         };
-        write!(f, " of {count} {}, ", if *count == 1 { one } else { many })?;
-        if *count > 1 {
-            f.write_str("first ")?;
-        }
-        match place {
+        let (block, first) = if *count == 1 { (one, "") } else { (many, "first ") };
+        let place = match place {
             VoidPlace::Post { row, col, at } => {
                 let (x_m, y_m) = (format_number(at.x), format_number(at.y));
-                write!(f, "at row {row}, column {col} (from 0, from the north-west), map point ({x_m} m, {y_m} m)")?;
+                format!("at row {row}, column {col} (from 0, from the north-west), map point ({x_m} m, {y_m} m)")
             }
-            VoidPlace::Vertex { number } => write!(f, "number {number} of the file")?,
-        }
-        match border_m {
-            Some((low_m, high_m)) => {
-                let off_m = if z_m < low_m { low_m - z_m } else { z_m - high_m };
-                let (off, low, high) = (format_number(off_m), format_number(*low_m), format_number(*high_m));
-                write!(f, ", lies {off} m off the {many} around ({low} to {high} m)")?;
+            VoidPlace::Vertex { number } => format!("number {number} of the file"),
+        };
+        let compared = match border_m {
+            Some((low, high)) => {
+                let off = if z_m < low { low - z_m } else { z_m - high };
+                let [off, low, high] = [off, *low, *high].map(format_number);
+                format!("lies {off} off the {many} around ({low} to {high})")
             }
-            None => write!(f, ", has no {many} around that it could be compared with")?,
-        }
-        let value = format_number(*stored);
+            None => format!("has no {many} around that it could be compared with"),
+        };
+        format!(
+            "{}{scaled} of {count} {block}, {first}{place}, {compared} and is a usual mark of missing data",
+            format_number(*z_m)
+        )
+    }
+}
+
+impl fmt::Display for VoidTaken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = format_number(self.stored);
         write!(
             f,
-            " and is a usual mark of missing data, expected elevations, or missing data that is stated; state what it is: terrain.no_data = \
-             {value} where it marks missing data, or terrain.no_data = \"none\" where it is an elevation"
+            "the elevation {}, expected elevations, or missing data that is stated; state what it is: terrain.no_data = {value} where it \
+             marks missing data, or terrain.no_data = \"none\" where it is an elevation",
+            self.found()
         )
     }
 }

@@ -185,8 +185,13 @@ fn commands() -> Vec<String> {
 }
 
 /// Options of other programs, which a message may recommend.
-const FOREIGN: [(&str, &str); 4] =
-    [("gdal_calc.py", "--outfile"), ("gdal_calc.py", "--calc"), ("gdal_calc.py", "--type"), ("cargo install", "--features")];
+const FOREIGN: [(&str, &str); 5] = [
+    ("gdal_calc.py", "--outfile"),
+    ("gdal_calc.py", "--calc"),
+    ("gdal_calc.py", "--type"),
+    ("gdal_translate", "--config"),
+    ("cargo install", "--features"),
+];
 
 /// The options in a text, except those of other programs named before them.
 fn options(text: &str) -> Vec<String> {

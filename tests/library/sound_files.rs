@@ -124,8 +124,8 @@ fn meshes_that_other_programs_read_are_read() {
                     property list uchar int vertex_indices\nend_header\n0 0 0\n4 0 0\n4 4 0\n3 1 0\n4 0 1 2 3\n";
     for (name, bytes, triangles, warning) in [
         ("titled solid", titled.clone(), 24, ""),
-        ("a line feed after the last triangle", more(b"\n"), 24, "1 bytes after the last triangle"),
-        ("a block of zeros after the last triangle", more(&[0; 512]), 24, "512 bytes after the last triangle"),
+        ("a line feed after the last triangle", more(b"\n"), 24, "1 byte left out"),
+        ("a block of zeros after the last triangle", more(&[0; 512]), 24, "512 bytes left out"),
         ("concave OBJ", format!("{dart}f 1 2 3 4\n").into_bytes(), 2, "1 of these faces are not convex"),
         ("concave OBJ from behind", format!("{dart}f -2 -3 -4 -1\n").into_bytes(), 2, "not convex"),
         ("concave PLY", ply_dart.as_bytes().to_vec(), 2, "not convex"),

@@ -10,7 +10,9 @@ use std::path::Path;
 
 use chta::chain::csv::read_chain_csv_with;
 use chta::quantity::MapPoint;
-use chta::terrain::{DemOptions, NoDataRule, TerrainError, read_mesh_with, slice_file};
+use chta::terrain::{
+    DemOptions, MapBounds, NoDataRule, TerrainError, read_friction_raster, read_keep_out, read_mesh_with, slice_file,
+};
 use proptest::prelude::*;
 
 use crate::tiff::{Samples, Tag, placed, plain_tiff};
@@ -202,4 +204,23 @@ proptest! {
         // Within a hundredth of the mark, more than the border counts.
         prop_assert!(verdict.is_err() == off || (off && off_border < 100.0), "{:?} {} {}", verdict, low, high);
     }
+}
+
+/// Overlays are rasters as well: a mark in a friction raster is no friction, and the way out is the file's, not the terrain's key.
+#[test]
+fn marks_in_overlays_are_refused_with_the_command_that_states_them() {
+    let folder = tempfile::tempdir().unwrap();
+    for mark in [-9999.0, 9999.0, 32767.0] {
+        let friction: Vec<f64> = heights(1.0).iter().map(|z| if *z == 1.0 { mark } else { 0.5 + z / 1000.0 }).collect();
+        let path = write("float32.tif", folder.path(), &friction);
+        for refused in [read_friction_raster(&path, None).unwrap_err(), read_keep_out(&path, None, everywhere()).unwrap_err()] {
+            let sentence = refused.to_string();
+            let command = format!("gdal_translate -a_nodata {mark} in.tif out.tif");
+            assert!(sentence.contains(&command) && !sentence.contains("terrain.no_data"), "{sentence}");
+        }
+    }
+}
+
+fn everywhere() -> MapBounds {
+    MapBounds { min: MapPoint::new(0.0, 0.0), max: MapPoint::new(9999.0, 9999.0) }
 }
