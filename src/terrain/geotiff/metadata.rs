@@ -1,5 +1,6 @@
 //! GDAL's own tags: the no-data text, and the scale, offset and unit of the samples.
 
+use crate::quantity::is_metre;
 use crate::terrain::stored::Scaling;
 use crate::terrain::{InvalidNoData, NoData, TerrainError};
 
@@ -62,7 +63,7 @@ fn bad_number(name: &str, text: &str) -> TerrainError {
 }
 
 fn check_unit(unit: &str) -> Result<(), TerrainError> {
-    if matches!(unit.to_ascii_lowercase().as_str(), "" | "m" | "metre" | "metres" | "meter" | "meters") {
+    if unit.is_empty() || is_metre(unit) {
         return Ok(());
     }
     Err(TerrainError::Unsuitable {

@@ -3,6 +3,7 @@
 
 use super::key;
 use super::keys::{double_key, short_key, text_key, unsuitable};
+use crate::quantity::is_metre;
 use crate::terrain::georeference::mend_degrees;
 use crate::terrain::projection::{
     MapProjection, Vertical, contradiction, is_compound, is_geodetic, is_map_in_metres, length_unit, projected_code, states_a_map,
@@ -215,17 +216,13 @@ fn cited_unit_of_map(system: &CoordinateSystem) -> Option<(String, String)> {
         let map = text.split(" + ").next().unwrap_or_default();
         let named = map.split('|').find_map(|part| part.trim().strip_prefix("LUnits = "));
         let unit = match (named, feet(map)) {
-            (Some(unit), _) if !is_metre(unit) => Some(unit.to_owned()),
+            // GDAL's own name of the metre where a file states its number.
+            (Some(unit), _) if !is_metre(unit) && !unit.trim().eq_ignore_ascii_case("linear_meter") => Some(unit.to_owned()),
             (_, Some(unit)) => Some(length_unit(unit).0),
             _ => None,
         };
         Some((text.to_owned(), unit?))
     })
-}
-
-fn is_metre(unit: &str) -> bool {
-    let unit = unit.trim().to_ascii_lowercase();
-    matches!(unit.as_str(), "m" | "metre" | "metres" | "meter" | "meters" | "linear_meter")
 }
 
 /// The citation of the heights that names feet, and their unit.

@@ -5,6 +5,7 @@ use std::path::Path;
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::{Transform, number, prj, refused, text_of};
+use crate::quantity::{excerpt, is_metre};
 use crate::terrain::stored::Scaling;
 use crate::terrain::{NoData, TerrainError};
 
@@ -104,12 +105,11 @@ fn band(band: Node<'_, '_>, stated: &mut Statements) -> Result<(), String> {
             "Scale" => scale = Some(number("scale", text)?),
             "Offset" => offset_m = Some(number("offset", text)?),
             "UnitType" => {
-                let metres = matches!(text.to_ascii_lowercase().as_str(), "" | "m" | "metre" | "metres" | "meter" | "meters");
-                if !metres {
+                if !(text.is_empty() || is_metre(text)) {
                     return Err(format!(
                         "elevations in '{}', expected elevations in metres; convert them with: gdal_calc.py -A in.tif --outfile=out.tif \
                          --calc='A*METRES_PER_UNIT'",
-                        crate::quantity::excerpt(text, 40)
+                        excerpt(text, 40)
                     ));
                 }
             }
