@@ -8,29 +8,10 @@ use std::process::Command;
 use chta::quantity::MapPoint;
 use chta::terrain::{CoordinateSystem, Dem, GeoReference, MapProjection, geotiff_bytes, read_dem};
 
+use crate::desk::{chta, shell};
+use crate::installed::has_gdal;
+
 const MOON_M: f64 = 1_737_400.0;
-
-fn has_gdal() -> bool {
-    let there = |program: &str| Command::new(program).arg("--help").output().is_ok();
-    let all = ["gdalwarp", "gdal_translate", "ogr2ogr"].into_iter().all(there);
-    if !all {
-        eprintln!("skipped: gdalwarp, gdal_translate or ogr2ogr is not installed");
-    }
-    all
-}
-
-/// Runs the command in a folder; returns status, standard output and standard error.
-fn chta(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_chta")).current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
-}
-
-fn shell(folder: &Path, line: &str) -> String {
-    let output = Command::new("sh").current_dir(folder).args(["-c", line]).output().unwrap();
-    assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
 
 /// The command of a message, up to one of the words that end it.
 fn remedy<'a>(message: &'a str, ends: &[&str]) -> &'a str {

@@ -1,5 +1,5 @@
 //! Commands of messages about rasters, run, with the mended file compared with the truth.
-#![allow(clippy::unwrap_used, clippy::print_stderr, reason = "test helpers: a file that cannot be made fails its test")]
+#![allow(clippy::unwrap_used, reason = "test helpers: a file that cannot be made fails its test")]
 
 use std::path::Path;
 use std::process::Command;
@@ -7,15 +7,8 @@ use std::process::Command;
 use chta::quantity::MapPoint;
 use chta::terrain::{Dem, read_dem};
 
+use crate::installed::has_gdal;
 use crate::tiff::{Samples, Tag, placed, plain_tiff};
-
-fn has_gdal() -> bool {
-    let found = Command::new("gdal_translate").arg("--version").output().is_ok();
-    if !found {
-        eprintln!("skipped: no gdal_translate on this machine");
-    }
-    found
-}
 
 /// Reads a file that is refused, runs the command of the message (its part before a bracket), and reads the result.
 fn mended(folder: &Path, found: &str) -> Dem {
