@@ -76,6 +76,11 @@ pub(crate) fn is_metre(name: &str) -> bool {
     unit_named(name).is_some_and(|unit| unit.measure == Measure::Length && unit.is_ours())
 }
 
+/// How many metres a unit of length has; `None` for another unit, or one that is not known.
+pub(crate) fn metres_per(name: &str) -> Option<f64> {
+    unit_named(name).filter(|unit| unit.measure == Measure::Length).map(|unit| unit.factor)
+}
+
 /// A column's name without its unit, in lower case, and the text of its unit: `Z [ft]`, `z(ft)`, `z_ft` and `z ft` all give
 /// `z` and `ft`. What stands in brackets is taken for a unit whatever it is; an ending only if it is one.
 pub(crate) fn split_unit(name: &str) -> (String, Option<String>) {

@@ -224,3 +224,34 @@ fn marks_in_overlays_are_refused_with_the_command_that_states_them() {
 fn everywhere() -> MapBounds {
     MapBounds { min: MapPoint::new(0.0, 0.0), max: MapPoint::new(9999.0, 9999.0) }
 }
+
+/// A void that a program resampled has a rim of blends, which is no ground; zeros far below all ground are what warping fills with.
+#[test]
+fn voids_that_were_resampled_and_zeros_far_away_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dem.tif");
+    let write = |ground_m: f64, hole: &dyn Fn(usize, usize) -> Option<f64>| {
+        let post = |index: usize| (index / 30, index % 30);
+        let heights = (0..900).map(post).map(|(row, col)| hole(row, col).unwrap_or(ground_m + ((row * 7 + col * 13) % 11) as f64));
+        let samples = Samples::of("float32", &heights.collect::<Vec<f64>>());
+        std::fs::write(&path, plain_tiff((30, 30), &samples, placed(1000.0, 2030.0, 1.0))).unwrap();
+        read(&path, NoDataRule::AsStated)
+    };
+    for mark in [-9999.0, -32768.0, -32767.0, -99999.0, 32767.0] {
+        for reach in [1.0, 2.0, 3.0] {
+            // A disc of the mark, and blends around it.
+            let smeared = |row: usize, col: usize| {
+                let far = (row as f64 - 15.0).hypot(col as f64 - 14.0) - 4.0;
+                let share = (1.0 - far / reach).clamp(0.0, 1.0);
+                (share > 0.0).then_some(if share == 1.0 { mark } else { share * mark + (1.0 - share) * 105.0 })
+            };
+            let verdict = write(100.0, &smeared);
+            assert!(verdict.as_ref().is_err_and(|text| text.contains("usual mark")), "{mark} {reach}: {verdict:?}");
+        }
+    }
+    for ground_m in [-2500.0, 1_737_400.0] {
+        let verdict = write(ground_m, &|row, col| (row < 9 || col < 5).then_some(0.0));
+        assert!(verdict.as_ref().is_err_and(|text| text.contains("usual mark")), "{ground_m}: {verdict:?}");
+    }
+    assert_eq!(write(100.0, &|row, _| (row < 9).then_some(0.0)), Ok(false), "a lake at 0 m");
+}
