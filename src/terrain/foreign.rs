@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::{TerrainError, VectorFormat};
+use super::{TerrainError, VectorFormat, without_mark};
 
 /// What kinds of file have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,7 +148,7 @@ const BEGINNINGS: [(&[u8], Foreign); 59] = [
 
 /// The kind of file that begins like this, if it is one of these.
 pub(crate) fn name(beginning: &[u8]) -> Option<Foreign> {
-    let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning).trim_ascii_start();
+    let text = without_mark(beginning).trim_ascii_start();
     let begins = |start: &[u8]| beginning.starts_with(start) || text.starts_with(start);
     if let Some((_, known)) = BEGINNINGS.iter().find(|(start, _)| begins(start)) {
         return Some(*known);

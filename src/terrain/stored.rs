@@ -6,7 +6,7 @@ use super::dem::Posts;
 use super::format::ReadContext;
 use super::georeference::refuse_degrees;
 use super::void::{Marks, around, find_void};
-use super::{Dem, GeoReference, NoDataRule, PostLattice, Samples, TerrainError, VoidPlace, VoidTaken, Window};
+use super::{Dem, GeoReference, NoDataRule, PostLattice, Samples, TerrainError, VoidPlace, Window};
 use crate::quantity::format_number;
 
 /// The conversion from stored sample to elevation: z = scale * sample + offset.
@@ -168,13 +168,7 @@ pub(super) fn judge(dem: &Dem, rule: NoDataRule, scaling: Scaling) -> Result<(),
     };
     let Some(void) = void else { return Ok(()) };
     let (row, col) = (void.first / cols, void.first % cols);
-    Err(TerrainError::Void(Box::new(VoidTaken {
-        z_m: void.z_m,
-        stored: void.stored,
-        count: void.count,
-        place: VoidPlace::Post { row, col, at: dem.georeference().post(row, col) },
-        border_m: void.border_m,
-    })))
+    Err(void.taken(VoidPlace::Post { row, col, at: dem.georeference().post(row, col) }))
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@
 
 use std::fmt;
 
-use super::stored::Scaling;
+use super::{TerrainError, stored::Scaling};
 use crate::quantity::{MapPoint, format_number};
 
 /// A usual mark of missing data that nothing states and that is not ground either.
@@ -151,6 +151,14 @@ pub(crate) struct Void {
     pub(crate) stored: f64,
     /// Lowest and highest valid value on its border; `None` if nothing borders it.
     pub(crate) border_m: Option<(f64, f64)>,
+}
+
+impl Void {
+    /// The refusal of the block, whose first value lies at a place.
+    pub(super) fn taken(self, place: VoidPlace) -> TerrainError {
+        let Self { count, z_m, stored, border_m, .. } = self;
+        TerrainError::Void(Box::new(VoidTaken { z_m, stored, count, place, border_m }))
+    }
 }
 
 /// The marks that some values could be.

@@ -7,7 +7,7 @@ use nalgebra::Point3;
 use super::model::Mesh;
 use crate::terrain::stored::Scaling;
 use crate::terrain::void::{Marks, find_void};
-use crate::terrain::{TerrainError, VoidPlace, VoidTaken};
+use crate::terrain::{TerrainError, VoidPlace};
 
 /// Refuses a mesh with a block of usual marks that is no ground.
 ///
@@ -39,11 +39,5 @@ pub(super) fn refuse_voids(mesh: &Mesh, scale: f64) -> Result<(), TerrainError> 
     let visit_all =
         |index: usize, visit: &mut dyn FnMut(usize)| neighbours.get(&index).into_iter().flatten().for_each(|near| visit(*near));
     let Some(void) = find_void(mesh.vertices().len(), &marks, value, visit_all) else { return Ok(()) };
-    Err(TerrainError::Void(Box::new(VoidTaken {
-        z_m: void.z_m,
-        stored: void.stored,
-        count: void.count,
-        place: VoidPlace::Vertex { number: void.first + 1 },
-        border_m: void.border_m,
-    })))
+    Err(void.taken(VoidPlace::Vertex { number: void.first + 1 }))
 }

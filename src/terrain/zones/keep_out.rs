@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     quantity::{MapPoint, format_number},
-    terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem},
+    terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem, without_mark},
 };
 
 /// The name of the file's role in messages.
@@ -197,7 +197,7 @@ fn vector_format(path: &Path) -> std::io::Result<Option<VectorFormat>> {
 /// Whether a file begins like JSON.
 fn looks_like_json(path: &Path) -> std::io::Result<bool> {
     let beginning = beginning_of(path)?;
-    let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&beginning);
+    let text = without_mark(&beginning);
     let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
     Ok(matches!(first, Some(b'{' | b'[')))
 }
