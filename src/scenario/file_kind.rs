@@ -255,7 +255,7 @@ mod tests {
 
     #[test]
     fn files_are_known_by_content_and_their_extension_is_only_a_help() {
-        const PAGE: &str = "a web page saved in place of the file";
+        const PAGE: &str = "a web page";
         let stl = {
             let mut bytes = vec![b' '; 80];
             bytes.extend(1_u32.to_le_bytes());
