@@ -3,7 +3,6 @@
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::path::Path;
-use std::process::Command;
 
 use chta::quantity::MapPoint;
 use chta::terrain::{CoordinateSystem, Dem, GeoReference, MapProjection, geotiff_bytes, read_dem};

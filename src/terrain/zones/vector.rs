@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use crate::terrain::{CoordinateSystem, MapProjection};
+use crate::terrain::{CoordinateSystem, MapProjection, shell_word, without_mark};
 
 /// A format of shapes other than `GeoJSON`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +33,7 @@ impl VectorFormat {
     pub fn of(beginning: &[u8], path: &Path) -> Option<Self> {
         let has_extension =
             |names: &[&str]| path.extension().is_some_and(|own| names.iter().any(|name| own.eq_ignore_ascii_case(name)));
-        let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning).trim_ascii_start();
+        let text = without_mark(beginning).trim_ascii_start();
         let contains = |word: &[u8]| text.windows(word.len()).any(|window| window == word);
         if beginning.starts_with(b"\x00\x00\x27\x0a") {
             return Some(if has_extension(&["shx"]) { Self::ShapefilePart } else { Self::Shapefile });
@@ -107,7 +107,7 @@ pub(super) fn refusal(format: VectorFormat, path: &Path, coordinates: Option<&Co
         (Some(map), false) if states_its_map(format, &path) => format!(" -t_srs '{}'", map.proj_string()),
         (_, false) => String::new(),
     };
-    let command = format!("ogr2ogr -f GeoJSON{systems} {} {}", quoted(&path.with_extension("geojson")), quoted(&path));
+    let command = format!("ogr2ogr -f GeoJSON{systems} {} {}", shell_word(&path.with_extension("geojson")), shell_word(&path));
     let then = format!("then give {} as keep_out", path.with_extension("geojson").display());
     let hint = match (format, systems.is_empty()) {
         (VectorFormat::Shapefile | VectorFormat::Dxf, true) => "; its coordinates must be those of the terrain's map already",
@@ -126,11 +126,4 @@ fn states_its_map(format: VectorFormat, path: &Path) -> bool {
         VectorFormat::Dxf => false,
         _ => true,
     }
-}
-
-/// A path as one word of a shell.
-fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = text.chars().all(|letter| letter.is_alphanumeric() || "/._-+:".contains(letter));
-    if plain { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }
