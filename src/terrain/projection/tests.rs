@@ -341,3 +341,58 @@ fn the_largest_scale_error_of_a_transect_is_found() {
     assert!(extreme.is_off());
     assert!(!polar.extreme_scale(MapPoint::new(-1.0e5, 0.0), MapPoint::new(3.0e5, 0.0)).unwrap().is_off());
 }
+
+/// A polar map with its true scale at the pole has the scale 1 there, in every direction, on every body: stereographic 1 + (rho / 2R)^2,
+/// the others 1 to the same order. So has an oblique map about a place at a hundredth of a degree from the pole, at the pole.
+#[test]
+fn the_scale_at_a_pole_is_one_and_lines_across_it_are_on_the_body() {
+    let bodies = [
+        Ellipsoid::sphere(1_737_400.0),
+        Ellipsoid::sphere(3_396_190.0),
+        Ellipsoid::sphere(2_439_400.0),
+        Ellipsoid::sphere(2_574_730.0),
+        Ellipsoid::sphere(245.0),
+        MARS,
+        Ellipsoid::WGS84,
+    ];
+    let methods = [
+        (Method::PolarStereographic, 90.0),
+        (Method::ObliqueStereographic, 89.99),
+        (Method::LambertAzimuthalEqualArea, 90.0),
+        (Method::AzimuthalEquidistant, 90.0),
+        (Method::Orthographic, 90.0),
+    ];
+    for figure in bodies {
+        for (method, latitude_deg) in methods {
+            for side in [1.0, -1.0] {
+                if method == Method::Orthographic && !figure.is_sphere() {
+                    continue;
+                }
+                let map = MapProjection::new(Definition::about(method, side * latitude_deg, 0.0, figure), None).unwrap();
+                let pole = map.map_point(LonLat { lon_deg: 0.0, lat_deg: side * 90.0 }).unwrap();
+                for off_m in [0.0, 1.0e-6, 1.0e-3, 0.005, 0.05, 0.3, 1.0, 12.0, 17.374, 100.0, 1000.0] {
+                    let off_m = f64::min(off_m, 1.0e-4 * figure.semi_major_m);
+                    for turn in [0.0_f64, 1.0, 1.5, 3.0, 5.0] {
+                        let heading = nalgebra::Vector2::new(turn.cos(), turn.sin());
+                        let at = pole + heading * off_m;
+                        let context = format!("{method:?} at {latitude_deg} * {side}, {figure:?}, {off_m} m, heading {turn}");
+                        for heading in [heading, nalgebra::Vector2::new(-heading.y, heading.x)] {
+                            let scale = map.scale(at, heading).unwrap();
+                            assert!((scale - 1.0).abs() < 1.0e-6, "{context}: {scale}");
+                        }
+                        let place = map.lon_lat(at).unwrap_or_else(|| panic!("{context}: off the body"));
+                        let back = map.map_point(place).unwrap_or_else(|| panic!("{context}: {place} is off the map"));
+                        assert!((back - at).norm() < 1.0e-11 * figure.semi_major_m, "{context}: {back} {at}");
+                        for to in [pole, at + heading * 0.01, pole - heading * 11.0] {
+                            if to != at && turn < 2.0 && off_m != 1.0 {
+                                let extreme = map.extreme_scale(at, to).unwrap_or_else(|| panic!("{context}: to {to}"));
+                                let most = if figure.semi_major_m > 1000.0 { 1.0e-6 } else { 1.0e-2 };
+                                assert!((extreme.factor - 1.0).abs() < most, "{context}: {extreme:?}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
