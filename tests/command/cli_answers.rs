@@ -401,6 +401,10 @@ fn constant_gravity_gives_a_warning_on_small_bodies() {
             assert_warned(&desk, &[args, &fewest].concat(), &expected);
         }
         assert_warned(&desk, &["run", "small.toml", "-o", "out"], &expected);
+        // A hop of 400 m is told by `trade` for its cells.
+        let varied = ["trade", "small.toml", "--vary", "surface.friction_coefficient=0.6,0.7"];
+        let ran = desk.run(&varied);
+        assert!(ran.stderr.contains("have a hop whose range is over 1 % of the body's radius"), "{body}: {}", ran.stderr);
     }
     assert_warned(&desk, &["plan", "scenario.toml"], &[]);
 }
