@@ -1,6 +1,6 @@
 //! Sound files that are not read as they stand: each is named, with a command that makes a readable one, and never called
 //! damaged. Where GDAL is installed, the command is run and the result compared with the elevations that were written.
-#![expect(clippy::print_stderr, reason = "a test says why it skips")]
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::path::Path;
 use std::process::Command;
@@ -155,7 +155,8 @@ fn two_strips(big: bool, little: bool, last_rows: usize) -> Vec<u8> {
     let four = |value: u32| if little { value.to_le_bytes() } else { value.to_be_bytes() }.to_vec();
     let eight = |value: u64| if little { value.to_le_bytes() } else { value.to_be_bytes() }.to_vec();
     let strip = |rows: std::ops::Range<usize>| -> Vec<u8> {
-        let samples: Vec<u8> = rows.flat_map(|row| (0..4).map(move |col| 10 * row + col)).flat_map(|z| two(z as u16)).collect();
+        let samples: Vec<u8> =
+            rows.flat_map(|row| (0..4).map(move |col| 10 * row + col)).flat_map(|z| two(u16::try_from(z).unwrap())).collect();
         [vec![u8::try_from(samples.len() - 1).unwrap()], samples].concat()
     };
     let parts = [strip(0..2), strip(2..2 + last_rows)];

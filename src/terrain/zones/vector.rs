@@ -1,5 +1,7 @@
 //! Files of shapes that are not read, with the command that makes GeoJSON of them on the terrain's map.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 use crate::terrain::{CoordinateSystem, MapProjection, shell_word, without_mark};
@@ -79,6 +81,11 @@ impl VectorFormat {
         }
     }
 
+    /// Whether a file of the format may have several layers, such as the folders of KML.
+    const fn may_have_layers(self) -> bool {
+        matches!(self, Self::Kml | Self::Kmz | Self::GeoPackage | Self::Gml)
+    }
+
     /// Whether its coordinates are longitude and latitude by definition.
     const fn is_in_degrees(self) -> bool {
         matches!(self, Self::Kml | Self::Kmz | Self::Gpx)
@@ -92,6 +99,11 @@ pub(super) fn refusal(format: VectorFormat, path: &Path, coordinates: Option<&Co
         format => (path.to_path_buf(), format),
     };
     let found = format!("this is {}; expected polygons as GeoJSON in the terrain's map coordinates", format.name());
+    if format == VectorFormat::Gpx {
+        return format!(
+            "{found}: GPX holds tracks and points but no polygons, so draw the zones as polygons in another format, such as KML"
+        );
+    }
     let projection = coordinates.and_then(|system| MapProjection::of(system).ok());
     let systems = match (&projection, format.is_in_degrees()) {
         (None, true) => {
@@ -107,10 +119,18 @@ pub(super) fn refusal(format: VectorFormat, path: &Path, coordinates: Option<&Co
         (Some(map), false) if states_its_map(format, &path) => format!(" -t_srs '{}'", map.proj_string()),
         (_, false) => String::new(),
     };
-    let command = format!("ogr2ogr -f GeoJSON{systems} {} {}", shell_word(&path.with_extension("geojson")), shell_word(&path));
+    let (out, own) = (shell_word(&path.with_extension("geojson")), shell_word(&path));
+    // ogr2ogr writes the first layer alone into GeoJSON, and fails after it.
+    let command = if format.may_have_layers() {
+        format!("ogrmerge.py -single -f GeoJSON{systems} -o {out} {own}")
+    } else {
+        format!("ogr2ogr -f GeoJSON{systems} {out} {own}")
+    };
     let then = format!("then give {} as keep_out", path.with_extension("geojson").display());
     let hint = match (format, systems.is_empty()) {
-        (VectorFormat::Shapefile | VectorFormat::Dxf, true) => "; its coordinates must be those of the terrain's map already",
+        (VectorFormat::Shapefile | VectorFormat::Dxf | VectorFormat::Gml, true) => {
+            "; its coordinates must be those of the terrain's map already"
+        }
         (VectorFormat::GeoPackage | VectorFormat::FlatGeobuf | VectorFormat::Gml, false) => {
             "; if it states no reference system and its coordinates are the map's already, leave -t_srs away"
         }
@@ -124,6 +144,14 @@ fn states_its_map(format: VectorFormat, path: &Path) -> bool {
     match format {
         VectorFormat::Shapefile => ["prj", "PRJ"].iter().any(|extension| path.with_extension(extension).is_file()),
         VectorFormat::Dxf => false,
+        VectorFormat::Gml => names_a_system(path),
         _ => true,
     }
+}
+
+/// Whether a GML file names a reference system anywhere in its first megabyte.
+fn names_a_system(path: &Path) -> bool {
+    let mut beginning = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(1 << 20).read_to_end(&mut beginning));
+    read.is_ok() && beginning.windows(7).any(|word| word.eq_ignore_ascii_case(b"srsName"))
 }
