@@ -412,7 +412,7 @@ fn constant_gravity_gives_a_warning_on_small_bodies() {
     for (body, warned) in [("bennu", true), ("moon", false)] {
         desk.write(
             "fan.toml",
-            format!("[body]\nname = \"{body}\"\n[hopper]\ntakeoff_speed_max_m_s = 0.15\n[surface]\nfriction_coefficient = 0.9\n"),
+            format!("[body]\nname = \"{body}\"\n[hopper]\ntakeoff_speed_max_m_s = 0.15\nlanding_speed_max_m_s = 0.15\n[surface]\nfriction_coefficient = 0.9\n"),
         );
         let ran = desk.run(&["fan", "ground.tif", "--scenario", "fan.toml", "--from", "9,9", "--headings", "4", "--length", "6"]);
         assert_eq!(ran.status, 0, "{body}: {}", ran.stderr);
