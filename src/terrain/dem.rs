@@ -1,8 +1,5 @@
 //! The elevation raster in memory.
 
-use std::sync::Arc;
-
-use super::sidecar::Sidecars;
 use super::stored::StoredStep;
 use super::{GeoReference, MapBounds, PostLattice, TerrainError, lattice::check_sides};
 
@@ -19,8 +16,6 @@ pub struct Dem {
     posts: Posts,
     /// The step of the numbers in the file.
     step: StoredStep,
-    /// The files beside the raster that were read, and what the analyst should know of them.
-    sidecars: Arc<Sidecars>,
 }
 
 /// The stored elevations of a raster, row after row from the north; NaN is a gap.
@@ -118,28 +113,23 @@ impl Dem {
 
     /// The same on a lattice of as many posts.
     pub(super) fn from_lattice(lattice: PostLattice, posts: Posts) -> Result<Self, TerrainError> {
-        let dem = Self { lattice, posts, step: StoredStep::Fine, sidecars: Arc::default() };
+        let dem = Self { lattice, posts, step: StoredStep::Fine };
         dem.check_elevations()?;
         Ok(dem)
     }
 
-    /// The same with the step of its file's numbers, and the files beside it.
-    pub(super) fn with_notes(self, step: StoredStep, sidecars: Arc<Sidecars>) -> Self {
-        Self { step, sidecars, ..self }
+    /// The same with the step of its file's numbers.
+    pub(super) fn with_step(self, step: StoredStep) -> Self {
+        Self { step, ..self }
     }
 
-    /// What an analyst should know of the file: sidecar files without effect, and a step of the stored numbers that makes slopes.
+    /// What an analyst should know of the file: a step of the stored numbers that makes slopes.
     pub fn warnings(&self) -> Vec<String> {
-        let step = self.step.warning(self.elevation_range_m(), self.georeference().step_m());
-        self.sidecars.warnings().iter().cloned().chain(step).collect()
+        super::DemFile::warnings(self, self.elevation_range_m())
     }
 
     pub(super) fn step(&self) -> StoredStep {
         self.step
-    }
-
-    pub(super) fn sidecars(&self) -> &Sidecars {
-        &self.sidecars
     }
 
     fn check_elevations(&self) -> Result<(), TerrainError> {

@@ -68,7 +68,7 @@ impl<T: StoredParts> DemFile for CheckedParts<T> {
 
     fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError> {
         let posts = self.masked(window)?;
-        let doubted = self.context.no_data == NoDataRule::AsStated && !self.cleared.get();
+        let doubted = self.context.no_data != NoDataRule::Nothing && !self.cleared.get();
         if doubted && self.marks.are_in(&posts) {
             self.judge_whole()?;
         }
@@ -76,7 +76,6 @@ impl<T: StoredParts> DemFile for CheckedParts<T> {
     }
 
     fn warnings(&self, range_m: (f64, f64)) -> Vec<String> {
-        let step = self.parts.step().warning(range_m, self.lattice().georeference().step_m());
-        self.context.sidecars.warnings().iter().cloned().chain(step).collect()
+        self.parts.step().warning(range_m, self.lattice().georeference().step_m()).into_iter().collect()
     }
 }

@@ -1,7 +1,5 @@
 //! From the numbers that a file stores to a raster: scaling, the step of the stored numbers, and the checks that all formats share.
 
-use std::sync::Arc;
-
 use super::dem::Posts;
 use super::format::ReadContext;
 use super::georeference::refuse_degrees;
@@ -174,7 +172,7 @@ impl StoredRaster {
         if !states_metres && !stated_beside {
             refuse_degrees(&dem)?;
         }
-        Ok(dem.with_notes(step, Arc::clone(sidecars)))
+        Ok(dem.with_step(step))
     }
 }
 
@@ -183,7 +181,7 @@ impl StoredRaster {
 /// # Errors
 /// [`TerrainError::Void`].
 pub(super) fn judge(dem: &Dem, rule: NoDataRule, scaling: Scaling) -> Result<(), TerrainError> {
-    if rule != NoDataRule::AsStated {
+    if rule == NoDataRule::Nothing {
         return Ok(());
     }
     let marks = Marks::of_raster(dem.elevation_range_m(), scaling);

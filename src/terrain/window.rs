@@ -54,8 +54,7 @@ pub trait DemFile {
 
 impl DemFile for Dem {
     fn warnings(&self, range_m: (f64, f64)) -> Vec<String> {
-        let step = self.step().warning(range_m, self.georeference().step_m());
-        self.sidecars().warnings().iter().cloned().chain(step).collect()
+        self.step().warning(range_m, self.georeference().step_m()).into_iter().collect()
     }
 
     fn lattice(&self) -> &PostLattice {

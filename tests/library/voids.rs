@@ -130,6 +130,19 @@ fn usual_marks_are_refused_in_every_format_until_the_user_states_them() {
     }
 }
 
+/// A value that the user states says nothing of another mark, and `nan` says nothing of any.
+#[test]
+fn a_stated_value_leaves_other_marks_doubted() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in FORMATS {
+        let path = write(name, folder.path(), &heights(-32767.0));
+        for other in [-9999.0, 0.0, f64::NAN] {
+            let refused = read(&path, NoDataRule::Value(other.into())).unwrap_err();
+            assert!(refused.contains("usual mark of missing data"), "{name} {other}: {refused}");
+        }
+    }
+}
+
 /// Ground at the height of a mark: a trench at -9 999 m, a block within the range of its border, and a plain at the mark's height.
 #[test]
 fn ground_at_the_height_of_a_mark_passes_in_every_format() {

@@ -35,7 +35,7 @@ pub(super) fn check(table: &Table<'_>, no_data: NoDataRule, problems: &mut CsvPr
         }
     }
     let z_m: Vec<f64> = heights.iter().map(|(_, z_m)| *z_m).collect();
-    if no_data == NoDataRule::AsStated
+    if no_data != NoDataRule::Nothing
         && let Some(void) = find_void_of_chain(&z_m, typical_spacing_m(table))
     {
         problems.push(|| {

@@ -154,7 +154,7 @@ fn read_bytes(bytes: &[u8], scale: f64, no_data: NoDataRule) -> Result<MeshFile,
         builder.remove_missing(mark)?;
     }
     let (mesh, warnings) = builder.finish()?;
-    if no_data == NoDataRule::AsStated {
+    if no_data != NoDataRule::Nothing {
         voids::refuse_voids(&mesh, scale)?;
     }
     Ok(MeshFile { mesh, warnings })

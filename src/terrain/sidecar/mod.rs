@@ -28,7 +28,6 @@ const LARGEST_TEXT: u64 = 1 << 26;
 /// What the files beside a raster state.
 #[derive(Debug, Default)]
 pub(super) struct Sidecars {
-    warnings: Vec<String>,
     no_data: Option<From<NoData>>,
     scaling: Option<From<Scaling>>,
     projection: Option<From<MapProjection>>,
@@ -153,11 +152,6 @@ impl Sidecars {
             let reason = format!("it states another reference system ({}) than the other sidecar file", projection.name());
             self.unclear.push(From { path: file.to_path_buf(), value: Unclear::Wrong(reason) });
         }
-    }
-
-    /// What the analyst should know of them.
-    pub(super) fn warnings(&self) -> &[String] {
-        &self.warnings
     }
 
     /// The no-data value in force, where the raster itself states `own`.
