@@ -1,4 +1,4 @@
-//! Keys that a command does not use: who gives one on the command line is told so.
+//! Keys that a command does not use: one that is given on the command line gets a warning.
 
 use chta::{
     graph::ReliabilityUse,

@@ -1,4 +1,4 @@
-//! Texts that people mean as numbers and that are none in the program's notation: decimal commas, separators of thousands,
+//! Texts that people mean as numbers but that the program's notation does not allow: decimal commas, separators of thousands,
 //! typographic signs. The advice never chooses where a text has two meanings.
 
 use super::excerpt;

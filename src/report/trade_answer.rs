@@ -123,7 +123,7 @@ impl TradeAnswer {
         self.escape_warning().into_iter().chain(of_model).collect()
     }
 
-    /// A warning about the cells whose speed limit reaches the escape speed, with the first of them; `None` if there is none.
+    /// A warning about the cells whose speed limit reaches the escape speed, with the first of them; `None` if no cell's limit does.
     pub fn escape_warning(&self) -> Option<String> {
         let first = self.rows.iter().find(|row| row.above_escape)?;
         let count = self.rows.iter().filter(|row| row.above_escape).count();

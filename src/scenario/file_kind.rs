@@ -49,9 +49,9 @@ pub enum FileKind {
     Packed(&'static str, &'static str),
     /// A document; the name has an article.
     Document(&'static str),
-    /// Text that is none of these.
+    /// Text of another kind.
     Text,
-    /// Bytes that are none of these.
+    /// Bytes of another kind.
     Binary,
 }
 

@@ -26,7 +26,7 @@ pub struct VoidTaken {
     pub count: usize,
     /// The first of them.
     pub place: VoidPlace,
-    /// Lowest and highest elevation around the block, m; `None` if there are none.
+    /// Lowest and highest elevation around the block, m; `None` if only gaps surround it.
     pub border_m: Option<(f64, f64)>,
 }
 

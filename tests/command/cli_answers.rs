@@ -401,7 +401,7 @@ fn constant_gravity_gives_a_warning_on_small_bodies() {
             assert_warned(&desk, &[args, &fewest].concat(), &expected);
         }
         assert_warned(&desk, &["run", "small.toml", "-o", "out"], &expected);
-        // A hop of 400 m is told by `trade` for its cells.
+        // `trade` warns of the hop of 400 m for its cells.
         let varied = ["trade", "small.toml", "--vary", "surface.friction_coefficient=0.01:0.6:2"];
         let ran = desk.run(&varied);
         assert!(ran.stderr.contains("have a hop whose range is over 1 % of the body's radius"), "{body}: {}", ran.stderr);

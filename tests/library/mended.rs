@@ -52,7 +52,7 @@ fn a_band_of_marks_is_kept_as_a_mask() {
         return;
     }
     let folder = tempfile::tempdir().unwrap();
-    // Two bands pixel by pixel: elevation, and 0 where there is none.
+    // Two bands pixel by pixel: elevation, and 0 where it is missing.
     let samples: Vec<f64> = (1..=12).flat_map(|z| [f64::from(z), if z == 6 { 0.0 } else { 255.0 }]).collect();
     let bands =
         [Tag::Shorts(277, vec![2]), Tag::Shorts(258, vec![32, 32]), Tag::Shorts(339, vec![3, 3]), Tag::Shorts(338, vec![2])];

@@ -26,7 +26,7 @@ fn citations(system: &CoordinateSystem) -> impl Iterator<Item = (u16, &str)> {
     cited.filter(|(_, text)| !text.contains(PE_STRING))
 }
 
-/// Two statements about the map that exclude one another, as a phrase; `None` if there are none.
+/// Two statements about the map that exclude one another, as a phrase; `None` if all agree.
 pub(in crate::terrain) fn contradiction(system: &CoordinateSystem) -> Option<String> {
     radii_contradict(system).or_else(|| maps_contradict(system)).or_else(|| citation_contradicts(system))
 }

@@ -27,7 +27,10 @@ pub(super) fn read(path: &Path) -> Result<Transform, TerrainError> {
     let &[a, d, b, e, c, f] = &words[..] else {
         return Err(refused(
             path,
-            format!("{} numbers, expected the six lines of a world file; correct it, or move it away if it is none", words.len()),
+            format!(
+                "{} numbers, expected the six lines of a world file; correct it, or move it away if it is not a world file",
+                words.len()
+            ),
         ));
     };
     let mut transform = [0.0; 6];

@@ -47,7 +47,7 @@ pub(super) enum Header {
     OtherUnit(String, String),
 }
 
-/// The text after the sign of a comment; `None` if a line is none.
+/// The text after the sign of a comment; `None` if the line is not a comment.
 pub(super) fn comment(line: &str) -> Option<&str> {
     let line = line.trim_start();
     COMMENTS.iter().find_map(|sign| line.strip_prefix(sign)).map(|text| text.trim_start_matches(['#', '/', '%', '!', ';']))
