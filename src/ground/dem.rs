@@ -220,17 +220,34 @@ impl DemGround {
             return None;
         }
         let end_m = sight.run_m() - self.position_rounding_m - BESIDE_M;
-        let clearance_m = self.hopper().limits().clearance_m;
+        let clearance = self.envelope.clearance();
         let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(sight.run_m(), to.z_m));
-        let mut reached_m = 0.0;
+        let kink_m = if clearance.has_kinks() { clearance.kink_m(sight.run_m()) } else { f64::INFINITY };
+        let (mut reached_m, mut before) = (0.0, (0.0, from.z_m));
         for span in triangles.walk(from.at, heading, nominal) {
             reached_m = span.to_m;
+            // The kinks of the clearance lie inside spans.
+            for (at_m, from_takeoff) in [(kink_m, true), (sight.run_m() - kink_m, false)] {
+                if before.0 < at_m && at_m <= reached_m {
+                    let z_m = before.1 + (span.to_z_m - before.1) * ((at_m - before.0) / (reached_m - before.0));
+                    let over = if from_takeoff {
+                        (z_m - from.z_m) / kink_m - sight.slope()
+                    } else {
+                        sight.slope() + (z_m - to.z_m) / kink_m
+                    };
+                    lofts.lower = lofts.lower.max(clearance.kink_loft(over, sight.run_m()));
+                }
+            }
+            before = (span.to_m, span.to_z_m);
+            if lofts.is_empty() {
+                return None;
+            }
             if reached_m >= end_m {
                 break;
             }
             if reached_m > BESIDE_M {
                 let crossing = ChainPoint::new(span.to_m, span.to_z_m);
-                lofts.lower = lofts.lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance_m));
+                lofts.lower = lofts.lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance));
                 if lofts.is_empty() {
                     return None;
                 }

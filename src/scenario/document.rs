@@ -58,6 +58,8 @@ fn hopper(scenario: &Scenario) -> Value {
         ("takeoff_speed_max_m_s", finite(hopper.limits().takeoff_speed_max_m_s)),
         ("landing_speed_max_m_s", finite(hopper.limits().landing_speed_max_m_s)),
         ("clearance_m", Some(hopper.limits().clearance_m.into())),
+        ("clearance_rule", Some(hopper.limits().clearance_rule.name().into())),
+        ("clearance_taper", hopper.limits().clearance_rule.taper().map(Value::from)),
         ("takeoff_angle_min_deg", hopper.limits().takeoff_angle_min.map(|angle| degrees(angle).into())),
         ("takeoff_angle_max_deg", hopper.limits().takeoff_angle_max.map(|angle| degrees(angle).into())),
         ("apex_height_max_m", hopper.limits().apex_height_max_m.map(Value::from)),

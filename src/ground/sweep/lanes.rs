@@ -1,7 +1,7 @@
 //! All limits except the terrain, evaluated for a block of landings at once.
 
 use super::table::{LandingRules, LandingTable};
-use crate::{ballistics::LineOfSight, hop::HopTest, quantity::SlopeInterval, world::Limit};
+use crate::{ballistics::{LineOfSight, limits::ClearanceProfile}, hop::HopTest, quantity::SlopeInterval, world::Limit};
 
 /// The data of a take-off that all landings share.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +31,8 @@ pub(super) struct Lanes {
     /// The lofts that all limits except the terrain allow.
     lower: [f64; Self::COUNT],
     upper: [f64; Self::COUNT],
+    /// The loft that the two kinks of a tapered clearance require of a hop longer than two ramps.
+    kinks: [f64; Self::COUNT],
 }
 
 impl Lanes {
@@ -47,6 +49,7 @@ impl Lanes {
             fastest: zeros,
             lower: zeros,
             upper: zeros,
+            kinks: zeros,
         }
     }
 
@@ -101,6 +104,29 @@ impl Lanes {
                 self.upper[i] = self.upper[i].min(flight.upper);
             }
         }
+    }
+
+    /// The kinks of a tapered clearance, for the landings of a block that are farther than two ramps; the ground one ramp away from
+    /// the take-off is seen from it at the slope `seen`, and from each landing at the slopes `seen_back`.
+    pub(super) fn evaluate_kinks(
+        &mut self,
+        clearance: ClearanceProfile,
+        (from_m, seen): (f64, f64),
+        x_m: &[f64],
+        seen_back: &[f64],
+    ) {
+        let count = x_m.len().min(seen_back.len()).min(Self::COUNT);
+        let (x_m, seen_back, slope, kinks) = (&x_m[..count], &seen_back[..count], &self.slope[..count], &mut self.kinks[..count]);
+        for i in 0..count {
+            let (from, to) = (seen - slope[i], slope[i] + seen_back[i]);
+            kinks[i] = clearance.kink_loft(if to > from { to } else { from }, (x_m[i] - from_m).abs());
+        }
+    }
+
+    /// The loft that the kinks of a lane require.
+    #[inline]
+    pub(super) const fn kinks(&self, lane: usize) -> f64 {
+        self.kinks[lane]
     }
 
     /// The lofts of one lane; `None` if empty.

@@ -20,6 +20,7 @@ use terrain::Overflight;
 
 use crate::{
     chain::Station,
+    hop::ground_slope,
     quantity::SlopeInterval,
     world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
@@ -65,7 +66,7 @@ impl Sweep {
     /// For sweeps over a table of landings.
     pub fn new(table: impl Into<Arc<LandingTable>>) -> Self {
         let table = table.into();
-        let overflight = Overflight::new(table.test().shared_chain());
+        let overflight = Overflight::new(table.test());
         Self { table, lanes: Lanes::new(), overflight }
     }
 
@@ -116,6 +117,8 @@ impl Sweep {
         let (on_segment, mut left) = table.split_at_segment(takeoff, in_plane, direction);
         outwards(on_segment, direction).try_for_each(|i| visit(i, test.lofts(takeoff, &stations[i])))?;
         overflight.begin(takeoff, direction);
+        let clearance = test.clearance();
+        let seen = clearance.has_kinks().then(|| ground_slope(test.chain().geometry(), takeoff, direction, clearance.ramp_m()));
         while !left.is_empty() {
             let block = next_block(&mut left, direction);
             if let Some(limit) = table.out_of_reach(&from, &block, direction) {
@@ -123,6 +126,10 @@ impl Sweep {
                 continue;
             }
             lanes.evaluate(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
+            if let Some(seen) = seen {
+                let seen_back = &table.rules(direction).seen_back;
+                lanes.evaluate_kinks(clearance, (from.x_m, seen), &table.x_m[block.clone()], &seen_back[block.clone()]);
+            }
             for i in outwards(block.clone(), direction) {
                 let verdict = match refusals[i] {
                     Some(limit) => Err(limit),
@@ -160,7 +167,18 @@ impl Landing<'_> {
             let run_m = (landing.point.x_m - from.x_m).abs();
             return Err(self.lanes.refusing(test, from, lane, run_m, cone));
         };
-        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), in_envelope.lower);
+        let clearance = test.clearance();
+        let mut least = in_envelope.lower;
+        if clearance.has_kinks() {
+            let (run_m, slope) = ((landing.point.x_m - from.x_m).abs(), self.lanes.slope(lane));
+            let kinks =
+                if clearance.kink_m(run_m) < clearance.ramp_m() { self.overflight.middle_loft(landing, run_m, slope) } else { self.lanes.kinks(lane) };
+            least = least.max(kinks);
+            if least > in_envelope.upper {
+                return Err(Limit::Terrain);
+            }
+        }
+        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), least);
         if (lower - in_envelope.upper).abs() <= TOUCHING * (lower.abs() + in_envelope.upper.abs()) && lower > in_envelope.lower {
             return test.lofts(takeoff, landing);
         }
