@@ -98,10 +98,10 @@ impl SegmentReach {
         let (shortest_m, near_m) = (0.0, 0.0);
         let by_others =
             Self { sight_slope, from: *from, to: *to, loft, reach_m, tolerant_reach_m, stride_m, limit, shortest_m, near_m };
-        if !(reach_m > 0.0) {
+        if reach_m.is_nan() || reach_m <= 0.0 {
             return None;
         }
-        if test.clearance().has_kinks() { by_others.with_clearance(test) } else { Some(by_others) }
+        if test.clearance().has_kinks() { by_others.with_clearance(test, &ends) } else { Some(by_others) }
     }
 
     /// The lengths that a tapered clearance leaves of those from 0 to the reach.
@@ -110,7 +110,7 @@ impl SegmentReach {
     /// least loft decreases with `1 / X` and is convex. So is `L` from `1 / X = 0` to `1 / (2 w)`, from where it is constant. The
     /// excess of `U` over both is therefore concave below `1 / (2 w)`, which gives one interval of lengths above `2 w`, and
     /// increasing beyond, which gives one interval of lengths from 0.
-    fn with_clearance(self, test: &HopTest) -> Option<Self> {
+    fn with_clearance(self, test: &HopTest, ends: &Ends<'_>) -> Option<Self> {
         let excess = |length_m: f64| {
             let lofts = test.lofts_in_envelope(LineOfSight::along(length_m, self.sight_slope), &self.from, &self.to);
             let clearing = test.clearance().kink_loft(0.0, length_m);
@@ -123,26 +123,35 @@ impl SegmentReach {
             if allows(least_m) { last_allowed(least_m, below_m, allows) * (1.0 - SPEED_TOLERANCE) } else { 0.0 }
         };
         if longest_m <= two_ramps_m {
-            return if allows(longest_m) { Some(self) } else { self.ended_at(near(longest_m), test) };
+            return if allows(longest_m) { Some(self.steepened(test)) } else { self.ended_at(near(longest_m), test, ends) };
         }
-        let inside_m = if allows(longest_m) { Some(longest_m) } else { greatest(two_ramps_m, longest_m, excess).filter(|x| allows(*x)) };
-        let Some(inside_m) = inside_m else { return self.ended_at(near(two_ramps_m), test) };
-        let mut found = self;
+        let inside_m =
+            if allows(longest_m) { Some(longest_m) } else { greatest(two_ramps_m, longest_m, excess).filter(|x| allows(*x)) };
+        let Some(inside_m) = inside_m else { return self.ended_at(near(two_ramps_m), test, ends) };
+        let mut found = self.steepened(test);
         if inside_m < longest_m {
-            found = self.ended_at(last_allowed(inside_m, longest_m, allows) * (1.0 - SPEED_TOLERANCE), test)?;
+            found = self.ended_at(last_allowed(inside_m, longest_m, allows) * (1.0 - SPEED_TOLERANCE), test, ends)?;
         }
         if !allows(two_ramps_m) {
             found.shortest_m = last_allowed(inside_m, two_ramps_m, allows) * (1.0 + SPEED_TOLERANCE);
             found.near_m = near(two_ramps_m);
         }
         // A single length that rounding loses.
-        if found.shortest_m > found.stride_m { self.ended_at(found.near_m, test) } else { Some(found) }
+        if found.shortest_m > found.stride_m { self.ended_at(found.near_m, test, ends) } else { Some(found) }
     }
 
-    /// The same with a reach that the clearance ends; `None` if that is 0.
-    fn ended_at(self, reach_m: f64, test: &HopTest) -> Option<Self> {
+    /// The same reach with a loft that keeps the clearance: where the other limits leave several.
+    fn steepened(self, test: &HopTest) -> Self {
+        Self { loft: self.loft.max(test.clearance().kink_loft(0.0, self.stride_m)), ..self }
+    }
+
+    /// The same with a reach that the clearance ends, together with the limit of the others that such a steep hop meets first;
+    /// `None` if that is 0.
+    fn ended_at(self, reach_m: f64, test: &HopTest, ends: &Ends<'_>) -> Option<Self> {
         let loft = test.clearance().kink_loft(0.0, reach_m);
-        let ended = Self { loft, reach_m, tolerant_reach_m: reach_m, stride_m: reach_m, limit: Limit::Terrain, ..self };
+        let ((by_speed, speed), (by_machine, machine)) = (ends.by_speed_m(loft), ends.by_machine_m(loft));
+        let limit = if by_machine < by_speed { machine } else { speed };
+        let ended = Self { loft, reach_m, tolerant_reach_m: reach_m, stride_m: reach_m, limit, ..self };
         (reach_m > 0.0).then_some(Self { shortest_m: 0.0, near_m: 0.0, ..ended })
     }
 
@@ -190,7 +199,14 @@ impl SegmentReach {
     pub fn hops_over(&self, run_m: f64) -> Option<SegmentHops> {
         let hops = (run_m / self.tolerant_reach_m).ceil().max(1.0);
         if hops * self.shortest_m > run_m {
-            let near = Self { reach_m: self.near_m, tolerant_reach_m: self.near_m, stride_m: self.near_m, shortest_m: 0.0, near_m: 0.0, ..*self };
+            let near = Self {
+                reach_m: self.near_m,
+                tolerant_reach_m: self.near_m,
+                stride_m: self.near_m,
+                shortest_m: 0.0,
+                near_m: 0.0,
+                ..*self
+            };
             return if self.near_m > 0.0 { near.hops_over(run_m) } else { None };
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1 and at most 2^53")]
@@ -219,7 +235,9 @@ impl SegmentHops {
         let stride_m = self.reach.stride_m;
         let rest = self.run_m - (self.hops - 1) as f64 * stride_m;
         match split {
-            Split::FullReach if self.hops > 1 && rest > 0.0 && rest <= stride_m && rest >= self.reach.shortest_m => (stride_m, rest),
+            Split::FullReach if self.hops > 1 && rest > 0.0 && rest <= stride_m && rest >= self.reach.shortest_m => {
+                (stride_m, rest)
+            }
             _ => (equal, equal),
         }
     }

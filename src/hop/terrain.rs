@@ -87,10 +87,7 @@ fn over_sight(
     let forward = landing.point.x_m > takeoff.point.x_m;
     let (ahead, back) = if forward { (Direction::Forward, Direction::Reverse) } else { (Direction::Reverse, Direction::Forward) };
     let kink_m = clearance.kink_m(sight.run_m());
-    [
-        ground_slope(chain, takeoff, ahead, kink_m) - sight.slope(),
-        sight.slope() + ground_slope(chain, landing, back, kink_m),
-    ]
+    [ground_slope(chain, takeoff, ahead, kink_m) - sight.slope(), sight.slope() + ground_slope(chain, landing, back, kink_m)]
 }
 
 /// The slope from a station to the ground at a distance from it, seen in a direction. The chain must reach so far.

@@ -9,7 +9,10 @@ use crate::{
     hop::Split,
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace, NoDataRule},
-    world::{Body, ClearanceRule, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES, RestSlope, SurfaceProperties},
+    world::{
+        Body, ClearanceRule, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES, RestSlope,
+        SurfaceProperties,
+    },
 };
 
 /// Gravity, and its body if known.
@@ -280,9 +283,10 @@ fn hopper(entries: &mut Entries) -> Hopper {
         return Hopper::UNLIMITED;
     }
     if clearance_rule == ClearanceRule::Vertex && taper.is_some() {
-        let message = "hopper.clearance_taper has no effect beside clearance_rule = \"vertex\", which keeps the whole clearance over \
+        let message =
+            "hopper.clearance_taper has no effect beside clearance_rule = \"vertex\", which keeps the whole clearance over \
                        every vertex"
-            .to_owned();
+                .to_owned();
         let help = "remove clearance_taper, or say clearance_rule = \"tapered\"";
         entries.problem(("hopper", "clearance_taper"), ProblemKind::Conflict, message, help);
     }

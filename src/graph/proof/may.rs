@@ -310,7 +310,8 @@ impl<'a, F: Faults> Prover<'a, F> {
             if tapered && clearance_m < self.clearance.height_m() {
                 // Divided once more by 1 + 1e-12, which is far above the rounding of these few operations.
                 let (eps, k) = (self.clearance.height_m(), self.clearance.taper());
-                let own = (eps * (1.0 / d_max + 1.0 / e_max)).min(k * (1.0 + d_min / e_max)).min(k * (1.0 + e_min / d_max)) / ROUNDED;
+                let own =
+                    (eps * (1.0 / d_max + 1.0 / e_max)).min(k * (1.0 + d_min / e_max)).min(k * (1.0 + e_min / d_max)) / ROUNDED;
                 let ground = F::Rounding::down(least_seen(takeoff, 0.0) + least_seen(landing, 0.0));
                 loft = loft.max(F::Rounding::down(ground + own));
             }

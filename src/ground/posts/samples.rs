@@ -1,6 +1,9 @@
 //! The DEM's elevations as a flat array.
 
-use super::{facets::CORNERS, offsets::{Crossing, Kink}};
+use super::{
+    facets::CORNERS,
+    offsets::{Crossing, Kink},
+};
 use crate::terrain::{Dem, Samples};
 
 /// Elevations row after row, NaN for gaps, and the post spacing.

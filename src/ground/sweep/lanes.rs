@@ -1,7 +1,12 @@
 //! All limits except the terrain, evaluated for a block of landings at once.
 
 use super::table::{LandingRules, LandingTable};
-use crate::{ballistics::{LineOfSight, limits::ClearanceProfile}, hop::HopTest, quantity::SlopeInterval, world::Limit};
+use crate::{
+    ballistics::{LineOfSight, limits::ClearanceProfile},
+    hop::HopTest,
+    quantity::SlopeInterval,
+    world::Limit,
+};
 
 /// The data of a take-off that all landings share.
 #[derive(Clone, Copy, Debug)]

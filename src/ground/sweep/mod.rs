@@ -171,8 +171,11 @@ impl Landing<'_> {
         let mut least = in_envelope.lower;
         if clearance.has_kinks() {
             let (run_m, slope) = ((landing.point.x_m - from.x_m).abs(), self.lanes.slope(lane));
-            let kinks =
-                if clearance.kink_m(run_m) < clearance.ramp_m() { self.overflight.middle_loft(landing, run_m, slope) } else { self.lanes.kinks(lane) };
+            let kinks = if clearance.kink_m(run_m) < clearance.ramp_m() {
+                self.overflight.middle_loft(landing, run_m, slope)
+            } else {
+                self.lanes.kinks(lane)
+            };
             least = least.max(kinks);
             if least > in_envelope.upper {
                 return Err(Limit::Terrain);

@@ -4,7 +4,7 @@ use std::{f64::consts::FRAC_PI_2, ops::ControlFlow};
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{Flight, Measure, StatedValue, flight::TooLow, ViolatedLimit, Violation};
+use super::{Flight, Measure, StatedValue, ViolatedLimit, Violation, flight::TooLow};
 use crate::{
     chain::{ContactRule, GroundRefusal},
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface},
