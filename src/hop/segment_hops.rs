@@ -123,12 +123,12 @@ impl SegmentReach {
             if allows(least_m) { last_allowed(least_m, below_m, allows) * (1.0 - SPEED_TOLERANCE) } else { 0.0 }
         };
         if longest_m <= two_ramps_m {
-            return if allows(longest_m) { Some(self.steepened(test)) } else { self.ended_at(near(longest_m), test, ends) };
+            return if allows(longest_m) { Some(self.steepened(test, ends)) } else { self.ended_at(near(longest_m), test, ends) };
         }
         let inside_m =
             if allows(longest_m) { Some(longest_m) } else { greatest(two_ramps_m, longest_m, excess).filter(|x| allows(*x)) };
         let Some(inside_m) = inside_m else { return self.ended_at(near(two_ramps_m), test, ends) };
-        let mut found = self.steepened(test);
+        let mut found = self.steepened(test, ends);
         if inside_m < longest_m {
             found = self.ended_at(last_allowed(inside_m, longest_m, allows) * (1.0 - SPEED_TOLERANCE), test, ends)?;
         }
@@ -141,16 +141,16 @@ impl SegmentReach {
     }
 
     /// The same reach with a loft that keeps the clearance: where the other limits leave several.
-    fn steepened(self, test: &HopTest) -> Self {
-        Self { loft: self.loft.max(test.clearance().kink_loft(0.0, self.stride_m)), ..self }
+    fn steepened(self, test: &HopTest, ends: &Ends<'_>) -> Self {
+        let loft = test.clearance().kink_loft(0.0, self.stride_m);
+        if loft > self.loft { Self { loft, limit: ends.limit_at(loft), ..self } } else { self }
     }
 
     /// The same with a reach that the clearance ends, together with the limit of the others that such a steep hop meets first;
     /// `None` if that is 0.
     fn ended_at(self, reach_m: f64, test: &HopTest, ends: &Ends<'_>) -> Option<Self> {
         let loft = test.clearance().kink_loft(0.0, reach_m);
-        let ((by_speed, speed), (by_machine, machine)) = (ends.by_speed_m(loft), ends.by_machine_m(loft));
-        let limit = if by_machine < by_speed { machine } else { speed };
+        let limit = ends.limit_at(loft);
         let ended = Self { loft, reach_m, tolerant_reach_m: reach_m, stride_m: reach_m, limit, ..self };
         (reach_m > 0.0).then_some(Self { shortest_m: 0.0, near_m: 0.0, ..ended })
     }
@@ -330,6 +330,12 @@ impl Ends<'_> {
             }
         });
         if apex < time { (apex, Limit::ApexHeight) } else { (time, Limit::FlightTime) }
+    }
+
+    /// The limit that ends the distance at a loft.
+    fn limit_at(&self, n: f64) -> Limit {
+        let ((by_speed, speed), (by_machine, machine)) = (self.by_speed_m(n), self.by_machine_m(n));
+        if by_machine < by_speed { machine } else { speed }
     }
 
     /// The loft of the farthest hop, between the flattest loft and the loft of greatest distance by speed.
