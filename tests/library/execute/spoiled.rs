@@ -1,7 +1,7 @@
 //! Every planned hop, spoiled by 1 % beyond its binding limit: the checker must refuse it and name that limit.
 
 use chta::{
-    ballistics::{Arc, LineOfSight},
+    ballistics::{Arc, LineOfSight, limits::ClearanceProfile},
     chain::{ConstrainedChain, GroundForm, SegmentGround, Station},
     ground::Surface,
     hop::HopTest,
@@ -86,6 +86,18 @@ fn beyond(end: f64, room: f64) -> f64 {
     if end.abs() < 0.01 || of_angle >= room { 0.01 * room } else { of_angle }
 }
 
+/// Whether an arc flatter than the least angle is lower by less than the rounding of heights where the ground sets that angle: at a
+/// vertex, or at a kink of the clearance, next to a contact.
+fn is_too_low_to_see(case: &Case<'_>, min: f64, radians: f64) -> bool {
+    let run = case.sight().run_m();
+    let from = case.hop.takeoff.in_profile();
+    let clearance = ClearanceProfile::of(case.world.hopper.limits());
+    let d = case.hop.lower_vertex.map_or(clearance.kink_m(run), |vertex| (case.world.vertices[vertex.index()].x_m - from.x_m).abs());
+    let lower_m = (min.tan() - radians.tan()) * d * (run - d) / run;
+    let rounding_m = f64::EPSILON * case.world.vertices.iter().flat_map(|v| [v.x_m.abs(), v.z_m.abs()]).fold(run, f64::max);
+    lower_m < 32.0 * rounding_m * (1.0 + min.tan().abs())
+}
+
 /// Both ends of the feasible take-off angles.
 fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
     let (min, max) = (case.hop.takeoff_angles.min.radians(), case.hop.takeoff_angles.max.radians());
@@ -103,7 +115,7 @@ fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
         // speed near its minimum depends on the square of the angle, so its change is less than the tolerance of speeds.
         // A change of angle alone does not violate an apex limit that the landing itself just meets.
         let landing_is_top = one_point && limit == Limit::ApexHeight && case.hop.landing_angle.radians() >= 0.0;
-        if room < 1e-5 || landing_is_top {
+        if room < 1e-5 || landing_is_top || (limit == Limit::Terrain && is_too_low_to_see(case, min, radians)) {
             tally.too_fine += 1;
             continue;
         }
