@@ -79,7 +79,7 @@ fn clearance(hopper: &Hopper) -> String {
     let height = format!("clearance {} m", short(limits.clearance_m));
     match limits.clearance_rule {
         _ if limits.clearance_m == 0.0 => height,
-        ClearanceRule::Tapered(taper) => format!("{height}, {} m/m from either contact", short(taper)),
+        ClearanceRule::Tapered(taper) => format!("{height}, tapered at both contacts ({} m/m)", short(taper)),
         ClearanceRule::Vertex => format!("{height} over vertices"),
     }
 }
