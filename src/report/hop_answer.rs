@@ -225,7 +225,14 @@ impl BindingRecord {
                     Some(Shortfall::Height { .. } | Shortfall::Bend { .. }) | None => (None, None),
                 };
                 let vertex = alone.vertex.map(|vertex| VertexRecord::new(test, vertex));
-                Self::Conflict { conflict: vec![alone.limit.name()], gap_deg, gap_m_s, vertex, clearance_x_m: alone.kink_x_m, sentence }
+                Self::Conflict {
+                    conflict: vec![alone.limit.name()],
+                    gap_deg,
+                    gap_m_s,
+                    vertex,
+                    clearance_x_m: alone.kink_x_m,
+                    sentence,
+                }
             }
             Conflict::Pair { lower, upper, gap_deg } => Self::Conflict {
                 conflict: vec![lower.limit.name(), upper.limit.name()],

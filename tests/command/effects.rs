@@ -68,7 +68,7 @@ const TELLING: [(&str, &str); 56] = [
 
 /// A scenario over a chain on which every limit can bind and trials fail now and then.
 const RICH: &str = "[body]\nname = \"ceres\"\n[hopper]\ntakeoff_speed_max_m_s = 2.5\nlanding_speed_max_m_s = 2.5\n\
-    [surface]\nfriction_coefficient = 0.7\n[terrain]\nchain = \"chain.csv\"\nstart_x_m = 0\ngoal_x_m = 40\n";
+    clearance_m = 0.02\nclearance_taper = 2\n[surface]\nfriction_coefficient = 0.7\n[terrain]\nchain = \"chain.csv\"\nstart_x_m = 0\ngoal_x_m = 40\n";
 
 /// Its trials.
 const ERRORS: &str = "[uncertainty]\ntakeoff_speed_sigma_fraction = 0.02\ntakeoff_angle_sigma_deg = 0.2\nheight_sigma_m = 0.005\n\

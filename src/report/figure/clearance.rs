@@ -42,7 +42,8 @@ mod tests {
     #[test]
     fn the_band_begins_on_the_ground_and_turns_at_the_kinks() {
         let ground = [(0.0, 0.0), (10.0, 5.0), (20.0, 5.0)].map(|(x, z)| ChainPoint::new(x, z));
-        let points = |height_m, rule| raised(&ground, ClearanceProfile::new(height_m, rule)).iter().map(|p| (p.x_m, p.z_m)).collect();
+        let points =
+            |height_m, rule| raised(&ground, ClearanceProfile::new(height_m, rule)).iter().map(|p| (p.x_m, p.z_m)).collect();
         let found: Vec<(f64, f64)> = points(2.0, ClearanceRule::TAPERED);
         assert_eq!(found, [(0.0, 0.0), (4.0, 4.0), (10.0, 7.0), (16.0, 7.0), (20.0, 5.0)]);
         // A hop shorter than two ramps: one kink in the middle.

@@ -92,7 +92,8 @@ fn is_too_low_to_see(case: &Case<'_>, min: f64, radians: f64) -> bool {
     let run = case.sight().run_m();
     let from = case.hop.takeoff.in_profile();
     let clearance = ClearanceProfile::of(case.world.hopper.limits());
-    let d = case.hop.lower_vertex.map_or(clearance.kink_m(run), |vertex| (case.world.vertices[vertex.index()].x_m - from.x_m).abs());
+    let d =
+        case.hop.lower_vertex.map_or(clearance.kink_m(run), |vertex| (case.world.vertices[vertex.index()].x_m - from.x_m).abs());
     let lower_m = (min.tan() - radians.tan()) * d * (run - d) / run;
     let rounding_m = f64::EPSILON * case.world.vertices.iter().flat_map(|v| [v.x_m.abs(), v.z_m.abs()]).fold(run, f64::max);
     lower_m < 32.0 * rounding_m * (1.0 + min.tan().abs())
