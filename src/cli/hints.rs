@@ -34,7 +34,6 @@ pub(crate) fn names(error: &(dyn Error + 'static), file: &Path) -> bool {
         (Some(TerrainError::InFile { path, .. } | TerrainError::Overlay { path, .. }), _)
         | (_, Some(PipelineError::Read { path, .. })) => same(path),
         // The commands that use these add the name.
-        (Some(TerrainError::UnknownScale { .. }), _) => false,
         (Some(TerrainError::MapScale { mend, .. }), _) => !matches!(mend, ScaleMend::Shorter { .. }),
         _ => false,
     }

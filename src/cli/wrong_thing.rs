@@ -98,14 +98,16 @@ impl Role {
         // GDAL reads pictures whose samples are elevations.
         let of_dem = of_raster || (cfg!(feature = "gdal") && matches!(kind, Kind::Picture(_)));
         let of_mesh = matches!(kind, Kind::Mesh(..));
+        // The readers of terrain say what makes a grid of points.
+        let of_points = matches!(kind, Kind::Points(_));
         let is_unknown = matches!(kind, Kind::Empty | Kind::Text | Kind::Binary);
         is_unknown
             || match self {
                 Self::Chain => *kind == Kind::ChainCsv || of_scenario,
                 Self::Scenario | Self::ScenarioOption => of_scenario,
-                Self::Dem | Self::DemKey => of_dem,
-                Self::Terrain => of_dem || of_mesh,
-                Self::MeshKey => of_mesh,
+                Self::Dem | Self::DemKey => of_dem || of_points,
+                Self::Terrain => of_dem || of_mesh || of_points,
+                Self::MeshKey => of_mesh || of_points,
                 Self::ChainKey => *kind == Kind::ChainCsv,
                 Self::Pairs => *kind == Kind::PairsCsv,
                 Self::Friction => of_raster,

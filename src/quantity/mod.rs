@@ -27,4 +27,4 @@ pub(crate) use number_text::{decimal_comma, number_help};
 pub use points::{ChainPoint, MapPoint};
 pub use quadratic::{MonicQuadratic, Roots};
 pub use slope::SlopeInterval;
-pub(crate) use unit::{Measure, split_unit, unit_named};
+pub(crate) use unit::{Measure, is_metre, metres_or_kilometres, metres_per, split_unit, unit_named};

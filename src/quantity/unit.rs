@@ -65,6 +65,22 @@ pub(crate) fn unit_named(name: &str) -> Option<Unit> {
     UNITS.iter().find(|(spellings, _)| spellings.contains(&name.as_str())).map(|(_, unit)| *unit)
 }
 
+/// Metres per unit, of the metre and the kilometre: the units of elevations and maps that are read. `None` of all others.
+pub(crate) fn metres_or_kilometres(name: &str) -> Option<f64> {
+    let unit = unit_named(name).filter(|unit| unit.measure == Measure::Length)?;
+    [1.0_f64, 1000.0].into_iter().find(|factor| factor.to_bits() == unit.factor.to_bits())
+}
+
+/// Whether a name is one of the metre.
+pub(crate) fn is_metre(name: &str) -> bool {
+    unit_named(name).is_some_and(|unit| unit.measure == Measure::Length && unit.is_ours())
+}
+
+/// How many metres a unit of length has; `None` for another unit, or one that is not known.
+pub(crate) fn metres_per(name: &str) -> Option<f64> {
+    unit_named(name).filter(|unit| unit.measure == Measure::Length).map(|unit| unit.factor)
+}
+
 /// A column's name without its unit, in lower case, and the text of its unit: `Z [ft]`, `z(ft)`, `z_ft` and `z ft` all give
 /// `z` and `ft`. What stands in brackets is taken for a unit whatever it is; an ending only if it is one.
 pub(crate) fn split_unit(name: &str) -> (String, Option<String>) {
@@ -87,6 +103,24 @@ pub(crate) fn split_unit(name: &str) -> (String, Option<String>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn metres_and_kilometres_are_told_from_other_units() {
+        for (name, factor) in [
+            ("m", Some(1.0)),
+            (" METERS ", Some(1.0)),
+            ("metre", Some(1.0)),
+            ("KM", Some(1000.0)),
+            ("Kilometers", Some(1000.0)),
+            ("ft", None),
+            ("cm", None),
+            ("m/s", None),
+            ("deg", None),
+            ("", None),
+        ] {
+            assert_eq!((metres_or_kilometres(name), is_metre(name)), (factor, factor == Some(1.0)), "{name}");
+        }
+    }
 
     /// Factors: the definitions of the units (BIPM, and 1959 agreement on yard and pound).
     #[test]

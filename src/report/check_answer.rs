@@ -31,6 +31,8 @@ pub struct CheckAnswer {
     /// The greatest node spacing, if the search was given one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_spacing_max_m: Option<f64>,
+    /// The number of vertices of the chain: a file that was cut short has fewer.
+    pub vertices: usize,
     /// The number of nodes.
     pub nodes: usize,
     /// The number of pairs tested, over all spacings tried.
@@ -135,6 +137,7 @@ impl CheckAnswer {
                 PointSpacing::AtMostM(spacing_m) => Some(spacing_m),
                 PointSpacing::PerSegment(_) => None,
             },
+            vertices: test.chain().geometry().vertices().len(),
             nodes: answer.nodes,
             pairs_tested: answer.pairs_tested,
             refusals: counts(&answer.refusals),

@@ -215,8 +215,8 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         proof_lines(&mut sheet, proof, means);
     }
     sheet.line(format_args!(
-        "{} nodes (up to {} inside a segment), pairs of them tested: {}",
-        answer.nodes, answer.points_per_segment, answer.pairs_tested
+        "{} nodes (up to {} inside a segment) on a chain of {} vertices, pairs of them tested: {}",
+        answer.nodes, answer.points_per_segment, answer.vertices, answer.pairs_tested
     ));
     if !answer.refusals.is_empty() {
         sheet.line(format_args!("refused by {}", ranked(&answer.refusals)));

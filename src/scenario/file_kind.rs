@@ -7,7 +7,7 @@ use std::{
 };
 
 use super::CATALOGUE;
-use crate::terrain::{VectorFormat, binary_stl_length, foreign_format, mesh_format, raster_format};
+use crate::terrain::{Foreign, ForeignGroup, VectorFormat, binary_stl_length, foreign_kind, mesh_format, raster_format};
 
 /// How many bytes of a file are examined: comments may precede the first statement.
 const PROBE_BYTES: u64 = 1 << 16;
@@ -24,8 +24,10 @@ pub enum FileKind {
     ForeignRaster(&'static str),
     /// A mesh in a format that is read, by the format's name, and whether it is text.
     Mesh(&'static str, bool),
-    /// A mesh or points in another format; the name has an article.
+    /// A mesh in another format; the name has an article.
     ForeignMesh(&'static str),
+    /// Points without faces; the name has an article.
+    Points(&'static str),
     /// A chain.
     ChainCsv,
     /// Pairs of start and goal.
@@ -54,36 +56,6 @@ pub enum FileKind {
     Binary,
 }
 
-/// The first bytes of files, and what they are.
-const BEGINNINGS: [(&[u8], FileKind); 26] = [
-    (b"\x89PNG", FileKind::Picture("a PNG picture")),
-    (b"\xff\xd8\xff", FileKind::Picture("a JPEG picture")),
-    (b"GIF8", FileKind::Picture("a GIF picture")),
-    (b"BM", FileKind::Picture("a BMP picture")),
-    (b"P5", FileKind::Picture("a PGM picture")),
-    (b"P6", FileKind::Picture("a PPM picture")),
-    (b"8BPS", FileKind::Picture("a Photoshop picture")),
-    (b"%!PS", FileKind::Picture("a PostScript picture")),
-    (b"%PDF", FileKind::Document("a PDF document")),
-    (b"\xd0\xcf\x11\xe0", FileKind::Document("an Office document")),
-    (b"\x7fELF", FileKind::Document("a program")),
-    (b"PAR1", FileKind::Document("a Parquet table")),
-    (b"SQLite format 3\0", FileKind::Document("an SQLite database")),
-    (b"\x1f\x8b", FileKind::Packed("a file packed with gzip", "gunzip -k")),
-    (b"BZh", FileKind::Packed("a file packed with bzip2", "bunzip2 -k")),
-    (b"\xfd7zXZ", FileKind::Packed("a file packed with xz", "unxz -k")),
-    (b"\x28\xb5\x2f\xfd", FileKind::Packed("a file packed with zstd", "unzstd")),
-    (b"7z\xbc\xaf", FileKind::Packed("a 7z archive", "7z x")),
-    (b"Rar!", FileKind::Packed("a RAR archive", "unrar x")),
-    (b"PK\x03\x04", FileKind::Packed("a zip archive", "unzip")),
-    (b"LASF", FileKind::ForeignMesh("a LAS point cloud")),
-    (b"glTF", FileKind::ForeignMesh("a glTF scene")),
-    (b"Kaydara FBX", FileKind::ForeignMesh("an FBX scene")),
-    (b"BLENDER", FileKind::ForeignMesh("a Blender scene")),
-    (b"OFF\n", FileKind::ForeignMesh("an OFF mesh")),
-    (b"# vtk", FileKind::ForeignMesh("a VTK data set")),
-];
-
 impl FileKind {
     /// What a file is.
     ///
@@ -107,28 +79,14 @@ impl FileKind {
             return Self::Shapes(format);
         }
         let text = text_of(beginning);
-        let webp = beginning.starts_with(b"RIFF") && beginning.get(8..12) == Some(b"WEBP");
-        let tape = beginning.get(257..262) == Some(b"ustar");
-        if webp {
-            return Self::Picture("a WebP picture");
-        }
-        if tape {
-            return Self::Packed("a tar archive", "tar -xf");
-        }
-        // Letters alone are the beginning of many texts: such a file has to be binary.
-        let known = BEGINNINGS.into_iter().find(|(start, _)| beginning.starts_with(start) && (start.len() > 3 || text.is_none()));
-        if let Some((_, kind)) = known {
-            return kind;
-        }
-        let table = text.and_then(of_table);
-        if let Some(kind) = &table {
-            return kind.clone();
+        if let Some(table) = text.and_then(of_table) {
+            return table;
         }
         if let Some(format) = raster_format(beginning) {
             return Self::Raster(format);
         }
-        if let Some(name) = foreign_format(beginning) {
-            return Self::ForeignRaster(name);
+        if let Some(kind) = foreign_kind(beginning).and_then(Self::of_foreign) {
+            return kind;
         }
         let length = length.or_else(|| binary_stl_length(beginning)).unwrap_or(0);
         if let Some((format, is_text)) = mesh_format(beginning, length) {
@@ -140,6 +98,19 @@ impl FileKind {
         }
     }
 
+    /// What a file is that is not read; `None` where its content or its reader says more.
+    const fn of_foreign(Foreign { name, group, .. }: Foreign) -> Option<Self> {
+        Some(match group {
+            ForeignGroup::Raster => Self::ForeignRaster(name),
+            ForeignGroup::Picture => Self::Picture(name),
+            ForeignGroup::Packed(program) => Self::Packed(name, program),
+            ForeignGroup::Document => Self::Document(name),
+            ForeignGroup::Model => Self::ForeignMesh(name),
+            ForeignGroup::Points => Self::Points(name),
+            ForeignGroup::Other => return None,
+        })
+    }
+
     /// The name with an article, as in "this is a `GeoTIFF`".
     pub fn name(&self) -> String {
         match self {
@@ -149,6 +120,7 @@ impl FileKind {
             Self::Mesh(format, _) => format!("{} {format} mesh", article(format)),
             Self::ForeignRaster(name)
             | Self::ForeignMesh(name)
+            | Self::Points(name)
             | Self::Picture(name)
             | Self::Packed(name, _)
             | Self::Document(name) => (*name).to_owned(),
@@ -203,23 +175,11 @@ fn of_table(text: &str) -> Option<FileKind> {
     }
 }
 
-/// What a text is by its first statements: JSON, TOML with tables of a scenario, or markup.
+/// What a text is by its first statements: JSON, or TOML with tables of a scenario.
 fn of_text(text: &str) -> Option<FileKind> {
     let start = text.trim_start();
     if start.starts_with('{') {
         return Some(of_json(start));
-    }
-    if start.starts_with('<') {
-        let lower: String = start.chars().take(4096).flat_map(char::to_lowercase).collect();
-        let named = [
-            ("<svg", FileKind::Picture("an SVG picture")),
-            ("<html", FileKind::Document("a web page")),
-            ("<!doctype html", FileKind::Document("a web page")),
-            ("<collada", FileKind::ForeignMesh("a COLLADA scene")),
-            ("<x3d", FileKind::ForeignMesh("an X3D scene")),
-        ];
-        let known = named.into_iter().find(|(word, _)| lower.contains(word)).map(|(_, kind)| kind);
-        return Some(known.unwrap_or(FileKind::Document("an XML document")));
     }
     let is_table = |name: &str| CATALOGUE.iter().any(|key| key.table == name);
     let names_table = |line: &str| match line.strip_prefix('[') {
@@ -293,13 +253,14 @@ mod tests {
 
     #[test]
     fn files_are_known_by_content_and_their_extension_is_only_a_help() {
+        const PAGE: &str = "a web page saved in place of the file";
         let stl = {
             let mut bytes = vec![b' '; 80];
             bytes.extend(1_u32.to_le_bytes());
             bytes.extend([0_u8; 50]);
             bytes
         };
-        let cases: [(&[u8], &str, FileKind, &str); 36] = [
+        let cases: [(&[u8], &str, FileKind, &str); 44] = [
             (b"", "a.tif", FileKind::Empty, "an empty file"),
             (b"II*\0rest", "a.csv", FileKind::Raster("GeoTIFF"), "a GeoTIFF"),
             (b"ncols 2\nnrows 2\n", "a.toml", FileKind::Raster("ESRI ASCII grid"), "an ESRI ASCII grid"),
@@ -312,7 +273,7 @@ mod tests {
             (b"ply\nformat binary_little_endian 1.0\n", "a", FileKind::Mesh("PLY", false), "a PLY mesh"),
             (b"solid\nfacet normal 0 0 1\n", "a", FileKind::Mesh("STL", true), "an STL mesh"),
             (&stl, "a", FileKind::Mesh("STL", false), "an STL mesh"),
-            (b"glTF\x02\0\0\0", "a.obj", FileKind::ForeignMesh("a glTF scene"), "a glTF scene"),
+            (b"glTF\x02\0\0\0", "a.obj", FileKind::ForeignMesh("a glTF model"), "a glTF model"),
             (b"# by hand\n\nx_m,z_m\n0,1\n", "a.tif", FileKind::ChainCsv, "a chain CSV"),
             (b"\xef\xbb\xbf\"x_m\";\"z_m\"\n0;1\n", "a", FileKind::ChainCsv, "a chain CSV"),
             (b"start_x_m,goal_x_m\n0,1\n", "a", FileKind::PairsCsv, "a CSV of pairs of start and goal"),
@@ -328,10 +289,18 @@ mod tests {
             (b"<?xml version=\"1.0\"?><kml xmlns=\"x\">", "a", FileKind::Shapes(VectorFormat::Kml), "a KML file"),
             (b"\x00\x00\x27\x0a\0", "a.shp", FileKind::Shapes(VectorFormat::Shapefile), "an ESRI Shapefile"),
             (b"\x89PNG\r\n\x1a\n", "a.tif", FileKind::Picture("a PNG picture"), "a PNG picture"),
-            (b"BM\x36\0\0\0", "a", FileKind::Picture("a BMP picture"), "a BMP picture"),
+            (b"BM\x36\0\0\0\0\0\0\0\x36\0\0\0", "a", FileKind::Picture("a BMP picture"), "a BMP picture"),
             (b"<?xml version=\"1.0\"?>\n<svg width=\"1\"/>", "a", FileKind::Picture("an SVG picture"), "an SVG picture"),
             (b"\x1f\x8b\x08", "a.tif", FileKind::Packed("a file packed with gzip", "gunzip -k"), "a file packed with gzip"),
             (b"%PDF-1.7", "a", FileKind::Document("a PDF document"), "a PDF document"),
+            (b"OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "a", FileKind::ForeignMesh("an OFF mesh"), "an OFF mesh"),
+            (b"ASTM-E57\x01", "a", FileKind::Points("an E57 point cloud"), "an E57 point cloud"),
+            (b"<html>", "a.tif", FileKind::Document(PAGE), PAGE),
+            (b"# .PCD v.7\n", "a", FileKind::Points("a PCD point cloud"), "a PCD point cloud"),
+            (b"<Envelope/>", "a", FileKind::Document("an XML text"), "an XML text"),
+            (b"\x04\x22\x4d\x18", "a", FileKind::Packed("a file packed with LZ4", "unlz4"), "a file packed with LZ4"),
+            (b"{\"message\": \"no\"}", "a", FileKind::Json, "a JSON file without a scenario in it"),
+            (b"n\0c\0o\0l\0s\0 \0", "a", FileKind::Binary, "a file of no known format"),
             (b"BMW drives\n", "a", FileKind::Text, "a text of no known form"),
             (b"[package]\nname = \"x\"\n", "a.ini", FileKind::Text, "a text of no known form"),
             (b"y\ny\ny\n", "a", FileKind::Text, "a text of no known form"),

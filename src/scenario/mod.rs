@@ -6,6 +6,7 @@ mod catalogue;
 mod document;
 mod entries;
 mod file_kind;
+mod on_body;
 mod physics;
 mod pipeline;
 mod problem;
@@ -19,10 +20,9 @@ pub use catalogue::{CATALOGUE, Key, Kind};
 pub use document::scenario_document;
 pub use entries::{Entries, Place};
 pub use file_kind::FileKind;
-pub use physics::{Extent, Extremes, TooLarge, body_warnings, check_extent, constant_gravity_warnings, escape_warnings};
-pub use pipeline::{
-    DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, check_body, for_body, friction, prepare, sha256_of,
-};
+pub use on_body::{OfBody, dem_on_body, on_body};
+pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};
+pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};
 pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};
 pub use sense::TrialGround;

@@ -20,7 +20,7 @@ const DENSITIES_KG_M3: std::ops::RangeInclusive<f64> = 100.0..=30_000.0;
 const GRAVITATIONAL_CONSTANT: f64 = 6.674_30e-11;
 
 /// Warnings where gravity or radius contradict the named body or, without a name, each other; each has both values.
-pub fn body_warnings(body: &BodyChoice) -> Vec<String> {
+pub(super) fn body_warnings(body: &BodyChoice) -> Vec<String> {
     let mut warnings = Vec::new();
     let gravity_m_s2 = body.gravity.m_s2();
     let Some(known) = body.name.as_deref().and_then(Body::named) else {
@@ -60,7 +60,7 @@ pub fn body_warnings(body: &BodyChoice) -> Vec<String> {
 
 /// Warnings of speed limits at or above the escape speed, each with both speeds and the limit that counts instead: those of the
 /// hopper, and those that a chain states for its segments. A body of unknown radius gives none.
-pub fn escape_warnings(scenario: &Scenario, chain: Option<&PolygonalChain>) -> Vec<String> {
+pub(super) fn escape_warnings(scenario: &Scenario, chain: Option<&PolygonalChain>) -> Vec<String> {
     let gravity = scenario.body.gravity;
     let Some(escape_m_s) = gravity.escape_speed_m_s() else { return Vec::new() };
     let cap_m_s = gravity.speed_cap_m_s();
@@ -174,7 +174,7 @@ const LONG_BODIES: [(&str, f64); 7] =
 ///
 /// # Errors
 /// [`TooLarge`] where they certainly do: a terrain wider than the body, or a map of a known projection wider than its circumference.
-pub fn check_extent(body: &BodyChoice, extent: &Extent) -> Result<Option<String>, TooLarge> {
+pub(super) fn check_extent(body: &BodyChoice, extent: &Extent) -> Result<Option<String>, TooLarge> {
     let Some(radius_m) = body.radius_m() else { return Ok(None) };
     let MapBounds { min, max } = extent.bounds;
     let sides_m = [max.x - min.x, max.y - min.y];

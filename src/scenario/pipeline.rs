@@ -11,8 +11,9 @@ use std::{
 use sha2::{Digest, Sha256};
 
 use super::{
-    BodyChoice, Scenario, TerrainSource,
-    physics::{self, Extent, TooLarge},
+    Scenario, TerrainSource,
+    on_body::{contradictions, on_body},
+    physics::{Extent, TooLarge},
 };
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
@@ -142,25 +143,22 @@ impl Survey {
     /// # Errors
     /// [`PipelineError`].
     pub fn of(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Self, PipelineError> {
-        let transect = match source {
+        let body = &scenario.body;
+        let (transect, of_extent) = match source {
             TerrainSource::Dem { path, start, goal } => {
-                let transect = Transect::of_dem(&base.join(path), [start, goal], &scenario.via, DemReading::of(scenario));
-                let transect = transect.map_err(|error| for_body(&scenario.body, error))?;
-                check_body(&scenario.body, transect.figure)?;
-                transect
+                on_body(body, Transect::of_dem(&base.join(path), [start, goal], &scenario.via, DemReading::of(scenario)))?
             }
             TerrainSource::Mesh { path, scale, start, goal } => {
                 let via: Vec<MapPoint> = scenario.via.iter().filter_map(MapPlace::metres).collect();
-                Transect::of_mesh(&base.join(path), (*scale, scenario.no_data), [*start, *goal], &via)?
+                on_body(body, Transect::of_mesh(&base.join(path), (*scale, scenario.no_data), [*start, *goal], &via))?
             }
             TerrainSource::Chain { path } => {
-                let file = csv::read_chain_csv_file_with(base.join(path), scenario.no_data)?;
-                check_body(&scenario.body, file.projection.as_ref().map(|projection| projection.definition().ellipsoid))?;
+                let (file, _) = on_body(body, Ok(csv::read_chain_csv_file_with(base.join(path), scenario.no_data)?))?;
                 return Ok(Self { ground: Surveyed::Chain(file.chain), projection: file.projection, warnings: file.warnings });
             }
         };
         let mut warnings = transect.warnings;
-        warnings.extend(physics::check_extent(&scenario.body, &transect.extent)?);
+        warnings.extend(of_extent);
         let overlays = Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.extent.bounds)?;
         let ground = Surveyed::Slice { legs: transect.legs, overlays: Box::new(overlays) };
         Ok(Self { ground, projection: transect.projection, warnings })
@@ -198,8 +196,7 @@ fn resolved(
     projection: Option<MapProjection>,
     mut warnings: Vec<String>,
 ) -> Result<Prepared, PipelineError> {
-    warnings.extend(physics::body_warnings(&scenario.body));
-    warnings.extend(physics::escape_warnings(scenario, Some(&geometry)));
+    warnings.extend(contradictions(scenario, Some(&geometry)));
     let chain = Arc::new(ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)?);
     let station = |which, x_m: Option<f64>| {
         x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
@@ -381,27 +378,6 @@ impl Overlays {
         });
         let warnings = self.not_compared().chain(raster).chain(keep_out).chain(replaced).collect();
         Ok((PolygonalChain::from_legs(&legs, constant)?, warnings))
-    }
-}
-
-/// Checks that a map is of the scenario's body; a body without a radius may be any.
-///
-/// # Errors
-/// [`TerrainError::OtherBody`] if the map's figure differs by over 1 %.
-pub fn check_body(body: &BodyChoice, figure: Option<Ellipsoid>) -> Result<(), TerrainError> {
-    match (body.radius_m(), figure) {
-        (Some(radius_m), Some(figure)) if !figure.may_be_of(body.name.as_deref(), radius_m) => {
-            Err(TerrainError::OtherBody { figure, body: body.spoken(), radius_m })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// An error of a terrain with the scenario's body, whose radius a command that mends it takes.
-pub fn for_body(body: &BodyChoice, error: TerrainError) -> TerrainError {
-    match body.radius_m() {
-        Some(radius_m) => error.for_body(&body.spoken(), radius_m),
-        None => error,
     }
 }
 

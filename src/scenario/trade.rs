@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use super::{
     Entries, Key, Kind, Prepared, Scenario, ScenarioProblem, Survey, ask_the_same,
     entries::{fits, nearest_key},
-    escape_warnings,
+    physics::escape_warnings,
 };
 use crate::{
     chain::Station,

@@ -12,9 +12,10 @@ use super::dem::Posts;
 use super::format::ReadContext;
 use super::geotiff::{Placed, place_by_tags};
 use super::parts::{CheckedParts, StoredParts};
-use super::stored::{Scaling, StoredRaster, StoredStep};
+use super::stored::{Scaling, StoredRaster, StoredStep, convert_heights};
 use super::window::turn_round;
 use super::{Dem, DemFile, DemReader, NoDataRule, PostLattice, TerrainError, Window};
+use crate::quantity::{metres_or_kilometres, metres_per};
 
 /// The reader of GDAL's formats.
 pub(super) struct GdalReader;
@@ -97,18 +98,13 @@ impl OpenRaster {
                 "gdal_translate -ot Float32 in out.tif",
             ));
         }
-        let metres_per_unit = match band.unit().to_ascii_lowercase().as_str() {
-            "" | "m" | "metre" | "metres" | "meter" | "meters" => 1.0,
-            "km" | "kilometer" | "kilometers" | "kilometre" | "kilometres" => 1000.0,
-            unit => {
-                return Err(unsuitable(
-                    format!("elevations in '{unit}'"),
-                    "elevations in metres",
-                    "gdal_calc.py --calc='A*METRES_PER_UNIT'",
-                ));
-            }
-        };
         let (scale, offset) = (band.scale().unwrap_or(1.0), band.offset().unwrap_or(0.0));
+        let unit = band.unit();
+        let in_metres = if unit.is_empty() { Some(1.0) } else { metres_or_kilometres(&unit) };
+        let metres_per_unit = in_metres.ok_or_else(|| {
+            let mend = convert_heights(None, Scaling { scale, offset_m: offset }, metres_per(&unit));
+            unsuitable(format!("elevations in '{unit}'"), "elevations in metres", &mend)
+        })?;
         let Placed { georeference, south_up, states_metres } = place_by_tags(skeleton(&dataset)?, rows)?;
         let lattice = PostLattice::new(rows, cols, georeference)?;
         let scaling = Scaling { scale: scale * metres_per_unit, offset_m: offset * metres_per_unit };

@@ -143,6 +143,17 @@ impl GeoReference {
         Self { coordinate_system: projection.coordinate_system(), transform_tags: TransformTags::default(), ..self }
     }
 
+    /// The same place on a map that is stated and not understood, with what was found.
+    pub(super) fn with_unknown_map(mut self, found: &str) -> Self {
+        // Projected, by a code and a method that are user-defined (OGC GeoTIFF 1.1).
+        self.coordinate_system = CoordinateSystem {
+            key_directory: vec![1, 1, 0, 3, 1024, 0, 1, 1, 3072, 0, 1, 32767, 3075, 0, 1, 32767],
+            description: Some(found.to_owned()),
+            ..CoordinateSystem::default()
+        };
+        self
+    }
+
     /// The map projection, from what the file or the caller said of it.
     ///
     /// # Errors
@@ -280,7 +291,7 @@ impl fmt::Display for DegreesMend {
         let source = if source { format!("-s_srs '+proj=longlat {known} +no_defs' ") } else { String::new() };
         write!(
             formatter,
-            "gdalwarp -r bilinear {source}-t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {known} +units=m +no_defs' in.tif out.tif, where \
+            "gdalwarp -r bilinear -ot Float64 -dstnodata nan {source}-t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {known} +units=m +no_defs' in.tif out.tif, where \
              LATITUDE and LONGITUDE are the middle of the journey{why} (a map over more than some degrees needs -te -REACH -REACH REACH REACH as \
              well, in metres about that place); then give its places as longitude and latitude (scenario: \
              start_lonlat_deg and goal_lonlat_deg)"

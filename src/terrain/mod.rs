@@ -47,7 +47,7 @@ mod zones;
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M, Samples};
 pub use error::{AsciiProblem, GapCause, TerrainError};
-pub(crate) use foreign::name_of as foreign_format;
+pub(crate) use foreign::{Foreign, Group as ForeignGroup, name as foreign_kind};
 pub(crate) use format::format_name as raster_format;
 pub use format::{DemOptions, DemReader, FORMATS, open_dem, read_dem};
 pub use georeference::{CoordinateSystem, DegreesMend, GeoReference, MapBounds, TransformTags};

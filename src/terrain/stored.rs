@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::dem::Posts;
 use super::format::ReadContext;
 use super::georeference::refuse_degrees;
+use super::no_data::last_digit;
 use super::void::{Marks, around, find_void};
 use super::{Dem, GeoReference, NoDataRule, PostLattice, Samples, TerrainError, VoidPlace, VoidTaken, Window};
 use crate::quantity::format_number;
@@ -21,6 +22,12 @@ impl Scaling {
 
     pub(super) fn apply(self, sample: f64) -> f64 {
         sample * self.scale + self.offset_m
+    }
+
+    /// Whether two scalings are the same but for the digits of their texts.
+    pub(super) fn is_near(self, other: Self) -> bool {
+        let near = |one: f64, two: f64| (one - two).abs() <= 1.0e-6 * one.abs().max(two.abs());
+        near(self.scale, other.scale) && near(self.offset_m, other.offset_m)
     }
 
     /// The sample of an elevation.
@@ -41,20 +48,30 @@ pub(super) enum StoredStep {
     Single(Scaling),
 }
 
-/// The most decimals of the numbers of a text.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Decimals {
-    most: usize,
-    /// Whether a number has an exponent, or more digits than a 32-bit float: its decimals say nothing of its step.
-    fine: bool,
+/// From this many numbers on, the last digits of a text are its rounding: fewer numbers may be exact.
+const ROUNDING_SHOWS: usize = 100;
+
+/// The finest last digit of the numbers of a text.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct LastDigits {
+    count: usize,
+    finest: f64,
 }
 
-impl Decimals {
+impl Default for LastDigits {
+    fn default() -> Self {
+        Self { count: 0, finest: f64::INFINITY }
+    }
+}
+
+impl LastDigits {
     /// Takes one number into account.
     pub(super) fn see(&mut self, text: &str) {
-        let decimals = text.split_once(['.', ',']).map_or(0, |(_, decimals)| decimals.len());
-        self.most = self.most.max(decimals);
-        self.fine |= text.contains(['e', 'E']) || text.len() > 12;
+        self.count += 1;
+        let unit = last_digit(text);
+        if unit > 0.0 {
+            self.finest = self.finest.min(unit);
+        }
     }
 }
 
@@ -62,12 +79,9 @@ impl Decimals {
 const STEEP_STEP: f64 = 0.01;
 
 impl StoredStep {
-    /// The step of numbers with so many decimals.
-    pub(super) fn of_decimals(Decimals { most, fine }: Decimals, scaling: Scaling) -> Self {
-        match i32::try_from(most) {
-            Ok(most) if !fine => Self::Fixed(10_f64.powi(-most) * scaling.scale.abs()),
-            _ => Self::Fine,
-        }
+    /// The step of the numbers of a text.
+    pub(super) fn of_text(LastDigits { count, finest }: LastDigits, scaling: Scaling) -> Self {
+        if count >= ROUNDING_SHOWS && finest.is_finite() { Self::Fixed(finest * scaling.scale.abs()) } else { Self::Fine }
     }
 
     /// The step of the numbers around an elevation, m.
@@ -98,12 +112,30 @@ impl StoredStep {
         };
         Some(format!(
             "the elevations are stored in steps of {} m ({numbers}) on posts every {} m: one step makes a slope of {:.1} degrees that the \
-             ground may not have; use a product with a finer step (64-bit floats, or heights instead of radii)",
+             ground may not have; use a product whose source has finer steps, such as heights in place of radii (a copy in 64 bits keeps the steps)",
             format_number(step_m),
             format_number(spacing_m),
             (step_m / spacing_m).atan().to_degrees()
         ))
     }
+}
+
+/// The command that converts the elevations of a file to metres: through a virtual raster, which keeps masks and no-data values, with a
+/// scale in place of new numbers, and without the unit that the file states. `map` replaces the reference system, heights included.
+pub(super) fn convert_heights(map: Option<&str>, scaling: Scaling, metres_per_unit: Option<f64>) -> String {
+    let map = map.map_or_else(String::new, |map| format!(" -a_srs {map}"));
+    let times = |number: f64| match metres_per_unit {
+        Some(size_m) => (number * size_m).to_string(),
+        None if number == 0.0 => "0".to_owned(),
+        None if number == 1.0 => "METRES_PER_UNIT".to_owned(),
+        None => format!("METRES_PER_UNIT_TIMES_{number}"),
+    };
+    format!(
+        "gdal_translate -of VRT{map} -a_scale {} -a_offset {} in.tif in.vrt && sed '/<UnitType>/d' in.vrt > metres.vrt && gdal_translate \
+         metres.vrt out.tif",
+        times(scaling.scale),
+        times(scaling.offset_m)
+    )
 }
 
 /// What a reader makes of a whole file, before the checks that all formats share.
@@ -157,9 +189,10 @@ pub(super) fn judge(dem: &Dem, rule: NoDataRule, scaling: Scaling) -> Result<(),
     let marks = Marks::within(dem.elevation_range_m(), scaling);
     let (rows, cols) = (dem.rows(), dem.cols());
     let neighbours = |index: usize, visit: &mut dyn FnMut(usize)| around((rows, cols), index, visit);
+    let spacing_m = dem.georeference().step_m();
     let void = match dem.samples() {
-        Samples::Single(posts) => find_void(posts.len(), &marks, |index| posts[index].into(), neighbours),
-        Samples::Double(posts) => find_void(posts.len(), &marks, |index| posts[index], neighbours),
+        Samples::Single(posts) => find_void(posts.len(), &marks, spacing_m, |index| posts[index].into(), neighbours),
+        Samples::Double(posts) => find_void(posts.len(), &marks, spacing_m, |index| posts[index], neighbours),
     };
     let Some(void) = void else { return Ok(()) };
     let (row, col) = (void.first / cols, void.first % cols);

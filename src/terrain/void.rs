@@ -9,6 +9,7 @@
 //!   block             -9999               off by 10099 > R: refused
 //! ```
 
+use std::collections::HashSet;
 use std::fmt;
 
 use super::stored::Scaling;
@@ -48,49 +49,54 @@ pub enum VoidPlace {
     },
 }
 
-impl fmt::Display for VoidTaken {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl VoidTaken {
+    /// What was found, without the ways out.
+    pub fn found(&self) -> String {
         let Self { z_m, stored, count, place, border_m } = self;
-        write!(f, "the elevation {} m", format_number(*z_m))?;
-        if stored != z_m {
-            write!(f, " (stored as {})", format_number(*stored))?;
-        }
+        let scaled = if stored == z_m { String::new() } else { format!(" (stored as {})", format_number(*stored)) };
         let (one, many) = match place {
             VoidPlace::Post { .. } => ("post", "posts"),
             VoidPlace::Vertex { .. } => ("vertex", "vertices"),
         };
-        write!(f, " of {count} {}, ", if *count == 1 { one } else { many })?;
-        if *count > 1 {
-            f.write_str("first ")?;
-        }
-        match place {
+        let (block, first) = if *count == 1 { (one, "") } else { (many, "first ") };
+        let place = match place {
             VoidPlace::Post { row, col, at } => {
                 let (x_m, y_m) = (format_number(at.x), format_number(at.y));
-                write!(f, "at row {row}, column {col} (from 0, from the north-west), map point ({x_m} m, {y_m} m)")?;
+                format!("at row {row}, column {col} (from 0, from the north-west), map point ({x_m} m, {y_m} m)")
             }
-            VoidPlace::Vertex { number } => write!(f, "number {number} of the file")?,
-        }
-        match border_m {
-            Some((low_m, high_m)) => {
-                let off_m = if z_m < low_m { low_m - z_m } else { z_m - high_m };
-                let (off, low, high) = (format_number(off_m), format_number(*low_m), format_number(*high_m));
-                write!(f, ", lies {off} m off the {many} around ({low} to {high} m)")?;
+            VoidPlace::Vertex { number } => format!("number {number} of the file"),
+        };
+        let compared = match border_m {
+            Some((low, high)) => {
+                let off = if z_m < low { low - z_m } else { z_m - high };
+                let [off, low, high] = [off, *low, *high].map(format_number);
+                format!("lies {off} off the {many} around ({low} to {high})")
             }
-            None => write!(f, ", has no {many} around that it could be compared with")?,
-        }
-        let value = format_number(*stored);
-        write!(
-            f,
-            " and is a usual mark of missing data, expected elevations, or missing data that is stated; state what it is: terrain.no_data = \
-             {value} where it marks missing data, or terrain.no_data = \"none\" where it is an elevation"
+            None => format!("has no {many} around that it could be compared with"),
+        };
+        format!(
+            "{}{scaled} of {count} {block}, {first}{place}, {compared} and is a usual mark of missing data",
+            format_number(*z_m)
         )
     }
 }
 
-/// The numbers that programs write for missing elevations, beyond which the names "no-data" and "fill value" are known.
+impl fmt::Display for VoidTaken {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let value = format_number(self.stored);
+        write!(
+            f,
+            "the elevation {}, expected elevations, or missing data that is stated; state what it is: terrain.no_data = {value} where it \
+             marks missing data, or terrain.no_data = \"none\" where it is an elevation",
+            self.found()
+        )
+    }
+}
+
+/// The numbers that programs write for missing elevations, in the order of how often they are met.
 ///
 /// Numbers of 1e9 and above are no elevations in any case ([`ELEVATION_LIMIT_M`](super::ELEVATION_LIMIT_M)).
-const USUAL_MARKS: [f64; 30] = [
+const USUAL_MARKS: [f64; 45] = [
     -9999.0,
     -32768.0,
     -32767.0,
@@ -104,6 +110,7 @@ const USUAL_MARKS: [f64; 30] = [
     -99999.99,
     -999.9,
     -999.99,
+    -999.25,
     -999_999.0,
     -9_999_999.0,
     -99_999_999.0,
@@ -114,14 +121,35 @@ const USUAL_MARKS: [f64; 30] = [
     -32765.0,
     -32764.0,
     -32752.0,
+    -32000.0,
+    -30000.0,
+    -20000.0,
+    -50000.0,
+    -88888.0,
+    -77777.0,
+    -8888.0,
+    -7777.0,
+    -5555.0,
     32767.0,
+    32766.0,
     32768.0,
     65535.0,
+    65534.0,
+    55537.0,
     9999.0,
     99999.0,
     999_999.0,
-    -8888.0,
+    100_000.0,
+    1_000_000.0,
+    16_777_216.0,
 ];
+
+/// The marks that are met after a conversion of units, and the conversions: kilometres, feet, US survey feet to metres.
+const CONVERTED_MARKS: [f64; 5] = [-9999.0, -32768.0, -32767.0, -99999.0, -10000.0];
+const CONVERSIONS: [f64; 3] = [1000.0, 0.3048, 1200.0 / 3937.0];
+
+/// Zero is what programs fill with that know no mark. It is a height of its own right, so it is a mark only this far off, m.
+const ZERO_OFF_M: f64 = 1000.0;
 
 /// A value within this fraction of a mark equals it: what casts to 32 bits and scalings leave of it.
 const ROUNDING: f64 = 1.0e-6;
@@ -129,9 +157,16 @@ const ROUNDING: f64 = 1.0e-6;
 /// A block is ground if it is within this of its border, m: the step of elevations in whole metres.
 const WHOLE_METRE_M: f64 = 1.0;
 
-/// Ground within this fraction of a mark's own size can reach the mark by its slopes: there a block is compared with the values
-/// behind its border too, which matters on the edge of a raster and at the end of a chain.
+/// Ground within this fraction of a mark's own size reaches the mark by its slopes: a trench at -9999 m in ground at -9950 m.
 const NEAR_THE_MARK: f64 = 0.01;
+
+/// A border that is reached by this slope or less, as a ratio, can be natural relief: there the values behind it count as well.
+const GENTLE: f64 = 1.0;
+
+/// Resampling smears a void over the posts around it, so that its border is no ground. At this many posts from the block the ground is
+/// itself again; if all of it is off the block by more than its range and by a slope of over [`WALLED`], the block is a void.
+const RIM_POSTS: usize = 4;
+const WALLED: f64 = 2.0;
 
 /// A block of values that are a usual mark and are not ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -157,7 +192,9 @@ pub(super) struct Marks {
 impl Marks {
     /// The usual marks within a range of elevations: as elevations, and as numbers that were stored before scaling.
     pub(super) fn within((low_m, high_m): (f64, f64), scaling: Scaling) -> Self {
-        let both = USUAL_MARKS.into_iter().flat_map(|mark| [(mark, scaling.stored(mark)), (scaling.apply(mark), mark)]);
+        let converted = CONVERTED_MARKS.into_iter().flat_map(|mark| CONVERSIONS.map(|factor| mark * factor));
+        let all = USUAL_MARKS.into_iter().chain(converted).chain([0.0]);
+        let both = all.flat_map(|mark| [(mark, scaling.stored(mark)), (scaling.apply(mark), mark)]);
         let room = |z_m: f64| z_m.abs() * ROUNDING;
         let mut marks: Vec<(f64, f64)> =
             both.filter(|(z_m, _)| *z_m >= low_m - room(*z_m) && *z_m <= high_m + room(*z_m)).collect();
@@ -182,9 +219,11 @@ impl Marks {
 pub(super) fn find_void(
     count: usize,
     marks: &Marks,
+    spacing_m: f64,
     value: impl Fn(usize) -> f64,
     neighbours: impl Fn(usize, &mut dyn FnMut(usize)),
 ) -> Option<Void> {
+    let around = Around { count, marks, spacing_m, value: &value, neighbours: &neighbours };
     if marks.is_empty() || !(0..count).any(|index| marks.find(value(index)).is_some()) {
         return None;
     }
@@ -193,7 +232,7 @@ pub(super) fn find_void(
         let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
         let same = |z_m: f64| marks.find(z_m) == Some(mark);
         let block = Block::from(first, &mut seen, &value, &neighbours, same);
-        if let Some(border_m) = block.refused((count, &value, marks), &neighbours) {
+        if let Err(OffBorder(border_m)) = block.check(&around) {
             return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
         }
     }
@@ -202,13 +241,16 @@ pub(super) fn find_void(
         let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
         let block = Block::from(first, &mut seen, &value, &neighbours, |z_m| marks.find(z_m).is_some());
         if block.extent_m.0 != block.extent_m.1
-            && let Some(border_m) = block.refused((count, &value, marks), &neighbours)
+            && let Err(OffBorder(border_m)) = block.check(&around)
         {
             return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
         }
     }
     None
 }
+
+/// The border, lowest and highest, m, that a block lies off; `None` if there is no valid value at all.
+struct OffBorder(Option<(f64, f64)>);
 
 /// Connected values, and the valid ones around them.
 struct Block {
@@ -217,8 +259,8 @@ struct Block {
     extent_m: (f64, f64),
     /// Lowest and highest value around it, m; `None` if all around are gaps.
     border_m: Option<(f64, f64)>,
-    /// The indices of these values.
-    border: Vec<usize>,
+    /// The indices of the block's values.
+    values: Vec<usize>,
 }
 
 impl Block {
@@ -229,18 +271,18 @@ impl Block {
         neighbours: &impl Fn(usize, &mut dyn FnMut(usize)),
         belongs: impl Fn(f64) -> bool,
     ) -> Self {
-        let mut block = Self { count: 0, extent_m: (value(first), value(first)), border_m: None, border: Vec::new() };
+        let mut block = Self { count: 0, extent_m: (value(first), value(first)), border_m: None, values: Vec::new() };
         let mut waiting = vec![first];
         seen[first] = true;
         while let Some(index) = waiting.pop() {
             block.count += 1;
+            block.values.push(index);
             block.extent_m = wider(Some(block.extent_m), value(index));
             neighbours(index, &mut |near| {
                 let z_m = value(near);
                 if z_m.is_nan() {
                 } else if !belongs(z_m) {
                     block.border_m = Some(wider(block.border_m, z_m));
-                    block.border.push(near);
                 } else if !seen[near] {
                     seen[near] = true;
                     waiting.push(near);
@@ -250,36 +292,70 @@ impl Block {
         block
     }
 
-    /// The border, if the block lies off it by more than its range. Without a border, all values that are no marks are the border.
-    fn refused(
-        &self,
-        (count, value, marks): (usize, &impl Fn(usize) -> f64, &Marks),
-        neighbours: &impl Fn(usize, &mut dyn FnMut(usize)),
-    ) -> Option<Option<(f64, f64)>> {
+    /// Checks that the block is ground. Without a border, all values that are no marks are the border.
+    fn check<V: Fn(usize) -> f64, N: Fn(usize, &mut dyn FnMut(usize))>(&self, around: &Around<'_, V, N>) -> Result<(), OffBorder> {
+        let Around { count, marks, spacing_m, value, .. } = *around;
         let elsewhere = || {
             let valid = (0..count).map(value).filter(|z_m| !z_m.is_nan() && marks.find(*z_m).is_none());
             valid.fold(None, |range, z_m| Some(wider(range, z_m)))
         };
-        let Some((low_m, high_m)) = self.border_m.or_else(elsewhere) else { return Some(None) };
+        let Some(border_m) = self.border_m.or_else(elsewhere) else { return Err(OffBorder(None)) };
         let off_m = |(low_m, high_m): (f64, f64)| (low_m - self.extent_m.1).max(self.extent_m.0 - high_m);
-        let off = off_m((low_m, high_m));
-        if off <= (high_m - low_m).max(WHOLE_METRE_M) {
-            return None;
+        let range = |(low_m, high_m): (f64, f64)| high_m - low_m;
+        let least_m = if self.extent_m == (0.0, 0.0) { ZERO_OFF_M } else { WHOLE_METRE_M };
+        let off = off_m(border_m);
+        let is_near = off <= NEAR_THE_MARK * self.extent_m.0.abs();
+        if off > range(border_m).max(least_m) && !is_near {
+            let behind = if off <= GENTLE * spacing_m { around.ring(&self.values, 2) } else { None };
+            if behind.is_none_or(|wide| off_m(wide) > 2.0 * range(wide)) {
+                return Err(OffBorder(Some(border_m)));
+            }
+        } else if !is_near && range(border_m) > WALLED * spacing_m {
+            // A border that is steep itself can be the smeared rim of a void.
+            let Some(outside) = around.ring(&self.values, RIM_POSTS) else { return Ok(()) };
+            #[expect(clippy::cast_precision_loss, reason = "a small constant")]
+            let walled_m = WALLED * spacing_m * RIM_POSTS as f64;
+            if off_m(outside) > range(outside).max(least_m).max(walled_m) {
+                return Err(OffBorder(Some(outside)));
+            }
         }
-        if off <= NEAR_THE_MARK * self.extent_m.0.abs() {
-            let mut wide = (low_m, high_m);
-            for &index in &self.border {
-                neighbours(index, &mut |near| {
-                    if !value(near).is_nan() && !(self.extent_m.0..=self.extent_m.1).contains(&value(near)) {
-                        wide = wider(Some(wide), value(near));
+        Ok(())
+    }
+}
+
+/// The values that a block is judged among.
+struct Around<'a, V, N> {
+    count: usize,
+    marks: &'a Marks,
+    spacing_m: f64,
+    value: &'a V,
+    neighbours: &'a N,
+}
+
+impl<V: Fn(usize) -> f64, N: Fn(usize, &mut dyn FnMut(usize))> Around<'_, V, N> {
+    /// Lowest and highest of the values that are so many steps from a block, and no mark; for 2 steps, of those up to there.
+    fn ring(&self, block: &[usize], steps: usize) -> Option<(f64, f64)> {
+        let mut seen: HashSet<usize> = block.iter().copied().collect();
+        let mut front = block.to_vec();
+        let mut found = None;
+        for step in 1..=steps {
+            let mut next = Vec::new();
+            for index in front {
+                (self.neighbours)(index, &mut |near| {
+                    if seen.insert(near) {
+                        next.push(near);
                     }
                 });
             }
-            if off_m(wide) <= 2.0 * (wide.1 - wide.0) {
-                return None;
+            if step == steps || steps == 2 {
+                let values = next.iter().map(|index| (self.value)(*index));
+                found = values
+                    .filter(|z_m| !z_m.is_nan() && self.marks.find(*z_m).is_none())
+                    .fold(found, |range, z_m| Some(wider(range, z_m)));
             }
+            front = next;
         }
-        Some(Some((low_m, high_m)))
+        found
     }
 }
 
@@ -300,10 +376,12 @@ pub(super) fn around((rows, cols): (usize, usize), index: usize, visit: &mut dyn
 }
 
 /// A block of vertices of a chain that are a usual mark of missing data and no ground, judged by the vertices beside it.
-pub(crate) fn find_void_of_chain(z_m: &[f64]) -> Option<Void> {
+///
+/// `spacing_m` is a typical distance of neighbours.
+pub(crate) fn find_void_of_chain(z_m: &[f64], spacing_m: f64) -> Option<Void> {
     let range = z_m.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), z_m| (low.min(*z_m), high.max(*z_m)));
     let marks = Marks::within(range, Scaling::NONE);
-    find_void(z_m.len(), &marks, |index| z_m[index], |index, visit| beside(z_m.len(), index, visit))
+    find_void(z_m.len(), &marks, spacing_m, |index| z_m[index], |index, visit| beside(z_m.len(), index, visit))
 }
 
 /// The neighbours of a vertex of a chain.
@@ -338,7 +416,18 @@ mod tests {
             (&[-9998.0, -9998.0, -9999.0, -9998.0], None),
             (&[-9990.0, -9993.0, -9996.0, -9999.0], None),
             (&[-9000.0, -9001.0, -9999.0], Some((2, 1))),
-            (&[0.0, -9999.0, -20000.0], None),
+            // A flat floor at the mark, in a plain 9 m above it.
+            (&[-9990.0, -9990.4, -9999.0, -9999.0, -9990.2], None),
+            // A crater floor: natural relief, as steep as the relief around.
+            (&[-997.5, -998.0, -999.0, -997.9], None),
+            // A void smeared by resampling: its rim is no ground.
+            (&[100.0, 101.0, 103.0, 100.0, -55.0, -4700.0, -9999.0, -9999.0, -4800.0, -60.0, 101.0, 104.0, 100.0], Some((6, 2))),
+            // Zeros far below, and zeros that are a valley; marks in feet and kilometres, converted with their file.
+            (&[-2500.0, 0.0, 0.0, -2490.0], Some((1, 2))),
+            (&[100.0, 0.0, 0.0, 105.0], None),
+            (&[328.0, -3047.6952, 330.0], Some((1, 1))),
+            (&[2000.0, -9_999_000.0, 2100.0], Some((1, 1))),
+            (&[10.0, -9999.0, -21000.0], None),
             // Two marks side by side are judged together: neither vouches for the other.
             (&[100.0, -9999.0, -10000.0, 105.0], Some((1, 2))),
             (&[100.0, -9999.0, -32768.0, -9999.0, 105.0], Some((2, 1))),
@@ -347,7 +436,7 @@ mod tests {
             (&[-9999.0, -9999.0], Some((0, 2))),
             (&[-9998.5, -9997.0, -9999.5], None),
         ] {
-            assert_eq!(find_void_of_chain(values).map(|void| (void.first, void.count)), void, "{values:?}");
+            assert_eq!(find_void_of_chain(values, 1.0).map(|void| (void.first, void.count)), void, "{values:?}");
         }
     }
 
@@ -356,16 +445,16 @@ mod tests {
         let scaling = Scaling { scale: 0.5, offset_m: 1000.0 };
         let values = [1010.0, scaling.apply(-32768.0), 1012.0];
         let marks = Marks::within((-15384.0, 1012.0), scaling);
-        let void = find_void(3, &marks, |index| values[index], |index, visit| beside(3, index, visit)).unwrap();
+        let void = find_void(3, &marks, 1.0, |index| values[index], |index, visit| beside(3, index, visit)).unwrap();
         assert_eq!((void.first, void.stored, void.border_m), (1, -32768.0, Some((1010.0, 1012.0))));
     }
 
     #[test]
     fn blocks_of_a_raster_join_over_diagonals() {
-        let mut posts = vec![5.0; 25];
+        let mut posts = [5.0; 25];
         (posts[6], posts[12], posts[18]) = (-9999.0, -9999.0, -9999.0);
         let marks = Marks::within((-9999.0, 5.0), Scaling::NONE);
-        let void = find_void(25, &marks, |index| posts[index], |index, visit| around((5, 5), index, visit)).unwrap();
+        let void = find_void(25, &marks, 1.0, |index| posts[index], |index, visit| around((5, 5), index, visit)).unwrap();
         assert_eq!((void.first, void.count), (6, 3));
     }
 }

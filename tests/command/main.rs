@@ -2,6 +2,8 @@
 
 #[path = "../support/desk.rs"]
 mod desk;
+#[path = "../support/installed.rs"]
+mod installed;
 #[path = "../support/tower.rs"]
 mod tower;
 

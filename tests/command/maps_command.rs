@@ -2,36 +2,16 @@
 #![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::path::Path;
-use std::process::Command;
 
 use chta::quantity::MapPoint;
 use chta::terrain::{
     Definition, Dem, Ellipsoid, GeoReference, LonLat, MapProjection, Method, SyntheticTerrain, geotiff_bytes, read_dem, synthesise,
 };
 
+use crate::desk::{chta, shell};
+use crate::installed::has_gdal;
+
 const MOON: Ellipsoid = Ellipsoid::sphere(1_737_400.0);
-
-/// Whether GDAL is installed; prints a reason if it is not.
-fn has_gdal() -> bool {
-    let there = Command::new("ogrinfo").arg("--version").output().is_ok_and(|output| output.status.success());
-    if !there {
-        eprintln!("skipped: ogrinfo is not installed");
-    }
-    there
-}
-
-/// Runs the command in a folder; returns status, standard output and standard error.
-fn chta(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_chta")).current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
-}
-
-fn shell(folder: &Path, line: &str) -> String {
-    let output = Command::new("sh").current_dir(folder).args(["-c", line]).output().unwrap();
-    assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
 
 /// Gentle ground on a map of this projection, with its middle at a position.
 fn placed(folder: &Path, definition: Definition, middle: LonLat, spacing_m: f64) -> MapProjection {

@@ -13,6 +13,7 @@ use std::{
 use sha2::{Digest, Sha256};
 
 use crate::desk::{Desk, Ran};
+use crate::installed::installed;
 
 const BINARY: &str = env!("CARGO_BIN_EXE_chta");
 
@@ -180,7 +181,7 @@ fn keys_of_a_scenario_and_named_pipes_are_read_as_well() {
     let rows = |text: &str| text.lines().filter(|line| !line.starts_with('#')).map(str::to_owned).collect::<Vec<_>>();
     let of_file = rows(&desk.run(&["slice", "ground.asc", "--from", "1,1", "--to", "5,3"]).stdout);
     assert_eq!(rows(&String::from_utf8(ran.stdout).unwrap()), of_file, "{}", String::from_utf8_lossy(&ran.stderr));
-    if Command::new("bash").arg("--version").output().is_ok() {
+    if installed("bash") {
         let line = format!("{BINARY} slice <(cat ground.asc) --from 1,1 --to 5,3");
         let ran = Command::new("bash").current_dir(desk.path()).args(["-c", &line]).output().unwrap();
         assert_eq!(rows(&String::from_utf8(ran.stdout).unwrap()), of_file, "{}", String::from_utf8_lossy(&ran.stderr));

@@ -8,12 +8,13 @@
 
 use std::process::Command;
 
+use crate::installed::installed;
+
 const BINARY: &str = env!("CARGO_BIN_EXE_chta");
 
 /// The output of the script; `None` without python3.
 fn same_answers(arguments: &[&str]) -> Option<String> {
-    if Command::new("python3").arg("--version").output().is_err() {
-        println!("skipped: no python3 to run .ci/same_answers with");
+    if !installed("python3") {
         return None;
     }
     let output = Command::new("python3").arg(".ci/same_answers").args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output();

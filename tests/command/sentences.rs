@@ -185,8 +185,7 @@ fn commands() -> Vec<String> {
 }
 
 /// Options of other programs, which a message may recommend.
-const FOREIGN: [(&str, &str); 4] =
-    [("gdal_calc.py", "--outfile"), ("gdal_calc.py", "--calc"), ("gdal_calc.py", "--type"), ("cargo install", "--features")];
+const FOREIGN: [(&str, &str); 2] = [("gdal_translate", "--config"), ("cargo install", "--features")];
 
 /// The options in a text, except those of other programs named before them.
 fn options(text: &str) -> Vec<String> {
@@ -317,7 +316,7 @@ fn a_planted_option_in_a_sentence_of_the_library_is_found() {
     let commands = commands();
     let planted = "//! Drawn --o--a--/ here.\n/// As `chta map --stride` does.\n/// Give --stride.\n// not --looked at\n#[error(\"too far: give \\\n        \
                    --stride {stride}\")]\nfn a() -> char {\n    let b = r#\"or \"ask\" `chta check`\"#;\n    let c = '\"';\n    \
-                   let d = format!(\"--{d}\");\n    let e = \"gdal_calc.py --calc='A', a -- b\";\n}\n\n#[cfg(test)]\nmod tests {\n    \
+                   let d = format!(\"--{d}\");\n    let e = \"gdal_translate --config A, a -- b\";\n}\n\n#[cfg(test)]\nmod tests {\n    \
                    const A: &str = \"{--threads\";\n}\n\nconst Z: &str = \"--last\";\n";
     let found = of_the_command_line(&Source::parse(planted).without_tests(), &commands);
     let found: Vec<(usize, &str)> = found.iter().map(|(line, what)| (*line, what.as_str())).collect();

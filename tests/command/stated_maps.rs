@@ -8,29 +8,10 @@ use std::process::Command;
 use chta::quantity::MapPoint;
 use chta::terrain::{CoordinateSystem, Dem, GeoReference, MapProjection, geotiff_bytes, read_dem};
 
+use crate::desk::{chta, shell};
+use crate::installed::has_gdal;
+
 const MOON_M: f64 = 1_737_400.0;
-
-fn has_gdal() -> bool {
-    let there = |program: &str| Command::new(program).arg("--help").output().is_ok();
-    let all = ["gdalwarp", "gdal_translate", "ogr2ogr"].into_iter().all(there);
-    if !all {
-        eprintln!("skipped: gdalwarp, gdal_translate or ogr2ogr is not installed");
-    }
-    all
-}
-
-/// Runs the command in a folder; returns status, standard output and standard error.
-fn chta(folder: &Path, arguments: &[&str]) -> (i32, String, String) {
-    let output = Command::new(env!("CARGO_BIN_EXE_chta")).current_dir(folder).args(arguments).output().unwrap();
-    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-    (output.status.code().unwrap(), text(output.stdout), text(output.stderr))
-}
-
-fn shell(folder: &Path, line: &str) -> String {
-    let output = Command::new("sh").current_dir(folder).args(["-c", line]).output().unwrap();
-    assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
-    String::from_utf8(output.stdout).unwrap()
-}
 
 /// The command of a message, up to one of the words that end it.
 fn remedy<'a>(message: &'a str, ends: &[&str]) -> &'a str {
@@ -82,10 +63,7 @@ fn scenario(folder: &Path, body: &str, more: &str) {
 #[test]
 fn elevations_in_feet_are_refused_with_a_command_that_converts_them() {
     let us = 12.0 / 39.37;
-    let calc = Command::new("gdal_calc.py").arg("--help").output().is_ok_and(|output| output.status.success()) && has_gdal();
-    if !calc {
-        eprintln!("gdal_calc.py is not installed: its commands are not run");
-    }
+    let convert = has_gdal();
     for (numbers, citation, foot_m) in [
         (&[(1024, 1), (3072, 32614), (4096, 6360)][..], "", us),
         (&[(1024, 1), (3072, 32614), (4096, 8228)], "site grid", 0.3048),
@@ -99,7 +77,7 @@ fn elevations_in_feet_are_refused_with_a_command_that_converts_them() {
         let slice = |file: &str| chta(folder.path(), &["slice", file, "--from", "500010,3499800", "--to", "500390,3499800"]);
         let (status, _, message) = slice("in.tif");
         assert!(status == 2 && message.contains("elevations in ") && message.contains("feet"), "{numbers:?} {citation}: {message}");
-        if !calc {
+        if !convert {
             continue;
         }
         shell(folder.path(), remedy(&message, &["\n"]));

@@ -7,6 +7,7 @@
 use std::{fs, io::Write, process::Command};
 
 use crate::desk::Desk;
+use crate::installed::installed;
 
 const GEOJSON: &str = r#"{"type": "Polygon", "coordinates": [[[3, 0], [4, 0], [4, 9], [3, 9], [3, 0]]]}"#;
 
@@ -398,15 +399,6 @@ fn a_windows_path_written_as_the_message_says_is_read() {
             desk.refused(&["check", "windows.toml"], &["which cannot be read (No such file", &said]);
         }
     }
-}
-
-/// Whether a program is installed; says so if not.
-fn installed(program: &str) -> bool {
-    let found = Command::new(program).arg("--version").output().is_ok();
-    if !found {
-        eprintln!("skipped: no {program}");
-    }
-    found
 }
 
 /// Zones in other formats: the command of the message is run, and its result keeps the robot out where the zone was drawn.

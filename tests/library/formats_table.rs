@@ -11,6 +11,8 @@ use std::process::Command;
 
 use chta::terrain::{Dem, FORMATS, TerrainError, looks_like_mesh, read_dem, read_mesh};
 
+use crate::installed::has_gdal;
+
 const BEGIN: &str = "<!-- table: tests/library/formats_table.rs writes it -->\n";
 const END: &str = "<!-- end of table -->\n";
 
@@ -105,14 +107,6 @@ fn the_documentation_names_every_format() {
     for (name, _) in FORMATS {
         assert!(text.contains(name), "docs/formats.md does not mention {name}");
     }
-}
-
-fn has_gdal() -> bool {
-    let there = Command::new("gdalinfo").arg("--version").output().is_ok_and(|output| output.status.success());
-    if !there {
-        eprintln!("skipped: gdal-bin is not installed");
-    }
-    there
 }
 
 fn run(program: &str, arguments: &[&str]) -> Vec<u8> {

@@ -1,5 +1,7 @@
 //! Tests of the library that need neither the command nor a process of their own.
 
+#[path = "../support/installed.rs"]
+mod installed;
 #[path = "../support/mod.rs"]
 mod support;
 #[path = "../support/tiff.rs"]

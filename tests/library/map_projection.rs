@@ -8,13 +8,7 @@ use std::process::{Command, Stdio};
 use chta::quantity::MapPoint;
 use chta::terrain::{LonLat, MapProjection, read_dem};
 
-fn has_gdal() -> bool {
-    let there = Command::new("gdaltransform").arg("--version").output().is_ok_and(|output| output.status.success());
-    if !there {
-        eprintln!("skipped: gdaltransform is not installed");
-    }
-    there
-}
+use crate::installed::has_gdal;
 
 fn run(program: &str, arguments: &[&str], input: &str) -> String {
     let mut child =

@@ -1,4 +1,5 @@
 //! Commands of messages about rasters, run, with the mended file compared with the truth.
+#![allow(clippy::unwrap_used, reason = "test helpers: a file that cannot be made fails its test")]
 
 use std::path::Path;
 use std::process::Command;
@@ -6,15 +7,8 @@ use std::process::Command;
 use chta::quantity::MapPoint;
 use chta::terrain::{Dem, read_dem};
 
+use crate::installed::has_gdal;
 use crate::tiff::{Samples, Tag, placed, plain_tiff};
-
-fn has_gdal() -> bool {
-    let found = Command::new("gdal_translate").arg("--version").output().is_ok();
-    if !found {
-        eprintln!("skipped: no gdal_translate on this machine");
-    }
-    found
-}
 
 /// Reads a file that is refused, runs the command of the message (its part before a bracket), and reads the result.
 fn mended(folder: &Path, found: &str) -> Dem {
@@ -107,4 +101,64 @@ fn sidecar_files_of_gdal_are_read_as_gdal_reads_them() {
         let on_meridian = dem.georeference().projection().unwrap().lon_lat(MapPoint::new(500_000.0, 7000.0)).unwrap();
         assert!((on_meridian.lon_deg - 15.0).abs() < 1e-9, "{name}");
     }
+}
+
+/// Heights in feet or counted downwards, as GDAL writes them, with a scale, a no-data value and a mask: the command converts all of it.
+#[test]
+fn heights_in_other_units_are_converted_with_their_scale_and_their_gaps() {
+    if !has_gdal() {
+        return;
+    }
+    let (us, foot) = (1200.0 / 3937.0, 0.3048);
+    for (heights, size_m) in [("6360", us), ("8228", foot), ("5702", us), ("5715", -1.0), ("5614", -foot), ("6358", -us)] {
+        for scaled in [false, true] {
+            let folder = tempfile::tempdir().unwrap();
+            let run = |args: &[&str]| {
+                let ran = Command::new("gdal_translate").current_dir(folder.path()).arg("-q").args(args).output().unwrap();
+                assert!(ran.status.success(), "{args:?}: {}", String::from_utf8_lossy(&ran.stderr));
+            };
+            let stored: Vec<f64> = (1..=12).map(|z| 100.0 + f64::from(z)).collect();
+            let file = plain_tiff((3, 4), &Samples::of("float32", &stored), placed(499_980.0, 4_000_030.0, 10.0));
+            std::fs::write(folder.path().join("plain.tif"), file).unwrap();
+            let srs = format!("EPSG:32614+{heights}");
+            let scaling: &[&str] = if scaled { &["-a_scale", "0.5", "-a_offset", "10"] } else { &[] };
+            run(&[&["-a_srs", &srs, "-a_nodata", "103"], scaling, &["plain.tif", "in.tif"]].concat());
+            let dem = mended(folder.path(), if size_m < 0.0 { "downwards" } else { "feet" });
+            for (index, found) in dem.elevations().enumerate() {
+                let height = if scaled { stored[index] * 0.5 + 10.0 } else { stored[index] };
+                match found {
+                    Some(found) => {
+                        assert!((found - height * size_m).abs() < 1e-9 * height, "{heights} {scaled}: {found} for {height}")
+                    }
+                    None => assert_eq!(index, 2, "{heights} {scaled}"),
+                }
+            }
+        }
+    }
+}
+
+/// A scale that GDAL keeps in the transform, as it does where the map has heights: two copies of one DEM must read the same.
+#[test]
+fn a_scale_in_the_transform_is_read_as_gdal_reads_it() {
+    if !has_gdal() {
+        return;
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let stored: Vec<f64> = (1..=12).map(f64::from).collect();
+    let file = plain_tiff((3, 4), &Samples::of("int16", &stored), placed(499_980.0, 4_000_030.0, 10.0));
+    std::fs::write(folder.path().join("plain.tif"), file).unwrap();
+    for srs in ["EPSG:32614+5703", "EPSG:32614+3855", "EPSG:25832+7837"] {
+        let args = ["-q", "-a_srs", srs, "-a_scale", "0.005", "-a_offset", "700", "plain.tif", "in.tif"];
+        assert!(Command::new("gdal_translate").current_dir(folder.path()).args(args).status().unwrap().success());
+        let dem = read_dem(&folder.path().join("in.tif")).unwrap();
+        let found: Vec<f64> = dem.elevations().flatten().collect();
+        assert_eq!(found, stored.iter().map(|z| z * 0.005 + 700.0).collect::<Vec<f64>>(), "{srs}");
+    }
+    let without_heights =
+        [Tag::Doubles(33550, vec![10.0, 10.0, 0.5]), Tag::Doubles(33922, vec![0.0, 0.0, 0.0, 5000.0, 7030.0, 7.0])];
+    let file = plain_tiff((3, 4), &Samples::of("int16", &stored), without_heights);
+    std::fs::write(folder.path().join("in.tif"), file).unwrap();
+    assert!(
+        read_dem(&folder.path().join("in.tif")).unwrap_err().to_string().contains("a scale of 0.5 for heights in its transform")
+    );
 }

@@ -450,7 +450,7 @@ fn a_projection_that_is_not_known_is_stated_as_such() {
     let of = |projection: &str| Fixture { projection, ..Fixture::default() }.read().georeference().projection();
     assert!(of(POLAR).is_ok());
     let named = |name: &str| POLAR.replace("POLAR STEREOGRAPHIC", name);
-    let radii = POLAR.lines().filter(|line| !line.contains("AXIS_RADIUS")).map(|line| format!("{line}\n")).collect::<String>();
+    let radii = POLAR.lines().filter(|line| !line.contains("AXIS_RADIUS")).flat_map(|line| [line, "\n"]).collect::<String>();
     for (projection, word) in [
         (named("ROBINSON"), "ROBINSON"),
         (named("OBLIQUE CYLINDRICAL"), "OBLIQUE CYLINDRICAL"),
@@ -460,6 +460,6 @@ fn a_projection_that_is_not_known_is_stated_as_such() {
         let reason = of(&projection).unwrap_err();
         assert!(matches!(reason, NoProjection::Unknown(_)) && reason.to_string().contains(word), "{reason}");
     }
-    let none = POLAR.lines().filter(|line| !line.contains("PROJECTION_TYPE")).map(|line| format!("{line}\n")).collect::<String>();
+    let none = POLAR.lines().filter(|line| !line.contains("PROJECTION_TYPE")).flat_map(|line| [line, "\n"]).collect::<String>();
     assert_eq!(of(&none), Err(NoProjection::Local));
 }

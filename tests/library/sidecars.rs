@@ -1,4 +1,5 @@
 //! Files beside a raster: what they state is read, and what contradicts the raster or is not understood is refused by name.
+#![allow(clippy::unwrap_used, clippy::format_collect, reason = "test helpers: a file that cannot be made fails its test")]
 
 use std::path::{Path, PathBuf};
 
@@ -69,7 +70,7 @@ fn no_data_scale_and_offset_of_aux_xml_are_read_for_every_format() {
         let dem =
             read(extension, vec![], &[(".aux.xml", band("<NoDataValue>7</NoDataValue><Scale>0.1</Scale><Offset>100</Offset>"))]);
         let found: Vec<Option<f64>> = dem.unwrap_or_else(|error| panic!("{extension}: {error}")).elevations().collect();
-        let expected = HEIGHTS.map(|z| (z != 7.0).then(|| z * 0.1 + 100.0));
+        let expected = HEIGHTS.map(|z| (z != 7.0).then_some(z * 0.1 + 100.0));
         assert_eq!(found, expected, "{extension}");
     }
 }
@@ -216,5 +217,77 @@ fn other_sidecar_files_are_refused_by_name() {
         for extension in FORMATS {
             assert!(read(extension, vec![], &harmless).is_ok(), "{extension} {harmless:?}");
         }
+    }
+}
+
+/// A sidecar file that is wrong is wrong beside a raster with a map of its own as well, and one that cannot be compared is not believed.
+#[test]
+fn wrong_sidecar_files_are_refused_beside_a_raster_with_its_own_map() {
+    let keys = |entries: &[u16]| {
+        let count = u16::try_from(entries.len() / 4).unwrap();
+        vec![Tag::Shorts(34735, [&[1, 1, 0, count], entries].concat())]
+    };
+    let utm = || keys(&[1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32633]);
+    let unsupported = || keys(&[1024, 0, 1, 1, 1025, 0, 1, 1, 3072, 0, 1, 32767, 3075, 0, 1, 25, 3076, 0, 1, 9001]);
+    let raster_type_alone = || keys(&[1025, 0, 1, 2]);
+    let feet = UTM_33.replace("UNIT[\"Meter\",1.0]", "UNIT[\"Foot_US\",0.3048006096012192]");
+    let depths = format!(
+        "{UTM_33},VERTCS[\"MSL\",VDATUM[\"MSL\"],PARAMETER[\"Vertical_Shift\",0.0],PARAMETER[\"Direction\",-1.0],UNIT[\"Meter\",1.0]]"
+    );
+    let shifted = depths.replace("Shift\",0.0", "Shift\",100.0").replace("-1.0", "1.0");
+    let mollweide = UTM_33.replace("Transverse_Mercator", "Mollweide");
+    for (tags, text, word) in [
+        (utm(), &*feet, "Foot_US"),
+        (utm(), "rubbish", "dem.prj"),
+        (utm(), &depths, "DIRECTION -1"),
+        (utm(), &shifted, "VERTICAL_SHIFT 100"),
+        (utm(), &mollweide, "of a projection that is not supported"),
+        (unsupported(), UTM_33, "another one ("),
+        (raster_type_alone(), &feet, "Foot_US"),
+        (vec![], &depths, "DIRECTION -1"),
+    ] {
+        let refused = read("tif", tags, &[("prj", text.as_bytes().to_vec())]).unwrap_err();
+        assert!(refused.contains(word) && refused.contains("expected"), "{word}: {refused}");
+    }
+    // Neither is understood: the scale is refused where it counts, as it is without the sidecar file.
+    let both = read("tif", unsupported(), &[("prj", mollweide.as_bytes().to_vec())]).unwrap();
+    assert!(both.georeference().projection().is_err());
+    let alone = read("asc", vec![], &[("prj", mollweide.as_bytes().to_vec())]).unwrap();
+    assert!(alone.georeference().projection().unwrap_err().to_string().contains("not supported"));
+    // Two sidecar files that differ.
+    let other = UTM_33.replace("15.0", "21.0");
+    let srs = aux(&format!("<SRS>{}</SRS>", UTM_33.replace('"', "&quot;")));
+    assert!(
+        read("asc", vec![], &[(".aux.xml", srs), ("prj", other.into_bytes())]).unwrap_err().contains("another reference system")
+    );
+}
+
+/// The same statement in other digits, numbers of bands and letters of names.
+#[test]
+fn statements_are_the_same_whatever_their_digits_and_letters() {
+    let tag = |text: &str| vec![Tag::Text(42113, text.to_owned())];
+    for (own, beside) in [
+        ("-3.4028234663852886e+38", "-3.40282346638529E+38"),
+        ("-9999.9", "-9999.900390625"),
+        ("-3.4028235e+38", "-3.40282e+38"),
+        ("nan", "NaN"),
+    ] {
+        let read = read("tif", tag(own), &[(".aux.xml", band(&format!("<NoDataValue>{beside}</NoDataValue>")))]);
+        assert!(read.is_ok(), "{own} {beside}: {read:?}");
+    }
+    for element in ["NoDataValueAsInt64", "NoDataValueAsUInt64"] {
+        let dem = read("tif", vec![], &[(".aux.xml", band(&format!("<{element}>7</{element}>")))]).unwrap();
+        assert_eq!(dem.elevations().position(|z| z.is_none()), Some(6), "{element}");
+    }
+    for number in ["01", " 1", "1"] {
+        let text = aux(&format!("<PAMRasterBand band=\"{number}\"><Scale>2</Scale></PAMRasterBand>"));
+        assert_eq!(read("tif", vec![], &[(".aux.xml", text)]).unwrap().elevation(0, 0), Some(2.0), "{number}");
+    }
+    for name in ["dem.TFW", "DEM.tfw", "Dem.Wld"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("dem.tif");
+        std::fs::write(&path, plain_tiff((3, 4), &Samples::of("float32", &HEIGHTS), [])).unwrap();
+        std::fs::write(folder.path().join(name), "10\n0\n0\n-10\n500005\n4500025\n").unwrap();
+        assert!(read_dem(&path).is_ok(), "{name}");
     }
 }

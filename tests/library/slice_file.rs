@@ -1,5 +1,5 @@
 //! Slices that read only windows of a file against slices of the whole file, for every layout that GDAL writes.
-#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
+#![expect(clippy::unwrap_used, reason = "a test may panic")]
 
 use std::path::Path;
 use std::process::Command;
@@ -7,13 +7,7 @@ use std::process::Command;
 use chta::quantity::MapPoint;
 use chta::terrain::{SyntheticTerrain, Window, geotiff_bytes, open_dem, read_dem, slice, slice_file, synthesise, write_ascii_grid};
 
-fn has_gdal() -> bool {
-    let there = Command::new("gdal_translate").arg("--version").output().is_ok_and(|output| output.status.success());
-    if !there {
-        eprintln!("skipped: gdal_translate is not installed");
-    }
-    there
-}
+use crate::installed::has_gdal;
 
 /// Lines along rows, columns, diagonals, borders and others give the same profile to the bit, or the same refusal.
 fn check(path: &Path) {

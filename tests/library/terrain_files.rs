@@ -10,6 +10,8 @@ use chta::terrain::{
     write_ascii_grid,
 };
 
+use crate::installed::has_gdal;
+
 /// A file of the shared folder; `None` with a printed reason if it is absent.
 fn shared(name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(name);
@@ -18,14 +20,6 @@ fn shared(name: &str) -> Option<PathBuf> {
     }
     eprintln!("skipped: {} is absent", path.display());
     None
-}
-
-fn has_gdal() -> bool {
-    let there = Command::new("gdal_translate").arg("--version").output().is_ok_and(|output| output.status.success());
-    if !there {
-        eprintln!("skipped: gdal_translate is not installed");
-    }
-    there
 }
 
 fn run(program: &str, arguments: &[&str]) -> String {

@@ -1,10 +1,18 @@
 //! Numbers that mark missing data without a statement, in every format: refused as ground unless the user says what they are.
+#![allow(
+    clippy::unwrap_used,
+    clippy::format_collect,
+    clippy::cast_precision_loss,
+    reason = "test helpers: a file that cannot be made fails its test"
+)]
 
 use std::path::Path;
 
 use chta::chain::csv::read_chain_csv_with;
 use chta::quantity::MapPoint;
-use chta::terrain::{DemOptions, NoDataRule, TerrainError, read_mesh_with, slice_file};
+use chta::terrain::{
+    DemOptions, MapBounds, NoDataRule, TerrainError, read_friction_raster, read_keep_out, read_mesh_with, slice_file,
+};
 use proptest::prelude::*;
 
 use crate::tiff::{Samples, Tag, placed, plain_tiff};
@@ -103,7 +111,7 @@ fn usual_marks_are_refused_in_every_format_until_the_user_states_them() {
     ];
     for name in FORMATS {
         for mark in marks {
-            if name == "int32.tif" && (mark.fract() != 0.0 || mark > 1e9 || mark < -3e9) {
+            if name == "int32.tif" && (mark.fract() != 0.0 || !(-3e9..=1e9).contains(&mark)) {
                 continue;
             }
             let path = write(name, folder.path(), &heights(mark));
@@ -196,4 +204,54 @@ proptest! {
         // Within a hundredth of the mark, more than the border counts.
         prop_assert!(verdict.is_err() == off || (off && off_border < 100.0), "{:?} {} {}", verdict, low, high);
     }
+}
+
+/// Overlays are rasters as well: a mark in a friction raster is no friction, and the way out is the file's, not the terrain's key.
+#[test]
+fn marks_in_overlays_are_refused_with_the_command_that_states_them() {
+    let folder = tempfile::tempdir().unwrap();
+    for mark in [-9999.0, 9999.0, 32767.0] {
+        let friction: Vec<f64> = heights(1.0).iter().map(|z| if *z == 1.0 { mark } else { 0.5 + z / 1000.0 }).collect();
+        let path = write("float32.tif", folder.path(), &friction);
+        for refused in [read_friction_raster(&path, None).unwrap_err(), read_keep_out(&path, None, everywhere()).unwrap_err()] {
+            let sentence = refused.to_string();
+            let command = format!("gdal_translate -a_nodata {mark} in.tif out.tif");
+            assert!(sentence.contains(&command) && !sentence.contains("terrain.no_data"), "{sentence}");
+        }
+    }
+}
+
+fn everywhere() -> MapBounds {
+    MapBounds { min: MapPoint::new(0.0, 0.0), max: MapPoint::new(9999.0, 9999.0) }
+}
+
+/// A void that a program resampled has a rim of blends, which is no ground; zeros far below all ground are what warping fills with.
+#[test]
+fn voids_that_were_resampled_and_zeros_far_away_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dem.tif");
+    let write = |ground_m: f64, hole: &dyn Fn(usize, usize) -> Option<f64>| {
+        let post = |index: usize| (index / 30, index % 30);
+        let heights = (0..900).map(post).map(|(row, col)| hole(row, col).unwrap_or(ground_m + ((row * 7 + col * 13) % 11) as f64));
+        let samples = Samples::of("float32", &heights.collect::<Vec<f64>>());
+        std::fs::write(&path, plain_tiff((30, 30), &samples, placed(1000.0, 2030.0, 1.0))).unwrap();
+        read(&path, NoDataRule::AsStated)
+    };
+    for mark in [-9999.0, -32768.0, -32767.0, -99999.0, 32767.0] {
+        for reach in [1.0, 2.0, 3.0] {
+            // A disc of the mark, and blends around it.
+            let smeared = |row: usize, col: usize| {
+                let far = (row as f64 - 15.0).hypot(col as f64 - 14.0) - 4.0;
+                let share = (1.0 - far / reach).clamp(0.0, 1.0);
+                (share > 0.0).then_some(if share == 1.0 { mark } else { share * mark + (1.0 - share) * 105.0 })
+            };
+            let verdict = write(100.0, &smeared);
+            assert!(verdict.as_ref().is_err_and(|text| text.contains("usual mark")), "{mark} {reach}: {verdict:?}");
+        }
+    }
+    for ground_m in [-2500.0, 1_737_400.0] {
+        let verdict = write(ground_m, &|row, col| (row < 9 || col < 5).then_some(0.0));
+        assert!(verdict.as_ref().is_err_and(|text| text.contains("usual mark")), "{ground_m}: {verdict:?}");
+    }
+    assert_eq!(write(100.0, &|row, _| (row < 9).then_some(0.0)), Ok(false), "a lake at 0 m");
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 
-use std::{collections::BTreeMap, fs, path::Path};
+use std::{collections::BTreeMap, fs, path::Path, process::Command};
 
 use tempfile::TempDir;
 
@@ -38,6 +38,23 @@ pub(crate) struct Ran {
     pub(crate) stderr: String,
 }
 
+/// Runs the command in a folder; returns status, standard output and standard error.
+pub(crate) fn chta(folder: &Path, args: &[&str]) -> (i32, String, String) {
+    let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_chta"));
+    let output = command.current_dir(folder).args(args).output().unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    let (stdout, stderr) = (text(output.stdout), text(output.stderr));
+    assert!(!stderr.contains("panicked"), "{args:?} panicked: {stderr}");
+    (output.status.code().unwrap_or(-1), stdout, stderr)
+}
+
+/// Runs a line of the shell in a folder, which must succeed; returns its standard output.
+pub(crate) fn shell(folder: &Path, line: &str) -> String {
+    let output = Command::new("sh").current_dir(folder).args(["-c", line]).output().unwrap();
+    assert!(output.status.success(), "{line}: {}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
 impl Desk {
     pub(crate) fn new() -> Self {
         let desk = Self { folder: tempfile::tempdir().unwrap() };
@@ -70,15 +87,8 @@ impl Desk {
 
     /// Runs the command in this folder.
     pub(crate) fn run(&self, args: &[&str]) -> Ran {
-        let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_chta"));
-        let output = command.current_dir(self.path()).args(args).output().unwrap();
-        let ran = Ran {
-            status: output.status.code().unwrap_or(-1),
-            stdout: String::from_utf8(output.stdout).unwrap(),
-            stderr: String::from_utf8(output.stderr).unwrap(),
-        };
-        assert!(!ran.stderr.contains("panicked"), "{args:?} panicked: {}", ran.stderr);
-        ran
+        let (status, stdout, stderr) = chta(self.path(), args);
+        Ran { status, stdout, stderr }
     }
 
     /// Runs the command, which must succeed (status 0 or 1), and returns its document.

@@ -1,6 +1,10 @@
 //! Heights of a chain that are no ground: stated marks of missing data, usual marks, and numbers that no body has.
 
-use super::{CsvProblems, columns::Z, table::Table};
+use super::{
+    CsvProblems,
+    columns::{X, Z},
+    table::Table,
+};
 use crate::{
     quantity::format_number,
     terrain::{ELEVATION_LIMIT_M, NoDataRule, find_void_of_chain},
@@ -32,7 +36,7 @@ pub(super) fn check(table: &Table<'_>, no_data: NoDataRule, problems: &mut CsvPr
     }
     let z_m: Vec<f64> = heights.iter().map(|(_, z_m)| *z_m).collect();
     if no_data == NoDataRule::AsStated
-        && let Some(void) = find_void_of_chain(&z_m)
+        && let Some(void) = find_void_of_chain(&z_m, typical_spacing_m(table))
     {
         problems.push(|| {
             let row = heights[void.first].0;
@@ -44,4 +48,12 @@ pub(super) fn check(table: &Table<'_>, no_data: NoDataRule, problems: &mut CsvPr
             table.place(row, Z).problem(what, "an elevation", help)
         });
     }
+}
+
+/// The median distance of neighbouring vertices, m.
+fn typical_spacing_m(table: &Table<'_>) -> f64 {
+    let x_m: Vec<f64> = (0..table.row_count()).filter_map(|row| table.value(row, X)).collect();
+    let mut distances: Vec<f64> = x_m.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect();
+    distances.sort_by(f64::total_cmp);
+    distances.get(distances.len() / 2).copied().unwrap_or(0.0)
 }

@@ -5,7 +5,7 @@ use chta::{
     quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer, figure::draw_rose},
-    scenario::{DemReading, Extent, Overlays, body_warnings, check_body, check_extent, escape_warnings, for_body},
+    scenario::{Overlays, dem_on_body},
     terrain::check_scale,
 };
 use nalgebra::Vector2;
@@ -44,20 +44,14 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let Bare { dem: dem_file, scenario, base, document, mut warnings } = load_bare(dem_file, common, search, Purpose::Fan)?;
     let dem_file = dem_file.as_path();
-    let dem = DemReading::of(&scenario).options.read(dem_file).map_err(|e| failed(&for_body(&scenario.body, e)))?;
-    check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| Failure::about(dem_file, &e))?;
-    warnings.extend(dem.warnings());
-    warnings.extend(dem.georeference().doubts());
+    let (dem, of_dem) = dem_on_body(&scenario, dem_file).map_err(|e| Failure::about(dem_file, &e))?;
+    warnings.extend(of_dem);
     let projection = dem.georeference().projection();
     let from = place("from", *from, *from_lonlat)?.on_map("from", projection.as_ref(), dem.bounds()).map_err(|e| failed(&e))?;
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     // Opened before the computation, which may take long.
     let picture = plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
-    warnings.extend(body_warnings(&scenario.body));
-    warnings.extend(escape_warnings(&scenario, None));
-    let extent = Extent::of_dem(dem.bounds(), projection.is_ok());
-    warnings.extend(check_extent(&scenario.body, &extent).map_err(|e| Failure::about(dem_file, &e))?);
     let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
     let ground = overlays.ground(dem, &scenario);
     let dem = ground.terrain().dem();

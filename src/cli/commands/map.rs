@@ -17,10 +17,7 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{
-        DemReading, Extent, Extremes, Overlays, Scenario, TrialGround, UncertaintyKeys, body_warnings, check_body, check_extent,
-        constant_gravity_warnings, escape_warnings, for_body,
-    },
+    scenario::{Extremes, Overlays, Scenario, TrialGround, UncertaintyKeys, constant_gravity_warnings, dem_on_body},
     terrain::{Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, result_geotiff_bytes},
     uncertainty::{Mission, Policy, Simulation, SimulationError},
     world::FrictionCone,
@@ -142,8 +139,8 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     let Bare { dem: file, scenario, base, document, mut warnings } = load_bare(file, common, &searched, purpose)?;
     let file = file.as_path();
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::about(file, error);
-    let dem = DemReading::of(&scenario).options.read(file).map_err(|e| Failure::of(&for_body(&scenario.body, e)))?;
-    check_body(&scenario.body, dem.georeference().ellipsoid()).map_err(|e| failed(&e))?;
+    let (dem, of_dem) = dem_on_body(&scenario, file).map_err(|e| failed(&e))?;
+    warnings.extend(of_dem);
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     let projection = dem.georeference().projection();
@@ -173,12 +170,6 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
     }
     check_distinct_nodes(&dem, *stride, &named(start, &goals).map(|(_, spot)| spot).collect::<Vec<_>>())
         .map_err(|message| failed(&std::io::Error::other(message)))?;
-    warnings.extend(dem.warnings());
-    warnings.extend(dem.georeference().doubts());
-    warnings.extend(body_warnings(&scenario.body));
-    warnings.extend(escape_warnings(&scenario, None));
-    let extent = Extent::of_dem(dem.bounds(), projection.is_ok());
-    warnings.extend(check_extent(&scenario.body, &extent).map_err(|e| failed(&e))?);
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;

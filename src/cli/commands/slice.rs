@@ -6,7 +6,7 @@ use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{BodyChoice, DemReading, Overlays, Scenario, Transect, check_body, check_extent, for_body, friction, sha256_of},
+    scenario::{BodyChoice, DemReading, Overlays, Scenario, Transect, friction, on_body, sha256_of},
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 
@@ -40,19 +40,11 @@ pub(crate) fn run(args: &SliceArgs) -> Result<Answer, Failure> {
         reading.options = reading.options.no_data(no_data);
     }
     let body = given.as_ref().map(|(scenario, _)| &scenario.body);
-    let transect = read_transect(args, terrain, reading, body)?;
-    if let Some(body) = body {
-        check_body(body, transect.figure).map_err(|e| failed(&e))?;
-    }
+    let (transect, of_extent) = read_transect(args, terrain, reading, body)?;
     let terrain = terrain.file.as_path();
     claims::reads(terrain);
-    for warning in &transect.warnings {
+    for warning in transect.warnings.iter().chain(&of_extent) {
         output::warn(*quiet, warning);
-    }
-    if let Some((scenario, _)) = &given
-        && let Some(warning) = check_extent(&scenario.body, &transect.extent).map_err(|e| failed(&e))?
-    {
-        output::warn(*quiet, &warning);
     }
     let name = name_of(terrain);
     let mut comments = vec![format!("chta {} slice of {name}, sha256 {}", env!("CARGO_PKG_VERSION"), sha256_of(terrain)?)];
@@ -97,20 +89,25 @@ fn name_of(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// The ground along the slice, with the warnings about it.
-fn read_transect(args: &SliceArgs, input: &Input, reading: DemReading, body: Option<&BodyChoice>) -> Result<Transect, Failure> {
+/// The ground along the slice, with the warnings about it, and one about its extent on the body.
+fn read_transect(
+    args: &SliceArgs,
+    input: &Input,
+    reading: DemReading,
+    body: Option<&BodyChoice>,
+) -> Result<(Transect, Option<String>), Failure> {
     let SliceArgs { via, via_lonlat, mesh_scale, .. } = args;
     let terrain = input.file.as_path();
     let from = place("from", args.from, args.from_lonlat)?;
     let to = place("to", args.to, args.to_lonlat)?;
-    let failed = |error: TerrainError| match body {
-        Some(body) => Failure::about(terrain, &for_body(body, error)),
-        None => Failure::about(terrain, &error),
+    let checked = |read: Result<Transect, TerrainError>| match body {
+        Some(body) => on_body(body, read).map_err(|error| Failure::about(terrain, &error)),
+        None => read.map(|transect| (transect, None)).map_err(|error| Failure::about(terrain, &error)),
     };
     let of_mesh = || match (&from, &to) {
         (MapPlace::Metres(from), MapPlace::Metres(to)) if via_lonlat.is_empty() => {
-            Transect::of_mesh(terrain, (mesh_scale.unwrap_or(1.0), reading.options.no_data_rule()), [*from, *to], via)
-                .map_err(failed)
+            let units = (mesh_scale.unwrap_or(1.0), reading.options.no_data_rule());
+            checked(Transect::of_mesh(terrain, units, [*from, *to], via))
         }
         _ => Err(Failure::message(
             "--from-lonlat, --to-lonlat, --via-lonlat: a mesh has no projection; give --from X,Y, --to X,Y and --via X,Y",
@@ -124,7 +121,7 @@ fn read_transect(args: &SliceArgs, input: &Input, reading: DemReading, body: Opt
     let transect = match Transect::of_dem(terrain, [&from, &to], &between, reading) {
         // A damaged mesh is reported by the mesh readers, which know the reason.
         Err(_) if named_as_mesh(terrain) => return of_mesh(),
-        transect => transect.map_err(failed)?,
+        transect => checked(transect)?,
     };
     if let Some(scale) = mesh_scale {
         let name = terrain.display();

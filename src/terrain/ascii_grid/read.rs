@@ -9,7 +9,7 @@ use super::tokens::{Token, Tokens};
 use crate::quantity::MapPoint;
 use crate::terrain::dem::Posts;
 use crate::terrain::format::ReadContext;
-use crate::terrain::stored::{Decimals, Scaling, StoredRaster, StoredStep};
+use crate::terrain::stored::{LastDigits, Scaling, StoredRaster, StoredStep};
 use crate::terrain::{AsciiProblem, Dem, DemReader, GeoReference, NoData, NoDataRule, TerrainError};
 
 /// At most this many problems are listed; the others are counted.
@@ -93,7 +93,7 @@ fn read_text(source: impl BufRead, length: u64, context: &ReadContext) -> Result
         states_metres: false,
         south_up: false,
         scaling,
-        step: StoredStep::of_decimals(decimals, scaling),
+        step: StoredStep::of_text(decimals, scaling),
     }
     .finish(context)
 }
@@ -123,9 +123,9 @@ struct Elevations<'a> {
 
 impl Elevations<'_> {
     /// All elevations, and the most decimals that one of them has.
-    fn read<R: BufRead>(&self, tokens: &mut Tokens<R>, problems: &mut Problems) -> std::io::Result<(Vec<f64>, Decimals)> {
+    fn read<R: BufRead>(&self, tokens: &mut Tokens<R>, problems: &mut Problems) -> std::io::Result<(Vec<f64>, LastDigits)> {
         let Self { header, posts, no_data, scaling } = *self;
-        let mut decimals = Decimals::default();
+        let mut decimals = LastDigits::default();
         let mut elevations = Vec::with_capacity(posts.min(FIRST_RESERVE));
         let mut surplus = 0_usize;
         let mut first_surplus = None;

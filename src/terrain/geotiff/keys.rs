@@ -4,6 +4,7 @@ use super::{key, tag, units};
 use crate::quantity::MapPoint;
 use crate::terrain::projection::states_a_map;
 use crate::terrain::sidecar::Transform;
+use crate::terrain::stored::Scaling;
 use crate::terrain::{CoordinateSystem, GeoReference, TerrainError, TransformTags};
 
 /// A rotation or shear below this fraction of the spacing is attributed to rounding in the file.
@@ -48,13 +49,38 @@ impl GeoTags {
         }
     }
 
+    /// The scaling of the elevations that the transform states: GDAL writes it there where the map has a reference system of heights.
+    ///
+    /// # Errors
+    /// [`TerrainError::Unsuitable`] for a scale of heights without such a system: programs differ in whether it counts.
+    pub(super) fn vertical_scaling(&self) -> Result<Option<Scaling>, TerrainError> {
+        let ([_, _, scale, ..], [_, _, k, _, _, z, ..]) = (&self.transform.pixel_scale[..], &self.transform.tie_points[..]) else {
+            return Ok(None);
+        };
+        if *scale == 0.0 {
+            return Ok(None);
+        }
+        let scaling = Scaling { scale: *scale, offset_m: z - k * scale };
+        let heights = short_key(&self.coordinate_system, key::VERTICAL_CRS).is_some_and(|code| code != 0);
+        match (heights, scaling == Scaling::NONE) {
+            (_, true) => Ok(None),
+            (true, false) => Ok(Some(scaling)),
+            (false, false) if *scale == 1.0 => Ok(None),
+            (false, false) => Err(unsuitable(
+                format!("a scale of {scale} for heights in its transform, without a reference system of heights"),
+                "one statement of how elevations are stored",
+                "gdal_translate in.tif out.tif, if the stored numbers are the elevations",
+            )),
+        }
+    }
+
     /// Checks units and transform, and computes the position of the raster's posts. A raster that states no transform has the one
     /// that stands beside it.
     ///
     /// # Errors
     /// [`TerrainError::Unsuitable`] for degrees, other units than metres, rotated or mirrored transforms, or no transform.
-    pub(super) fn place(self, rows: usize, beside: Option<Transform>) -> Result<Placement, TerrainError> {
-        units::check(&self.coordinate_system)?;
+    pub(super) fn place(self, rows: usize, beside: Option<Transform>, scaling: Scaling) -> Result<Placement, TerrainError> {
+        units::check(&self.coordinate_system, scaling)?;
         let states_metres = states_a_map(&self.coordinate_system);
         let post_at_tie = short_key(&self.coordinate_system, key::RASTER_TYPE) == Some(key::PIXEL_IS_POINT);
         let states_none = self.transform.pixel_scale.is_empty()
@@ -91,7 +117,7 @@ impl Lattice {
                 let found = format!("a pixel scale of ({scale_x}, {scale_y})");
                 let mend = if *scale_x < 0.0 && *scale_y > 0.0 {
                     // New borders would leave the columns in their order and mirror the map.
-                    "gdalwarp -r near in.tif out.tif (the columns run from east to west)"
+                    "gdalwarp -r near -ot Float64 -dstnodata nan in.tif out.tif (the columns run from east to west)"
                 } else {
                     "a raster made again from its source (programs differ in how they read such a scale)"
                 };
@@ -107,7 +133,7 @@ impl Lattice {
             return Err(unsuitable(
                 format!("{} ground control points and no pixel scale", tags.tie_points.len() / 6),
                 "a north-up raster",
-                "gdalwarp -r bilinear in.tif out.tif",
+                "gdalwarp -r bilinear -ot Float64 -dstnodata nan in.tif out.tif",
             ));
         }
         Err(unsuitable(
@@ -123,14 +149,14 @@ impl Lattice {
             return Err(unsuitable(
                 format!("a rotated or sheared raster (transformation x = {a} i + {b} j + {d}, y = {e} i + {f} j + {h})"),
                 "a north-up raster",
-                "gdalwarp -r bilinear in.tif out.tif",
+                "gdalwarp -r bilinear -ot Float64 -dstnodata nan in.tif out.tif",
             ));
         }
         if a.is_nan() || a <= 0.0 || f.is_nan() || f == 0.0 {
             return Err(unsuitable(
                 format!("columns that run by {a} m eastward and rows by {f} m northward"),
                 "columns from west to east, rows along the meridian",
-                "gdalwarp -r near in.tif out.tif",
+                "gdalwarp -r near -ot Float64 -dstnodata nan in.tif out.tif",
             ));
         }
         Ok(Self { first: MapPoint::new(a * half + d, f * half + h), step_x: a, step_y: f })
@@ -222,7 +248,7 @@ mod tests {
     }
 
     fn place(entries: &[[u16; 4]], transform: TransformTags) -> Result<Placement, TerrainError> {
-        GeoTags { coordinate_system: keys(entries), transform }.place(11, None)
+        GeoTags { coordinate_system: keys(entries), transform }.place(11, None, Scaling::NONE)
     }
 
     #[test]
@@ -267,9 +293,9 @@ mod tests {
         }
         let mut own_unit = keys(&[[1024, 0, 1, 1], [3076, 0, 1, 32767], [3077, 34736, 1, 0]]);
         own_unit.double_parameters = vec![1.0];
-        assert!(GeoTags { coordinate_system: own_unit.clone(), transform: scaled() }.place(2, None).is_ok());
+        assert!(GeoTags { coordinate_system: own_unit.clone(), transform: scaled() }.place(2, None, Scaling::NONE).is_ok());
         own_unit.double_parameters = vec![1000.0];
-        assert!(GeoTags { coordinate_system: own_unit, transform: scaled() }.place(2, None).is_err());
+        assert!(GeoTags { coordinate_system: own_unit, transform: scaled() }.place(2, None, Scaling::NONE).is_err());
         assert_eq!((units::feet("NAD83 / Texas Central (ftUS)"), units::feet("Craft 1")), (Some(9003), None));
     }
 

@@ -1,14 +1,42 @@
 //! GDAL's own tags: the no-data text, and the scale, offset and unit of the samples.
 
-use crate::terrain::stored::Scaling;
+use crate::quantity::{excerpt, is_metre, metres_per};
+use crate::terrain::stored::{Scaling, convert_heights};
 use crate::terrain::{InvalidNoData, NoData, TerrainError};
 
-/// Reads scale, offset and unit of the first band from the XML of tag 42112; `None` if it states neither scale nor offset.
+/// How the first band stores elevations.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Stored {
+    /// Scale and offset, if one of them is stated.
+    pub(super) scaling: Option<Scaling>,
+    /// The unit; empty if none is stated.
+    pub(super) unit: String,
+}
+
+/// The scaling that two places of a file state.
+///
+/// # Errors
+/// [`TerrainError::Unsuitable`] if they differ.
+pub(super) fn one_scaling(by_metadata: Option<Scaling>, by_transform: Option<Scaling>) -> Result<Option<Scaling>, TerrainError> {
+    match (by_metadata, by_transform) {
+        (Some(one), Some(other)) if one != other => Err(TerrainError::Unsuitable {
+            found: format!(
+                "elevations of {} times the stored number plus {} m by its metadata, and of {} times plus {} m by its transform",
+                one.scale, one.offset_m, other.scale, other.offset_m
+            ),
+            expected: "one scaling of the elevations",
+            mend: "gdal_translate -a_scale SCALE -a_offset OFFSET in.tif out.tif".to_owned(),
+        }),
+        (one, other) => Ok(one.or(other)),
+    }
+}
+
+/// Reads scale, offset and unit of the first band from the XML of tag 42112.
 ///
 /// # Errors
 /// [`TerrainError::Unsuitable`] if scale or offset is not a number, the scale is 0, or the unit is not the metre.
-pub(super) fn read_scaling(xml: &str) -> Result<Option<Scaling>, TerrainError> {
-    let (mut scale, mut offset_m) = (None, None);
+pub(super) fn read_stored(xml: &str) -> Result<Stored, TerrainError> {
+    let (mut scale, mut offset_m, mut unit) = (None, None, String::new());
     let mut rest = xml;
     while let Some((attributes, text, after)) = next_item(rest) {
         rest = after;
@@ -18,7 +46,7 @@ pub(super) fn read_scaling(xml: &str) -> Result<Option<Scaling>, TerrainError> {
         match attribute(attributes, "role") {
             Some("scale") => scale = Some(number("scale", text)?),
             Some("offset") => offset_m = Some(number("offset", text)?),
-            Some("unittype") => check_unit(text)?,
+            Some("unittype") => text.clone_into(&mut unit),
             _ => {}
         }
     }
@@ -26,7 +54,8 @@ pub(super) fn read_scaling(xml: &str) -> Result<Option<Scaling>, TerrainError> {
         return Err(bad_number("scale", "0"));
     }
     let stated = scale.is_some() || offset_m.is_some();
-    Ok(stated.then(|| Scaling { scale: scale.unwrap_or(1.0), offset_m: offset_m.unwrap_or(0.0) }))
+    let scaling = stated.then(|| Scaling { scale: scale.unwrap_or(1.0), offset_m: offset_m.unwrap_or(0.0) });
+    Ok(Stored { scaling, unit })
 }
 
 /// Attributes and text of the next `<Item ...>text</Item>`, and the rest.
@@ -61,14 +90,18 @@ fn bad_number(name: &str, text: &str) -> TerrainError {
     }
 }
 
-fn check_unit(unit: &str) -> Result<(), TerrainError> {
-    if matches!(unit.to_ascii_lowercase().as_str(), "" | "m" | "metre" | "metres" | "meter" | "meters") {
+/// Refuses elevations in another unit than the metre, with the command that converts them.
+///
+/// # Errors
+/// [`TerrainError::Unsuitable`].
+pub(super) fn check_unit(unit: &str, scaling: Scaling) -> Result<(), TerrainError> {
+    if unit.is_empty() || is_metre(unit) {
         return Ok(());
     }
     Err(TerrainError::Unsuitable {
-        found: format!("elevations in '{}'", unit.escape_debug().take(40).collect::<String>()),
+        found: format!("elevations in '{}'", excerpt(unit, 40)),
         expected: "elevations in metres",
-        mend: "gdal_calc.py -A in.tif --outfile=out.tif --calc='A*METRES_PER_UNIT'".to_owned(),
+        mend: convert_heights(None, scaling, metres_per(unit)),
     })
 }
 
@@ -96,18 +129,26 @@ mod tests {
         let xml = "<GDALMetadata>\n <Item name=\"A\">x &lt; y</Item><Item name=\"OFFSET\" sample=\"0\" role=\"offset\">-1737400</Item>\n \
                    <Item name=\"SCALE\" sample=\"0\" role=\"scale\">0.5</Item><Item name=\"SCALE\" sample=\"1\" role=\"scale\">9</Item>\
                    <Item name=\"UNITTYPE\" sample=\"0\" role=\"unittype\">m</Item></GDALMetadata>";
-        let scaling = read_scaling(xml).unwrap().unwrap();
+        let scaling = read_stored(xml).unwrap().scaling.unwrap();
         assert_eq!(scaling, Scaling { scale: 0.5, offset_m: -1_737_400.0 });
         assert_eq!(scaling.apply(3.0), -1_737_398.5);
-        assert_eq!(read_scaling("no xml at all <Item").unwrap(), None);
+        assert_eq!(read_stored("no xml at all <Item").unwrap(), Stored::default());
     }
 
     #[test]
     fn invalid_scales_and_units_other_than_metres_are_refused() {
-        for (text, role) in [("x", "scale"), ("0", "scale"), ("inf", "offset"), ("km", "unittype")] {
+        for (text, role) in [("x", "scale"), ("0", "scale"), ("inf", "offset")] {
             let xml = format!("<Item name=\"N\" sample=\"0\" role=\"{role}\">{text}</Item>");
-            assert!(read_scaling(&xml).unwrap_err().to_string().contains(text), "{xml}");
+            assert!(read_stored(&xml).unwrap_err().to_string().contains(text), "{xml}");
         }
+        let scaling = Scaling { scale: 0.5, offset_m: 10.0 };
+        for (unit, command) in
+            [("km", "-a_scale 500 -a_offset 10000 "), ("ft", "-a_scale 0.1524 -a_offset 3.048 "), ("ell", "METRES_PER_UNIT")]
+        {
+            let message = check_unit(unit, scaling).unwrap_err().to_string();
+            assert!(message.contains(command) && message.contains(unit), "{message}");
+        }
+        assert!(check_unit("", scaling).is_ok() && check_unit("Metre", scaling).is_ok());
     }
 
     #[test]

@@ -8,7 +8,7 @@ use tiff_reader::{OpenOptions, TiffFile};
 use super::encoding::unreadable;
 use super::image::{Images, damaged};
 use super::keys::{GeoTags, Placement};
-use super::metadata::{read_no_data, read_scaling};
+use super::metadata::{Stored, check_unit, one_scaling, read_no_data, read_stored};
 use super::samples::{Decoder, Elevations, largest_unpacked};
 use super::tag;
 use crate::terrain::dem::Posts;
@@ -100,8 +100,11 @@ fn check_tags(file: &TiffFile, images: &Images<'_>, context: &ReadContext) -> Re
     let own = tags.transform.no_data.as_deref().map(read_no_data).transpose()?.flatten();
     let no_data = sidecars.no_data(*rule, own)?;
     let metadata = images.elevations.tag(tag::GDAL_METADATA).and_then(|tag| tag.value.as_str());
-    let scaling = sidecars.scaling(metadata.map(read_scaling).transpose()?.flatten())?;
-    let placement = tags.place(images.layout.height, sidecars.transform())?;
+    let Stored { scaling: by_metadata, unit } = metadata.map(read_stored).transpose()?.unwrap_or_default();
+    let own = one_scaling(by_metadata, tags.vertical_scaling()?)?;
+    let scaling = sidecars.scaling(own)?;
+    let placement = tags.place(images.layout.height, sidecars.transform(), scaling)?;
+    check_unit(&unit, scaling)?;
     Ok((Decoder::new(file, images, no_data, scaling)?, placement))
 }
 
@@ -202,7 +205,8 @@ pub(in crate::terrain) struct Placed {
 pub(in crate::terrain) fn place_by_tags(bytes: Vec<u8>, rows: usize) -> Result<Placed, TerrainError> {
     let options = open_options(bytes.len() as u64);
     let file = TiffFile::from_bytes_with_options(bytes, options).map_err(unreadable)?;
-    let Placement { georeference, south_up, states_metres } = GeoTags::of(Images::of(&file)?.elevations).place(rows, None)?;
+    let Placement { georeference, south_up, states_metres } =
+        GeoTags::of(Images::of(&file)?.elevations).place(rows, None, Scaling::NONE)?;
     Ok(Placed { georeference, south_up, states_metres })
 }
 

@@ -3,11 +3,13 @@
 
 use super::key;
 use super::keys::{double_key, short_key, text_key, unsuitable};
+use crate::quantity::is_metre;
 use crate::terrain::georeference::mend_degrees;
 use crate::terrain::projection::{
     MapProjection, Vertical, contradiction, is_compound, is_geodetic, is_map_in_metres, length_unit, projected_code, states_a_map,
-    states_degrees_in_text, vertical,
+    states_degrees_in_text, unit_of_depths, vertical,
 };
+use crate::terrain::stored::{Scaling, convert_heights};
 use crate::terrain::{CoordinateSystem, TerrainError};
 
 /// A user-defined unit of another size is no metre.
@@ -19,9 +21,9 @@ const UNIT_ROUNDING: f64 = 1.0e-9;
 ///
 /// # Errors
 /// [`TerrainError::Unsuitable`] or [`TerrainError::NotProjected`], with a command that makes a usable file.
-pub(super) fn check(system: &CoordinateSystem) -> Result<(), TerrainError> {
+pub(super) fn check(system: &CoordinateSystem, scaling: Scaling) -> Result<(), TerrainError> {
     check_kinds(system)?;
-    check_elevations(system)?;
+    check_elevations(system, scaling)?;
     check_kind_of_map(system)?;
     check_map_unit(system)?;
     match contradiction(system) {
@@ -83,7 +85,7 @@ fn check_kind_of_map(system: &CoordinateSystem) -> Result<(), TerrainError> {
 }
 
 /// Refuses elevations in other units than metres, depths, and units that are stated in a way that is not known.
-fn check_elevations(system: &CoordinateSystem) -> Result<(), TerrainError> {
+fn check_elevations(system: &CoordinateSystem, scaling: Scaling) -> Result<(), TerrainError> {
     let stated = |wanted| short_key(system, wanted).filter(|code| *code != key::UNDEFINED);
     let (unit, reference) = (stated(key::VERTICAL_UNITS), stated(key::VERTICAL_CRS));
     let implied = reference.and_then(vertical);
@@ -91,9 +93,9 @@ fn check_elevations(system: &CoordinateSystem) -> Result<(), TerrainError> {
     let by_reference = |code: u16| format!("EPSG:{code} (key 4096)");
     match (unit, reference, implied) {
         (_, Some(code), Some(Vertical::Depths)) => Err(in_unit(
-            system,
+            (system, scaling),
             &format!("depths below a surface, counted downwards, by the code {}", by_reference(code)),
-            Some(-unit.and_then(|unit| length_unit(unit).1).unwrap_or(1.0)),
+            Some(-unit.or_else(|| unit_of_depths(code)).and_then(|unit| length_unit(unit).1).unwrap_or(1.0)),
         )),
         (Some(unit), Some(code), Some(implied))
             if implied != (if unit == key::METRE { Vertical::Metres } else { Vertical::Unit(unit) }) =>
@@ -116,7 +118,7 @@ fn check_elevations(system: &CoordinateSystem) -> Result<(), TerrainError> {
         },
         (Some(unit), ..) | (None, _, Some(Vertical::Unit(unit))) => {
             let (name, size_m) = length_unit(unit);
-            Err(in_unit(system, &format!("elevations in {name}"), size_m))
+            Err(in_unit((system, scaling), &format!("elevations in {name}"), size_m))
         }
         (None, ..) => match (cited, reference, implied) {
             (Some((text, feet)), Some(code), Some(Vertical::Metres)) => Err(said_twice(
@@ -129,7 +131,7 @@ fn check_elevations(system: &CoordinateSystem) -> Result<(), TerrainError> {
             )),
             (Some((text, feet)), ..) => {
                 let (name, size_m) = length_unit(feet);
-                Err(in_unit(system, &format!("elevations in {name} (citation '{text}')"), size_m))
+                Err(in_unit((system, scaling), &format!("elevations in {name} (citation '{text}')"), size_m))
             }
             (None, Some(code), None) => {
                 let which = if code == key::USER_DEFINED {
@@ -149,14 +151,8 @@ fn check_elevations(system: &CoordinateSystem) -> Result<(), TerrainError> {
 }
 
 /// The refusal of elevations in a unit, with the command that converts them.
-fn in_unit(system: &CoordinateSystem, found: &str, size_m: Option<f64>) -> TerrainError {
-    let size = size_m.map_or_else(|| "METRES_PER_UNIT".to_owned(), |size_m| format!("{size_m}"));
-    // A name of feet in the file's own reference system would be copied: it is replaced.
-    let mend = format!(
-        "gdal_calc.py -A in.tif --outfile=metres.tif --calc='A*{size}' --type=Float64 && gdal_translate -a_srs {} metres.tif out.tif",
-        horizontal(system)
-    );
-    unsuitable(found.to_owned(), "elevations in metres", &mend)
+fn in_unit((system, scaling): (&CoordinateSystem, Scaling), found: &str, size_m: Option<f64>) -> TerrainError {
+    unsuitable(found.to_owned(), "elevations in metres", &convert_heights(Some(&horizontal(system)), scaling, size_m))
 }
 
 /// The refusal of two units of elevations.
@@ -198,7 +194,7 @@ fn check_map_unit(system: &CoordinateSystem) -> Result<(), TerrainError> {
         },
     };
     let mend = if states_a_map(system) {
-        "gdalwarp -r bilinear -t_srs \"$(gdalsrsinfo -o proj4 in.tif | sed 's/+units=[^ ]*/+units=m/; s/+to_meter=[^ ]*/+units=m/')\" \
+        "gdalwarp -r bilinear -ot Float64 -dstnodata nan -t_srs \"$(gdalsrsinfo -o proj4 in.tif | sed 's/+units=[^ ]*/+units=m/; s/+to_meter=[^ ]*/+units=m/')\" \
          in.tif out.tif"
     } else {
         "gdal_translate -a_srs 'LOCAL_CS[\"site\",UNIT[\"metre\",1]]' -a_ullr WEST NORTH EAST SOUTH in.tif out.tif, with the borders in metres \
@@ -215,17 +211,13 @@ fn cited_unit_of_map(system: &CoordinateSystem) -> Option<(String, String)> {
         let map = text.split(" + ").next().unwrap_or_default();
         let named = map.split('|').find_map(|part| part.trim().strip_prefix("LUnits = "));
         let unit = match (named, feet(map)) {
-            (Some(unit), _) if !is_metre(unit) => Some(unit.to_owned()),
+            // GDAL's own name of the metre where a file states its number.
+            (Some(unit), _) if !is_metre(unit) && !unit.trim().eq_ignore_ascii_case("linear_meter") => Some(unit.to_owned()),
             (_, Some(unit)) => Some(length_unit(unit).0),
             _ => None,
         };
         Some((text.to_owned(), unit?))
     })
-}
-
-fn is_metre(unit: &str) -> bool {
-    let unit = unit.trim().to_ascii_lowercase();
-    matches!(unit.as_str(), "m" | "metre" | "metres" | "meter" | "meters" | "linear_meter")
 }
 
 /// The citation of the heights that names feet, and their unit.
@@ -324,7 +316,7 @@ mod tests {
     }
 
     fn told(system: &CoordinateSystem, words: &[&str], row: &str) {
-        match (check(system), words) {
+        match (check(system, Scaling::NONE), words) {
             (Ok(()), []) => {}
             (Ok(()), _) => panic!("{row}: read, expected a refusal with {words:?}"),
             (Err(error), []) => panic!("{row}: {error}"),
@@ -413,7 +405,7 @@ mod tests {
     #[test]
     fn kinds_of_posts_that_are_not_known_are_refused() {
         for (number, read) in [(1, true), (2, true), (0, false), (3, false), (32767, false)] {
-            let found = check(&keys(&[(1024, 1), (1025, number)], &[], &[]));
+            let found = check(&keys(&[(1024, 1), (1025, number)], &[], &[]), Scaling::NONE);
             assert_eq!(found.is_ok(), read, "{number}");
             assert!(found.err().is_none_or(|error| error.to_string().contains("AREA_OR_POINT")));
         }

@@ -9,6 +9,7 @@ use tiff_writer::{ImageBuilder, TiffWriteSample, TiffWriter, WriteOptions};
 use super::keys::{GeoTags, with_raster_type};
 use super::{key, tag};
 use crate::terrain::dem::Posts;
+use crate::terrain::stored::Scaling;
 use crate::terrain::{Dem, GeoReference, TerrainError};
 
 /// Side of a tile, posts: the usual size, and a multiple of 16 as the format requires.
@@ -214,7 +215,7 @@ fn fill_tile<T: Copy>(tile: &mut [T], raster: &Raster<'_, T>, first_row: usize, 
 /// The tags of the map: the original ones if they still describe the raster, else the north-west post as the tie point.
 fn map_tags(map: &GeoReference, rows: usize) -> Vec<Tag> {
     let system = &map.coordinate_system;
-    let old = GeoTags { coordinate_system: system.clone(), transform: map.transform_tags.clone() }.place(rows, None);
+    let old = GeoTags { coordinate_system: system.clone(), transform: map.transform_tags.clone() }.place(rows, None, Scaling::NONE);
     let still_true = old.is_ok_and(|placement| !placement.south_up && placement.georeference == *map);
     let mut tags = Vec::new();
     let directory = if still_true {

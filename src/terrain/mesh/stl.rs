@@ -70,7 +70,11 @@ fn is_word(line: &str, word: &str) -> bool {
 pub(super) fn read_binary(bytes: &[u8], builder: &mut MeshBuilder) -> Result<(), TerrainError> {
     let length = usize::try_from(binary_length(bytes).unwrap_or_default()).unwrap_or(usize::MAX).min(bytes.len());
     if length < bytes.len() {
-        builder.warn(format!("{} bytes after the last triangle of the {BINARY} are left out", bytes.len() - length));
+        let count = match bytes.len() - length {
+            1 => "1 byte".to_owned(),
+            count => format!("{count} bytes"),
+        };
+        builder.warn(format!("the file goes on after the last triangle of the {BINARY}: {count} left out"));
     }
     let triangles = bytes.get(HEADER_BYTES..length).unwrap_or_default().chunks_exact(50);
     for (index, triangle) in triangles.enumerate() {
@@ -190,7 +194,13 @@ mod tests {
             read_binary(&longer, &mut builder).unwrap();
             let (mesh, warnings) = builder.finish().unwrap();
             assert_eq!(mesh.triangle_count(), 1);
-            assert_eq!(warnings, [format!("{} bytes after the last triangle of the binary STL are left out", tail.len())]);
+            assert_eq!(
+                warnings,
+                [format!(
+                    "the file goes on after the last triangle of the binary STL: {} left out",
+                    if tail.len() == 1 { "1 byte".to_owned() } else { format!("{} bytes", tail.len()) }
+                )]
+            );
         }
         // No triangles, and numbers that are no coordinates.
         assert!(

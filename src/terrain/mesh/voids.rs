@@ -38,7 +38,7 @@ pub(super) fn refuse_voids(mesh: &Mesh, scale: f64) -> Result<(), TerrainError> 
     let value = |index: usize| if neighbours.contains_key(&index) { mesh.vertices()[index].z } else { f64::NAN };
     let visit_all =
         |index: usize, visit: &mut dyn FnMut(usize)| neighbours.get(&index).into_iter().flatten().for_each(|near| visit(*near));
-    let Some(void) = find_void(mesh.vertices().len(), &marks, value, visit_all) else { return Ok(()) };
+    let Some(void) = find_void(mesh.vertices().len(), &marks, mesh.median_edge_m(), value, visit_all) else { return Ok(()) };
     Err(TerrainError::Void(Box::new(VoidTaken {
         z_m: void.z_m,
         stored: void.stored,

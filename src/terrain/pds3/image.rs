@@ -3,6 +3,7 @@
 use super::label::{Label, shown, unsuitable};
 use super::marks::marks;
 use super::samples::{Mark, SampleType};
+use crate::quantity::metres_or_kilometres;
 use crate::terrain::TerrainError;
 
 /// The position and meaning of an image's samples.
@@ -100,10 +101,8 @@ fn pointer(label: &Label) -> Result<(Option<String>, u64), TerrainError> {
 /// Metres per unit of the elevations: UNIT, which `SCALING_FACTOR` and OFFSET must not
 /// contradict with a unit of their own.
 fn metres_per_unit(label: &Label) -> Result<f64, TerrainError> {
-    let metres = |key: &str, text: &str| match text.to_ascii_uppercase().trim() {
-        "M" | "METER" | "METERS" | "METRE" | "METRES" => Ok(1.0),
-        "KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES" => Ok(1000.0),
-        _ => Err(unsuitable(format!("{key} {}", shown(text)), "METER or KILOMETER")),
+    let metres = |key: &str, text: &str| {
+        metres_or_kilometres(text).ok_or_else(|| unsuitable(format!("{key} {}", shown(text)), "METER or KILOMETER"))
     };
     let unit = label.value("IMAGE", "UNIT")?.filter(|unit| !unit.text.eq_ignore_ascii_case("N/A"));
     let stated = unit.map(|unit| metres("UNIT", &unit.text)).transpose()?;

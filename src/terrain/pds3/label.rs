@@ -257,13 +257,16 @@ impl Reader<'_> {
     }
 
     fn scalar(&mut self) -> Result<Value, TerrainError> {
-        let text = match self.peek() {
-            Some(quote @ (b'"' | b'\'')) => self.enclosed(quote)?,
-            _ => self.word(),
+        let text = if let Some(quote @ (b'"' | b'\'')) = self.peek() {
+            self.enclosed(quote)?
+        } else {
+            let word = self.word();
+            // Nothing was read: without an error the same place would be read for ever.
+            if word.is_empty() {
+                return Err(self.damaged("no value after '='"));
+            }
+            word
         };
-        if text.is_empty() && !matches!(self.bytes.get(self.at.wrapping_sub(1)), Some(b'"' | b'\'')) {
-            return Err(self.damaged("no value after '='"));
-        }
         while matches!(self.peek(), Some(b' ' | b'\t')) {
             self.step();
         }
@@ -320,6 +323,9 @@ mod tests {
             ("A = 5 <M", "closing >"),
             ("END_OBJECT = X\nEND", "without an open object"),
             ("A = ,\nEND", "no value"),
+            ("A = (\"b\"=\nEND", "no value"),
+            ("A = ('b'>, 2)\nEND", "no value"),
+            ("A = \"b\" = 2\nEND", "no further statement"),
         ] {
             let message = Label::parse(text.as_bytes()).unwrap_err().to_string();
             assert!(message.contains(expected), "{text}: {message}");

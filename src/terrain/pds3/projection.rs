@@ -1,7 +1,7 @@
 //! The `IMAGE_MAP_PROJECTION` object: the position of the posts, and their map.
 
 use super::label::{Label, shown, unsuitable};
-use crate::quantity::{MapPoint, format_number};
+use crate::quantity::{MapPoint, format_number, metres_or_kilometres};
 use crate::terrain::{CoordinateSystem, GeoReference, TerrainError};
 use crate::world::Body;
 
@@ -48,10 +48,9 @@ fn scale_m(label: &Label) -> Result<Option<f64>, TerrainError> {
     let unit = value.unit.clone().unwrap_or_else(|| "KM/PIXEL".to_owned());
     let (length, per) = unit.split_once('/').unwrap_or((&unit, "PIXEL"));
     let per_post = matches!(per.trim(), "PIXEL" | "PIXELS" | "PIX" | "PX" | "P" | "SAMPLE" | "POST");
-    match length.trim() {
-        "M" | "METER" | "METERS" | "METRE" | "METRES" if per_post => Ok(Some(number)),
-        "KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES" if per_post => Ok(Some(number * 1000.0)),
-        _ => Err(unsuitable(format!("MAP_SCALE in {}", shown(&unit)), "<KM/PIXEL> or <M/PIXEL>")),
+    match metres_or_kilometres(length).filter(|_| per_post) {
+        Some(metres) => Ok(Some(number * metres)),
+        None => Err(unsuitable(format!("MAP_SCALE in {}", shown(&unit)), "<KM/PIXEL> or <M/PIXEL>")),
     }
 }
 
@@ -219,9 +218,7 @@ fn method(name: &str, latitude: f64, longitude: f64) -> Option<Method> {
 /// A radius in m; labels without a unit give km.
 fn radius_m(label: &Label, key: &str) -> Result<Option<f64>, TerrainError> {
     let (Some(value), Some(number)) = (label.value(OBJECT, key)?, label.number(OBJECT, key)?) else { return Ok(None) };
-    match value.unit.as_deref().unwrap_or("KM") {
-        "KM" | "KILOMETER" | "KILOMETERS" | "KILOMETRE" | "KILOMETRES" => Ok(Some(number * 1000.0)),
-        "M" | "METER" | "METERS" | "METRE" | "METRES" => Ok(Some(number)),
-        unit => Err(unsuitable(format!("{key} in {}", shown(unit)), "<KM>")),
-    }
+    let unit = value.unit.as_deref().unwrap_or("KM");
+    let metres = metres_or_kilometres(unit).ok_or_else(|| unsuitable(format!("{key} in {}", shown(unit)), "<KM>"))?;
+    Ok(Some(number * metres))
 }

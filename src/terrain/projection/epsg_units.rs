@@ -29,6 +29,15 @@ pub(in crate::terrain) fn vertical(code: u16) -> Option<Vertical> {
     }
 }
 
+/// The unit of a vertical system of depths that are in feet; `None` for metres.
+pub(in crate::terrain) fn unit_of_depths(code: u16) -> Option<u16> {
+    match code {
+        5614 | 8051 => Some(9002),
+        6358 | 6359 | 8053 => Some(9003),
+        _ => None,
+    }
+}
+
 /// Whether a code is that of a projected map in metres.
 pub(in crate::terrain) fn is_map_in_metres(code: u16) -> bool {
     within(&PROJECTED_METRES, code)

@@ -31,7 +31,7 @@ use proj4rs::{Proj, transform::transform};
 pub(super) use self::codes::iau_radius_m;
 pub use self::crs_error::CrsError;
 pub use self::definition::{Definition, Ellipsoid, Method};
-pub(super) use self::epsg_units::{Vertical, is_compound, is_geodetic, is_map_in_metres, length_unit, vertical};
+pub(super) use self::epsg_units::{Vertical, is_compound, is_geodetic, is_map_in_metres, length_unit, unit_of_depths, vertical};
 use self::geokeys::Reading;
 pub use self::scale::{ScaleExtreme, ScaleMend, TransectScale, check_map_scale, check_scale};
 pub(super) use self::stated::{contradiction, doubts};

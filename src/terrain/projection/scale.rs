@@ -210,7 +210,7 @@ fn without_scale(
 fn mend_unknown(map: &GeoReference, file: &str) -> String {
     let stereographic = |figure: &str, from: &str| {
         format!(
-            "gdalwarp -r bilinear {from}-t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {figure} +units=m +no_defs' {file} out.tif, where \
+            "gdalwarp -r bilinear -ot Float64 -dstnodata nan {from}-t_srs '+proj=stere +lat_0=LATITUDE +lon_0=LONGITUDE {figure} +units=m +no_defs' {file} out.tif, where \
              LATITUDE and LONGITUDE are the middle of the journey (gdalinfo {file} prints those of the map's corners); then give its places as \
              longitude and latitude"
         )

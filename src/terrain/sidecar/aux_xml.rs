@@ -1,11 +1,12 @@
-//! `.aux.xml`: the statements that GDAL and ArcGIS keep beside a raster (persistent auxiliary metadata).
+//! `.aux.xml`: the statements that GDAL and `ArcGIS` keep beside a raster (persistent auxiliary metadata).
 
 use std::path::Path;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
 use super::{Transform, number, prj, refused, text_of};
-use crate::terrain::stored::Scaling;
+use crate::quantity::{excerpt, is_metre, metres_per};
+use crate::terrain::stored::{Scaling, convert_heights};
 use crate::terrain::{NoData, TerrainError};
 
 /// What a file states.
@@ -60,7 +61,7 @@ fn of_text(text: &str) -> Result<Statements, String> {
             "SRS" => stated.projection = prj::of_text(node.text().unwrap_or_default()),
             "GeoTransform" => stated.transform = Some(transform(node.text().unwrap_or_default())?),
             "PAMRasterBand" => {
-                if node.attribute("band").is_none_or(|band| band == "1") {
+                if node.attribute("band").is_none_or(|band| band.trim().parse() == Ok(1)) {
                     band(node, &mut stated)?;
                 }
             }
@@ -68,13 +69,13 @@ fn of_text(text: &str) -> Result<Statements, String> {
                 let moved = node.descendants().find(|inner| inner.tag_name().name() == "GeodataXform");
                 if moved.is_some_and(|xform| xform.descendants().any(|inner| inner.tag_name().name() == "SourceGCPs")) {
                     return Err("a transformation by control points (GeodataXform), expected a north-up raster; \
-                                apply it with: gdalwarp -r bilinear in.tif out.tif"
+                                apply it with: gdalwarp -r bilinear -ot Float64 -dstnodata nan in.tif out.tif"
                         .to_owned());
                 }
             }
             "GCPList" => {
                 return Err(
-                    "ground control points, expected a north-up raster; apply them with: gdalwarp -r bilinear in.tif out.tif"
+                    "ground control points, expected a north-up raster; apply them with: gdalwarp -r bilinear -ot Float64 -dstnodata nan in.tif out.tif"
                         .to_owned(),
                 );
             }
@@ -87,7 +88,7 @@ fn of_text(text: &str) -> Result<Statements, String> {
 
 /// No-data value, scale, offset and unit of a band.
 fn band(band: Node<'_, '_>, stated: &mut Statements) -> Result<(), String> {
-    let (mut scale, mut offset_m) = (None, None);
+    let (mut scale, mut offset_m, mut unit) = (None, None, String::new());
     for node in band.children().filter(Node::is_element) {
         let text = node.text().unwrap_or_default().trim();
         match node.tag_name().name() {
@@ -95,7 +96,7 @@ fn band(band: Node<'_, '_>, stated: &mut Statements) -> Result<(), String> {
                 return Err("a no-data value in hexadecimal only, expected a number; write it with: gdal_edit.py -a_nodata VALUE"
                     .to_owned());
             }
-            "NoDataValue" => {
+            "NoDataValue" | "NoDataValueAsInt64" | "NoDataValueAsUInt64" => {
                 let value = text
                     .parse::<NoData>()
                     .map_err(|error| format!("{error}; correct it with: gdal_edit.py -a_nodata VALUE FILE"))?;
@@ -103,16 +104,7 @@ fn band(band: Node<'_, '_>, stated: &mut Statements) -> Result<(), String> {
             }
             "Scale" => scale = Some(number("scale", text)?),
             "Offset" => offset_m = Some(number("offset", text)?),
-            "UnitType" => {
-                let metres = matches!(text.to_ascii_lowercase().as_str(), "" | "m" | "metre" | "metres" | "meter" | "meters");
-                if !metres {
-                    return Err(format!(
-                        "elevations in '{}', expected elevations in metres; convert them with: gdal_calc.py -A in.tif --outfile=out.tif \
-                         --calc='A*METRES_PER_UNIT'",
-                        crate::quantity::excerpt(text, 40)
-                    ));
-                }
-            }
+            "UnitType" => text.clone_into(&mut unit),
             known if WITHOUT_EFFECT.contains(&known) => {}
             other => return Err(unknown(other)),
         }
@@ -120,8 +112,14 @@ fn band(band: Node<'_, '_>, stated: &mut Statements) -> Result<(), String> {
     if scale == Some(0.0) {
         return Err("a scale of 0, expected another number; correct it with: gdal_edit.py -scale 1 FILE".to_owned());
     }
-    if scale.is_some() || offset_m.is_some() {
-        stated.scaling = Some(Scaling { scale: scale.unwrap_or(1.0), offset_m: offset_m.unwrap_or(0.0) });
+    let scaling = Scaling { scale: scale.unwrap_or(1.0), offset_m: offset_m.unwrap_or(0.0) };
+    stated.scaling = (scale.is_some() || offset_m.is_some()).then_some(scaling);
+    if !(unit.is_empty() || is_metre(&unit)) {
+        return Err(format!(
+            "elevations in '{}', expected elevations in metres; convert them with: {}",
+            excerpt(&unit, 40),
+            convert_heights(None, scaling, metres_per(&unit))
+        ));
     }
     Ok(())
 }

@@ -25,10 +25,7 @@ impl MaskFile {
             )
         };
         let image = TiffImage::open(path).map_err(|error| not(error.to_string()))?;
-        match image.is_mask() {
-            true => Ok(Self(image)),
-            false => Err(not("it has several bands, or samples of more than 8 bits".to_owned())),
-        }
+        if image.is_mask() { Ok(Self(image)) } else { Err(not("it has several bands, or samples of more than 8 bits".to_owned())) }
     }
 
     /// Number of rows and columns.

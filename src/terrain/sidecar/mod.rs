@@ -1,4 +1,4 @@
-//! Files beside a raster that change its meaning, as GDAL and ArcGIS write them.
+//! Files beside a raster that change its meaning, as GDAL and `ArcGIS` write them.
 //!
 //! | file | what it states | what is done |
 //! |---|---|---|
@@ -19,7 +19,7 @@ use std::path::{Path, PathBuf};
 
 use self::mask::MaskFile;
 use super::stored::Scaling;
-use super::{GeoReference, MapBounds, MapProjection, NoData, NoDataRule, PostLattice, TerrainError, Window};
+use super::{GeoReference, MapBounds, MapProjection, NoData, NoDataRule, NoProjection, PostLattice, TerrainError, Window};
 use crate::quantity::MapPoint;
 
 /// Sidecar files are texts of some kilobytes; masks are read in parts.
@@ -32,10 +32,26 @@ pub(super) struct Sidecars {
     no_data: Option<From<NoData>>,
     scaling: Option<From<Scaling>>,
     projection: Option<From<MapProjection>>,
-    /// Reference systems that are not understood.
-    unclear: Vec<From<String>>,
+    /// Reference systems that cannot be used.
+    unclear: Vec<From<Unclear>>,
     transforms: Vec<From<Transform>>,
     mask: Option<From<MaskFile>>,
+}
+
+/// Why a reference system cannot be used.
+#[derive(Clone, Debug)]
+enum Unclear {
+    /// A projection that is not supported, which a raster of an unsupported projection may state as well.
+    Unsupported(String),
+    /// A text that is wrong, or states another map, another unit, depths.
+    Wrong(String),
+}
+
+impl Unclear {
+    fn reason(&self) -> &str {
+        let (Self::Unsupported(reason) | Self::Wrong(reason)) = self;
+        reason
+    }
 }
 
 /// A statement and the file it comes from.
@@ -49,12 +65,13 @@ struct From<T> {
 pub(super) type Transform = [f64; 6];
 
 /// The further files, by extension, that some program reads as the place or the meaning of a raster, and that are not read here.
-const NOT_READ: [(&str, &str); 5] = [
+const NOT_READ: [(&str, &str); 6] = [
     ("tab", "a MapInfo table"),
     ("rpc", "rational polynomial coefficients"),
     ("rpb", "rational polynomial coefficients"),
     ("aux", "an ERDAS file"),
     ("points", "ground control points"),
+    ("gcp", "ground control points"),
 ];
 
 /// The files beside a raster that are read with it.
@@ -86,7 +103,7 @@ impl Sidecars {
             found.transforms.extend(stated.transform.map(|value| From { path: file.clone(), value }));
             match stated.projection {
                 Some(Ok(projection)) => found.projection = Some(From { path: file.clone(), value: projection }),
-                Some(Err(reason)) => found.unclear.push(From { path: file.clone(), value: reason }),
+                Some(Err(unclear)) => found.unclear.push(From { path: file.clone(), value: unclear }),
                 None => {}
             }
         }
@@ -99,8 +116,8 @@ impl Sidecars {
                     found.projection = Some(From { path: file.clone(), value: projection });
                 }
                 // Two sidecar files: the second is compared once the place of the raster is known.
-                Some(Ok(projection)) => found.compare_later(&file, projection),
-                Some(Err(reason)) => found.unclear.push(From { path: file.clone(), value: reason }),
+                Some(Ok(projection)) => found.compare_later(&file, &projection),
+                Some(Err(unclear)) => found.unclear.push(From { path: file.clone(), value: unclear }),
                 None => {}
             }
         }
@@ -114,7 +131,7 @@ impl Sidecars {
     /// Refuses the formats that state a place or a meaning and are not read.
     fn refuse_others(path: &Path) -> Result<(), TerrainError> {
         for (extension, what) in NOT_READ {
-            let Some(file) = with_extension(path, extension) else { continue };
+            let Some(file) = with_extension(path, extension).or_else(|| with_suffix(path, extension)) else { continue };
             if extension == "aux" && !prj::begins_with(&file, b"EHFA_HEADER_TAG") {
                 continue;
             }
@@ -130,11 +147,11 @@ impl Sidecars {
         Ok(())
     }
 
-    fn compare_later(&mut self, file: &Path, projection: MapProjection) {
+    fn compare_later(&mut self, file: &Path, projection: &MapProjection) {
         let agrees = self.projection.as_ref().is_some_and(|known| known.value.definition() == projection.definition());
         if !agrees {
             let reason = format!("it states another reference system ({}) than the other sidecar file", projection.name());
-            self.unclear.push(From { path: file.to_path_buf(), value: reason });
+            self.unclear.push(From { path: file.to_path_buf(), value: Unclear::Wrong(reason) });
         }
     }
 
@@ -171,7 +188,7 @@ impl Sidecars {
     /// [`TerrainError::Sidecar`] if both state different ones.
     pub(super) fn scaling(&self, own: Option<Scaling>) -> Result<Scaling, TerrainError> {
         match (&self.scaling, own) {
-            (Some(beside), Some(own)) if beside.value != own => Err(refused(
+            (Some(beside), Some(own)) if !beside.value.is_near(own) => Err(refused(
                 &beside.path,
                 format!(
                     "elevations of {} times the stored number plus {} m, where the raster itself states {} and {} m, expected the same; \
@@ -218,32 +235,32 @@ impl Sidecars {
                 ));
             }
         }
-        if !georeference.coordinate_system.key_directory.is_empty() {
-            let own = georeference.projection();
-            if let (Some(beside), Ok(own)) = (&self.projection, &own)
-                && !same_map(own, &beside.value, bounds)
-            {
-                return Err(refused(
-                    &beside.path,
-                    format!(
-                        "the reference system {}, where the raster itself states {}, expected the same; remove this file, or write the \
-                         right one into the raster with: gdal_translate -a_srs SYSTEM in.tif out.tif",
-                        beside.value.name(),
-                        own.name()
-                    ),
-                ));
+        if let Some(wrong) = self.unclear.iter().find(|unclear| matches!(unclear.value, Unclear::Wrong(_))) {
+            return Err(refused(&wrong.path, wrong.value.reason().to_owned()));
+        }
+        let beside = self.projection.as_ref();
+        let differ = |path: &Path, other: &str, own: &str| {
+            Err(refused(
+                path,
+                format!(
+                    "the reference system {other}, where the raster itself states {own}, expected the same; remove this file, or write the \
+                     right one into the raster with: gdal_translate -a_srs SYSTEM in.tif out.tif"
+                ),
+            ))
+        };
+        match (georeference.projection(), beside, self.unclear.first()) {
+            (Ok(own), Some(beside), _) if !same_map(&own, &beside.value, bounds) => {
+                differ(&beside.path, beside.value.name(), own.name())
             }
-            return match &self.projection {
-                Some(beside) if own.is_err() => Ok((georeference.with_projection(&beside.value), true)),
-                _ => Ok((georeference, false)),
-            };
-        }
-        if let Some(unclear) = self.unclear.first() {
-            return Err(refused(&unclear.path, unclear.value.clone()));
-        }
-        match &self.projection {
-            Some(beside) => Ok((georeference.with_projection(&beside.value), true)),
-            None => Ok((georeference, false)),
+            (Ok(own), _, Some(unclear)) => differ(&unclear.path, "of a projection that is not supported", own.name()),
+            (Ok(_), ..) | (Err(_), None, None) => Ok((georeference, false)),
+            (Err(NoProjection::Unknown(own)), Some(beside), _) => {
+                differ(&beside.path, beside.value.name(), &format!("another one ({own})"))
+            }
+            // Neither is understood: the scale is unknown in any case, and is refused where it counts.
+            (Err(NoProjection::Unknown(_)), None, Some(_)) => Ok((georeference, true)),
+            (Err(NoProjection::Local), Some(beside), _) => Ok((georeference.with_projection(&beside.value), true)),
+            (Err(NoProjection::Local), None, Some(unclear)) => Ok((georeference.with_unknown_map(unclear.value.reason()), true)),
         }
     }
 
@@ -304,21 +321,27 @@ fn name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// `dem.tif` and `aux.xml` make `dem.tif.aux.xml`, in small or capital letters, if there is such a file.
+/// `dem.tif` and `aux.xml` make `dem.tif.aux.xml`, if there is such a file, in small or capital letters.
 fn with_suffix(path: &Path, suffix: &str) -> Option<PathBuf> {
-    let name = path.file_name()?.to_owned();
-    [suffix.to_owned(), suffix.to_ascii_uppercase()].into_iter().find_map(|suffix| {
-        let mut name = name.clone();
-        name.push(".");
-        name.push(suffix);
-        Some(path.with_file_name(name)).filter(|file| file.is_file())
-    })
+    named_alike(path, &format!("{}.{suffix}", name(path)))
 }
 
-/// `dem.tif` and `prj` make `dem.prj`, in small or capital letters, if there is such a file and it is not the raster itself.
+/// `dem.tif` and `prj` make `dem.prj`, if there is such a file, in small or capital letters, and it is not the raster itself.
 fn with_extension(path: &Path, extension: &str) -> Option<PathBuf> {
-    let both = [extension.to_owned(), extension.to_ascii_uppercase()];
-    both.into_iter().map(|extension| path.with_extension(extension)).find(|file| file != path && file.is_file())
+    named_alike(path, &name(&path.with_extension(extension))).filter(|file| file != path)
+}
+
+/// The file beside another one that has this name, in whatever letters: names of Windows do not distinguish them.
+fn named_alike(path: &Path, wanted: &str) -> Option<PathBuf> {
+    let exact = path.with_file_name(wanted);
+    if exact.is_file() {
+        return Some(exact);
+    }
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or_else(|| Path::new("."));
+    let names = std::fs::read_dir(folder).ok()?.filter_map(|entry| entry.ok()?.file_name().into_string().ok());
+    let mut alike: Vec<String> = names.filter(|name| name.eq_ignore_ascii_case(wanted)).collect();
+    alike.sort();
+    alike.into_iter().map(|name| path.with_file_name(name)).find(|file| file.is_file())
 }
 
 /// The text of a sidecar file.

@@ -3,11 +3,12 @@
 use std::io::Read;
 use std::path::Path;
 
-use super::text_of;
-use crate::terrain::{MapProjection, TerrainError};
+use super::{Unclear, text_of};
+use crate::terrain::stored::{Scaling, convert_heights};
+use crate::terrain::{CrsError, MapProjection, TerrainError};
 
 /// A reference system, or why it cannot be used; `None` for an empty text and for a local system in metres.
-pub(super) type Stated = Option<Result<MapProjection, String>>;
+pub(super) type Stated = Option<Result<MapProjection, Unclear>>;
 
 /// Reads a `.prj` file.
 ///
@@ -26,7 +27,7 @@ pub(super) fn of_text(text: &str) -> Stated {
     let upper = text.to_ascii_uppercase();
     let (map, heights) = match upper.find("VERTCS[") {
         Some(0) => {
-            return Some(Err("a system of heights without a map, expected a projected map in metres; remove this file".to_owned()));
+            return wrong("a system of heights without a map, expected a projected map in metres; remove this file");
         }
         // A compound system in one bracket is read as a whole.
         Some(at) if !upper.starts_with("COMPD") => text.split_at(at),
@@ -34,25 +35,47 @@ pub(super) fn of_text(text: &str) -> Stated {
     };
     let map = map.trim_end_matches(|letter: char| letter == ',' || letter.is_whitespace());
     if let Some(unit) = unit_of_heights(heights).filter(|(_, size_m)| *size_m != 1.0) {
-        return Some(Err(format!(
-            "elevations in '{}', expected elevations in metres; convert them with: gdal_calc.py -A in.tif --outfile=out.tif --calc='A*{}'",
-            unit.0, unit.1
-        )));
+        let mend = convert_heights(Some("'WELL-KNOWN TEXT OF THE MAP ALONE'"), Scaling::NONE, Some(unit.1));
+        return wrong(&format!("elevations in '{}', expected elevations in metres; convert them with: {mend}", unit.0));
+    }
+    for (parameter, allowed) in [("DIRECTION", 1.0), ("VERTICAL_SHIFT", 0.0)] {
+        if let Some(value) = parameter_of(heights, parameter).filter(|value| *value != allowed) {
+            return wrong(&format!(
+                "heights with the parameter {parameter} {value}, expected {allowed}: elevations that grow upwards from the surface of \
+                 reference; convert the raster and remove this file"
+            ));
+        }
     }
     let local = ["LOCAL_CS", "ENGCRS", "ENGINEERINGCRS"].iter().any(|keyword| upper.starts_with(keyword));
     if local {
         let metres = unit_of_heights(map).is_none_or(|(_, size_m)| size_m == 1.0);
-        return (!metres)
-            .then(|| Err("a local system in another unit than the metre, expected metres; convert the raster".to_owned()));
+        return if metres {
+            None
+        } else {
+            wrong("a local system in another unit than the metre, expected metres; convert the raster")
+        };
     }
     if !text.contains('[') && upper.starts_with("PROJECTION") {
-        return Some(Err(
-            "a reference system in the old form of ArcInfo, expected well-known text; write the raster with its system by: \
-             gdal_translate -a_srs SYSTEM in out.tif, where gdalsrsinfo FILE shows the system"
-                .to_owned(),
-        ));
+        return wrong(
+            "a reference system in the old form of ArcInfo, expected well-known text; write the raster with its system by: gdal_translate \
+             -a_srs SYSTEM in out.tif, where gdalsrsinfo FILE shows the system",
+        );
     }
-    Some(MapProjection::from_wkt(map).map_err(|error| error.to_string()))
+    Some(MapProjection::from_wkt(map).map_err(|error| match error {
+        CrsError::UnknownMethod { .. } | CrsError::UnknownCode { .. } => Unclear::Unsupported(error.to_string()),
+        wrong => Unclear::Wrong(wrong.to_string()),
+    }))
+}
+
+fn wrong(reason: &str) -> Stated {
+    Some(Err(Unclear::Wrong(reason.to_owned())))
+}
+
+/// The value of a parameter of ESRI's heights.
+fn parameter_of(heights: &str, name: &str) -> Option<f64> {
+    let upper = heights.to_ascii_uppercase();
+    let after = upper.split(&format!("PARAMETER[\"{name}\",")).nth(1)?;
+    after.split(']').next()?.trim().parse().ok()
 }
 
 /// Name and size of the last unit of a text, m.

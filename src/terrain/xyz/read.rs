@@ -107,7 +107,7 @@ fn read_text(source: impl BufRead, context: &ReadContext) -> Result<Dem, Terrain
         states_metres: false,
         south_up: false,
         scaling,
-        step: StoredStep::of_decimals(read.decimals, scaling),
+        step: StoredStep::of_text(read.decimals, scaling),
     }
     .finish(context)
 }

@@ -5,7 +5,7 @@ use std::io::BufRead;
 use super::header::{Columns, Header, Separator, comment, fields, header, separator_of};
 use crate::quantity::{decimal_comma, excerpt, number_help};
 use crate::terrain::ascii_grid::Problems;
-use crate::terrain::stored::Decimals;
+use crate::terrain::stored::LastDigits;
 use crate::terrain::text_lines::{LineEnd, read_line};
 use crate::terrain::{CoordinateSystem, TerrainError, georeference::mend_degrees};
 
@@ -35,7 +35,7 @@ pub(super) struct Rows {
     /// Whether the last post has fewer digits after the point than all others, which have equally many.
     pub(super) short_last: bool,
     /// The most decimals of the elevations.
-    pub(super) decimals: Decimals,
+    pub(super) decimals: LastDigits,
 }
 
 /// The decimal signs of a text, each with the first line that has it.

@@ -14,7 +14,7 @@ use super::{
     vector::{VectorFormat, refusal},
 };
 use crate::{
-    quantity::MapPoint,
+    quantity::{MapPoint, format_number},
     terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem},
 };
 
@@ -215,7 +215,15 @@ pub(super) fn unread(error: &std::io::Error) -> String {
 /// The problem of a raster, without the name of the file.
 pub(super) fn of_raster(error: TerrainError) -> String {
     match error {
-        TerrainError::InFile { problem, .. } => problem.to_string(),
+        TerrainError::InFile { problem, .. } => match *problem {
+            // The key terrain.no_data is about the elevations.
+            TerrainError::Void(void) => format!(
+                "the value {}, expected missing data that the file states: mark it with: gdal_translate -a_nodata {} in.tif out.tif",
+                void.found(),
+                format_number(void.stored)
+            ),
+            other => other.to_string(),
+        },
         other => other.to_string(),
     }
 }

@@ -160,7 +160,7 @@ fn is_in_degrees(code: &str) -> bool {
 pub(super) fn mend_raster(terrain: Option<&CoordinateSystem>) -> String {
     let own = terrain.and_then(|system| MapProjection::of(system).ok());
     let target = own.map_or_else(|| "'PROJ STRING OF THE TERRAIN'".to_owned(), |map| format!("'{}'", map.proj_string()));
-    format!("warp it with: gdalwarp -r near -t_srs {target} in.tif out.tif")
+    format!("warp it with: gdalwarp -r near -ot Float32 -dstnodata nan -t_srs {target} in.tif out.tif")
 }
 
 /// The sphere of a body that a code of the IAU is of, if it is known here.
