@@ -20,7 +20,6 @@ use terrain::Overflight;
 
 use crate::{
     chain::Station,
-    hop::ground_slope,
     quantity::SlopeInterval,
     world::{Contact, Direction, Limit, tolerant_speed_m_s},
 };
@@ -118,7 +117,6 @@ impl Sweep {
         outwards(on_segment, direction).try_for_each(|i| visit(i, test.lofts(takeoff, &stations[i])))?;
         overflight.begin(takeoff, direction);
         let clearance = test.clearance();
-        let seen = clearance.has_kinks().then(|| ground_slope(test.chain().geometry(), takeoff, direction, clearance.ramp_m()));
         while !left.is_empty() {
             let block = next_block(&mut left, direction);
             if let Some(limit) = table.out_of_reach(&from, &block, direction) {
@@ -126,7 +124,8 @@ impl Sweep {
                 continue;
             }
             lanes.evaluate(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
-            if let Some(seen) = seen {
+            if clearance.has_kinks() {
+                let seen = overflight.seen_at_ramp();
                 let seen_back = &table.rules(direction).seen_back;
                 lanes.evaluate_kinks(clearance, (from.x_m, seen), &table.x_m[block.clone()], &seen_back[block.clone()]);
             }
@@ -167,16 +166,17 @@ impl Landing<'_> {
             let run_m = (landing.point.x_m - from.x_m).abs();
             return Err(self.lanes.refusing(test, from, lane, run_m, cone));
         };
-        let clearance = test.clearance();
         let mut least = in_envelope.lower;
-        if clearance.has_kinks() {
-            let (run_m, slope) = ((landing.point.x_m - from.x_m).abs(), self.lanes.slope(lane));
-            let kinks = if clearance.kink_m(run_m) < clearance.ramp_m() {
-                self.overflight.middle_loft(landing, run_m, slope)
-            } else {
-                self.lanes.kinks(lane)
-            };
-            least = least.max(kinks);
+        let two_ramps_m = self.overflight.two_ramps_m();
+        if two_ramps_m > 0.0 {
+            let run_m = (self.table.x_m[i] - from.x_m).abs();
+            let slope = self.lanes.slope(lane);
+            if run_m < two_ramps_m {
+                least = least.max(self.overflight.middle_loft(landing, run_m, slope));
+            } else if self.lanes.kinks_may_bind(lane) {
+                let seen_back = self.table.rules(direction).seen_back[i];
+                least = least.max(self.overflight.kinks_loft(seen_back, run_m, slope));
+            }
             if least > in_envelope.upper {
                 return Err(Limit::Terrain);
             }

@@ -4,7 +4,7 @@ use super::hull::{Hull, Seen};
 use crate::{
     ballistics::limits::{ClearanceProfile, clearing_loft},
     chain::{PolygonalChain, Site, Station},
-    hop::{HopTest, first_ahead, slope_beyond},
+    hop::{HopTest, first_ahead, ground_slope, slope_beyond},
     quantity::{ChainPoint, VertexId},
     world::Direction,
 };
@@ -32,6 +32,7 @@ pub(super) struct Overflight {
     hull: Hull,
     /// The first vertices at or beyond the middle of the hop, from the take-off and seen back from the landing.
     middles: [usize; 2],
+    seen_at_ramp: f64,
 }
 
 /// A relative margin larger than all rounding errors of the bound that avoids the hull.
@@ -54,7 +55,14 @@ impl Overflight {
             hulled: 0,
             hull: Hull::default(),
             middles: [0; 2],
+            seen_at_ramp: 0.0,
         }
+    }
+
+    /// The length of a hop from which the two kinks of a tapered clearance are apart, m; 0 without a taper.
+    #[inline]
+    pub(super) const fn two_ramps_m(&self) -> f64 {
+        2.0 * self.clearance.ramp_m()
     }
 
     /// Starts at a take-off.
@@ -71,6 +79,23 @@ impl Overflight {
         self.hulled = 0;
         self.hull.clear(0.0);
         self.middles = [self.first; 2];
+        if self.clearance.has_kinks() {
+            self.seen_at_ramp = ground_slope(self.geometry(), takeoff, direction, self.clearance.ramp_m());
+        }
+    }
+
+    /// The slope from the take-off to the ground one ramp of a tapered clearance away.
+    #[inline]
+    pub(super) const fn seen_at_ramp(&self) -> f64 {
+        self.seen_at_ramp
+    }
+
+    /// The loft that both kinks of a hop longer than two ramps require; `seen_back` is the slope back from the landing to the ground
+    /// one ramp before it.
+    #[inline]
+    pub(super) fn kinks_loft(&self, seen_back: f64, run_m: f64, sight_slope: f64) -> f64 {
+        let (from, to) = (self.seen_at_ramp - sight_slope, sight_slope + seen_back);
+        self.clearance.kink_loft(if to > from { to } else { from }, run_m)
     }
 
     #[inline]
@@ -118,6 +143,7 @@ impl Overflight {
     /// The loft that the only kink of a hop not longer than two ramps requires: at its middle.
     ///
     /// Landings have to be passed in the order of distance.
+    #[inline(never)]
     pub(super) fn middle_loft(&mut self, landing: &Station, run_m: f64, sight_slope: f64) -> f64 {
         let half_m = self.clearance.kink_m(run_m);
         let (geometry, towards) = (self.test.chain().geometry(), self.direction);
@@ -189,15 +215,17 @@ impl Overflight {
         }
         let last = self.vertex(count - 1);
         let per_gap = 1.0 / (landing.x_m - last.x_m).abs();
-        let clearance = (self.clearance.height_m() * per_gap).min(self.clearance.taper());
+        let (whole, taper) = (self.clearance.height_m() * per_gap, self.clearance.taper());
+        let clearance = if taper < whole { taper } else { whole };
         let ahead = (landing.z_m - last.z_m) * per_gap;
-        let lowest = self.lowest_slope.min(ahead) - clearance;
+        let lowest = if self.lowest_slope < ahead { self.lowest_slope } else { ahead } - clearance;
         // The size of every term; the highest slope may itself have suffered cancellation.
         let terms = self.steepest_seen + self.lowest_slope.abs().min(f64::MAX) + clearance + ahead.abs();
         self.highest_seen - lowest + SLACK * terms
     }
 
     /// The greatest loft that the first `count` vertices require.
+    #[inline(never)]
     fn by_hull(&mut self, landing: ChainPoint, count: usize, sight_slope: f64) -> f64 {
         let steepest = self.steepest_seen.max(sight_slope.abs());
         if steepest > self.hull.steepest() {
