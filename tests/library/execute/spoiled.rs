@@ -99,6 +99,23 @@ fn is_too_low_to_see(case: &Case<'_>, min: f64, radians: f64) -> bool {
     lower_m < 32.0 * rounding_m * (1.0 + min.tan().abs())
 }
 
+/// Whether the spoiled arc is over a limit of speed by next to nothing, as where the speed hardly depends on the angle.
+fn is_hardly_faster(case: &Case<'_>, limit: Limit, radians: f64) -> bool {
+    let contact = match limit {
+        Limit::TakeoffSpeed => Contact::Takeoff,
+        Limit::LandingSpeed => Contact::Landing,
+        _ => return false,
+    };
+    let hop = case.at_angle(radians);
+    let (takeoff, landing) = case.stations();
+    let (station, speed_m_s) = match contact {
+        Contact::Takeoff => (takeoff, hop.takeoff_speed_m_s),
+        Contact::Landing => (landing, hop.landing_speed_m_s),
+    };
+    let rule = case.chain.check_contact(&station, contact, case.hop.direction).unwrap();
+    (1.0..1.0 + 1e-8).contains(&(speed_m_s / rule.speed_max_m_s()))
+}
+
 /// Both ends of the feasible take-off angles.
 fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
     let (min, max) = (case.hop.takeoff_angles.min.radians(), case.hop.takeoff_angles.max.radians());
@@ -116,7 +133,11 @@ fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
         // speed near its minimum depends on the square of the angle, so its change is less than the tolerance of speeds.
         // A change of angle alone does not violate an apex limit that the landing itself just meets.
         let landing_is_top = one_point && limit == Limit::ApexHeight && case.hop.landing_angle.radians() >= 0.0;
-        if room < 1e-5 || landing_is_top || (limit == Limit::Terrain && is_too_low_to_see(case, min, radians)) {
+        if room < 1e-5
+            || landing_is_top
+            || (limit == Limit::Terrain && is_too_low_to_see(case, min, radians))
+            || is_hardly_faster(case, limit, radians)
+        {
             tally.too_fine += 1;
             continue;
         }
