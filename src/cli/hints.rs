@@ -173,7 +173,7 @@ mod tests {
         let command = || "gdalwarp in.tif out.tif".to_owned();
         let scale = |mend| TerrainError::MapScale { found: "the scale is 1.3".to_owned(), mend };
         let degrees = GeoReference::local(MapPoint::new(0.0, 9.0), 1.0, 1.0).unwrap();
-        let degrees = Dem::new(2, 2, vec![0.0, 9000.0, 0.0, 9000.0], degrees).unwrap();
+        let degrees = Dem::new(2, 2, vec![0.0, 900.0, 0.0, 900.5], degrees).unwrap();
         let not_projected = read_geotiff_bytes(geotiff_bytes(&degrees).unwrap()).unwrap_err();
         assert!(matches!(not_projected, TerrainError::NotProjected { .. }));
         let in_file = TerrainError::InFile { path: "a.tif".into(), problem: Box::new(not_projected) };

@@ -39,9 +39,6 @@ pub(crate) const DEFAULT_MAX_GIB: f64 = 8.0;
 /// The most bytes read from a pipe, and from a file that is read whole.
 static MAX_BYTES: AtomicU64 = AtomicU64::new(8 << 30);
 
-/// How much of a pipe is read to recognise its content.
-const PROBE_BYTES: usize = 1 << 16;
-
 /// The longest line of a table or a mesh: a full row takes some 500 bytes.
 const LONGEST_LINE: u64 = 1 << 20;
 
@@ -266,8 +263,8 @@ fn of_stream(path: &Path, role: Role) -> Result<Input, Failure> {
     let mut source: Box<dyn Read> =
         if path == Path::new("-") { Box::new(io::stdin().lock()) } else { Box::new(File::open(path).map_err(failed)?) };
     let mut beginning = Vec::new();
-    (&mut source).take(PROBE_BYTES as u64).read_to_end(&mut beginning).map_err(failed)?;
-    let ended = beginning.len() < PROBE_BYTES;
+    (&mut source).take(FileKind::PROBE_BYTES as u64).read_to_end(&mut beginning).map_err(failed)?;
+    let ended = beginning.len() < FileKind::PROBE_BYTES;
     let kind = FileKind::of_beginning(&beginning, ended.then_some(beginning.len() as u64), path);
     check_kind(&kind, role, path)?;
     if !ended && matches!(kind, FileKind::Text | FileKind::Binary) {

@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use chta::{scenario::FileKind, terrain::VectorFormat};
+use chta::{
+    scenario::FileKind,
+    terrain::{VectorFormat, shell_word},
+};
 
 use super::inputs::is_stream;
 
@@ -125,13 +128,13 @@ pub(crate) fn refusal(kind: &FileKind, role: Role, path: &Path) -> (String, Stri
 
 /// How to mend a file of this kind in this position.
 fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
-    let (name, toml) = (shell(path), toml_text(path));
+    let (name, toml) = (shell_word(path), toml_text(path));
     let key = role.key().unwrap_or_default();
     if let (FileKind::ForeignRaster(_), false) = (kind, cfg!(feature = "gdal")) {
         // It is mended as the GeoTIFF that GDAL makes of it.
         let converted = path.with_extension("tif");
         let mend = mend(&FileKind::Raster("GeoTIFF"), role, &converted);
-        return format!("convert it with `gdal_translate {name} {}`; then {mend}", shell(&converted));
+        return format!("convert it with `gdal_translate {name} {}`; then {mend}", shell_word(&converted));
     }
     match (kind, role) {
         (FileKind::Packed(..), _) if is_stream(path) => "unpack it before it goes into the pipe".to_owned(),
@@ -220,13 +223,6 @@ fn from_terrain(key: &str, name: &str, toml: &str) -> String {
         "cut a chain from it with `chta slice {name} --from X,Y --to X,Y -o chain.csv`, or name it in a scenario: [terrain] {key} = {toml} \
          with start_m and goal_m"
     )
-}
-
-/// A path as one word of a shell.
-fn shell(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = text.chars().all(|letter| letter.is_alphanumeric() || "/._-+:".contains(letter));
-    if plain { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
 }
 
 /// A path as a text of TOML.

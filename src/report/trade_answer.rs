@@ -49,6 +49,9 @@ pub struct TradeRow {
     /// Whether a speed limit of this cell reaches the escape speed, so that the answer is that of a limit just below it.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub above_escape: bool,
+    /// Whether some hop is longer than a hundredth of the body's radius, so that constant gravity is a bad model.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub far_on_body: bool,
 }
 
 impl TradeRow {
@@ -103,6 +106,21 @@ impl TradeAnswer {
         let closed = self.rows.iter().filter(|row| row.is_closed()).count();
         let proved = if self.proved { format!(", in {closed} it is proved that there is none") } else { String::new() };
         format!("{paths} of {} cells have a path{proved}", self.rows.len())
+    }
+
+    /// The warnings about cells whose answer depends on the body's size.
+    pub fn warnings(&self) -> Vec<String> {
+        let far: Vec<&TradeRow> = self.rows.iter().filter(|row| row.far_on_body).collect();
+        let of_model = far.first().map(|first| {
+            let at: Vec<_> = first.values.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+            format!(
+                "{} of {} cells, the first with {}, have a hop whose range is over 1 % of the body's radius: constant gravity is a bad model there",
+                far.len(),
+                self.rows.len(),
+                at.join(" and ")
+            )
+        });
+        self.escape_warning().into_iter().chain(of_model).collect()
     }
 
     /// A warning about the cells whose speed limit reaches the escape speed, with the first of them; `None` if there is none.

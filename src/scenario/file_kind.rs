@@ -7,10 +7,9 @@ use std::{
 };
 
 use super::CATALOGUE;
-use crate::terrain::{Foreign, ForeignGroup, VectorFormat, binary_stl_length, foreign_kind, mesh_format, raster_format};
-
-/// How many bytes of a file are examined: comments may precede the first statement.
-const PROBE_BYTES: u64 = 1 << 16;
+use crate::terrain::{
+    Foreign, ForeignGroup, VectorFormat, binary_stl_length, foreign_kind, mesh_format, raster_format, without_mark,
+};
 
 /// What a file is.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -57,6 +56,9 @@ pub enum FileKind {
 }
 
 impl FileKind {
+    /// How many bytes of a file are examined: comments may precede the first statement.
+    pub const PROBE_BYTES: usize = 1 << 16;
+
     /// What a file is.
     ///
     /// # Errors
@@ -65,7 +67,7 @@ impl FileKind {
         let file = File::open(path)?;
         let length = file.metadata()?.len();
         let mut beginning = Vec::new();
-        file.take(PROBE_BYTES).read_to_end(&mut beginning)?;
+        file.take(Self::PROBE_BYTES as u64).read_to_end(&mut beginning)?;
         Ok(Self::of_beginning(&beginning, Some(length), path))
     }
 
@@ -145,7 +147,7 @@ fn article(name: &str) -> &'static str {
 
 /// The beginning as text without its byte order mark; `None` if it is binary. The last letter may be cut.
 fn text_of(beginning: &[u8]) -> Option<&str> {
-    let bytes = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning);
+    let bytes = without_mark(beginning);
     let valid = match std::str::from_utf8(bytes) {
         Ok(text) => text,
         Err(error) if error.error_len().is_none() => std::str::from_utf8(bytes.get(..error.valid_up_to())?).ok()?,
@@ -253,7 +255,7 @@ mod tests {
 
     #[test]
     fn files_are_known_by_content_and_their_extension_is_only_a_help() {
-        const PAGE: &str = "a web page saved in place of the file";
+        const PAGE: &str = "a web page";
         let stl = {
             let mut bytes = vec![b' '; 80];
             bytes.extend(1_u32.to_le_bytes());

@@ -353,6 +353,7 @@ impl<'a> Trade<'a> {
             return Err(self.refused(values, "found no start or no goal, expected terrain.start_x_m and terrain.goal_x_m"));
         };
         let above_escape = !escape_warnings(&scenario, Some(chain.geometry())).is_empty();
+        let distance_m = (ends.1.point.x_m - ends.0.point.x_m).abs();
         let test = HopTest::new(chain);
         let answer = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter).map_err(|error| match error {
             SearchError::Cancelled(cancelled) => TradeError::Cancelled(cancelled),
@@ -366,6 +367,12 @@ impl<'a> Trade<'a> {
             hops: answer.hops,
             lower_bound: answer.lower_bound,
             above_escape,
+            // Some hop is at least as long as the mean of them.
+            far_on_body: answer.hops.zip(scenario.body.radius_m()).is_some_and(|(hops, radius_m)| {
+                #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
+                let hops = hops.max(1) as f64;
+                distance_m / hops > 0.01 * radius_m
+            }),
         })
     }
 

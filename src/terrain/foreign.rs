@@ -5,7 +5,7 @@
 
 use std::path::Path;
 
-use super::{TerrainError, VectorFormat};
+use super::{TerrainError, VectorFormat, without_mark};
 
 /// What kinds of file have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -148,7 +148,7 @@ const BEGINNINGS: [(&[u8], Foreign); 59] = [
 
 /// The kind of file that begins like this, if it is one of these.
 pub(crate) fn name(beginning: &[u8]) -> Option<Foreign> {
-    let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning).trim_ascii_start();
+    let text = without_mark(beginning).trim_ascii_start();
     let begins = |start: &[u8]| beginning.starts_with(start) || text.starts_with(start);
     if let Some((_, known)) = BEGINNINGS.iter().find(|(start, _)| begins(start)) {
         return Some(*known);
@@ -223,7 +223,7 @@ const MARKUP_BYTES: usize = 4096;
 fn markup(text: &[u8]) -> Option<Foreign> {
     let lower = text[..text.len().min(MARKUP_BYTES)].to_ascii_lowercase();
     let has = |word: &[u8]| contains(&lower, word);
-    let page = document("a web page saved in place of the file", "another download, of the file itself");
+    let page = document("a web page", "another download, of the file itself");
     Some(if has(b"product_observational") || has(b"pds.nasa.gov/pds4") {
         gdal("a PDS4 label")
     } else if has(b"<vrtdataset") {
@@ -318,8 +318,8 @@ mod tests {
             (b"\xfd7zXZ\0\0", Some("a file packed with xz")),
             (b"7z\xbc\xaf\x27\x1c\0", Some("a 7z archive")),
             (&package, Some("a GeoPackage")),
-            (b"\n<!DOCTYPE html>\n<html>", Some("a web page saved in place of the file")),
-            (b"<HTML><head>", Some("a web page saved in place of the file")),
+            (b"\n<!DOCTYPE html>\n<html>", Some("a web page")),
+            (b"<HTML><head>", Some("a web page")),
             (b"<?xml version=\"1.0\"?><Error><Code>AccessDenied</Code>", Some("an XML text")),
             (b"<?xml version=\"1.0\"?><kml>", Some("a KML file")),
             (b"<PAMDataset>", Some("a sidecar file of GDAL (.aux.xml)")),
@@ -337,7 +337,7 @@ mod tests {
             (b"P5\n2 2\n255\n....", Some("a PGM picture")),
             (b"P5 is a point\n", None),
             (b"<?xml version=\"1.0\"?>\n<svg width=\"1\"/>", Some("an SVG picture")),
-            (b"<!DOCTYPE html><html><svg/></html>", Some("a web page saved in place of the file")),
+            (b"<!DOCTYPE html><html><svg/></html>", Some("a web page")),
             (b"\0\0\x27\x0a\0", Some("an ESRI Shapefile")),
             (b"<x> <y> <z>\n", Some("an XML text")),
             (b"", None),

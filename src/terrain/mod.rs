@@ -33,6 +33,7 @@ mod parts;
 mod pds3;
 mod profile;
 mod projection;
+mod shell_word;
 mod sidecar;
 mod slice;
 mod stored;
@@ -66,9 +67,11 @@ pub use projection::{
     CrsError, Definition, Ellipsoid, LonLat, MapPlace, MapProjection, Method, NoProjection, ScaleExtreme, ScaleMend, TransectScale,
     check_map_scale, check_scale,
 };
+pub use shell_word::shell_word;
 pub use sidecar::sidecar_files;
 pub use slice::{slice, slice_file, slice_legs};
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
+pub(crate) use text_lines::without_mark;
 pub(crate) use void::find_void_of_chain;
 pub use void::{VoidPlace, VoidTaken};
 pub use walk::{FacetSpan, FacetWalk, Triangles};

@@ -37,7 +37,7 @@ pub(super) struct CheckedParts<T> {
 
 impl<T: StoredParts> CheckedParts<T> {
     pub(super) fn new(parts: T, context: ReadContext) -> Self {
-        let marks = Marks::within((f64::NEG_INFINITY, f64::INFINITY), parts.scaling());
+        let marks = Marks::of_raster((f64::NEG_INFINITY, f64::INFINITY), parts.scaling());
         Self { parts, context, marks, cleared: Cell::new(false) }
     }
 
@@ -69,7 +69,7 @@ impl<T: StoredParts> DemFile for CheckedParts<T> {
     fn window(&self, window: Window) -> Result<Vec<f64>, TerrainError> {
         let posts = self.masked(window)?;
         let doubted = self.context.no_data == NoDataRule::AsStated && !self.cleared.get();
-        if doubted && posts.iter().any(|z_m| self.marks.find(*z_m).is_some()) {
+        if doubted && self.marks.are_in(&posts) {
             self.judge_whole()?;
         }
         Ok(posts)

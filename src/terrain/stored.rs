@@ -7,7 +7,7 @@ use super::format::ReadContext;
 use super::georeference::refuse_degrees;
 use super::no_data::last_digit;
 use super::void::{Marks, around, find_void};
-use super::{Dem, GeoReference, NoDataRule, PostLattice, Samples, TerrainError, VoidPlace, VoidTaken, Window};
+use super::{Dem, GeoReference, NoDataRule, PostLattice, Samples, TerrainError, VoidPlace, Window};
 use crate::quantity::format_number;
 
 /// The conversion from stored sample to elevation: z = scale * sample + offset.
@@ -125,7 +125,7 @@ impl StoredStep {
 pub(super) fn convert_heights(map: Option<&str>, scaling: Scaling, metres_per_unit: Option<f64>) -> String {
     let map = map.map_or_else(String::new, |map| format!(" -a_srs {map}"));
     let times = |number: f64| match metres_per_unit {
-        Some(size_m) => (number * size_m).to_string(),
+        Some(size_m) => (number * size_m + 0.0).to_string(),
         None if number == 0.0 => "0".to_owned(),
         None if number == 1.0 => "METRES_PER_UNIT".to_owned(),
         None => format!("METRES_PER_UNIT_TIMES_{number}"),
@@ -186,23 +186,24 @@ pub(super) fn judge(dem: &Dem, rule: NoDataRule, scaling: Scaling) -> Result<(),
     if rule != NoDataRule::AsStated {
         return Ok(());
     }
-    let marks = Marks::within(dem.elevation_range_m(), scaling);
+    let marks = Marks::of_raster(dem.elevation_range_m(), scaling);
     let (rows, cols) = (dem.rows(), dem.cols());
     let neighbours = |index: usize, visit: &mut dyn FnMut(usize)| around((rows, cols), index, visit);
     let spacing_m = dem.georeference().step_m();
+    let are_there = match dem.samples() {
+        Samples::Single(posts) => marks.are_in(posts),
+        Samples::Double(posts) => marks.are_in(posts),
+    };
+    if !are_there {
+        return Ok(());
+    }
     let void = match dem.samples() {
         Samples::Single(posts) => find_void(posts.len(), &marks, spacing_m, |index| posts[index].into(), neighbours),
         Samples::Double(posts) => find_void(posts.len(), &marks, spacing_m, |index| posts[index], neighbours),
     };
     let Some(void) = void else { return Ok(()) };
     let (row, col) = (void.first / cols, void.first % cols);
-    Err(TerrainError::Void(Box::new(VoidTaken {
-        z_m: void.z_m,
-        stored: void.stored,
-        count: void.count,
-        place: VoidPlace::Post { row, col, at: dem.georeference().post(row, col) },
-        border_m: void.border_m,
-    })))
+    Err(void.taken(VoidPlace::Post { row, col, at: dem.georeference().post(row, col) }))
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@
 use std::collections::HashSet;
 use std::fmt;
 
-use super::stored::Scaling;
+use super::{TerrainError, stored::Scaling};
 use crate::quantity::{MapPoint, format_number};
 
 /// A usual mark of missing data that nothing states and that is not ground either.
@@ -183,32 +183,76 @@ pub(crate) struct Void {
     pub(crate) border_m: Option<(f64, f64)>,
 }
 
+impl Void {
+    /// The refusal of the block, whose first value lies at a place.
+    pub(super) fn taken(self, place: VoidPlace) -> TerrainError {
+        let Self { count, z_m, stored, border_m, .. } = self;
+        TerrainError::Void(Box::new(VoidTaken { z_m, stored, count, place, border_m }))
+    }
+}
+
 /// The marks that some values could be.
 pub(super) struct Marks {
-    /// Elevation and stored number of each mark.
-    marks: Vec<(f64, f64)>,
+    /// In the order of their elevations.
+    marks: Vec<Mark>,
+}
+
+/// A mark: its elevation, the number that is stored, and the size of that number in metres.
+#[derive(Clone, Copy, Debug)]
+struct Mark {
+    z_m: f64,
+    stored: f64,
+    size_m: f64,
+}
+
+impl Mark {
+    fn is(&self, z_m: f64) -> bool {
+        (z_m - self.z_m).abs() <= ROUNDING * self.z_m.abs()
+    }
 }
 
 impl Marks {
-    /// The usual marks within a range of elevations: as elevations, and as numbers that were stored before scaling.
-    pub(super) fn within((low_m, high_m): (f64, f64), scaling: Scaling) -> Self {
-        let converted = CONVERTED_MARKS.into_iter().flat_map(|mark| CONVERSIONS.map(|factor| mark * factor));
-        let all = USUAL_MARKS.into_iter().chain(converted).chain([0.0]);
-        let both = all.flat_map(|mark| [(mark, scaling.stored(mark)), (scaling.apply(mark), mark)]);
-        let room = |z_m: f64| z_m.abs() * ROUNDING;
-        let mut marks: Vec<(f64, f64)> =
-            both.filter(|(z_m, _)| *z_m >= low_m - room(*z_m) && *z_m <= high_m + room(*z_m)).collect();
-        marks.dedup_by(|a, b| a.0 == b.0);
-        Self { marks }
+    /// The usual marks of a raster within a range of elevations, zero among them: as elevations, and as numbers that were stored
+    /// before scaling.
+    pub(super) fn of_raster(range_m: (f64, f64), scaling: Scaling) -> Self {
+        Self::chosen(range_m, scaling, Some(0.0))
     }
 
-    pub(super) fn is_empty(&self) -> bool {
-        self.marks.is_empty()
+    /// The same of a chain or a mesh, which no program fills with zeros.
+    pub(super) fn within(range_m: (f64, f64), scaling: Scaling) -> Self {
+        Self::chosen(range_m, scaling, None)
+    }
+
+    fn chosen((low_m, high_m): (f64, f64), scaling: Scaling, zero: Option<f64>) -> Self {
+        let converted = CONVERTED_MARKS.into_iter().flat_map(|mark| CONVERSIONS.map(|factor| mark * factor));
+        let all = USUAL_MARKS.into_iter().chain(converted).chain(zero);
+        let both = all.flat_map(|mark| {
+            let as_stored = Mark { z_m: scaling.apply(mark), stored: mark, size_m: (mark * scaling.scale).abs() };
+            [as_stored, Mark { z_m: mark, stored: scaling.stored(mark), size_m: mark.abs() }]
+        });
+        let room = |z_m: f64| z_m.abs() * ROUNDING;
+        let within = |mark: &Mark| mark.z_m >= low_m - room(mark.z_m) && mark.z_m <= high_m + room(mark.z_m);
+        let mut marks: Vec<Mark> = both.filter(within).collect();
+        marks.sort_by(|a, b| a.z_m.total_cmp(&b.z_m));
+        marks.dedup_by(|later, first| first.is(later.z_m));
+        Self { marks }
     }
 
     /// The number of the mark that a value equals.
     pub(super) fn find(&self, z_m: f64) -> Option<usize> {
-        self.marks.iter().position(|(mark_m, _)| (z_m - mark_m).abs() <= ROUNDING * mark_m.abs())
+        let above = self.marks.partition_point(|mark| mark.z_m < z_m);
+        [above.checked_sub(1), Some(above)].into_iter().flatten().find(|&at| self.marks.get(at).is_some_and(|mark| mark.is(z_m)))
+    }
+
+    /// Whether some values have a mark among them, in one pass that takes little time beside reading them.
+    pub(super) fn are_in<T: Copy + Into<f64>>(&self, values: &[T]) -> bool {
+        // A piece of the values stays in the cache while each mark is looked for.
+        values.chunks(4096).any(|piece| {
+            self.marks.iter().any(|mark| {
+                let (z_m, room) = (mark.z_m, ROUNDING * mark.z_m.abs());
+                piece.iter().fold(false, |found, &value| found | ((value.into() - z_m).abs() <= room))
+            })
+        })
     }
 }
 
@@ -224,26 +268,29 @@ pub(super) fn find_void(
     neighbours: impl Fn(usize, &mut dyn FnMut(usize)),
 ) -> Option<Void> {
     let around = Around { count, marks, spacing_m, value: &value, neighbours: &neighbours };
-    if marks.is_empty() || !(0..count).any(|index| marks.find(value(index)).is_some()) {
+    let marked: Vec<usize> = (0..count).filter(|&index| marks.find(value(index)).is_some()).collect();
+    if marked.is_empty() {
         return None;
     }
     let mut seen = vec![false; count];
-    for first in 0..count {
-        let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
-        let same = |z_m: f64| marks.find(z_m) == Some(mark);
-        let block = Block::from(first, &mut seen, &value, &neighbours, same);
-        if let Err(OffBorder(border_m)) = block.check(&around) {
-            return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
-        }
-    }
-    seen.fill(false);
-    for first in 0..count {
-        let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
-        let block = Block::from(first, &mut seen, &value, &neighbours, |z_m| marks.find(z_m).is_some());
-        if block.extent_m.0 != block.extent_m.1
-            && let Err(OffBorder(border_m)) = block.check(&around)
-        {
-            return Some(Void { first, count: block.count, z_m: value(first), stored: marks.marks[mark].1, border_m });
+    for alone in [true, false] {
+        seen.fill(false);
+        for &first in &marked {
+            let Some(mark) = marks.find(value(first)).filter(|_| !seen[first]) else { continue };
+            let belongs = |z_m: f64| if alone { marks.find(z_m) == Some(mark) } else { marks.find(z_m).is_some() };
+            let block = Block::from(first, &mut seen, &value, &neighbours, belongs);
+            if !alone && block.extent_m.0 == block.extent_m.1 {
+                continue;
+            }
+            if let Err(OffBorder(border_m)) = block.check(&around) {
+                return Some(Void {
+                    first,
+                    count: block.values.len(),
+                    z_m: value(first),
+                    stored: marks.marks[mark].stored,
+                    border_m,
+                });
+            }
         }
     }
     None
@@ -254,7 +301,6 @@ struct OffBorder(Option<(f64, f64)>);
 
 /// Connected values, and the valid ones around them.
 struct Block {
-    count: usize,
     /// Lowest and highest of its values, m.
     extent_m: (f64, f64),
     /// Lowest and highest value around it, m; `None` if all around are gaps.
@@ -271,11 +317,10 @@ impl Block {
         neighbours: &impl Fn(usize, &mut dyn FnMut(usize)),
         belongs: impl Fn(f64) -> bool,
     ) -> Self {
-        let mut block = Self { count: 0, extent_m: (value(first), value(first)), border_m: None, values: Vec::new() };
+        let mut block = Self { extent_m: (value(first), value(first)), border_m: None, values: Vec::new() };
         let mut waiting = vec![first];
         seen[first] = true;
         while let Some(index) = waiting.pop() {
-            block.count += 1;
             block.values.push(index);
             block.extent_m = wider(Some(block.extent_m), value(index));
             neighbours(index, &mut |near| {
@@ -299,12 +344,17 @@ impl Block {
             let valid = (0..count).map(value).filter(|z_m| !z_m.is_nan() && marks.find(*z_m).is_none());
             valid.fold(None, |range, z_m| Some(wider(range, z_m)))
         };
-        let Some(border_m) = self.border_m.or_else(elsewhere) else { return Err(OffBorder(None)) };
+        let is_zero = self.extent_m == (0.0, 0.0);
+        let Some(border_m) = self.border_m.or_else(elsewhere) else {
+            // Zeros everywhere are a plain, or a mask without a zone.
+            return if is_zero { Ok(()) } else { Err(OffBorder(None)) };
+        };
         let off_m = |(low_m, high_m): (f64, f64)| (low_m - self.extent_m.1).max(self.extent_m.0 - high_m);
         let range = |(low_m, high_m): (f64, f64)| high_m - low_m;
-        let least_m = if self.extent_m == (0.0, 0.0) { ZERO_OFF_M } else { WHOLE_METRE_M };
+        let least_m = if is_zero { ZERO_OFF_M } else { WHOLE_METRE_M };
         let off = off_m(border_m);
-        let is_near = off <= NEAR_THE_MARK * self.extent_m.0.abs();
+        let size_m = marks.find(self.extent_m.0).map_or(0.0, |mark| marks.marks[mark].size_m);
+        let is_near = off <= NEAR_THE_MARK * size_m;
         if off > range(border_m).max(least_m) && !is_near {
             let behind = if off <= GENTLE * spacing_m { around.ring(&self.values, 2) } else { None };
             if behind.is_none_or(|wide| off_m(wide) > 2.0 * range(wide)) {
@@ -422,9 +472,8 @@ mod tests {
             (&[-997.5, -998.0, -999.0, -997.9], None),
             // A void smeared by resampling: its rim is no ground.
             (&[100.0, 101.0, 103.0, 100.0, -55.0, -4700.0, -9999.0, -9999.0, -4800.0, -60.0, 101.0, 104.0, 100.0], Some((6, 2))),
-            // Zeros far below, and zeros that are a valley; marks in feet and kilometres, converted with their file.
-            (&[-2500.0, 0.0, 0.0, -2490.0], Some((1, 2))),
-            (&[100.0, 0.0, 0.0, 105.0], None),
+            // Zeros of a chain are heights; marks in feet and kilometres, converted with their file.
+            (&[-2500.0, 0.0, 0.0, -2490.0], None),
             (&[328.0, -3047.6952, 330.0], Some((1, 1))),
             (&[2000.0, -9_999_000.0, 2100.0], Some((1, 1))),
             (&[10.0, -9999.0, -21000.0], None),

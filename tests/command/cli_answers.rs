@@ -401,8 +401,23 @@ fn constant_gravity_gives_a_warning_on_small_bodies() {
             assert_warned(&desk, &[args, &fewest].concat(), &expected);
         }
         assert_warned(&desk, &["run", "small.toml", "-o", "out"], &expected);
+        // A hop of 400 m is told by `trade` for its cells.
+        let varied = ["trade", "small.toml", "--vary", "surface.friction_coefficient=0.01:0.6:2"];
+        let ran = desk.run(&varied);
+        assert!(ran.stderr.contains("have a hop whose range is over 1 % of the body's radius"), "{body}: {}", ran.stderr);
     }
     assert_warned(&desk, &["plan", "scenario.toml"], &[]);
+    // The far end of a heading is 6 m away, over 1 % of the radius of Bennu (2.45 m); the robot gets there in one hop or two.
+    let desk = Desk::with_dem();
+    for (body, warned) in [("bennu", true), ("moon", false)] {
+        desk.write(
+            "fan.toml",
+            format!("[body]\nname = \"{body}\"\n[hopper]\ntakeoff_speed_max_m_s = 0.15\nlanding_speed_max_m_s = 0.15\n[surface]\nfriction_coefficient = 0.9\n"),
+        );
+        let ran = desk.run(&["fan", "ground.tif", "--scenario", "fan.toml", "--from", "9,9", "--headings", "4", "--length", "6"]);
+        assert_eq!(ran.status, 0, "{body}: {}", ran.stderr);
+        assert_eq!(ran.stderr.contains("constant gravity is a bad model"), warned, "{body}: {}{}", ran.stderr, ran.stdout);
+    }
 }
 
 #[test]

@@ -1,9 +1,8 @@
 //! What a file states of its map, its units and its body: refused where it is not known or contradicted, with commands that are run here
 //! and whose results are compared with the truth.
-#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
+#![expect(clippy::unwrap_used, reason = "a test may panic, and says why it skips")]
 
 use std::path::Path;
-use std::process::Command;
 
 use chta::quantity::MapPoint;
 use chta::terrain::{CoordinateSystem, Dem, GeoReference, MapProjection, geotiff_bytes, read_dem};

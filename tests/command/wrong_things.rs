@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 #![allow(clippy::print_stderr, reason = "a skipped test says why")]
 
-use std::{fs, io::Write, process::Command};
+use std::{fs, io::Write, path::Path, process::Command};
 
 use crate::desk::Desk;
 use crate::installed::installed;
@@ -291,7 +291,7 @@ fn keys_written_as_the_messages_say_are_accepted() {
     let message = desk.run(&["plan", "zones.gpkg"]).stderr;
     assert!(message.contains("[surface] keep_out = \"zones.gpkg\""), "{message}");
     desk.write("named.toml", head.replace("[terrain]\n", "keep_out = \"zones.gpkg\"\n[terrain]\ndem = \"ground.tif\"\n") + on_map);
-    desk.refused(&["check", "named.toml"], &["convert it with: ogr2ogr -f GeoJSON"]);
+    desk.refused(&["check", "named.toml"], &["convert it with: ogrmerge.py -single -f GeoJSON"]);
     // Zones and terrain named where a message says.
     for (args, key) in [
         (&["map", "zones.geojson", "--start", "1,1"][..], "keep_out"),
@@ -404,7 +404,8 @@ fn a_windows_path_written_as_the_message_says_is_read() {
 /// Zones in other formats: the command of the message is run, and its result keeps the robot out where the zone was drawn.
 #[test]
 fn zones_in_other_formats_are_converted_by_the_command_of_the_message() {
-    if !installed("ogr2ogr") || !installed("gdal_translate") {
+    // ogrmerge.py needs the Python of the system's GDAL.
+    if !installed("ogr2ogr") || !installed("gdal_translate") || !Path::new("/usr/bin/ogrmerge.py").is_file() {
         return;
     }
     let desk = Desk::with_dem();
@@ -435,7 +436,11 @@ fn zones_in_other_formats_are_converted_by_the_command_of_the_message() {
         desk.write("zone.json", zone);
         // GeoJSON without a reference system means degrees on the Earth unless told otherwise.
         tool("ogr2ogr", &["-f", "ESRI Shapefile", "-a_srs", projection.unwrap_or("None"), "zones.shp", "zone.json"]);
-        tool("ogr2ogr", &["-f", "GPKG", "-a_srs", projection.unwrap_or("None"), "zones.gpkg", "zone.json"]);
+        // The zone is in the second layer; the first has one beside the slice.
+        desk.write("far.json", zone.replace("4, 4", "4, 14").replace("8, 4", "8, 14").replace("12]", "16]"));
+        let srs = projection.unwrap_or("None");
+        tool("ogr2ogr", &["-f", "GPKG", "-a_srs", srs, "-nln", "far", "zones.gpkg", "far.json"]);
+        tool("ogr2ogr", &["-f", "GPKG", "-update", "-a_srs", srs, "-nln", "near", "zones.gpkg", "zone.json"]);
         // One degree on the ellipsoid's equator; along the meridian the WGS 84 ellipsoid has 110 574 m.
         let per_metre = 180.0 / (std::f64::consts::PI * radius_m);
         let north = if body == "earth" { 1.0 / 110_574.275_8 } else { per_metre };
@@ -443,7 +448,16 @@ fn zones_in_other_formats_are_converted_by_the_command_of_the_message() {
         let up = |y: f64| format!("{:.12}", y * north);
         let drawn =
             KML.replace("LON0", &place(4.0)).replace("LON1", &place(8.0)).replace("LAT0", &up(4.0)).replace("LAT1", &up(12.0));
-        desk.write("zones.kml", drawn);
+        // A folder with a zone beside the slice comes before that of the zone.
+        let far =
+            KML.replace("LON0", &place(4.0)).replace("LON1", &place(8.0)).replace("LAT0", &up(14.0)).replace("LAT1", &up(16.0));
+        let placemark = |kml: &str| {
+            let (from, to) = (kml.find("<Placemark>").unwrap(), kml.rfind("</Placemark>").unwrap() + "</Placemark>".len());
+            kml[from..to].to_owned()
+        };
+        let (near, far) = (placemark(&drawn), placemark(&far));
+        let folders = format!("<Folder><name>far</name>{far}</Folder><Folder><name>near</name>{near}</Folder>");
+        desk.write("zones.kml", drawn.replace(&near, &folders));
         for name in ["zones.kml", "zones.shp", "zones.gpkg", "zones.shx", "zones.dbf"] {
             let scenario =
                 |file: &str| format!("[body]\ngravity_m_s2 = 1.62\n[surface]\nfriction_coefficient = 0.6\nkeep_out = \"{file}\"\n");
@@ -456,13 +470,17 @@ fn zones_in_other_formats_are_converted_by_the_command_of_the_message() {
             }
             desk.refused(
                 &slice,
-                &["keep-out zones", "expected polygons as GeoJSON in the terrain's map coordinates", "convert it with: ogr2ogr"],
+                &["keep-out zones", "expected polygons as GeoJSON in the terrain's map coordinates", "convert it with: ogr"],
             );
             let (_, advice) = message.split_once("convert it with: ").unwrap();
             let (command, file) = advice.split_once("; then give ").unwrap();
             let file = file.split(" as keep_out").next().unwrap();
             fs::remove_file(desk.path().join(file)).ok();
-            let ran = Command::new("sh").current_dir(desk.path()).args(["-c", command]).output().unwrap();
+            let ran = Command::new("sh")
+                .current_dir(desk.path())
+                .args(["-c", &format!("PATH=/usr/bin:$PATH; {command}")])
+                .output()
+                .unwrap();
             assert!(ran.status.success(), "{body} {name}: {command}: {}", String::from_utf8_lossy(&ran.stderr));
             desk.write("zone.toml", scenario(file));
             let ran = desk.run(&slice);

@@ -128,7 +128,7 @@ fn heights_in_other_units_are_converted_with_their_scale_and_their_gaps() {
                 let height = if scaled { stored[index] * 0.5 + 10.0 } else { stored[index] };
                 match found {
                     Some(found) => {
-                        assert!((found - height * size_m).abs() < 1e-9 * height, "{heights} {scaled}: {found} for {height}")
+                        assert!((found - height * size_m).abs() < 1e-9 * height, "{heights} {scaled}: {found} for {height}");
                     }
                     None => assert_eq!(index, 2, "{heights} {scaled}"),
                 }

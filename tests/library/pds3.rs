@@ -302,6 +302,53 @@ fn maps_that_are_stated_in_terms_not_known_or_contradictory_are_refused_by_key()
 }
 
 /// Labels in small letters, with comments before the version, and with every line end.
+/// Keys of the IMAGE object that convert samples or name special ones, and are not applied, are refused with their key; values that
+/// change nothing pass, and marks are read.
+#[test]
+fn keys_of_the_image_that_would_change_its_samples_are_not_passed_over() {
+    let read = |image: &str| read_pds3_bytes(Fixture { image, ..Fixture::default() }.attached());
+    for key in [
+        "DN_SCALE",
+        "Z_SCALE",
+        "HEIGHT_SCALE",
+        "VERTICAL_SCALE",
+        "DN_TO_METERS",
+        "CORE_MULTIPLIER",
+        "SCALE_FACTOR",
+        "SCALE",
+        "DN_GAIN",
+    ] {
+        let message = read(&format!("  {key} = 0.5\r\n")).unwrap_err().to_string();
+        assert!(message.contains(key) && message.contains("0.5"), "{key}: {message}");
+        assert!(read(&format!("  {key} = 1.0\r\n")).is_ok(), "{key}");
+    }
+    for key in ["BASE", "CORE_BASE", "SAMPLE_BASE", "DN_OFFSET", "HEIGHT_BIAS"] {
+        let message = read(&format!("  {key} = 0.5\r\n")).unwrap_err().to_string();
+        assert!(message.contains(key) && message.contains("0.5"), "{key}: {message}");
+        assert!(read(&format!("  {key} = 0\r\n")).is_ok(), "{key}");
+    }
+    for (lines, sound) in [
+        ("CORE_UNIT = \"KILOMETER\"", false),
+        ("UNITS = KM", false),
+        ("DN_UNIT = FEET", false),
+        ("CORE_UNIT = \"METER\"", true),
+        ("CORE_UNIT = \"N/A\"", true),
+        ("UNIT = KM\r\n  CORE_UNIT = KM", true),
+        ("UNIT = KM\r\n  CORE_UNIT = M", false),
+    ] {
+        let found = read(&format!("  {lines}\r\n")).map(drop).map_err(|error| error.to_string());
+        assert!(found.is_ok() == sound && found.as_ref().err().is_none_or(|error| error.contains("UNIT")), "{lines}: {found:?}");
+    }
+    for key in ["INVALID", "FILL", "BLANK"] {
+        let dem = read(&format!("  {key} = {}\r\n", stored(3, 4))).unwrap();
+        assert_eq!(dem.elevation(3, 4), None, "{key}");
+    }
+    for key in ["GAP", "EMPTY_DATA", "VOID", "FILL_NUMBER"] {
+        let message = read(&format!("  {key} = 37\r\n")).unwrap_err().to_string();
+        assert!(message.contains(key), "{key}: {message}");
+    }
+}
+
 #[test]
 fn labels_are_recognised_as_they_are_read() {
     let folder = tempfile::tempdir().unwrap();

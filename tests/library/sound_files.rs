@@ -1,6 +1,6 @@
 //! Sound files that are not read as they stand: each is named, with a command that makes a readable one, and never called
 //! damaged. Where GDAL is installed, the command is run and the result compared with the elevations that were written.
-#![expect(clippy::print_stderr, reason = "a test says why it skips")]
+#![expect(clippy::unwrap_used, clippy::print_stderr, reason = "a test may panic, and says why it skips")]
 
 use std::path::Path;
 use std::process::Command;
@@ -146,4 +146,114 @@ fn meshes_that_other_programs_read_are_read() {
     }
     let cut = read_mesh_bytes(&titled[..1000], 1.0).unwrap_err().to_string();
     assert!(cut.contains("binary STL is damaged") && cut.contains("24 triangles in 1284 bytes, but the file has 1000"), "{cut}");
+}
+
+/// A TIFF of 3 rows and 4 columns of 16-bit integers 10 row + column, in two strips of `PackBits`, of which the last holds some rows:
+/// classic or `BigTIFF`, in either byte order.
+fn two_strips(big: bool, little: bool, last_rows: usize) -> Vec<u8> {
+    let two = |value: u16| if little { value.to_le_bytes() } else { value.to_be_bytes() }.to_vec();
+    let four = |value: u32| if little { value.to_le_bytes() } else { value.to_be_bytes() }.to_vec();
+    let eight = |value: u64| if little { value.to_le_bytes() } else { value.to_be_bytes() }.to_vec();
+    let strip = |rows: std::ops::Range<usize>| -> Vec<u8> {
+        let samples: Vec<u8> =
+            rows.flat_map(|row| (0..4).map(move |col| 10 * row + col)).flat_map(|z| two(u16::try_from(z).unwrap())).collect();
+        [vec![u8::try_from(samples.len() - 1).unwrap()], samples].concat()
+    };
+    let parts = [strip(0..2), strip(2..2 + last_rows)];
+    let head = if big { 16 } else { 8 };
+    let doubles: Vec<u8> =
+        [5.0_f64, 5.0, 0.0, 0.0, 0.0, 0.0, 100.0, 200.0, 0.0].into_iter().flat_map(|value| eight(value.to_bits())).collect();
+    let (first, second) = (head, head + parts[0].len());
+    let (places, lengths) = (second + parts[1].len(), second + parts[1].len() + 8);
+    let numbers = lengths + 8;
+    let directory = numbers + doubles.len();
+    let at = |place: usize| u32::try_from(place).unwrap();
+    // Offsets and lengths of the two strips stand beside the directory, or in it, where the value of an entry has eight bytes.
+    let pair = |one: usize, other: usize| [four(at(one)), four(at(other))].concat();
+    let outside = |place: usize, own: Vec<u8>| if big { own } else { four(at(place)) };
+    let short = |value: u16| [two(value), vec![0; 2]].concat();
+    let place = |place: usize| if big { eight(place as u64) } else { four(at(place)) };
+    let entries: Vec<(u16, u16, u64, Vec<u8>)> = vec![
+        (256, 3, 1, short(4)),
+        (257, 3, 1, short(3)),
+        (258, 3, 1, short(16)),
+        (259, 3, 1, short(32773)),
+        (262, 3, 1, short(1)),
+        (273, 4, 2, outside(places, pair(first, second))),
+        (277, 3, 1, short(1)),
+        (278, 3, 1, short(2)),
+        (279, 4, 2, outside(lengths, pair(parts[0].len(), parts[1].len()))),
+        (339, 3, 1, short(2)),
+        (33550, 12, 3, place(numbers)),
+        (33922, 12, 6, place(numbers + 24)),
+    ];
+    let mut bytes = if little { b"II".to_vec() } else { b"MM".to_vec() };
+    bytes.extend(if big {
+        [two(43), two(8), two(0), eight(directory as u64)].concat()
+    } else {
+        [two(42), four(at(directory))].concat()
+    });
+    bytes.extend([parts.concat(), pair(first, second), pair(parts[0].len(), parts[1].len()), doubles].concat());
+    bytes.extend(if big { eight(entries.len() as u64) } else { two(u16::try_from(entries.len()).unwrap()) });
+    for (tag, kind, count, mut value) in entries {
+        bytes.extend([two(tag), two(kind), if big { eight(count) } else { four(u32::try_from(count).unwrap()) }].concat());
+        value.resize(if big { 8 } else { 4 }, 0);
+        bytes.extend(value);
+    }
+    bytes.extend([0; 8]);
+    bytes
+}
+
+/// The rows of the image are those of tag 257, whatever the last strip holds beyond them; a strip with fewer, or with more than a full
+/// one, is damaged.
+#[test]
+fn a_last_strip_of_full_height_is_read() {
+    for big in [false, true] {
+        for little in [false, true] {
+            for (last_rows, sound) in [(1, true), (2, true), (0, false), (3, false)] {
+                let bytes = if last_rows == 0 { two_strips(big, little, 1) } else { two_strips(big, little, last_rows) };
+                let context = format!("BigTIFF {big}, little-endian {little}, {last_rows} rows");
+                let bytes = if last_rows == 0 {
+                    // The run of the last strip says eight bytes and has two.
+                    let mut bytes = bytes;
+                    let last = (if big { 16 } else { 8 }) + 17;
+                    bytes[last] = 1;
+                    bytes
+                } else {
+                    bytes
+                };
+                match read_geotiff_bytes(bytes) {
+                    Ok(dem) => {
+                        assert!(sound, "{context}");
+                        let posts: Vec<Option<f64>> = dem.elevations().collect();
+                        let expected: Vec<Option<f64>> =
+                            (0..3).flat_map(|row| (0..4).map(move |col| Some(f64::from(10 * row + col)))).collect();
+                        assert_eq!(posts, expected, "{context}");
+                    }
+                    Err(error) => assert!(!sound && error.to_string().contains("damaged"), "{context}: {error}"),
+                }
+            }
+        }
+    }
+}
+
+/// Rows that GDAL only filled are stored in a last strip of full height: the elevations are those that it was told to fill in.
+#[test]
+fn rasters_that_gdal_only_filled_are_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("filled.tif");
+    let path = file.to_str().unwrap();
+    for (kind, compression) in [("Float64", "DEFLATE"), ("Float32", "LZW"), ("Int16", "ZSTD"), ("Float32", "NONE")] {
+        let size = ["-outsize", "40", "1003", "-a_ullr", "0", "2006", "80", "0", "-burn", "7"];
+        let made = [&["-q", "-of", "GTiff", "-bands", "1", "-ot", kind], &size[..]].concat();
+        let compression_option = format!("COMPRESS={compression}");
+        let made = [&made[..], &["-co", &compression_option, path]].concat();
+        if !run("gdal_create", &made) {
+            eprintln!("skipped: no gdal_create, or not with {compression}");
+            continue;
+        }
+        let dem = read_dem(Path::new(path)).unwrap();
+        assert_eq!((dem.rows(), dem.cols()), (1003, 40));
+        assert!(dem.elevations().all(|z| z == Some(7.0)), "{kind} {compression}");
+    }
 }

@@ -208,16 +208,32 @@ proptest! {
 
 /// Overlays are rasters as well: a mark in a friction raster is no friction, and the way out is the file's, not the terrain's key.
 #[test]
-fn marks_in_overlays_are_refused_with_the_command_that_states_them() {
+fn marks_in_a_friction_raster_are_refused_with_the_command_that_states_them() {
     let folder = tempfile::tempdir().unwrap();
     for mark in [-9999.0, 9999.0, 32767.0] {
         let friction: Vec<f64> = heights(1.0).iter().map(|z| if *z == 1.0 { mark } else { 0.5 + z / 1000.0 }).collect();
         let path = write("float32.tif", folder.path(), &friction);
-        for refused in [read_friction_raster(&path, None).unwrap_err(), read_keep_out(&path, None, everywhere()).unwrap_err()] {
-            let sentence = refused.to_string();
-            let command = format!("gdal_translate -a_nodata {mark} in.tif out.tif");
-            assert!(sentence.contains(&command) && !sentence.contains("terrain.no_data"), "{sentence}");
-        }
+        let sentence = read_friction_raster(&path, None).unwrap_err().to_string();
+        let command = format!("gdal_translate -a_nodata {mark} in.tif out.tif");
+        assert!(sentence.contains(&command) && !sentence.contains("terrain.no_data"), "{sentence}");
+    }
+}
+
+/// A pixel of a keep-out mask that is missing, or a mark of missing data, keeps out; a no-data value of 0 is free ground.
+#[test]
+fn missing_pixels_of_a_keep_out_mask_keep_out_unless_they_are_zero() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mask.tif");
+    for (value, stated, kept) in
+        [(1.0, "", true), (255.0, "255", true), (f64::NAN, "nan", true), (-9999.0, "", true), (0.0, "0", false), (0.0, "", false)]
+    {
+        let mask: Vec<f64> = heights(100_000.0).iter().map(|z| if *z == 100_000.0 { value } else { 0.0 }).collect();
+        let tags = (!stated.is_empty()).then(|| Tag::Text(42113, stated.to_owned()));
+        let file = plain_tiff((5, 6), &Samples::of("float32", &mask), placed(999.5, 2004.5, 1.0).into_iter().chain(tags));
+        std::fs::write(&path, file).unwrap();
+        let zones = read_keep_out(&path, None, everywhere()).unwrap();
+        assert_eq!(zones.keeps_out(MapPoint::new(1002.0, 2003.0)), kept, "{value} {stated}");
+        assert!(!zones.keeps_out(MapPoint::new(1000.0, 2000.0)), "{value} {stated}");
     }
 }
 

@@ -5,7 +5,7 @@ use chta::{
     quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer, figure::draw_rose},
-    scenario::{Overlays, dem_on_body},
+    scenario::{Extremes, Overlays, constant_gravity_warnings, dem_on_body},
     terrain::check_scale,
 };
 use nalgebra::Vector2;
@@ -66,6 +66,11 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
             check_scale(dem, projection.as_ref(), [from, end], accepted, dem_file).map_err(|e| Failure::about(dem_file, &e))?;
         warnings.extend(scale.warning().filter(|warning| !warnings.contains(warning)));
     }
+    // Some hop of the fewest to the end of a band is at least the mean of them.
+    let bands = rays.iter().flat_map(|ray| &ray.bands);
+    #[expect(clippy::cast_precision_loss, reason = "counts of hops stay far below 2^53")]
+    let range_m = bands.filter_map(|band| Some(band.to_m / band.hops.filter(|hops| *hops > 0)? as f64)).fold(0.0, f64::max);
+    warnings.extend(constant_gravity_warnings(&scenario.body, Extremes { range_m, ..Extremes::default() }));
     for warning in &warnings {
         output::warn(common.quiet, warning);
     }

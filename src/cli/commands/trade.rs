@@ -49,7 +49,7 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     let trade = Trade::new(&entries, &base, &survey, &swept).map_err(refused)?;
     let budget = args.prove.prove.then_some(args.prove.budget);
     let answer = trade.run(budget, &Progress::new(args.common.quiet)).map_err(refused)?;
-    if let Some(warning) = answer.escape_warning() {
+    for warning in answer.warnings() {
         output::warn(args.common.quiet, &warning);
     }
     let mut files = Vec::new();
@@ -80,7 +80,7 @@ fn csv(answer: &TradeAnswer) -> Result<Vec<u8>, Failure> {
 
 /// The answer as one JSON document; its scenario is that of the first row.
 fn document(first: &Loaded, answer: &TradeAnswer) -> Result<String, Failure> {
-    let warnings = first.warnings_with(answer.escape_warning());
+    let warnings = first.warnings_with(answer.warnings());
     let document = Document::new("trade", first.document.clone(), first.inputs.clone(), warnings, answer.clone());
     Ok(document.on_map(first.prepared.projection.as_ref()).to_json()?)
 }

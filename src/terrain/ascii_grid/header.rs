@@ -6,8 +6,8 @@ use std::io::{self, BufRead};
 use super::read::Problems;
 use super::tokens::{Token, Tokens, begins_comment};
 use crate::quantity::number_help;
-use crate::terrain::NoData;
 use crate::terrain::text_lines::lines_of;
+use crate::terrain::{NoData, without_mark};
 
 /// The no-data value if the header gives none (from the definition of the format).
 pub(super) const DEFAULT_NO_DATA: f64 = -9999.0;
@@ -205,7 +205,7 @@ pub(super) fn quoted(text: &str) -> String {
 /// Whether a text begins with a key of the header, after comments; any sign may follow the key, so that the reader can name a
 /// wrong one.
 pub(super) fn begins_with_key(beginning: &[u8]) -> bool {
-    let beginning = beginning.strip_prefix("\u{feff}".as_bytes()).unwrap_or(beginning);
+    let beginning = without_mark(beginning);
     let mut lines = lines_of(beginning).map(<[u8]>::trim_ascii_start).filter(|line| !line.is_empty());
     lines.find(|line| !begins_comment(line)).is_some_and(|line| {
         let end = line.iter().position(|byte| !byte.is_ascii_alphanumeric() && *byte != b'_').unwrap_or(line.len());

@@ -5,6 +5,7 @@
 mod encoding;
 mod image;
 mod keys;
+mod last_strip;
 mod metadata;
 mod read;
 mod samples;

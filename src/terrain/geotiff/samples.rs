@@ -1,9 +1,10 @@
 //! Decodes the posts, several rows at a time.
 
-use tiff_reader::{Ifd, RasterLayout, TiffFile, TiffSample};
+use tiff_reader::{Ifd, RasterLayout, TiffError, TiffFile, TiffSample};
 
 use super::encoding::unreadable;
 use super::image::{Images, damaged};
+use super::last_strip::with_full_strips;
 use crate::terrain::stored::Scaling;
 use crate::terrain::{NoData, TerrainError, Window};
 
@@ -215,14 +216,24 @@ struct Reading<'a> {
 impl Reading<'_> {
     fn samples<T: TiffSample>(&self) -> Result<Vec<T>, TerrainError> {
         let Window { first_row, first_col, rows, cols } = self.window;
-        let read = self.file.read_window_from_ifd::<T>(self.image, first_row, first_col, rows, cols);
-        let samples = read.map_err(unreadable)?;
+        let read = |image: &Ifd| self.file.read_window_from_ifd::<T>(image, first_row, first_col, rows, cols);
+        let samples =
+            read(self.image).or_else(|error| self.with_full_strips(&error).and_then(|image| read(&image).ok()).ok_or(error));
+        let samples = samples.map_err(unreadable)?;
         let (samples, _) = samples.into_raw_vec_and_offset();
         if samples.len() == rows * cols {
             Ok(samples)
         } else {
             Err(damaged(format!("it holds {} of {} posts of a window", samples.len(), rows * cols)))
         }
+    }
+
+    /// The image with a last strip of full height, if the last strip could not be decoded without.
+    fn with_full_strips(&self, error: &TiffError) -> Option<Ifd> {
+        let TiffError::DecompressionFailed { index, .. } = error else { return None };
+        let layout = self.image.raster_layout().ok()?;
+        let is_last = self.image.strip_offsets().is_some_and(|strips| strips.len() == index + 1);
+        is_last.then(|| with_full_strips(self.file, self.image, &layout)).flatten()
     }
 
     fn map<T: TiffSample>(&self, convert: impl Fn(T) -> f64) -> Result<Vec<f64>, TerrainError> {

@@ -271,19 +271,19 @@ mod tests {
     /// same unit of every row with a code of EPSG.
     #[test]
     fn the_unit_of_elevations_follows_from_key_code_and_citation() {
-        let us = "A*0.3048006";
+        let us = "-a_scale 0.3048006";
         for (numbers, texts, words) in [
             (&[(4096, 6360)][..], &[][..], &["US survey feet", us, "-a_srs EPSG:32614"][..]),
-            (&[(4096, 8228)], &[], &["elevations in feet", "A*0.3048'"]),
+            (&[(4096, 8228)], &[], &["elevations in feet", "-a_scale 0.3048 "]),
             (&[(4096, 5702)], &[], &["US survey feet", us]),
-            (&[(4096, 5754)], &[], &["British feet (1936)", "A*0.3048007491'"]),
+            (&[(4096, 5754)], &[], &["British feet (1936)", "-a_scale 0.3048007491 "]),
             (&[(4096, 6131)], &[], &["elevations in feet"]),
             (&[(4096, 5703)], &[], &[]),
             (&[(4096, 5773), (4099, 9001)], &[], &[]),
             (&[(4099, 9001)], &[], &[]),
-            (&[(4099, 9002)], &[], &["elevations in feet", "A*0.3048'"]),
-            (&[(4099, 9036)], &[], &["elevations in kilometres", "A*1000'"]),
-            (&[(4099, 1025)], &[], &["elevations in millimetres", "A*0.001'"]),
+            (&[(4099, 9002)], &[], &["elevations in feet", "-a_scale 0.3048 "]),
+            (&[(4099, 9036)], &[], &["elevations in kilometres", "-a_scale 1000 "]),
+            (&[(4099, 1025)], &[], &["elevations in millimetres", "-a_scale 0.001 "]),
             (&[(4099, 9005)], &[], &["Clarke's feet"]),
             (&[(4099, 9999)], &[], &["EPSG:9999", "not known", "METRES_PER_UNIT"]),
             (&[(4099, 32767)], &[], &["user-defined", "METRES_PER_UNIT"]),
@@ -295,7 +295,7 @@ mod tests {
             (&[(4096, 32767)], &[(4097, "site datum (ft)")], &["elevations in feet", "site datum (ft)"]),
             (&[(4096, 32767), (4099, 9001)], &[(4097, "site datum")], &[]),
             // Downwards.
-            (&[(4096, 5715)], &[], &["depths", "A*-1'"]),
+            (&[(4096, 5715)], &[], &["depths", "-a_scale -1 "]),
             (&[(4096, 6358)], &[], &["depths", "EPSG:6358"]),
             // Twice.
             (&[(4096, 6360), (4099, 9001)], &[], &["metres (key 4099)", "US survey feet", "6360"]),

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::build::MeshBuilder;
 use super::{Mesh, obj, ply, stl, voids};
-use crate::terrain::{NoDataRule, TerrainError, foreign};
+use crate::terrain::{NoDataRule, TerrainError, foreign, without_mark};
 
 /// Number of bytes of a file that are examined to recognise a mesh: comments may precede the first statement.
 const PROBE_BYTES: u64 = 1 << 16;
@@ -75,11 +75,6 @@ pub(crate) fn binary_stl_length(beginning: &[u8]) -> Option<u64> {
     };
     let all_sane = first.flat_map(|triangle| triangle[..48].chunks_exact(4)).all(sane);
     (length > stl::HEADER_BYTES as u64 && all_sane).then_some(length)
-}
-
-/// A text without its byte order mark.
-fn without_mark(bytes: &[u8]) -> &[u8] {
-    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
 /// Whether a file begins like a raster or another known format, whose numbers must not be taken for triangles.

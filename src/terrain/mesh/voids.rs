@@ -7,7 +7,7 @@ use nalgebra::Point3;
 use super::model::Mesh;
 use crate::terrain::stored::Scaling;
 use crate::terrain::void::{Marks, find_void};
-use crate::terrain::{TerrainError, VoidPlace, VoidTaken};
+use crate::terrain::{TerrainError, VoidPlace};
 
 /// Refuses a mesh with a block of usual marks that is no ground.
 ///
@@ -18,7 +18,7 @@ use crate::terrain::{TerrainError, VoidPlace, VoidTaken};
 pub(super) fn refuse_voids(mesh: &Mesh, scale: f64) -> Result<(), TerrainError> {
     let bounds = mesh.bounds();
     let marks = Marks::within((bounds.low_m, bounds.high_m), Scaling { scale, offset_m: 0.0 });
-    if marks.is_empty() || !mesh.vertices().iter().any(|vertex| marks.find(vertex.z).is_some()) {
+    if !mesh.vertices().iter().any(|vertex| marks.find(vertex.z).is_some()) {
         return Ok(());
     }
     // STL repeats the vertices of every triangle: equal positions are one vertex, the first of them.
@@ -39,11 +39,5 @@ pub(super) fn refuse_voids(mesh: &Mesh, scale: f64) -> Result<(), TerrainError> 
     let visit_all =
         |index: usize, visit: &mut dyn FnMut(usize)| neighbours.get(&index).into_iter().flatten().for_each(|near| visit(*near));
     let Some(void) = find_void(mesh.vertices().len(), &marks, mesh.median_edge_m(), value, visit_all) else { return Ok(()) };
-    Err(TerrainError::Void(Box::new(VoidTaken {
-        z_m: void.z_m,
-        stored: void.stored,
-        count: void.count,
-        place: VoidPlace::Vertex { number: void.first + 1 },
-        border_m: void.border_m,
-    })))
+    Err(void.taken(VoidPlace::Vertex { number: void.first + 1 }))
 }

@@ -98,6 +98,26 @@ fn pointer(label: &Label) -> Result<(Option<String>, u64), TerrainError> {
     Ok((file, number.checked_mul(record as u64).ok_or_else(wrong)?))
 }
 
+/// What the unit of samples is stated of, before `_UNIT`.
+const UNITS_OF: [&str; 16] = [
+    "CORE",
+    "SAMPLE",
+    "DN",
+    "PIXEL",
+    "DATA",
+    "IMAGE",
+    "VALUE",
+    "ELEVATION",
+    "HEIGHT",
+    "VERTICAL",
+    "Z",
+    "TOPOGRAPHY",
+    "RADIUS",
+    "DEM",
+    "DTM",
+    "SCALING",
+];
+
 /// Metres per unit of the elevations: UNIT, which `SCALING_FACTOR` and OFFSET must not
 /// contradict with a unit of their own.
 fn metres_per_unit(label: &Label) -> Result<f64, TerrainError> {
@@ -106,6 +126,22 @@ fn metres_per_unit(label: &Label) -> Result<f64, TerrainError> {
     };
     let unit = label.value("IMAGE", "UNIT")?.filter(|unit| !unit.text.eq_ignore_ascii_case("N/A"));
     let stated = unit.map(|unit| metres("UNIT", &unit.text)).transpose()?;
+    // A unit under another key, such as CORE_UNIT.
+    for (objects, key, values) in label.statements() {
+        let name = key.rsplit(':').next().unwrap_or(key);
+        let of_samples = name == "UNITS"
+            || UNITS_OF.iter().any(|what| [format!("{what}_UNIT"), format!("{what}_UNITS")].iter().any(|own| own == name));
+        if objects.last().is_none_or(|object| object != "IMAGE") || !of_samples {
+            continue;
+        }
+        for value in values.iter().filter(|value| !matches!(value.text.to_ascii_uppercase().as_str(), "N/A" | "NULL" | "NONE")) {
+            let own_metres: f64 = metres(key, &value.text)?;
+            if own_metres.to_bits() != stated.unwrap_or(1.0_f64).to_bits() {
+                let unit = unit.map_or_else(|| "no UNIT".to_owned(), |unit| format!("UNIT {}", shown(&unit.text)));
+                return Err(unsuitable(format!("{key} {} but {unit}", shown(&value.text)), "the same unit under the key UNIT"));
+            }
+        }
+    }
     for key in ["SCALING_FACTOR", "OFFSET"] {
         let Some(own) = label.value("IMAGE", key)?.and_then(|value| value.unit.clone()) else { continue };
         // A factor may be given per stored number: <M/DN>.

@@ -5,7 +5,10 @@ use super::samples::{Mark, SampleType, mark};
 use crate::terrain::TerrainError;
 
 /// Keys whose values mean no elevation: the standard's, those of ISIS, and those of missions (SELENE/Kaguya, Mars Express).
-const MARKS: [&str; 38] = [
+const MARKS: [&str; 41] = [
+    "INVALID",
+    "FILL",
+    "BLANK",
     "MISSING_CONSTANT",
     "MISSING",
     "MISSING_VALUE",
@@ -91,12 +94,39 @@ const HARMLESS: [&str; 34] = [
 const SPECIAL_ENDINGS: [&str; 9] = ["VALUE", "VALUES", "CONSTANT", "CONSTANTS", "DN", "NULL", "SATURATION", "NODATA", "DUMMY"];
 
 /// Words, one of which makes such a key one of missing samples, outside the IMAGE object.
-const SPECIAL_WORDS: [&str; 12] =
-    ["MISSING", "INVALID", "NULL", "NODATA", "FILL", "DUMMY", "VOID", "BLANK", "BACKGROUND", "SATURATION", "SPECIAL", "BOUNDS"];
+const SPECIAL_WORDS: [&str; 15] = [
+    "MISSING",
+    "INVALID",
+    "NULL",
+    "NODATA",
+    "FILL",
+    "DUMMY",
+    "VOID",
+    "BLANK",
+    "BACKGROUND",
+    "SATURATION",
+    "SPECIAL",
+    "BOUNDS",
+    "EMPTY",
+    "GAP",
+    "PAD",
+];
 
 /// Endings of keys that convert samples.
-const CONVERSIONS: [(&str, f64); 5] =
-    [("SCALING_FACTOR", 1.0), ("SCALE_FACTOR", 1.0), ("MULTIPLIER", 1.0), ("OFFSET", 0.0), ("SAMPLE_BASE", 0.0)];
+const CONVERSIONS: [(&str, f64); 12] = [
+    ("SCALING_FACTOR", 1.0),
+    ("SCALE_FACTOR", 1.0),
+    ("SCALE", 1.0),
+    ("SCALING", 1.0),
+    ("MULTIPLIER", 1.0),
+    ("GAIN", 1.0),
+    ("TO_METERS", 1.0),
+    ("TO_METRES", 1.0),
+    ("OFFSET", 0.0),
+    ("BASE", 0.0),
+    ("BIAS", 0.0),
+    ("INTERCEPT", 0.0),
+];
 
 /// Objects whose keys describe other data than the image.
 const OTHER_DATA: [&str; 8] = ["TABLE", "COLUMN", "SPREADSHEET", "FIELD", "HISTOGRAM", "QUBE", "SERIES", "CATALOG"];
@@ -147,6 +177,10 @@ fn check(object: &str, name: &str, key: &str, values: &[Value]) -> Result<(), Te
     };
     if words.iter().any(|word| HARMLESS.contains(word)) {
         return Ok(());
+    }
+    let is_number = |value: &Value| value.text.parse::<f64>().is_ok();
+    if of_image && words.iter().any(|word| SPECIAL_WORDS.contains(word)) && values.iter().any(is_number) {
+        return Err(refusal());
     }
     let ends_special = words.last().is_some_and(|last| SPECIAL_ENDINGS.contains(last));
     if ends_special && (of_image || words.iter().any(|word| SPECIAL_WORDS.contains(word))) {

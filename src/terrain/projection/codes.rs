@@ -180,3 +180,82 @@ pub(super) fn ellipsoid(code: u16) -> Option<Ellipsoid> {
         _ => None,
     }
 }
+
+/// The prime meridians of EPSG, by number: degrees, minutes and seconds, and whether they lie west of Greenwich. Paris (8903) is defined in
+/// grads: 2.5969213.
+const MERIDIANS: [(u16, [f64; 3], bool); 14] = [
+    (8901, [0.0, 0.0, 0.0], false),
+    (8902, [9.0, 7.0, 54.862], true),
+    (8903, [2.0, 20.0, 14.025_012], false),
+    (8904, [74.0, 4.0, 51.3], true),
+    (8905, [3.0, 41.0, 14.55], true),
+    (8906, [12.0, 27.0, 8.4], false),
+    (8907, [7.0, 26.0, 22.5], false),
+    (8908, [106.0, 48.0, 27.79], false),
+    (8909, [17.0, 40.0, 0.0], true),
+    (8910, [4.0, 22.0, 4.71], false),
+    (8911, [18.0, 3.0, 29.8], false),
+    (8912, [23.0, 42.0, 58.815], false),
+    (8913, [10.0, 43.0, 22.5], false),
+    (8914, [2.0, 20.0, 13.95], false),
+];
+
+/// Geographic codes of EPSG that count longitudes from another meridian than Greenwich, and the meridian (EPSG v10.076).
+const BASES: [(u16, u16); 27] = [
+    (4801, 8907),
+    (4802, 8904),
+    (4803, 8902),
+    (4804, 8908),
+    (4805, 8909),
+    (4806, 8906),
+    (4807, 8903),
+    (4808, 8908),
+    (4809, 8910),
+    (4810, 8903),
+    (4811, 8903),
+    (4813, 8908),
+    (4814, 8911),
+    (4815, 8912),
+    (4816, 8903),
+    (4817, 8913),
+    (4818, 8909),
+    (4819, 8903),
+    (4820, 8908),
+    (4821, 8903),
+    (4901, 8914),
+    (4902, 8903),
+    (4903, 8905),
+    (4904, 8902),
+    (5229, 8909),
+    (8042, 8909),
+    (8043, 8909),
+];
+
+/// The longitude of a prime meridian of EPSG, degrees.
+pub(super) fn meridian_deg(code: u16) -> Option<f64> {
+    let (_, [degrees, minutes, seconds], west) = MERIDIANS.into_iter().find(|(known, ..)| *known == code)?;
+    let longitude_deg = degrees + minutes / 60.0 + seconds / 3600.0;
+    Some(if west { -longitude_deg } else { longitude_deg })
+}
+
+/// The geographic code of a datum of EPSG that counts from another meridian, or the code itself.
+fn base_of(code: u16) -> u16 {
+    match code {
+        6801..=6821 | 6901..=6904 => code - 2000,
+        1055 => 5229,
+        1188 => 8042,
+        1189 => 8043,
+        _ => code,
+    }
+}
+
+/// The longitude that a geographic code or datum of EPSG counts from, degrees, if it is not Greenwich.
+pub(super) fn base_meridian_deg(code: u16) -> Option<f64> {
+    let (_, meridian) = BASES.into_iter().find(|(known, _)| *known == base_of(code))?;
+    meridian_deg(meridian)
+}
+
+/// Whether a geographic code or datum of EPSG counts angles in grads: those of a meridian of Paris.
+pub(super) fn counts_in_grads(code: u16) -> bool {
+    matches!(base_of(code), 4807 | 4810 | 4811 | 4816 | 4819 | 4821 | 4901 | 4902)
+}

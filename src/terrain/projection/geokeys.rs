@@ -45,7 +45,6 @@ mod key {
     pub(super) const POLE_LONGITUDE: u16 = 3095;
 
     pub(super) const USER_DEFINED: u16 = 32767;
-    pub(super) const GREENWICH: u16 = 8901;
     pub(super) const DEGREE: u16 = 9102;
     /// "Degree (supplier to define representation)".
     pub(super) const DEGREE_IN_ANY_FORM: u16 = 9122;
@@ -170,6 +169,12 @@ pub(super) fn ellipsoid(system: &CoordinateSystem) -> Result<Ellipsoid, String> 
 fn user_defined(system: &CoordinateSystem) -> Result<(Definition, Option<u16>), String> {
     let ellipsoid = ellipsoid(system)?;
     if let Some(utm) = short_key(system, key::PROJECTION).and_then(|code| utm_of(code, ellipsoid)) {
+        let meridian_deg = prime_meridian_deg(system)?;
+        if meridian_deg != 0.0 {
+            return Err(format!(
+                "its UTM zone (key 3074) counts from Greenwich, and its prime meridian is at {meridian_deg:.6} degrees"
+            ));
+        }
         return Ok(utm);
     }
     Ok((by_method(system, ellipsoid)?, None))
@@ -184,12 +189,39 @@ fn utm_of(code: u16, ellipsoid: Ellipsoid) -> Option<(Definition, Option<u16>)> 
     }
 }
 
-/// How far east of the reference meridian longitudes are counted from, degrees.
+/// How far east of the reference meridian longitudes are counted from, degrees: by its longitude, its code, or the code of the geographic
+/// map or of the datum, which must agree where several are given.
 fn prime_meridian_deg(system: &CoordinateSystem) -> Result<f64, String> {
-    match (double_key(system, key::PRIME_MERIDIAN), short_key(system, key::PRIME_MERIDIAN_CODE)) {
-        (Some(longitude_deg), _) => Ok(longitude_deg),
-        (None, None | Some(0 | key::GREENWICH)) => Ok(0.0),
-        (None, Some(code)) => Err(format!("its prime meridian (key 2051) is number {code}, whose longitude is not known here")),
+    /// Degrees by which two statements of one meridian may differ: the rounding of seconds to hundredths.
+    const TOLERANCE_DEG: f64 = 1.0e-5;
+    let mut stated = Vec::new();
+    if let Some(longitude_deg) = double_key(system, key::PRIME_MERIDIAN) {
+        stated.push(("key 2061".to_owned(), longitude_deg));
+    }
+    match short_key(system, key::PRIME_MERIDIAN_CODE) {
+        None | Some(0 | key::USER_DEFINED) => {}
+        Some(code) => match codes::meridian_deg(code) {
+            Some(longitude_deg) => stated.push((format!("key 2051 = {code}"), longitude_deg)),
+            None if stated.is_empty() => {
+                return Err(format!("its prime meridian (key 2051) is number {code}, whose longitude is not known here"));
+            }
+            None => {}
+        },
+    }
+    for wanted in [key::GEOGRAPHIC_CRS, key::DATUM] {
+        let Some(code) = short_key(system, wanted) else { continue };
+        let Some(longitude_deg) = codes::base_meridian_deg(code) else { continue };
+        stated.push((format!("key {wanted} = {code}"), longitude_deg));
+        if codes::counts_in_grads(code) && short_key(system, key::ANGULAR_UNITS).is_none() {
+            return Err(format!("its geographic code or datum {code} (key {wanted}) counts angles in grads, not in degrees"));
+        }
+    }
+    let Some((first, longitude_deg)) = stated.first().cloned() else { return Ok(0.0) };
+    match stated.iter().find(|(_, other_deg)| (other_deg - longitude_deg).abs() > TOLERANCE_DEG) {
+        None => Ok(longitude_deg),
+        Some((other, other_deg)) => Err(format!(
+            "its keys state two prime meridians, {longitude_deg:.6} degrees ({first}) and {other_deg:.6} degrees ({other})"
+        )),
     }
 }
 

@@ -25,7 +25,7 @@ mod wkt_tree;
 
 use std::fmt;
 
-use nalgebra::Vector3;
+use nalgebra::{Matrix2, Vector2, Vector3};
 use proj4rs::{Proj, transform::transform};
 
 pub(super) use self::codes::iau_radius_m;
@@ -296,7 +296,51 @@ impl MapProjection {
             let Some(better) = self.rough_inverse(target) else { break };
             place = better;
         }
-        Some(place)
+        Some(self.near_a_pole(at, place))
+    }
+
+    /// A better place for a point near a pole, else the same place.
+    ///
+    /// On a sphere the inverse projections take latitudes from their sines, whose rounding is an angle of 1e-8 at a pole (3 cm on the
+    /// Moon). Newton's method finds the place anew in coordinates that are smooth there: the angle from the pole as a vector. Maps that
+    /// show the pole as a line keep their place: the method does not bring it nearer.
+    fn near_a_pole(&self, at: MapPoint, place: (f64, f64)) -> (f64, f64) {
+        /// The angle from a pole, radians, at which sines still give latitudes to 1e-14.
+        const NEAR: f64 = 0.01;
+        /// The step of the difference quotients, radians: the errors from rounding and from curvature stay below a millionth.
+        const STEP: f64 = 1.0e-6;
+        let from_pole = std::f64::consts::FRAC_PI_2 - place.1.abs();
+        if from_pole > NEAR {
+            return place;
+        }
+        let (sin_lon, cos_lon) = libm::sincos(place.0);
+        let lon_lat = |angle: Vector2<f64>| {
+            let lat = std::f64::consts::FRAC_PI_2 - libm::hypot(angle.x, angle.y);
+            (libm::atan2(angle.y, angle.x), lat.copysign(place.1))
+        };
+        let on_map = |angle: Vector2<f64>| {
+            let (lon, lat) = lon_lat(angle);
+            self.forward(lon, lat)
+        };
+        let mut angle = Vector2::new(cos_lon, sin_lon) * from_pole;
+        let miss_m = |back: Option<MapPoint>| back.map_or(f64::INFINITY, |back| (at - back).norm());
+        let (mut best, mut best_m) = (place, miss_m(self.forward(place.0, place.1)));
+        for _ in 0..4 {
+            let (Some(here), Some(beside), Some(above)) =
+                (on_map(angle), on_map(angle + Vector2::new(STEP, 0.0)), on_map(angle + Vector2::new(0.0, STEP)))
+            else {
+                break;
+            };
+            let slopes = Matrix2::from_columns(&[(beside - here) / STEP, (above - here) / STEP]);
+            let Some(inverse) = slopes.try_inverse() else { break };
+            angle += inverse * (at - here);
+            let found_m = miss_m(on_map(angle));
+            if found_m.is_nan() || found_m >= best_m {
+                break;
+            }
+            (best, best_m) = (lon_lat(angle), found_m);
+        }
+        best
     }
 
     fn rough_inverse(&self, at: MapPoint) -> Option<(f64, f64)> {
@@ -305,7 +349,31 @@ impl MapProjection {
         (point.0.is_finite() && point.1.is_finite()).then_some((point.0, point.1))
     }
 
+    /// The map point of a place, radians.
+    ///
+    /// The equations move places within 1e-10 of a pole onto it (0.2 mm on the Moon); those of the equal-area map of an ellipsoid lose the
+    /// last 1e-8. Nearer than that a straight line through the pole to places on both sides stands for them, which deviates by the square of
+    /// the angle to these. A pole that the map shows as a line or as the apex of a cone has no such line.
     fn forward(&self, lon: f64, lat: f64) -> Option<MapPoint> {
+        let loses_small_angles =
+            self.definition.method == Method::LambertAzimuthalEqualArea && !self.definition.ellipsoid.is_sphere();
+        let (near, side) = if loses_small_angles { (1.0e-4, 1.0e-4) } else { (1.0e-9, 1.0e-6) };
+        let from_pole = std::f64::consts::FRAC_PI_2 - lat.abs();
+        if !(from_pole > 0.0 && from_pole < near) {
+            return self.equation(lon, lat);
+        }
+        let beside = (std::f64::consts::FRAC_PI_2 - side).copysign(lat);
+        let opposite = if lon > 0.0 { lon - std::f64::consts::PI } else { lon + std::f64::consts::PI };
+        let pole = self.equation(lon, std::f64::consts::FRAC_PI_2.copysign(lat));
+        match (pole, self.equation(lon, beside), self.equation(opposite, beside)) {
+            (Some(pole), Some(here), Some(there)) if (here - pole + (there - pole)).norm() < 1.0e-3 * (here - there).norm() => {
+                Some(pole + (here - there) * (0.5 * from_pole / side))
+            }
+            _ => self.equation(lon, lat),
+        }
+    }
+
+    fn equation(&self, lon: f64, lat: f64) -> Option<MapPoint> {
         let mut point = (lon, lat, 0.0);
         transform(&self.geographic, &self.projected, &mut point).ok()?;
         (point.0.is_finite() && point.1.is_finite()).then(|| MapPoint::new(point.0, point.1))

@@ -6,7 +6,7 @@ use nalgebra::Vector2;
 
 use super::{Definition, LonLat, MapProjection, Method, NoProjection, projected_code};
 use crate::quantity::MapPoint;
-use crate::terrain::{DemFile, GeoReference, MapBounds, TerrainError};
+use crate::terrain::{DemFile, GeoReference, MapBounds, TerrainError, shell_word};
 
 /// The largest error of a map's scale along a transect for which a slice is made.
 const SCALE_TOLERANCE: f64 = 0.01;
@@ -200,7 +200,7 @@ fn without_scale(
         unknown @ NoProjection::Unknown(_) if accepted => Ok(TransectScale::Unknown(unknown.to_string())),
         unknown @ NoProjection::Unknown(_) => {
             let map = dem.lattice().georeference();
-            let mend = mend_unknown(map, &shell_word(&file.display().to_string()));
+            let mend = mend_unknown(map, &shell_word(file));
             Err(TerrainError::UnknownScale { reason: unknown.clone(), mend })
         }
     }
@@ -322,7 +322,7 @@ fn mend_map(dem: &dyn DemFile, projection: &MapProjection, from: MapPoint, file:
         "gdalwarp -r bilinear -t_srs '+proj=stere +lat_0={latitude_deg} +lon_0={longitude_deg} {} +units=m +no_defs' \
          -te {west} {south} {east} {north} -tr {spacing_m} {spacing_m} -ot Float64 -dstnodata nan {} out.tif",
         ellipsoid.proj(),
-        shell_word(&file.display().to_string()),
+        shell_word(file),
     );
     Some(ScaleMend::AboutStart { command, start, true_within_m: most_m })
 }
@@ -353,7 +353,7 @@ fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2]
         low(ends[0].y, ends[1].y),
         high(ends[0].x, ends[1].x),
         high(ends[0].y, ends[1].y),
-        shell_word(&file.display().to_string()),
+        shell_word(file),
     );
     Some(ScaleMend::AlongTransect { command, ends: [begin, end] })
 }
@@ -361,10 +361,4 @@ fn mend(dem: &dyn DemFile, projection: &MapProjection, [from, to]: [MapPoint; 2]
 /// Rounds to a ten-thousandth of a metre.
 fn rounded_m(length_m: f64) -> f64 {
     libm::rint(length_m * 1.0e4) / 1.0e4
-}
-
-/// Quotes a word for a shell.
-fn shell_word(text: &str) -> String {
-    let plain = |letter: char| letter.is_ascii_alphanumeric() || "._/-+".contains(letter);
-    if text.chars().all(plain) { text.to_owned() } else { format!("'{}'", text.replace('\'', "'\\''")) }
 }

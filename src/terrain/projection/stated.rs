@@ -82,18 +82,33 @@ fn citation_contradicts(system: &CoordinateSystem) -> Option<String> {
     let own = MapProjection::of(system).ok()?;
     citations(system).filter(|(key, _)| *key != 2049).find_map(|(key, text)| {
         let cited = cited_map(text)?;
-        let cited_map = MapProjection::new(cited.1, None).ok()?;
-        (!own.is_same_map(&cited_map))
-            .then(|| format!("the citation '{text}' (key {key}), which means {}, and a map '{}'", cited.0, own.proj_string()))
+        let is_own = |shift_m: f64| {
+            let meant = super::Definition { false_easting_m: cited.definition.false_easting_m + shift_m, ..cited.definition };
+            MapProjection::new(meant, None).map(|map| own.is_same_map(&map))
+        };
+        // Zones in Germany are numbered in their eastings, by both digits or the last one (x_0 = 32500000, x_0 = 3500000 in zone 33).
+        let shifts_m = [0.0, f64::from(cited.zone) * 1.0e6, f64::from(cited.zone % 10) * 1.0e6];
+        shifts_m
+            .into_iter()
+            .all(|shift_m| is_own(shift_m) == Ok(false))
+            .then(|| format!("the citation '{text}' (key {key}), which means {}, and a map '{}'", cited.name, own.proj_string()))
     })
 }
 
+/// The map that a citation names.
+struct CitedMap {
+    name: String,
+    definition: super::Definition,
+    /// The number of the UTM zone; 0 where the map is named by a code, which fixes the eastings.
+    zone: u16,
+}
+
 /// The map that a citation names by a code of EPSG, or by a UTM zone of a datum that is known here.
-fn cited_map(text: &str) -> Option<(String, super::Definition)> {
+fn cited_map(text: &str) -> Option<CitedMap> {
     let by_code = text.split("EPSG:").skip(1).find_map(|rest| {
         let digits = rest.find(|letter: char| !letter.is_ascii_digit()).map_or(rest, |end| &rest[..end]);
         let code = digits.parse().ok()?;
-        Some((format!("EPSG:{code}"), codes::epsg(code)?))
+        Some(CitedMap { name: format!("EPSG:{code}"), definition: codes::epsg(code)?, zone: 0 })
     });
     by_code.or_else(|| {
         let plain = text.replace(['_', '='], " ").to_ascii_lowercase();
@@ -112,7 +127,11 @@ fn cited_map(text: &str) -> Option<(String, super::Definition)> {
         // NAD83, ETRS89 and WGS 84 have the same map, but for the thickness of a hair; other datums are not certain.
         let known = ["wgs 84", "wgs84", "wgs 1984", "nad83", "nad 83", "nad 1983", "etrs89", "etrs 1989"];
         let datum = known.iter().any(|name| plain.contains(name)) || plain.trim_start().starts_with("utm");
-        datum.then(|| (format!("UTM zone {zone}{}", if south { 'S' } else { 'N' }), codes::utm(zone, south, Ellipsoid::WGS84)))
+        datum.then(|| CitedMap {
+            name: format!("UTM zone {zone}{}", if south { 'S' } else { 'N' }),
+            definition: codes::utm(zone, south, Ellipsoid::WGS84),
+            zone,
+        })
     })
 }
 

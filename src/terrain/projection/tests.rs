@@ -152,8 +152,8 @@ fn proj_strings_with_unsupported_parameters_are_refused() {
 
 #[test]
 fn the_scale_agrees_with_textbook_formulas() {
-    let east = nalgebra::Vector2::new(1.0, 0.0);
-    let north = nalgebra::Vector2::new(0.0, 1.0);
+    let east = Vector2::new(1.0, 0.0);
+    let north = Vector2::new(0.0, 1.0);
     let map = |definition| MapProjection::new(definition, None).unwrap();
     let at = |map: &MapProjection, lon_deg, lat_deg| map.map_point(LonLat { lon_deg, lat_deg }).unwrap();
     let near = |found: Option<f64>, expected: f64| assert!((found.unwrap() - expected).abs() < 1e-8, "{found:?} {expected}");
@@ -161,7 +161,7 @@ fn the_scale_agrees_with_textbook_formulas() {
     for (latitude_deg, lat_deg) in [(-90.0, -70.0), (35.0, 55.0)] {
         let stereographic = map(Definition::about(Method::ObliqueStereographic, latitude_deg, 10.0, MOON));
         let place = at(&stereographic, 10.0, lat_deg);
-        for heading in [east, north, nalgebra::Vector2::new(0.6, -0.8)] {
+        for heading in [east, north, Vector2::new(0.6, -0.8)] {
             near(stereographic.scale(place, heading), 2.0 / (1.0 + 20.0_f64.to_radians().cos()));
         }
     }
@@ -179,7 +179,7 @@ fn the_scale_agrees_with_textbook_formulas() {
     near(equirectangular.scale(place, north), 1.0);
     // A conformal map of an ellipsoid has its scale factor at the origin.
     let mars = map(Definition { scale: 0.9, ..Definition::about(Method::TransverseMercator, 20.0, 5.0, MARS) });
-    near(mars.scale(at(&mars, 5.0, 20.0), nalgebra::Vector2::new(0.8, 0.6)), 0.9);
+    near(mars.scale(at(&mars, 5.0, 20.0), Vector2::new(0.8, 0.6)), 0.9);
 }
 
 /// EPSG:3857: along a parallel a / (N cos(latitude)), along a meridian a / (M cos(latitude)), with the radii of curvature N and M of
@@ -187,7 +187,7 @@ fn the_scale_agrees_with_textbook_formulas() {
 /// equations 14-7 and 14-8).
 #[test]
 fn the_scales_of_the_web_map_and_of_albers_maps_are_those_of_the_books() {
-    let (east, north) = (nalgebra::Vector2::new(1.0, 0.0), nalgebra::Vector2::new(0.0, 1.0));
+    let (east, north) = (Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0));
     let near = |found: Option<f64>, expected: f64| assert!((found.unwrap() - expected).abs() < 1e-7, "{found:?} {expected}");
     let web = MapProjection::from_code("EPSG:3857").unwrap();
     assert_eq!(web.code(), Some("EPSG:3857"));
@@ -340,4 +340,132 @@ fn the_largest_scale_error_of_a_transect_is_found() {
     assert!((extreme.factor - 1.0 - (4.0e5_f64 / (2.0 * 1_737_400.0)).powi(2)).abs() < 1e-8, "{extreme:?}");
     assert!(extreme.is_off());
     assert!(!polar.extreme_scale(MapPoint::new(-1.0e5, 0.0), MapPoint::new(3.0e5, 0.0)).unwrap().is_off());
+}
+
+/// A polar map with its true scale at the pole has the scale 1 there, in every direction, on every body: stereographic 1 + (rho / 2R)^2,
+/// the others 1 to the same order. So has an oblique map about a place at a hundredth of a degree from the pole, at the pole.
+#[test]
+fn the_scale_at_a_pole_is_one_and_lines_across_it_are_on_the_body() {
+    let bodies = [
+        Ellipsoid::sphere(1_737_400.0),
+        Ellipsoid::sphere(3_396_190.0),
+        Ellipsoid::sphere(2_439_400.0),
+        Ellipsoid::sphere(2_574_730.0),
+        Ellipsoid::sphere(245.0),
+        MARS,
+        Ellipsoid::WGS84,
+    ];
+    let methods = [
+        (Method::PolarStereographic, 90.0),
+        (Method::ObliqueStereographic, 89.99),
+        (Method::LambertAzimuthalEqualArea, 90.0),
+        (Method::AzimuthalEquidistant, 90.0),
+        (Method::Orthographic, 90.0),
+    ];
+    for figure in bodies {
+        for (method, latitude_deg) in methods {
+            for side in [1.0, -1.0] {
+                if method == Method::Orthographic && !figure.is_sphere() {
+                    continue;
+                }
+                let map = MapProjection::new(Definition::about(method, side * latitude_deg, 0.0, figure), None).unwrap();
+                let pole = map.map_point(LonLat { lon_deg: 0.0, lat_deg: side * 90.0 }).unwrap();
+                for off_m in [0.0, 1.0e-6, 1.0e-3, 0.005, 0.05, 0.3, 1.0, 12.0, 17.374, 100.0, 1000.0] {
+                    let off_m = f64::min(off_m, 1.0e-4 * figure.semi_major_m);
+                    for turn in [0.0_f64, 1.0, 1.5, 3.0, 5.0] {
+                        let heading = Vector2::new(turn.cos(), turn.sin());
+                        let at = pole + heading * off_m;
+                        let context = format!("{method:?} at {latitude_deg} * {side}, {figure:?}, {off_m} m, heading {turn}");
+                        for heading in [heading, Vector2::new(-heading.y, heading.x)] {
+                            let scale = map.scale(at, heading).unwrap();
+                            assert!((scale - 1.0).abs() < 1.0e-6, "{context}: {scale}");
+                        }
+                        let place = map.lon_lat(at).unwrap_or_else(|| panic!("{context}: off the body"));
+                        let back = map.map_point(place).unwrap_or_else(|| panic!("{context}: {place} is off the map"));
+                        assert!((back - at).norm() < 1.0e-11 * figure.semi_major_m, "{context}: {back} {at}");
+                        for to in [pole, at + heading * 0.01, pole - heading * 11.0] {
+                            if to != at && turn < 2.0 && off_m != 1.0 {
+                                let extreme = map.extreme_scale(at, to).unwrap_or_else(|| panic!("{context}: to {to}"));
+                                let most = if figure.semi_major_m > 1000.0 { 1.0e-6 } else { 1.0e-2 };
+                                assert!((extreme.factor - 1.0).abs() < most, "{context}: {extreme:?}");
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Longitudes of EPSG v10.076 (projinfo EPSG:4817 and so on). 24-bit keys: the origin at 0 degrees east of the meridian of the base code.
+#[test]
+fn the_prime_meridian_of_the_base_code_moves_the_origin() {
+    let plain = MapProjection::new(Definition::about(Method::TransverseMercator, 58.0, 0.0, Ellipsoid::WGS84), None).unwrap();
+    let keys = |more: &[[u16; 4]], meridian_deg: Option<f64>| {
+        let mut keys = plain.coordinate_system();
+        let mut entries: Vec<[u16; 4]> = keys.key_directory[4..].chunks(4).map(|entry| entry.try_into().unwrap()).collect();
+        entries.retain(|entry| more.iter().all(|other| other[0] != entry[0]));
+        entries.extend(more);
+        if let Some(meridian_deg) = meridian_deg {
+            entries.push([2061, 34736, 1, u16::try_from(keys.double_parameters.len()).unwrap()]);
+            keys.double_parameters.push(meridian_deg);
+        }
+        keys.key_directory = [&[1, 1, 0, u16::try_from(entries.len()).unwrap()][..], &entries.concat()].concat();
+        keys
+    };
+    let oslo_deg = 10.0 + 43.0 / 60.0 + 22.5 / 3600.0;
+    for (more, meridian_deg, expected) in [
+        (&[[2048, 0, 1, 4817]][..], None, Ok(oslo_deg)),
+        (&[[2050, 0, 1, 6817]], None, Ok(oslo_deg)),
+        (&[[2048, 0, 1, 4817]], Some(10.722_916_67), Ok(oslo_deg)),
+        (&[[2051, 0, 1, 8913]], None, Ok(oslo_deg)),
+        (&[[2048, 0, 1, 4817], [2051, 0, 1, 8913]], None, Ok(oslo_deg)),
+        (&[[2048, 0, 1, 4801]], None, Ok(7.0 + 26.0 / 60.0 + 22.5 / 3600.0)),
+        (&[[2048, 0, 1, 4805]], None, Ok(-17.666_666_667)),
+        (&[[2048, 0, 1, 5229]], None, Ok(-17.666_666_667)),
+        (&[[2048, 0, 1, 4807]], None, Ok(2.337_229_17)),
+        (&[[2048, 0, 1, 4903]], None, Ok(-3.687_375)),
+        (&[[2048, 0, 1, 4820]], None, Ok(106.807_719_444)),
+        (&[[2048, 0, 1, 4326]], None, Ok(0.0)),
+        (&[[2051, 0, 1, 8901]], None, Ok(0.0)),
+        (&[[2048, 0, 1, 4817]], Some(0.0), Err("two prime meridians")),
+        (&[[2048, 0, 1, 4817], [2051, 0, 1, 8901]], None, Err("two prime meridians")),
+        (&[[2051, 0, 1, 8950]], None, Err("8950")),
+        (&[[2048, 0, 1, 4817], [3074, 0, 1, 16_032]], None, Err("counts from Greenwich")),
+        (&[[2048, 0, 1, 4807], [2054, 0, 1, 9105]], None, Err("9105")),
+    ] {
+        let context = format!("{more:?} {meridian_deg:?}");
+        match (MapProjection::of(&keys(more, meridian_deg)), expected) {
+            (Ok(map), Ok(expected_deg)) => {
+                let found_deg = map.definition().longitude_deg;
+                assert!((found_deg - expected_deg).abs() < 1.0e-6, "{context}: {found_deg}");
+            }
+            (Err(reason), Err(expected)) => assert!(reason.to_string().contains(expected), "{context}: {reason}"),
+            (found, _) => panic!("{context}: {found:?}"),
+        }
+    }
+    let mut grads = keys(&[[2048, 0, 1, 4807]], None);
+    let entry = grads.key_directory.chunks(4).position(|entry| entry[0] == 2054).unwrap();
+    grads.key_directory.drain(4 * entry..4 * entry + 4);
+    grads.key_directory[3] -= 1;
+    assert!(MapProjection::of(&grads).unwrap_err().to_string().contains("grads"));
+}
+
+/// ESRI:102329, 102359 and 102360 as projinfo states them, and eastings that no zone has.
+#[test]
+fn a_zone_in_the_easting_is_the_zone_of_the_citation() {
+    for (zone, false_easting_m, citation, same) in [
+        (32, 32_500_000.0, "ETRS_1989_UTM_Zone_32N_8stellen", true),
+        (33, 33_500_000.0, "ETRS_1989_UTM_Zone_33N_8stellen", true),
+        (33, 3_500_000.0, "ETRS_1989_UTM_Zone_33N_7stellen", true),
+        (32, 500_000.0, "ETRS_1989_UTM_Zone_32N", true),
+        (32, 33_500_000.0, "ETRS_1989_UTM_Zone_32N_8stellen", false),
+        (32, 32_500_000.0, "ETRS_1989_UTM_Zone_33N_8stellen", false),
+        (32, 32_500_000.0, "ETRS89 / UTM zone 32N (EPSG:25832)", false),
+    ] {
+        let definition = Definition { false_easting_m, ..codes::utm(zone, false, Ellipsoid::GRS80) };
+        let keys = MapProjection::new(definition, Some(citation.to_owned())).unwrap().coordinate_system();
+        let found = contradiction(&keys);
+        assert_eq!(found.is_none(), same, "{citation}, {false_easting_m}: {found:?}");
+    }
 }

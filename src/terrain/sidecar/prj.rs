@@ -67,6 +67,7 @@ pub(super) fn of_text(text: &str) -> Stated {
     }))
 }
 
+#[expect(clippy::unnecessary_wraps, reason = "the form in which every caller returns it")]
 fn wrong(reason: &str) -> Stated {
     Some(Err(Unclear::Wrong(reason.to_owned())))
 }

@@ -6,6 +6,8 @@ const X_NAMES: [&str; 6] = ["x", "east", "easting", "eastings", "x_coord", "xcoo
 const Y_NAMES: [&str; 6] = ["y", "north", "northing", "northings", "y_coord", "ycoord"];
 const Z_NAMES: [&str; 11] =
     ["z", "elevation", "height", "altitude", "elev", "alt", "topography", "z_coord", "zcoord", "dem", "dtm"];
+/// Names of columns that count downwards.
+const DEPTH_NAMES: [&str; 4] = ["depth", "depths", "sounding", "soundings"];
 const LONGITUDE_NAMES: [&str; 4] = ["lon", "long", "longitude", "lng"];
 const LATITUDE_NAMES: [&str; 3] = ["lat", "latitude", "lat."];
 
@@ -18,6 +20,8 @@ pub(super) enum Separator {
     Semicolon,
     Comma,
     Blank,
+    /// Blanks that do not break, in a line without others.
+    FixedBlank,
 }
 
 /// The places of the three numbers in a line.
@@ -39,7 +43,7 @@ pub(super) enum Header {
     Columns(Columns),
     /// x and y are longitude and latitude.
     Degrees(String),
-    /// A column in another unit: what was found, and what was expected.
+    /// A column in another unit, counted downwards or given twice: what was found, and what was expected.
     OtherUnit(String, String),
 }
 
@@ -56,7 +60,9 @@ pub(super) fn separator_of(line: &str) -> Separator {
         return Separator::Semicolon;
     }
     if !line.contains(',') {
-        return Separator::Blank;
+        let text = line.trim();
+        let is_fixed = !text.contains(|letter: char| letter.is_ascii_whitespace()) && text.contains(char::is_whitespace);
+        return if is_fixed { Separator::FixedBlank } else { Separator::Blank };
     }
     let inside_number = |word: &str| match word.split_once(',') {
         None => true,
@@ -74,9 +80,10 @@ pub(super) fn separator_of(line: &str) -> Separator {
     }
 }
 
-/// The fields of a line. Blanks that do not break are no separators: they separate thousands.
+/// The fields of a line. Blanks that do not break are no separators beside others: they separate thousands.
 pub(super) fn fields(line: &str, separator: Separator) -> Vec<&str> {
     let sign = match separator {
+        Separator::FixedBlank => return line.split_whitespace().map(unquoted).collect(),
         Separator::Blank => return line.split_ascii_whitespace().map(unquoted).collect(),
         Separator::Semicolon => ';',
         Separator::Comma => ',',
@@ -103,7 +110,7 @@ pub(super) fn header(line: &str) -> Option<Header> {
     } else if line.contains(',') {
         Separator::Comma
     } else {
-        Separator::Blank
+        separator_of(line)
     };
     let separated = fields(line, separator);
     // A unit in brackets may be a word of its own, as in `X [m] Y [m] Z [m]`.
@@ -118,6 +125,20 @@ pub(super) fn header(line: &str) -> Option<Header> {
         }
     }
     let bases: Vec<String> = names.iter().map(|name| split_unit(name).0).collect();
+    let columns_of = |known: &[&str]| bases.iter().filter(|base| known.contains(&base.as_str())).count();
+    let has_map = columns_of(&X_NAMES) > 0 && columns_of(&Y_NAMES) > 0;
+    for (axis, known) in [("x", &X_NAMES[..]), ("y", &Y_NAMES), ("z", &Z_NAMES)] {
+        let own = columns_of(known);
+        if has_map && own > 1 {
+            let found: Vec<&str> = bases.iter().map(String::as_str).filter(|base| known.contains(base)).collect();
+            let expected = format!("one column for {axis}: rename the others, for instance to {}_other", excerpt(found[1], 40));
+            return Some(Header::OtherUnit(format!("{own} columns for {axis} ({})", excerpt(&found.join(", "), 80)), expected));
+        }
+    }
+    if let Some(depth) = bases.iter().find(|base| has_map && columns_of(&Z_NAMES) == 0 && DEPTH_NAMES.contains(&base.as_str())) {
+        let expected = "heights, which count upwards: change the sign of its numbers, then name the column z".to_owned();
+        return Some(Header::OtherUnit(format!("the column '{}', which counts downwards", excerpt(depth, 40)), expected));
+    }
     let find = |known: &[&str]| bases.iter().position(|base| known.contains(&base.as_str()));
     let z = find(&Z_NAMES)?;
     let Some((x, y)) = find(&X_NAMES).zip(find(&Y_NAMES)) else {
@@ -154,7 +175,7 @@ pub(super) fn header(line: &str) -> Option<Header> {
 pub(super) fn begins_with_post(beginning: &[u8]) -> bool {
     let text = String::from_utf8_lossy(beginning);
     let text = text.trim_start_matches('\u{feff}');
-    let mut named = false;
+    let (mut named, mut counted) = (false, false);
     for line in text.split(['\n', '\r']).filter(|line| !line.trim().is_empty()) {
         if let Some(text) = comment(line) {
             named |= header(text).is_some();
@@ -164,10 +185,22 @@ pub(super) fn begins_with_post(beginning: &[u8]) -> bool {
             return true;
         }
         let fields = fields(line, separator_of(line));
+        if !counted && stated_count(&fields).is_some() {
+            counted = true;
+            continue;
+        }
         // Other columns may come before x where a comment names the columns.
         return fields.len() >= 3 && (named || fields.iter().take(3).all(|field| is_meant_as_number(field)));
     }
     named
+}
+
+/// The number of posts, if a line has nothing but a whole number, as `CloudCompare` and point clouds in PTS have before the first post.
+pub(super) fn stated_count(fields: &[&str]) -> Option<usize> {
+    match fields {
+        [one] if one.bytes().all(|byte| byte.is_ascii_digit()) => one.parse().ok(),
+        _ => None,
+    }
 }
 
 /// A number in any notation: digits with signs, points, commas, apostrophes and an exponent; also `nan` and `inf`.

@@ -228,6 +228,11 @@ mod tests {
             "0\t10\t1\tsand and rock\n5\t10\t2\trock\n0\t0\t3\tx\n5\t0\t4\tx\n",
             "\u{feff}id, Z_m, Easting, Northing\n7, 1, 0, 10\n7, 2, 5, 10\n7, 3, 0, 0\n7, 4, 5, 0\n",
             "  0.0\t1e1 1\n 5 10 2\n 0 0 3\n 5 0 4",
+            "//X Y Z\n4\n0 10 1\n5 10 2\n0 0 3\n5 0 4\n",
+            "x y z\n4\n0 10 1\n5 10 2\n0 0 3\n5 0 4\n",
+            "4\n0 10 1 9 9 9\n5 10 2 9 9 9\n0 0 3 9 9 9\n5 0 4 9 9 9\n",
+            "x\u{a0}y\u{a0}z\n0\u{a0}10\u{a0}1\n5\u{a0}10\u{a0}2\n0\u{a0}0\u{a0}3\n5\u{a0}0\u{a0}4\n",
+            "0\u{202f}10\u{202f}1\n5\u{202f}10\u{202f}2\n0\u{202f}0\u{202f}3\n5\u{202f}0\u{202f}4\n",
         ] {
             assert!(begins_with_post(text.as_bytes()), "{text}");
             assert_eq!(read_xyz_bytes(text.as_bytes()).unwrap(), whole, "{text}");
@@ -273,6 +278,12 @@ mod tests {
             ("0,0,1,5\n1,0,2,5\n0,1,1\n1,1,1,0\n", "separate the columns by semicolons"),
             ("X[ft],Y[ft],Z[ft]\n0,0,10\n1,0,11\n0,1,10\n", "by 0.3048"),
             ("x,y,z_km\n0,0,10\n1,0,11\n0,1,10\n", "by 1000"),
+            ("x,y,depth\n0,0,10\n1,0,11\n0,1,10\n", "counts downwards"),
+            ("easting;northing;depth_m\n0;0;10\n1;0;11\n0;1;10\n", "change the sign"),
+            ("x,y,height,elevation\n0,0,10,9\n1,0,11,9\n0,1,10,9\n", "2 columns for z (height, elevation)"),
+            ("x,y,easting,z\n0,0,10,9\n1,0,11,9\n0,1,10,9\n", "2 columns for x"),
+            ("//X Y Z\n5\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n", "a count of 5 posts, and 4 posts after it"),
+            ("3\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n", "a count of 3 posts, and 4 posts after it"),
             ("# x y z[ft]\n0 0 10\n1 0 11\n0 1 10\n", "by 0.3048"),
             ("lon,lat,elevation\n10,45,100\n10.1,45,100\n10,45.1,100\n", "longitude and latitude"),
             ("1 0 0 5\n2 0 1 5\n3 1 0 5\n4 1 1 5\n", "counts the lines"),

@@ -2,7 +2,7 @@
 
 use std::io::BufRead;
 
-use super::header::{Columns, Header, Separator, comment, fields, header, separator_of};
+use super::header::{Columns, Header, Separator, comment, fields, header, separator_of, stated_count};
 use crate::quantity::{decimal_comma, excerpt, number_help};
 use crate::terrain::ascii_grid::Problems;
 use crate::terrain::stored::LastDigits;
@@ -57,6 +57,7 @@ pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> Re
     let mut named: Option<Columns> = None;
     let mut layout: Option<(Columns, Separator)> = None;
     let mut digits = Digits::default();
+    let mut stated: Option<(usize, usize)> = None;
     let mut bytes = Vec::new();
     let mut line = 0;
     loop {
@@ -92,7 +93,12 @@ pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> Re
                 None if comment.is_some() => {}
                 None => {
                     let separator = separator_of(text);
-                    let count = fields(text, separator).len();
+                    let fields = fields(text, separator);
+                    if let (None, Some(count)) = (stated, stated_count(&fields)) {
+                        stated = Some((line, count));
+                        continue;
+                    }
+                    let count = fields.len();
                     let columns = named.clone().unwrap_or(Columns { x: 0, y: 1, z: 2, count: count.max(3), named: false });
                     rows.further = !columns.named && columns.count > 3;
                     layout = Some((columns, separator));
@@ -108,6 +114,10 @@ pub(super) fn read_rows(mut source: impl BufRead, problems: &mut Problems) -> Re
         }
     }
     signs.check(problems);
+    if let Some((line, count)) = stated.filter(|(_, count)| problems.count() == 0 && *count != rows.posts.len()) {
+        let found = format!("a count of {count} posts, and {} posts after it", rows.posts.len());
+        problems.add_at((line, 1), &found, "equally many; if the file was cut short, copy it again, else correct the count");
+    }
     rows.short_last = rows.open && digits.last_is_short();
     Ok(rows)
 }

@@ -7,7 +7,7 @@ use super::polygons::Polygon;
 use super::same_map::{SameMap, mend_zones, of_geojson};
 use crate::{
     quantity::MapPoint,
-    terrain::{CoordinateSystem, MapBounds},
+    terrain::{CoordinateSystem, MapBounds, without_mark},
 };
 
 /// The polygons of a file, which holds a geometry, a feature or a collection of either, and how its map compares with the terrain's.
@@ -19,8 +19,7 @@ pub(super) fn polygons(
     terrain: Option<&CoordinateSystem>,
     bounds: MapBounds,
 ) -> Result<(Vec<Polygon>, SameMap), String> {
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-    let root: Value = serde_json::from_slice(bytes).map_err(|error| {
+    let root: Value = serde_json::from_slice(without_mark(bytes)).map_err(|error| {
         format!(
             "this is not JSON ({error}), expected GeoJSON with polygons; export them with: ogr2ogr -f GeoJSON out.geojson in.shp"
         )

@@ -15,7 +15,7 @@ use super::{
 };
 use crate::{
     quantity::{MapPoint, format_number},
-    terrain::{CoordinateSystem, Dem, MapBounds, Profile, TerrainError, read_dem},
+    terrain::{CoordinateSystem, Dem, DemOptions, MapBounds, NoDataRule, Profile, TerrainError, without_mark},
 };
 
 /// The name of the file's role in messages.
@@ -44,8 +44,8 @@ enum Zones {
 ///
 /// `coordinates` is the terrain's own description of its map, if it has one; `bounds` is the area of the terrain.
 ///
-/// Each pixel of a raster applies to its cell, half a spacing in every direction from its centre; no-data pixels are not kept
-/// out.
+/// Each pixel of a raster applies to its cell, half a spacing in every direction from its centre. Missing pixels are kept out, unless
+/// their no-data value is 0: what is not known is not allowed.
 ///
 /// # Errors
 /// [`TerrainError::Overlay`]: the file cannot be read, holds no polygons, holds an invalid one (named by feature and ring),
@@ -63,7 +63,7 @@ pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds
     } else if let Some(format) = vector_format(path).map_err(|error| failed(unread(&error)))? {
         return Err(failed(refusal(format, path, coordinates)));
     } else {
-        let mask = read_dem(path).map_err(|error| failed(of_raster(error)))?;
+        let mask = mask_of(path).map_err(|error| failed(of_raster(error)))?;
         let same = same_map::of_raster(&mask.georeference().coordinate_system, coordinates).map_err(|difference| {
             failed(format!("the mask lies on another map ({difference}); {}", same_map::mend_raster(coordinates)))
         })?;
@@ -74,6 +74,14 @@ pub fn read_keep_out(path: &Path, coordinates: Option<&CoordinateSystem>, bounds
         SameMap::NotCompared(reason) => Some(format!("{WHAT} '{}': {reason}", name_of(path))),
     };
     Ok(KeepOut { path: path.to_path_buf(), zones, not_compared })
+}
+
+/// A mask whose zones are all its pixels but zeros: what is missing may not be landed on either. A no-data value of 0, as burning
+/// polygons into an empty raster leaves, means free ground.
+fn mask_of(path: &Path) -> Result<Dem, TerrainError> {
+    let raster = DemOptions::default().no_data(NoDataRule::Nothing).read(path)?;
+    let kept = raster.elevations().map(|value| value.unwrap_or(1.0)).collect();
+    Dem::new(raster.rows(), raster.cols(), kept, raster.georeference().clone())
 }
 
 impl KeepOut {
@@ -197,7 +205,7 @@ fn vector_format(path: &Path) -> std::io::Result<Option<VectorFormat>> {
 /// Whether a file begins like JSON.
 fn looks_like_json(path: &Path) -> std::io::Result<bool> {
     let beginning = beginning_of(path)?;
-    let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&beginning);
+    let text = without_mark(&beginning);
     let first = text.iter().find(|byte| !byte.is_ascii_whitespace());
     Ok(matches!(first, Some(b'{' | b'[')))
 }

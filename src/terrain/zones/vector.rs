@@ -1,8 +1,10 @@
 //! Files of shapes that are not read, with the command that makes GeoJSON of them on the terrain's map.
 
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
-use crate::terrain::{CoordinateSystem, MapProjection};
+use crate::terrain::{CoordinateSystem, MapProjection, shell_word, without_mark};
 
 /// A format of shapes other than `GeoJSON`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,7 +35,7 @@ impl VectorFormat {
     pub fn of(beginning: &[u8], path: &Path) -> Option<Self> {
         let has_extension =
             |names: &[&str]| path.extension().is_some_and(|own| names.iter().any(|name| own.eq_ignore_ascii_case(name)));
-        let text = beginning.strip_prefix(b"\xef\xbb\xbf").unwrap_or(beginning).trim_ascii_start();
+        let text = without_mark(beginning).trim_ascii_start();
         let contains = |word: &[u8]| text.windows(word.len()).any(|window| window == word);
         if beginning.starts_with(b"\x00\x00\x27\x0a") {
             return Some(if has_extension(&["shx"]) { Self::ShapefilePart } else { Self::Shapefile });
@@ -79,6 +81,11 @@ impl VectorFormat {
         }
     }
 
+    /// Whether a file of the format may have several layers, such as the folders of KML.
+    const fn may_have_layers(self) -> bool {
+        matches!(self, Self::Kml | Self::Kmz | Self::GeoPackage | Self::Gml)
+    }
+
     /// Whether its coordinates are longitude and latitude by definition.
     const fn is_in_degrees(self) -> bool {
         matches!(self, Self::Kml | Self::Kmz | Self::Gpx)
@@ -92,6 +99,11 @@ pub(super) fn refusal(format: VectorFormat, path: &Path, coordinates: Option<&Co
         format => (path.to_path_buf(), format),
     };
     let found = format!("this is {}; expected polygons as GeoJSON in the terrain's map coordinates", format.name());
+    if format == VectorFormat::Gpx {
+        return format!(
+            "{found}: GPX holds tracks and points but no polygons, so draw the zones as polygons in another format, such as KML"
+        );
+    }
     let projection = coordinates.and_then(|system| MapProjection::of(system).ok());
     let systems = match (&projection, format.is_in_degrees()) {
         (None, true) => {
@@ -107,10 +119,18 @@ pub(super) fn refusal(format: VectorFormat, path: &Path, coordinates: Option<&Co
         (Some(map), false) if states_its_map(format, &path) => format!(" -t_srs '{}'", map.proj_string()),
         (_, false) => String::new(),
     };
-    let command = format!("ogr2ogr -f GeoJSON{systems} {} {}", quoted(&path.with_extension("geojson")), quoted(&path));
+    let (out, own) = (shell_word(&path.with_extension("geojson")), shell_word(&path));
+    // ogr2ogr writes the first layer alone into GeoJSON, and fails after it.
+    let command = if format.may_have_layers() {
+        format!("ogrmerge.py -single -f GeoJSON{systems} -o {out} {own}")
+    } else {
+        format!("ogr2ogr -f GeoJSON{systems} {out} {own}")
+    };
     let then = format!("then give {} as keep_out", path.with_extension("geojson").display());
     let hint = match (format, systems.is_empty()) {
-        (VectorFormat::Shapefile | VectorFormat::Dxf, true) => "; its coordinates must be those of the terrain's map already",
+        (VectorFormat::Shapefile | VectorFormat::Dxf | VectorFormat::Gml, true) => {
+            "; its coordinates must be those of the terrain's map already"
+        }
         (VectorFormat::GeoPackage | VectorFormat::FlatGeobuf | VectorFormat::Gml, false) => {
             "; if it states no reference system and its coordinates are the map's already, leave -t_srs away"
         }
@@ -124,13 +144,14 @@ fn states_its_map(format: VectorFormat, path: &Path) -> bool {
     match format {
         VectorFormat::Shapefile => ["prj", "PRJ"].iter().any(|extension| path.with_extension(extension).is_file()),
         VectorFormat::Dxf => false,
+        VectorFormat::Gml => names_a_system(path),
         _ => true,
     }
 }
 
-/// A path as one word of a shell.
-fn quoted(path: &Path) -> String {
-    let text = path.display().to_string();
-    let plain = text.chars().all(|letter| letter.is_alphanumeric() || "/._-+:".contains(letter));
-    if plain { text } else { format!("'{}'", text.replace('\'', r"'\''")) }
+/// Whether a GML file names a reference system anywhere in its first megabyte.
+fn names_a_system(path: &Path) -> bool {
+    let mut beginning = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(1 << 20).read_to_end(&mut beginning));
+    read.is_ok() && beginning.windows(7).any(|word| word.eq_ignore_ascii_case(b"srsName"))
 }
