@@ -44,7 +44,7 @@ impl Split {
 /// bounds that decrease with the loft.
 ///
 /// A tapered clearance asks for a loft `L(X)`: `2 k` up to a length of `2 eps / k`, and `k / (1 - eps / (k X))` for longer hops
-/// ([`ClearanceProfile::kink_loft`]). Short hops need the highest lofts, so that the lengths need not begin at 0.
+/// ([`kink_loft`](limits::ClearanceProfile::kink_loft)). Short hops need the highest lofts, so that the lengths need not begin at 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentReach {
     sight_slope: f64,
