@@ -27,11 +27,23 @@ pub(crate) fn lofts(test: &HopTest, takeoff: &Station, landing: &Station) -> Opt
     if cheap.is_empty() || cheap.upper <= 0.0 {
         return None;
     }
-    let (b, clearance_m) = (sight.slope(), test.hopper().limits().clearance_m);
+    let (b, clearance) = (sight.slope(), test.clearance());
     let mut lower = cheap.lower;
+    if clearance.has_kinks() {
+        let kink_m = clearance.kink_m(run_m) * direction.sign();
+        for (contact, x_m, slope) in
+            [(takeoff.point, takeoff.point.x_m + kink_m, b), (landing.point, landing.point.x_m - kink_m, -b)]
+        {
+            let ground = chain.geometry().station(x_m).ok()?.point;
+            lower = lower.max(clearance.kink_loft((ground.z_m - contact.z_m) / kink_m.abs() - slope, run_m));
+        }
+        if lower > cheap.upper {
+            return None;
+        }
+    }
     for vertex in between(chain.geometry().vertices(), takeoff, landing) {
         let d = (vertex.x_m - takeoff.point.x_m).abs();
-        let bound = ((vertex.z_m - takeoff.point.z_m + clearance_m) - b * d) * run_m / (d * (run_m - d));
+        let bound = ((vertex.z_m - takeoff.point.z_m + clearance.at_m(d, run_m - d)) - b * d) * run_m / (d * (run_m - d));
         if bound > lower {
             lower = bound;
             if lower > cheap.upper {

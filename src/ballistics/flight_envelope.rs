@@ -14,6 +14,7 @@ pub struct FlightEnvelope {
     gravity: Gravity,
     /// The take-off slopes that the mechanism allows.
     mechanical: SlopeInterval,
+    clearance: limits::ClearanceProfile,
 }
 
 /// The limits of one contact (take-off or landing): directions of travel as slopes, and a greatest speed.
@@ -34,7 +35,8 @@ impl FlightEnvelope {
             lower: hopper.limits().takeoff_angle_min.map_or(f64::NEG_INFINITY, Angle::slope),
             upper: hopper.limits().takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
         };
-        Self { hopper: hopper.below_escape(gravity), gravity, mechanical }
+        let clearance = limits::ClearanceProfile::of(hopper.limits());
+        Self { hopper: hopper.below_escape(gravity), gravity, mechanical, clearance }
     }
 
     /// The hopper.
@@ -50,6 +52,12 @@ impl FlightEnvelope {
     /// Gravity, m/s^2.
     pub const fn gravity_m_s2(&self) -> f64 {
         self.gravity.m_s2()
+    }
+
+    /// The height to keep over the ground.
+    #[inline]
+    pub const fn clearance(&self) -> limits::ClearanceProfile {
+        self.clearance
     }
 
     /// The take-off slopes that the take-off mechanism can produce: from the hopper's least to its greatest take-off angle.

@@ -102,12 +102,27 @@ impl Purpose {
         }
     }
 
+    /// Whether it answers for the scenario's own clearance alone: it varies no key.
+    const fn uses_one_clearance(self) -> bool {
+        !matches!(self, Self::Trade | Self::Require)
+    }
+
     /// Warnings about keys that were given and that this purpose does not use: those of the command line, and a risk that a scenario
     /// wants weighed. A scenario serves many commands, so other keys of a file are not reported.
     pub(crate) fn unused(self, entries: &Entries, scenario: &Scenario) -> Vec<String> {
         let weighs_risk = scenario.risk != ReliabilityUse::Ignored;
         let mut warnings = Vec::new();
         for (key, place) in entries.given() {
+            if scenario.hopper.limits().clearance_m == 0.0 && self.uses_one_clearance() {
+                // A scenario may state the rule of its clearance without one: the paper's do.
+                let by_option = matches!(place, Place::Option(_));
+                if (key.table, key.name) == ("hopper", "clearance_taper") || by_option && key.name == "clearance_rule" {
+                    warnings.push(format!(
+                        "{} has no effect: hopper.clearance_m is 0, so that there is no clearance to keep; give one, or leave the key out",
+                        key.path()
+                    ));
+                }
+            }
             if self.uses(key, weighs_risk) {
                 continue;
             }

@@ -220,17 +220,34 @@ impl DemGround {
             return None;
         }
         let end_m = sight.run_m() - self.position_rounding_m - BESIDE_M;
-        let clearance_m = self.hopper().limits().clearance_m;
+        let clearance = self.envelope.clearance();
         let ends = (ChainPoint::new(0.0, from.z_m), ChainPoint::new(sight.run_m(), to.z_m));
-        let mut reached_m = 0.0;
+        let kink_m = if clearance.has_kinks() { clearance.kink_m(sight.run_m()) } else { f64::INFINITY };
+        let (mut reached_m, mut before) = (0.0, (0.0, from.z_m));
         for span in triangles.walk(from.at, heading, nominal) {
             reached_m = span.to_m;
+            // The kinks of the clearance lie inside spans.
+            for (at_m, from_takeoff) in [(kink_m, true), (sight.run_m() - kink_m, false)] {
+                if before.0 < at_m && at_m <= reached_m {
+                    let z_m = before.1 + (span.to_z_m - before.1) * ((at_m - before.0) / (reached_m - before.0));
+                    let over = if from_takeoff {
+                        (z_m - from.z_m) / kink_m - sight.slope()
+                    } else {
+                        sight.slope() + (z_m - to.z_m) / kink_m
+                    };
+                    lofts.lower = lofts.lower.max(clearance.kink_loft(over, sight.run_m()));
+                }
+            }
+            before = (span.to_m, span.to_z_m);
+            if lofts.is_empty() {
+                return None;
+            }
             if reached_m >= end_m {
                 break;
             }
             if reached_m > BESIDE_M {
                 let crossing = ChainPoint::new(span.to_m, span.to_z_m);
-                lofts.lower = lofts.lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance_m));
+                lofts.lower = lofts.lower.max(limits::clearing_loft(ends.0, ends.1, crossing, clearance));
                 if lofts.is_empty() {
                     return None;
                 }
@@ -416,4 +433,65 @@ pub(super) fn rests(rest: RestSlope, gradient: Gradient, friction: Option<f64>, 
         RestSlope::Unlimited => None,
     };
     max.is_none_or(|max| gradient.norm() <= max + tolerance_rad * (1.0 + max * max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{
+        draw::Draw,
+        terrain::{Dem, GeoReference, Overlays},
+        world::{ClearanceRule, HopperLimits},
+    };
+
+    /// The walk over triangles and the slice with its hop test give the same lofts, under every rule of the clearance.
+    #[test]
+    fn a_walk_gives_the_lofts_of_the_slice() {
+        let draw = &mut Draw::seeded(1407);
+        let (mut hops, mut by_ground, mut refused) = (0, 0, 0);
+        for _ in 0..60 {
+            let heights = (0..20 * 20).map(|_| draw.uniform(0.0, 0.8)).collect();
+            let dem = Dem::new(20, 20, heights, GeoReference::local(MapPoint::new(3.0, 40.0), 1.0, 1.3).unwrap()).unwrap();
+            let limits = HopperLimits {
+                clearance_m: draw.log_uniform(0.05, 8.0),
+                clearance_rule: match draw.below(3) {
+                    0 => ClearanceRule::Vertex,
+                    1 => ClearanceRule::TAPERED,
+                    _ => ClearanceRule::Tapered(draw.log_uniform(0.1, 10.0)),
+                },
+                ..HopperLimits::with_speeds(9.0, 9.0)
+            };
+            let hopper = Hopper::new(limits).unwrap();
+            let cone = FrictionCone::new(2.0).unwrap();
+            let surface = SurfaceProperties { grip: Some(crate::world::Grip::Friction(cone)), rest: RestSlope::Unlimited };
+            let overlaid = OverlaidDem::new(dem, Overlays::default());
+            let ground = DemGround::new(overlaid, &hopper, Gravity::new(1.6).unwrap(), &surface);
+            for _ in 0..60 {
+                let [from, to] =
+                    [0, 1].map(|_| ground.position(MapPoint::new(draw.uniform(4.0, 21.0), draw.uniform(17.0, 39.0))).unwrap());
+                let Some((run_m, heading)) = ground.course(&from, &to) else { continue };
+                let sight = LineOfSight::new(run_m, to.z_m - from.z_m);
+                let walked = ground.lofts_by_walk(&from, &to, sight, heading);
+                let sliced = ground.windows(&from, &to).and_then(|windows| windows.lofts.first().copied());
+                match (walked, sliced) {
+                    (Some(walked), Some(sliced)) => {
+                        let apart = (walked.lower - sliced.lower).abs().max((walked.upper - sliced.upper).abs());
+                        assert!(apart < 1e-7 * (1.0 + sliced.upper.abs()), "{walked:?} {sliced:?} {limits:?}");
+                        hops += 1;
+                        let free = DemGround {
+                            envelope: FlightEnvelope::new(&Hopper::with_speeds(9.0, 9.0).unwrap(), ground.gravity()),
+                            ..ground.clone()
+                        };
+                        by_ground +=
+                            u32::from(free.lofts_by_walk(&from, &to, sight, heading).is_some_and(|free| free.lower < walked.lower));
+                    }
+                    (walked, sliced) => {
+                        assert_eq!(walked, sliced, "{limits:?}");
+                        refused += 1;
+                    }
+                }
+            }
+        }
+        assert!(hops > 500 && by_ground > 200 && refused > 200, "{hops} hops, {by_ground} by the clearance, {refused} refused");
+    }
 }

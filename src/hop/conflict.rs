@@ -94,9 +94,10 @@ impl fmt::Display for Conflict {
             },
             Self::Pair { lower, upper, gap_deg } => {
                 write!(f, "{} asks for a take-off at least {gap_deg:.6} deg steeper than {} allows", lower.limit, upper.limit)?;
-                match lower.vertex {
-                    Some(vertex) => write!(f, ", over vertex {}", vertex.index() + 1),
-                    None => Ok(()),
+                match (lower.vertex, lower.kink_x_m) {
+                    (Some(vertex), _) => write!(f, ", over vertex {}", vertex.index() + 1),
+                    (None, Some(x_m)) => write!(f, ", for the clearance over the ground at x = {x_m} m"),
+                    (None, None) => Ok(()),
                 }
             }
         }

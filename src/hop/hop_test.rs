@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief};
+use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief, terrain::kinks_loft};
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, limits},
     chain::{ConstrainedChain, ContactRule, Station},
@@ -57,6 +57,12 @@ impl HopTest {
         self.envelope.hopper()
     }
 
+    /// The height to keep over the ground.
+    #[inline]
+    pub const fn clearance(&self) -> limits::ClearanceProfile {
+        self.envelope.clearance()
+    }
+
     /// Gravity, m/s^2.
     pub const fn gravity_m_s2(&self) -> f64 {
         self.envelope.gravity_m_s2()
@@ -98,7 +104,7 @@ impl HopTest {
     /// Feasible lofts (take-off slope minus line-of-sight slope, see [`crate::ballistics`]) of one hop between two stations under
     /// all limits, or the limit that leaves no arc.
     ///
-    /// Cheap limits are tested first and the terrain last; the test stops at the first vertex that leaves no arc.
+    /// Cheap limits are tested first and the terrain last; the test stops at the first point of the ground that leaves no arc.
     ///
     /// Source: CHTA paper, eq. 21.
     ///
@@ -117,10 +123,16 @@ impl HopTest {
         let sight = self.line_of_sight(takeoff, landing).ok_or(Limit::Direction)?;
         let in_envelope = self.lofts_in_envelope(sight, from, to)?;
         let vertices = self.chain.geometry().vertices();
+        let clearance = self.envelope.clearance();
         let mut lower = in_envelope.lower;
+        if clearance.has_kinks() {
+            lower = lower.max(kinks_loft(self.chain.geometry(), takeoff, landing, sight, clearance));
+            if lower > in_envelope.upper {
+                return Err(Limit::Terrain);
+            }
+        }
         for point in &vertices[flown_past(takeoff, landing)] {
-            lower =
-                lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, self.envelope.hopper().limits().clearance_m));
+            lower = lower.max(limits::clearing_loft(takeoff.point, landing.point, *point, clearance));
             if lower > in_envelope.upper {
                 return Err(Limit::Terrain);
             }
@@ -214,7 +226,8 @@ impl HopTest {
     }
 
     /// The least number of hops along the ground that join two stations of one segment; `None` if they share no segment, have the
-    /// same x, or no hop along the segment is allowed in this direction (or the number would exceed 2^53).
+    /// same x, or no hops along the segment are allowed in this direction whose lengths add up to this distance (or the number would
+    /// exceed 2^53).
     ///
     /// For pairs that no single hop joins. They can be closer than the reach, since the other limits can exclude the single hop;
     /// the CHTA paper's text covers this case, the pseudo-code of its Algorithm 2 does not.

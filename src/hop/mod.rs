@@ -17,5 +17,5 @@ pub use hop_test::HopTest;
 pub use risk::{HopDeviations, InvalidDeviation, PlannedHop, RiskModel};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
 pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};
-pub(crate) use terrain::flown_past;
-pub use terrain::terrain_limit;
+pub use terrain::{TerrainPoint, terrain_limit};
+pub(crate) use terrain::{first_ahead, flown_past, ground_slope, slope_beyond};

@@ -42,6 +42,9 @@ impl Split {
 ///
 /// both largest at `n = sqrt(1 + b^2)` and decreasing on either side (P Remark 2). A greatest flight time or apex height adds
 /// bounds that decrease with the loft.
+///
+/// A tapered clearance asks for a loft `L(X)`: `2 k` up to a length of `2 eps / k`, and `k / (1 - eps / (k X))` for longer hops
+/// ([`kink_loft`](limits::ClearanceProfile::kink_loft)). Short hops need the highest lofts, so that the lengths need not begin at 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentReach {
     sight_slope: f64,
@@ -54,6 +57,10 @@ pub struct SegmentReach {
     /// no tolerance, so rounding could refuse the only arc of a hop exactly on the limit.
     stride_m: f64,
     limit: Limit,
+    /// The length of the shortest hop, m; 0 if there is none.
+    shortest_m: f64,
+    /// Hops up to this length are also possible where the shortest is longer, m; 0 if there are none.
+    near_m: f64,
 }
 
 /// A number of hops along one segment.
@@ -88,12 +95,74 @@ impl SegmentReach {
         let tolerance = (1.0 + SPEED_TOLERANCE) * (1.0 + SPEED_TOLERANCE);
         let tolerant_reach_m = by_machine.min(by_speed * tolerance);
         let stride_m = reach_m.min(by_machine * (1.0 - SPEED_TOLERANCE));
-        (reach_m > 0.0).then_some(Self { sight_slope, from: *from, to: *to, loft, reach_m, tolerant_reach_m, stride_m, limit })
+        let (shortest_m, near_m) = (0.0, 0.0);
+        let by_others =
+            Self { sight_slope, from: *from, to: *to, loft, reach_m, tolerant_reach_m, stride_m, limit, shortest_m, near_m };
+        if reach_m.is_nan() || reach_m <= 0.0 {
+            return None;
+        }
+        if test.clearance().has_kinks() { by_others.with_clearance(test, &ends) } else { Some(by_others) }
+    }
+
+    /// The lengths that a tapered clearance leaves of those from 0 to the reach.
+    ///
+    /// The greatest loft `U` that the other limits allow a hop of length `X` is concave in `1 / X` and increases with it; their
+    /// least loft decreases with `1 / X` and is convex. So is `L` from `1 / X = 0` to `1 / (2 w)`, from where it is constant. The
+    /// excess of `U` over both is therefore concave below `1 / (2 w)`, which gives one interval of lengths above `2 w`, and
+    /// increasing beyond, which gives one interval of lengths from 0.
+    fn with_clearance(self, test: &HopTest, ends: &Ends<'_>) -> Option<Self> {
+        let excess = |length_m: f64| {
+            let lofts = test.lofts_in_envelope(LineOfSight::along(length_m, self.sight_slope), &self.from, &self.to);
+            let clearing = test.clearance().kink_loft(0.0, length_m);
+            lofts.map_or(f64::NEG_INFINITY, |lofts| lofts.upper - lofts.lower.max(clearing))
+        };
+        let allows = |length_m: f64| excess(length_m) >= 0.0;
+        let (longest_m, two_ramps_m) = (self.stride_m, 2.0 * test.clearance().ramp_m());
+        let near = |below_m: f64| {
+            let least_m = below_m * SPEED_TOLERANCE;
+            if allows(least_m) { last_allowed(least_m, below_m, allows) * (1.0 - SPEED_TOLERANCE) } else { 0.0 }
+        };
+        if longest_m <= two_ramps_m {
+            return if allows(longest_m) { Some(self.steepened(test, ends)) } else { self.ended_at(near(longest_m), test, ends) };
+        }
+        let inside_m =
+            if allows(longest_m) { Some(longest_m) } else { greatest(two_ramps_m, longest_m, excess).filter(|x| allows(*x)) };
+        let Some(inside_m) = inside_m else { return self.ended_at(near(two_ramps_m), test, ends) };
+        let mut found = self.steepened(test, ends);
+        if inside_m < longest_m {
+            found = self.ended_at(last_allowed(inside_m, longest_m, allows) * (1.0 - SPEED_TOLERANCE), test, ends)?;
+        }
+        if !allows(two_ramps_m) {
+            found.shortest_m = last_allowed(inside_m, two_ramps_m, allows) * (1.0 + SPEED_TOLERANCE);
+            found.near_m = near(two_ramps_m);
+        }
+        // A single length that rounding loses.
+        if found.shortest_m > found.stride_m { self.ended_at(found.near_m, test, ends) } else { Some(found) }
+    }
+
+    /// The same reach with a loft that keeps the clearance: where the other limits leave several.
+    fn steepened(self, test: &HopTest, ends: &Ends<'_>) -> Self {
+        let loft = test.clearance().kink_loft(0.0, self.stride_m);
+        if loft > self.loft { Self { loft, limit: ends.limit_at(loft), ..self } } else { self }
+    }
+
+    /// The same with a reach that the clearance ends, together with the limit of the others that such a steep hop meets first;
+    /// `None` if that is 0.
+    fn ended_at(self, reach_m: f64, test: &HopTest, ends: &Ends<'_>) -> Option<Self> {
+        let loft = test.clearance().kink_loft(0.0, reach_m);
+        let limit = ends.limit_at(loft);
+        let ended = Self { loft, reach_m, tolerant_reach_m: reach_m, stride_m: reach_m, limit, ..self };
+        (reach_m > 0.0).then_some(Self { shortest_m: 0.0, near_m: 0.0, ..ended })
     }
 
     /// The greatest horizontal distance of one hop, m.
     pub const fn reach_m(&self) -> f64 {
         self.reach_m
+    }
+
+    /// The horizontal distance of the shortest hop, m: 0 unless a tapered clearance refuses short hops.
+    pub const fn shortest_m(&self) -> f64 {
+        self.shortest_m
     }
 
     /// The greatest distance of one hop along the slope, m.
@@ -124,9 +193,22 @@ impl SegmentReach {
     /// The least number of hops over a horizontal distance, `N = ceil(X / reach)` (P eq. 26).
     ///
     /// No combination of angles or lengths along the segment needs fewer hops, since none goes farther than the reach. `None`
-    /// if the number exceeds 2^53.
+    /// if the number exceeds 2^53, or if so many hops of the shortest length go too far and shorter ones are not possible. (Where
+    /// hops are possible up to some length and again from a longer one, which takes a taper of over twice the slope of the ground,
+    /// the two kinds are not mixed.)
     pub fn hops_over(&self, run_m: f64) -> Option<SegmentHops> {
         let hops = (run_m / self.tolerant_reach_m).ceil().max(1.0);
+        if hops * self.shortest_m > run_m {
+            let near = Self {
+                reach_m: self.near_m,
+                tolerant_reach_m: self.near_m,
+                stride_m: self.near_m,
+                shortest_m: 0.0,
+                near_m: 0.0,
+                ..*self
+            };
+            return if self.near_m > 0.0 { near.hops_over(run_m) } else { None };
+        }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1 and at most 2^53")]
         (hops <= 9_007_199_254_740_992.0).then_some(SegmentHops { reach: *self, run_m, hops: hops as u64 })
     }
@@ -146,14 +228,16 @@ impl SegmentHops {
     /// The horizontal lengths of the hops, m: of each but the last, and of the last.
     ///
     /// With full reach the last hop covers the rest. If rounding leaves a rest slightly over the reach (a stretch of exactly
-    /// a multiple of the reach), the hops are equal.
+    /// a multiple of the reach), or under the shortest hop, the hops are equal.
     #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
     pub fn lengths_m(&self, split: Split) -> (f64, f64) {
         let equal = self.run_m / self.hops as f64;
         let stride_m = self.reach.stride_m;
         let rest = self.run_m - (self.hops - 1) as f64 * stride_m;
         match split {
-            Split::FullReach if self.hops > 1 && rest > 0.0 && rest <= stride_m => (stride_m, rest),
+            Split::FullReach if self.hops > 1 && rest > 0.0 && rest <= stride_m && rest >= self.reach.shortest_m => {
+                (stride_m, rest)
+            }
             _ => (equal, equal),
         }
     }
@@ -172,8 +256,41 @@ impl SegmentHops {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
         // At full reach the set is a single loft, which rounding may lose.
         let only = SlopeInterval { lower: self.reach.loft, upper: self.reach.loft };
-        test.lofts_in_envelope(sight, &self.reach.from, &self.reach.to).unwrap_or(only)
+        let clearance = test.clearance();
+        let clearing = if clearance.has_kinks() { clearance.kink_loft(0.0, length_m) } else { f64::NEG_INFINITY };
+        let cleared = |lofts: SlopeInterval| SlopeInterval { lower: lofts.lower.max(clearing), ..lofts };
+        let found = test.lofts_in_envelope(sight, &self.reach.from, &self.reach.to).map(cleared);
+        found.ok().filter(|lofts| !lofts.is_empty()).unwrap_or(only)
     }
+}
+
+/// The length farthest from an allowed one, towards one that is not allowed, up to which all are: bisection to the last digit.
+fn last_allowed(mut allowed_m: f64, mut refused_m: f64, allows: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle_m = 0.5 * (allowed_m + refused_m);
+        if middle_m == allowed_m || middle_m == refused_m {
+            return allowed_m;
+        }
+        if allows(middle_m) { allowed_m = middle_m } else { refused_m = middle_m }
+    }
+}
+
+/// The length at which a function that is concave in the inverse of the length is greatest: a golden section. It ends as soon as
+/// the function is not negative.
+fn greatest(shortest_m: f64, longest_m: f64, of: impl Fn(f64) -> f64) -> Option<f64> {
+    /// Each step leaves 0.618 of the range: 80 steps leave 1e-17.
+    const STEPS: usize = 80;
+    const GOLDEN: f64 = 0.618_033_988_749_894_9;
+    let (mut low, mut high) = (1.0 / longest_m, 1.0 / shortest_m);
+    for _ in 0..STEPS {
+        let (left, right) = (high - GOLDEN * (high - low), low + GOLDEN * (high - low));
+        let values = [left, right].map(|inverse| of(1.0 / inverse));
+        if let Some(i) = values.iter().position(|value| *value >= 0.0) {
+            return Some(1.0 / [left, right][i]);
+        }
+        if values[0] > values[1] { high = right } else { low = left }
+    }
+    None
 }
 
 /// The reach of a hop along one segment as a function of its loft.
@@ -213,6 +330,12 @@ impl Ends<'_> {
             }
         });
         if apex < time { (apex, Limit::ApexHeight) } else { (time, Limit::FlightTime) }
+    }
+
+    /// The limit that ends the distance at a loft.
+    fn limit_at(&self, n: f64) -> Limit {
+        let ((by_speed, speed), (by_machine, machine)) = (self.by_speed_m(n), self.by_machine_m(n));
+        if by_machine < by_speed { machine } else { speed }
     }
 
     /// The loft of the farthest hop, between the flattest loft and the loft of greatest distance by speed.

@@ -1,6 +1,6 @@
 //! The feasible take-off set of one pair of stations, with each limit evaluated separately.
 
-use super::{Conflict, HopTest, Shortfall, terrain_limit};
+use super::{Conflict, HopTest, Shortfall, TerrainPoint, terrain_limit};
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice, least_landing_speed_m_s, least_takeoff_speed_m_s, limits},
     chain::{ContactRule, Station},
@@ -15,8 +15,10 @@ pub struct LimitInterval {
     pub limit: Limit,
     /// The lofts that it allows; empty if it refuses every arc.
     pub lofts: SlopeInterval,
-    /// For the terrain: the vertex that sets the limit.
+    /// For the terrain: the vertex that sets the limit, unless a kink of the clearance between vertices does.
     pub vertex: Option<VertexId>,
+    /// For the terrain: the x of the kink of the clearance that sets the limit, m along the chain.
+    pub kink_x_m: Option<f64>,
     /// By how much it refuses every arc, if it does.
     pub shortfall: Option<Shortfall>,
 }
@@ -116,6 +118,7 @@ const ABOVE_SIGHT: LimitInterval = LimitInterval {
     limit: Limit::LineOfSight,
     lofts: SlopeInterval { lower: 0.0, upper: f64::INFINITY },
     vertex: None,
+    kink_x_m: None,
     shortfall: None,
 };
 
@@ -128,7 +131,7 @@ fn all_limits(
     sight: LineOfSight,
 ) -> Vec<LimitInterval> {
     let mut found = Vec::with_capacity(Limit::ALL.len());
-    let mut add = |limit, lofts, vertex, shortfall| found.push(LimitInterval { limit, lofts, vertex, shortfall });
+    let mut add = |limit, lofts, vertex, shortfall| found.push(LimitInterval { limit, lofts, vertex, kink_x_m: None, shortfall });
     let mut allowed = |contact, station: &Station| -> Option<ContactRule> {
         match test.chain().check_contact(station, contact, direction) {
             Ok(rule) => Some(rule),
@@ -162,11 +165,21 @@ fn all_limits(
         add(Limit::LandingSpeed, lofts, None, shortfall);
     }
     add(Limit::LineOfSight, ABOVE_SIGHT.lofts, None, None);
-    let (lofts, vertex) = terrain_limit(test.chain().geometry(), takeoff, landing, test.hopper().limits().clearance_m);
-    add(Limit::Terrain, lofts, vertex, None);
     machine_limits(test, sight, &mut add);
+    found.push(terrain(test, takeoff, landing, sight));
     found.sort_by_key(|limit| limit.limit);
     found
+}
+
+/// The terrain, with the vertex or the kink of the clearance that sets the limit.
+fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, sight: LineOfSight) -> LimitInterval {
+    let (lofts, point) = terrain_limit(test.chain().geometry(), takeoff, landing, sight, test.clearance());
+    let (vertex, kink_x_m) = match point {
+        Some(TerrainPoint::Vertex(vertex)) => (Some(vertex), None),
+        Some(TerrainPoint::Kink(x_m)) => (None, Some(x_m)),
+        None => (None, None),
+    };
+    LimitInterval { limit: Limit::Terrain, lofts, vertex, kink_x_m, shortfall: None }
 }
 
 /// The limits of the machine that this hopper has.

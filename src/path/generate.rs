@@ -80,7 +80,7 @@ fn along_segment(test: &HopTest, leg: &Leg, along: &SegmentHops, choice: Takeoff
     hops
 }
 
-/// The x of all landings but the last for hops of full reach, m; `None` for another split, or if the last hop would be too long.
+/// The x of all landings but the last for hops of full reach, m; `None` for another split, or if the last hop would be too long or too short.
 ///
 /// An x far from zero has a coarse last digit, and a hop rounded up would exceed its reach (a hop of 1 mm at x = 200 km by 1e-8 of
 /// itself, ten times the tolerance of a speed). Every x is therefore rounded towards its take-off; the last hop makes up for all.
@@ -97,7 +97,8 @@ fn full_reach_m(leg: &Leg, along: &SegmentHops, direction: Direction, split: Spl
         from_m = if (x_m - from_m).abs() > each_m { towards_takeoff } else { x_m };
         landings.push(from_m);
     }
-    ((leg.landing.point.x_m - from_m).abs() <= each_m).then_some(landings)
+    let last_m = (leg.landing.point.x_m - from_m).abs();
+    (last_m <= each_m && last_m >= along.reach().shortest_m()).then_some(landings)
 }
 
 /// The x of all landings but the last for hops of equal length, m.

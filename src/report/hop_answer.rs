@@ -54,6 +54,9 @@ pub struct LimitRecord {
     /// For the terrain: the vertex that sets the limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertex: Option<VertexRecord>,
+    /// For the terrain: where between vertices the clearance sets the limit, if it does, m along the chain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance_x_m: Option<f64>,
     /// The reason, if it refuses every arc.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub refusal: Option<String>,
@@ -83,6 +86,9 @@ pub enum BindingRecord {
         /// For the terrain: the vertex that sets the limit.
         #[serde(skip_serializing_if = "Option::is_none")]
         vertex: Option<VertexRecord>,
+        /// For the terrain: where between vertices the clearance sets the limit, if it does, m along the chain.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        clearance_x_m: Option<f64>,
     },
     /// Empty: one limit that refuses every arc, or two that conflict.
     Conflict {
@@ -96,6 +102,9 @@ pub enum BindingRecord {
         /// The vertex.
         #[serde(skip_serializing_if = "Option::is_none")]
         vertex: Option<VertexRecord>,
+        /// For the terrain: where between vertices the clearance sets the limit, if it does, m along the chain.
+        #[serde(skip_serializing_if = "Option::is_none")]
+        clearance_x_m: Option<f64>,
         /// The conflict in one sentence.
         sentence: String,
     },
@@ -169,6 +178,7 @@ impl LimitRecord {
             min_deg: angles.map(|a| a.min.degrees()),
             max_deg: angles.map(|a| a.max.degrees()),
             vertex: limit.vertex.map(|vertex| VertexRecord::new(test, vertex)),
+            clearance_x_m: limit.kink_x_m,
             refusal: limit.shortfall.map(|shortfall| shortfall.to_string()),
         }
     }
@@ -188,11 +198,19 @@ impl BindingRecord {
                 lower: binding.lower.limit.name(),
                 upper: binding.upper.limit.name(),
                 vertex: binding.lower.vertex.map(|vertex| VertexRecord::new(test, vertex)),
+                clearance_x_m: binding.lower.kink_x_m,
             };
         }
         match set.conflict() {
             Some(conflict) => Self::of_conflict(test, &conflict),
-            None => Self::Conflict { conflict: Vec::new(), gap_deg: None, gap_m_s: None, vertex: None, sentence: String::new() },
+            None => Self::Conflict {
+                conflict: Vec::new(),
+                gap_deg: None,
+                gap_m_s: None,
+                vertex: None,
+                clearance_x_m: None,
+                sentence: String::new(),
+            },
         }
     }
 
@@ -207,13 +225,21 @@ impl BindingRecord {
                     Some(Shortfall::Height { .. } | Shortfall::Bend { .. }) | None => (None, None),
                 };
                 let vertex = alone.vertex.map(|vertex| VertexRecord::new(test, vertex));
-                Self::Conflict { conflict: vec![alone.limit.name()], gap_deg, gap_m_s, vertex, sentence }
+                Self::Conflict {
+                    conflict: vec![alone.limit.name()],
+                    gap_deg,
+                    gap_m_s,
+                    vertex,
+                    clearance_x_m: alone.kink_x_m,
+                    sentence,
+                }
             }
             Conflict::Pair { lower, upper, gap_deg } => Self::Conflict {
                 conflict: vec![lower.limit.name(), upper.limit.name()],
                 gap_deg: Some(*gap_deg),
                 gap_m_s: None,
                 vertex: lower.vertex.map(|vertex| VertexRecord::new(test, vertex)),
+                clearance_x_m: lower.kink_x_m,
                 sentence,
             },
         }

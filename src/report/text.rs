@@ -51,7 +51,9 @@ pub fn hop_text(answer: &HopAnswer) -> String {
             (Some(min), Some(max)) => format!("{min:>14.6}{max:>14.6}"),
             _ => format!("{:>14}{:>14}", "-", "-"),
         };
-        let vertex = limit.vertex.map(|v| format!("  vertex {} at x = {} m", v.number, place(v.x_m))).unwrap_or_default();
+        let vertex = limit.vertex.map(|v| format!("  vertex {} at x = {} m", v.number, place(v.x_m)));
+        let clearance = limit.clearance_x_m.map(|x_m| format!("  clearance at x = {} m", place(x_m)));
+        let vertex = vertex.or(clearance).unwrap_or_default();
         let refusal = limit.refusal.as_ref().map(|r| format!("  {r}")).unwrap_or_default();
         sheet.line(format_args!("{:<18}{ends}{vertex}{refusal}", limit.name));
     }
@@ -93,8 +95,9 @@ pub fn hop_text(answer: &HopAnswer) -> String {
 /// The limits that set the ends, or that conflict, in one line.
 fn binding_line(binding: &BindingRecord) -> String {
     match binding {
-        BindingRecord::Ends { lower, upper, vertex } => {
-            let at = vertex.map(|v| format!(" (vertex {} at x = {} m)", v.number, place(v.x_m))).unwrap_or_default();
+        BindingRecord::Ends { lower, upper, vertex, clearance_x_m } => {
+            let clearance = clearance_x_m.map(|x_m| format!(" (the clearance at x = {} m)", place(x_m)));
+            let at = vertex.map(|v| format!(" (vertex {} at x = {} m)", v.number, place(v.x_m))).or(clearance).unwrap_or_default();
             format!("the least angle is set by {lower}{at}, the greatest by {upper}")
         }
         BindingRecord::Conflict { sentence, .. } => format!("why: {sentence}"),

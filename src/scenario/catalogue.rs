@@ -5,6 +5,7 @@ use crate::{
     graph::{Effort, ReliabilityUse},
     hop::Split,
     uncertainty::Policy,
+    world::ClearanceRule,
 };
 
 /// The kind of value that a key takes.
@@ -129,13 +130,25 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 55] = [
+pub const CATALOGUE: [Key; 57] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
     key("hopper", "takeoff_speed_max_m_s", SPEED, "greatest take-off speed, m/s"),
     key("hopper", "landing_speed_max_m_s", SPEED, "greatest landing speed, m/s"),
-    key("hopper", "clearance_m", FROM_ZERO, "height to keep over every vertex flown past, m; absent: 0"),
+    key("hopper", "clearance_m", FROM_ZERO, "height to keep over the ground flown over, m; absent: 0"),
+    key(
+        "hopper",
+        "clearance_rule",
+        Kind::Word(&ClearanceRule::NAMES),
+        "tapered: kept over all ground, less near take-off and landing; vertex: in full over every vertex (the paper's); absent: tapered",
+    ),
+    key(
+        "hopper",
+        "clearance_taper",
+        Kind::Number { min: 1e-6, max: 1e6 },
+        "clearance gained per metre from take-off and from landing, under the tapered rule; absent: 0.5",
+    ),
     key("hopper", "takeoff_angle_min_deg", ELEVATION_ANGLE, "mechanical least take-off angle from the horizontal, degrees"),
     key("hopper", "takeoff_angle_max_deg", ELEVATION_ANGLE, "mechanical greatest take-off angle from the horizontal, degrees"),
     key("hopper", "apex_height_max_m", FROM_ZERO, "greatest height of the flight above its take-off, m"),
@@ -263,6 +276,7 @@ mod tests {
         let units = ["_m", "_m_s", "_m_s2", "_s", "_kg", "_deg"];
         let pure = [
             "friction_coefficient",
+            "clearance_taper",
             "points_per_segment",
             "mesh_scale",
             "no_data",

@@ -7,7 +7,7 @@ use crate::{
     graph::{PointSpacing, ReliabilityUse},
     quantity::{Angle, AngleInterval},
     terrain::{MapPlace, NoDataRule},
-    world::{Grip, RestSlope},
+    world::{ClearanceRule, Grip, RestSlope},
 };
 
 /// The scenario as used, defaults filled in, with the keys of [`CATALOGUE`](super::CATALOGUE):
@@ -58,6 +58,17 @@ fn hopper(scenario: &Scenario) -> Value {
         ("takeoff_speed_max_m_s", finite(hopper.limits().takeoff_speed_max_m_s)),
         ("landing_speed_max_m_s", finite(hopper.limits().landing_speed_max_m_s)),
         ("clearance_m", Some(hopper.limits().clearance_m.into())),
+        ("clearance_rule", Some(hopper.limits().clearance_rule.name().into())),
+        // Without a clearance only a taper of one's own is stated, which is then warned of again.
+        (
+            "clearance_taper",
+            hopper
+                .limits()
+                .clearance_rule
+                .taper()
+                .filter(|taper| hopper.limits().clearance_m > 0.0 || *taper != ClearanceRule::DEFAULT_TAPER)
+                .map(Value::from),
+        ),
         ("takeoff_angle_min_deg", hopper.limits().takeoff_angle_min.map(|angle| degrees(angle).into())),
         ("takeoff_angle_max_deg", hopper.limits().takeoff_angle_max.map(|angle| degrees(angle).into())),
         ("apex_height_max_m", hopper.limits().apex_height_max_m.map(Value::from)),

@@ -9,7 +9,10 @@ use crate::{
     hop::Split,
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace, NoDataRule},
-    world::{Body, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES, RestSlope, SurfaceProperties},
+    world::{
+        Body, ClearanceRule, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES, RestSlope,
+        SurfaceProperties,
+    },
 };
 
 /// Gravity, and its body if known.
@@ -250,10 +253,16 @@ fn unknown_body(entries: &mut Entries, name: &str) {
 /// The robot; an absent key sets no limit.
 fn hopper(entries: &mut Entries) -> Hopper {
     let number = |name| entries.number("hopper", name);
+    let taper = number("clearance_taper");
+    let clearance_rule = match entries.text("hopper", "clearance_rule") {
+        Some(rule) if rule == ClearanceRule::Vertex.name() => ClearanceRule::Vertex,
+        _ => taper.map_or(ClearanceRule::TAPERED, ClearanceRule::Tapered),
+    };
     let limits = HopperLimits {
         takeoff_speed_max_m_s: number("takeoff_speed_max_m_s").unwrap_or(f64::INFINITY),
         landing_speed_max_m_s: number("landing_speed_max_m_s").unwrap_or(f64::INFINITY),
         clearance_m: number("clearance_m").unwrap_or(0.0),
+        clearance_rule,
         takeoff_angle_min: number("takeoff_angle_min_deg").map(Angle::from_degrees),
         takeoff_angle_max: number("takeoff_angle_max_deg").map(Angle::from_degrees),
         apex_height_max_m: number("apex_height_max_m"),
@@ -272,6 +281,14 @@ fn hopper(entries: &mut Entries) -> Hopper {
         let help = "swap the two or widen the range";
         entries.problem(("hopper", "takeoff_angle_min_deg"), ProblemKind::Conflict, message, help);
         return Hopper::UNLIMITED;
+    }
+    if clearance_rule == ClearanceRule::Vertex && taper.is_some() {
+        let message =
+            "hopper.clearance_taper has no effect beside clearance_rule = \"vertex\", which keeps the whole clearance over \
+                       every vertex"
+                .to_owned();
+        let help = "remove clearance_taper, or say clearance_rule = \"tapered\"";
+        entries.problem(("hopper", "clearance_taper"), ProblemKind::Conflict, message, help);
     }
     // The catalogue's ranges lie within those of a hopper; if they ever do not, the hopper's own message is reported.
     Hopper::new(limits).unwrap_or_else(|InvalidHopper(problems)| {

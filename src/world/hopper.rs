@@ -5,6 +5,42 @@ use std::fmt;
 use super::Gravity;
 use crate::quantity::Angle;
 
+/// Where a hopper keeps its clearance.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ClearanceRule {
+    /// Over all ground flown over, tapered towards both contacts: over the ground at horizontal distances `d` from the take-off
+    /// and `e` from the landing the height kept is `min(clearance, k d, k e)`. The number is `k`, metres gained per metre.
+    Tapered(f64),
+    /// Over every vertex of the profile between take-off and landing, in full (the CHTA paper's rule). It depends on how finely
+    /// the ground is divided.
+    Vertex,
+}
+
+impl ClearanceRule {
+    /// The taper that holds unless another is given: half a metre of clearance per metre from either contact.
+    pub const DEFAULT_TAPER: f64 = 0.5;
+    /// The rule that holds unless another is given.
+    pub const TAPERED: Self = Self::Tapered(Self::DEFAULT_TAPER);
+    /// The names of all rules, the default first.
+    pub const NAMES: [&str; 2] = [Self::TAPERED.name(), Self::Vertex.name()];
+
+    /// The name in scenarios and results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Tapered(_) => "tapered",
+            Self::Vertex => "vertex",
+        }
+    }
+
+    /// The taper, if the rule has one.
+    pub const fn taper(self) -> Option<f64> {
+        match self {
+            Self::Tapered(taper) => Some(taper),
+            Self::Vertex => None,
+        }
+    }
+}
+
 /// The limits of a ballistic hopper as stated, not yet checked: [`Hopper::new`] does that.
 ///
 /// The two speeds are infinite if only the chain's explicit constraints limit them.
@@ -14,8 +50,10 @@ pub struct HopperLimits {
     pub takeoff_speed_max_m_s: f64,
     /// Greatest landing speed, m/s.
     pub landing_speed_max_m_s: f64,
-    /// Height to keep above every vertex flown over, m (epsilon in the CHTA paper).
+    /// Height to keep above the ground flown over, m (epsilon in the CHTA paper).
     pub clearance_m: f64,
+    /// Where this height is kept.
+    pub clearance_rule: ClearanceRule,
     /// Least take-off angle from the horizontal that the mechanism allows.
     pub takeoff_angle_min: Option<Angle>,
     /// Greatest take-off angle from the horizontal that the mechanism allows.
@@ -36,6 +74,7 @@ impl HopperLimits {
         takeoff_speed_max_m_s: f64::INFINITY,
         landing_speed_max_m_s: f64::INFINITY,
         clearance_m: 0.0,
+        clearance_rule: ClearanceRule::TAPERED,
         takeoff_angle_min: None,
         takeoff_angle_max: None,
         apex_height_max_m: None,
@@ -114,6 +153,7 @@ impl Hopper {
             takeoff_speed_max_m_s,
             landing_speed_max_m_s,
             clearance_m,
+            clearance_rule,
             takeoff_angle_min,
             takeoff_angle_max,
             apex_height_max_m,
@@ -138,6 +178,7 @@ impl Hopper {
             number("takeoff_speed_max_m_s", Some(takeoff_speed_max_m_s), speed, "a number above 0"),
             number("landing_speed_max_m_s", Some(landing_speed_max_m_s), speed, "a number above 0"),
             number("clearance_m", Some(clearance_m), not_negative, NOT_NEGATIVE),
+            number("clearance_taper", clearance_rule.taper(), positive, POSITIVE),
             angle("takeoff_angle_min_deg", takeoff_angle_min),
             angle("takeoff_angle_max_deg", takeoff_angle_max),
             (
@@ -204,6 +245,7 @@ mod tests {
         }
         for bad in [f64::NAN, -1.0, f64::INFINITY, f64::NEG_INFINITY] {
             assert_eq!(refused(|l| l.clearance_m = bad), ["clearance_m"], "{bad}");
+            assert_eq!(refused(|l| l.clearance_rule = ClearanceRule::Tapered(bad)), ["clearance_taper"], "{bad}");
             assert_eq!(refused(|l| l.apex_height_max_m = Some(bad)), ["apex_height_max_m"], "{bad}");
             assert_eq!(refused(|l| l.flight_time_max_s = Some(bad)), ["flight_time_max_s"], "{bad}");
             assert_eq!(refused(|l| l.mass_kg = Some(bad)), ["mass_kg"], "{bad}");
@@ -213,6 +255,7 @@ mod tests {
             assert_eq!(refused(|l| l.takeoff_angle_min = Some(degrees(bad))), ["takeoff_angle_min_deg"], "{bad}");
             assert_eq!(refused(|l| l.takeoff_angle_max = Some(degrees(bad))), ["takeoff_angle_max_deg"], "{bad}");
         }
+        assert_eq!(refused(|l| l.clearance_rule = ClearanceRule::Tapered(0.0)), ["clearance_taper"]);
         let reversed = |l: &mut HopperLimits| {
             l.takeoff_angle_min = Some(degrees(60.0));
             l.takeoff_angle_max = Some(degrees(30.0));

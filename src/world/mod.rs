@@ -11,7 +11,7 @@ mod travel;
 pub use body::{Body, KNOWN_BODIES};
 pub use friction_cone::{FrictionCone, InvalidFriction};
 pub use gravity::{Gravity, InvalidGravity, InvalidRadius};
-pub use hopper::{Hopper, HopperLimits, HopperProblem, InvalidHopper};
+pub use hopper::{ClearanceRule, Hopper, HopperLimits, HopperProblem, InvalidHopper};
 pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
 pub use surface::{Grip, InvalidSurface, RestSlope, SurfaceProperties};
 pub use travel::{Contact, Direction};

@@ -204,7 +204,18 @@ const MAP: [Trial; 21] = [
     (
         "--clearance-m",
         &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
-        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--clearance-m", "2.5"],
+        &[
+            "map",
+            "ground.tif",
+            "--start",
+            "5,5",
+            "--scenario",
+            "map.toml",
+            "--clearance-m",
+            "2.5",
+            "--set",
+            "hopper.clearance_taper=3",
+        ],
     ),
     (
         "--quiet",
@@ -275,7 +286,11 @@ const CHECK: [Trial; 16] = [
     ("--set", &["check", "scenario.toml"], &["check", "scenario.toml", "--set", "hopper.flight_time_max_s=1"]),
     ("--body", &["check", "scenario.toml"], &["check", "scenario.toml", "--body", "moon"]),
     ("--gravity-m-s2", &["check", "scenario.toml"], &["check", "scenario.toml", "--gravity-m-s2", "1.5"]),
-    ("--clearance-m", &["check", "scenario.toml"], &["check", "scenario.toml", "--clearance-m", "50"]),
+    (
+        "--clearance-m",
+        &["check", "scenario.toml"],
+        &["check", "scenario.toml", "--clearance-m", "50", "--set", "hopper.clearance_taper=9"],
+    ),
     ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
@@ -300,7 +315,11 @@ const PLAN: [Trial; 18] = [
     ("--set", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--set", "search.takeoff_angle=mid-range"]),
     ("--body", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--body", "moon"]),
     ("--gravity-m-s2", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--gravity-m-s2", "1.5"]),
-    ("--clearance-m", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--clearance-m", "50"]),
+    (
+        "--clearance-m",
+        &["plan", "scenario.toml"],
+        &["plan", "scenario.toml", "--clearance-m", "50", "--set", "hopper.clearance_taper=9"],
+    ),
     ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
@@ -669,7 +688,7 @@ const TRADE: [Trial; 17] = [
     (
         "--clearance-m",
         &["trade", "scenario.toml", "--vary", VARY],
-        &["trade", "scenario.toml", "--vary", VARY, "--clearance-m", "50"],
+        &["trade", "scenario.toml", "--vary", VARY, "--clearance-m", "50", "--set", "hopper.clearance_taper=9"],
     ),
     (
         "--quiet",
@@ -738,7 +757,11 @@ const SIMULATE: [Trial; 22] = [
     ("--set", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--set", "uncertainty.drift_along_sigma_m=0"]),
     ("--body", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--body", "moon"]),
     ("--gravity-m-s2", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--gravity-m-s2", "1.5"]),
-    ("--clearance-m", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--clearance-m", "50"]),
+    (
+        "--clearance-m",
+        &["simulate", "errors.toml"],
+        &["simulate", "errors.toml", "--clearance-m", "50", "--set", "hopper.clearance_taper=9"],
+    ),
     (
         "--quiet",
         &["simulate", "errors.toml", "--body", "bennu", "--trials", "10"],

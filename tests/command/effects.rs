@@ -7,13 +7,15 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 54] = [
+const TELLING: [(&str, &str); 56] = [
     ("body.name", "earth"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
     ("hopper.takeoff_speed_max_m_s", "1.2"),
     ("hopper.landing_speed_max_m_s", "1.2"),
     ("hopper.clearance_m", "30"),
+    ("hopper.clearance_rule", "vertex"),
+    ("hopper.clearance_taper", "3"),
     ("hopper.takeoff_angle_min_deg", "85"),
     ("hopper.takeoff_angle_max_deg", "50"),
     ("hopper.apex_height_max_m", "0.5"),
@@ -66,7 +68,7 @@ const TELLING: [(&str, &str); 54] = [
 
 /// A scenario over a chain on which every limit can bind and trials fail now and then.
 const RICH: &str = "[body]\nname = \"ceres\"\n[hopper]\ntakeoff_speed_max_m_s = 2.5\nlanding_speed_max_m_s = 2.5\n\
-    [surface]\nfriction_coefficient = 0.7\n[terrain]\nchain = \"chain.csv\"\nstart_x_m = 0\ngoal_x_m = 40\n";
+    clearance_m = 0.02\nclearance_taper = 2\n[surface]\nfriction_coefficient = 0.7\n[terrain]\nchain = \"chain.csv\"\nstart_x_m = 0\ngoal_x_m = 40\n";
 
 /// Its trials.
 const ERRORS: &str = "[uncertainty]\ntakeoff_speed_sigma_fraction = 0.02\ntakeoff_angle_sigma_deg = 0.2\nheight_sigma_m = 0.005\n\

@@ -30,6 +30,7 @@ impl Case {
         let line = draw.line(speed);
         let limits = HopperLimits {
             clearance_m: if draw.chance(0.5) { 0.0 } else { width * draw.log_uniform(1e-4, 1e-1) },
+            clearance_rule: draw.clearance_rule(),
             takeoff_angle_min: Some(Angle::from_degrees(draw.uniform(-30.0, 60.0))),
             takeoff_angle_max: Some(Angle::from_degrees(draw.uniform(60.0, 89.0))),
             apex_height_max_m: Some(width * draw.log_uniform(1e-1, 3.0)),
@@ -57,7 +58,10 @@ impl Case {
             Limit::LandingCone => other.line.landing = ContactRule::new(open, self.line.landing.speed_max_m_s()),
             Limit::TakeoffSpeed => other.line.takeoff = ContactRule::new(self.line.takeoff.angles(), fast),
             Limit::LandingSpeed => other.line.landing = ContactRule::new(self.line.landing.angles(), fast),
-            Limit::Terrain => other.points = vec![self.points[0], self.points[self.points.len() - 1]],
+            Limit::Terrain => {
+                other.points = vec![self.points[0], self.points[self.points.len() - 1]];
+                other.limits.clearance_m = 0.0;
+            }
             Limit::MechanicalAngle => (other.limits.takeoff_angle_min, other.limits.takeoff_angle_max) = (None, None),
             Limit::ApexHeight => other.limits.apex_height_max_m = None,
             Limit::FlightTime => other.limits.flight_time_max_s = None,

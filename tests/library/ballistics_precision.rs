@@ -9,7 +9,7 @@ use chta::{
     chain::ConstrainedChain,
     hop::{HopTest, TakeoffSet},
     quantity::{Angle, AngleInterval, ChainPoint},
-    world::{Gravity, Hopper, HopperLimits, Limit},
+    world::{ClearanceRule, Gravity, Hopper, HopperLimits, Limit},
 };
 
 const TABLE: &str = include_str!("../../data/validation/hop_limits.csv");
@@ -33,6 +33,8 @@ impl Case {
     fn hopper(&self) -> Hopper {
         Hopper::new(HopperLimits {
             clearance_m: self.input("clearance_m"),
+            // The equation of the paper, whose cases these are.
+            clearance_rule: ClearanceRule::Vertex,
             takeoff_angle_min: self.number("mechanical_min_deg").map(Angle::from_degrees),
             takeoff_angle_max: self.number("mechanical_max_deg").map(Angle::from_degrees),
             apex_height_max_m: self.number("apex_height_max_m"),

@@ -116,6 +116,12 @@ fn machine(hopper: &Hopper, flight: &Flight, end: f64, size: f64, slack: &mut Sl
     }
 }
 
+/// The height to keep at these distances from both ends.
+fn kept_m(hopper: &Hopper, d: f64, e: f64) -> f64 {
+    let taper = hopper.limits().clearance_rule.taper();
+    taper.map_or(hopper.limits().clearance_m, |taper| hopper.limits().clearance_m.min(taper * d.min(e)))
+}
+
 /// Clearance over vertices, and no earlier contact with the ground.
 fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, flight: &Flight, slack: &mut Slack) {
     let geometry = test.chain().geometry();
@@ -126,7 +132,23 @@ fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, flight: &Flight
         // A change of angle moves a height in proportion to its distance from the nearer end: that is the scale.
         let arm = (vertex.x_m - left).min(right - vertex.x_m);
         let steep = arm * (1.0 + flight.theta.tan().powi(2)).max(1.0);
-        slack.at_most(test.hopper().limits().clearance_m, above(vertex.x_m, vertex.z_m), steep, Limit::Terrain);
+        slack.at_most(
+            kept_m(test.hopper(), vertex.x_m - left, right - vertex.x_m),
+            above(vertex.x_m, vertex.z_m),
+            steep,
+            Limit::Terrain,
+        );
+    }
+    // A tapered clearance over the ground between vertices: many points, and the two where it stops growing.
+    let limits = test.hopper().limits();
+    if let Some(taper) = limits.clearance_rule.taper().filter(|_| limits.clearance_m > 0.0) {
+        let full = (limits.clearance_m / taper).min(0.5 * run);
+        let places = (1..48).map(|i| run * f64::from(i) / 48.0).chain([full, run - full]);
+        for (d, x) in places.map(|d| (d, left + d)).filter(|(_, x)| left < *x && *x < right) {
+            let steep = d.min(run - d) * (1.0 + flight.theta.tan().powi(2)).max(1.0);
+            let ground = geometry.station(x).unwrap().point.z_m;
+            slack.at_most(kept_m(test.hopper(), d, run - d), above(x, ground), steep, Limit::Terrain);
+        }
     }
     for i in 1..24 {
         let x = left + run * f64::from(i) / 24.0;
@@ -152,6 +174,7 @@ fn world(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
         if draw.chance(0.2) { RestSlope::AtMost(Angle::from_degrees(draw.uniform(20.0, 80.0))) } else { RestSlope::Unlimited };
     let mut limits = HopperLimits {
         clearance_m: if draw.chance(0.5) { 0.0 } else { size * draw.log_uniform(1e-4, 1e-1) },
+        clearance_rule: draw.clearance_rule(),
         ..HopperLimits::UNLIMITED
     };
     if draw.chance(0.3) {

@@ -41,9 +41,12 @@ impl World {
             line(takeoff, speed * fast, landing, speed * draw.uniform(0.7, 1.6))
         };
         let lines = (0..segments).map(|_| (cone(draw), cone(draw))).collect();
-        let hopper =
-            Hopper::new(HopperLimits { clearance_m: if draw.chance(0.5) { 0.0 } else { 1e-3 * size }, ..HopperLimits::UNLIMITED })
-                .unwrap();
+        let hopper = Hopper::new(HopperLimits {
+            clearance_m: if draw.chance(0.5) { 0.0 } else { size * draw.log_uniform(1e-3, 1e-1) },
+            clearance_rule: draw.clearance_rule(),
+            ..HopperLimits::UNLIMITED
+        })
+        .unwrap();
         Self { points, lines, hopper, g }
     }
 
@@ -405,7 +408,7 @@ impl Progress for Spacings {
 fn automatic_spacing_answers_with_the_first_that_finds_a_path() {
     let draw = &mut Draw::seeded(36);
     let mut later = 0;
-    for _ in 0..150 {
+    for _ in 0..400 {
         let world = World::draw(draw, 3);
         let chain = world.chain();
         let test = HopTest::new(chain.with_hopper(&world.hopper, Gravity::new(world.g).unwrap()).unwrap());

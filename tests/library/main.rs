@@ -15,6 +15,7 @@ mod ballistics_sampling;
 mod bends;
 mod chain_csv_problems;
 mod chain_csv_round_trip;
+mod clearance;
 mod docs_commands;
 mod execute;
 mod fly;

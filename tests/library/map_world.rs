@@ -130,7 +130,8 @@ pub(crate) fn random_hopper(draw: &mut Draw) -> (Hopper, f64) {
     let gravity = draw.log_uniform(0.05, 10.0);
     let speed = (gravity * draw.uniform(2.0, 9.0)).sqrt();
     let mut limits = HopperLimits {
-        clearance_m: if draw.chance(0.5) { 0.0 } else { draw.log_uniform(0.001, 0.5) },
+        clearance_m: if draw.chance(0.5) { 0.0 } else { draw.log_uniform(0.001, 1.0) },
+        clearance_rule: draw.clearance_rule(),
         ..HopperLimits::with_speeds(speed, speed * draw.uniform(0.7, 1.4))
     };
     if draw.chance(0.25) {

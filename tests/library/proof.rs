@@ -39,7 +39,11 @@ impl Journey {
             line(takeoff, speed * fast, landing, speed * draw.uniform(0.7, 1.6))
         };
         let lines: Vec<_> = (0..segments).map(|_| (cone(draw), cone(draw))).collect();
-        let mut limits = HopperLimits { clearance_m: if draw.chance(0.5) { 0.0 } else { 1e-2 * size }, ..HopperLimits::UNLIMITED };
+        let mut limits = HopperLimits {
+            clearance_m: if draw.chance(0.5) { 0.0 } else { size * draw.log_uniform(1e-3, 1e-1) },
+            clearance_rule: draw.clearance_rule(),
+            ..HopperLimits::UNLIMITED
+        };
         if draw.chance(0.2) {
             limits.apex_height_max_m = Some(size * draw.uniform(0.05, 0.6));
         }
@@ -208,11 +212,25 @@ fn flies(journey: &Journey, from: &Station, to: &Station, angles: u32) -> bool {
         } else {
             m * m * run * run / (4.0 * fall)
         };
+        let kept = |d: f64| {
+            let limits = hopper.limits();
+            limits.clearance_rule.taper().map_or(limits.clearance_m, |k| limits.clearance_m.min(k * d.min(run - d)))
+        };
         let clear = journey.chain.geometry().vertices().iter().all(|p| {
             let d = (p.x_m - from.point.x_m) * direction.sign();
-            !(d > 0.0 && d < run)
-                || from.point.z_m + m * d - fall * (d / run) * (d / run) >= p.z_m + hopper.limits().clearance_m / SLACK
+            !(d > 0.0 && d < run) || from.point.z_m + m * d - fall * (d / run) * (d / run) >= p.z_m + kept(d) / SLACK
         });
+        let tapered = hopper.limits().clearance_rule.taper().is_some() && hopper.limits().clearance_m > 0.0;
+        let full = hopper.limits().clearance_rule.taper().map_or(0.0, |k| (hopper.limits().clearance_m / k).min(0.5 * run));
+        let clear = clear
+            && (!tapered
+                || (1..64).map(|i| run * f64::from(i) / 64.0).chain([full, run - full]).filter(|d| 0.0 < *d && *d < run).all(
+                    |d| {
+                        let x_m = from.point.x_m + direction.sign() * d;
+                        let ground = journey.chain.geometry().station(x_m).map_or(f64::NEG_INFINITY, |station| station.point.z_m);
+                        from.point.z_m + m * d - fall * (d / run) * (d / run) >= ground + kept(d) / SLACK - 1e-9 * run
+                    },
+                ));
         v_t <= takeoff.speed_max_m_s() * SLACK
             && v_l <= landing.speed_max_m_s() * SLACK
             && within(m, &takeoff)

@@ -123,7 +123,7 @@ fn many_generated_scenarios_are_valid() {
         tree.is_ok_and(|tree| Scenario::new(Entries::from_toml(&tree.current())).is_ok())
     });
     let valid = valid.count();
-    assert!(valid > 50, "only {valid} of 500");
+    assert!(valid > 40, "only {valid} of 500");
 }
 
 /// Every key given is in the document with its value: none is lost.

@@ -42,6 +42,10 @@ impl Slope {
             limits.apex_height_max_m = draw.chance(0.5).then(|| speed * speed / g * draw.log_uniform(1e-2, 1.0));
             limits.flight_time_max_s = draw.chance(0.5).then(|| speed / g * draw.log_uniform(1e-1, 3.0));
         }
+        if machine && draw.chance(0.3) {
+            limits.clearance_m = run * draw.log_uniform(1e-5, 1.0);
+            limits.clearance_rule = draw.clearance_rule();
+        }
         let hopper = Hopper::new(limits).unwrap();
         Self::new(run, slope, line, hopper, g, Direction::BOTH[draw.below(2)])
     }
@@ -77,14 +81,36 @@ impl Slope {
             && within(down, self.line.landing)
             && v <= self.line.takeoff.speed_max_m_s() * more
             && landing_speed <= self.line.landing.speed_max_m_s() * more
+            && self.clears(length, theta, hair)
             && self.hopper.limits().takeoff_angle_max.is_none_or(|max| theta <= max.radians() + hair)
             && self.hopper.limits().apex_height_max_m.is_none_or(|max| highest <= max * (1.0 + hair))
             && self.hopper.limits().flight_time_max_s.is_none_or(|max| end <= max * (1.0 + hair))
     }
 
-    /// The longest flight at an angle, by bisection on flights.
+    /// Whether a flight over this segment keeps a tapered clearance: at the two places where it stops growing, and at many others.
+    fn clears(&self, length: f64, theta: f64, hair: f64) -> bool {
+        let limits = self.hopper.limits();
+        let Some(taper) = limits.clearance_rule.taper().filter(|_| limits.clearance_m > 0.0) else { return true };
+        let full = (limits.clearance_m / taper).min(0.5 * length);
+        let places = (1..32).map(|i| length * f64::from(i) / 32.0).chain([full, length - full]);
+        places.filter(|d| 0.0 < *d && *d < length).all(|d| {
+            let over = (theta.tan() - self.b) * d * (length - d) / length;
+            over >= limits.clearance_m.min(taper * d.min(length - d)) * (1.0 - hair - 1e-12)
+        })
+    }
+
+    /// The longest flight at an angle, by bisection on flights: of those longer than one that is flown, if short ones are not.
     fn longest(&self, theta: f64) -> f64 {
         let (mut low, mut high) = (0.0, 100.0 * self.run());
+        let least = 1e-9 * self.run();
+        if !self.flies(least, theta, 0.0) {
+            // Lengths that differ by 1 %: the possible ones are an interval.
+            let lengths = (0..2600).map(|i| least * 1.01f64.powi(i));
+            low = lengths.filter(|length| self.flies(*length, theta, 0.0)).fold(0.0, f64::max);
+            if low == 0.0 {
+                return 0.0;
+            }
+        }
         for _ in 0..60 {
             let middle = 0.5 * (low + high);
             if self.flies(middle, theta, 0.0) { low = middle } else { high = middle }

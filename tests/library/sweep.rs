@@ -10,7 +10,7 @@ use chta::{
     hop::HopTest,
     quantity::{Angle, ChainPoint, MapPoint, VertexId},
     terrain::slice,
-    world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
+    world::{ClearanceRule, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
 
 /// The counts of a comparison of many pairs.
@@ -97,7 +97,8 @@ fn compare_pair(
 fn some_hopper(draw: &mut Draw, size_m: f64, g: f64) -> Hopper {
     let reach_s = (size_m / g).sqrt();
     Hopper::new(HopperLimits {
-        clearance_m: if draw.chance(0.5) { 0.0 } else { size_m * draw.log_uniform(1e-4, 1e-1) },
+        clearance_m: if draw.chance(0.5) { 0.0 } else { size_m * draw.log_uniform(1e-4, 1.0) },
+        clearance_rule: draw.clearance_rule(),
         takeoff_angle_min: draw.chance(0.2).then(|| Angle::from_degrees(draw.uniform(-20.0, 50.0))),
         takeoff_angle_max: draw.chance(0.2).then(|| Angle::from_degrees(draw.uniform(50.0, 89.0))),
         apex_height_max_m: draw.chance(0.2).then(|| size_m * draw.log_uniform(0.1, 10.0)),
@@ -172,12 +173,18 @@ fn adversarial_ground_has_the_verdicts_of_the_hop_test() {
     for g in [1e-5, 3.711, 25.0_f64] {
         for (name, points) in adversaries(draw) {
             let mut compared = Compared::default();
-            for (clearance_m, reach_m) in [(0.0, 60.0), (0.05, 400.0), (0.0, 4000.0)] {
+            for (clearance_m, clearance_rule, reach_m) in [
+                (0.0, ClearanceRule::TAPERED, 60.0),
+                (0.05, ClearanceRule::Vertex, 400.0),
+                (0.05, ClearanceRule::TAPERED, 400.0),
+                (5.0, ClearanceRule::TAPERED, 400.0),
+                (0.0, ClearanceRule::TAPERED, 4000.0),
+            ] {
                 let speed = (g * reach_m).sqrt();
                 let kinds: [LineConstraints; 2] = [open(speed), steep(speed)];
                 for kind in kinds {
                     let chain = uniform(&points, kind);
-                    let hopper = Hopper::new(HopperLimits { clearance_m, ..HopperLimits::UNLIMITED }).unwrap();
+                    let hopper = Hopper::new(HopperLimits { clearance_m, clearance_rule, ..HopperLimits::UNLIMITED }).unwrap();
                     let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
                     compare(&test, &stations(&chain, 0), 6, &mut compared);
                     compare(&test, &stations(&chain, 3), 2, &mut compared);
@@ -199,7 +206,12 @@ fn touching_limits_have_the_verdicts_of_the_hop_test() {
         let (g, size_m) = (draw.gravity(), draw.log_uniform(1e-1, 1e2));
         let points = draw.profile(20, size_m);
         let fast = uniform(&points, line((-90.0, 90.0), (1e4 * g * size_m).sqrt(), (-90.0, 90.0), (1e6 * g * size_m).sqrt()));
-        let hopper = Hopper::new(HopperLimits { clearance_m: 1e-3 * size_m, ..HopperLimits::UNLIMITED }).unwrap();
+        let hopper = Hopper::new(HopperLimits {
+            clearance_m: 1e-3 * size_m,
+            clearance_rule: draw.clearance_rule(),
+            ..HopperLimits::UNLIMITED
+        })
+        .unwrap();
         let at = |chain: &ConstrainedChain, i| chain.geometry().vertex_station(VertexId(i));
         let (from, to) = (draw.below(5), 10 + draw.below(11));
         let roomy = HopTest::new(fast.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
@@ -241,9 +253,18 @@ fn real_ground_has_the_verdicts_of_the_hop_test() {
         for (from, to) in [(at(0.1, 0.2), at(0.9, 0.7)), (at(0.2, 0.9), at(0.7, 0.1))] {
             let profile = slice(&dem, from, to).unwrap();
             let chain = PolygonalChain::from_profile(&profile, None).unwrap();
-            for (friction, clearance_m) in [(0.6, 0.1), (20.0, 0.0), (20.0, 0.3)] {
+            for (friction, clearance_m, clearance_rule) in [
+                (0.6, 0.1, ClearanceRule::TAPERED),
+                (0.6, 5.0, ClearanceRule::TAPERED),
+                (20.0, 0.0, ClearanceRule::TAPERED),
+                (20.0, 0.3, ClearanceRule::TAPERED),
+                (20.0, 5.0, ClearanceRule::Tapered(20.0)),
+                (20.0, 0.3, ClearanceRule::Vertex),
+            ] {
                 let speed = f64::sqrt(g * reach_m);
-                let hopper = Hopper::new(HopperLimits { clearance_m, ..HopperLimits::with_speeds(speed, 1.5 * speed) }).unwrap();
+                let hopper =
+                    Hopper::new(HopperLimits { clearance_m, clearance_rule, ..HopperLimits::with_speeds(speed, 1.5 * speed) })
+                        .unwrap();
                 let surface = SurfaceProperties {
                     grip: Some(Grip::Friction(FrictionCone::new(friction).unwrap())),
                     rest: RestSlope::AsFrictionHolds,

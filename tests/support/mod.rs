@@ -4,7 +4,7 @@
 use chta::{
     chain::{ConstrainedChain, ContactRule, GroundForm, LineConstraints, PolygonalChain, SegmentGround},
     quantity::{AngleInterval, ChainPoint},
-    world::{Gravity, Hopper, RestSlope, SurfaceProperties},
+    world::{ClearanceRule, Gravity, Hopper, RestSlope, SurfaceProperties},
 };
 
 mod draw;
@@ -14,6 +14,15 @@ impl Draw {
     /// A gravity between that of a small asteroid and more than Jupiter's, m/s^2.
     pub(crate) fn gravity(&mut self) -> f64 {
         self.log_uniform(1e-5, 25.0)
+    }
+
+    /// Where the clearance is kept: by the paper's rule, or with a taper from nearly none to nearly upright.
+    pub(crate) fn clearance_rule(&mut self) -> ClearanceRule {
+        match self.below(4) {
+            0 => ClearanceRule::Vertex,
+            1 => ClearanceRule::TAPERED,
+            _ => ClearanceRule::Tapered(self.log_uniform(0.05, 20.0)),
+        }
     }
 
     /// A rough profile: flats, slopes, steps, walls and needles, with a few extremely short segments.

@@ -13,4 +13,4 @@ pub use apex::apex_height;
 pub use cones::{landing_cone, takeoff_cone};
 pub use flight_time::flight_time;
 pub use speed::{landing_speed, speeds, takeoff_speed};
-pub use terrain::clearing_loft;
+pub use terrain::{ClearanceProfile, clearing_loft};

@@ -71,7 +71,7 @@ pub(crate) struct CommonArgs {
     /// Gravity, m/s^2
     #[arg(long, value_name = "G", allow_negative_numbers = true)]
     pub(crate) gravity_m_s2: Option<f64>,
-    /// Height to keep over every vertex flown past, m [default: 0]
+    /// Height to keep over the ground flown over, less near take-off and landing, m [default: 0]
     #[arg(long, value_name = "E", allow_negative_numbers = true)]
     pub(crate) clearance_m: Option<f64>,
     /// Accept a map whose scale along the transect is off by over 1 %, with its distances unchanged

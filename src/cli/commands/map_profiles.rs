@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use chta::{
+    ballistics::limits::ClearanceProfile,
     path::execute,
     reach::map::MapHop,
     report::figure::{Caption, HopProfile, HopProfilesFigure, draw_hop_profiles},
@@ -28,7 +29,7 @@ pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<Map
         many => format!("{many} hops, row by row"),
     };
     let caption = Caption { title: format!("Hop by hop: {name}"), lines: vec![conditions(scenario), count] };
-    let figure = HopProfilesFigure { caption, clearance_m: scenario.hopper.limits().clearance_m, hops: profiles };
+    let figure = HopProfilesFigure { caption, clearance: ClearanceProfile::of(scenario.hopper.limits()), hops: profiles };
     output::encoded(draw_hop_profiles(&figure), file)
 }
 

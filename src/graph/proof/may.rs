@@ -6,10 +6,11 @@ use super::{
     cell::{Cell, shared_segment, slopes},
 };
 use crate::{
+    ballistics::limits::ClearanceProfile,
     chain::{ContactRule, SegmentConstraints, Site},
     hop::HopTest,
     quantity::{Interval, Rounding, SegmentId, SlopeInterval},
-    world::{Contact, Direction, Limit, SPEED_TOLERANCE},
+    world::{ClearanceRule, Contact, Direction, HopperLimits, Limit, SPEED_TOLERANCE},
 };
 
 /// The relaxation of every limit, in addition to a speed's own tolerance: a relative 1e-9 of a clearance, a height or a time,
@@ -42,7 +43,8 @@ pub(super) struct Prover<'a, F: Faults> {
     rules: Vec<[Contacts<F::Rounding>; 2]>,
     slopes: Vec<Interval<F::Rounding>>,
     mechanical: Interval<F::Rounding>,
-    clearance_m: f64,
+    /// Relaxed; with the taper and the ramp it is below the hop test's everywhere.
+    clearance: ClearanceProfile,
     apex_height_max_m: Option<f64>,
     flight_time_max_s: Option<f64>,
     /// Number of bends before each vertex.
@@ -77,7 +79,7 @@ impl<'a, F: Faults> Prover<'a, F> {
             speeds_squared: [fastest(0), fastest(1)],
             rules,
             mechanical: relaxed::<F>(test.mechanism_slopes()),
-            clearance_m: hopper.limits().clearance_m * (1.0 - RELAXATION * F::SLACK),
+            clearance: relaxed_clearance::<F>(hopper.limits()),
             apex_height_max_m: hopper.limits().apex_height_max_m.map(|height_m| height_m * (1.0 + RELAXATION * F::SLACK)),
             flight_time_max_s: hopper.limits().flight_time_max_s.map(|time_s| time_s * (1.0 + RELAXATION * F::SLACK)),
             bends_before,
@@ -122,9 +124,10 @@ impl<'a, F: Faults> Prover<'a, F> {
         arcs.limit(|arcs| arcs.landing = arcs.landing.intersect(to.slopes), Limit::LandingCone)?;
         arcs.limit(|arcs| arcs.takeoff = arcs.takeoff.intersect(self.mechanical), Limit::MechanicalAngle)?;
         self.limit_machine(&mut arcs, run_m)?;
-        if flown_past.is_empty() {
+        if flown_past.is_empty() && !self.clearance.has_kinks() {
             return Ok(());
         }
+        self.limit_kinks(&mut arcs, takeoff, landing, direction, run_m.upper)?;
         self.limit_terrain(&mut arcs, takeoff, landing, flown_past)?;
         // The range of line-of-sight slopes that the other limits left restricts the speeds once more.
         self.limit_speeds(&mut arcs, &from, &to, run_m).map_err(|_| Limit::Terrain)
@@ -215,11 +218,72 @@ impl<'a, F: Faults> Prover<'a, F> {
         Ok(())
     }
 
+    /// The two kinks of a tapered clearance, where the segment under the contact reaches beyond them for the whole cell, or to the
+    /// landing: there the ground between contact and kink has the slope of that segment.
+    ///
+    /// ```text
+    ///     n >= (s - b + k) X / (X - w),     n >= (b - t + k) X / (X - w),      X / (X - w) least for the longest hop
+    /// ```
+    ///
+    /// Other kinks are left out, which only weakens a proof.
+    fn limit_kinks(
+        &self,
+        arcs: &mut Arcs<F::Rounding>,
+        takeoff: &Cell<F::Rounding>,
+        landing: &Cell<F::Rounding>,
+        direction: Direction,
+        run_max_m: f64,
+    ) -> Result<(), Limit> {
+        if !self.clearance.has_kinks() {
+            return Ok(());
+        }
+        let down = F::Rounding::down;
+        let kink_m = self.clearance.kink_m(run_max_m);
+        // X / (X - w) = 1 / (1 - w / X), rounded down.
+        let share = down(down(self.clearance.ramp_m()) / run_max_m).clamp(0.0, 0.5);
+        let factor = down(1.0 / F::Rounding::up(1.0 - share));
+        let (left, right) = if direction == Direction::Forward { (takeoff, landing) } else { (landing, takeoff) };
+        let shared = shared_segment(left.site, right.site).map(|segment| self.slopes[segment.index()]);
+        let ahead = shared.or_else(|| self.slope_beside(takeoff, direction == Direction::Forward, kink_m));
+        let back = shared.or_else(|| self.slope_beside(landing, direction == Direction::Reverse, kink_m));
+        let sight = arcs.sight;
+        let over = |slope: Option<Interval<F::Rounding>>, taking_off: bool| {
+            let slope = if direction == Direction::Forward { slope? } else { -slope? };
+            let over = if taking_off { slope - sight } else { sight - slope };
+            Some(down(over.lower + self.clearance.taper()))
+        };
+        let overs = [over(ahead, true), over(back, false)].into_iter().flatten().filter(|over| *over > 0.0);
+        let loft = overs.map(|over| down(over * factor)).fold(arcs.loft.lower, f64::max);
+        arcs.limit(|arcs| arcs.loft.lower = loft, Limit::Terrain)
+    }
+
+    /// The slope dz/dx of the segment on one side of a cell, if it reaches a distance beyond every point of the cell.
+    fn slope_beside(&self, cell: &Cell<F::Rounding>, right: bool, distance_m: f64) -> Option<Interval<F::Rounding>> {
+        let segment = match cell.site {
+            Site::Inside(segment) => segment.index(),
+            Site::Vertex(vertex) => if right { Some(vertex.index()) } else { vertex.index().checked_sub(1) }?,
+        };
+        let vertices = self.test.chain().geometry().vertices();
+        let (left, end) = (vertices[segment], vertices.get(segment + 1)?);
+        let room_m = if right { end.x_m - cell.to_m } else { cell.from_m - left.x_m };
+        (F::Rounding::down(room_m) >= distance_m).then(|| self.slopes[segment])
+    }
+
     /// The terrain: `n >= s_p - t_p` for every vertex between the cells.
     ///
     /// The slope `s_p` from the take-off to a vertex depends only on the take-off, the slope `t_p` from the vertex to the
     /// landing only on the landing, and both are monotone in x: their extremes are at the ends of the cells. If the cell ends
     /// at the vertex itself, `s = slope + eps/d` decreases with the distance, so the far end has the least value.
+    ///
+    /// A tapered clearance `min(eps, k d, k e)` is at least that of the nearest pair of points. If that is less than `eps`, its own
+    /// part of the loft is bounded too, apart from the ground's:
+    ///
+    /// ```text
+    ///     eps_p X / (d e) = min(eps (1/d + 1/e), k (1 + d/e), k (1 + e/d))
+    ///                    >= min(eps (1/d_max + 1/e_max), k (1 + d_min/e_max), k (1 + e_min/d_max))
+    /// ```
+    ///
+    /// so that for cells that share the vertex `n >= slope_i - slope_j + min(k, eps (1/d_max + 1/e_max))`.
     fn limit_terrain(
         &self,
         arcs: &mut Arcs<F::Rounding>,
@@ -231,15 +295,26 @@ impl<'a, F: Faults> Prover<'a, F> {
         for vertex in &self.test.chain().geometry().vertices()[flown_past] {
             // The height of the vertex with its clearance above a position, divided by the distance: from the take-off and
             // from the landing.
-            let least_seen = |cell: &Cell<F::Rounding>| {
-                let seen = cell.ends().filter(|(x_m, _)| *x_m != vertex.x_m || self.clearance_m < 0.0).map(|(x_m, height_m)| {
-                    let above = F::Rounding::down(F::Rounding::down(vertex.z_m - height_m.upper) + self.clearance_m);
+            let least_seen = |cell: &Cell<F::Rounding>, clearance_m: f64| {
+                let seen = cell.ends().filter(|(x_m, _)| *x_m != vertex.x_m).map(|(x_m, height_m)| {
+                    let above = F::Rounding::down(F::Rounding::down(vertex.z_m - height_m.upper) + clearance_m);
                     quotient_down::<F::Rounding>(above, (vertex.x_m - x_m).abs())
                 });
                 seen.fold(f64::INFINITY, f64::min)
             };
+            let tapered = self.clearance.has_kinks();
+            let ([d_min, d_max], [e_min, e_max]) = (distances_m(takeoff, vertex.x_m), distances_m(landing, vertex.x_m));
+            let clearance_m = if tapered { self.clearance.at_m(d_min, e_min) } else { self.clearance.height_m() };
             // t is the negative of this value at the landing, so s - t is the sum of both.
-            loft = loft.max(F::Rounding::down(least_seen(takeoff) + least_seen(landing)));
+            loft = loft.max(F::Rounding::down(least_seen(takeoff, clearance_m) + least_seen(landing, clearance_m)));
+            if tapered && clearance_m < self.clearance.height_m() {
+                // Divided once more by 1 + 1e-12, which is far above the rounding of these few operations.
+                let (eps, k) = (self.clearance.height_m(), self.clearance.taper());
+                let own =
+                    (eps * (1.0 / d_max + 1.0 / e_max)).min(k * (1.0 + d_min / e_max)).min(k * (1.0 + e_min / d_max)) / ROUNDED;
+                let ground = F::Rounding::down(least_seen(takeoff, 0.0) + least_seen(landing, 0.0));
+                loft = loft.max(F::Rounding::down(ground + own));
+            }
             if loft > arcs.loft.upper {
                 return Err(Limit::Terrain);
             }
@@ -282,6 +357,25 @@ fn run_m<R: Rounding>(left: &Cell<R>, right: &Cell<R>) -> Interval<R> {
     let nearest = Interval::<R>::point(right.from_m) - Interval::point(left.to_m);
     let farthest = Interval::<R>::point(right.to_m) - Interval::point(left.from_m);
     Interval::new(if right.from_m == left.to_m { 0.0 } else { nearest.lower.max(0.0) }, farthest.upper)
+}
+
+/// Far more than the rounding of a few operations without cancellation.
+const ROUNDED: f64 = 1.0 + 1e-12;
+
+/// The least and the greatest distance of a cell's points from an x, m.
+fn distances_m<R: Rounding>(cell: &Cell<R>, x_m: f64) -> [f64; 2] {
+    let (a, b) = ((cell.from_m - x_m).abs(), (cell.to_m - x_m).abs());
+    [a.min(b), a.max(b)]
+}
+
+/// The clearance with its height and its taper relaxed alike, so that its kinks stay where they are.
+fn relaxed_clearance<F: Faults>(limits: &HopperLimits) -> ClearanceProfile {
+    let less = 1.0 - RELAXATION * F::SLACK;
+    let rule = match limits.clearance_rule {
+        ClearanceRule::Tapered(taper) => ClearanceRule::Tapered(taper * less),
+        ClearanceRule::Vertex => ClearanceRule::Vertex,
+    };
+    ClearanceProfile::new(limits.clearance_m * less, rule)
 }
 
 /// A quotient by a rounded distance, not above the true one.

@@ -8,7 +8,7 @@ use crate::{
     hop::HopTest,
     progress::{Meter, Stage},
     quantity::{AngleInterval, ChainPoint, Inwards, VertexId},
-    world::{Gravity, Hopper, HopperLimits, RestSlope, SurfaceProperties},
+    world::{ClearanceRule, Gravity, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 /// Ends are rounded inwards, without the tolerance, which would hide the fault.
@@ -70,7 +70,12 @@ pub(super) fn drawn_chain(draw: &mut Draw) -> ConstrainedChain {
         .map(|_| SegmentGround { form: GroundForm::Explicit { forward: Some(line()), reverse: Some(line()) }, keep_out: false })
         .collect();
     let hopper = Hopper::new(HopperLimits {
-        clearance_m: if draw.below(2) == 0 { 0.0 } else { 0.1 },
+        clearance_m: if draw.below(2) == 0 { 0.0 } else { 10f64.powf(draw.uniform(-2.0, 0.3)) },
+        clearance_rule: match draw.below(4) {
+            0 => ClearanceRule::Vertex,
+            1 => ClearanceRule::TAPERED,
+            _ => ClearanceRule::Tapered(10f64.powf(draw.uniform(-1.3, 1.0))),
+        },
         flight_time_max_s: (draw.below(4) == 0).then(|| draw.uniform(0.5, 3.0)),
         apex_height_max_m: (draw.below(4) == 0).then(|| draw.uniform(0.5, 3.0)),
         ..HopperLimits::UNLIMITED

@@ -16,6 +16,7 @@ use std::{collections::HashMap, ops::Range};
 use nalgebra::Vector2;
 
 use super::facets::{Facets, facets_towards};
+use crate::ballistics::limits::ClearanceProfile;
 
 /// A vertex of the slice between two posts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,6 +30,21 @@ pub(super) struct Crossing {
     pub(super) along: f64,
     /// Loft needed per metre of height above the line of sight: `1 / d + 1 / e`, 1/m, for the distances `d`, `e` to both ends.
     pub(super) stiffness: f64,
+    /// The clearance to keep over it, m.
+    pub(super) raised_m: f64,
+}
+
+/// A kink of a tapered clearance, between two vertices of the slice.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Kink {
+    /// The number of the crossing at or beyond it; as many as there are: the landing. The one before 0 is the take-off.
+    pub(super) next: u32,
+    /// Fraction of the distance from the vertex before to that one.
+    pub(super) share: f64,
+    /// As of a [`Crossing`].
+    pub(super) along: f64,
+    pub(super) stiffness: f64,
+    pub(super) raised_m: f64,
 }
 
 /// The offset from a node to another.
@@ -44,6 +60,8 @@ pub(crate) struct Offset {
     pub(crate) heading: Vector2<f64>,
     /// Its range in the table of crossings. The opposite offset shares it: its crossings are the same, mirrored about the take-off.
     crossings: Range<usize>,
+    /// Its kinks in their table, which the opposite offset shares as well.
+    kinks: Range<usize>,
     /// 1 if the steps of the table apply as they are, -1 if they are negated.
     pub(super) turn: isize,
     /// The facets of the take-off and of the landing.
@@ -67,7 +85,7 @@ pub(crate) struct Spacing {
 }
 
 /// The vertices of the slice over `(columns, rows)` posts, in the order of travel, without its ends.
-pub(super) fn crossings(cols: i32, rows: i32, run_m: f64, post_cols: usize) -> Vec<Crossing> {
+pub(super) fn crossings(cols: i32, rows: i32, run_m: f64, post_cols: usize, clearance: ClearanceProfile) -> Vec<Crossing> {
     // A crossing at the fraction n / d, d > 0, of the line; fractions are compared exactly.
     let mut places: Vec<(i64, i64)> = Vec::new();
     for lines in [cols, rows, cols - rows] {
@@ -79,7 +97,31 @@ pub(super) fn crossings(cols: i32, rows: i32, run_m: f64, post_cols: usize) -> V
     places
         .into_iter()
         .map(|(number, count)| crossing(i64::from(cols), i64::from(rows), (number, count), run_m, post_cols))
+        .map(|crossing| {
+            let d_m = crossing.along * run_m;
+            Crossing { raised_m: clearance.at_m(d_m, run_m - d_m), ..crossing }
+        })
         .collect()
+}
+
+/// The kinks of a tapered clearance over a line with these vertices.
+fn kinks(run_m: f64, crossings: &[Crossing], clearance: ClearanceProfile) -> impl Iterator<Item = Kink> {
+    let kink_m = clearance.kink_m(run_m);
+    let ends_m = if clearance.has_kinks() { [Some(kink_m), Some(run_m - kink_m)] } else { [None; 2] };
+    ends_m.into_iter().flatten().map(move |d_m| {
+        let along = d_m / run_m;
+        let next = crossings.partition_point(|crossing| crossing.along < along);
+        let (before, after) =
+            (next.checked_sub(1).map_or(0.0, |i| crossings[i].along), crossings.get(next).map_or(1.0, |crossing| crossing.along));
+        let e_m = run_m - d_m;
+        Kink {
+            next: u32::try_from(next).unwrap_or(u32::MAX),
+            share: (along - before) / (after - before),
+            along,
+            stiffness: 1.0 / d_m + 1.0 / e_m,
+            raised_m: clearance.taper() * kink_m,
+        }
+    })
 }
 
 /// The vertex at the fraction `number / count` of the line.
@@ -103,6 +145,7 @@ fn crossing(cols: i64, rows: i64, (number, count): (i64, i64), run_m: f64, post_
         along,
         // X / (d e), with the distances d and e as fractions of X.
         stiffness: (count * count) as f64 / ((number * (count - number)) as f64 * run_m),
+        raised_m: 0.0,
     }
 }
 
@@ -113,6 +156,7 @@ pub(crate) struct OffsetTable {
     /// The steps of all offsets in the array of nodes, kept separately: a search scans them far more often than it tests a pair.
     pub(super) node_steps: Vec<isize>,
     pub(super) crossings: Vec<Crossing>,
+    kinks: Vec<Kink>,
 }
 
 /// The number of offsets and crossings within a range.
@@ -149,8 +193,14 @@ impl OffsetTable {
         size
     }
 
-    /// The table; `rises_m` gives the rises that a distance allows (`None`: the offset is left out).
-    pub(crate) fn new(spacing: Spacing, range_m: f64, bounds: (usize, usize), rises_m: impl Fn(f64) -> (f64, f64)) -> Self {
+    /// The table; `rises_m` gives the rises that a distance allows (the offset is left out where the lower one is above the upper).
+    pub(crate) fn new(
+        spacing: Spacing,
+        range_m: f64,
+        bounds: (usize, usize),
+        clearance: ClearanceProfile,
+        rises_m: impl Fn(f64) -> (f64, f64),
+    ) -> Self {
         let mut found: Vec<(f64, i32, i32)> =
             Self::within(spacing, range_m, bounds).map(|(cols, rows)| (spacing.metres(cols, rows).norm(), rows, cols)).collect();
         found.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
@@ -161,7 +211,7 @@ impl OffsetTable {
             if allowed.0 > allowed.1 {
                 continue;
             }
-            table.push(spacing, (cols, rows), run_m, allowed, &mut shared);
+            table.push(spacing, (cols, rows), (run_m, clearance), allowed, &mut shared);
         }
         table
     }
@@ -170,19 +220,20 @@ impl OffsetTable {
         &mut self,
         spacing: Spacing,
         (cols, rows): (i32, i32),
-        run_m: f64,
+        (run_m, clearance): (f64, ClearanceProfile),
         rises_m: (f64, f64),
-        shared: &mut HashMap<(i32, i32), Range<usize>>,
+        shared: &mut HashMap<(i32, i32), [Range<usize>; 2]>,
     ) {
         #[expect(clippy::cast_possible_truncation, clippy::cast_possible_wrap, reason = "strides are below the raster's sides")]
         let stride = spacing.stride as i32;
         let (post_cols, post_rows) = (cols * stride, rows * stride);
         let turn = if (rows, cols) < (0, 0) { -1 } else { 1 };
-        let table = &mut self.crossings;
+        let (table, kink_table) = (&mut self.crossings, &mut self.kinks);
         let own = shared.entry((cols * turn, rows * turn)).or_insert_with(|| {
-            let first = table.len();
-            table.extend(crossings(post_cols * turn, post_rows * turn, run_m, spacing.post_cols));
-            first..table.len()
+            let (first, first_kink) = (table.len(), kink_table.len());
+            table.extend(crossings(post_cols * turn, post_rows * turn, run_m, spacing.post_cols, clearance));
+            kink_table.extend(kinks(run_m, &table[first..], clearance));
+            [first..table.len(), first_kink..kink_table.len()]
         });
         let step = |cols: i32, rows: i32, width: usize| rows as isize * width.cast_signed() + cols as isize;
         self.node_steps.push(step(cols, rows, spacing.node_cols));
@@ -192,7 +243,8 @@ impl OffsetTable {
             post_step: step(post_cols, post_rows, spacing.post_cols),
             run_m,
             heading: spacing.metres(cols, rows) / run_m,
-            crossings: own.clone(),
+            crossings: own[0].clone(),
+            kinks: own[1].clone(),
             turn: turn as isize,
             departure: facets_towards(cols, rows),
             arrival: facets_towards(-cols, -rows),
@@ -203,6 +255,11 @@ impl OffsetTable {
     /// The offset's vertices in the order of travel; their steps must be multiplied by its `turn`.
     pub(super) fn crossings_of(&self, offset: &Offset) -> &[Crossing] {
         &self.crossings[offset.crossings.clone()]
+    }
+
+    /// The kinks of a tapered clearance over the offset's line.
+    pub(super) fn kinks_of(&self, offset: &Offset) -> &[Kink] {
+        &self.kinks[offset.kinks.clone()]
     }
 }
 
@@ -232,7 +289,7 @@ mod tests {
         let map = GeoReference::local(MapPoint::new(500.0, 900.0), 2.0, 3.0).unwrap();
         let dem = Dem::new(SIDE, SIDE, heights.clone(), map).unwrap();
         let spacing = Spacing { dx_m: 2.0, dy_m: 3.0, stride: 1, node_cols: SIDE, post_cols: SIDE };
-        let table = OffsetTable::new(spacing, 30.0, (SIDE, SIDE), |_| (-1e9, 1e9));
+        let table = OffsetTable::new(spacing, 30.0, (SIDE, SIDE), ClearanceProfile::NONE, |_| (-1e9, 1e9));
         let (mut compared, middle) = (0, SIDE / 2);
         for offset in &table.offsets {
             let (row, col) = (middle as i32 + offset.rows, middle as i32 + offset.cols);

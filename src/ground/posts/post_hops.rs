@@ -230,8 +230,9 @@ impl PostHops {
         if lofts.lower - near(lofts.lower) > most || most <= 0.0 || !worth(sight, lofts) {
             return Verdict::No;
         }
-        let walk = Walk { from: takeoff, turn: offset.turn, base_m: takeoff_m - limits.clearance_m, rise_m, most };
-        let Some(terrain) = heights.clearing_loft(walk, self.table.crossings_of(offset)) else { return Verdict::No };
+        let walk = Walk { from: takeoff, turn: offset.turn, base_m: takeoff_m, rise_m, most };
+        let (crossings, kinks) = (self.table.crossings_of(offset), self.table.kinks_of(offset));
+        let Some(terrain) = heights.clearing_loft(walk, crossings, kinks) else { return Verdict::No };
         if self.facets.gaps && offset.departure.along_edge() && !self.has_facets_along(takeoff, offset) {
             return Verdict::No;
         }

@@ -14,7 +14,7 @@ use crate::{
 /// Bounds on reach are widened by this factor against rounding.
 const WIDER: f64 = 1.0 + 1.0e-6;
 
-/// The largest table of crossings, 256 MiB: a reach of some 150 posts.
+/// The largest table of crossings, 320 MiB: a reach of some 150 posts.
 const MOST_CROSSINGS: usize = 1 << 23;
 
 impl PostHops {
@@ -68,7 +68,7 @@ impl PostHops {
             let slack_m = 1.0e-9 * (run_m + ceiling(speeds[0]).abs() + ceiling(speeds[1]).abs());
             (-ceiling(speeds[1]) - slack_m, ceiling(speeds[0]) + slack_m)
         };
-        self.table = OffsetTable::new(spacing, longest_m, bounds, rises_m);
+        self.table = OffsetTable::new(spacing, longest_m, bounds, self.envelope().clearance(), rises_m);
         let count = |range_m: &f64| self.table.offsets.partition_point(|offset| offset.run_m <= *range_m);
         self.within_reach = ranges_m.iter().map(count).collect();
         Ok(())

@@ -1,6 +1,9 @@
 //! The DEM's elevations as a flat array.
 
-use super::{facets::CORNERS, offsets::Crossing};
+use super::{
+    facets::CORNERS,
+    offsets::{Crossing, Kink},
+};
 use crate::terrain::{Dem, Samples};
 
 /// Elevations row after row, NaN for gaps, and the post spacing.
@@ -26,7 +29,7 @@ pub(super) struct HeightScale {
 pub(super) struct Walk {
     /// The index of the take-off in the array of elevations.
     pub(super) from: usize,
-    /// The take-off's height less the clearance, m.
+    /// The take-off's height, m.
     pub(super) base_m: f64,
     /// 1 or -1: the sign of the crossings' steps.
     pub(super) turn: isize,
@@ -84,29 +87,44 @@ impl<'a> Heights<'a> {
         ((east - west) * self.scale.per_dx, (north - south) * self.scale.per_dy)
     }
 
-    /// The least loft that clears all vertices on the line; `None` if that exceeds the most allowed, or an elevation is missing.
+    /// The least loft that keeps the clearance over all vertices and kinks on the line; `None` if that exceeds the most allowed, or
+    /// an elevation is missing.
     #[inline]
-    pub(super) fn clearing_loft(&self, walk: Walk, crossings: &[Crossing]) -> Option<f64> {
+    pub(super) fn clearing_loft(&self, walk: Walk, crossings: &[Crossing], kinks: &[Kink]) -> Option<f64> {
         match self.samples {
-            Samples::Single(values) => clearing_loft(values, walk, crossings),
-            Samples::Double(values) => clearing_loft(values, walk, crossings),
+            Samples::Single(values) => clearing_loft(values, walk, crossings, kinks),
+            Samples::Double(values) => clearing_loft(values, walk, crossings, kinks),
         }
     }
 }
 
-/// The bound of [`clearing_loft`](crate::ballistics::limits::clearing_loft), `n >= s - t`, computed without a division as the
-/// height over the line of sight times `1 / d + 1 / e`.
+/// The bounds of [`clearing_loft`](crate::ballistics::limits::clearing_loft), `n >= s - t`, computed without a division as the
+/// height over the line of sight, with the clearance, times `1 / d + 1 / e`; and the same at the kinks of the clearance.
 #[inline]
-fn clearing_loft<T: Copy + Into<f64>>(heights: &[T], walk: Walk, crossings: &[Crossing]) -> Option<f64> {
+fn clearing_loft<T: Copy + Into<f64>>(heights: &[T], walk: Walk, crossings: &[Crossing], kinks: &[Kink]) -> Option<f64> {
+    let at = |step: i32| -> f64 { heights[walk.from.wrapping_add_signed(walk.turn * step as isize)].into() };
+    let ground = |crossing: &Crossing| {
+        let first = at(crossing.first);
+        first + crossing.share * (at(crossing.second) - first)
+    };
     let mut least = f64::NEG_INFINITY;
     for crossing in crossings {
-        let at = |step: i32| -> f64 { heights[walk.from.wrapping_add_signed(walk.turn * step as isize)].into() };
-        let first = at(crossing.first);
-        let z_m = first + crossing.share * (at(crossing.second) - first);
-        let loft = (z_m - (walk.base_m + walk.rise_m * crossing.along)) * crossing.stiffness;
+        let over_m = ground(crossing) - (walk.base_m + walk.rise_m * crossing.along);
+        let loft = (over_m + crossing.raised_m) * crossing.stiffness;
         // Written so that NaN, a missing elevation, also ends the walk.
         let clears = loft <= walk.most;
         if !clears {
+            return None;
+        }
+        least = least.max(loft);
+    }
+    for kink in kinks {
+        let next = kink.next as usize;
+        let before_m = next.checked_sub(1).map_or(walk.base_m, |before| ground(&crossings[before]));
+        let after_m = crossings.get(next).map_or(walk.base_m + walk.rise_m, ground);
+        let over_m = before_m + kink.share * (after_m - before_m) - (walk.base_m + walk.rise_m * kink.along);
+        let loft = (over_m + kink.raised_m) * kink.stiffness;
+        if loft > walk.most {
             return None;
         }
         least = least.max(loft);

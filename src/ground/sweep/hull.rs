@@ -24,9 +24,22 @@ pub(super) struct Hull {
     z_m: Vec<f64>,
     distance_m: Vec<f64>,
     seen: Vec<f64>,
+    /// The clearance over each vertex, m.
+    raised_m: Vec<f64>,
     len: usize,
     /// The steepest slope, of a vertex or of a landing seen from the take-off, that the margin for rounding allows for.
     steepest: f64,
+}
+
+/// A vertex as seen from the take-off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    /// Its distance, m.
+    pub(super) distance_m: f64,
+    /// The clearance over it, m.
+    pub(super) raised_m: f64,
+    /// The slope from the take-off to that height over it.
+    pub(super) slope: f64,
 }
 
 /// Number of vertices that the inner loop of the tangent evaluates at once.
@@ -51,15 +64,14 @@ impl Hull {
         self.steepest
     }
 
-    /// Adds a vertex beyond the previous ones, at a distance from the take-off and with the slope from the take-off
-    /// (including clearance).
-    pub(super) fn push(&mut self, point: ChainPoint, distance_m: f64, seen: f64) {
+    /// Adds a vertex beyond the previous ones.
+    pub(super) fn push(&mut self, point: ChainPoint, Seen { distance_m, raised_m, slope: seen }: Seen) {
         while self.len >= 2 && self.hides_last(distance_m, seen) {
             self.len -= 1;
         }
         if self.len + PADDING >= self.x_m.len() {
             let room = 2 * self.x_m.len() + 4 * PADDING;
-            for column in [&mut self.x_m, &mut self.z_m, &mut self.distance_m, &mut self.seen] {
+            for column in [&mut self.x_m, &mut self.z_m, &mut self.distance_m, &mut self.seen, &mut self.raised_m] {
                 column.resize(room, 0.0);
             }
         }
@@ -67,6 +79,7 @@ impl Hull {
         self.z_m[self.len] = point.z_m;
         self.distance_m[self.len] = distance_m;
         self.seen[self.len] = seen;
+        self.raised_m[self.len] = raised_m;
         self.len += 1;
     }
 
@@ -81,7 +94,7 @@ impl Hull {
 
     /// The greatest loft that any vertex requires of an arc to a landing at a distance `run_m` from the take-off; minus
     /// infinity without vertices.
-    pub(super) fn clearing_loft(&mut self, landing: ChainPoint, run_m: f64, clearance_m: f64) -> f64 {
+    pub(super) fn clearing_loft(&mut self, landing: ChainPoint, run_m: f64) -> f64 {
         for spare in self.len..(self.len + PADDING).min(self.x_m.len()) {
             // Requires no loft, for any landing.
             self.seen[spare] = f64::NEG_INFINITY;
@@ -89,20 +102,23 @@ impl Hull {
             self.z_m[spare] = self.z_m[0];
         }
         if self.len <= SCANNED {
-            return self.greatest(0, self.len, landing, clearance_m);
+            return self.greatest(0, self.len, landing);
         }
-        self.tangent(landing, run_m, clearance_m)
+        self.tangent(landing, run_m)
     }
 
     /// The greatest loft over part of the hull (and at most `PADDING` vertices more).
     #[inline]
-    fn greatest(&self, first: usize, end: usize, landing: ChainPoint, clearance_m: f64) -> f64 {
+    fn greatest(&self, first: usize, end: usize, landing: ChainPoint) -> f64 {
         let end = first + (end - first).next_multiple_of(PADDING);
-        let (x_m, z_m, seen) = (&self.x_m[first..end], &self.z_m[first..end], &self.seen[first..end]);
+        let (x_m, z_m) = (&self.x_m[first..end], &self.z_m[first..end]);
+        let (seen, raised_m) = (&self.seen[first..end], &self.raised_m[first..end]);
         let mut best = [f64::NEG_INFINITY; PADDING];
-        for ((x_m, z_m), seen) in x_m.chunks_exact(PADDING).zip(z_m.chunks_exact(PADDING)).zip(seen.chunks_exact(PADDING)) {
+        let points = x_m.chunks_exact(PADDING).zip(z_m.chunks_exact(PADDING));
+        let heights = seen.chunks_exact(PADDING).zip(raised_m.chunks_exact(PADDING));
+        for ((x_m, z_m), (seen, raised_m)) in points.zip(heights) {
             for i in 0..PADDING {
-                let loft = seen[i] - ((landing.z_m - z_m[i]) - clearance_m) / (landing.x_m - x_m[i]).abs();
+                let loft = seen[i] - ((landing.z_m - z_m[i]) - raised_m[i]) / (landing.x_m - x_m[i]).abs();
                 best[i] = if loft > best[i] { loft } else { best[i] };
             }
         }
@@ -110,35 +126,35 @@ impl Hull {
     }
 
     /// The loft that one vertex of the hull requires.
-    fn loft(&self, i: usize, landing: ChainPoint, clearance_m: f64) -> f64 {
-        self.seen[i] - ((landing.z_m - self.z_m[i]) - clearance_m) / (landing.x_m - self.x_m[i]).abs()
+    fn loft(&self, i: usize, landing: ChainPoint) -> f64 {
+        self.seen[i] - ((landing.z_m - self.z_m[i]) - self.raised_m[i]) / (landing.x_m - self.x_m[i]).abs()
     }
 
     /// The upper tangent of a long hull: bisection, since the lofts rise and then fall along it, then an evaluation of all
     /// vertices around the result whose lofts are equal within rounding.
-    fn tangent(&self, landing: ChainPoint, run_m: f64, clearance_m: f64) -> f64 {
+    fn tangent(&self, landing: ChainPoint, run_m: f64) -> f64 {
         let (mut low, mut high) = (0, self.len - 1);
         while low < high {
             let middle = usize::midpoint(low, high);
-            if self.loft(middle, landing, clearance_m) < self.loft(middle + 1, landing, clearance_m) {
+            if self.loft(middle, landing) < self.loft(middle + 1, landing) {
                 low = middle + 1;
             } else {
                 high = middle;
             }
         }
         let (mut first, mut end) = (low.saturating_sub(SCANNED / 4), (low + SCANNED / 4).min(self.len));
-        let mut best = self.greatest(first, end, landing, clearance_m);
+        let mut best = self.greatest(first, end, landing);
         // The possible rounding error of a vertex's loft.
         let blur = |i: usize| KEPT * self.steepest * run_m / (landing.x_m - self.x_m[i]).abs();
         let peak = blur(low);
-        while first > 0 && self.loft(first, landing, clearance_m) + blur(first) + peak >= best {
+        while first > 0 && self.loft(first, landing) + blur(first) + peak >= best {
             let next = first.saturating_sub(SCANNED / 2);
-            best = best.max(self.greatest(next, first, landing, clearance_m));
+            best = best.max(self.greatest(next, first, landing));
             first = next;
         }
-        while end < self.len && self.loft(end - 1, landing, clearance_m) + blur(end - 1) + peak >= best {
+        while end < self.len && self.loft(end - 1, landing) + blur(end - 1) + peak >= best {
             let next = (end + SCANNED / 2).min(self.len);
-            best = best.max(self.greatest(end, next, landing, clearance_m));
+            best = best.max(self.greatest(end, next, landing));
             end = next;
         }
         best

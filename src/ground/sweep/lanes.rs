@@ -1,7 +1,12 @@
 //! All limits except the terrain, evaluated for a block of landings at once.
 
 use super::table::{LandingRules, LandingTable};
-use crate::{ballistics::LineOfSight, hop::HopTest, quantity::SlopeInterval, world::Limit};
+use crate::{
+    ballistics::{LineOfSight, limits::ClearanceProfile},
+    hop::HopTest,
+    quantity::SlopeInterval,
+    world::Limit,
+};
 
 /// The data of a take-off that all landings share.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +36,8 @@ pub(super) struct Lanes {
     /// The lofts that all limits except the terrain allow.
     lower: [f64; Self::COUNT],
     upper: [f64; Self::COUNT],
+    /// Above 0 where a kink of a tapered clearance may ask for more loft than the other limits.
+    kink_excess: [f64; Self::COUNT],
 }
 
 impl Lanes {
@@ -47,6 +54,7 @@ impl Lanes {
             fastest: zeros,
             lower: zeros,
             upper: zeros,
+            kink_excess: zeros,
         }
     }
 
@@ -101,6 +109,37 @@ impl Lanes {
                 self.upper[i] = self.upper[i].min(flight.upper);
             }
         }
+    }
+
+    /// Finds the landings farther than two ramps of a tapered clearance at which a kink may ask for more loft than the other limits;
+    /// the ground one ramp away from the take-off is seen from it at the slope `seen`, and from each landing at the slopes `seen_back`.
+    ///
+    /// Without a division: `(h/w + k) X / (X - w)` is compared as `(h/w + k) X` with `n (X - w)`, with a margin for rounding.
+    pub(super) fn evaluate_kinks(
+        &mut self,
+        clearance: ClearanceProfile,
+        (from_m, seen): (f64, f64),
+        x_m: &[f64],
+        seen_back: &[f64],
+    ) {
+        /// Far more than rounding. Lofts that the speeds allow are above 0.
+        const NEARLY: f64 = 1.0 - 1e-12;
+        let count = x_m.len().min(seen_back.len()).min(Self::COUNT);
+        let (x_m, seen_back, slope) = (&x_m[..count], &seen_back[..count], &self.slope[..count]);
+        let (lower, excess) = (&self.lower[..count], &mut self.kink_excess[..count]);
+        let (taper, ramp_m) = (clearance.taper(), clearance.ramp_m());
+        for i in 0..count {
+            let run_m = (x_m[i] - from_m).abs();
+            let (from, to) = (seen - slope[i], slope[i] + seen_back[i]);
+            let over = if to > from { to } else { from };
+            excess[i] = (over + taper) * run_m - lower[i] * (run_m - ramp_m) * NEARLY;
+        }
+    }
+
+    /// Whether a kink may ask for more loft than the other limits of a lane.
+    #[inline]
+    pub(super) fn kinks_may_bind(&self, lane: usize) -> bool {
+        self.kink_excess[lane] > 0.0
     }
 
     /// The lofts of one lane; `None` if empty.

@@ -65,7 +65,7 @@ impl Sweep {
     /// For sweeps over a table of landings.
     pub fn new(table: impl Into<Arc<LandingTable>>) -> Self {
         let table = table.into();
-        let overflight = Overflight::new(table.test().shared_chain());
+        let overflight = Overflight::new(table.test());
         Self { table, lanes: Lanes::new(), overflight }
     }
 
@@ -116,6 +116,7 @@ impl Sweep {
         let (on_segment, mut left) = table.split_at_segment(takeoff, in_plane, direction);
         outwards(on_segment, direction).try_for_each(|i| visit(i, test.lofts(takeoff, &stations[i])))?;
         overflight.begin(takeoff, direction);
+        let clearance = test.clearance();
         while !left.is_empty() {
             let block = next_block(&mut left, direction);
             if let Some(limit) = table.out_of_reach(&from, &block, direction) {
@@ -123,6 +124,11 @@ impl Sweep {
                 continue;
             }
             lanes.evaluate(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
+            if clearance.has_kinks() {
+                let seen = overflight.seen_at_ramp();
+                let seen_back = &table.rules(direction).seen_back;
+                lanes.evaluate_kinks(clearance, (from.x_m, seen), &table.x_m[block.clone()], &seen_back[block.clone()]);
+            }
             for i in outwards(block.clone(), direction) {
                 let verdict = match refusals[i] {
                     Some(limit) => Err(limit),
@@ -160,7 +166,22 @@ impl Landing<'_> {
             let run_m = (landing.point.x_m - from.x_m).abs();
             return Err(self.lanes.refusing(test, from, lane, run_m, cone));
         };
-        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), in_envelope.lower);
+        let mut least = in_envelope.lower;
+        let two_ramps_m = self.overflight.two_ramps_m();
+        if two_ramps_m > 0.0 {
+            let run_m = (self.table.x_m[i] - from.x_m).abs();
+            let slope = self.lanes.slope(lane);
+            if run_m < two_ramps_m {
+                least = least.max(self.overflight.middle_loft(landing, run_m, slope));
+            } else if self.lanes.kinks_may_bind(lane) {
+                let seen_back = self.table.rules(direction).seen_back[i];
+                least = least.max(self.overflight.kinks_loft(seen_back, run_m, slope));
+            }
+            if least > in_envelope.upper {
+                return Err(Limit::Terrain);
+            }
+        }
+        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), least);
         if (lower - in_envelope.upper).abs() <= TOUCHING * (lower.abs() + in_envelope.upper.abs()) && lower > in_envelope.lower {
             return test.lofts(takeoff, landing);
         }

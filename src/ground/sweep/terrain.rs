@@ -1,19 +1,20 @@
 //! The terrain limit of one take-off, for landings in the order of distance.
 
-use std::sync::Arc;
-
-use super::hull::Hull;
+use super::hull::{Hull, Seen};
 use crate::{
-    chain::{ConstrainedChain, PolygonalChain, Site, Station},
-    quantity::ChainPoint,
+    ballistics::limits::{ClearanceProfile, clearing_loft},
+    chain::{PolygonalChain, Site, Station},
+    hop::{HopTest, first_ahead, ground_slope, slope_beyond},
+    quantity::{ChainPoint, VertexId},
     world::Direction,
 };
 
 /// The ground below hops from one take-off, extended as the landings move outwards.
 #[derive(Clone, Debug)]
 pub(super) struct Overflight {
-    chain: Arc<ConstrainedChain>,
-    clearance_m: f64,
+    test: HopTest,
+    clearance: ClearanceProfile,
+    from: Station,
     takeoff: ChainPoint,
     direction: Direction,
     /// The first vertex flown over.
@@ -26,20 +27,25 @@ pub(super) struct Overflight {
     steepest_seen: f64,
     /// The least slope of any segment between vertices flown over.
     lowest_slope: f64,
-    /// Number of vertices that the hull covers.
+    /// Number of vertices that the hull covers: of a tapered clearance, those where the landing does not reduce it.
     hulled: usize,
     hull: Hull,
+    /// The first vertices at or beyond the middle of the hop, from the take-off and seen back from the landing.
+    middles: [usize; 2],
+    seen_at_ramp: f64,
 }
 
 /// A relative margin larger than all rounding errors of the bound that avoids the hull.
 const SLACK: f64 = 1e-12;
 
 impl Overflight {
-    pub(super) fn new(chain: Arc<ConstrainedChain>) -> Self {
+    pub(super) fn new(test: &HopTest) -> Self {
+        let start = test.chain().geometry().vertex_station(VertexId(0));
         Self {
-            clearance_m: chain.hopper().limits().clearance_m,
-            chain,
-            takeoff: ChainPoint::new(0.0, 0.0),
+            test: test.clone(),
+            clearance: test.clearance(),
+            from: start,
+            takeoff: start.point,
             direction: Direction::Forward,
             first: 0,
             bounded: 0,
@@ -48,31 +54,53 @@ impl Overflight {
             lowest_slope: f64::INFINITY,
             hulled: 0,
             hull: Hull::default(),
+            middles: [0; 2],
+            seen_at_ramp: 0.0,
         }
+    }
+
+    /// The length of a hop from which the two kinks of a tapered clearance are apart, m; 0 without a taper.
+    #[inline]
+    pub(super) const fn two_ramps_m(&self) -> f64 {
+        2.0 * self.clearance.ramp_m()
     }
 
     /// Starts at a take-off.
     pub(super) fn begin(&mut self, takeoff: &Station, direction: Direction) {
+        self.from = *takeoff;
         self.takeoff = takeoff.point;
         self.direction = direction;
-        self.first = match (takeoff.site, direction) {
-            (Site::Vertex(vertex), Direction::Forward) => vertex.index() + 1,
-            // At the chain's first vertex there is nothing behind, and no landing to evaluate.
-            (Site::Vertex(vertex), Direction::Reverse) => vertex.index().saturating_sub(1),
-            (Site::Inside(segment), Direction::Forward) => segment.index() + 1,
-            (Site::Inside(segment), Direction::Reverse) => segment.index(),
-        };
+        // At the chain's first vertex there is nothing behind, and no landing to evaluate.
+        self.first = first_ahead(takeoff, direction);
         self.bounded = 0;
         self.highest_seen = f64::NEG_INFINITY;
         self.steepest_seen = 0.0;
         self.lowest_slope = f64::INFINITY;
         self.hulled = 0;
         self.hull.clear(0.0);
+        self.middles = [self.first; 2];
+        if self.clearance.has_kinks() {
+            self.seen_at_ramp = ground_slope(self.geometry(), takeoff, direction, self.clearance.ramp_m());
+        }
+    }
+
+    /// The slope from the take-off to the ground one ramp of a tapered clearance away.
+    #[inline]
+    pub(super) const fn seen_at_ramp(&self) -> f64 {
+        self.seen_at_ramp
+    }
+
+    /// The loft that both kinks of a hop longer than two ramps require; `seen_back` is the slope back from the landing to the ground
+    /// one ramp before it.
+    #[inline]
+    pub(super) fn kinks_loft(&self, seen_back: f64, run_m: f64, sight_slope: f64) -> f64 {
+        let (from, to) = (self.seen_at_ramp - sight_slope, sight_slope + seen_back);
+        self.clearance.kink_loft(if to > from { to } else { from }, run_m)
     }
 
     #[inline]
     fn geometry(&self) -> &PolygonalChain {
-        self.chain.geometry()
+        self.test.chain().geometry()
     }
 
     /// The number of vertices strictly between the take-off and a landing.
@@ -104,12 +132,52 @@ impl Overflight {
         }
     }
 
-    /// The slope from the take-off to a vertex (including clearance), and its distance: the terms of
-    /// [`clearing_loft`](crate::ballistics::limits::clearing_loft).
+    /// A vertex from the take-off, with the clearance that it has far from the landing: the terms of [`clearing_loft`].
     #[inline]
-    fn seen(&self, point: ChainPoint) -> (f64, f64) {
+    fn seen(&self, point: ChainPoint) -> Seen {
         let distance_m = (point.x_m - self.takeoff.x_m).abs();
-        (distance_m, ((point.z_m - self.takeoff.z_m) + self.clearance_m) / distance_m)
+        let raised_m = self.clearance.near_m(distance_m);
+        Seen { distance_m, raised_m, slope: ((point.z_m - self.takeoff.z_m) + raised_m) / distance_m }
+    }
+
+    /// The loft that the only kink of a hop not longer than two ramps requires: at its middle.
+    ///
+    /// Landings have to be passed in the order of distance.
+    #[inline(never)]
+    pub(super) fn middle_loft(&mut self, landing: &Station, run_m: f64, sight_slope: f64) -> f64 {
+        let half_m = self.clearance.kink_m(run_m);
+        let (geometry, towards) = (self.test.chain().geometry(), self.direction);
+        let vertices = geometry.vertices();
+        let [mut ahead, mut back] = self.middles;
+        let backwards = if towards == Direction::Forward { Direction::Reverse } else { Direction::Forward };
+        match towards {
+            Direction::Forward => {
+                while ahead + 1 < vertices.len() && vertices[ahead].x_m - self.takeoff.x_m < half_m {
+                    ahead += 1;
+                }
+                // The last vertex at least half a hop before the landing; before the first one, the segment of the take-off.
+                let first = first_ahead(landing, backwards);
+                back = back.max(self.first) - 1;
+                while back < first && landing.point.x_m - vertices[back + 1].x_m >= half_m {
+                    back += 1;
+                }
+            }
+            Direction::Reverse => {
+                while ahead > 0 && self.takeoff.x_m - vertices[ahead].x_m < half_m {
+                    ahead -= 1;
+                }
+                let first = first_ahead(landing, backwards);
+                back = (back + 1).min(vertices.len() - 1);
+                while back > first && vertices[back - 1].x_m - landing.point.x_m >= half_m {
+                    back -= 1;
+                }
+            }
+        }
+        self.middles = [ahead, if towards == Direction::Forward { back + 1 } else { back - 1 }];
+        let seen = slope_beyond(geometry, &self.from, towards, (self.first, ahead), half_m);
+        let seen_back = slope_beyond(geometry, landing, backwards, (first_ahead(landing, backwards), back), half_m);
+        let (from, to) = (seen - sight_slope, sight_slope + seen_back);
+        self.clearance.kink_loft(if to > from { to } else { from }, run_m)
     }
 
     /// The least loft, not below `lower`, that clears every vertex between the take-off and a landing at the slope
@@ -128,18 +196,18 @@ impl Overflight {
     /// An upper bound on the loft that the first `count` vertices require.
     ///
     /// ```text
-    ///     s_p - t_p <= max s - min t,   t_p >= min(min slope - eps / gap, t_last)
+    ///     s_p - t_p <= max s - min t,   t_p >= min(min slope, t_last) - min(eps / gap, k)
     /// ```
     ///
-    /// since the slope from any vertex to the last is a mean of segment slopes, and the clearance changes `t_p` most over the
-    /// gap from the last vertex to the landing.
+    /// with the clearance `min(eps, k d)` in `s`, and without one in `t_last`: the slope from any vertex to the last is a mean of
+    /// segment slopes, and the clearance changes `t_p` most over the gap from the last vertex to the landing.
     #[inline]
     fn bound(&mut self, landing: ChainPoint, count: usize) -> f64 {
         while self.bounded < count {
             let point = self.vertex(self.bounded);
-            let (distance_m, seen) = self.seen(point);
-            self.highest_seen = self.highest_seen.max(seen);
-            self.steepest_seen = self.steepest_seen.max(seen.abs() + 2.0 * self.clearance_m / distance_m);
+            let Seen { distance_m, raised_m, slope } = self.seen(point);
+            self.highest_seen = self.highest_seen.max(slope);
+            self.steepest_seen = self.steepest_seen.max(slope.abs() + 2.0 * raised_m / distance_m);
             if self.bounded > 0 {
                 self.lowest_slope = self.lowest_slope.min(self.slope_before(self.bounded));
             }
@@ -147,15 +215,17 @@ impl Overflight {
         }
         let last = self.vertex(count - 1);
         let per_gap = 1.0 / (landing.x_m - last.x_m).abs();
-        let clearance = self.clearance_m * per_gap;
-        let ahead = ((landing.z_m - last.z_m) - self.clearance_m) * per_gap;
-        let lowest = if self.lowest_slope - clearance < ahead { self.lowest_slope - clearance } else { ahead };
+        let (whole, taper) = (self.clearance.height_m() * per_gap, self.clearance.taper());
+        let clearance = if taper < whole { taper } else { whole };
+        let ahead = (landing.z_m - last.z_m) * per_gap;
+        let lowest = if self.lowest_slope < ahead { self.lowest_slope } else { ahead } - clearance;
         // The size of every term; the highest slope may itself have suffered cancellation.
         let terms = self.steepest_seen + self.lowest_slope.abs().min(f64::MAX) + clearance + ahead.abs();
         self.highest_seen - lowest + SLACK * terms
     }
 
     /// The greatest loft that the first `count` vertices require.
+    #[inline(never)]
     fn by_hull(&mut self, landing: ChainPoint, count: usize, sight_slope: f64) -> f64 {
         let steepest = self.steepest_seen.max(sight_slope.abs());
         if steepest > self.hull.steepest() {
@@ -165,10 +235,17 @@ impl Overflight {
         }
         while self.hulled < count {
             let point = self.vertex(self.hulled);
-            let (distance_m, seen) = self.seen(point);
-            self.hull.push(point, distance_m, seen);
+            let seen = self.seen(point);
+            if self.clearance.taper() * (landing.x_m - point.x_m).abs() < seen.raised_m {
+                break;
+            }
+            self.hull.push(point, seen);
             self.hulled += 1;
         }
-        self.hull.clearing_loft(landing, (landing.x_m - self.takeoff.x_m).abs(), self.clearance_m)
+        let mut greatest = self.hull.clearing_loft(landing, (landing.x_m - self.takeoff.x_m).abs());
+        for near in self.hulled..count {
+            greatest = greatest.max(clearing_loft(self.takeoff, landing, self.vertex(near), self.clearance));
+        }
+        greatest
     }
 }

@@ -4,7 +4,7 @@ use std::{f64::consts::FRAC_PI_2, ops::ControlFlow};
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{Flight, Measure, StatedValue, ViolatedLimit, Violation};
+use super::{Flight, Measure, StatedValue, ViolatedLimit, Violation, flight::TooLow};
 use crate::{
     chain::{ContactRule, GroundRefusal},
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface},
@@ -316,9 +316,9 @@ impl<S: Surface> Checker<'_, S> {
             let measure = Measure { found: known_m, allowed: run_m, unit: "m" };
             self.note(ViolatedLimit::UnknownGround, Some(measure), self.hop.takeoff.along_m + known_m);
         }
-        for low in &flight.too_low {
-            let measure = Some(Measure { found: low.height_m, allowed: self.surface.hopper().limits().clearance_m, unit: "m" });
-            self.violations.push(Violation { hop: self.number, limit, measure, at_x_m: low.x_m, vertex: low.vertex });
+        for TooLow { over, required_m } in &flight.too_low {
+            let measure = Some(Measure { found: over.height_m, allowed: *required_m, unit: "m" });
+            self.violations.push(Violation { hop: self.number, limit, measure, at_x_m: over.x_m, vertex: over.vertex });
         }
         if flight.too_low.is_empty()
             && let Some((x_m, depth_m)) = flight.underground

@@ -8,6 +8,7 @@ use crate::{
     ground::{ElementVertex, Surface},
     path::Hop,
     quantity::{Angle, ChainPoint, VertexId},
+    world::ClearanceRule,
 };
 
 /// Least number of steps of a flight, and of each stretch between two vertices.
@@ -37,6 +38,14 @@ pub struct Clearance {
     pub height_m: f64,
 }
 
+/// A point passed below the clearance that it asks for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct TooLow {
+    pub(super) over: Clearance,
+    /// The height to keep there, m.
+    pub(super) required_m: f64,
+}
+
 /// The flight of one hop.
 ///
 /// Time, angle and speed of the landing are those above the planned landing point, even if the flight meets the ground elsewhere:
@@ -60,8 +69,8 @@ pub struct Flight {
     pub least_clearance: Option<Clearance>,
     /// How many steps it took.
     pub steps: usize,
-    /// Every vertex passed below its clearance, and the height of the flight above it, m.
-    pub(super) too_low: Vec<Clearance>,
+    /// Every vertex, and every kink of a tapered clearance, passed below the clearance there.
+    pub(super) too_low: Vec<TooLow>,
     /// Where the flight first runs below straight ground between vertices, and its greatest depth there, m.
     pub(super) underground: Option<(f64, f64)>,
     /// Where the known ground ends before the landing, m from the take-off.
@@ -261,6 +270,7 @@ impl<S: Surface> Course<'_, S> {
             landing_climb_m_s: landing.climb_m_s,
         };
         self.look_at_vertices(&mut flight, &stretches, &states);
+        self.look_between(&mut flight, takeoff, &stretches, &states);
         let early = self.look_at_ground(&mut flight, takeoff, &stretches, &states);
         // Perpendicular to the arc: the distance of the landing point from the flown curve.
         let over_m = (landing.height_m - rise_m) / landing.stretch();
@@ -312,11 +322,63 @@ impl<S: Surface> Course<'_, S> {
             if flight.least_clearance.is_none_or(|least| height_m < least.height_m) {
                 flight.least_clearance = Some(clearance);
             }
+            let required_m = self.required_m(stretch.to.0);
             // On a steep arc, an error of the horizontal position is a larger error of the height.
-            if height_m < self.surface.hopper().limits().clearance_m - flight.place_tolerance_m * over.stretch() {
-                flight.too_low.push(clearance);
+            if height_m < required_m - flight.place_tolerance_m * over.stretch() {
+                flight.too_low.push(TooLow { over: clearance, required_m });
             }
         }
+    }
+
+    /// The height to keep over the ground at a distance from the take-off, m: the clearance, tapered towards both contacts.
+    fn required_m(&self, distance_m: f64) -> f64 {
+        let limits = self.surface.hopper().limits();
+        match limits.clearance_rule {
+            ClearanceRule::Vertex => limits.clearance_m,
+            ClearanceRule::Tapered(taper) => {
+                let nearer_m = distance_m.min(self.run_m - distance_m);
+                limits.clearance_m.min(taper * nearer_m.max(0.0))
+            }
+        }
+    }
+
+    /// A tapered clearance over the ground between vertices: at the two places where it stops growing, and at every small step.
+    fn look_between(&self, flight: &mut Flight, takeoff: State, stretches: &[Stretch], states: &[Vec<State>]) {
+        let limits = self.surface.hopper().limits();
+        let ClearanceRule::Tapered(taper) = limits.clearance_rule else { return };
+        if limits.clearance_m <= 0.0 {
+            return;
+        }
+        let full_m = (limits.clearance_m / taper).min(0.5 * self.run_m);
+        let mut before = takeoff;
+        let (mut kinks, mut steps) = (Vec::new(), Vec::new());
+        for (stretch, all) in stretches.iter().zip(states) {
+            for (i, &state) in all.iter().enumerate() {
+                for kink_m in [full_m, self.run_m - full_m] {
+                    if before.distance_m < kink_m && kink_m < state.distance_m {
+                        kinks.extend(self.too_low(flight, stretch, before.at(kink_m, self.surface.gravity_m_s2())));
+                    }
+                }
+                if i + 1 < all.len() {
+                    steps.extend(self.too_low(flight, stretch, state));
+                }
+                before = state;
+            }
+        }
+        flight.too_low.extend(kinks);
+        // Between vertices and kinks the arc is concave and the ground with its clearance straight, so a step alone is never too low.
+        if flight.too_low.is_empty() {
+            flight.too_low.extend(steps);
+        }
+    }
+
+    /// A state inside a stretch, if it is below the clearance there.
+    fn too_low(&self, flight: &Flight, stretch: &Stretch, state: State) -> Option<TooLow> {
+        let height_m = state.height_m - stretch.height_m(stretch.share(state.distance_m));
+        let required_m = self.required_m(state.distance_m);
+        let tolerance_m = flight.place_tolerance_m * state.stretch().max(stretch.ground_stretch());
+        let over = Clearance { vertex: None, x_m: self.point(state.distance_m, 0.0).x_m, height_m };
+        (height_m < required_m - tolerance_m).then_some(TooLow { over, required_m })
     }
 
     /// Whether every small step stays above the ground; if not, the point at which the flight first meets it.

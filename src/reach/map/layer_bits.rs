@@ -101,6 +101,7 @@ impl Disc {
 mod tests {
     use super::*;
     use crate::{
+        ballistics::limits::ClearanceProfile,
         ground::{OffsetTable, Spacing},
         quantity::MapPoint,
         terrain::{Dem, GeoReference},
@@ -113,7 +114,7 @@ mod tests {
 
     fn offsets(lattice: NodeLattice, dx_m: f64, range_m: f64) -> Vec<Offset> {
         let spacing = Spacing { dx_m, dy_m: 1.0, stride: 1, node_cols: lattice.cols, post_cols: lattice.cols };
-        OffsetTable::new(spacing, range_m, (lattice.rows, lattice.cols), |_| (-1.0, 1.0)).offsets
+        OffsetTable::new(spacing, range_m, (lattice.rows, lattice.cols), ClearanceProfile::NONE, |_| (-1.0, 1.0)).offsets
     }
 
     /// The same offset by offset: whether the disc contains the node, and whether it lies on the lattice completely.

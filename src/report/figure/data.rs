@@ -5,7 +5,7 @@ use super::{
     spans::{GroundSpan, spans},
 };
 use crate::{
-    ballistics::Arc,
+    ballistics::{Arc, limits::ClearanceProfile},
     chain::Station,
     graph::{EndpointRefusal, Frontier, NodeSet, Outcome},
     path::{Hop, HopPath, Totals},
@@ -33,6 +33,8 @@ pub struct FigureData {
     pub spans: Vec<GroundSpan>,
     /// Nodes of the search within the range shown.
     pub nodes: Thinned<ChainPoint>,
+    /// The height that the hops keep over the ground.
+    pub clearance: ClearanceProfile,
     /// Where the journey begins.
     pub start: ChainPoint,
     /// Where it should end.
@@ -166,6 +168,7 @@ impl FigureData {
             chain_x_m,
             spans: spans(chain, view_x_m, towards),
             nodes: Thinned::of(visible.iter().map(|station| station.point), MOST_NODES_DRAWN),
+            clearance: input.test.clearance(),
             start: input.start.point,
             goal: input.goal.point,
             subject,

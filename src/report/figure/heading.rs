@@ -11,7 +11,7 @@ use super::{
 use crate::{
     graph::{Answer, EndpointRefusal},
     path::Totals,
-    world::{Contact, Hopper},
+    world::{ClearanceRule, Contact, Hopper},
 };
 
 /// Title, question, limits and verdict; returns where they end.
@@ -59,7 +59,7 @@ pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m
         let most = if limit.is_finite() { limit } else { bound };
         parts.push(format!("{name} ≤ {} m/s", short(most)));
     }
-    parts.push(format!("clearance {} m", short(hopper.limits().clearance_m)));
+    parts.push(clearance(hopper));
     for (name, angle) in
         [("take-off angle ≥", hopper.limits().takeoff_angle_min), ("take-off angle ≤", hopper.limits().takeoff_angle_max)]
     {
@@ -71,6 +71,17 @@ pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m
         parts.push(ground.to_owned());
     }
     parts.join("; ")
+}
+
+/// The clearance and, if there is one, where it is kept.
+fn clearance(hopper: &Hopper) -> String {
+    let limits = hopper.limits();
+    let height = format!("clearance {} m", short(limits.clearance_m));
+    match limits.clearance_rule {
+        _ if limits.clearance_m == 0.0 => height,
+        ClearanceRule::Tapered(taper) => format!("{height}, tapered at both contacts ({} m/m)", short(taper)),
+        ClearanceRule::Vertex => format!("{height} over vertices"),
+    }
 }
 
 /// The answer in a few words.

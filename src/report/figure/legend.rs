@@ -1,6 +1,7 @@
 //! The legend: one entry for each kind of symbol in the picture.
 
 use super::{
+    clearance,
     data::{FigureData, Subject, Thinned},
     palette::{LEFT_MM, RIGHT_MM, SMALL_MM},
     sheet::{Label, Place, Sheet, text_width_mm},
@@ -20,6 +21,7 @@ pub(super) enum Key {
     Flight(Direction),
     Cone(Contact),
     Contact(Contact),
+    Clearance,
     Node,
     Ground(GroundUse),
     Reached,
@@ -44,6 +46,9 @@ pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
                 found.push((Key::Contact(Contact::Landing), "landing".to_owned()));
                 found.push((Key::Cone(Contact::Takeoff), "take-off cone".to_owned()));
                 found.push((Key::Cone(Contact::Landing), "landing cone".to_owned()));
+                if data.clearance.has_kinks() {
+                    found.push((Key::Clearance, "clearance".to_owned()));
+                }
             }
         }
         Subject::Stopped(stop) => {
@@ -111,6 +116,7 @@ fn sample(sheet: &mut Sheet, key: Key, (x, y): Place) {
         }
         Key::Contact(Contact::Takeoff) => symbols::takeoff(sheet, middle),
         Key::Contact(Contact::Landing) => symbols::landing(sheet, middle),
+        Key::Clearance => clearance::band(sheet, &across.map(|(x, y)| (x, y - 1.0)), &across.map(|(x, y)| (x, y + 1.0))),
         Key::Node => {
             sheet.line(across.to_vec(), symbols::SURFACE_PEN);
             symbols::node(sheet, middle);

@@ -22,6 +22,7 @@ mod axes;
 mod bands;
 mod bitmap;
 mod chains;
+mod clearance;
 mod data;
 mod heading;
 mod keys;

@@ -2,6 +2,7 @@
 
 use super::{
     axes::{BELOW_MM, Panel, left_room_mm},
+    clearance,
     data::{FigureData, HopFigure, StoppedFigure, Subject},
     palette::{AXIS, BLACK, GROUND, LEFT_MM, RIGHT_MM, SMALL_MM},
     scale::{Frame, Scale},
@@ -100,6 +101,11 @@ impl<'a> TerrainPanel<'a> {
         let mut lengths: Vec<f64> = hops.iter().map(|h| h.arc.line_of_sight().run_m() * frame.scale.mm_per_m).collect();
         lengths.sort_by(f64::total_cmp);
         let length_mm = (0.3 * lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)).clamp(1.6, 7.5);
+        if self.data.clearance.has_kinks() {
+            for hop in hops {
+                self.clearance(sheet, hop);
+            }
+        }
         for cone in hops.iter().flat_map(|hop| hop.cones.iter().flatten()) {
             symbols::cone(sheet, frame, cone, length_mm);
         }
@@ -115,6 +121,14 @@ impl<'a> TerrainPanel<'a> {
         for hop in hops.iter().step_by(every) {
             self.number(sheet, hop);
         }
+    }
+
+    /// The clearance that a hop keeps over the ground.
+    fn clearance(&self, sheet: &mut Sheet, hop: &HopFigure) {
+        let (a, b) = (hop.hop.takeoff.along_m, hop.hop.landing.along_m);
+        let ground = stretch(self.chain, a.min(b), a.max(b));
+        let place = |points: &[ChainPoint]| thinned(&points.iter().map(|&point| self.frame.place(point)).collect::<Vec<_>>());
+        clearance::band(sheet, &place(&clearance::raised(&ground, self.data.clearance)), &place(&ground));
     }
 
     /// The number of a hop above its highest point, or beside it if that position is taken; omitted without room.

@@ -1,7 +1,7 @@
 //! Every planned hop, spoiled by 1 % beyond its binding limit: the checker must refuse it and name that limit.
 
 use chta::{
-    ballistics::{Arc, LineOfSight},
+    ballistics::{Arc, LineOfSight, limits::ClearanceProfile},
     chain::{ConstrainedChain, GroundForm, SegmentGround, Station},
     ground::Surface,
     hop::HopTest,
@@ -86,6 +86,36 @@ fn beyond(end: f64, room: f64) -> f64 {
     if end.abs() < 0.01 || of_angle >= room { 0.01 * room } else { of_angle }
 }
 
+/// Whether an arc flatter than the least angle is lower by less than the rounding of heights where the ground sets that angle: at a
+/// vertex, or at a kink of the clearance, next to a contact.
+fn is_too_low_to_see(case: &Case<'_>, min: f64, radians: f64) -> bool {
+    let run = case.sight().run_m();
+    let from = case.hop.takeoff.in_profile();
+    let clearance = ClearanceProfile::of(case.world.hopper.limits());
+    let d =
+        case.hop.lower_vertex.map_or(clearance.kink_m(run), |vertex| (case.world.vertices[vertex.index()].x_m - from.x_m).abs());
+    let lower_m = (min.tan() - radians.tan()) * d * (run - d) / run;
+    let rounding_m = f64::EPSILON * case.world.vertices.iter().flat_map(|v| [v.x_m.abs(), v.z_m.abs()]).fold(run, f64::max);
+    lower_m < 32.0 * rounding_m * (1.0 + min.tan().abs())
+}
+
+/// Whether the spoiled arc is over a limit of speed by next to nothing, as where the speed hardly depends on the angle.
+fn is_hardly_faster(case: &Case<'_>, limit: Limit, radians: f64) -> bool {
+    let contact = match limit {
+        Limit::TakeoffSpeed => Contact::Takeoff,
+        Limit::LandingSpeed => Contact::Landing,
+        _ => return false,
+    };
+    let hop = case.at_angle(radians);
+    let (takeoff, landing) = case.stations();
+    let (station, speed_m_s) = match contact {
+        Contact::Takeoff => (takeoff, hop.takeoff_speed_m_s),
+        Contact::Landing => (landing, hop.landing_speed_m_s),
+    };
+    let rule = case.chain.check_contact(&station, contact, case.hop.direction).unwrap();
+    (1.0..1.0 + 1e-8).contains(&(speed_m_s / rule.speed_max_m_s()))
+}
+
 /// Both ends of the feasible take-off angles.
 fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
     let (min, max) = (case.hop.takeoff_angles.min.radians(), case.hop.takeoff_angles.max.radians());
@@ -103,7 +133,11 @@ fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
         // speed near its minimum depends on the square of the angle, so its change is less than the tolerance of speeds.
         // A change of angle alone does not violate an apex limit that the landing itself just meets.
         let landing_is_top = one_point && limit == Limit::ApexHeight && case.hop.landing_angle.radians() >= 0.0;
-        if room < 1e-5 || landing_is_top {
+        if room < 1e-5
+            || landing_is_top
+            || (limit == Limit::Terrain && is_too_low_to_see(case, min, radians))
+            || is_hardly_faster(case, limit, radians)
+        {
             tally.too_fine += 1;
             continue;
         }

@@ -161,6 +161,7 @@ fn hopper(dice: &mut Dice, size_m: f64, speed_m_s: f64, gravity_m_s2: f64) -> Ho
         takeoff_speed_max_m_s: speed_m_s * dice.between(0.7, 1.5),
         landing_speed_max_m_s: speed_m_s * dice.between(0.7, 1.5),
         clearance_m: if dice.chance(0.5) { 0.0 } else { size_m * dice.decades(-5.0, -1.5) },
+        clearance_rule: dice.0.clearance_rule(),
         takeoff_angle_min: angle(some(dice, -20.0, 60.0)),
         takeoff_angle_max: angle(some(dice, 40.0, 89.0)),
         apex_height_max_m: some(dice, 0.05, 0.6).map(|share| share * scale_m),

@@ -12,7 +12,7 @@ use chta::{
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
     terrain::{Dem, OverlaidDem, Overlays, slice},
     uncertainty::{Mission, Simulation, Summary, TrialOptions, Uncertainty},
-    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
+    world::{ClearanceRule, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 /// A journey and the ground of its plan.
@@ -49,7 +49,12 @@ pub(crate) fn mid_range(spacing: PointSpacing) -> SearchOptions {
 impl Scene {
     pub(crate) fn of_chain(points: &[(f64, f64)], speed_m_s: f64, surface: SurfaceProperties) -> Self {
         let vertices = points.iter().map(|&(x, z)| ChainPoint::new(x, z)).collect();
-        let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(speed_m_s, speed_m_s) }).unwrap();
+        let limits = HopperLimits {
+            clearance_m: 0.05,
+            clearance_rule: ClearanceRule::Vertex,
+            ..HopperLimits::with_speeds(speed_m_s, speed_m_s)
+        };
+        let hopper = Hopper::new(limits).unwrap();
         let chain = ConstrainedChain::new(PolygonalChain::bare(vertices).unwrap(), &hopper, Gravity::new(3.711).unwrap(), &surface)
             .unwrap();
         let ends_m = chain.geometry().extent_m();

@@ -13,7 +13,7 @@ use crate::{
         tests::drawn_chain,
     },
     quantity::Outwards,
-    world::{Gravity, Hopper, HopperLimits},
+    world::{ClearanceRule, Gravity, Hopper, HopperLimits},
 };
 
 fn exact(number: f64) -> BigRational {
@@ -78,15 +78,42 @@ fn is_hop(chain: &ConstrainedChain, hopper: &Hopper, g: f64, takeoff: &Place, la
     if let Some(time_s) = hopper.limits().flight_time_max_s {
         cap(exact(g) * exact(time_s) * exact(time_s) / (&two * &run));
     }
-    for vertex in chain.geometry().vertices() {
-        let (x, top) = (exact(vertex.x_m), exact(vertex.z_m) + exact(hopper.limits().clearance_m));
-        if (&x - &takeoff.x).is_positive() == forward
-            && (&landing.x - &x).is_positive() == forward
-            && x != takeoff.x
-            && x != landing.x
-        {
-            raise((&top - &takeoff.z) / (&x - &takeoff.x).abs() + (&top - &landing.z) / (&landing.x - &x).abs());
+    // The ground between the ends, by distance from the take-off.
+    let mut ground: Vec<(BigRational, BigRational)> = chain
+        .geometry()
+        .vertices()
+        .iter()
+        .map(|vertex| (exact(vertex.x_m), exact(vertex.z_m)))
+        .filter(|(x, _)| {
+            (x - &takeoff.x).is_positive() == forward
+                && (&landing.x - x).is_positive() == forward
+                && *x != takeoff.x
+                && *x != landing.x
+        })
+        .map(|(x, z)| ((x - &takeoff.x).abs(), z))
+        .collect();
+    ground.push((BigRational::zero(), takeoff.z.clone()));
+    ground.push((run.clone(), landing.z.clone()));
+    ground.sort();
+    let eps = exact(hopper.limits().clearance_m);
+    if let Some(taper) = hopper.limits().clearance_rule.taper().filter(|_| eps.is_positive()) {
+        let ramp = (&eps / exact(taper)).min(&run / &two);
+        for kink in [ramp.clone(), &run - &ramp] {
+            let next = ground.iter().position(|(d, _)| *d >= kink).unwrap();
+            let ((d, z), (e, y)) = (&ground[next - 1], &ground[next]);
+            let height = z + (y - z) * (&kink - d) / (e - d);
+            ground.insert(next, (kink, height));
         }
+    }
+    let ends = (BigRational::zero(), run.clone());
+    for (d, z) in ground.iter().filter(|(d, _)| *d != ends.0 && *d != ends.1) {
+        let e = &run - d;
+        let kept = match hopper.limits().clearance_rule {
+            ClearanceRule::Vertex => eps.clone(),
+            ClearanceRule::Tapered(taper) => eps.clone().min(exact(taper) * d).min(exact(taper) * &e),
+        };
+        let top = z + kept;
+        raise((&top - &takeoff.z) / d + (&top - &landing.z) / &e);
     }
     let ratio = |speed: f64| {
         let v = exact(speed) * (BigRational::one() + exact(SPEED_TOLERANCE));

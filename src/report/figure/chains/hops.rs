@@ -4,6 +4,7 @@ use super::{
     super::{
         Caption, FigureError, Picture,
         axes::{Panel, left_room_mm},
+        clearance,
         keys::{self, Swatch},
         palette::{BLUE, GREEN, GROUND, PAGE_WIDTH_MM, SMALL_MM, TEXT_MM, VERMILION},
         scale::{Frame, Scale},
@@ -15,7 +16,7 @@ use super::{
     Flight,
     profile::{Profile, at_x, check_ground, fitted, part},
 };
-use crate::{path::Hop, quantity::ChainPoint};
+use crate::{ballistics::limits::ClearanceProfile, path::Hop, quantity::ChainPoint};
 
 /// One hop of the sheet.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,8 +36,8 @@ pub struct HopProfile {
 pub struct HopProfilesFigure {
     /// The caption.
     pub caption: Caption,
-    /// The required clearance over vertices, m; 0: the flight must only not touch the ground.
-    pub clearance_m: f64,
+    /// The height to keep over the ground; 0: the flight must only not touch it.
+    pub clearance: ClearanceProfile,
     /// The hops, row by row.
     pub hops: Vec<HopProfile>,
 }
@@ -81,7 +82,7 @@ pub fn draw_hop_profiles(figure: &HopProfilesFigure) -> Result<Picture, FigureEr
     for (i, hop) in figure.hops.iter().enumerate() {
         check_ground(&hop.name, &hop.ground)?;
         let (row, column) = (i / columns, i % columns);
-        cell(&mut sheet, hop, figure.clearance_m, (MARGIN_MM + float(column) * CELL_MM.0, head_mm + float(row) * CELL_MM.1));
+        cell(&mut sheet, hop, figure.clearance, (MARGIN_MM + float(column) * CELL_MM.0, head_mm + float(row) * CELL_MM.1));
     }
     let height_mm = (head_mm + float(figure.hops.len().div_ceil(columns)) * CELL_MM.1 + 1.0).ceil();
     Ok(Picture { sheet, width_mm, height_mm })
@@ -110,9 +111,13 @@ fn entries(figure: &HopProfilesFigure) -> Vec<(Swatch, String)> {
     if figure.hops.iter().any(|hop| hop.least_clearance_m.is_some()) {
         found.push((Swatch::Line(LEAST_PEN), "least clearance over a vertex".to_owned()));
     }
-    if figure.clearance_m > 0.0 {
-        let text = format!("clearance asked for: {} m", short(figure.clearance_m));
-        found.push((Swatch::Dashed(REQUIRED_PEN, DASHES_MM.0, DASHES_MM.1), text));
+    if figure.clearance.height_m() > 0.0 {
+        let text = format!("clearance asked for: {} m", short(figure.clearance.height_m()));
+        found.push(if figure.clearance.has_kinks() {
+            (Swatch::Line(clearance::EDGE_PEN), text)
+        } else {
+            (Swatch::Dashed(REQUIRED_PEN, DASHES_MM.0, DASHES_MM.1), text)
+        });
     }
     found
 }
@@ -143,7 +148,7 @@ fn words(profile: &HopProfile) -> Vec<String> {
 }
 
 /// One hop, with the given upper left corner.
-fn cell(sheet: &mut Sheet, profile: &HopProfile, clearance_m: f64, (left_mm, top_mm): Place) {
+fn cell(sheet: &mut Sheet, profile: &HopProfile, clearance: ClearanceProfile, (left_mm, top_mm): Place) {
     let width_mm = CELL_MM.0 - GAP_MM;
     let title = fitted(&profile.name, TEXT_MM, 0.9 * width_mm);
     sheet.label(Label { bold: true, ..Label::new(title, (left_mm, top_mm + 0.5 * LINE_MM), TEXT_MM) });
@@ -153,11 +158,11 @@ fn cell(sheet: &mut Sheet, profile: &HopProfile, clearance_m: f64, (left_mm, top
         y += LINE_MM;
     }
     let end_mm = left_mm + width_mm;
-    panel(sheet, profile, clearance_m, (left_mm, end_mm), y - 0.2 * LINE_MM);
+    panel(sheet, profile, clearance, (left_mm, end_mm), y - 0.2 * LINE_MM);
 }
 
 /// The flight over its ground, between two ends and below a height of the sheet.
-fn panel(sheet: &mut Sheet, profile: &HopProfile, clearance_m: f64, ends_mm: (f64, f64), top_mm: f64) {
+fn panel(sheet: &mut Sheet, profile: &HopProfile, clearance: ClearanceProfile, ends_mm: (f64, f64), top_mm: f64) {
     let flight = Flight::from(&profile.hop);
     let (from, to) = (flight.from.x_m.min(flight.to.x_m), flight.from.x_m.max(flight.to.x_m));
     let ground = part(&profile.ground, from, to);
@@ -169,11 +174,13 @@ fn panel(sheet: &mut Sheet, profile: &HopProfile, clearance_m: f64, ends_mm: (f6
         let base = [(last.0, drawn.panel.bottom), (first.0, drawn.panel.bottom)];
         sheet.area(surface.iter().copied().chain(base).collect(), GROUND, 1.0);
     }
-    sheet.line(surface, symbols::SURFACE_PEN);
-    if clearance_m > 0.0 {
-        let raised: Vec<ChainPoint> = ground.iter().map(|point| ChainPoint::new(point.x_m, point.z_m + clearance_m)).collect();
-        sheet.dashed(&drawn.line(&raised), DASHES_MM.0, DASHES_MM.1, REQUIRED_PEN);
+    if clearance.has_kinks() {
+        clearance::band(sheet, &drawn.line(&clearance::raised(&ground, clearance)), &surface);
+    } else if clearance.height_m() > 0.0 {
+        let raised = drawn.line(&clearance::raised(&ground, clearance));
+        sheet.dashed(&raised, DASHES_MM.0, DASHES_MM.1, REQUIRED_PEN);
     }
+    sheet.line(surface, symbols::SURFACE_PEN);
     if let Some((x_m, height_m)) = profile.least_clearance_m {
         let foot = at_x(&ground, x_m);
         sheet.line(vec![drawn.frame.place(foot), drawn.frame.place(ChainPoint::new(x_m, foot.z_m + height_m))], LEAST_PEN);

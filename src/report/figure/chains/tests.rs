@@ -12,12 +12,13 @@ use super::{
     *,
 };
 use crate::{
+    ballistics::limits::ClearanceProfile,
     chain::PolygonalChain,
     ground::{ContactPoint, Frame},
     path::Hop,
     quantity::{Angle, AngleInterval, ChainPoint},
     report::figure::FigureError,
-    world::{Direction, Limit},
+    world::{ClearanceRule, Direction, Limit},
 };
 
 /// Waves between two x, a point every metre.
@@ -356,7 +357,11 @@ fn hop_profile(i: usize, hops: usize) -> HopProfile {
 fn sheets_of_hops_are_grids_within_their_aspect_ratio() {
     for (hops, clearance_m) in [(0, 0.0), (1, 0.5), (3, 0.0), (36, 0.5), (300, 0.0)] {
         let caption = Caption::new("Hop by hop", "Moon, g = 1.624 m/s²");
-        let figure = HopProfilesFigure { caption, clearance_m, hops: (0..hops).map(|i| hop_profile(i, hops)).collect() };
+        let figure = HopProfilesFigure {
+            caption,
+            clearance: ClearanceProfile::new(clearance_m, ClearanceRule::TAPERED),
+            hops: (0..hops).map(|i| hop_profile(i, hops)).collect(),
+        };
         let picture = draw_hop_profiles(&figure).unwrap();
         check_well_formed(&picture.to_svg().unwrap());
         assert_eq!(picture.height_mm, picture.height_mm.round());
@@ -374,8 +379,11 @@ fn sheets_of_hops_are_grids_within_their_aspect_ratio() {
             assert!(is_inside, "{hops} hops: {:?} leaves the page", label.text);
         }
     }
-    let figure =
-        HopProfilesFigure { caption: Caption::default(), clearance_m: 0.5, hops: (0..4).map(|i| hop_profile(i, 4)).collect() };
+    let figure = HopProfilesFigure {
+        caption: Caption::default(),
+        clearance: ClearanceProfile::new(0.5, ClearanceRule::TAPERED),
+        hops: (0..4).map(|i| hop_profile(i, 4)).collect(),
+    };
     let told = texts(&check_picture("hop-profiles", || draw_hop_profiles(&figure).unwrap()));
     for words in [
         "(75897.5, 38702.5) m to (75900.0, 38710.0) m",
