@@ -1,12 +1,7 @@
 //! All limits except the terrain, evaluated for a block of landings at once.
 
 use super::table::{LandingRules, LandingTable};
-use crate::{
-    ballistics::{LineOfSight, limits::ClearanceProfile},
-    hop::HopTest,
-    quantity::SlopeInterval,
-    world::Limit,
-};
+use crate::{ballistics::LineOfSight, hop::HopTest, quantity::SlopeInterval, world::Limit};
 
 /// The data of a take-off that all landings share.
 #[derive(Clone, Copy, Debug)]
@@ -36,8 +31,8 @@ pub(super) struct Lanes {
     /// The lofts that all limits except the terrain allow.
     lower: [f64; Self::COUNT],
     upper: [f64; Self::COUNT],
-    /// Above 0 where a kink of a tapered clearance may ask for more loft than the other limits.
-    kink_excess: [f64; Self::COUNT],
+    /// Above 0 where a kink of a tapered clearance, or the ground near the landing, may ask for more loft than the other limits.
+    near_excess: [f64; Self::COUNT],
 }
 
 impl Lanes {
@@ -54,25 +49,55 @@ impl Lanes {
             fastest: zeros,
             lower: zeros,
             upper: zeros,
-            kink_excess: zeros,
+            near_excess: zeros,
         }
     }
 
     /// Evaluates the landings `range` of the table, at most [`Self::COUNT`] of them, none on a segment of the take-off.
+    ///
+    /// With a tapered clearance, `seen` is the slope at which the ground one ramp away is seen from the take-off.
     pub(super) fn evaluate(
+        &mut self,
+        test: &HopTest,
+        from: &Departure,
+        positions: (&[f64], &[f64]),
+        rules: &LandingRules,
+        range: std::ops::Range<usize>,
+        seen: f64,
+    ) {
+        if test.clearance().has_kinks() {
+            self.evaluate_with::<true>(test, from, positions, rules, range, seen);
+        } else {
+            self.evaluate_with::<false>(test, from, positions, rules, range, seen);
+        }
+    }
+
+    /// The same, with or without the near ground of a tapered clearance.
+    ///
+    /// At hops of at least two ramps, a kink or a vertex nearer than one ramp to the landing asks for no more than
+    /// `(h / w + k) X / (X - w)` with the steepest of them (see [`NearGround`](super::near::NearGround)). Without a division:
+    /// `(h/w + k) X` is compared with `n (X - w)`, with a margin for rounding.
+    #[inline]
+    fn evaluate_with<const TAPERED: bool>(
         &mut self,
         test: &HopTest,
         from: &Departure,
         (x_m, z_m): (&[f64], &[f64]),
         rules: &LandingRules,
         range: std::ops::Range<usize>,
+        seen: f64,
     ) {
+        /// Far more than rounding. Lofts that the speeds allow are above 0.
+        const NEARLY: f64 = 1.0 - 1e-12;
         let count = range.len().min(Self::COUNT);
         let cone = from.cone.intersect(test.mechanism_slopes());
         let gravity = test.gravity_m_s2();
         let (x_m, z_m) = (&x_m[range.clone()][..count], &z_m[range.clone()][..count]);
         let speed_squared = &rules.speed_squared[range.clone()][..count];
-        let (cone_lower, cone_upper) = (&rules.cone_lower[range.clone()][..count], &rules.cone_upper[range][..count]);
+        let (cone_lower, cone_upper) = (&rules.cone_lower[range.clone()][..count], &rules.cone_upper[range.clone()][..count]);
+        let steepest_back = if TAPERED { &rules.steepest_back[range][..count] } else { &[] };
+        let (taper, ramp_m) = (test.clearance().taper(), test.clearance().ramp_m());
+        let near_excess = &mut self.near_excess[..count];
         let (slope, takeoff_excess) = (&mut self.slope[..count], &mut self.takeoff_excess[..count]);
         let (landing_excess, slowest) = (&mut self.landing_excess[..count], &mut self.slowest[..count]);
         let (fastest, lower, upper) = (&mut self.fastest[..count], &mut self.lower[..count], &mut self.upper[..count]);
@@ -101,6 +126,12 @@ impl Lanes {
             // An excess below 0 has no roots: the interval is empty.
             lower[i] = least;
             upper[i] = if excess >= 0.0 { greatest } else { f64::NEG_INFINITY };
+            if TAPERED {
+                let (ahead, back) = (seen - b, b + steepest_back[i]);
+                let over = if back > ahead { back } else { ahead };
+                let excess = (over + taper) * run_m - least * (run_m - ramp_m) * NEARLY;
+                near_excess[i] = if run_m < 2.0 * ramp_m { f64::INFINITY } else { excess };
+            }
         }
         if test.has_flight_limits() {
             for (i, x_m) in x_m.iter().enumerate() {
@@ -111,35 +142,11 @@ impl Lanes {
         }
     }
 
-    /// Finds the landings farther than two ramps of a tapered clearance at which a kink may ask for more loft than the other limits;
-    /// the ground one ramp away from the take-off is seen from it at the slope `seen`, and from each landing at the slopes `seen_back`.
-    ///
-    /// Without a division: `(h/w + k) X / (X - w)` is compared as `(h/w + k) X` with `n (X - w)`, with a margin for rounding.
-    pub(super) fn evaluate_kinks(
-        &mut self,
-        clearance: ClearanceProfile,
-        (from_m, seen): (f64, f64),
-        x_m: &[f64],
-        seen_back: &[f64],
-    ) {
-        /// Far more than rounding. Lofts that the speeds allow are above 0.
-        const NEARLY: f64 = 1.0 - 1e-12;
-        let count = x_m.len().min(seen_back.len()).min(Self::COUNT);
-        let (x_m, seen_back, slope) = (&x_m[..count], &seen_back[..count], &self.slope[..count]);
-        let (lower, excess) = (&self.lower[..count], &mut self.kink_excess[..count]);
-        let (taper, ramp_m) = (clearance.taper(), clearance.ramp_m());
-        for i in 0..count {
-            let run_m = (x_m[i] - from_m).abs();
-            let (from, to) = (seen - slope[i], slope[i] + seen_back[i]);
-            let over = if to > from { to } else { from };
-            excess[i] = (over + taper) * run_m - lower[i] * (run_m - ramp_m) * NEARLY;
-        }
-    }
-
-    /// Whether a kink may ask for more loft than the other limits of a lane.
+    /// Whether a kink or the ground near the landing may ask for more loft than the other limits of a lane: always for a hop shorter than
+    /// two ramps.
     #[inline]
-    pub(super) fn kinks_may_bind(&self, lane: usize) -> bool {
-        self.kink_excess[lane] > 0.0
+    pub(super) fn near_ground_may_bind(&self, lane: usize) -> bool {
+        self.near_excess[lane] > 0.0
     }
 
     /// The lofts of one lane; `None` if empty.

@@ -6,6 +6,7 @@
 
 mod hull;
 mod lanes;
+mod near;
 mod table;
 mod terrain;
 
@@ -16,7 +17,7 @@ use std::{
 
 use lanes::{Departure, Lanes};
 pub use table::LandingTable;
-use terrain::Overflight;
+use terrain::{Near, Overflight};
 
 use crate::{
     chain::Station,
@@ -116,23 +117,21 @@ impl Sweep {
         let (on_segment, mut left) = table.split_at_segment(takeoff, in_plane, direction);
         outwards(on_segment, direction).try_for_each(|i| visit(i, test.lofts(takeoff, &stations[i])))?;
         overflight.begin(takeoff, direction);
-        let clearance = test.clearance();
         while !left.is_empty() {
             let block = next_block(&mut left, direction);
             if let Some(limit) = table.out_of_reach(&from, &block, direction) {
                 outwards(block, direction).try_for_each(|i| visit(i, Err(refusals[i].unwrap_or(limit))))?;
                 continue;
             }
-            lanes.evaluate(test, &from, (&table.x_m, &table.z_m), table.rules(direction), block.clone());
-            if clearance.has_kinks() {
-                let seen = overflight.seen_at_ramp();
-                let seen_back = &table.rules(direction).seen_back;
-                lanes.evaluate_kinks(clearance, (from.x_m, seen), &table.x_m[block.clone()], &seen_back[block.clone()]);
-            }
+            let positions = (table.x_m.as_slice(), table.z_m.as_slice());
+            lanes.evaluate(test, &from, positions, table.rules(direction), block.clone(), overflight.seen_at_ramp());
+            let tapered = test.clearance().has_kinks();
             for i in outwards(block.clone(), direction) {
+                let (landing, lane) = (Landing { table, lanes, overflight }, i - block.start);
                 let verdict = match refusals[i] {
                     Some(limit) => Err(limit),
-                    None => Landing { table, lanes, overflight }.verdict(&from, takeoff, direction, i, i - block.start),
+                    None if tapered => landing.verdict::<true>(&from, takeoff, direction, i, lane),
+                    None => landing.verdict::<false>(&from, takeoff, direction, i, lane),
                 };
                 visit(i, verdict)?;
             }
@@ -151,7 +150,7 @@ struct Landing<'s> {
 impl Landing<'_> {
     /// The result for a landing that its ground allows and whose lane of the block is evaluated.
     #[inline]
-    fn verdict(
+    fn verdict<const TAPERED: bool>(
         self,
         from: &Departure,
         takeoff: &Station,
@@ -167,21 +166,22 @@ impl Landing<'_> {
             return Err(self.lanes.refusing(test, from, lane, run_m, cone));
         };
         let mut least = in_envelope.lower;
-        let two_ramps_m = self.overflight.two_ramps_m();
-        if two_ramps_m > 0.0 {
-            let run_m = (self.table.x_m[i] - from.x_m).abs();
-            let slope = self.lanes.slope(lane);
-            if run_m < two_ramps_m {
+        let mut near = Near::Skipped;
+        let rules = self.table.rules(direction);
+        if TAPERED && self.lanes.near_ground_may_bind(lane) {
+            let (run_m, slope) = ((self.table.x_m[i] - from.x_m).abs(), self.lanes.slope(lane));
+            if run_m < self.overflight.two_ramps_m() {
+                near = Near::Scanned;
                 least = least.max(self.overflight.middle_loft(landing, run_m, slope));
-            } else if self.lanes.kinks_may_bind(lane) {
-                let seen_back = self.table.rules(direction).seen_back[i];
-                least = least.max(self.overflight.kinks_loft(seen_back, run_m, slope));
+            } else {
+                near = Near::Front(&rules.near[i]);
+                least = least.max(self.overflight.kinks_loft(rules.seen_back[i], run_m, slope));
             }
             if least > in_envelope.upper {
                 return Err(Limit::Terrain);
             }
         }
-        let lower = self.overflight.lower_end(landing, self.lanes.slope(lane), least);
+        let lower = self.overflight.lower_end::<TAPERED>(landing, rules.approach[i], self.lanes.slope(lane), least, near);
         if (lower - in_envelope.upper).abs() <= TOUCHING * (lower.abs() + in_envelope.upper.abs()) && lower > in_envelope.lower {
             return test.lofts(takeoff, landing);
         }

@@ -2,7 +2,7 @@
 
 use std::{ops::Range, sync::Arc};
 
-use super::lanes::Departure;
+use super::{lanes::Departure, near::NearGround, terrain::Approach};
 use crate::{
     ballistics::LineOfSight,
     chain::Station,
@@ -15,7 +15,7 @@ use crate::{
 /// Stored column by column, since a sweep reads few numbers of many stations.
 ///
 /// # Memory
-/// 66 bytes per station; 82 with a tapered clearance.
+/// 98 bytes per station; 234 with a tapered clearance.
 #[derive(Clone, Debug)]
 pub struct LandingTable {
     test: HopTest,
@@ -47,8 +47,14 @@ pub(super) struct LandingRules {
     pub(super) cone_upper: Vec<f64>,
     /// The limit by which the ground refuses the landing, if it does.
     pub(super) refusal: Vec<Option<Limit>>,
+    /// The ground from the last vertex flown over.
+    pub(super) approach: Vec<Approach>,
     /// The slope back from the landing to the ground one ramp of a tapered clearance before it; empty without a taper.
     pub(super) seen_back: Vec<f64>,
+    /// The steepest slope back from the landing to that ground and to the vertices nearer; empty without a taper.
+    pub(super) steepest_back: Vec<f64>,
+    /// The vertices nearer than one ramp; empty without a taper.
+    pub(super) near: Vec<NearGround>,
 }
 
 impl LandingTable {
@@ -205,11 +211,18 @@ impl LandingRules {
         rules.cone_lower.reserve_exact(stations.len());
         rules.cone_upper.reserve_exact(stations.len());
         rules.refusal.reserve_exact(stations.len());
+        rules.approach = stations.iter().map(|station| Approach::to(test, station, direction)).collect();
         let ramp_m = test.clearance().ramp_m();
         if test.clearance().has_kinks() {
             let geometry = test.chain().geometry();
             let back = if direction == Direction::Forward { Direction::Reverse } else { Direction::Forward };
             rules.seen_back = stations.iter().map(|station| ground_slope(geometry, station, back, ramp_m)).collect();
+            // Where no hop is as long as two ramps, it is not asked for.
+            let asked = 2.0 * ramp_m <= test.greatest_reach_m();
+            let near = |station| if asked { NearGround::of(test, station, direction) } else { NearGround::NO_VERTEX };
+            rules.near = stations.iter().map(near).collect();
+            let steepest = rules.seen_back.iter().zip(&rules.near).map(|(kink, near)| kink.max(near.steepest_back()));
+            rules.steepest_back = steepest.collect();
         }
         for station in stations {
             let allowed = test.allowed(station, Contact::Landing, direction);

@@ -1,6 +1,9 @@
 //! The terrain limit of one take-off, for landings in the order of distance.
 
-use super::hull::{Hull, Seen};
+use super::{
+    hull::{Hull, Seen},
+    near::NearGround,
+};
 use crate::{
     ballistics::limits::{ClearanceProfile, clearing_loft},
     chain::{PolygonalChain, Site, Station},
@@ -37,6 +40,38 @@ pub(super) struct Overflight {
 
 /// A relative margin larger than all rounding errors of the bound that avoids the hull.
 const SLACK: f64 = 1e-12;
+
+/// The vertices next to the landing, where it reduces the clearance, which the hull does not cover.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Near<'t> {
+    /// They ask for no more than the loft already required.
+    Skipped,
+    /// Those of them that may ask for the most.
+    Front(&'t NearGround),
+    /// All of them.
+    Scanned,
+}
+
+/// The ground from the last vertex flown over to a landing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Approach {
+    /// Its slope along the direction of travel.
+    slope: f64,
+    /// The clearance at that vertex over its distance: `min(eps / gap, k)`.
+    clearance: f64,
+}
+
+impl Approach {
+    /// For a landing reached in a direction of travel; flat at the end of the chain, where no vertex is flown over before it.
+    pub(super) fn to(test: &HopTest, landing: &Station, direction: Direction) -> Self {
+        let back = if direction == Direction::Forward { Direction::Reverse } else { Direction::Forward };
+        let last = test.chain().geometry().vertices().get(first_ahead(landing, back));
+        let Some(last) = last.filter(|last| last.x_m != landing.point.x_m) else { return Self { slope: 0.0, clearance: 0.0 } };
+        let per_gap = 1.0 / (landing.point.x_m - last.x_m).abs();
+        let clearance = (test.clearance().height_m() * per_gap).min(test.clearance().taper());
+        Self { slope: (landing.point.z_m - last.z_m) * per_gap, clearance }
+    }
+}
 
 impl Overflight {
     pub(super) fn new(test: &HopTest) -> Self {
@@ -185,12 +220,19 @@ impl Overflight {
     ///
     /// Landings have to be passed in the order of distance.
     #[inline]
-    pub(super) fn lower_end(&mut self, landing: &Station, sight_slope: f64, lower: f64) -> f64 {
+    pub(super) fn lower_end<const TAPERED: bool>(
+        &mut self,
+        landing: &Station,
+        approach: Approach,
+        sight_slope: f64,
+        lower: f64,
+        near: Near<'_>,
+    ) -> f64 {
         let count = self.flown_past(landing);
-        if count == 0 || self.bound(landing.point, count) < lower {
+        if count == 0 || self.bound::<TAPERED>(approach, count) < lower {
             return lower;
         }
-        self.by_hull(landing.point, count, sight_slope).max(lower)
+        self.by_hull(landing.point, (count, lower), sight_slope, near).max(lower)
     }
 
     /// An upper bound on the loft that the first `count` vertices require.
@@ -202,31 +244,28 @@ impl Overflight {
     /// with the clearance `min(eps, k d)` in `s`, and without one in `t_last`: the slope from any vertex to the last is a mean of
     /// segment slopes, and the clearance changes `t_p` most over the gap from the last vertex to the landing.
     #[inline]
-    fn bound(&mut self, landing: ChainPoint, count: usize) -> f64 {
+    fn bound<const TAPERED: bool>(&mut self, approach: Approach, count: usize) -> f64 {
         while self.bounded < count {
             let point = self.vertex(self.bounded);
             let Seen { distance_m, raised_m, slope } = self.seen(point);
             self.highest_seen = self.highest_seen.max(slope);
-            self.steepest_seen = self.steepest_seen.max(slope.abs() + 2.0 * raised_m / distance_m);
+            let raised = if TAPERED { self.clearance.taper() } else { raised_m / distance_m };
+            self.steepest_seen = self.steepest_seen.max(slope.abs() + 2.0 * raised);
             if self.bounded > 0 {
                 self.lowest_slope = self.lowest_slope.min(self.slope_before(self.bounded));
             }
             self.bounded += 1;
         }
-        let last = self.vertex(count - 1);
-        let per_gap = 1.0 / (landing.x_m - last.x_m).abs();
-        let (whole, taper) = (self.clearance.height_m() * per_gap, self.clearance.taper());
-        let clearance = if taper < whole { taper } else { whole };
-        let ahead = (landing.z_m - last.z_m) * per_gap;
-        let lowest = if self.lowest_slope < ahead { self.lowest_slope } else { ahead } - clearance;
+        let Approach { slope, clearance } = approach;
+        let lowest = if self.lowest_slope < slope { self.lowest_slope } else { slope } - clearance;
         // The size of every term; the highest slope may itself have suffered cancellation.
-        let terms = self.steepest_seen + self.lowest_slope.abs().min(f64::MAX) + clearance + ahead.abs();
+        let terms = self.steepest_seen + self.lowest_slope.abs().min(f64::MAX) + clearance + slope.abs();
         self.highest_seen - lowest + SLACK * terms
     }
 
-    /// The greatest loft that the first `count` vertices require.
+    /// The greatest loft that the first `count` vertices require, or less than `lower`.
     #[inline(never)]
-    fn by_hull(&mut self, landing: ChainPoint, count: usize, sight_slope: f64) -> f64 {
+    fn by_hull(&mut self, landing: ChainPoint, (count, lower): (usize, f64), sight_slope: f64, near: Near<'_>) -> f64 {
         let steepest = self.steepest_seen.max(sight_slope.abs());
         if steepest > self.hull.steepest() {
             // Rounding exceeds what the hull was made for: rebuild it for twice as much, so that this happens rarely.
@@ -242,10 +281,17 @@ impl Overflight {
             self.hull.push(point, seen);
             self.hulled += 1;
         }
-        let mut greatest = self.hull.clearing_loft(landing, (landing.x_m - self.takeoff.x_m).abs());
-        for near in self.hulled..count {
-            greatest = greatest.max(clearing_loft(self.takeoff, landing, self.vertex(near), self.clearance));
+        let run_m = (landing.x_m - self.takeoff.x_m).abs();
+        let greatest = self.hull.clearing_loft(landing, run_m);
+        let loft = |point: ChainPoint| clearing_loft(self.takeoff, landing, point, self.clearance);
+        match near {
+            Near::Skipped => greatest,
+            Near::Front(ground) if ground.is_whole() => {
+                let vertices = self.geometry().vertices();
+                let taper = (self.clearance.taper(), self.clearance.ramp_m());
+                ground.greatest(greatest.max(lower), (run_m, sight_slope), taper, |vertex| loft(vertices[vertex]))
+            }
+            Near::Front(_) | Near::Scanned => (self.hulled..count).map(|i| loft(self.vertex(i))).fold(greatest, f64::max),
         }
-        greatest
     }
 }
