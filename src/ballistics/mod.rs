@@ -33,7 +33,7 @@ pub mod limits;
 mod line_of_sight;
 mod safety;
 
-pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
+pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s, lofts_of_speed};
 pub use choice::TakeoffChoice;
 pub use flight_envelope::{ContactLimits, FlightEnvelope};
 pub use line_of_sight::LineOfSight;

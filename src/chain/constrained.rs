@@ -208,7 +208,12 @@ pub(crate) fn resolve_constraints(
         return Err(ConstraintProblem::NoSpeed(id));
     }
     let cap_m_s = gravity.speed_cap_m_s();
-    let [forward, reverse] = [forward, reverse].map(|line| line.map(|line| line.capped(cap_m_s, cap_m_s)));
+    let steps = hopper.limits().steps;
+    let commanded = |line: LineConstraints| {
+        let takeoff_m_s = steps.speed_not_above_m_s(line.takeoff.speed_max_m_s().min(cap_m_s));
+        line.capped(takeoff_m_s, cap_m_s)
+    };
+    let [forward, reverse] = [forward, reverse].map(|line| line.map(commanded));
     let rest_slope = match surface.rest {
         RestSlope::AsFrictionHolds => friction.map(FrictionCone::coefficient),
         RestSlope::AtMost(angle) => Some(angle.slope()),

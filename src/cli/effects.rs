@@ -91,6 +91,7 @@ impl Purpose {
             ("hopper", "mass_kg" | "rest_time_s") => {
                 matches!(self, Self::Plan | Self::Run | Self::Require | Self::Compare | Self::Map { goals: true, .. })
             }
+            ("hopper", "takeoff_angle_step_deg" | "heading_step_deg") => self.flies_commands(),
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
             ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),
@@ -100,6 +101,11 @@ impl Purpose {
             ("uncertainty", name) => flies || (by_risk && weighs_risk && OF_RISK.contains(&name)),
             _ => true,
         }
+    }
+
+    /// Whether its hops have commands in the machine's steps.
+    const fn flies_commands(self) -> bool {
+        !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { .. })
     }
 
     /// Whether it answers for the scenario's own clearance alone: it varies no key.
@@ -112,6 +118,13 @@ impl Purpose {
     pub(crate) fn unused(self, entries: &Entries, scenario: &Scenario) -> Vec<String> {
         let weighs_risk = scenario.risk != ReliabilityUse::Ignored;
         let mut warnings = Vec::new();
+        if !scenario.hopper.limits().steps.is_continuous() && !self.flies_commands() {
+            let command = self.command();
+            warnings.push(format!(
+                "chta {command} answers for exact commands, and this machine takes its commands in steps, which may miss a landing or break a \
+                 limit: chta plan finds and checks commands in steps along a transect"
+            ));
+        }
         for (key, place) in entries.given() {
             if scenario.hopper.limits().clearance_m == 0.0 && self.uses_one_clearance() {
                 // A scenario may state the rule of its clearance without one: the paper's do.

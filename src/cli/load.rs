@@ -367,6 +367,8 @@ pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, pu
         return Err(Failure::message(name + &lacking_on_a_dem(&lacking)));
     }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
+    // Hops over a map have exact commands, which the warnings say.
+    let scenario = Scenario { hopper: scenario.hopper.with_any_command(), ..scenario };
     Ok(Bare { dem, scenario, base: source.base, document, warnings })
 }
 

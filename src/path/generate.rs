@@ -1,6 +1,6 @@
 //! From the legs of a search result to the commands of single hops (P Algorithm 4).
 
-use super::{Hop, HopPath, Totals, heading_deg};
+use super::{Hop, HopPath, NoCommand, Totals, heading_deg, steps::in_steps};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
     chain::Station,
@@ -24,18 +24,32 @@ impl TooManyHops {
     pub const MOST: u64 = 1_000_000;
 }
 
+/// Why a path gives no list of hops.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PathError {
+    /// It has too many hops to list.
+    #[error(transparent)]
+    TooManyHops(#[from] TooManyHops),
+    /// No commands in the machine's steps fly it.
+    #[error(transparent)]
+    NoCommand(#[from] NoCommand),
+}
+
 /// The hops of a path, in two dimensions, and in three if the chain lies on a map (P Algorithm 4, Remark 3).
 ///
+/// If the hopper takes its commands in steps, each hop has the nearest command that keeps all limits, takes off where the one before
+/// landed, and states what it was aimed at.
+///
 /// # Errors
-/// [`TooManyHops`].
-pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Split) -> Result<HopPath, TooManyHops> {
+/// [`PathError`].
+pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Split) -> Result<HopPath, PathError> {
     let count = |leg: &Leg| match leg.edge {
         Edge::Hop(_) => 1,
         Edge::Along(along) => along.hops(),
     };
     let total = legs.iter().map(count).fold(0u64, u64::saturating_add);
     if total > TooManyHops::MOST {
-        return Err(TooManyHops { hops: total });
+        return Err(TooManyHops { hops: total }.into());
     }
     let mut hops = Vec::new();
     for leg in legs {
@@ -44,7 +58,7 @@ pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Spli
             Edge::Along(along) => hops.extend(along_segment(test, leg, &along, choice, split)),
         }
     }
-    Ok(HopPath::of_hops(hops, test.hopper()))
+    Ok(HopPath::of_hops(in_steps(test, hops, choice)?, test.hopper()))
 }
 
 impl HopPath {
@@ -112,7 +126,7 @@ fn equal_m(leg: &Leg, along: &SegmentHops, direction: Direction) -> Vec<f64> {
 /// A hop with all its numbers.
 ///
 /// `otherwise` is the binding limit if the set is one point that rounding loses.
-fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc, lofts: SlopeInterval, otherwise: Limit) -> Hop {
+pub(super) fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc, lofts: SlopeInterval, otherwise: Limit) -> Hop {
     let direction = if landing.point.x_m < takeoff.point.x_m { Direction::Reverse } else { Direction::Forward };
     let limit = |contact, station: &Station| {
         test.chain().check_contact(station, contact, direction).map_or(0.0, |rule| rule.speed_max_m_s())
@@ -139,6 +153,7 @@ fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc, lofts: Slo
         lower_limit: binding.map_or(otherwise, |b| b.lower.limit),
         lower_vertex: binding.and_then(|b| b.lower.vertex),
         upper_limit: binding.map_or(otherwise, |b| b.upper.limit),
+        aim: None,
     }
 }
 

@@ -41,6 +41,17 @@ pub struct Hop {
     pub lower_vertex: Option<VertexId>,
     /// The limit that sets the greatest feasible take-off angle.
     pub upper_limit: Limit,
+    /// What the command was aimed at, for a machine that takes its commands in steps.
+    pub aim: Option<Aim>,
+}
+
+/// The point that a hop with a command in steps is aimed at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aim {
+    /// The planned landing.
+    pub point: ContactPoint,
+    /// By how much the landing lies beyond it along the profile, m; negative short of it.
+    pub miss_m: f64,
 }
 
 impl Hop {

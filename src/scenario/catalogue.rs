@@ -114,6 +114,7 @@ const fn key(table: &'static str, name: &'static str, kind: Kind, help: &'static
 const SPEED: Kind = Kind::Number { min: 1e-9, max: 1e5 };
 const LENGTH: Kind = Kind::Number { min: 1e-9, max: 1e9 };
 const FROM_ZERO: Kind = Kind::Number { min: 0.0, max: 1e9 };
+const STEP_ANGLE: Kind = Kind::Number { min: 1e-6, max: 90.0 };
 const COORDINATE: Kind = Kind::Number { min: -1e12, max: 1e12 };
 /// No working machine has a standard deviation beyond these bounds.
 const SHARE: Kind = Kind::Number { min: 0.0, max: 100.0 };
@@ -130,7 +131,7 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 57] = [
+pub const CATALOGUE: [Key; 60] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -153,6 +154,9 @@ pub const CATALOGUE: [Key; 57] = [
     key("hopper", "takeoff_angle_max_deg", ELEVATION_ANGLE, "mechanical greatest take-off angle from the horizontal, degrees"),
     key("hopper", "apex_height_max_m", FROM_ZERO, "greatest height of the flight above its take-off, m"),
     key("hopper", "flight_time_max_s", LENGTH, "longest flight, s"),
+    key("hopper", "takeoff_angle_step_deg", STEP_ANGLE, "take-off angles are multiples of this, degrees; absent: any angle"),
+    key("hopper", "takeoff_speed_step_m_s", SPEED, "take-off speeds are multiples of this, m/s; absent: any speed"),
+    key("hopper", "heading_step_deg", STEP_ANGLE, "headings from grid north are multiples of this, degrees; absent: any heading"),
     key("hopper", "mass_kg", LENGTH, "mass, kg, for the total of energy"),
     key("hopper", "rest_time_s", FROM_ZERO, "rest between hops, s, for the mission time"),
     key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),

@@ -10,8 +10,8 @@ use crate::{
     quantity::{Angle, AngleInterval, MapPoint},
     terrain::{LonLat, MapPlace, NoDataRule},
     world::{
-        Body, ClearanceRule, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES, RestSlope,
-        SurfaceProperties,
+        Body, ClearanceRule, CommandSteps, FrictionCone, Gravity, Grip, Hopper, HopperLimits, InvalidHopper, KNOWN_BODIES,
+        RestSlope, SurfaceProperties,
     },
 };
 
@@ -267,6 +267,11 @@ fn hopper(entries: &mut Entries) -> Hopper {
         takeoff_angle_max: number("takeoff_angle_max_deg").map(Angle::from_degrees),
         apex_height_max_m: number("apex_height_max_m"),
         flight_time_max_s: number("flight_time_max_s"),
+        steps: CommandSteps {
+            takeoff_angle: number("takeoff_angle_step_deg").map(Angle::from_degrees),
+            takeoff_speed_m_s: number("takeoff_speed_step_m_s"),
+            heading: number("heading_step_deg").map(Angle::from_degrees),
+        },
         mass_kg: number("mass_kg"),
         rest_time_s: number("rest_time_s"),
     };

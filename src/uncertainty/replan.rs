@@ -10,8 +10,8 @@ use crate::{
     graph::{Cost, CostToGo, Edge},
     ground::{ChainPosition, DemGround, LiftoffVelocity, MapPosition, Surface, heading_of},
     hop::HopTest,
-    quantity::NodeId,
-    world::{Direction, SPEED_TOLERANCE, tolerant_speed_m_s},
+    quantity::{Angle, NodeId},
+    world::{CommandSteps, Direction, SPEED_TOLERANCE, nearest_multiple, tolerant_speed_m_s},
 };
 
 /// Chooses the next hop from a position of the nominal ground.
@@ -20,10 +20,24 @@ pub(super) trait Replan<C>: Send + Sync + std::fmt::Debug {
     fn next(&self, believed: &C) -> Option<Command<C>>;
 }
 
-/// The velocity of an arc's take-off along a heading.
-fn liftoff(arc: &ballistics::Arc, heading: Vector2<f64>) -> LiftoffVelocity {
-    let across = arc.horizontal_speed_m_s();
-    LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() }
+/// The velocity of an arc's take-off along a heading, with the nearest command of a machine that takes its commands in steps.
+fn liftoff(arc: &ballistics::Arc, heading: Vector2<f64>, steps: CommandSteps) -> LiftoffVelocity {
+    if steps.is_continuous() {
+        let across = arc.horizontal_speed_m_s();
+        return LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() };
+    }
+    let nearest = |value: f64, step: Option<f64>| step.map_or(value, |step| nearest_multiple(value, step));
+    let angle = Angle::from_degrees(nearest(arc.takeoff_angle().degrees(), steps.takeoff_angle.map(Angle::degrees)));
+    let speed_m_s = nearest(arc.takeoff_speed_m_s(), steps.takeoff_speed_m_s);
+    let (up, across) = libm::sincos(angle.radians());
+    LiftoffVelocity { heading, horizontal_m_s: speed_m_s * across.max(0.0), vertical_m_s: speed_m_s * up }
+}
+
+/// The nearest heading of a machine that takes headings in steps; on a map, (east, north).
+fn nearest_heading(heading: Vector2<f64>, steps: CommandSteps) -> Vector2<f64> {
+    let Some(step) = steps.heading else { return heading };
+    let (east, north) = libm::sincos(nearest_multiple(libm::atan2(heading.x, heading.y), step.radians()));
+    Vector2::new(east, north)
 }
 
 /// Replanning along a chain, by the costs-to-go of its nodes.
@@ -51,7 +65,8 @@ impl Replan<ChainPosition> for ChainReplan {
                 (along.arc(test, length_m, to_go.options().takeoff), landing)
             }
         };
-        Some(Command::new(liftoff(&arc, heading_of(direction)), ChainPosition::on_chain(landing)))
+        let steps = test.hopper().limits().steps;
+        Some(Command::new(liftoff(&arc, heading_of(direction), steps), ChainPosition::on_chain(landing)))
     }
 }
 
@@ -90,7 +105,8 @@ impl MapReplan {
         if best.is_some_and(|best| cost >= best) {
             return None;
         }
-        Some((Command::new(liftoff(&arc, heading), target), cost))
+        let steps = limits.steps;
+        Some((Command::new(liftoff(&arc, nearest_heading(heading, steps), steps), target), cost))
     }
 
     /// If reliability counts: of the successors of the nearest node, the most reliable that one hop from a position reaches.

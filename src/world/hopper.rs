@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::Gravity;
+use super::{CommandSteps, Gravity};
 use crate::quantity::Angle;
 
 /// Where a hopper keeps its clearance.
@@ -62,6 +62,8 @@ pub struct HopperLimits {
     pub apex_height_max_m: Option<f64>,
     /// Longest flight, s.
     pub flight_time_max_s: Option<f64>,
+    /// The steps of its commands.
+    pub steps: CommandSteps,
     /// Mass, kg, only used for energies.
     pub mass_kg: Option<f64>,
     /// Rest between hops, s, only used for the mission time.
@@ -79,6 +81,7 @@ impl HopperLimits {
         takeoff_angle_max: None,
         apex_height_max_m: None,
         flight_time_max_s: None,
+        steps: CommandSteps::CONTINUOUS,
         mass_kg: None,
         rest_time_s: None,
     };
@@ -158,6 +161,7 @@ impl Hopper {
             takeoff_angle_max,
             apex_height_max_m,
             flight_time_max_s,
+            steps,
             mass_kg,
             rest_time_s,
         } = limits;
@@ -189,6 +193,15 @@ impl Hopper {
             ),
             number("apex_height_max_m", apex_height_max_m, not_negative, NOT_NEGATIVE),
             number("flight_time_max_s", flight_time_max_s, positive, POSITIVE),
+            number("takeoff_angle_step_deg", steps.takeoff_angle.map(Angle::degrees), positive, POSITIVE),
+            number("takeoff_speed_step_m_s", steps.takeoff_speed_m_s, positive, POSITIVE),
+            (
+                "takeoff_speed_step_m_s",
+                steps.takeoff_speed_m_s.is_none_or(|step| step.is_nan() || step <= 0.0 || step <= takeoff_speed_max_m_s),
+                steps.takeoff_speed_m_s.unwrap_or(0.0),
+                "no more than takeoff_speed_max_m_s",
+            ),
+            number("heading_step_deg", steps.heading.map(Angle::degrees), positive, POSITIVE),
             number("mass_kg", mass_kg, positive, POSITIVE),
             number("rest_time_s", rest_time_s, not_negative, NOT_NEGATIVE),
         ];
@@ -208,14 +221,22 @@ impl Hopper {
         Self::new(HopperLimits::with_speeds(takeoff_speed_max_m_s, landing_speed_max_m_s))
     }
 
-    /// The same hopper with speed limits below the escape speed of the body under this gravity: a faster hop never lands. A speed
+    /// The same hopper with speed limits below the escape speed of the body under this gravity, since a faster hop never lands, and with
+    /// the greatest take-off speed that it can command. A speed
     /// without limit stays so, since the chain's own limits then apply, which the chain caps in the same way.
     #[must_use]
     pub fn below_escape(&self, gravity: Gravity) -> Self {
         let capped = |speed_m_s: f64| if speed_m_s.is_finite() { speed_m_s.min(gravity.speed_cap_m_s()) } else { speed_m_s };
-        let (takeoff_speed_max_m_s, landing_speed_max_m_s) =
-            (capped(self.limits.takeoff_speed_max_m_s), capped(self.limits.landing_speed_max_m_s));
+        let takeoff_speed_max_m_s = self.limits.steps.speed_not_above_m_s(capped(self.limits.takeoff_speed_max_m_s));
+        let landing_speed_max_m_s = capped(self.limits.landing_speed_max_m_s);
         Self { limits: HopperLimits { takeoff_speed_max_m_s, landing_speed_max_m_s, ..self.limits } }
+    }
+
+    /// A hopper that takes any command up to this one's greatest: what an analysis without its steps assumes.
+    #[must_use]
+    pub fn with_any_command(&self) -> Self {
+        let takeoff_speed_max_m_s = self.limits.steps.speed_not_above_m_s(self.limits.takeoff_speed_max_m_s);
+        Self { limits: HopperLimits { takeoff_speed_max_m_s, steps: CommandSteps::CONTINUOUS, ..self.limits } }
     }
 
     /// Its limits.
@@ -248,6 +269,9 @@ mod tests {
             assert_eq!(refused(|l| l.clearance_rule = ClearanceRule::Tapered(bad)), ["clearance_taper"], "{bad}");
             assert_eq!(refused(|l| l.apex_height_max_m = Some(bad)), ["apex_height_max_m"], "{bad}");
             assert_eq!(refused(|l| l.flight_time_max_s = Some(bad)), ["flight_time_max_s"], "{bad}");
+            assert_eq!(refused(|l| l.steps.takeoff_angle = Some(degrees(bad))), ["takeoff_angle_step_deg"], "{bad}");
+            assert_eq!(refused(|l| l.steps.takeoff_speed_m_s = Some(bad)), ["takeoff_speed_step_m_s"], "{bad}");
+            assert_eq!(refused(|l| l.steps.heading = Some(degrees(bad))), ["heading_step_deg"], "{bad}");
             assert_eq!(refused(|l| l.mass_kg = Some(bad)), ["mass_kg"], "{bad}");
             assert_eq!(refused(|l| l.rest_time_s = Some(bad)), ["rest_time_s"], "{bad}");
         }

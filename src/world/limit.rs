@@ -32,11 +32,17 @@ pub enum Limit {
     ApexHeight,
     /// The hopper's longest flight time.
     FlightTime,
+    /// The take-off angle is a whole number of the machine's steps.
+    TakeoffAngleStep,
+    /// The take-off speed is a whole number of the machine's steps.
+    TakeoffSpeedStep,
+    /// The heading is a whole number of the machine's steps.
+    HeadingStep,
 }
 
 impl Limit {
     /// All limits, in the order in which results list them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 16] = [
         Self::Direction,
         Self::KeepOut,
         Self::RestSlope,
@@ -50,6 +56,9 @@ impl Limit {
         Self::MechanicalAngle,
         Self::ApexHeight,
         Self::FlightTime,
+        Self::TakeoffAngleStep,
+        Self::TakeoffSpeedStep,
+        Self::HeadingStep,
     ];
 
     /// The name used in JSON, CSV and messages.
@@ -68,6 +77,9 @@ impl Limit {
             Self::MechanicalAngle => "mechanical-angle",
             Self::ApexHeight => "apex-height",
             Self::FlightTime => "flight-time",
+            Self::TakeoffAngleStep => "takeoff-angle-step",
+            Self::TakeoffSpeedStep => "takeoff-speed-step",
+            Self::HeadingStep => "heading-step",
         }
     }
 

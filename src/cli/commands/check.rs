@@ -8,7 +8,7 @@ use chta::{
         csv::{StartGoal, read_pairs_csv_file},
     },
     graph::{Outcome, proof::Bounds},
-    path::{HopPath, generate},
+    path::{HopPath, PathError, generate},
     report::{
         CheckAnswer, Document, check_text,
         figure::{Caption, ProofFigure, draw_proof},
@@ -106,7 +106,12 @@ fn answers(
     let mut drawn = None;
     for (&ends, searched) in pairs.iter().zip(&searched) {
         let path = match &searched.found.outcome {
-            Outcome::Path { legs, .. } => generate(&test, legs, options.takeoff, options.split).ok(),
+            Outcome::Path { legs, .. } => match generate(&test, legs, options.takeoff, options.split) {
+                Ok(path) => Some(path),
+                // A long path exists, though its hops are not listed.
+                Err(PathError::TooManyHops(_)) => None,
+                Err(PathError::NoCommand(problem)) => return Err(Failure::of(&problem)),
+            },
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
         if let Some(path) = &path {

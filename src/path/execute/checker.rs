@@ -27,6 +27,12 @@ const SPEED_ROUNDING: f64 = 1e-12;
 /// end along a segment (a product and a sum).
 const STATION_ULPS: f64 = 4.0;
 
+/// Tolerance of a command against a multiple of its step, in degrees or m/s: that of directions.
+const STEP_TOLERANCE: f64 = 1e-9;
+
+/// Rounding error of a multiple of a step, in units in the last place.
+const STEP_ULPS: f64 = 8.0;
+
 /// Tolerance of a map position, as a fraction of the size of its coordinates.
 const MAP_TOLERANCE: f64 = 1e-12;
 
@@ -79,6 +85,7 @@ impl<S: Surface> Checker<'_, S> {
         let (takeoff, landing) = (self.hop.takeoff.in_profile(), self.hop.landing.in_profile());
         self.takeoff(self.hop);
         self.mechanical_angle();
+        self.command();
         let found = libm::hypot(landing.x_m - takeoff.x_m, landing.z_m - takeoff.z_m);
         let measure = Measure { found, allowed: self.surface.height_rounding_m(), unit: "m" };
         self.note(ViolatedLimit::LandingPoint, Some(measure), takeoff.x_m);
@@ -90,6 +97,7 @@ impl<S: Surface> Checker<'_, S> {
         self.landing(flight);
         self.bends();
         self.mechanical_angle();
+        self.command();
         self.terrain(flight);
         self.landing_point(flight);
         self.machine(flight);
@@ -306,6 +314,26 @@ impl<S: Surface> Checker<'_, S> {
             let ends = (min.map_or(-FRAC_PI_2, Angle::radians), max.map_or(FRAC_PI_2, Angle::radians));
             let (angle_rad, x_m) = (self.hop.takeoff_angle.radians(), self.hop.takeoff.along_m);
             self.angle_between(Limit::MechanicalAngle, angle_rad, ends, ANGLE_TOLERANCE_RAD, x_m);
+        }
+    }
+
+    /// The command is a whole number of the machine's steps.
+    fn command(&mut self) {
+        let steps = self.surface.hopper().limits().steps;
+        let hop = self.hop;
+        let heading_deg = hop.takeoff.map().map(|_| hop.heading_deg);
+        for (limit, found, step, unit) in [
+            (Limit::TakeoffAngleStep, Some(hop.takeoff_angle.degrees()), steps.takeoff_angle.map(Angle::degrees), "deg"),
+            (Limit::TakeoffSpeedStep, Some(hop.takeoff_speed_m_s), steps.takeoff_speed_m_s, "m/s"),
+            (Limit::HeadingStep, heading_deg, steps.heading.map(Angle::degrees), "deg"),
+        ] {
+            let Some((found, step)) = found.zip(step) else { continue };
+            let whole = (found / step).round();
+            // Written so that NaN fails.
+            let on_step = (found - whole * step).abs() <= STEP_TOLERANCE * step.min(1.0) + STEP_ULPS * f64::EPSILON * found.abs();
+            if !on_step {
+                self.note_limit(limit, found, whole * step, unit, hop.takeoff.along_m);
+            }
         }
     }
 

@@ -67,6 +67,10 @@ pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m
     }
     parts.extend(hopper.limits().apex_height_max_m.map(|height| format!("apex ≤ {} m", short(height))));
     parts.extend(hopper.limits().flight_time_max_s.map(|time| format!("flight ≤ {} s", short(time))));
+    let steps = hopper.limits().steps;
+    parts.extend(steps.takeoff_angle.map(|step| format!("take-off angle in steps of {} deg", short(step.degrees()))));
+    parts.extend(steps.takeoff_speed_m_s.map(|step| format!("take-off speed in steps of {} m/s", short(step))));
+    parts.extend(steps.heading.map(|step| format!("heading in steps of {} deg", short(step.degrees()))));
     if !ground.is_empty() {
         parts.push(ground.to_owned());
     }

@@ -12,7 +12,7 @@ use crate::{
     hop::Split,
     path::generate,
     quantity::{Angle, AngleInterval, ChainPoint},
-    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
+    world::{CommandSteps, Contact, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 /// One journey, analysed.
@@ -145,6 +145,11 @@ fn cases() -> Vec<Case> {
     let tall = Hopper::new(HopperLimits {
         clearance_m: 0.2,
         flight_time_max_s: Some(60.0),
+        steps: CommandSteps {
+            takeoff_angle: Some(Angle::from_degrees(2.5)),
+            takeoff_speed_m_s: Some(0.25),
+            heading: Some(Angle::from_degrees(15.0)),
+        },
         mass_kg: Some(20.0),
         rest_time_s: Some(120.0),
         ..*ten.limits()

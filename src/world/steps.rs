@@ -1,0 +1,71 @@
+//! The steps in which a machine takes its commands.
+
+use crate::quantity::Angle;
+
+/// The steps of a machine's commands: every command is a whole multiple of its step. A command without a step takes any value.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct CommandSteps {
+    /// Of the take-off angle above the horizontal.
+    pub takeoff_angle: Option<Angle>,
+    /// Of the take-off speed, m/s.
+    pub takeoff_speed_m_s: Option<f64>,
+    /// Of the heading, clockwise from grid north.
+    pub heading: Option<Angle>,
+}
+
+/// A multiple of a step within this fraction of the step is that multiple: far more than rounding.
+const ROUNDING: f64 = 1e-9;
+
+impl CommandSteps {
+    /// A machine that takes any command.
+    pub const CONTINUOUS: Self = Self { takeoff_angle: None, takeoff_speed_m_s: None, heading: None };
+
+    /// Whether the machine takes any command.
+    pub fn is_continuous(&self) -> bool {
+        *self == Self::CONTINUOUS
+    }
+
+    /// The greatest speed command that is not above a limit, m/s; the limit itself without a step, and 0 below the first step.
+    ///
+    /// ```
+    /// use chta::world::CommandSteps;
+    /// let steps = CommandSteps { takeoff_speed_m_s: Some(0.5), ..CommandSteps::CONTINUOUS };
+    /// assert_eq!([4.9, 5.0, 0.4, f64::INFINITY].map(|limit| steps.speed_not_above_m_s(limit)), [4.5, 5.0, 0.0, f64::INFINITY]);
+    /// ```
+    pub fn speed_not_above_m_s(&self, limit_m_s: f64) -> f64 {
+        match self.takeoff_speed_m_s {
+            Some(step) if limit_m_s.is_finite() => (step * (limit_m_s / step + ROUNDING).floor()).min(limit_m_s),
+            _ => limit_m_s,
+        }
+    }
+}
+
+/// The multiple of a step that is nearest to a value.
+///
+/// ```
+/// assert_eq!(chta::world::nearest_multiple(44.0, 2.5), 45.0);
+/// ```
+pub fn nearest_multiple(value: f64, step: f64) -> f64 {
+    step * libm::rint(value / step)
+}
+
+/// Whether a value is a multiple of a step, but for rounding.
+pub fn is_multiple(value: f64, step: f64) -> bool {
+    (value - nearest_multiple(value, step)).abs() <= ROUNDING * step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn multiples_are_known_despite_rounding() {
+        for (step, times) in [(0.1, 3.0), (0.7, 1e6), (1e-3, 12_345.0), (2.5, -36.0)] {
+            assert!(is_multiple(step * times, step), "{step} x {times}");
+            assert!(!is_multiple(step * (times + 1e-6), step), "{step} x {times}");
+        }
+        // 0.3 / 0.1 is 2.999...: the third step is not lost.
+        let steps = CommandSteps { takeoff_speed_m_s: Some(0.1), ..CommandSteps::CONTINUOUS };
+        assert_eq!(steps.speed_not_above_m_s(0.3), 0.3);
+    }
+}
