@@ -49,5 +49,6 @@ mod slice_file;
 mod sound_files;
 mod sweep;
 mod terrain_files;
+mod true_north;
 mod truncations;
 mod voids;
