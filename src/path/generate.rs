@@ -6,7 +6,7 @@ use crate::{
     chain::Station,
     graph::{Edge, Leg},
     ground::Surface,
-    hop::{HopTest, SegmentHops, Split, TakeoffSet},
+    hop::{HopMargins, HopTest, SegmentHops, Split, TakeoffSet},
     quantity::SlopeInterval,
     world::{Contact, Direction, Hopper, Limit},
 };
@@ -139,6 +139,7 @@ fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc, lofts: Slo
         lower_limit: binding.map_or(otherwise, |b| b.lower.limit),
         lower_vertex: binding.and_then(|b| b.lower.vertex),
         upper_limit: binding.map_or(otherwise, |b| b.upper.limit),
+        margins: HopMargins::of(test, &takeoff, &landing, arc).unwrap_or(HopMargins::UNLIMITED),
     }
 }
 

@@ -3,7 +3,9 @@
 mod execute;
 mod generate;
 mod hop;
+mod timetable;
 
 pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute};
 pub use generate::{TooManyHops, generate};
 pub use hop::{Hop, HopPath, Totals, heading_deg};
+pub use timetable::{Phase, TimedState, Timetable, TimetableError};

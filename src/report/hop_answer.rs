@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::path_record::unsigned_zero;
+use super::{hop_margins::HopMarginsRecord, path_record::unsigned_zero};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
     chain::Station,
-    hop::{Conflict, HopTest, LimitInterval, Shortfall, TakeoffSet},
+    hop::{Conflict, HopMargins, HopTest, LimitInterval, ReachAlongSight, Shortfall, TakeoffSet},
     quantity::{Angle, VertexId},
     world::Contact,
 };
@@ -38,6 +38,10 @@ pub struct HopAnswer {
     pub best: Option<BestRecord>,
     /// The hops of all three choices; empty if no hop is feasible.
     pub choices: Vec<BestRecord>,
+    /// By how much the hop to fly keeps each limit; null if no hop is feasible.
+    pub margins: Option<HopMarginsRecord>,
+    /// The greatest reach towards the landing; null if the ground refuses the take-off or the landing.
+    pub greatest_reach: Option<GreatestReachRecord>,
     /// Hops along the segment, if both points lie on the same one.
     pub segment_hops: Option<SegmentHopsRecord>,
 }
@@ -129,6 +133,23 @@ pub struct BestRecord {
     pub apex_height_m: f64,
 }
 
+/// The greatest reach of one hop along the line of sight, by the two greatest speeds alone.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GreatestReachRecord {
+    /// Along the line of sight.
+    pub reach_line_of_sight_m: f64,
+    /// The same, horizontally.
+    pub reach_horizontal_m: f64,
+    /// Take-off angle of that hop.
+    pub takeoff_angle_deg: f64,
+    /// The speed limit that bounds it.
+    pub limit: &'static str,
+    /// Along the line of sight, by the take-off speed.
+    pub by_takeoff_speed_m: f64,
+    /// Along the line of sight, by the landing speed.
+    pub by_landing_speed_m: f64,
+}
+
 /// Hops along one segment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SegmentHopsRecord {
@@ -165,6 +186,11 @@ impl HopAnswer {
             binding: BindingRecord::new(test, &set),
             best: best(choice),
             choices: TakeoffChoice::ALL.into_iter().filter_map(best).collect(),
+            margins: set
+                .arc(choice, test.gravity_m_s2())
+                .and_then(|arc| HopMargins::of(test, takeoff, landing, &arc))
+                .map(HopMarginsRecord),
+            greatest_reach: test.reach_along_sight(takeoff, landing).map(GreatestReachRecord::from),
             segment_hops: SegmentHopsRecord::new(test, takeoff, landing),
         })
     }
@@ -256,6 +282,19 @@ impl BestRecord {
             landing_speed_m_s: arc.landing_speed_m_s(),
             flight_time_s: arc.flight_time_s(),
             apex_height_m: arc.apex_height_m(),
+        }
+    }
+}
+
+impl From<ReachAlongSight> for GreatestReachRecord {
+    fn from(reach: ReachAlongSight) -> Self {
+        Self {
+            reach_line_of_sight_m: reach.reach_m(),
+            reach_horizontal_m: reach.reach_horizontal_m(),
+            takeoff_angle_deg: reach.takeoff_angle().degrees(),
+            limit: reach.limit().name(),
+            by_takeoff_speed_m: reach.by_takeoff_speed_m(),
+            by_landing_speed_m: reach.by_landing_speed_m(),
         }
     }
 }

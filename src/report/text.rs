@@ -76,6 +76,24 @@ pub fn hop_text(answer: &HopAnswer) -> String {
             ));
         }
     }
+    if let Some(margins) = answer.margins {
+        sheet.line(format_args!("\nmargins of the chosen hop"));
+        for line in margins.lines() {
+            sheet.line(format_args!("{line}"));
+        }
+    }
+    if let Some(reach) = answer.greatest_reach {
+        sheet.line(format_args!(
+            "\nby its speeds one hop reaches at most {:.3} m along this line of sight ({:.3} m horizontally), taking off at {:.3} deg; {} \
+             sets it ({:.3} m by the take-off speed, {:.3} m by the landing speed)",
+            reach.reach_line_of_sight_m,
+            reach.reach_horizontal_m,
+            reach.takeoff_angle_deg,
+            reach.limit,
+            reach.by_takeoff_speed_m,
+            reach.by_landing_speed_m
+        ));
+    }
     if let Some(along) = answer.segment_hops {
         sheet.line(format_args!(
             "\nalong this segment: {} hop{}; one hop carries {:.3} m along the slope ({:.3} m horizontally), taking off {:.3} deg over \

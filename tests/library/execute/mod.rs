@@ -180,6 +180,7 @@ fn flown_over_the_needle(m: f64, clearance_m: f64, change: Change) -> (Option<Fl
         lower_limit: Limit::Terrain,
         lower_vertex: Some(VertexId(2)),
         upper_limit: Limit::TakeoffCone,
+        margins: chta::hop::HopMargins::UNLIMITED,
     };
     change(&mut hop);
     let execution = execute(&chain, &HopPath { hops: vec![hop], totals: Totals::default() }, None);

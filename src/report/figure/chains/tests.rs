@@ -349,6 +349,7 @@ fn hop_profile(i: usize, hops: usize) -> HopProfile {
         lower_limit: Limit::TakeoffCone,
         lower_vertex: None,
         upper_limit: Limit::TakeoffSpeed,
+        margins: crate::hop::HopMargins::UNLIMITED,
     };
     HopProfile { name: format!("goal 1, hop {} of {hops}", i + 1), ground, hop, least_clearance_m: Some((0.4 * run_m, 2.25)) }
 }
