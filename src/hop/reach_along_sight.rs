@@ -56,9 +56,8 @@ impl HopTest {
     pub fn reach_along_sight(&self, takeoff: &Station, landing: &Station) -> Option<ReachAlongSight> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let sight = self.line_of_sight(takeoff, landing)?;
-        let speed_m_s = |station, contact| {
-            self.chain().check_contact(station, contact, direction).ok().map(|rule| rule.speed_max_m_s())
-        };
+        let speed_m_s =
+            |station, contact| self.chain().check_contact(station, contact, direction).ok().map(|rule| rule.speed_max_m_s());
         let takeoff_m = greatest_takeoff_reach_m(sight, speed_m_s(takeoff, Contact::Takeoff)?, self.gravity_m_s2());
         let landing_m = greatest_landing_reach_m(sight, speed_m_s(landing, Contact::Landing)?, self.gravity_m_s2());
         Some(ReachAlongSight { sight, takeoff_m, landing_m })

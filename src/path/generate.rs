@@ -20,7 +20,7 @@ pub struct TooManyHops {
 }
 
 impl TooManyHops {
-    /// The longest path that is listed: some 400 bytes per hop, so 400 MB.
+    /// The longest path that is listed: some 800 bytes per hop with its record, so 800 MB.
     pub const MOST: u64 = 1_000_000;
 }
 

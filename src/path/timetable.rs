@@ -243,9 +243,7 @@ impl Span<'_> {
             vx_m_s: if flies { sign * across_m_s } else { 0.0 },
             // The slope falls from m to 2 b - m in equal steps over the run.
             vz_m_s: across_m_s * (arc.takeoff_slope() - 2.0 * arc.loft() * share),
-            map_velocity_m_s: map.map(|(takeoff, landing)| {
-                (landing - takeoff).try_normalize(0.0).unwrap_or_default() * across_m_s
-            }),
+            map_velocity_m_s: map.map(|(takeoff, landing)| (landing - takeoff).try_normalize(0.0).unwrap_or_default() * across_m_s),
             heading_deg: self.hop.heading_deg,
         }
     }

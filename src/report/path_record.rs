@@ -212,7 +212,8 @@ const COLUMNS: [&str; 16] = [
 const MAP_COLUMNS: [&str; 5] = ["heading_deg", "takeoff_map_x_m", "takeoff_map_y_m", "landing_map_x_m", "landing_map_y_m"];
 
 /// The additional columns of a map whose projection is known.
-const PROJECTION_COLUMNS: [&str; 5] = ["heading_true_deg", "takeoff_lon_deg", "takeoff_lat_deg", "landing_lon_deg", "landing_lat_deg"];
+const PROJECTION_COLUMNS: [&str; 5] =
+    ["heading_true_deg", "takeoff_lon_deg", "takeoff_lat_deg", "landing_lon_deg", "landing_lat_deg"];
 
 /// How a chain is located on a map, which determines the columns of its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, ProofRecord, RequireAnswer, TotalsRecord};
+use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, TotalsRecord};
 use crate::quantity::{format_number, unit_of};
 
 /// A sheet of text; writing to it does not fail.
@@ -287,16 +287,25 @@ fn ranked(counts: &std::collections::BTreeMap<&'static str, u64>) -> String {
     ranked.iter().map(|(name, count)| format!("{name} {count}")).collect::<Vec<_>>().join(", ")
 }
 
-/// The hops of a path as a table, with their totals.
+/// The two headings of a hop on a map of a known projection.
+fn headings(map: MapRecord) -> Option<String> {
+    let from_true_north = map.heading_true_deg?.map_or("-".to_owned(), |heading| format!("{heading:.3}"));
+    Some(format!("{:>11.3}{from_true_north:>11}", map.heading_deg))
+}
+
+/// The hops of a path as a table, with their totals; on a map of a known projection with headings from grid north and true north.
 pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
     let mut sheet = Sheet::default();
+    // Headings from both norths where they differ: on a map of a known projection.
+    let has_north = rows.iter().any(|row| row.map.is_some_and(|map| map.heading_true_deg.is_some()));
+    let columns = if has_north { format!("{:>11}{:>11}", "grid (deg)", "true (deg)") } else { String::new() };
     sheet.line(format_args!(
-        "{:>4} {:<8}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>9}  {}",
+        "{:>4} {:<8}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>9}{columns}  {}",
         "hop", "", "from x (m)", "to x (m)", "up (deg)", "m/s", "down(deg)", "m/s", "s", "binding (lower/upper)"
     ));
     for row in rows {
         sheet.line(format_args!(
-            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}  {}",
+            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}{}  {}",
             row.hop,
             row.direction,
             row.takeoff_x_m,
@@ -306,6 +315,7 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
             row.landing_angle_deg,
             row.landing_speed_m_s,
             row.flight_time_s,
+            row.map.and_then(headings).unwrap_or_default(),
             row.binding
         ));
     }

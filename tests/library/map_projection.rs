@@ -35,10 +35,8 @@ pub(crate) fn centred_of_gdal(srs: &str, points: &[MapPoint]) -> Vec<Vector3<f64
     let lines = points.iter().map(|point| format!("{} {} 0\n", point.x, point.y)).collect::<Vec<_>>().concat();
     let centred = format!("+proj=geocent {} +no_defs", figure_of(srs));
     let text = run("gdaltransform", &["-s_srs", srs, "-t_srs", &centred], &lines);
-    let places: Vec<_> = text
-        .lines()
-        .map(|line| Vector3::from_iterator(line.split_whitespace().map(|word| word.parse::<f64>().unwrap())))
-        .collect();
+    let places: Vec<_> =
+        text.lines().map(|line| Vector3::from_iterator(line.split_whitespace().map(|word| word.parse::<f64>().unwrap()))).collect();
     assert_eq!(places.len(), points.len());
     places
 }

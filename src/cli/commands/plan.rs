@@ -119,7 +119,8 @@ impl Planned {
     /// The path as CSV; only the header without a path.
     pub(super) fn csv(&self, loaded: &Loaded) -> Result<Vec<u8>, Failure> {
         let mut csv = Vec::new();
-        write_path_csv(&self.answer.path, trajectory::map_knowledge(loaded), &mut csv).map_err(|e| Failure::message(format!("path.csv: {e}")))?;
+        write_path_csv(&self.answer.path, trajectory::map_knowledge(loaded), &mut csv)
+            .map_err(|e| Failure::message(format!("path.csv: {e}")))?;
         Ok(csv)
     }
 

@@ -37,6 +37,21 @@ impl MapProjection {
     /// assert_eq!(south.true_heading_deg(MapPoint::new(0.0, 0.0), 90.0), None);
     /// ```
     pub fn true_heading_deg(&self, at: MapPoint, heading_deg: f64) -> Option<f64> {
+        let (sin, cos) = libm::sincos(heading_deg.to_radians());
+        direction_deg(Matrix2::from_columns(&self.axes(at)?).try_inverse()? * Vector2::new(sin, cos))
+    }
+
+    /// The direction on the map in which north lies from a point, clockwise from grid north, 0 to 360 degrees.
+    ///
+    /// # Returns
+    /// `None` as for [`true_heading_deg`](Self::true_heading_deg).
+    pub fn north_on_map_deg(&self, at: MapPoint) -> Option<f64> {
+        let [_, north] = self.axes(at)?;
+        direction_deg(north)
+    }
+
+    /// A metre east and a metre north of a point, on the map: `E` and `N`.
+    fn axes(&self, at: MapPoint) -> Option<[Vector2<f64>; 2]> {
         self.lon_lat(at)?;
         let (lon, lat) = self.inverse(at)?;
         let here = self.position(lon, lat);
@@ -49,14 +64,10 @@ impl MapProjection {
         let squared = libm::hypot(a * cos_lat, b * sin_lat);
         let meridian_m = (a / squared) * (b / squared) * (a * (b / squared));
         let from_pole = std::f64::consts::FRAC_PI_2 - lat.abs();
-        let columns = [
+        Some([
             self.slope(|angle| self.forward(lon + angle, lat), 1.0)? / parallel_m,
             self.slope(|angle| self.forward(lon, lat + angle), (0.2e3 * from_pole).min(1.0))? / meridian_m,
-        ];
-        let (sin, cos) = libm::sincos(heading_deg.to_radians());
-        let on_body = Matrix2::from_columns(&columns).try_inverse()? * Vector2::new(sin, cos);
-        let degrees = libm::atan2(on_body.x, on_body.y).to_degrees();
-        degrees.is_finite().then(|| if degrees < 0.0 { degrees + 360.0 } else { degrees })
+        ])
     }
 
     /// The change of a map point per radian, by five points. `share` shortens all steps.
@@ -76,4 +87,10 @@ impl MapProjection {
             is_smooth.then(|| (near * 8.0 - far) / (12.0 * step))
         })
     }
+}
+
+/// The direction of a vector to east and north, clockwise from north, 0 to 360 degrees.
+fn direction_deg(along: Vector2<f64>) -> Option<f64> {
+    let degrees = libm::atan2(along.x, along.y).to_degrees();
+    degrees.is_finite().then_some(if degrees < 0.0 { degrees + 360.0 } else { degrees })
 }

@@ -59,6 +59,11 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
         &trial_options(args),
     )?;
     if let Some(name) = &args.experiment {
+        if args.trajectory.trajectory.is_some() {
+            let message =
+                format!("--trajectory: the experiment {name} flies no nominal path: omit one of --trajectory and --experiment");
+            return Err(Failure::message(message));
+        }
         return experiment::run(args, &loaded, name);
     }
     // All options are checked before the search, which may take long.

@@ -351,7 +351,13 @@ fn hop_profile(i: usize, hops: usize) -> HopProfile {
         upper_limit: Limit::TakeoffSpeed,
         margins: crate::hop::HopMargins::UNLIMITED,
     };
-    HopProfile { name: format!("goal 1, hop {} of {hops}", i + 1), ground, hop, least_clearance_m: Some((0.4 * run_m, 2.25)) }
+    HopProfile {
+        heading_true_deg: Some(80.6),
+        name: format!("goal 1, hop {} of {hops}", i + 1),
+        ground,
+        hop,
+        least_clearance_m: Some((0.4 * run_m, 2.25)),
+    }
 }
 
 #[test]
