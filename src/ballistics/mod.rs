@@ -37,6 +37,6 @@ mod safety;
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
 pub use choice::TakeoffChoice;
 pub use flight_envelope::{ContactLimits, FlightEnvelope};
-pub use greatest_reach::{greatest_landing_reach_m, greatest_takeoff_reach_m};
+pub use greatest_reach::{landing_reach_m, takeoff_reach_m};
 pub use line_of_sight::LineOfSight;
 pub use safety::{safety_ceiling_m, safety_range_m};

@@ -2,36 +2,35 @@
 
 use super::HopTest;
 use crate::{
-    ballistics::{LineOfSight, greatest_landing_reach_m, greatest_takeoff_reach_m},
+    ballistics::{LineOfSight, TakeoffChoice, landing_reach_m, limits, takeoff_reach_m},
     chain::Station,
-    quantity::Angle,
+    quantity::{Angle, SlopeInterval},
     world::{Contact, Direction, Limit},
 };
 
-/// The greatest reach of one hop along the line of sight of a pair of stations, by its two greatest speeds alone (P eq. 19, 20).
-///
-/// A hop to the pair's own landing is within it if no other limit refuses it. The speeds are those of the two stations' ground.
+/// The greatest reach of one hop along the line of sight of a pair of stations, by the greatest speeds of their ground.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReachAlongSight {
     sight: LineOfSight,
-    takeoff_m: f64,
-    landing_m: f64,
+    loft: f64,
+    by_takeoff_m: f64,
+    by_landing_m: f64,
 }
 
 impl ReachAlongSight {
     /// By the greatest take-off speed, m along the line of sight.
     pub const fn by_takeoff_speed_m(&self) -> f64 {
-        self.takeoff_m
+        self.by_takeoff_m
     }
 
     /// By the greatest landing speed, m along the line of sight.
     pub const fn by_landing_speed_m(&self) -> f64 {
-        self.landing_m
+        self.by_landing_m
     }
 
     /// The smaller of both, m along the line of sight.
     pub const fn reach_m(&self) -> f64 {
-        self.takeoff_m.min(self.landing_m)
+        self.by_takeoff_m.min(self.by_landing_m)
     }
 
     /// The same, horizontally, m.
@@ -41,25 +40,40 @@ impl ReachAlongSight {
 
     /// Which speed sets it; the take-off speed if both do.
     pub const fn limit(&self) -> Limit {
-        if self.takeoff_m <= self.landing_m { Limit::TakeoffSpeed } else { Limit::LandingSpeed }
+        if self.by_takeoff_m <= self.by_landing_m { Limit::TakeoffSpeed } else { Limit::LandingSpeed }
     }
 
-    /// The take-off angle that attains it: 45 degrees and half the angle of the line of sight.
+    /// The take-off angle of that hop.
     pub fn takeoff_angle(&self) -> Angle {
-        Angle::from_slope(self.sight.min_speed_ratio())
+        Angle::from_slope(self.sight.slope() + self.loft)
     }
 }
 
 impl HopTest {
-    /// The greatest reach in the direction from one station to another; `None` if both have the same x or the ground at one of them
-    /// refuses the contact, so that no speed is allowed there.
-    pub fn reach_along_sight(&self, takeoff: &Station, landing: &Station) -> Option<ReachAlongSight> {
+    /// The greatest reach in the direction from one station to another: first by the speeds alone, at the take-off angle of 45 degrees
+    /// and half the angle of the line of sight (P eq. 19, 20); then at the nearest angle that both cones and the take-off mechanism
+    /// allow (P eq. 29, 30), `None` if they allow none.
+    ///
+    /// Limits that depend on the length of the hop (terrain, apex height, flight time) are not looked at. `None` if both stations have
+    /// the same x, or the ground at one of them refuses the contact for every hop, so that no speed is allowed there.
+    pub fn reach_along_sight(&self, takeoff: &Station, landing: &Station) -> Option<(ReachAlongSight, Option<ReachAlongSight>)> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let sight = self.line_of_sight(takeoff, landing)?;
-        let speed_m_s =
-            |station, contact| self.chain().check_contact(station, contact, direction).ok().map(|rule| rule.speed_max_m_s());
-        let takeoff_m = greatest_takeoff_reach_m(sight, speed_m_s(takeoff, Contact::Takeoff)?, self.gravity_m_s2());
-        let landing_m = greatest_landing_reach_m(sight, speed_m_s(landing, Contact::Landing)?, self.gravity_m_s2());
-        Some(ReachAlongSight { sight, takeoff_m, landing_m })
+        let rule = |station, contact| self.chain().check_contact(station, contact, direction).ok();
+        let (from, to) = (rule(takeoff, Contact::Takeoff)?, rule(landing, Contact::Landing)?);
+        let gravity = self.gravity_m_s2();
+        let at = |lofts: SlopeInterval| {
+            let loft = TakeoffChoice::LeastSpeed.loft(sight, lofts);
+            ReachAlongSight {
+                sight,
+                loft,
+                by_takeoff_m: takeoff_reach_m(sight, loft, from.speed_max_m_s(), gravity),
+                by_landing_m: landing_reach_m(sight, loft, to.speed_max_m_s(), gravity),
+            }
+        };
+        let angles = limits::takeoff_cone(sight, from.slopes().intersect(self.mechanism_slopes()))
+            .intersect(limits::landing_cone(sight, to.slopes()));
+        let within = Some(angles).filter(|lofts| !lofts.is_empty() && lofts.upper > 0.0).map(at);
+        Some((at(SlopeInterval::ALL), within))
     }
 }

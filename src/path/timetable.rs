@@ -242,7 +242,7 @@ impl Span<'_> {
             map: map.map(|(takeoff, landing)| if share == 1.0 { landing } else { takeoff + (landing - takeoff) * share }),
             vx_m_s: if flies { sign * across_m_s } else { 0.0 },
             // The slope falls from m to 2 b - m in equal steps over the run.
-            vz_m_s: across_m_s * (arc.takeoff_slope() - 2.0 * arc.loft() * share),
+            vz_m_s: if flies { across_m_s * (arc.takeoff_slope() - 2.0 * arc.loft() * share) } else { 0.0 },
             map_velocity_m_s: map.map(|(takeoff, landing)| (landing - takeoff).try_normalize(0.0).unwrap_or_default() * across_m_s),
             heading_deg: self.hop.heading_deg,
         }

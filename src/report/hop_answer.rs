@@ -42,6 +42,8 @@ pub struct HopAnswer {
     pub margins: Option<HopMarginsRecord>,
     /// The greatest reach towards the landing; null if the ground refuses the take-off or the landing.
     pub greatest_reach: Option<GreatestReachRecord>,
+    /// The same at the nearest angle that the cones and the take-off mechanism allow; null if they allow none as well.
+    pub greatest_reach_within_cones: Option<GreatestReachRecord>,
     /// Hops along the segment, if both points lie on the same one.
     pub segment_hops: Option<SegmentHopsRecord>,
 }
@@ -133,7 +135,7 @@ pub struct BestRecord {
     pub apex_height_m: f64,
 }
 
-/// The greatest reach of one hop along the line of sight, by the two greatest speeds alone.
+/// The greatest reach of one hop along the line of sight at a take-off angle, by the two greatest speeds.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct GreatestReachRecord {
     /// Along the line of sight.
@@ -172,6 +174,7 @@ impl HopAnswer {
     pub fn new(test: &HopTest, takeoff: &Station, landing: &Station, choice: TakeoffChoice) -> Option<Self> {
         let set = test.takeoff_set(takeoff, landing)?;
         let angles = set.angles();
+        let reach = test.reach_along_sight(takeoff, landing);
         let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice));
         Some(Self {
             from_x_m: takeoff.point.x_m,
@@ -190,7 +193,8 @@ impl HopAnswer {
                 .arc(choice, test.gravity_m_s2())
                 .and_then(|arc| HopMargins::of(test, takeoff, landing, &arc))
                 .map(HopMarginsRecord),
-            greatest_reach: test.reach_along_sight(takeoff, landing).map(GreatestReachRecord::from),
+            greatest_reach: reach.map(|(by_speeds, _)| by_speeds.into()),
+            greatest_reach_within_cones: reach.and_then(|(_, within_cones)| within_cones).map(GreatestReachRecord::from),
             segment_hops: SegmentHopsRecord::new(test, takeoff, landing),
         })
     }

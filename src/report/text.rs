@@ -82,10 +82,13 @@ pub fn hop_text(answer: &HopAnswer) -> String {
             sheet.line(format_args!("{line}"));
         }
     }
-    if let Some(reach) = answer.greatest_reach {
+    if answer.greatest_reach.is_some() {
+        sheet.line(format_args!("\ngreatest reach of one hop along this line of sight"));
+    }
+    for (by, reach) in [("speeds alone", answer.greatest_reach), ("speeds and cones", answer.greatest_reach_within_cones)] {
+        let Some(reach) = reach else { continue };
         sheet.line(format_args!(
-            "\nby its speeds one hop reaches at most {:.3} m along this line of sight ({:.3} m horizontally), taking off at {:.3} deg; {} \
-             sets it ({:.3} m by the take-off speed, {:.3} m by the landing speed)",
+            "by {by:<18}{:>12.3} m ({:.3} m horizontally) at {:.3} deg, {} ends it: {:.3} m by take-off speed, {:.3} m by landing speed",
             reach.reach_line_of_sight_m,
             reach.reach_horizontal_m,
             reach.takeoff_angle_deg,
