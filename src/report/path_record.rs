@@ -58,9 +58,6 @@ pub struct HopRecord {
 pub struct MapRecord {
     /// Direction of flight, clockwise from grid north.
     pub heading_deg: f64,
-    /// On a map of a known projection: the same from true north at the take-off; null at a pole.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub heading_true_deg: Option<Option<f64>>,
     /// Take-off, easting.
     pub takeoff_map_x_m: f64,
     /// Take-off, northing.
@@ -72,6 +69,9 @@ pub struct MapRecord {
     /// On a map of a known projection: longitude and latitude of both ends.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub lon_lat: Option<LonLatRecord>,
+    /// On a map of a known projection: direction of flight, clockwise from true north at the take-off; null at a pole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heading_true_deg: Option<Option<f64>>,
 }
 
 /// The columns of a hop on a map whose projection is known; planetocentric, east positive.
@@ -158,12 +158,12 @@ impl HopRecord {
             binding: format!("{}/{}", hop.lower_limit, hop.upper_limit),
             map: hop.map_ends().map(|ends @ (takeoff, landing)| MapRecord {
                 heading_deg: hop.heading_deg,
-                heading_true_deg: projection.map(|projection| heading_true_deg(projection, takeoff, hop.heading_deg)),
                 takeoff_map_x_m: takeoff.x,
                 takeoff_map_y_m: takeoff.y,
                 landing_map_x_m: landing.x,
                 landing_map_y_m: landing.y,
                 lon_lat: projection.and_then(|projection| LonLatRecord::new(ends, projection)),
+                heading_true_deg: projection.map(|projection| heading_true_deg(projection, takeoff, hop.heading_deg)),
             }),
             margins: HopMarginsRecord(hop.margins),
         }
@@ -213,7 +213,7 @@ const MAP_COLUMNS: [&str; 5] = ["heading_deg", "takeoff_map_x_m", "takeoff_map_y
 
 /// The additional columns of a map whose projection is known.
 const PROJECTION_COLUMNS: [&str; 5] =
-    ["heading_true_deg", "takeoff_lon_deg", "takeoff_lat_deg", "landing_lon_deg", "landing_lat_deg"];
+    ["takeoff_lon_deg", "takeoff_lat_deg", "landing_lon_deg", "landing_lat_deg", "heading_true_deg"];
 
 /// How a chain is located on a map, which determines the columns of its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -295,13 +295,13 @@ impl HopRecord {
             fields.extend(texts(numbers));
         }
         if known >= MapKnowledge::Projection {
-            let heading = self.map.and_then(|map| map.heading_true_deg.flatten());
-            fields.extend(texts(heading.map(|heading| [heading])));
             let numbers = self
                 .map
                 .and_then(|map| map.lon_lat)
                 .map(|place| [place.takeoff_lon_deg, place.takeoff_lat_deg, place.landing_lon_deg, place.landing_lat_deg]);
             fields.extend(texts(numbers));
+            let heading = self.map.and_then(|map| map.heading_true_deg.flatten());
+            fields.extend(texts(heading.map(|heading| [heading])));
         }
         fields.extend(self.margins.fields());
         fields

@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may fail, and says how much it has tried")]
 
 mod spoiled;
-mod world;
+pub(crate) mod world;
 
 use self::world::{Dice, World};
 use chta::{

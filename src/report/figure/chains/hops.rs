@@ -131,12 +131,9 @@ fn words(profile: &HopProfile) -> Vec<String> {
     let mut found = Vec::new();
     if let Some((from, to)) = hop.map_ends() {
         found.push(format!("({:.1}, {:.1}) m to ({:.1}, {:.1}) m", from.x, from.y, to.x, to.y));
-        let from_true_north = profile.heading_true_deg.map(|heading| format!(", {heading:.1} deg (true)")).unwrap_or_default();
-        found.push(format!(
-            "run {run_m} m, heading {:.1} deg (grid){from_true_north}; flight {} s",
-            hop.heading_deg,
-            short(hop.flight_time_s)
-        ));
+        let from_true_north = profile.heading_true_deg.map(|heading| format!(", {heading:.1}° true")).unwrap_or_default();
+        let time_s = short(hop.flight_time_s);
+        found.push(format!("run {run_m} m in {time_s} s, heading {:.1}° grid{from_true_north}", hop.heading_deg));
     } else {
         found.push(format!("run {run_m} m; flight {} s", short(hop.flight_time_s)));
     }
