@@ -152,6 +152,20 @@ fn hop_has_every_key_of_the_contract() {
     assert_keys(&no, &keys);
     assert_eq!((&no["feasible"], &no["takeoff_angle_min_deg"], &no["best"]), (&Value::Bool(false), &Value::Null, &Value::Null));
     assert_keys(&no["binding"], &["conflict", "gap_deg", "sentence"]);
+    // The greatest reach is stated for a hop that is too far as well; its margins are none.
+    let reach =
+        ["reach_line_of_sight_m", "reach_horizontal_m", "takeoff_angle_deg", "limit", "by_takeoff_speed_m", "by_landing_speed_m"];
+    for document in [&yes, &no] {
+        assert_keys(&document["greatest_reach"], &reach);
+        assert_keys(&document["greatest_reach_within_cones"], &reach);
+    }
+    assert_keys(&yes["margins"], &["takeoff_speed_m_s", "landing_cone_max_deg", "terrain_m", "terrain_from_takeoff_m"]);
+    assert!(no["margins"].is_null() && yes["margins"].get("apex_height_m").is_none(), "no such limit, no margin");
+    let far = desk.run(&[&["hop", "scenario.toml", "--from", "0", "--to", "12"][..], &TOO_SLOW].concat()).stdout;
+    assert!(
+        far.contains("\ngreatest reach of one hop along this line of sight\nby speeds alone") && !far.contains("margins"),
+        "{far}"
+    );
     assert_framed(&desk.run(&["hop", "scenario.toml", "--to", "12", "--format", "json"]).stdout, "hop", desk.path());
 }
 

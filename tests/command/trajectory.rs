@@ -23,8 +23,8 @@ fn agrees(text: &str, path: &Value, gravity_m_s2: f64) {
     let hops = path.as_array().unwrap();
     for hop in hops {
         let of = |key: &str| hop[key].as_f64().unwrap();
-        let flight: Vec<_> =
-            rows.iter().filter(|row| row[column("hop")] == hop["hop"].to_string() && row[column("phase")] == "flight").collect();
+        let own = hop["hop"].to_string();
+        let flight: Vec<_> = rows.iter().filter(|row| row[column("hop")] == own && row[column("phase")] == "flight").collect();
         let (first, last) = (flight[0], flight[flight.len() - 1]);
         for (row, name, key) in [
             (first, "x_m", "takeoff_x_m"),
@@ -93,10 +93,10 @@ fn every_command_with_a_path_writes_it_in_time() {
 fn without_a_path_the_table_is_its_header() {
     let desk = Desk::with_dem();
     for words in [
-        &["plan", "scenario.toml", "--set", "hopper.takeoff_speed_max_m_s=0.01"][..],
-        &["hop", "scenario.toml", "--set", "hopper.takeoff_speed_max_m_s=0.01"],
-        &["simulate", "scenario.toml", "--set", "hopper.takeoff_speed_max_m_s=0.01"],
-        &["run", "scenario.toml", "-o", "out", "--set", "hopper.takeoff_speed_max_m_s=0.01"],
+        &["plan", "scenario.toml", "--set", "surface.rest_slope_max_deg=1"][..],
+        &["hop", "scenario.toml", "--set", "surface.rest_slope_max_deg=1"],
+        &["simulate", "scenario.toml", "--set", "surface.rest_slope_max_deg=1"],
+        &["run", "scenario.toml", "-o", "out", "--set", "surface.rest_slope_max_deg=1"],
     ] {
         let ran = desk.run(&[words, &["--trajectory", "none.csv"]].concat());
         assert_eq!(ran.status, 1, "{ran:?}");
