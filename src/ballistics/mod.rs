@@ -29,6 +29,7 @@
 mod arc;
 mod choice;
 mod flight_envelope;
+mod greatest_reach;
 pub mod limits;
 mod line_of_sight;
 mod safety;
@@ -36,5 +37,6 @@ mod safety;
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s, lofts_of_speed};
 pub use choice::TakeoffChoice;
 pub use flight_envelope::{ContactLimits, FlightEnvelope};
+pub use greatest_reach::{landing_reach_m, takeoff_reach_m};
 pub use line_of_sight::LineOfSight;
 pub use safety::{safety_ceiling_m, safety_range_m};

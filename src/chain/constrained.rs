@@ -167,6 +167,14 @@ impl ConstrainedChain {
     ) -> Result<super::ContactRule, GroundRefusal> {
         self.ruling(station, contact, direction).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction)
     }
+
+    /// The inclination of the surface that rules a contact at a station, and the greatest on which the hopper rests; `None` without a
+    /// rest slope, and beyond the chain's ends.
+    pub fn rest_slope(&self, station: &Station, contact: Contact, direction: Direction) -> Option<(Angle, Angle)> {
+        let segment = station.ruling_segment(contact, direction, self.segments.len())?.index();
+        let (tilt, max) = rest_slope(self.geometry.slopes()[segment], &self.geometry.grounds()[segment].form, &self.surface);
+        max.map(|max| (Angle::from_slope(tilt), Angle::from_slope(max)))
+    }
 }
 
 /// Resolves the constraints of one segment: what its ground, given by its slope along the plane of travel, allows this
@@ -180,11 +188,11 @@ pub(crate) fn resolve_constraints(
     surface: &SurfaceProperties,
 ) -> Result<SegmentConstraints, ConstraintProblem> {
     let (takeoff_speed, landing_speed) = (hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s);
-    let (forward, reverse, friction, cross_slope) = match ground.form {
+    let (forward, reverse) = match ground.form {
         GroundForm::Explicit { forward, reverse } => {
             let capped =
                 |c: Option<LineConstraints>| c.map(|c| c.capped(takeoff_speed, landing_speed)).ok_or(GroundRefusal::NoGround);
-            (capped(forward), capped(reverse), None, Angle::default())
+            (capped(forward), capped(reverse))
         }
         GroundForm::Surface { friction, cross_slope } => {
             let grip = friction.map(Grip::Friction).or(surface.grip).ok_or(ConstraintProblem::NoGrip(id))?;
@@ -197,8 +205,7 @@ pub(crate) fn resolve_constraints(
                     Ok(LineConstraints::from_offsets(slope, takeoff, landing, takeoff_speed, landing_speed))
                 }
             };
-            let friction = if let Grip::Friction(cone) = grip { Some(cone) } else { None };
-            (on(slope), on(-slope), friction, cross_slope)
+            (on(slope), on(-slope))
         }
     };
     let unbounded = |c: &Result<LineConstraints, GroundRefusal>| {
@@ -214,17 +221,29 @@ pub(crate) fn resolve_constraints(
         line.capped(takeoff_m_s, cap_m_s)
     };
     let [forward, reverse] = [forward, reverse].map(|line| line.map(commanded));
-    let rest_slope = match surface.rest {
-        RestSlope::AsFrictionHolds => friction.map(FrictionCone::coefficient),
-        RestSlope::AtMost(angle) => Some(angle.slope()),
-        RestSlope::Unlimited => None,
-    };
-    let tilt = tilt_slope(slope, cross_slope.slope());
+    let (tilt, rest_slope) = rest_slope(slope, &ground.form, surface);
     let too_steep = rest_slope
         .filter(|&max| tilt > max)
         .map(|max| GroundRefusal::TooSteep { tilt: Angle::from_slope(tilt), max: Angle::from_slope(max) });
     let refusal = if ground.keep_out { Some(GroundRefusal::KeepOut) } else { too_steep };
     Ok(SegmentConstraints::new(forward, reverse, refusal))
+}
+
+/// The tangent of a segment's inclination, and of the greatest on which the hopper rests.
+fn rest_slope(slope: f64, form: &GroundForm, surface: &SurfaceProperties) -> (f64, Option<f64>) {
+    let (friction, cross_slope) = match *form {
+        GroundForm::Explicit { .. } => (None, Angle::default()),
+        GroundForm::Surface { friction, cross_slope } => {
+            let grip = friction.map(Grip::Friction).or(surface.grip);
+            (if let Some(Grip::Friction(cone)) = grip { Some(cone) } else { None }, cross_slope)
+        }
+    };
+    let max = match surface.rest {
+        RestSlope::AsFrictionHolds => friction.map(FrictionCone::coefficient),
+        RestSlope::AtMost(angle) => Some(angle.slope()),
+        RestSlope::Unlimited => None,
+    };
+    (tilt_slope(slope, cross_slope.slope()), max)
 }
 
 /// The tangent of a surface's inclination, from its slope `s` along the plane of travel and the tangent `t` of its

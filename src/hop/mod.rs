@@ -6,7 +6,9 @@
 
 mod conflict;
 mod hop_test;
+mod margins;
 mod reach;
+mod reach_along_sight;
 mod risk;
 mod segment_hops;
 mod takeoff_set;
@@ -14,6 +16,8 @@ mod terrain;
 
 pub use conflict::{Conflict, Shortfall};
 pub use hop_test::HopTest;
+pub use margins::{HopMargins, MARGINS, MarginRow};
+pub use reach_along_sight::ReachAlongSight;
 pub use risk::{HopDeviations, InvalidDeviation, PlannedHop, RiskModel};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
 pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};

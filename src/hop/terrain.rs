@@ -2,7 +2,7 @@
 
 use crate::{
     ballistics::{
-        LineOfSight,
+        Arc, LineOfSight,
         limits::{ClearanceProfile, clearing_loft},
     },
     chain::{PolygonalChain, Site, Station},
@@ -59,6 +59,43 @@ pub fn terrain_limit(
         }
     }
     (SlopeInterval { lower: highest.0, upper: f64::INFINITY }, highest.1)
+}
+
+/// How much higher an arc flies than the clearance asks for, at the point where that is least: the height, m, and the horizontal
+/// distance of the point from the take-off, m. `None` where [`terrain_limit`] has no point.
+///
+/// ```text
+///     (n - n_p) d e / X     over a point that asks for the loft n_p
+/// ```
+///
+/// From the lofts of the limit itself, so that an arc that keeps the limit has no negative margin by rounding. Between the points the
+/// margin is greater than at one of its neighbours.
+pub(super) fn least_height(
+    chain: &PolygonalChain,
+    takeoff: &Station,
+    landing: &Station,
+    arc: &Arc,
+    clearance: ClearanceProfile,
+) -> Option<(f64, f64)> {
+    let (sight, loft) = (arc.line_of_sight(), arc.loft());
+    let run_m = sight.run_m();
+    let mut least: Option<(f64, f64)> = None;
+    let mut add = |asked: f64, distance_m: f64| {
+        let height_m = (loft - asked) * (distance_m * ((run_m - distance_m) / run_m));
+        if least.is_none_or(|(least_m, _)| height_m < least_m) {
+            least = Some((height_m, distance_m));
+        }
+    };
+    for vertex in &chain.vertices()[flown_past(takeoff, landing)] {
+        add(clearing_loft(takeoff.point, landing.point, *vertex, clearance), (vertex.x_m - takeoff.point.x_m).abs());
+    }
+    if clearance.has_kinks() {
+        let kink_m = clearance.kink_m(run_m);
+        let [from, to] = over_sight(chain, takeoff, landing, sight, clearance);
+        add(clearance.kink_loft(from, run_m), kink_m);
+        add(clearance.kink_loft(to, run_m), run_m - kink_m);
+    }
+    least
 }
 
 /// The least loft that both kinks of a tapered clearance ask for.

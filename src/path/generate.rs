@@ -6,7 +6,7 @@ use crate::{
     chain::Station,
     graph::{Edge, Leg},
     ground::Surface,
-    hop::{HopTest, SegmentHops, Split, TakeoffSet},
+    hop::{HopMargins, HopTest, SegmentHops, Split, TakeoffSet},
     quantity::SlopeInterval,
     world::{Contact, Direction, Hopper, Limit},
 };
@@ -20,7 +20,7 @@ pub struct TooManyHops {
 }
 
 impl TooManyHops {
-    /// The longest path that is listed: some 400 bytes per hop, so 400 MB.
+    /// The longest path that is listed: some 800 bytes per hop with its record, so 800 MB.
     pub const MOST: u64 = 1_000_000;
 }
 
@@ -154,6 +154,7 @@ pub(super) fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc,
         lower_vertex: binding.and_then(|b| b.lower.vertex),
         upper_limit: binding.map_or(otherwise, |b| b.upper.limit),
         aim: None,
+        margins: HopMargins::of(test, &takeoff, &landing, arc).unwrap_or(HopMargins::UNLIMITED),
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::{
     ballistics::{Arc, LineOfSight},
     ground::ContactPoint,
+    hop::HopMargins,
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
     world::{Direction, Limit},
 };
@@ -41,6 +42,8 @@ pub struct Hop {
     pub lower_vertex: Option<VertexId>,
     /// The limit that sets the greatest feasible take-off angle.
     pub upper_limit: Limit,
+    /// By how much it keeps each limit.
+    pub margins: HopMargins,
     /// What the command was aimed at, for a machine that takes its commands in steps.
     pub aim: Option<Aim>,
 }

@@ -7,9 +7,11 @@ use std::{
 
 use serde::Serialize;
 
+use super::path_record::heading_true_deg;
 use crate::{
     quantity::MapPoint,
     reach::{FanRay, HopBand},
+    terrain::MapProjection,
 };
 
 /// The answer of `chta fan`.
@@ -27,6 +29,9 @@ pub struct FanAnswer {
     /// The greatest node spacing, if the spacing was given so.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub node_spacing_max_m: Option<f64>,
+    /// Where true north lies from the start, clockwise from grid north, degrees, for the picture.
+    #[serde(skip)]
+    pub true_north_deg: Option<f64>,
     /// One for each direction.
     pub rays: Vec<FanRecord>,
 }
@@ -36,6 +41,9 @@ pub struct FanAnswer {
 pub struct FanRecord {
     /// Clockwise from grid north.
     pub heading_deg: f64,
+    /// On a map of a known projection: the same from true north; null at a pole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heading_true_deg: Option<Option<f64>>,
     /// The length of the slice.
     pub length_m: f64,
     /// Why it ends before the requested length: `border`, `no-data` or nothing.
@@ -65,14 +73,32 @@ pub struct BandRecord {
 
 impl FanAnswer {
     /// The answer for the rays from a point; the caller adds the node spacing.
-    pub fn new(from: MapPoint, length_m: f64, rays: &[FanRay]) -> Self {
-        let rays: Vec<_> = rays.iter().map(FanRecord::new).collect();
-        Self { from_m: [from.x, from.y], headings: rays.len(), length_m, points_per_segment: None, node_spacing_max_m: None, rays }
+    pub fn new(from: MapPoint, length_m: f64, rays: &[FanRay], projection: Option<&MapProjection>) -> Self {
+        let record = |ray: &FanRay| FanRecord {
+            heading_true_deg: projection.map(|projection| heading_true_deg(projection, from, ray.heading_deg)),
+            ..FanRecord::new(ray)
+        };
+        let true_north_deg = projection.and_then(|projection| projection.north_on_map_deg(from));
+        let rays: Vec<_> = rays.iter().map(record).collect();
+        Self {
+            from_m: [from.x, from.y],
+            headings: rays.len(),
+            length_m,
+            points_per_segment: None,
+            node_spacing_max_m: None,
+            true_north_deg,
+            rays,
+        }
     }
 
     /// The number of headings whose far end can be reached.
     pub fn reached_ends(&self) -> usize {
         self.rays.iter().filter(|ray| ray.hops_to_end.is_some()).count()
+    }
+
+    /// Whether the headings from true north are known.
+    fn has_true_north(&self) -> bool {
+        self.rays.iter().any(|ray| ray.heading_true_deg.is_some())
     }
 
     /// The table as text.
@@ -88,12 +114,16 @@ impl FanAnswer {
         let columns = ["heading", "length (m)", "farthest (m)", "hops", "hops to end", "refused by", "cut by"];
         let [heading, length, farthest, hops, end, limit, cut] = columns;
         // Writing to a String cannot fail.
-        let _ = writeln!(text, "{heading:>8}{length:>12}{farthest:>14}{hops:>6}{end:>13}  {limit:<18}{cut}");
+        let north = if self.has_true_north() { format!("{:>10}", "true") } else { String::new() };
+        let _ = writeln!(text, "{heading:>8}{north}{length:>12}{farthest:>14}{hops:>6}{end:>13}  {limit:<18}{cut}");
         for ray in &self.rays {
             let _ = writeln!(
                 text,
-                "{:>8.2}{:>12.3}{:>14.3}{:>6}{:>13}  {:<18}{}",
+                "{:>8.2}{}{:>12.3}{:>14.3}{:>6}{:>13}  {:<18}{}",
                 ray.heading_deg,
+                ray.heading_true_deg
+                    .map(|heading| heading.map_or(format!("{:>10}", "-"), |heading| format!("{heading:>10.2}")))
+                    .unwrap_or_default(),
                 ray.length_m,
                 ray.farthest_m,
                 ray.hops_to_farthest,
@@ -111,17 +141,12 @@ impl FanAnswer {
     /// An error of the writer.
     pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
         let mut writer = csv::Writer::from_writer(out);
-        writer.write_record([
-            "heading_deg",
-            "length_m",
-            "cut",
-            "farthest_m",
-            "hops_to_farthest",
-            "hops_to_end",
-            "first_refusing_limit",
-        ])?;
+        let has_true_north = self.has_true_north();
+        let columns = ["heading_deg", "length_m", "cut", "farthest_m", "hops_to_farthest", "hops_to_end", "first_refusing_limit"];
+        writer.write_record(columns.iter().chain(has_true_north.then_some(&"heading_true_deg")))?;
         for ray in &self.rays {
-            writer.write_record([
+            let heading = ray.heading_true_deg.map(|heading| heading.map(|heading| heading.to_string()).unwrap_or_default());
+            let fields = [
                 ray.heading_deg.to_string(),
                 ray.length_m.to_string(),
                 ray.cut.unwrap_or_default().to_owned(),
@@ -129,7 +154,8 @@ impl FanAnswer {
                 ray.hops_to_farthest.to_string(),
                 ray.hops_to_end.map(|hops| hops.to_string()).unwrap_or_default(),
                 ray.first_refusing_limit.unwrap_or_default().to_owned(),
-            ])?;
+            ];
+            writer.write_record(fields.into_iter().chain(heading))?;
         }
         writer.flush()
     }
@@ -139,6 +165,7 @@ impl FanRecord {
     fn new(ray: &FanRay) -> Self {
         Self {
             heading_deg: ray.heading_deg,
+            heading_true_deg: None,
             length_m: ray.length_m,
             cut: ray.end.map(crate::reach::SliceEnd::name),
             farthest_m: ray.farthest_m,

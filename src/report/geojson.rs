@@ -47,6 +47,10 @@ fn path_features(
     for (hop, row) in path.hops.iter().zip(&rows) {
         let (takeoff, landing) = hop.map_ends()?;
         let serde_json::Value::Object(mut properties) = serde_json::to_value(row).ok()? else { return None };
+        // Flat, under the names of the columns: a GIS shows an object as text.
+        if let Some(serde_json::Value::Object(margins)) = properties.remove("margins") {
+            properties.extend(margins.into_iter().map(|(key, value)| (format!("margin_{key}"), value)));
+        }
         properties.insert("kind".to_owned(), "hop".into());
         features.push(feature(
             GeometryValue::LineString { coordinates: arc_positions(hop, (takeoff, landing), gravity_m_s2) },

@@ -2,11 +2,11 @@
 
 use serde::Serialize;
 
-use super::path_record::unsigned_zero;
+use super::{hop_margins::HopMarginsRecord, path_record::unsigned_zero};
 use crate::{
     ballistics::{Arc, TakeoffChoice},
     chain::Station,
-    hop::{Conflict, HopTest, LimitInterval, Shortfall, TakeoffSet},
+    hop::{Conflict, HopMargins, HopTest, LimitInterval, ReachAlongSight, Shortfall, TakeoffSet},
     quantity::{Angle, VertexId},
     world::Contact,
 };
@@ -38,6 +38,12 @@ pub struct HopAnswer {
     pub best: Option<BestRecord>,
     /// The hops of all three choices; empty if no hop is feasible.
     pub choices: Vec<BestRecord>,
+    /// By how much the hop to fly keeps each limit; null if no hop is feasible.
+    pub margins: Option<HopMarginsRecord>,
+    /// The greatest reach towards the landing; null if the ground refuses the take-off or the landing.
+    pub greatest_reach: Option<GreatestReachRecord>,
+    /// The same at the nearest angle that the cones and the take-off mechanism allow; null if they allow none as well.
+    pub greatest_reach_within_cones: Option<GreatestReachRecord>,
     /// Hops along the segment, if both points lie on the same one.
     pub segment_hops: Option<SegmentHopsRecord>,
 }
@@ -129,6 +135,23 @@ pub struct BestRecord {
     pub apex_height_m: f64,
 }
 
+/// The greatest reach of one hop along the line of sight at a take-off angle, by the two greatest speeds.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct GreatestReachRecord {
+    /// Along the line of sight.
+    pub reach_line_of_sight_m: f64,
+    /// The same, horizontally.
+    pub reach_horizontal_m: f64,
+    /// Take-off angle of that hop.
+    pub takeoff_angle_deg: f64,
+    /// The speed limit that bounds it.
+    pub limit: &'static str,
+    /// Along the line of sight, by the take-off speed.
+    pub by_takeoff_speed_m: f64,
+    /// Along the line of sight, by the landing speed.
+    pub by_landing_speed_m: f64,
+}
+
 /// Hops along one segment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SegmentHopsRecord {
@@ -151,6 +174,7 @@ impl HopAnswer {
     pub fn new(test: &HopTest, takeoff: &Station, landing: &Station, choice: TakeoffChoice) -> Option<Self> {
         let set = test.takeoff_set(takeoff, landing)?;
         let angles = set.angles();
+        let reach = test.reach_along_sight(takeoff, landing);
         let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice));
         Some(Self {
             from_x_m: takeoff.point.x_m,
@@ -165,6 +189,12 @@ impl HopAnswer {
             binding: BindingRecord::new(test, &set),
             best: best(choice),
             choices: TakeoffChoice::ALL.into_iter().filter_map(best).collect(),
+            margins: set
+                .arc(choice, test.gravity_m_s2())
+                .and_then(|arc| HopMargins::of(test, takeoff, landing, &arc))
+                .map(HopMarginsRecord),
+            greatest_reach: reach.map(|(by_speeds, _)| by_speeds.into()),
+            greatest_reach_within_cones: reach.and_then(|(_, within_cones)| within_cones).map(GreatestReachRecord::from),
             segment_hops: SegmentHopsRecord::new(test, takeoff, landing),
         })
     }
@@ -256,6 +286,19 @@ impl BestRecord {
             landing_speed_m_s: arc.landing_speed_m_s(),
             flight_time_s: arc.flight_time_s(),
             apex_height_m: arc.apex_height_m(),
+        }
+    }
+}
+
+impl From<ReachAlongSight> for GreatestReachRecord {
+    fn from(reach: ReachAlongSight) -> Self {
+        Self {
+            reach_line_of_sight_m: reach.reach_m(),
+            reach_horizontal_m: reach.reach_horizontal_m(),
+            takeoff_angle_deg: reach.takeoff_angle().degrees(),
+            limit: reach.limit().name(),
+            by_takeoff_speed_m: reach.by_takeoff_speed_m(),
+            by_landing_speed_m: reach.by_landing_speed_m(),
         }
     }
 }

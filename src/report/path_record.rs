@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
+use super::hop_margins::HopMarginsRecord;
 use crate::{
     path::{Hop, HopPath, Totals},
     quantity::MapPoint,
@@ -48,6 +49,8 @@ pub struct HopRecord {
     /// On a map: direction of flight, clockwise from grid north.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub map: Option<MapRecord>,
+    /// By how much it keeps each limit.
+    pub margins: HopMarginsRecord,
 }
 
 /// The columns of a hop on a map.
@@ -66,6 +69,9 @@ pub struct MapRecord {
     /// On a map of a known projection: longitude and latitude of both ends.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub lon_lat: Option<LonLatRecord>,
+    /// On a map of a known projection: direction of flight, clockwise from true north at the take-off; null at a pole.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub heading_true_deg: Option<Option<f64>>,
 }
 
 /// The columns of a hop on a map whose projection is known; planetocentric, east positive.
@@ -97,6 +103,14 @@ impl LonLatRecord {
 /// Degrees to ten digits (some micrometres on the ground): further digits differ between the mathematics libraries of platforms.
 pub(super) fn tenth_digit(degrees: f64) -> f64 {
     libm::rint(degrees * 1.0e10) / 1.0e10
+}
+
+/// The heading of a hop from true north at its take-off, degrees; `None` at a pole.
+pub(super) fn heading_true_deg(projection: &MapProjection, takeoff: MapPoint, heading_deg: f64) -> Option<f64> {
+    /// Digits beyond are rounding of the projection, which differs between platforms.
+    const DIGITS: f64 = 1.0e8;
+    let degrees = projection.true_heading_deg(takeoff, heading_deg)?;
+    Some(libm::rint(degrees * DIGITS) / DIGITS % 360.0)
 }
 
 /// The totals of a path's hops.
@@ -149,7 +163,9 @@ impl HopRecord {
                 landing_map_x_m: landing.x,
                 landing_map_y_m: landing.y,
                 lon_lat: projection.and_then(|projection| LonLatRecord::new(ends, projection)),
+                heading_true_deg: projection.map(|projection| heading_true_deg(projection, takeoff, hop.heading_deg)),
             }),
+            margins: HopMarginsRecord(hop.margins),
         }
     }
 }
@@ -196,7 +212,8 @@ const COLUMNS: [&str; 16] = [
 const MAP_COLUMNS: [&str; 5] = ["heading_deg", "takeoff_map_x_m", "takeoff_map_y_m", "landing_map_x_m", "landing_map_y_m"];
 
 /// The additional columns of a map whose projection is known.
-const LON_LAT_COLUMNS: [&str; 4] = ["takeoff_lon_deg", "takeoff_lat_deg", "landing_lon_deg", "landing_lat_deg"];
+const PROJECTION_COLUMNS: [&str; 5] =
+    ["takeoff_lon_deg", "takeoff_lat_deg", "landing_lon_deg", "landing_lat_deg", "heading_true_deg"];
 
 /// How a chain is located on a map, which determines the columns of its path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -232,7 +249,7 @@ pub fn write_paths_csv<'a>(
     out: impl Write,
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record([&["goal"], &columns(known)[..]].concat())?;
+    writer.write_record(std::iter::once("goal".to_owned()).chain(columns(known)))?;
     for (index, rows) in paths.into_iter().enumerate() {
         let goal = (index + 1).to_string();
         for row in rows {
@@ -243,10 +260,11 @@ pub fn write_paths_csv<'a>(
 }
 
 /// The columns of a path.
-fn columns(known: MapKnowledge) -> Vec<&'static str> {
+fn columns(known: MapKnowledge) -> Vec<String> {
     let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
-    let lon_lat: &[&str] = if known >= MapKnowledge::Projection { &LON_LAT_COLUMNS } else { &[] };
-    [&COLUMNS[..], map, lon_lat].concat()
+    let projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
+    let own = COLUMNS.iter().chain(map).chain(projection).map(|&column| column.to_owned());
+    own.chain(HopMarginsRecord::columns()).collect()
 }
 
 impl HopRecord {
@@ -282,7 +300,10 @@ impl HopRecord {
                 .and_then(|map| map.lon_lat)
                 .map(|place| [place.takeoff_lon_deg, place.takeoff_lat_deg, place.landing_lon_deg, place.landing_lat_deg]);
             fields.extend(texts(numbers));
+            let heading = self.map.and_then(|map| map.heading_true_deg.flatten());
+            fields.extend(texts(heading.map(|heading| [heading])));
         }
+        fields.extend(self.margins.fields());
         fields
     }
 }

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, ProofRecord, RequireAnswer, TotalsRecord};
+use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, TotalsRecord};
 use crate::quantity::{format_number, unit_of};
 
 /// A sheet of text; writing to it does not fail.
@@ -75,6 +75,27 @@ pub fn hop_text(answer: &HopAnswer) -> String {
                 choice.apex_height_m
             ));
         }
+    }
+    if let Some(margins) = answer.margins {
+        sheet.line(format_args!("\nmargins of the chosen hop"));
+        for line in margins.lines() {
+            sheet.line(format_args!("{line}"));
+        }
+    }
+    if answer.greatest_reach.is_some() {
+        sheet.line(format_args!("\ngreatest reach of one hop along this line of sight"));
+    }
+    for (by, reach) in [("speeds alone", answer.greatest_reach), ("speeds and cones", answer.greatest_reach_within_cones)] {
+        let Some(reach) = reach else { continue };
+        sheet.line(format_args!(
+            "by {by:<18}{:>12.3} m ({:.3} m horizontally) at {:.3} deg, {} ends it: {:.3} m by take-off speed, {:.3} m by landing speed",
+            reach.reach_line_of_sight_m,
+            reach.reach_horizontal_m,
+            reach.takeoff_angle_deg,
+            reach.limit,
+            reach.by_takeoff_speed_m,
+            reach.by_landing_speed_m
+        ));
     }
     if let Some(along) = answer.segment_hops {
         sheet.line(format_args!(
@@ -269,16 +290,25 @@ fn ranked(counts: &std::collections::BTreeMap<&'static str, u64>) -> String {
     ranked.iter().map(|(name, count)| format!("{name} {count}")).collect::<Vec<_>>().join(", ")
 }
 
-/// The hops of a path as a table, with their totals.
+/// The two headings of a hop on a map of a known projection.
+fn headings(map: MapRecord) -> Option<String> {
+    let from_true_north = map.heading_true_deg?.map_or("-".to_owned(), |heading| format!("{heading:.3}"));
+    Some(format!("{:>11.3}{from_true_north:>11}", map.heading_deg))
+}
+
+/// The hops of a path as a table, with their totals; on a map of a known projection with headings from grid north and true north.
 pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
     let mut sheet = Sheet::default();
+    // Headings from both norths where they differ: on a map of a known projection.
+    let has_north = rows.iter().any(|row| row.map.is_some_and(|map| map.heading_true_deg.is_some()));
+    let columns = if has_north { format!("{:>11}{:>11}", "grid (deg)", "true (deg)") } else { String::new() };
     sheet.line(format_args!(
-        "{:>4} {:<8}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>9}  {}",
+        "{:>4} {:<8}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>9}{columns}  {}",
         "hop", "", "from x (m)", "to x (m)", "up (deg)", "m/s", "down(deg)", "m/s", "s", "binding (lower/upper)"
     ));
     for row in rows {
         sheet.line(format_args!(
-            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}  {}",
+            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}{}  {}",
             row.hop,
             row.direction,
             row.takeoff_x_m,
@@ -288,6 +318,7 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
             row.landing_angle_deg,
             row.landing_speed_m_s,
             row.flight_time_s,
+            row.map.and_then(headings).unwrap_or_default(),
             row.binding
         ));
     }

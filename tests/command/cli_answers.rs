@@ -25,6 +25,23 @@ const PATH_COLUMNS: [&str; 16] = [
     "speed_margin_m_s",
     "binding",
 ];
+const MARGIN_COLUMNS: [&str; 15] = [
+    "margin_takeoff_speed_m_s",
+    "margin_landing_speed_m_s",
+    "margin_takeoff_cone_min_deg",
+    "margin_takeoff_cone_max_deg",
+    "margin_landing_cone_min_deg",
+    "margin_landing_cone_max_deg",
+    "margin_line_of_sight_deg",
+    "margin_terrain_m",
+    "margin_mechanical_angle_min_deg",
+    "margin_mechanical_angle_max_deg",
+    "margin_apex_height_m",
+    "margin_flight_time_s",
+    "margin_takeoff_rest_slope_deg",
+    "margin_landing_rest_slope_deg",
+    "margin_terrain_from_takeoff_m",
+];
 const MAP_COLUMNS: [&str; 5] = ["heading_deg", "takeoff_map_x_m", "takeoff_map_y_m", "landing_map_x_m", "landing_map_y_m"];
 
 /// Flat ground with two points too far apart for the speed.
@@ -135,6 +152,20 @@ fn hop_has_every_key_of_the_contract() {
     assert_keys(&no, &keys);
     assert_eq!((&no["feasible"], &no["takeoff_angle_min_deg"], &no["best"]), (&Value::Bool(false), &Value::Null, &Value::Null));
     assert_keys(&no["binding"], &["conflict", "gap_deg", "sentence"]);
+    // The greatest reach is stated for a hop that is too far as well; its margins are none.
+    let reach =
+        ["reach_line_of_sight_m", "reach_horizontal_m", "takeoff_angle_deg", "limit", "by_takeoff_speed_m", "by_landing_speed_m"];
+    for document in [&yes, &no] {
+        assert_keys(&document["greatest_reach"], &reach);
+        assert_keys(&document["greatest_reach_within_cones"], &reach);
+    }
+    assert_keys(&yes["margins"], &["takeoff_speed_m_s", "landing_cone_max_deg", "terrain_m", "terrain_from_takeoff_m"]);
+    assert!(no["margins"].is_null() && yes["margins"].get("apex_height_m").is_none(), "no such limit, no margin");
+    let far = desk.run(&[&["hop", "scenario.toml", "--from", "0", "--to", "12"][..], &TOO_SLOW].concat()).stdout;
+    assert!(
+        far.contains("\ngreatest reach of one hop along this line of sight\nby speeds alone") && !far.contains("margins"),
+        "{far}"
+    );
     assert_framed(&desk.run(&["hop", "scenario.toml", "--to", "12", "--format", "json"]).stdout, "hop", desk.path());
 }
 
@@ -222,7 +253,9 @@ fn plan_has_every_key_of_the_contract_in_json_and_the_same_columns_in_csv() {
         let ran = desk.run(&["plan", scenario, "--format", "json", "-o", "path.csv"]);
         assert_eq!((ran.status, ran.stderr.as_str()), (0, ""));
         assert_framed(&ran.stdout, "plan", desk.path());
-        assert_eq!(keys_in_order(&ran.stdout, "\"path\": [", 6), columns, "{scenario}: keys of the first hop");
+        let keys = [&columns[..], &["margins"]].concat();
+        assert_eq!(keys_in_order(&ran.stdout, "\"path\": [", 6), keys, "{scenario}: keys of the first hop");
+        let columns = [&columns[..], &MARGIN_COLUMNS].concat();
         let document: Value = serde_json::from_str(&ran.stdout).unwrap();
         assert_keys(&document, &["verdict", "hops", "points_per_segment", "nodes", "pairs_tested", "path", "totals"]);
         assert_keys(&document["totals"], &totals);
@@ -233,7 +266,9 @@ fn plan_has_every_key_of_the_contract_in_json_and_the_same_columns_in_csv() {
         assert_eq!(rows.next().unwrap(), columns.join(","));
         for (row, hop) in rows.zip(document["path"].as_array().unwrap()) {
             for (cell, column) in row.split(',').zip(&columns) {
-                match &hop[*column] {
+                let margin = column.strip_prefix("margin_").map(|key| hop["margins"].get(key).unwrap_or(&Value::Null));
+                match margin.unwrap_or(&hop[*column]) {
+                    Value::Null => assert_eq!(cell, "", "{column}: no such limit"),
                     Value::String(text) => assert_eq!(cell, text),
                     number => assert_eq!(cell.parse::<f64>().unwrap(), number.as_f64().unwrap(), "{column}"),
                 }
@@ -254,7 +289,7 @@ fn a_plan_goes_where_its_options_say() {
     let csv = desk.run(&["plan", "scenario.toml", "-o", "-", "--format", "json"]);
     assert!(csv.stdout.starts_with("hop,direction,takeoff_x_m,") && csv.stdout.lines().count() == 4, "{csv:?}");
     let none = desk.run(&[&["plan", "scenario.toml", "-o", "-"][..], &TOO_STEEP].concat());
-    assert_eq!((none.status, none.stdout.trim_end()), (1, PATH_COLUMNS.join(",").as_str()));
+    assert_eq!((none.status, none.stdout.trim_end()), (1, [&PATH_COLUMNS[..], &MARGIN_COLUMNS].concat().join(",").as_str()));
 
     let verified = desk.json(&["plan", "scenario.toml", "--verify"]);
     assert_eq!(verified["verified"], true);

@@ -29,7 +29,13 @@ const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
 /// An option, a command line without it, and one with it.
 type Trial = (&'static str, &'static [&'static str], &'static [&'static str]);
 
-const RUN: [Trial; 4] = [
+const RUN: [Trial; 6] = [
+    ("--trajectory", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--trajectory", "t.csv"]),
+    (
+        "--step-s",
+        &["run", "scenario.toml", "-o", "out", "--trajectory", "t.csv"],
+        &["run", "scenario.toml", "-o", "out", "--trajectory", "t.csv", "--step-s", "0.5"],
+    ),
     ("--output", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "elsewhere"]),
     ("--format", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--format", "json"]),
     ("--set", &["run", "scenario.toml", "-o", "out"], &["run", "scenario.toml", "-o", "out", "--set", "body.name=moon"]),
@@ -255,7 +261,13 @@ const MAP: [Trial; 21] = [
     ),
 ];
 
-const HOP: [Trial; 9] = [
+const HOP: [Trial; 11] = [
+    ("--trajectory", &["hop", "scenario.toml", "--to", "10"], &["hop", "scenario.toml", "--to", "10", "--trajectory", "t.csv"]),
+    (
+        "--step-s",
+        &["hop", "scenario.toml", "--to", "10", "--trajectory", "t.csv"],
+        &["hop", "scenario.toml", "--to", "10", "--trajectory", "t.csv", "--step-s", "0.5"],
+    ),
     ("--from", &["hop", "scenario.toml", "--to", "30"], &["hop", "scenario.toml", "--to", "30", "--from", "10"]),
     ("--to", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--to", "10"]),
     ("--format", &["hop", "scenario.toml"], &["hop", "scenario.toml", "--format", "json"]),
@@ -294,7 +306,13 @@ const CHECK: [Trial; 16] = [
     ("--quiet", &["check", "scenario.toml", "--body", "bennu"], &["check", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
 
-const PLAN: [Trial; 18] = [
+const PLAN: [Trial; 20] = [
+    ("--trajectory", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--trajectory", "t.csv"]),
+    (
+        "--step-s",
+        &["plan", "scenario.toml", "--trajectory", "t.csv"],
+        &["plan", "scenario.toml", "--trajectory", "t.csv", "--step-s", "0.5"],
+    ),
     ("--start", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--start", "10"]),
     ("--goal", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--goal", "30"]),
     ("--output", &["plan", "scenario.toml"], &["plan", "scenario.toml", "-o", "path.csv"]),
@@ -720,7 +738,13 @@ const COMPARE: [Trial; 7] = [
 ];
 
 /// Ground with all overlays, small enough for a test.
-const SIMULATE: [Trial; 22] = [
+const SIMULATE: [Trial; 24] = [
+    ("--trajectory", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trajectory", "t.csv"]),
+    (
+        "--step-s",
+        &["simulate", "errors.toml", "--trajectory", "t.csv"],
+        &["simulate", "errors.toml", "--trajectory", "t.csv", "--step-s", "0.5"],
+    ),
     ("--start", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--start", "10"]),
     ("--goal", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--goal", "30"]),
     ("--trials", &["simulate", "errors.toml"], &["simulate", "errors.toml", "--trials", "50"]),
@@ -993,6 +1017,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--mobility",
                 "--paths",
                 "--profiles",
+                "--trajectory",
             ]
             .contains(&name.as_str());
             assert!(

@@ -29,5 +29,6 @@ mod shipped_scenarios;
 mod simulate_command;
 mod stated_maps;
 mod trade_compare;
+mod trajectory;
 mod wrong_things;
 mod zones_and_fan;

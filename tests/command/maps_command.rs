@@ -193,7 +193,11 @@ fn an_accepted_scale_is_recorded_in_the_result_which_repeats_it() {
     assert_eq!(read("out/path.geojson"), read("again/path.geojson"));
     assert_eq!(read("out/result.json"), read("again/result.json"));
     assert!(
-        read("out/path.csv").lines().next().unwrap().ends_with("takeoff_lon_deg,takeoff_lat_deg,landing_lon_deg,landing_lat_deg")
+        read("out/path.csv")
+            .lines()
+            .next()
+            .unwrap()
+            .contains(",landing_lon_deg,landing_lat_deg,heading_true_deg,margin_takeoff_speed_m_s,")
     );
     assert!(read("out/chain.csv").contains("# crs_code: IAU_2015:30110"));
 }

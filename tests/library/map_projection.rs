@@ -8,6 +8,8 @@ use std::process::{Command, Stdio};
 use chta::quantity::MapPoint;
 use chta::terrain::{LonLat, MapProjection, read_dem};
 
+use nalgebra::Vector3;
+
 use crate::installed::has_gdal;
 
 fn run(program: &str, arguments: &[&str], input: &str) -> String {
@@ -22,17 +24,19 @@ fn run(program: &str, arguments: &[&str], input: &str) -> String {
 /// Longitude and planetocentric latitude of map points from GDAL, via Cartesian coordinates, which are free of the definition of
 /// latitude.
 fn places_of_gdal(srs: &str, points: &[MapPoint]) -> Vec<LonLat> {
+    centred_of_gdal(srs, points)
+        .into_iter()
+        .map(|at| LonLat { lon_deg: at.y.atan2(at.x).to_degrees(), lat_deg: at.z.atan2(at.x.hypot(at.y)).to_degrees() })
+        .collect()
+}
+
+/// Cartesian coordinates of map points from GDAL, m from the body's centre.
+pub(crate) fn centred_of_gdal(srs: &str, points: &[MapPoint]) -> Vec<Vector3<f64>> {
     let lines = points.iter().map(|point| format!("{} {} 0\n", point.x, point.y)).collect::<Vec<_>>().concat();
     let centred = format!("+proj=geocent {} +no_defs", figure_of(srs));
     let text = run("gdaltransform", &["-s_srs", srs, "-t_srs", &centred], &lines);
-    let places: Vec<LonLat> = text
-        .lines()
-        .map(|line| {
-            let [x, y, z]: [f64; 3] =
-                line.split_whitespace().map(|word| word.parse().unwrap()).collect::<Vec<_>>().try_into().unwrap();
-            LonLat { lon_deg: y.atan2(x).to_degrees(), lat_deg: z.atan2(x.hypot(y)).to_degrees() }
-        })
-        .collect();
+    let places: Vec<_> =
+        text.lines().map(|line| Vector3::from_iterator(line.split_whitespace().map(|word| word.parse::<f64>().unwrap()))).collect();
     assert_eq!(places.len(), points.len());
     places
 }
@@ -102,7 +106,7 @@ fn placed(directory: &Path, srs: &str) -> PathBuf {
 const MARS: &str = "+a=3396190 +b=3376200";
 
 /// Reference systems, a point of each map, and the size of the area around it to compare.
-fn systems() -> Vec<(String, (f64, f64), f64)> {
+pub(crate) fn systems() -> Vec<(String, (f64, f64), f64)> {
     let moon = |text: &str, at, reach| (format!("{text} +R=1737400 +units=m +no_defs"), at, reach);
     let mars = |text: &str, at, reach| (format!("{text} {MARS} +units=m +no_defs"), at, reach);
     vec![

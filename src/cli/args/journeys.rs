@@ -7,6 +7,17 @@ use clap::Args as ClapArgs;
 
 use super::{AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, cell_count, max_gib};
 
+/// Options of commands that fly a path.
+#[derive(Debug, ClapArgs)]
+pub(crate) struct TrajectoryArgs {
+    /// Path in time (CSV) to write: position, velocity, hop and phase at every step and at all take-offs and landings
+    #[arg(long, value_name = "FILE")]
+    pub(crate) trajectory: Option<PathBuf>,
+    /// Step of the trajectory, s [default: a fiftieth of the longest flight, but at least a hundred-thousandth of the mission time]
+    #[arg(long, value_name = "S", requires = "trajectory", allow_negative_numbers = true)]
+    pub(crate) step_s: Option<f64>,
+}
+
 /// Do everything a scenario asks for: chain.csv, path.csv, path.geojson (on a map), result.json and path.svg
 #[derive(Debug, ClapArgs)]
 #[command(after_help = "Example:\n  chta run data/scenarios/mars_crater_field.toml -o out")]
@@ -17,6 +28,8 @@ pub(crate) struct RunArgs {
     /// Folder for the results, created if it does not exist
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
+    #[command(flatten)]
+    pub(crate) trajectory: TrajectoryArgs,
     #[command(flatten)]
     pub(crate) answer: AnswerArgs,
     /// Set any scenario key; overrides the scenario [example: `--set hopper.takeoff_speed_max_m_s=8`]
@@ -46,6 +59,8 @@ pub(crate) struct HopArgs {
     /// Where it lands, along the chain, m [default: the scenario's goal]
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
+    #[command(flatten)]
+    pub(crate) trajectory: TrajectoryArgs,
     /// How the answer is written to standard output
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
@@ -94,6 +109,8 @@ pub(crate) struct PlanArgs {
     #[arg(long)]
     pub(crate) verify: bool,
     #[command(flatten)]
+    pub(crate) trajectory: TrajectoryArgs,
+    #[command(flatten)]
     pub(crate) answer: AnswerArgs,
     #[command(flatten)]
     pub(crate) prove: ProveArgs,
@@ -141,6 +158,8 @@ pub(crate) struct SimulateArgs {
     /// Picture of the landings on the map (SVG or PNG), with 95 % ellipses, for a DEM
     #[arg(long, value_name = "FILE", conflicts_with = "experiment")]
     pub(crate) plot_map: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) trajectory: TrajectoryArgs,
     #[command(flatten)]
     pub(crate) answer: AnswerArgs,
     #[command(flatten)]

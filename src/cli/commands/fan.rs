@@ -74,7 +74,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     for warning in &warnings {
         output::warn(common.quiet, warning);
     }
-    let mut answer = FanAnswer::new(from, *length, &rays);
+    let mut answer = FanAnswer::new(from, *length, &rays, projection.as_ref().ok());
     match spacing {
         PointSpacing::PerSegment(points) => answer.points_per_segment = Some(points),
         PointSpacing::AtMostM(spacing_m) => answer.node_spacing_max_m = Some(spacing_m),

@@ -1,10 +1,14 @@
 //! `chta hop`: one pair, limit by limit.
 
 use chta::{
+    graph::{Edge, Leg},
+    hop::TakeoffSet,
+    path::generate,
     report::{Document, HopAnswer, hop_text},
     scenario::{Extremes, constant_gravity_warnings},
 };
 
+use super::trajectory;
 use crate::cli::{
     Answer, Failure,
     args::{Format, HopArgs},
@@ -30,6 +34,14 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
             takeoff.point.x_m
         ))
     })?;
+    if let Some(file) = trajectory::begin(&args.trajectory)? {
+        let lofts = test.takeoff_set(&takeoff, &landing).as_ref().and_then(TakeoffSet::lofts);
+        let search = &loaded.scenario.search;
+        let legs = lofts.map(|lofts| [Leg { takeoff, landing, edge: Edge::Hop(lofts) }]);
+        let path =
+            legs.map(|legs| generate(&test, &legs, search.takeoff, search.split)).transpose().map_err(|e| Failure::of(&e))?;
+        output::finish(trajectory::filled(Some(file), &args.trajectory, path.as_ref(), &loaded)?.into_iter().collect())?;
+    }
     let extremes = answer.best.map_or_else(Extremes::default, |best| Extremes {
         range_m: (answer.to_x_m - answer.from_x_m).abs(),
         height_m: best.apex_height_m,

@@ -410,7 +410,7 @@ fn write_files<'a>(
         files.extend(prj_path.as_deref().zip(output::prj(projection.as_ref().ok())));
     }
     if let Some(file) = &args.profiles {
-        files.push((file, map_profiles::sheet(&name_of(args), scenario, &maps.goal_hops, file)?));
+        files.push((file, map_profiles::sheet(&name_of(args), scenario, &maps.goal_hops, projection.as_ref().ok(), file)?));
     }
     if let Some(file) = &args.plot {
         files.push((file, picture(args, inputs, maps, answer, ends, file)?));

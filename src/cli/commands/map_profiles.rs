@@ -8,19 +8,26 @@ use chta::{
     reach::map::MapHop,
     report::figure::{Caption, HopProfile, HopProfilesFigure, draw_hop_profiles},
     scenario::Scenario,
+    terrain::MapProjection,
 };
 
 use super::captions::conditions;
 use crate::cli::{Failure, output};
 
 /// The sheet of all hops to all goals, in the format of the file's extension.
-pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<MapHop>>], file: &Path) -> Result<Vec<u8>, Failure> {
+pub(super) fn sheet(
+    name: &str,
+    scenario: &Scenario,
+    goal_hops: &[Option<Vec<MapHop>>],
+    projection: Option<&MapProjection>,
+    file: &Path,
+) -> Result<Vec<u8>, Failure> {
     let mut profiles = Vec::new();
     for (goal, hops) in goal_hops.iter().enumerate() {
         let hops = hops.as_deref().unwrap_or_default();
         for (number, hop) in hops.iter().enumerate() {
             let name = format!("goal {}, hop {} of {}", goal + 1, number + 1, hops.len());
-            profiles.extend(profile(hop, name));
+            profiles.extend(profile(hop, name, projection));
         }
     }
     let count = match profiles.len() {
@@ -34,13 +41,17 @@ pub(super) fn sheet(name: &str, scenario: &Scenario, goal_hops: &[Option<Vec<Map
 }
 
 /// One hop over its slice, flown again to find its least clearance.
-fn profile(hop: &MapHop, name: String) -> Option<HopProfile> {
+fn profile(hop: &MapHop, name: String, projection: Option<&MapProjection>) -> Option<HopProfile> {
     let flown = execute(hop.test.chain(), &hop.path, None);
     let least = flown.flights.first().and_then(|flight| flight.as_ref()?.least_clearance);
+    let test = &hop.test;
+    let hop = *hop.path.hops.first()?;
+    let takeoff = hop.takeoff.map();
     Some(HopProfile {
         name,
-        ground: hop.test.chain().geometry().vertices().to_vec(),
-        hop: *hop.path.hops.first()?,
+        ground: test.chain().geometry().vertices().to_vec(),
+        hop,
+        heading_true_deg: takeoff.zip(projection).and_then(|(at, projection)| projection.true_heading_deg(at, hop.heading_deg)),
         least_clearance_m: least.map(|clearance| (clearance.x_m, clearance.height_m)),
     })
 }

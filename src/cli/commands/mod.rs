@@ -16,3 +16,4 @@ pub(super) mod simulate;
 pub(super) mod slice;
 pub(super) mod synth;
 pub(super) mod trade;
+mod trajectory;

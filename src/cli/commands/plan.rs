@@ -9,7 +9,7 @@ use chta::{
     path::{Execution, HopPath, execute, generate},
     quantity::AngleInterval,
     report::{
-        CheckAnswer, Document, HopRecord, MapKnowledge, ReliablePathRecord, TotalsRecord, check_text,
+        CheckAnswer, Document, HopRecord, ReliablePathRecord, TotalsRecord, check_text,
         figure::{FigureError, FigureInput, FigureTitle, Picture, draw},
         path_geojson, path_text, reliable_paths_text, write_path_csv,
     },
@@ -18,7 +18,10 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::search::{Searched, use_threads};
+use super::{
+    search::{Searched, use_threads},
+    trajectory,
+};
 use crate::cli::{
     Answer, Failure,
     args::{Format, PlanArgs, ProveArgs},
@@ -116,12 +119,8 @@ impl Planned {
     /// The path as CSV; only the header without a path.
     pub(super) fn csv(&self, loaded: &Loaded) -> Result<Vec<u8>, Failure> {
         let mut csv = Vec::new();
-        let known = match (loaded.prepared.chain.geometry().map_points(), &loaded.prepared.projection) {
-            (None, _) => MapKnowledge::Nothing,
-            (Some(_), None) => MapKnowledge::Metres,
-            (Some(_), Some(_)) => MapKnowledge::Projection,
-        };
-        write_path_csv(&self.answer.path, known, &mut csv).map_err(|e| Failure::message(format!("path.csv: {e}")))?;
+        write_path_csv(&self.answer.path, trajectory::map_knowledge(loaded), &mut csv)
+            .map_err(|e| Failure::message(format!("path.csv: {e}")))?;
         Ok(csv)
     }
 
@@ -241,6 +240,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     let prj_path = args.geojson.as_deref().filter(|_| prj_text.is_some()).map(|path| path.with_extension("prj"));
     let prj = prj_path.as_deref().map(Pending::begin).transpose()?;
     let csv = args.output.as_deref().filter(|_| !csv_to_stdout).map(Pending::begin).transpose()?;
+    let in_time = trajectory::begin(&args.trajectory)?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, Some(args.prove), args.verify, args.common.quiet)?;
     let mut files = Vec::new();
@@ -255,6 +255,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     if let Some(file) = csv {
         files.push((file, planned.csv(&loaded)?));
     }
+    files.extend(trajectory::filled(in_time, &args.trajectory, planned.path.as_ref(), &loaded)?);
     output::finish(files)?;
     let text = match args.answer.format {
         _ if csv_to_stdout => planned.csv(&loaded)?,

@@ -4,7 +4,7 @@ use std::{fs, path::Path};
 
 use chta::{chain::csv::write_chain_csv, report::CrsRecord};
 
-use super::{plan::Planned, search::use_threads, simulate};
+use super::{plan::Planned, search::use_threads, simulate, trajectory};
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, CommonArgs, Format, RunArgs},
@@ -24,8 +24,16 @@ const PICTURE: &str = "path.svg";
 
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
-    let RunArgs { scenario, output: folder, answer: AnswerArgs { threads, format }, set, accept_map_scale, input_max_gib, quiet } =
-        args;
+    let RunArgs {
+        scenario,
+        output: folder,
+        trajectory: in_time,
+        answer: AnswerArgs { threads, format },
+        set,
+        accept_map_scale,
+        input_max_gib,
+        quiet,
+    } = args;
     inputs::look_at(*input_max_gib, &[(Some(scenario), Role::Scenario)])?;
     use_threads(*threads)?;
     let common = CommonArgs {
@@ -42,8 +50,10 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let loaded = load_scenario(scenario, &common, Purpose::Run)?;
     let ends = loaded.ends()?;
     output::check_folder(folder)?;
+    let trajectory_file = trajectory::begin(in_time)?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, None, true, *quiet)?;
+    let trajectory_csv = trajectory::filled(trajectory_file, in_time, planned.path.as_ref(), &loaded)?;
     let mut chain_csv = Vec::new();
     let projection = loaded.prepared.projection.as_ref();
     let mut comments =
@@ -70,7 +80,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let paths: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
     let pending: Result<Vec<_>, Failure> =
         paths.iter().zip(files).map(|(path, (_, bytes))| Ok((Pending::begin(path)?, bytes))).collect();
-    output::finish(pending?)?;
+    let mut pending = pending?;
+    pending.extend(trajectory_csv);
+    output::finish(pending)?;
     // Files left by an earlier run that had a path, trials or another map would contradict this one.
     for stale in ["path.geojson", "path.prj"].into_iter().chain(simulate::RUN_FILES) {
         if !names.contains(&stale) {

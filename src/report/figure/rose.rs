@@ -6,7 +6,7 @@ use super::{
     Picture,
     bands::HopClasses,
     keys::{self, Swatch},
-    palette::{AXIS, BLACK, PAGE_WIDTH_MM, RIGHT_MM, SMALL_MM, TEXT_MM, TITLE_MM, VERMILION, WHITE},
+    palette::{AXIS, BLACK, BLUE, PAGE_WIDTH_MM, RIGHT_MM, SMALL_MM, TEXT_MM, TITLE_MM, VERMILION, WHITE},
     sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm, wrapped},
     ticks::Ticks,
 };
@@ -14,6 +14,9 @@ use crate::report::FanAnswer;
 
 /// Colour of ground that is not reached.
 const BLOCKED: RGBColor = RGBColor(200, 200, 200);
+
+/// The line towards true north.
+const TRUE_NORTH_PEN: Pen = Pen { colour: BLUE, width_mm: 0.5 };
 
 /// Radius of the rose.
 const RADIUS_MM: f64 = 62.0;
@@ -127,6 +130,10 @@ impl<'a> Rose<'a> {
         sheet.area(vec![(x, y - 5.0), (x + 1.3, y - 1.2), (x, y - 2.1), (x - 1.3, y - 1.2)], BLACK, 1.0);
         let north = Label::new("N (grid)", (x, y - 5.8), TEXT_MM).hung(Anchor::Middle, Hang::Above);
         sheet.label(Label { bold: true, ..north });
+        if let Some(north_deg) = self.answer.true_north_deg {
+            let outside_m = longest_m + 3.0 / self.mm_per_m;
+            sheet.line(vec![self.centre, self.place(outside_m, north_deg)], TRUE_NORTH_PEN);
+        }
         sheet.dot(self.centre, 0.8, BLACK);
     }
 
@@ -136,6 +143,9 @@ impl<'a> Rose<'a> {
         let mut entries: Vec<_> = bands.map(|(class, text)| (Swatch::Fill(self.classes.colour(class)), text)).collect();
         entries.push((Swatch::Fill(BLOCKED), "not reached".to_owned()));
         entries.push((Swatch::Line(Pen { colour: BLACK, width_mm: 0.35 }), "farthest reached".to_owned()));
+        if let Some(north_deg) = self.answer.true_north_deg {
+            entries.push((Swatch::Line(TRUE_NORTH_PEN), format!("true north, {north_deg:.1} deg clockwise from grid north")));
+        }
         if self.answer.rays.iter().any(|ray| ray.cut.is_some()) {
             entries.push((Swatch::Line(Pen { colour: VERMILION, width_mm: 0.5 }), "cut by the map's border or no-data".to_owned()));
         }

@@ -2,12 +2,14 @@
 
 use std::io::{self, Write};
 
-use super::{FIRST_COLUMNS, LandingRow, LandingWriter, number_columns};
+use super::{FIRST_COLUMNS, LandingRow, LandingWriter, TRUE_HEADING, number_columns};
+use crate::report::MapKnowledge;
 
 /// Landings as CSV, with a header even without landings.
 #[derive(Debug)]
 pub struct CsvLandings<W: Write> {
     writer: csv::Writer<W>,
+    known: MapKnowledge,
 }
 
 impl<W: Write> CsvLandings<W> {
@@ -15,10 +17,11 @@ impl<W: Write> CsvLandings<W> {
     ///
     /// # Errors
     /// An error of the file system.
-    pub fn begin(out: W, on_a_map: bool) -> io::Result<Self> {
+    pub fn begin(out: W, known: MapKnowledge) -> io::Result<Self> {
         let mut writer = csv::Writer::from_writer(out);
-        writer.write_record(FIRST_COLUMNS.iter().chain(number_columns(on_a_map)))?;
-        Ok(Self { writer })
+        let heading = (known == MapKnowledge::Projection).then_some(&TRUE_HEADING);
+        writer.write_record(FIRST_COLUMNS.iter().chain(number_columns(known)).chain(heading))?;
+        Ok(Self { writer, known })
     }
 }
 
@@ -30,6 +33,9 @@ impl<W: Write> LandingWriter for CsvLandings<W> {
         self.writer.write_field(row.outcome)?;
         for number in row.numbers {
             self.writer.write_field(number.to_string())?;
+        }
+        if self.known == MapKnowledge::Projection {
+            self.writer.write_field(row.heading_true_deg.map(|heading| heading.to_string()).unwrap_or_default())?;
         }
         self.writer.write_record(None::<&[u8]>)?;
         Ok(())

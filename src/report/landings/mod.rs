@@ -9,7 +9,10 @@ use std::io;
 pub use self::csv::CsvLandings;
 #[cfg(feature = "parquet")]
 pub use self::parquet::ParquetLandings;
+use super::path_record::{MapKnowledge, heading_true_deg};
 use crate::{
+    quantity::MapPoint,
+    terrain::MapProjection,
     uncertainty::{HopRecord, Policy},
     world::Direction,
 };
@@ -43,7 +46,12 @@ pub struct LandingRow {
     pub outcome: &'static str,
     /// The numbers, in the order of [`number_columns`].
     pub numbers: [f64; NUMBERS],
+    /// The heading from true north at the take-off, on a map of a known projection; absent at a pole.
+    pub heading_true_deg: Option<f64>,
 }
+
+/// The last column, on a map of a known projection.
+const TRUE_HEADING: &str = "heading_true_deg";
 
 /// The number of numeric columns in a row.
 const NUMBERS: usize = 16;
@@ -92,20 +100,24 @@ const ON_MAP: [&str; NUMBERS] = [
 ];
 
 /// The names of the numbers in a row.
-pub const fn number_columns(on_a_map: bool) -> &'static [&'static str; NUMBERS] {
-    if on_a_map { &ON_MAP } else { &ON_CHAIN }
+pub const fn number_columns(known: MapKnowledge) -> &'static [&'static str; NUMBERS] {
+    if matches!(known, MapKnowledge::Nothing) { &ON_CHAIN } else { &ON_MAP }
 }
 
 impl LandingRow {
     /// The row of a flown hop; `None` if it did not land.
-    pub fn new(record: &HopRecord, policy: Policy, on_a_map: bool) -> Option<Self> {
+    pub fn new(record: &HopRecord, policy: Policy, on_a_map: bool, projection: Option<&MapProjection>) -> Option<Self> {
         let direction = if on_a_map {
             let degrees = libm::atan2(record.heading.x, record.heading.y).to_degrees();
             if degrees < 0.0 { degrees + 360.0 } else { degrees }
         } else {
             (if record.heading.x < 0.0 { Direction::Reverse } else { Direction::Forward }).sign()
         };
+        let takeoff = MapPoint::new(record.takeoff_m.x, record.takeoff_m.y);
         record.landed.then(|| Self {
+            heading_true_deg: projection
+                .filter(|_| on_a_map)
+                .and_then(|projection| heading_true_deg(projection, takeoff, direction)),
             trial: record.trial,
             hop: record.hop,
             policy: policy.name(),

@@ -16,6 +16,7 @@ mod crs_error;
 mod definition;
 mod epsg_units;
 mod geokeys;
+mod north;
 mod proj_text;
 mod scale;
 mod stated;

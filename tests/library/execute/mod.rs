@@ -3,7 +3,7 @@
 #![expect(clippy::unwrap_used, clippy::print_stdout, reason = "a test may fail, and says how much it has tried")]
 
 mod spoiled;
-mod world;
+pub(crate) mod world;
 
 use self::world::{Dice, World};
 use chta::{
@@ -181,6 +181,7 @@ fn flown_over_the_needle(m: f64, clearance_m: f64, change: Change) -> (Option<Fl
         lower_vertex: Some(VertexId(2)),
         upper_limit: Limit::TakeoffCone,
         aim: None,
+        margins: chta::hop::HopMargins::UNLIMITED,
     };
     change(&mut hop);
     let execution = execute(&chain, &HopPath { hops: vec![hop], totals: Totals::default() }, None);

@@ -8,7 +8,9 @@ use std::{
 
 use chta::{
     progress::{Detail, Step},
+    report::MapKnowledge,
     report::landings::{CsvLandings, LandingRow, LandingWriter},
+    terrain::MapProjection,
     uncertainty::{HopRecord, Observer, Policy},
 };
 
@@ -20,17 +22,23 @@ pub(super) struct RowFile<'a> {
     writer: Box<dyn LandingWriter>,
     /// `None` for standard output.
     pending: Option<Pending<'a>>,
-    on_a_map: bool,
+    known: MapKnowledge,
+    projection: Option<MapProjection>,
 }
 
 impl<'a> RowFile<'a> {
     /// Opens it in the format of its extension.
     pub(super) fn begin(path: &'a Path, loaded: &Loaded) -> Result<Self, Failure> {
-        let on_a_map = on_dem(loaded);
+        let projection = loaded.prepared.projection.clone().filter(|_| on_dem(loaded));
+        let known = match (on_dem(loaded), &projection) {
+            (false, _) => MapKnowledge::Nothing,
+            (true, None) => MapKnowledge::Metres,
+            (true, Some(_)) => MapKnowledge::Projection,
+        };
         let unwritten = |error: io::Error| Failure::message(format!("{}: cannot be written ({error})", path.display()));
         if path == Path::new("-") {
-            let writer = CsvLandings::begin(BufWriter::new(io::stdout()), on_a_map).map_err(unwritten)?;
-            return Ok(Self { writer: Box::new(writer), pending: None, on_a_map });
+            let writer = CsvLandings::begin(BufWriter::new(io::stdout()), known).map_err(unwritten)?;
+            return Ok(Self { writer: Box::new(writer), pending: None, known, projection });
         }
         let ending = path.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
         let writer: Box<dyn LandingWriter>;
@@ -39,9 +47,9 @@ impl<'a> RowFile<'a> {
             Some("csv") => {
                 pending = Pending::begin(path)?;
                 let out = BufWriter::with_capacity(1 << 16, pending.handle()?);
-                writer = Box::new(CsvLandings::begin(out, on_a_map).map_err(unwritten)?);
+                writer = Box::new(CsvLandings::begin(out, known).map_err(unwritten)?);
             }
-            Some("parquet") => (pending, writer) = parquet(path, loaded, on_a_map)?,
+            Some("parquet") => (pending, writer) = parquet(path, loaded, known)?,
             _ => {
                 return Err(Failure::message(format!(
                     "--output: '{}' ends neither in .csv nor in .parquet: give the landings one of the two names",
@@ -49,7 +57,7 @@ impl<'a> RowFile<'a> {
                 )));
             }
         }
-        Ok(Self { writer, pending: Some(pending), on_a_map })
+        Ok(Self { writer, pending: Some(pending), known, projection })
     }
 
     /// Finishes the file and renames it to its final name.
@@ -66,7 +74,7 @@ impl<'a> RowFile<'a> {
 
 /// A Parquet file, with scenario and seed in its metadata.
 #[cfg(feature = "parquet")]
-fn parquet<'a>(path: &'a Path, loaded: &Loaded, on_a_map: bool) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
+fn parquet<'a>(path: &'a Path, loaded: &Loaded, known: MapKnowledge) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
     use chta::report::landings::ParquetLandings;
 
     let seed = loaded.scenario.uncertainty.unwrap_or_default().seed;
@@ -78,14 +86,14 @@ fn parquet<'a>(path: &'a Path, loaded: &Loaded, on_a_map: bool) -> Result<(Pendi
     ];
     let pending = Pending::begin(path)?;
     let out = BufWriter::with_capacity(1 << 16, pending.handle()?);
-    let writer = ParquetLandings::begin(out, on_a_map, &words)
+    let writer = ParquetLandings::begin(out, known, &words)
         .map_err(|error| Failure::message(format!("{}: cannot be written ({error})", path.display())))?;
     Ok((pending, Box::new(writer)))
 }
 
 /// Parquet without the feature `parquet`: always an error.
 #[cfg(not(feature = "parquet"))]
-fn parquet<'a>(path: &'a Path, _loaded: &Loaded, _on_a_map: bool) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
+fn parquet<'a>(path: &'a Path, _loaded: &Loaded, _known: MapKnowledge) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
     Err(Failure::message(format!(
         "--output: '{}' is a Parquet file, but this chta was built without Parquet: build it with `cargo install --path . --features parquet`, or \
          give a name that ends in .csv",
@@ -133,7 +141,7 @@ impl Observer for Listener<'_> {
 
     fn hop(&mut self, hop: &HopRecord) {
         let Some(rows) = self.rows.as_mut().filter(|_| self.failed.is_none()) else { return };
-        if let Some(row) = LandingRow::new(hop, self.policy, rows.on_a_map)
+        if let Some(row) = LandingRow::new(hop, self.policy, rows.known != MapKnowledge::Nothing, rows.projection.as_ref())
             && let Err(error) = rows.writer.write(&row)
         {
             // A closed pipe is success: the reader needs no more.

@@ -15,7 +15,7 @@ use chta::{
 };
 use serde::Serialize;
 
-use super::{plan::Planned, search::use_threads};
+use super::{plan::Planned, search::use_threads, trajectory};
 use crate::cli::{
     Answer, Failure,
     args::{Format, SimulateArgs},
@@ -59,6 +59,11 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
         &trial_options(args),
     )?;
     if let Some(name) = &args.experiment {
+        if args.trajectory.trajectory.is_some() {
+            let message =
+                format!("--trajectory: the experiment {name} flies no nominal path: omit one of --trajectory and --experiment");
+            return Err(Failure::message(message));
+        }
         return experiment::run(args, &loaded, name);
     }
     // All options are checked before the search, which may take long.
@@ -75,10 +80,13 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     let rows = args.output.as_deref().map(|path| RowFile::begin(path, &loaded)).transpose()?;
     let plot = args.plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
     let plot_map = args.plot_map.as_deref().map(|path| output::begin_picture("--plot-map", path)).transpose()?;
+    let in_time = trajectory::begin(&args.trajectory)?;
     let to_stdout = args.output.as_deref() == Some(Path::new("-"));
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, None, false, args.common.quiet)?;
+    let trajectory_csv = trajectory::filled(in_time, &args.trajectory, planned.path.as_ref(), &loaded)?;
     let Some(path) = &planned.path else {
+        output::finish(trajectory_csv.into_iter().collect())?;
         return no_path(args, &loaded, &planned);
     };
     let policies: &[Policy] = if args.compare { &Policy::ALL } else { std::slice::from_ref(&keys.policy) };
@@ -98,6 +106,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     {
         files.push((file, picture));
     }
+    files.extend(trajectory_csv);
     output::finish(files)?;
     if to_stdout {
         return Ok(Answer::Yes);

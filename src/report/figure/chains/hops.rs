@@ -27,6 +27,8 @@ pub struct HopProfile {
     pub ground: Vec<ChainPoint>,
     /// The hop; its map coordinates are printed if it has them.
     pub hop: Hop,
+    /// The heading from true north at the take-off, degrees; `None` where the projection is not known, and at a pole.
+    pub heading_true_deg: Option<f64>,
     /// The least clearance of the flight over a vertex: x and height above it, m; `None` if there is no vertex between the ends.
     pub least_clearance_m: Option<(f64, f64)>,
 }
@@ -129,7 +131,9 @@ fn words(profile: &HopProfile) -> Vec<String> {
     let mut found = Vec::new();
     if let Some((from, to)) = hop.map_ends() {
         found.push(format!("({:.1}, {:.1}) m to ({:.1}, {:.1}) m", from.x, from.y, to.x, to.y));
-        found.push(format!("run {run_m} m, heading {:.1} deg; flight {} s", hop.heading_deg, short(hop.flight_time_s)));
+        let from_true_north = profile.heading_true_deg.map(|heading| format!(", {heading:.1}° true")).unwrap_or_default();
+        let time_s = short(hop.flight_time_s);
+        found.push(format!("run {run_m} m in {time_s} s, heading {:.1}° grid{from_true_north}", hop.heading_deg));
     } else {
         found.push(format!("run {run_m} m; flight {} s", short(hop.flight_time_s)));
     }

@@ -350,8 +350,15 @@ fn hop_profile(i: usize, hops: usize) -> HopProfile {
         lower_vertex: None,
         upper_limit: Limit::TakeoffSpeed,
         aim: None,
+        margins: crate::hop::HopMargins::UNLIMITED,
     };
-    HopProfile { name: format!("goal 1, hop {} of {hops}", i + 1), ground, hop, least_clearance_m: Some((0.4 * run_m, 2.25)) }
+    HopProfile {
+        heading_true_deg: Some(80.6),
+        name: format!("goal 1, hop {} of {hops}", i + 1),
+        ground,
+        hop,
+        least_clearance_m: Some((0.4 * run_m, 2.25)),
+    }
 }
 
 #[test]
@@ -388,7 +395,7 @@ fn sheets_of_hops_are_grids_within_their_aspect_ratio() {
     let told = texts(&check_picture("hop-profiles", || draw_hop_profiles(&figure).unwrap()));
     for words in [
         "(75897.5, 38702.5) m to (75900.0, 38710.0) m",
-        "run 4 m, heading 18.4 deg; flight 2.5 s",
+        "run 4 m in 2.5 s, heading 18.4° grid, 80.6° true",
         "run 5 m; flight 2.5 s",
         "take-off 5 m/s at 60.0 deg (60.0 to 71.2 feasible)",
         "landing 4.5 m/s at -55.5 deg; least clearance 2.25 m",

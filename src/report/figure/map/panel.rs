@@ -44,7 +44,13 @@ pub(super) struct MapPanel {
     panel: Panel,
     bounds: MapBounds,
     mm_per_m: f64,
+    /// Where true north lies from the middle of the map, clockwise from grid north, degrees; `None` if it is not known, or differs
+    /// from grid north by less than an arrow shows.
+    true_north_deg: Option<f64>,
 }
+
+/// An arrow turned by less than this looks straight, degrees.
+const LEAST_TURN_DEG: f64 = 0.5;
 
 impl MapPanel {
     /// Lays out a window of a DEM below a height of the sheet, with the same scale on both axes.
@@ -61,7 +67,13 @@ impl MapPanel {
         let left = left + 0.5 * (RIGHT_MM - left - wide_m * mm_per_m);
         let top = top_mm + STRIP_MM;
         let panel = Panel { left, top, right: left + wide_m * mm_per_m, bottom: top + high_m * mm_per_m };
-        Self { panel, bounds, mm_per_m }
+        let middle = MapPoint::new(0.5 * (bounds.min.x + bounds.max.x), 0.5 * (bounds.min.y + bounds.max.y));
+        let true_north_deg = map
+            .projection()
+            .ok()
+            .and_then(|projection| projection.north_on_map_deg(middle))
+            .filter(|north_deg| (LEAST_TURN_DEG..360.0 - LEAST_TURN_DEG).contains(north_deg));
+        Self { panel, bounds, mm_per_m, true_north_deg }
     }
 
     /// Where a point of the map is drawn.
@@ -111,14 +123,27 @@ impl MapPanel {
         end_mm
     }
 
-    /// An arrow to grid north above the map's right end; on a narrow map right of the scale bar.
+    /// An arrow to grid north above the map's right end, left of it one to true north if that differs; on a narrow map right of the
+    /// scale bar.
     fn north(&self, sheet: &mut Sheet, bar_end_mm: f64) {
         const NAME: &str = "N (grid)";
-        let after_bar = bar_end_mm + 4.0 + text_width_mm(NAME, TEXT_MM) + 2.4;
+        const TRUE_NAME: &str = "N (true, at the middle)";
+        const ARROW_MM: f64 = 6.0;
+        let true_mm = self.true_north_deg.map_or(0.0, |_| text_width_mm(TRUE_NAME, TEXT_MM) + ARROW_MM + 3.0);
+        let after_bar = bar_end_mm + 4.0 + true_mm + text_width_mm(NAME, TEXT_MM) + 2.4;
         let (x, y) = ((self.panel.right - 1.8).max(after_bar), self.panel.top - 1.4);
         sheet.area(vec![(x, y - 5.0), (x + 1.3, y), (x, y - 1.0), (x - 1.3, y)], BLACK, 1.0);
         let name = Label::new(NAME, (x - 2.4, y - 2.4), TEXT_MM).hung(Anchor::End, Hang::Through);
+        let (left_mm, ..) = name.bounds_mm();
         sheet.label(Label { bold: true, ..name });
+        let Some(north_deg) = self.true_north_deg else { return };
+        let centre = (left_mm - 3.0 - 0.5 * ARROW_MM, self.panel.top - 3.9);
+        let (sin, cos) = libm::sincos(north_deg.to_radians());
+        let turned = [(0.0, -2.5), (1.3, 2.5), (0.0, 1.5), (-1.3, 2.5), (0.0, -2.5)]
+            .map(|(x, y): Place| (centre.0 + x * cos - y * sin, centre.1 + x * sin + y * cos));
+        sheet.line(turned.to_vec(), CORE_PEN);
+        let at = (centre.0 - 0.5 * ARROW_MM - 0.6, self.panel.top - 2.4 - 1.4);
+        sheet.label(Label::new(TRUE_NAME, at, TEXT_MM).hung(Anchor::End, Hang::Through));
     }
 
     /// Paths with their landings.
