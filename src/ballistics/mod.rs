@@ -28,6 +28,7 @@
 
 mod arc;
 mod choice;
+mod delta_v;
 mod flight_envelope;
 pub mod limits;
 mod line_of_sight;
@@ -35,6 +36,7 @@ mod safety;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
 pub use choice::TakeoffChoice;
+pub use delta_v::{STANDARD_GRAVITY_M_S2, delta_v_m_s, propellant_kg};
 pub use flight_envelope::{ContactLimits, FlightEnvelope};
 pub use line_of_sight::LineOfSight;
 pub use safety::{safety_ceiling_m, safety_range_m};

@@ -1,6 +1,8 @@
 //! The chain with the constraints of every segment resolved: the input of all analyses.
 
-use super::{GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station};
+use super::{
+    GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station, touchdown::touchdown_rule,
+};
 use crate::{
     quantity::{Angle, SegmentId},
     world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, InvalidSurface, RestSlope, SurfaceProperties},
@@ -207,19 +209,25 @@ pub(crate) fn resolve_constraints(
     if unbounded(&forward) || unbounded(&reverse) {
         return Err(ConstraintProblem::NoSpeed(id));
     }
+    let tilt = tilt_slope(slope, cross_slope.slope());
+    let touchdown = hopper.limits().landing.touchdown_speed_m_s().map(|speed_m_s| {
+        [forward, reverse].map(|line| touchdown_rule(line, friction.map(|friction| (tilt, friction)), speed_m_s))
+    });
     let cap_m_s = gravity.speed_cap_m_s();
-    let [forward, reverse] = [forward, reverse].map(|line| line.map(|line| line.capped(cap_m_s, cap_m_s)));
+    // A touchdown with brakes is no end of an arc.
+    let landing_cap_m_s = if touchdown.is_some() { f64::INFINITY } else { cap_m_s };
+    let [forward, reverse] = [forward, reverse].map(|line| line.map(|line| line.capped(cap_m_s, landing_cap_m_s)));
     let rest_slope = match surface.rest {
         RestSlope::AsFrictionHolds => friction.map(FrictionCone::coefficient),
         RestSlope::AtMost(angle) => Some(angle.slope()),
         RestSlope::Unlimited => None,
     };
-    let tilt = tilt_slope(slope, cross_slope.slope());
     let too_steep = rest_slope
         .filter(|&max| tilt > max)
         .map(|max| GroundRefusal::TooSteep { tilt: Angle::from_slope(tilt), max: Angle::from_slope(max) });
     let refusal = if ground.keep_out { Some(GroundRefusal::KeepOut) } else { too_steep };
-    Ok(SegmentConstraints::new(forward, reverse, refusal))
+    let constraints = SegmentConstraints::new(forward, reverse, refusal);
+    Ok(touchdown.map_or(constraints, |touchdown| constraints.with_touchdown(touchdown)))
 }
 
 /// The tangent of a surface's inclination, from its slope `s` along the plane of travel and the tangent `t` of its

@@ -6,4 +6,4 @@ mod hop;
 
 pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute};
 pub use generate::{TooManyHops, generate};
-pub use hop::{Hop, HopPath, Totals, heading_deg};
+pub use hop::{Hop, HopPath, Propellant, Totals, heading_deg};

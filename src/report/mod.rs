@@ -13,6 +13,7 @@ pub mod landings;
 mod map_answer;
 mod path_record;
 mod proof_record;
+mod propellant_record;
 mod reliability_record;
 mod require_answer;
 mod simulate_answer;
@@ -30,6 +31,7 @@ pub use hop_answer::{BestRecord, BindingRecord, HopAnswer, LimitRecord, SegmentH
 pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord};
 pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
+pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, reliable_paths_text};
 pub use require_answer::{RequireAnswer, RequireTry};
 pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulationRecord};

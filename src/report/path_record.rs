@@ -4,6 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
+use super::propellant_record::{STORES_COLUMNS, StoresRecord};
 use crate::{
     path::{Hop, HopPath, Totals},
     quantity::MapPoint,
@@ -48,6 +49,9 @@ pub struct HopRecord {
     /// On a map: direction of flight, clockwise from grid north.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub map: Option<MapRecord>,
+    /// Delta-v, propellant and mass.
+    #[serde(flatten)]
+    pub stores: StoresRecord,
 }
 
 /// The columns of a hop on a map.
@@ -104,7 +108,7 @@ pub(super) fn tenth_digit(degrees: f64) -> f64 {
 pub struct TotalsRecord {
     /// Time in flight.
     pub flight_time_s: f64,
-    /// Energy per unit mass.
+    /// Energy from the store, per unit mass.
     pub energy_j_kg: f64,
     /// The greatest take-off speed.
     pub peak_takeoff_speed_m_s: f64,
@@ -113,9 +117,26 @@ pub struct TotalsRecord {
     /// Energy, if the mass is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy_j: Option<f64>,
-    /// Time in flight and at rest, if the rest time is given.
+    /// Time in flight, of preparations and of settling between hops, if one of the last two is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mission_time_s: Option<f64>,
+    /// `store` where the energies are more than those of motion: with an efficiency or a preparation energy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_basis: Option<&'static str>,
+    /// Delta-v.
+    pub delta_v_m_s: f64,
+    /// Propellant, if the specific impulse is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub propellant_kg: Option<f64>,
+    /// Mass at the end, if the specific impulse is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass_end_kg: Option<f64>,
+    /// Propellant beyond what the machine has, if the path takes too much.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub propellant_short_kg: Option<f64>,
+    /// Whether the machine has a key of propulsion, so that text states the delta-v.
+    #[serde(skip)]
+    pub propulsive: bool,
 }
 
 impl HopRecord {
@@ -150,6 +171,7 @@ impl HopRecord {
                 landing_map_y_m: landing.y,
                 lon_lat: projection.and_then(|projection| LonLatRecord::new(ends, projection)),
             }),
+            stores: hop.into(),
         }
     }
 }
@@ -163,6 +185,12 @@ impl From<&Totals> for TotalsRecord {
             ground_distance_m: unsigned_zero(totals.ground_distance_m),
             energy_j: totals.energy_j.map(unsigned_zero),
             mission_time_s: totals.mission_time_s.map(unsigned_zero),
+            energy_basis: totals.of_store.then_some("store"),
+            delta_v_m_s: unsigned_zero(totals.delta_v_m_s),
+            propellant_kg: totals.propellant.map(|propellant| unsigned_zero(propellant.used_kg)),
+            mass_end_kg: totals.propellant.map(|propellant| propellant.mass_end_kg),
+            propellant_short_kg: totals.propellant_short_kg,
+            propulsive: totals.propulsive,
         }
     }
 }
@@ -246,7 +274,7 @@ pub fn write_paths_csv<'a>(
 fn columns(known: MapKnowledge) -> Vec<&'static str> {
     let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
     let lon_lat: &[&str] = if known >= MapKnowledge::Projection { &LON_LAT_COLUMNS } else { &[] };
-    [&COLUMNS[..], map, lon_lat].concat()
+    [&COLUMNS[..], map, lon_lat, &STORES_COLUMNS].concat()
 }
 
 impl HopRecord {
@@ -283,6 +311,7 @@ impl HopRecord {
                 .map(|place| [place.takeoff_lon_deg, place.takeoff_lat_deg, place.landing_lon_deg, place.landing_lat_deg]);
             fields.extend(texts(numbers));
         }
+        fields.extend(self.stores.fields());
         fields
     }
 }

@@ -2,7 +2,10 @@
 
 use std::fmt::Write;
 
-use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, ProofRecord, RequireAnswer, TotalsRecord};
+use super::{
+    BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, ProofRecord, RequireAnswer, TotalsRecord,
+    propellant_record::{delta_v_field, stores_lines},
+};
 use crate::quantity::{format_number, unit_of};
 
 /// A sheet of text; writing to it does not fail.
@@ -208,6 +211,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         place(answer.start_x_m),
         place(answer.goal_x_m)
     ));
+    if let Some(shortage) = &answer.propellant_shortage {
+        sheet.line(format_args!("not with its propellant: {}", shortage.sentence()));
+    }
     if let Some(effort) = answer.effort {
         sheet.line(format_args!("{}: {:.4} {}", effort.total, effort.value, effort.unit));
     }
@@ -273,12 +279,22 @@ fn ranked(counts: &std::collections::BTreeMap<&'static str, u64>) -> String {
 pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
     let mut sheet = Sheet::default();
     sheet.line(format_args!(
-        "{:>4} {:<8}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>9}  {}",
-        "hop", "", "from x (m)", "to x (m)", "up (deg)", "m/s", "down(deg)", "m/s", "s", "binding (lower/upper)"
+        "{:>4} {:<8}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>9}{}  {}",
+        "hop",
+        "",
+        "from x (m)",
+        "to x (m)",
+        "up (deg)",
+        "m/s",
+        "down(deg)",
+        "m/s",
+        "s",
+        delta_v_field(None, totals),
+        "binding (lower/upper)"
     ));
     for row in rows {
         sheet.line(format_args!(
-            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}  {}",
+            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}{}  {}",
             row.hop,
             row.direction,
             row.takeoff_x_m,
@@ -288,6 +304,7 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
             row.landing_angle_deg,
             row.landing_speed_m_s,
             row.flight_time_s,
+            delta_v_field(Some(row), totals),
             row.binding
         ));
     }
@@ -300,6 +317,9 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
     }
     if let Some(mission_time_s) = totals.mission_time_s {
         sheet.line(format_args!("mission time {mission_time_s:.3} s"));
+    }
+    for line in stores_lines(totals) {
+        sheet.line(format_args!("{line}"));
     }
     sheet.0
 }

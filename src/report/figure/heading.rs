@@ -87,6 +87,9 @@ fn clearance(hopper: &Hopper) -> String {
 /// The answer in a few words.
 fn verdict(answer: &Answer, data: &FigureData) -> String {
     match &data.subject {
+        Subject::Path { hops, totals } if totals.propellant_short_kg.is_some() => {
+            format!("a path of {} hops takes more propellant than the hopper has", hops.of)
+        }
         Subject::Path { hops, .. } => match hops.of {
             0 => "no hop needed".to_owned(),
             1 => "1 hop, traversable".to_owned(),
@@ -141,6 +144,10 @@ fn total(totals: &Totals) -> String {
     ];
     parts.extend(totals.energy_j.map(|energy| format!("{} J in all", short(energy))));
     parts.extend(totals.mission_time_s.map(|time| format!("{} s with rests", short(time))));
+    if totals.propulsive {
+        parts.push(format!("delta-v {} m/s", short(totals.delta_v_m_s)));
+    }
+    parts.extend(totals.propellant.map(|p| format!("propellant {} kg, {} kg left", short(p.used_kg), short(p.mass_end_kg))));
     format!("Totals: {}.", parts.join(", "))
 }
 
