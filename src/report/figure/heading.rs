@@ -7,6 +7,7 @@ use super::{
     picture::paragraph,
     sheet::Sheet,
     ticks::short,
+    touchdown,
 };
 use crate::{
     graph::{Answer, EndpointRefusal},
@@ -48,15 +49,20 @@ pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
 /// assert_eq!(words, "Mars, g = 3.711 m/s²; take-off speed ≤ 6 m/s; landing speed ≤ 6 m/s; clearance 0 m; friction coefficient 0.6");
 /// ```
 pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m_s: (f64, f64), ground: &str) -> String {
+    const LANDING: &str = "landing speed";
     let mut parts = Vec::new();
     let gravity = format!("g = {} m/s²", short(gravity_m_s2));
     parts.push(if body.is_empty() { gravity } else { format!("{body}, {gravity}") });
     for (name, limit, bound) in [
         ("take-off speed", hopper.limits().takeoff_speed_max_m_s, speed_bounds_m_s.0),
-        ("landing speed", hopper.limits().landing_speed_max_m_s, speed_bounds_m_s.1),
+        (LANDING, hopper.limits().landing_speed_max_m_s, speed_bounds_m_s.1),
     ] {
         // If the hopper has no limit of its own, the chain's explicit limits apply.
         let most = if limit.is_finite() { limit } else { bound };
+        if let Some(touchdown_m_s) = hopper.limits().landing.touchdown_speed_m_s().filter(|_| name == LANDING) {
+            parts.push(touchdown::conditions(touchdown_m_s, most));
+            continue;
+        }
         parts.push(format!("{name} ≤ {} m/s", short(most)));
     }
     parts.push(clearance(hopper));

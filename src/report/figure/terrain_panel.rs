@@ -8,7 +8,7 @@ use super::{
     scale::{Frame, Scale},
     sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm},
     spans::{GroundUse, stretch},
-    symbols,
+    symbols, touchdown,
     ticks::{Ticks, one_in, short},
 };
 use crate::{chain::ConstrainedChain, quantity::ChainPoint};
@@ -115,6 +115,9 @@ impl<'a> TerrainPanel<'a> {
         for hop in hops {
             symbols::takeoff(sheet, frame.place(hop.hop.takeoff.in_profile()));
             symbols::landing(sheet, frame.place(hop.hop.landing.in_profile()));
+            if let Some(speed_m_s) = hop.touchdown_m_s {
+                touchdown::drawn(sheet, frame.place(hop.hop.landing.in_profile()), speed_m_s);
+            }
         }
         let widest = hops.last().map_or(0.0, |hop| text_width_mm(&hop.number.to_string(), SMALL_MM));
         let every = one_in((widest + 1.2) / lengths.get(lengths.len() / 2).copied().unwrap_or(1.0));
