@@ -24,9 +24,6 @@ impl TooManyHops {
     pub const MOST: u64 = 1_000_000;
 }
 
-/// Propellant beyond the greatest by less than this share is within it: the tolerance of the program's speeds.
-const ROUNDING: f64 = 1e-9;
-
 /// The hops of a path, in two dimensions, and in three if the chain lies on a map (P Algorithm 4, Remark 3).
 ///
 /// # Errors
@@ -169,7 +166,6 @@ fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
         let used_kg = propellant_kg(mass_kg, delta_v_m_s, isp_s);
         Propellant { used_kg, mass_end_kg: mass_kg - used_kg }
     });
-    let short_kg = |(used, most): (Propellant, f64)| Some(used.used_kg - most).filter(|short_kg| *short_kg > ROUNDING * most);
     Totals {
         flight_time_s,
         energy_j_kg,
@@ -179,7 +175,7 @@ fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
         mission_time_s: limits.ground_time_s(hops.len()).map(|ground_time_s| flight_time_s + ground_time_s),
         delta_v_m_s,
         propellant,
-        propellant_short_kg: propellant.zip(limits.propellant_max_kg).and_then(short_kg),
+        propellant_max_kg: limits.propellant_max_kg,
         propulsive: limits.is_propulsive(),
         of_store: limits.counts_store_energy(),
     }

@@ -121,12 +121,22 @@ pub struct Totals {
     pub delta_v_m_s: f64,
     /// Propellant and the mass at the end, if the specific impulse is known.
     pub propellant: Option<Propellant>,
-    /// Propellant beyond what the machine has, kg; `None` if it suffices or no amount is given.
-    pub propellant_short_kg: Option<f64>,
+    /// The propellant that the machine has, kg, if it is given.
+    pub propellant_max_kg: Option<f64>,
     /// Whether the machine has brakes, an overhead or a specific impulse.
     pub propulsive: bool,
     /// Whether the energies are more than those of motion.
     pub of_store: bool,
+}
+
+impl Totals {
+    /// Propellant beyond what the machine has, kg; `None` if it suffices or no amount is given.
+    pub fn propellant_short_kg(&self) -> Option<f64> {
+        /// Propellant beyond the greatest by less than this share is within it: the tolerance of speeds.
+        const ROUNDING: f64 = 1e-9;
+        let max_kg = self.propellant_max_kg?;
+        Some(self.propellant?.used_kg - max_kg).filter(|short_kg| *short_kg > ROUNDING * max_kg)
+    }
 }
 
 /// Propellant used, and the mass left.

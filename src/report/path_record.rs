@@ -189,7 +189,7 @@ impl From<&Totals> for TotalsRecord {
             delta_v_m_s: unsigned_zero(totals.delta_v_m_s),
             propellant_kg: totals.propellant.map(|propellant| unsigned_zero(propellant.used_kg)),
             mass_end_kg: totals.propellant.map(|propellant| propellant.mass_end_kg),
-            propellant_short_kg: totals.propellant_short_kg,
+            propellant_short_kg: totals.propellant_short_kg(),
             propulsive: totals.propulsive,
         }
     }

@@ -3,7 +3,10 @@
 use serde::Serialize;
 
 use super::{HopRecord, TotalsRecord};
-use crate::path::{Hop, Totals};
+use crate::{
+    path::{Hop, Totals},
+    quantity::format_number,
+};
 
 /// The delta-v of a hop, its propellant and the mass after it.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -53,16 +56,18 @@ pub struct PropellantShortage {
 impl PropellantShortage {
     /// That of a path's totals; `None` if the propellant suffices or no amount is given.
     pub fn of(totals: &Totals) -> Option<Self> {
-        let (short_kg, needed_kg) = totals.propellant_short_kg.zip(totals.propellant.map(|propellant| propellant.used_kg))?;
-        Some(Self { needed_kg, max_kg: needed_kg - short_kg, short_kg })
+        let short_kg = totals.propellant_short_kg()?;
+        Some(Self { needed_kg: totals.propellant?.used_kg, max_kg: totals.propellant_max_kg?, short_kg })
     }
 
     /// The shortage as a sentence, without a claim about other paths.
     pub fn sentence(&self) -> String {
         format!(
-            "this path takes {:.4} kg of propellant, {:.4} kg more than the machine has (hopper.propellant_max_kg); the search looks for \
-             few hops, not for little propellant, so it is not proved that every path takes too much",
-            self.needed_kg, self.short_kg
+            "this path takes {:.4} kg of propellant, {:.4} kg more than the {} kg that the machine has (hopper.propellant_max_kg); the \
+             search looks for few hops, not for little propellant, so it is not proved that every path takes too much",
+            self.needed_kg,
+            self.short_kg,
+            format_number(self.max_kg)
         )
     }
 }

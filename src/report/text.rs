@@ -217,7 +217,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     if let Some(effort) = answer.effort {
         sheet.line(format_args!("{}: {:.4} {}", effort.total, effort.value, effort.unit));
     }
-    if let Some(proof) = &answer.proof {
+    if let (Some(lower), true) = (answer.proof.as_ref().and_then(|proof| proof.lower_bound), answer.propellant_shortage.is_some()) {
+        sheet.line(format_args!("no path has fewer than {lower} hop{}, whatever propellant it takes", plural(lower)));
+    } else if let Some(proof) = &answer.proof {
         proof_lines(&mut sheet, proof, means);
     }
     sheet.line(format_args!(

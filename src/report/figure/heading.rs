@@ -93,7 +93,7 @@ fn clearance(hopper: &Hopper) -> String {
 /// The answer in a few words.
 fn verdict(answer: &Answer, data: &FigureData) -> String {
     match &data.subject {
-        Subject::Path { hops, totals } if totals.propellant_short_kg.is_some() => {
+        Subject::Path { hops, totals } if totals.propellant_short_kg().is_some() => {
             format!("a path of {} hops takes more propellant than the hopper has", hops.of)
         }
         Subject::Path { hops, .. } => match hops.of {

@@ -10,9 +10,8 @@ use super::{
 const LENGTH_MM: f64 = 4.2;
 const PEN: Pen = Pen { colour: VERMILION, width_mm: 0.45 };
 
-/// The arrow onto a landing, and the touchdown speed beside it where there is room.
-pub(super) fn drawn(sheet: &mut Sheet, (x, y): Place, speed_m_s: f64) {
-    arrow(sheet, (x, y));
+/// The touchdown speed beside the arrow onto a landing, where there is room.
+pub(super) fn speed(sheet: &mut Sheet, (x, y): Place, speed_m_s: f64) {
     let text = format!("{} m/s", short(speed_m_s));
     let beside = |at_x, anchor| Label::new(text.clone(), (at_x, y - LENGTH_MM), SMALL_MM).hung(anchor, Hang::Through);
     let places = [beside(x + 1.0, Anchor::Start), beside(x - 1.0, Anchor::End)];
@@ -21,7 +20,7 @@ pub(super) fn drawn(sheet: &mut Sheet, (x, y): Place, speed_m_s: f64) {
     }
 }
 
-/// The arrow alone.
+/// The arrow onto a landing.
 pub(super) fn arrow(sheet: &mut Sheet, (x, y): Place) {
     let tip = y - 0.2;
     sheet.line(vec![(x, y - LENGTH_MM), (x, tip - 0.8)], PEN);
