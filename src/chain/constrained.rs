@@ -1,7 +1,8 @@
 //! The chain with the constraints of every segment resolved: the input of all analyses.
 
 use super::{
-    GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station, touchdown::touchdown_rule,
+    GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station,
+    touchdown::touchdown_rule,
 };
 use crate::{
     quantity::{Angle, SegmentId},
@@ -210,9 +211,10 @@ pub(crate) fn resolve_constraints(
         return Err(ConstraintProblem::NoSpeed(id));
     }
     let tilt = tilt_slope(slope, cross_slope.slope());
-    let touchdown = hopper.limits().landing.touchdown_speed_m_s().map(|speed_m_s| {
-        [forward, reverse].map(|line| touchdown_rule(line, friction.map(|friction| (tilt, friction)), speed_m_s))
-    });
+    let touchdown =
+        hopper.limits().landing.touchdown_speed_m_s().map(|speed_m_s| {
+            [forward, reverse].map(|line| touchdown_rule(line, friction.map(|friction| (tilt, friction)), speed_m_s))
+        });
     let cap_m_s = gravity.speed_cap_m_s();
     // A touchdown with brakes is no end of an arc.
     let landing_cap_m_s = if touchdown.is_some() { f64::INFINITY } else { cap_m_s };

@@ -293,8 +293,7 @@ impl SegmentConstraints {
         reverse: Result<LineConstraints, GroundRefusal>,
         refusal: Option<GroundRefusal>,
     ) -> Self {
-        let segment =
-            Self { stated: [forward, reverse], touchdown: None, refusal, allowed: [Allowed::default(); 2] };
+        let segment = Self { stated: [forward, reverse], touchdown: None, refusal, allowed: [Allowed::default(); 2] };
         segment.resolved()
     }
 

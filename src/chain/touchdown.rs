@@ -74,7 +74,13 @@ mod tests {
         let rows = [
             ("friction holds", line(degrees(-100.0, -50.0), 3.0), Some((tilt, cone(20.1))), 2.0, "allowed"),
             ("friction does not hold", line(degrees(-100.0, -50.0), 3.0), Some((tilt, cone(19.9))), 2.0, "slope"),
-            ("exactly the friction angle", line(degrees(-100.0, -50.0), 3.0), Some((0.5, FrictionCone::new(0.5).unwrap())), 2.0, "allowed"),
+            (
+                "exactly the friction angle",
+                line(degrees(-100.0, -50.0), 3.0),
+                Some((0.5, FrictionCone::new(0.5).unwrap())),
+                2.0,
+                "allowed",
+            ),
             ("the cone of the arc does not count", line(degrees(-60.0, -50.0), 3.0), Some((tilt, cone(25.0))), 2.0, "allowed"),
             ("stated angles", line(degrees(-100.0, -50.0), 3.0), None, 2.0, "allowed"),
             ("stated up to straight down", line(degrees(-90.0, -50.0), 3.0), None, 2.0, "allowed"),

@@ -91,7 +91,13 @@ impl Purpose {
         match (key.table, key.name) {
             (
                 "hopper",
-                "mass_kg" | "rest_time_s" | "preparation_time_s" | "settling_time_s" | "preparation_energy_j" | "efficiency" | "isp_s"
+                "mass_kg"
+                | "rest_time_s"
+                | "preparation_time_s"
+                | "settling_time_s"
+                | "preparation_energy_j"
+                | "efficiency"
+                | "isp_s"
                 | "hop_delta_v_overhead_m_s",
             ) => totals,
             ("hopper", "propellant_max_kg") => self.counts_propellant(),
@@ -108,10 +114,7 @@ impl Purpose {
 
     /// Whether its answer is no where the path takes more propellant than the machine has.
     const fn counts_propellant(self) -> bool {
-        matches!(
-            self,
-            Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare | Self::Map { goals: true, .. }
-        )
+        matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare | Self::Map { goals: true, .. })
     }
 
     /// Whether it answers for the scenario's own clearance alone: it varies no key.

@@ -197,7 +197,11 @@ impl FirstContact for DemGround {
                 if held { Ok(()) } else { Err(ContactFailure::Slides) }
             }
             (None, Some(stated)) if limits.landing.brakes() => {
-                if contains_straight_down(stated.landing.angles()) { Ok(()) } else { Err(ContactFailure::Slides) }
+                if contains_straight_down(stated.landing.angles()) {
+                    Ok(())
+                } else {
+                    Err(ContactFailure::Slides)
+                }
             }
             (Some(friction), _) => {
                 let across = touchdown.heading * touchdown.horizontal_m_s;

@@ -174,7 +174,12 @@ pub const CATALOGUE: [Key; 66] = [
         "delta-v of every hop beyond its changes of velocity (gravity and steering losses), m/s; absent: 0",
     ),
     key("hopper", "isp_s", Kind::Number { min: 1e-3, max: 1e6 }, "specific impulse, s, for the propellant; needs mass_kg"),
-    key("hopper", "propellant_max_kg", LENGTH, "propellant at the start, kg, below mass_kg; a path that needs more is no; needs isp_s"),
+    key(
+        "hopper",
+        "propellant_max_kg",
+        LENGTH,
+        "propellant at the start, kg, below mass_kg; a path that needs more is no; needs isp_s",
+    ),
     key("hopper", "preparation_time_s", FROM_ZERO, "time to prepare each hop, s, for the mission time; absent: 0"),
     key("hopper", "settling_time_s", FROM_ZERO, "time to settle between hops, s, for the mission time; absent: 0"),
     key("hopper", "preparation_energy_j", FROM_ZERO, "energy to prepare each hop, J, for the totals of energy; needs mass_kg"),

@@ -13,7 +13,8 @@ pub(super) fn landing(entries: &mut Entries) -> LandingMode {
         (true, None) => {
             // A value of the wrong kind has been reported already.
             if !entries.has_refused("hopper", &["touchdown_speed_m_s"]) {
-                let message = "hopper.landing is \"braked\" without hopper.touchdown_speed_m_s, the speed to which it brakes".to_owned();
+                let message =
+                    "hopper.landing is \"braked\" without hopper.touchdown_speed_m_s, the speed to which it brakes".to_owned();
                 let help = "add touchdown_speed_m_s, or say landing = \"ballistic\"";
                 entries.problem(("hopper", "landing"), ProblemKind::Missing, message, help);
             }

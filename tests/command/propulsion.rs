@@ -97,7 +97,10 @@ fn too_little_propellant_is_no_and_is_said() {
     }
     let plan = short.json(&["plan", "level.toml", "--prove"]);
     assert_eq!(plan["verdict"], "no-path-found");
-    assert_eq!((plan["proved"].as_bool(), plan["upper_bound"].as_u64(), plan["lower_bound"].as_u64()), (Some(false), None, Some(2)));
+    assert_eq!(
+        (plan["proved"].as_bool(), plan["upper_bound"].as_u64(), plan["lower_bound"].as_u64()),
+        (Some(false), None, Some(2))
+    );
     assert!(number(&plan, "/propellant_shortage/short_kg") > 0.005);
     let compare = short.json(&["compare", "level.toml", "level.toml"]);
     assert_eq!(compare["compared"][0]["verdict"], "no-path-found");
@@ -134,7 +137,10 @@ fn keys_that_do_not_fit_are_refused_in_one_sentence() {
         ("landing = \"braked\"", "hopper.landing is \"braked\" without hopper.touchdown_speed_m_s"),
         ("touchdown_speed_m_s = 1", "hopper.touchdown_speed_m_s is 1, but the landing is ballistic"),
         ("landing = \"ballistic\"\ntouchdown_speed_m_s = 1", "but the landing is ballistic"),
-        ("landing = \"braked\"\ntouchdown_speed_m_s = 11", "hopper.touchdown_speed_m_s is 11, expected no more than landing_speed_max_m_s"),
+        (
+            "landing = \"braked\"\ntouchdown_speed_m_s = 11",
+            "hopper.touchdown_speed_m_s is 11, expected no more than landing_speed_max_m_s",
+        ),
         ("landing = \"braked\"\ntouchdown_speed_m_s = -1", "hopper.touchdown_speed_m_s"),
         ("landing = \"parachute\"", "expected one of ballistic, braked"),
         ("isp_s = 200", "hopper.isp_s is 200, expected a hopper.mass_kg beside it"),

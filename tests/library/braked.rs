@@ -19,9 +19,7 @@ use chta::{
     reach::map::{PostHops, Search, joined, path_hops, search as search_map, verify},
     terrain::{OverlaidDem, Overlays, read_dem},
     uncertainty::{Mission, Simulation, TrialOptions, TrialOutcome, Uncertainty},
-    world::{
-        Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, LandingMode, Limit, RestSlope, SurfaceProperties,
-    },
+    world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, LandingMode, Limit, RestSlope, SurfaceProperties},
 };
 
 use crate::{
@@ -95,7 +93,10 @@ fn braked_plans_pass_unspoiled_and_their_propellant_is_that_of_small_burns() {
         let totals = path.totals;
         let sum: f64 = path.hops.iter().map(|hop| hop.propellant.unwrap().used_kg).sum();
         let all = totals.propellant.unwrap();
-        assert!((sum - all.used_kg).abs() <= 1e-9 * 50.0 && (all.mass_end_kg - mass_kg).abs() <= 1e-9 * 50.0, "the sum is that of the total");
+        assert!(
+            (sum - all.used_kg).abs() <= 1e-9 * 50.0 && (all.mass_end_kg - mass_kg).abs() <= 1e-9 * 50.0,
+            "the sum is that of the total"
+        );
         if world_number % 500 == 0 {
             let (exhaust, steps) = (limits.isp_s.unwrap() * G0, 1_000_000);
             let burn = totals.delta_v_m_s / f64::from(steps);
@@ -104,7 +105,10 @@ fn braked_plans_pass_unspoiled_and_their_propellant_is_that_of_small_burns() {
             assert!((50.0 - left - all.used_kg).abs() <= 1e-5 * 50.0, "{left} for {}", all.mass_end_kg);
         }
     }
-    assert!(hops > 4000 && too_fast > hops / 2 && outside > 200 && several > 500, "{hops} hops, {too_fast} fast, {outside} flat, {several}");
+    assert!(
+        hops > 4000 && too_fast > hops / 2 && outside > 200 && several > 500,
+        "{hops} hops, {too_fast} fast, {outside} flat, {several}"
+    );
 }
 
 /// What each spoiled record states, and what must be named.
@@ -172,7 +176,8 @@ fn a_touchdown_on_ground_that_does_not_hold_it_is_refused_and_named_by_the_check
             SegmentGround { form: GroundForm::Explicit { forward: Some(one), reverse: Some(one) }, keep_out: false }
         }
     };
-    let friction_rows = [(20.1, 0.0, None), (19.9, 0.0, Some(Limit::Touchdown)), (20.1, 5.0, Some(Limit::Touchdown)), (21.0, 5.0, None)];
+    let friction_rows =
+        [(20.1, 0.0, None), (19.9, 0.0, Some(Limit::Touchdown)), (20.1, 5.0, Some(Limit::Touchdown)), (21.0, 5.0, None)];
     let stated_rows = [
         ((-100.0, -10.0), 2.0, 1.0, None),
         ((-90.0, -10.0), 2.0, 1.0, None),
@@ -206,7 +211,11 @@ fn a_touchdown_on_ground_that_does_not_hold_it_is_refused_and_named_by_the_check
         checked += 1;
     };
     for (angle, cross, expected) in friction_rows {
-        check(format!("friction of {angle} deg, across {cross}"), with_slope(of_friction(angle, cross), limits(1.0), &surface), expected);
+        check(
+            format!("friction of {angle} deg, across {cross}"),
+            with_slope(of_friction(angle, cross), limits(1.0), &surface),
+            expected,
+        );
     }
     for (landing, speed, touchdown, expected) in stated_rows {
         let chain = with_slope(stated(landing, speed), limits(touchdown), &surface);
@@ -237,7 +246,10 @@ fn braked_windows_are_those_of_flown_arcs() {
             let leg = Leg { takeoff: ends.0, landing: ends.1, edge: Edge::Hop(one) };
             let path = generate(&test, &[leg], TakeoffChoice::MidRange, Split::FullReach).unwrap();
             let hop = with_arc(&path.hops[0], &arc);
-            let path = HopPath::of_hops(vec![chta::path::Hop { delta_v_m_s: chta::ballistics::delta_v_m_s(&arc, world.hopper.limits()), ..hop }], &world.hopper);
+            let path = HopPath::of_hops(
+                vec![chta::path::Hop { delta_v_m_s: chta::ballistics::delta_v_m_s(&arc, world.hopper.limits()), ..hop }],
+                &world.hopper,
+            );
             let violations = execute(&chain, &path, None).violations;
             let breaks = violations.iter().any(|v| matches!(v.limit, ViolatedLimit::Limit(_)));
             match lofts {
@@ -254,7 +266,14 @@ fn braked_windows_are_those_of_flown_arcs() {
                     let holds = min < radians && radians < max;
                     // A terrain violation of less than the rounding of heights is not seen: only clearly outside.
                     if holds || radians < min - 1e-3 || radians > max + 1e-3 {
-                        assert_eq!(!breaks, holds, "{} deg of {} to {}: {violations:?}\n{world:?}", radians.to_degrees(), min.to_degrees(), max.to_degrees());
+                        assert_eq!(
+                            !breaks,
+                            holds,
+                            "{} deg of {} to {}: {violations:?}\n{world:?}",
+                            radians.to_degrees(),
+                            min.to_degrees(),
+                            max.to_degrees()
+                        );
                     }
                     if holds { inside += 1 } else { beyond += 1 }
                 }
@@ -274,7 +293,8 @@ fn sweep_and_proof_agree_with_hop_test_and_search_under_brakes() {
         let world = braked_world(&mut dice);
         let Some(chain) = world.chain() else { continue };
         let test = HopTest::new(chain.clone());
-        let stations: Vec<Station> = (0..=chain.geometry().segment_count()).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
+        let stations: Vec<Station> =
+            (0..=chain.geometry().segment_count()).map(|i| chain.geometry().vertex_station(VertexId(i))).collect();
         let mut sweep = Sweep::new(Shared::new(LandingTable::new(&test, stations.as_slice())));
         for takeoff in &stations {
             for direction in Direction::BOTH {
@@ -302,7 +322,10 @@ fn sweep_and_proof_agree_with_hop_test_and_search_under_brakes() {
             closed += usize::from(found.verdict() == ProofVerdict::Untraversable);
         }
     }
-    assert!(pairs > 20_000 && feasible > 5000 && touchdown > 500, "{pairs} pairs, {feasible} feasible, {touchdown} touchdowns refused");
+    assert!(
+        pairs > 20_000 && feasible > 5000 && touchdown > 500,
+        "{pairs} pairs, {feasible} feasible, {touchdown} touchdowns refused"
+    );
     assert!(paths > 100 && met > paths / 3 && closed > 20, "{paths} paths, {met} proved, {closed} closed");
 }
 
@@ -349,7 +372,10 @@ fn braked_maps_agree_with_slices_and_their_paths_hold() {
         }
         flown += fly_paths(world.ground(), 1, 4, TakeoffChoice::LeastSpeed);
     }
-    assert!(pairs > 20_000 && feasible > 2000 && gained > 200 && flown > 500, "{pairs} pairs, {feasible} feasible, {gained}, {flown} flown");
+    assert!(
+        pairs > 20_000 && feasible > 2000 && gained > 200 && flown > 500,
+        "{pairs} pairs, {feasible} feasible, {gained}, {flown} flown"
+    );
 }
 
 /// Flies the paths of a map to every `step`-th post again; returns the number of hops.
@@ -375,8 +401,18 @@ fn fly_paths(ground: DemGround, stride: usize, step: usize, choice: TakeoffChoic
 #[test]
 fn braked_paths_over_real_ground_hold() {
     let rows = [
-        ("hirise_DTEEC_010228_1490_crop_120x70.tif", 3.711, HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(6.0, 1.0) }, 11),
-        ("lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif", 1.624, HopperLimits { clearance_m: 2.0, ..HopperLimits::with_speeds(8.0, 1.0) }, 197),
+        (
+            "hirise_DTEEC_010228_1490_crop_120x70.tif",
+            3.711,
+            HopperLimits { clearance_m: 0.1, ..HopperLimits::with_speeds(6.0, 1.0) },
+            11,
+        ),
+        (
+            "lola5m_Shoemaker_final_adj_5mpp_surf_1k.tif",
+            1.624,
+            HopperLimits { clearance_m: 2.0, ..HopperLimits::with_speeds(8.0, 1.0) },
+            197,
+        ),
     ];
     for (file, gravity_m_s2, limits, step) in rows {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/dem").join(file);
@@ -385,7 +421,12 @@ fn braked_paths_over_real_ground_hold() {
             continue;
         }
         let dem = read_dem(&path).unwrap();
-        let limits = HopperLimits { landing: LandingMode::Braked { touchdown_speed_m_s: 0.8 }, mass_kg: Some(40.0), isp_s: Some(220.0), ..limits };
+        let limits = HopperLimits {
+            landing: LandingMode::Braked { touchdown_speed_m_s: 0.8 },
+            mass_kg: Some(40.0),
+            isp_s: Some(220.0),
+            ..limits
+        };
         let hopper = Hopper::new(limits).unwrap();
         // Rest on 40 degrees, but friction of 0.6 holds a touchdown only up to 31: the touchdown is a limit of its own.
         let surface = SurfaceProperties { rest: RestSlope::AtMost(Angle::from_degrees(40.0)), ..friction(0.6) };
@@ -478,7 +519,8 @@ fn angles_from_the_slope_hold_a_touchdown_where_they_contain_straight_down() {
             landing: AngleInterval::from_degrees(landing.0, landing.1),
         };
         let surface = SurfaceProperties { grip: Some(grip), rest: RestSlope::Unlimited };
-        let limits = HopperLimits { landing: LandingMode::Braked { touchdown_speed_m_s: 1.0 }, ..HopperLimits::with_speeds(9.0, 1.0) };
+        let limits =
+            HopperLimits { landing: LandingMode::Braked { touchdown_speed_m_s: 1.0 }, ..HopperLimits::with_speeds(9.0, 1.0) };
         let chain = with_slope(|_| SegmentGround::BARE, limits, &surface);
         let found = chain.segments()[1].check_contact(chta::world::Contact::Landing, direction);
         assert_eq!(found.is_ok(), holds, "{landing:?} {direction:?}: {found:?}");

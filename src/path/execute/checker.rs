@@ -485,6 +485,9 @@ fn refusal_measure(refusal: GroundRefusal) -> Option<Measure> {
             Some(Measure { found: touchdown_m_s, allowed: max_m_s, unit: "m/s" })
         }
         GroundRefusal::TouchdownCone { .. }
-        | GroundRefusal::NoGround | GroundRefusal::KeepOut | GroundRefusal::SpeedZero | GroundRefusal::NothingAhead { .. } => None,
+        | GroundRefusal::NoGround
+        | GroundRefusal::KeepOut
+        | GroundRefusal::SpeedZero
+        | GroundRefusal::NothingAhead { .. } => None,
     }
 }

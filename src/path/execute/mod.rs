@@ -13,8 +13,8 @@ mod violation;
 
 use checker::Checker;
 use flight::Course;
-use stores::Stores;
 pub use flight::{Clearance, Flight};
+use stores::Stores;
 pub use violation::{Measure, StatedValue, ViolatedLimit, Violation};
 
 use super::{Hop, HopPath};

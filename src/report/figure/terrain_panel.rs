@@ -8,8 +8,9 @@ use super::{
     scale::{Frame, Scale},
     sheet::{Anchor, Hang, Label, Pen, Place, Sheet, text_width_mm},
     spans::{GroundUse, stretch},
-    symbols, touchdown,
+    symbols,
     ticks::{Ticks, one_in, short},
+    touchdown,
 };
 use crate::{chain::ConstrainedChain, quantity::ChainPoint};
 

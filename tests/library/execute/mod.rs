@@ -5,8 +5,8 @@
 mod spoiled;
 mod world;
 
-pub(crate) use self::world::{Dice, World as RandomWorld};
 use self::world::World;
+pub(crate) use self::world::{Dice, World as RandomWorld};
 use chta::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     chain::{ConstrainedChain, PolygonalChain},
