@@ -28,6 +28,7 @@
 
 mod arc;
 mod choice;
+mod delta_v;
 mod flight_envelope;
 mod greatest_reach;
 pub mod limits;
@@ -36,6 +37,7 @@ mod safety;
 
 pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s, lofts_of_speed};
 pub use choice::TakeoffChoice;
+pub use delta_v::{STANDARD_GRAVITY_M_S2, delta_v_m_s, propellant_kg};
 pub use flight_envelope::{ContactLimits, FlightEnvelope};
 pub use greatest_reach::{landing_reach_m, takeoff_reach_m};
 pub use line_of_sight::LineOfSight;

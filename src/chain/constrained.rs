@@ -1,6 +1,9 @@
 //! The chain with the constraints of every segment resolved: the input of all analyses.
 
-use super::{GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station};
+use super::{
+    GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station,
+    touchdown::touchdown_rule,
+};
 use crate::{
     quantity::{Angle, SegmentId},
     world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, InvalidSurface, RestSlope, SurfaceProperties},
@@ -214,36 +217,52 @@ pub(crate) fn resolve_constraints(
     if unbounded(&forward) || unbounded(&reverse) {
         return Err(ConstraintProblem::NoSpeed(id));
     }
+    let (tilt, rest_slope) = rest_slope(slope, &ground.form, surface);
+    let friction = friction_under(&ground.form, surface);
+    let touchdown =
+        hopper.limits().landing.touchdown_speed_m_s().map(|speed_m_s| {
+            [forward, reverse].map(|line| touchdown_rule(line, friction.map(|friction| (tilt, friction)), speed_m_s))
+        });
     let cap_m_s = gravity.speed_cap_m_s();
+    // A touchdown with brakes is no end of an arc.
+    let landing_cap_m_s = if touchdown.is_some() { f64::INFINITY } else { cap_m_s };
     let steps = hopper.limits().steps;
     let commanded = |line: LineConstraints| {
         let takeoff_m_s = steps.speed_not_above_m_s(line.takeoff.speed_max_m_s().min(cap_m_s));
-        line.capped(takeoff_m_s, cap_m_s)
+        line.capped(takeoff_m_s, landing_cap_m_s)
     };
     let [forward, reverse] = [forward, reverse].map(|line| line.map(commanded));
-    let (tilt, rest_slope) = rest_slope(slope, &ground.form, surface);
     let too_steep = rest_slope
         .filter(|&max| tilt > max)
         .map(|max| GroundRefusal::TooSteep { tilt: Angle::from_slope(tilt), max: Angle::from_slope(max) });
     let refusal = if ground.keep_out { Some(GroundRefusal::KeepOut) } else { too_steep };
-    Ok(SegmentConstraints::new(forward, reverse, refusal))
+    let constraints = SegmentConstraints::new(forward, reverse, refusal);
+    Ok(touchdown.map_or(constraints, |touchdown| constraints.with_touchdown(touchdown)))
 }
 
 /// The tangent of a segment's inclination, and of the greatest on which the hopper rests.
 fn rest_slope(slope: f64, form: &GroundForm, surface: &SurfaceProperties) -> (f64, Option<f64>) {
-    let (friction, cross_slope) = match *form {
-        GroundForm::Explicit { .. } => (None, Angle::default()),
-        GroundForm::Surface { friction, cross_slope } => {
-            let grip = friction.map(Grip::Friction).or(surface.grip);
-            (if let Some(Grip::Friction(cone)) = grip { Some(cone) } else { None }, cross_slope)
-        }
+    let cross_slope = match *form {
+        GroundForm::Explicit { .. } => Angle::default(),
+        GroundForm::Surface { cross_slope, .. } => cross_slope,
     };
     let max = match surface.rest {
-        RestSlope::AsFrictionHolds => friction.map(FrictionCone::coefficient),
+        RestSlope::AsFrictionHolds => friction_under(form, surface).map(FrictionCone::coefficient),
         RestSlope::AtMost(angle) => Some(angle.slope()),
         RestSlope::Unlimited => None,
     };
     (tilt_slope(slope, cross_slope.slope()), max)
+}
+
+/// The friction cone of a segment; `None` if its angles are stated.
+fn friction_under(form: &GroundForm, surface: &SurfaceProperties) -> Option<FrictionCone> {
+    match *form {
+        GroundForm::Explicit { .. } => None,
+        GroundForm::Surface { friction, .. } => match friction.map(Grip::Friction).or(surface.grip) {
+            Some(Grip::Friction(cone)) => Some(cone),
+            Some(Grip::FromSlope { .. }) | None => None,
+        },
+    }
 }
 
 /// The tangent of a surface's inclination, from its slope `s` along the plane of travel and the tangent `t` of its

@@ -174,6 +174,25 @@ pub enum GroundRefusal {
         /// The cone.
         angles: AngleInterval,
     },
+    /// With brakes: the surface is too steep for its friction to hold a touchdown straight down.
+    TouchdownSlope {
+        /// Inclination of the surface from the horizontal.
+        tilt: Angle,
+        /// The cone about the surface normal.
+        friction: FrictionCone,
+    },
+    /// With brakes: the stated landing angles do not contain straight down.
+    TouchdownCone {
+        /// The landing angles.
+        angles: AngleInterval,
+    },
+    /// With brakes: the touchdown is faster than a landing may be.
+    TouchdownSpeed {
+        /// The touchdown speed, m/s.
+        touchdown_m_s: f64,
+        /// The landing speed limit, m/s.
+        max_m_s: f64,
+    },
 }
 
 impl GroundRefusal {
@@ -185,6 +204,7 @@ impl GroundRefusal {
             (Self::TooSteep { .. }, _) => Limit::RestSlope,
             (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Takeoff) => Limit::TakeoffCone,
             (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Landing) => Limit::LandingCone,
+            (Self::TouchdownSlope { .. } | Self::TouchdownCone { .. } | Self::TouchdownSpeed { .. }, _) => Limit::Touchdown,
             (Self::SpeedZero, Contact::Takeoff) => Limit::TakeoffSpeed,
             (Self::SpeedZero, Contact::Landing) => Limit::LandingSpeed,
         }
@@ -199,7 +219,9 @@ impl GroundRefusal {
                 let (min, max) = (angles.min.degrees(), angles.max.degrees());
                 Some(if min > max { min - max } else { (min - 90.0).max(-90.0 - max) })
             }
-            Self::NoGround | Self::KeepOut | Self::SpeedZero => None,
+            Self::TouchdownSlope { tilt, friction } => Some(tilt.degrees() - friction.half_angle().degrees()),
+            Self::TouchdownCone { angles } => Some((angles.min.degrees() + 90.0).max(-90.0 - angles.max.degrees())),
+            Self::NoGround | Self::KeepOut | Self::SpeedZero | Self::TouchdownSpeed { .. } => None,
         }
     }
 }
@@ -219,6 +241,21 @@ impl fmt::Display for GroundRefusal {
                 friction.half_angle().degrees()
             ),
             Self::SpeedZero => write!(f, "its speed limit is 0"),
+            Self::TouchdownSlope { tilt, friction } => write!(
+                f,
+                "its surface slopes {:.3} deg, over the friction angle of {:.3} deg, so a touchdown straight down slides",
+                tilt.degrees(),
+                friction.half_angle().degrees()
+            ),
+            Self::TouchdownCone { angles } => write!(
+                f,
+                "its landing angles, {:.3} to {:.3} deg, do not contain straight down, the direction of a braked touchdown",
+                angles.min.degrees(),
+                angles.max.degrees()
+            ),
+            Self::TouchdownSpeed { touchdown_m_s, max_m_s } => {
+                write!(f, "its landing speed limit is {max_m_s} m/s, below the touchdown speed of {touchdown_m_s} m/s")
+            }
             Self::NothingAhead { angles } => {
                 write!(
                     f,
@@ -242,6 +279,8 @@ struct Allowed {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SegmentConstraints {
     stated: [Result<LineConstraints, GroundRefusal>; 2],
+    /// With brakes: the rule of a landing instead of the stated one.
+    touchdown: Option<[Result<ContactRule, GroundRefusal>; 2]>,
     /// The refusal that applies to every contact.
     refusal: Option<GroundRefusal>,
     allowed: [Allowed; 2],
@@ -254,14 +293,24 @@ impl SegmentConstraints {
         reverse: Result<LineConstraints, GroundRefusal>,
         refusal: Option<GroundRefusal>,
     ) -> Self {
-        let mut segment = Self { stated: [forward, reverse], refusal, allowed: [Allowed::default(); 2] };
+        let segment = Self { stated: [forward, reverse], touchdown: None, refusal, allowed: [Allowed::default(); 2] };
+        segment.resolved()
+    }
+
+    /// The same ground for a hopper that brakes: the rule of a touchdown in both directions.
+    #[must_use]
+    pub(super) fn with_touchdown(self, touchdown: [Result<ContactRule, GroundRefusal>; 2]) -> Self {
+        Self { touchdown: Some(touchdown), ..self }.resolved()
+    }
+
+    fn resolved(mut self) -> Self {
         for direction in Direction::BOTH {
-            segment.allowed[direction as usize] = Allowed {
-                takeoff: segment.check_contact(Contact::Takeoff, direction).ok(),
-                landing: segment.check_contact(Contact::Landing, direction).ok(),
+            self.allowed[direction as usize] = Allowed {
+                takeoff: self.check_contact(Contact::Takeoff, direction).ok(),
+                landing: self.check_contact(Contact::Landing, direction).ok(),
             };
         }
-        segment
+        self
     }
 
     /// The rule of a contact, or the reason why the ground refuses it for every hop.
@@ -275,6 +324,9 @@ impl SegmentConstraints {
         }
         if let Some(refusal) = self.refusal {
             return Err(refusal);
+        }
+        if let (Contact::Landing, Some(touchdown)) = (contact, self.touchdown) {
+            return touchdown[direction as usize];
         }
         let rule = stated?.contact(contact);
         if rule.slopes().is_empty() {

@@ -15,6 +15,7 @@ mod ground;
 mod polygonal;
 mod quick_cones;
 mod station;
+mod touchdown;
 
 pub(crate) use constrained::resolve_constraints;
 pub use constrained::{ConstrainedChain, ConstraintProblem, ConstraintProblems};
@@ -23,3 +24,4 @@ pub use ground::{GroundForm, SegmentGround};
 pub use polygonal::{ChainProblem, InvalidChain, PolygonalChain};
 pub use quick_cones::{QuickCone, QuickGrip, Turn};
 pub use station::{OffChain, Site, Station};
+pub(crate) use touchdown::contains_straight_down;

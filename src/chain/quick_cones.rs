@@ -111,6 +111,34 @@ impl QuickGrip {
             Self::FromSlope { landing, .. } => turned(landing, slope),
         }
     }
+
+    /// The directions in which arcs may end on a facet if the hopper brakes to a touchdown straight down: all, or none.
+    ///
+    /// ```text
+    ///     G <= mu^2        (the vertical in the friction cone: the inclination is at most the friction angle)
+    /// ```
+    ///
+    /// ```
+    /// use chta::{chain::{QuickCone, QuickGrip}, quantity::SlopeInterval, world::FrictionCone};
+    /// let grip = QuickGrip::friction(FrictionCone::new(0.5)?);
+    /// assert_eq!(grip.touchdown(0.0, 0.0), QuickCone::Open(SlopeInterval::ALL));
+    /// assert_eq!(grip.touchdown(0.0, 0.26), QuickCone::Closed);
+    /// # Ok::<(), chta::world::InvalidFriction>(())
+    /// ```
+    #[inline]
+    pub fn touchdown(&self, slope: f64, steepness_squared: f64) -> QuickCone {
+        let held = match self {
+            Self::Friction { squared } if steepness_squared < squared * (1.0 - FADING) => true,
+            Self::Friction { squared } if steepness_squared > squared * (1.0 + FADING) => false,
+            Self::Friction { .. } => return QuickCone::Doubtful,
+            Self::FromSlope { landing, .. } => match turned(landing, slope) {
+                QuickCone::Doubtful => return QuickCone::Doubtful,
+                QuickCone::Closed => false,
+                QuickCone::Open(slopes) => slopes.lower == f64::NEG_INFINITY,
+            },
+        };
+        if held { QuickCone::Open(SlopeInterval::ALL) } else { QuickCone::Closed }
+    }
 }
 
 /// The directions towards +x inside the friction cone on a facet.

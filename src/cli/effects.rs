@@ -87,10 +87,20 @@ impl Purpose {
         let on_a_dem = matches!(self, Self::Fan | Self::Map { .. });
         let flies = matches!(self, Self::Run | Self::Simulate | Self::Map { trials: true, .. });
         let by_risk = matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare);
+        let totals = matches!(self, Self::Plan | Self::Run | Self::Require | Self::Compare | Self::Map { goals: true, .. });
         match (key.table, key.name) {
-            ("hopper", "mass_kg" | "rest_time_s") => {
-                matches!(self, Self::Plan | Self::Run | Self::Require | Self::Compare | Self::Map { goals: true, .. })
-            }
+            (
+                "hopper",
+                "mass_kg"
+                | "rest_time_s"
+                | "preparation_time_s"
+                | "settling_time_s"
+                | "preparation_energy_j"
+                | "efficiency"
+                | "isp_s"
+                | "hop_delta_v_overhead_m_s",
+            ) => totals,
+            ("hopper", "propellant_max_kg") => self.counts_propellant(),
             ("hopper", "takeoff_angle_step_deg" | "heading_step_deg") => self.flies_commands(),
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
             ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
@@ -106,6 +116,11 @@ impl Purpose {
     /// Whether its hops have commands in the machine's steps.
     const fn flies_commands(self) -> bool {
         !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { .. })
+    }
+
+    /// Whether its answer is no where the path takes more propellant than the machine has.
+    const fn counts_propellant(self) -> bool {
+        matches!(self, Self::Check | Self::Plan | Self::Run | Self::Simulate | Self::Compare | Self::Map { goals: true, .. })
     }
 
     /// Whether it answers for the scenario's own clearance alone: it varies no key.
@@ -136,10 +151,23 @@ impl Purpose {
                     ));
                 }
             }
-            if self.uses(key, weighs_risk) {
+            let of_propellant = scenario.hopper.limits().propellant_max_kg.is_some()
+                && self.counts_propellant()
+                && key.table == "hopper"
+                && matches!(key.name, "mass_kg" | "isp_s" | "hop_delta_v_overhead_m_s");
+            if self.uses(key, weighs_risk) || of_propellant {
                 continue;
             }
             let wants_risk = weighs_risk && (key.table, key.name) == ("search", "risk") && self != Self::Hop;
+            // A limit that the file states and this answer does not keep: silence would be a promise.
+            if (key.table, key.name) == ("hopper", "propellant_max_kg") && self != Self::Hop {
+                let users = Self::users(key, weighs_risk, self);
+                warnings.push(format!(
+                    "hopper.propellant_max_kg is not kept by this answer of chta {}, which counts hops and no propellant{users}",
+                    self.command()
+                ));
+                continue;
+            }
             let said = match place {
                 Place::Option(option) => format!("{option}: {}", key.path()),
                 Place::File(_) | Place::Nowhere if wants_risk => format!("{} = \"{}\"", key.path(), scenario.risk.name()),

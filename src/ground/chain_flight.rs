@@ -394,7 +394,7 @@ impl FirstContact for ChainGround {
         touchdown: &TouchdownState,
     ) -> Result<(), ContactFailure> {
         let rule = self.check_contact(Some(*support_facet), Contact::Landing, direction_of(touchdown.heading));
-        check_landing(rule, self.test.hopper().limits().landing_speed_max_m_s, touchdown)
+        check_landing(rule, self.test.hopper().limits().arc_landing_speed_max_m_s(), touchdown)
     }
 
     fn displaced(

@@ -9,7 +9,7 @@ use super::{
     first_contact::{ANGLE_TOLERANCE_RAD, ContactFailure, PLACE_TOLERANCE, Realization, check_landing, holds},
 };
 use crate::{
-    chain::LineConstraints,
+    chain::{LineConstraints, contains_straight_down},
     quantity::MapPoint,
     terrain::{FacetSpan, Triangles},
     world::Grip,
@@ -179,7 +179,8 @@ impl FirstContact for DemGround {
 
     fn check_landing(&self, end: &MapPosition, support_facet: &Gradient, touchdown: &TouchdownState) -> Result<(), ContactFailure> {
         let flown_over = end.at - touchdown.heading * BESIDE_M;
-        let landing_speed_max_m_s = self.hopper().limits().landing_speed_max_m_s;
+        let limits = self.hopper().limits();
+        let landing_speed_max_m_s = limits.arc_landing_speed_max_m_s();
         if self.is_kept_out(flown_over) {
             return Err(ContactFailure::OffLimits);
         }
@@ -191,6 +192,17 @@ impl FirstContact for DemGround {
             return Err(ContactFailure::Slides);
         }
         match (friction, self.stated(*support_facet, touchdown.heading)) {
+            (Some(friction), _) if limits.landing.brakes() => {
+                let held = holds_on(*support_facet, friction, Vector3::z(), touchdown.angle_tolerance_rad);
+                if held { Ok(()) } else { Err(ContactFailure::Slides) }
+            }
+            (None, Some(stated)) if limits.landing.brakes() => {
+                if contains_straight_down(stated.landing.angles()) {
+                    Ok(())
+                } else {
+                    Err(ContactFailure::Slides)
+                }
+            }
             (Some(friction), _) => {
                 let across = touchdown.heading * touchdown.horizontal_m_s;
                 let back = -Vector3::new(across.x, across.y, touchdown.vertical_m_s);

@@ -185,7 +185,8 @@ pub(super) fn check_landing(
     match rule {
         Err(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
         Err(refusal) => {
-            let too_fast = refusal == GroundRefusal::SpeedZero || touchdown.is_over(landing_speed_max_m_s);
+            let stated = matches!(refusal, GroundRefusal::SpeedZero | GroundRefusal::TouchdownSpeed { .. });
+            let too_fast = stated || touchdown.is_over(landing_speed_max_m_s);
             Err(if too_fast { ContactFailure::TooFast } else { ContactFailure::Slides })
         }
         Ok(rule) if touchdown.is_over(rule.speed_max_m_s()) => Err(ContactFailure::TooFast),

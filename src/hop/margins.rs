@@ -38,8 +38,12 @@ pub const MARGINS: [MarginRow; 14] = [
     row("landing_speed_m_s", Limit::LandingSpeed, |f| f.landing.speed_max_m_s() - f.arc.landing_speed_m_s()),
     row("takeoff_cone_min_deg", Limit::TakeoffCone, |f| above_deg(f.arc.takeoff_angle(), f.takeoff.slopes())),
     row("takeoff_cone_max_deg", Limit::TakeoffCone, |f| below_deg(f.arc.takeoff_angle(), f.takeoff.slopes())),
-    row("landing_cone_min_deg", Limit::LandingCone, |f| above_deg(f.arc.landing_angle(), f.landing.slopes())),
-    row("landing_cone_max_deg", Limit::LandingCone, |f| below_deg(f.arc.landing_angle(), f.landing.slopes())),
+    row("landing_cone_min_deg", Limit::LandingCone, |f| {
+        if f.hopper.landing.brakes() { f64::INFINITY } else { above_deg(f.arc.landing_angle(), f.landing.slopes()) }
+    }),
+    row("landing_cone_max_deg", Limit::LandingCone, |f| {
+        if f.hopper.landing.brakes() { f64::INFINITY } else { below_deg(f.arc.landing_angle(), f.landing.slopes()) }
+    }),
     row("line_of_sight_deg", Limit::LineOfSight, |f| f.arc.takeoff_angle().degrees() - f.arc.line_of_sight().angle().degrees()),
     row("terrain_m", Limit::Terrain, |f| f.height_m),
     row("mechanical_angle_min_deg", Limit::MechanicalAngle, |f| {

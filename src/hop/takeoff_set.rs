@@ -156,7 +156,9 @@ fn all_limits(
             .then(|| Shortfall::Speed { needed_m_s: least_takeoff_speed_m_s(sight, gravity), limit_m_s: rule.speed_max_m_s() });
         add(Limit::TakeoffSpeed, lofts, None, shortfall);
     }
-    if let Some(rule) = to {
+    if to.is_some() && test.hopper().limits().landing.brakes() {
+        add(Limit::Touchdown, SlopeInterval::ALL, None, None);
+    } else if let Some(rule) = to {
         add(Limit::LandingCone, limits::landing_cone(sight, rule.slopes()), None, None);
         let lofts = limits::landing_speed(sight, rule.speed_max_m_s(), gravity);
         let shortfall = lofts

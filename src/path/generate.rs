@@ -1,8 +1,8 @@
 //! From the legs of a search result to the commands of single hops (P Algorithm 4).
 
-use super::{Hop, HopPath, NoCommand, Totals, heading_deg, steps::in_steps};
+use super::{Hop, HopPath, NoCommand, Propellant, Totals, heading_deg, steps::in_steps};
 use crate::{
-    ballistics::{Arc, TakeoffChoice},
+    ballistics::{Arc, TakeoffChoice, delta_v_m_s, propellant_kg},
     chain::Station,
     graph::{Edge, Leg},
     ground::Surface,
@@ -63,7 +63,17 @@ pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Spli
 
 impl HopPath {
     /// A path of hops in the order of travel, with its totals for a hopper.
-    pub fn of_hops(hops: Vec<Hop>, hopper: &Hopper) -> Self {
+    ///
+    /// States the propellant of every hop: the mass falls from hop to hop.
+    pub fn of_hops(mut hops: Vec<Hop>, hopper: &Hopper) -> Self {
+        if let (Some(mass_kg), Some(isp_s)) = (hopper.limits().mass_kg, hopper.limits().isp_s) {
+            let mut mass_kg = mass_kg;
+            for hop in &mut hops {
+                let used_kg = propellant_kg(mass_kg, hop.delta_v_m_s, isp_s);
+                mass_kg -= used_kg;
+                hop.propellant = Some(Propellant { used_kg, mass_end_kg: mass_kg });
+            }
+        }
         let totals = totals(&hops, hopper);
         Self { hops, totals }
     }
@@ -147,6 +157,8 @@ pub(super) fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc,
         landing_speed_m_s,
         flight_time_s: arc.flight_time_s(),
         apex_z_m: takeoff.point.z_m + arc.apex_height_m(),
+        delta_v_m_s: delta_v_m_s(arc, test.hopper().limits()),
+        propellant: None,
         takeoff_angles: crate::quantity::AngleInterval { min: angle(lofts.lower), max: angle(lofts.upper) },
         speed_margin_m_s: (limit(Contact::Takeoff, &takeoff) - takeoff_speed_m_s)
             .min(limit(Contact::Landing, &landing) - landing_speed_m_s),
@@ -163,14 +175,24 @@ fn totals(hops: &[Hop], hopper: &Hopper) -> Totals {
     let sum = |of: fn(&Hop) -> f64| hops.iter().map(of).sum::<f64>();
     let flight_time_s = sum(|h| h.flight_time_s);
     let energy_j_kg = sum(|h| 0.5 * h.takeoff_speed_m_s * h.takeoff_speed_m_s);
-    #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
-    let rests = hops.len().saturating_sub(1) as f64;
+    let limits = hopper.limits();
+    let energy_j_kg = limits.store_energy_j_kg(energy_j_kg, hops.len());
+    let delta_v_m_s = sum(|h| h.delta_v_m_s);
+    let propellant = limits.mass_kg.zip(limits.isp_s).map(|(mass_kg, isp_s)| {
+        let used_kg = propellant_kg(mass_kg, delta_v_m_s, isp_s);
+        Propellant { used_kg, mass_end_kg: mass_kg - used_kg }
+    });
     Totals {
         flight_time_s,
         energy_j_kg,
         peak_takeoff_speed_m_s: hops.iter().map(|h| h.takeoff_speed_m_s).fold(0.0, f64::max),
         ground_distance_m: sum(Hop::run_m),
-        energy_j: hopper.limits().mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
-        mission_time_s: hopper.limits().rest_time_s.map(|rest_time_s| flight_time_s + rest_time_s * rests),
+        energy_j: limits.mass_kg.map(|mass_kg| mass_kg * energy_j_kg),
+        mission_time_s: limits.ground_time_s(hops.len()).map(|ground_time_s| flight_time_s + ground_time_s),
+        delta_v_m_s,
+        propellant,
+        propellant_max_kg: limits.propellant_max_kg,
+        propulsive: limits.is_propulsive(),
+        of_store: limits.counts_store_energy(),
     }
 }

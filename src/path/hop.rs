@@ -32,9 +32,13 @@ pub struct Hop {
     pub flight_time_s: f64,
     /// Height of the highest point of the flight, m, in the height reference of the ground.
     pub apex_z_m: f64,
+    /// Delta-v, m/s: of the take-off, of the brakes if the hopper has some, and its overhead.
+    pub delta_v_m_s: f64,
+    /// The propellant of the hop, if the specific impulse is known; [`HopPath::of_hops`] states it.
+    pub propellant: Option<Propellant>,
     /// All feasible take-off angles between the two contacts.
     pub takeoff_angles: AngleInterval,
-    /// The smaller of the margins of take-off and landing speed to their limits, m/s.
+    /// The smaller of the margins of take-off and landing speed to their limits, m/s; with brakes that of the take-off.
     pub speed_margin_m_s: f64,
     /// The limit that sets the least feasible take-off angle.
     pub lower_limit: Limit,
@@ -117,7 +121,7 @@ pub struct HopPath {
 pub struct Totals {
     /// Time in flight, s.
     pub flight_time_s: f64,
-    /// Energy per unit mass at take-off, the sum of `v_t^2 / 2`, J/kg.
+    /// Energy from the store per unit mass: the sum of `v_t^2 / 2` over the efficiency, and of the preparations, J/kg.
     pub energy_j_kg: f64,
     /// The greatest take-off speed, m/s.
     pub peak_takeoff_speed_m_s: f64,
@@ -125,6 +129,35 @@ pub struct Totals {
     pub ground_distance_m: f64,
     /// Energy, J, if the mass is known.
     pub energy_j: Option<f64>,
-    /// Time of flights and of rests between hops, s, if the rest time is known.
+    /// Time of flights, of preparations before hops and of settling between hops, s, if one of the last two is known.
     pub mission_time_s: Option<f64>,
+    /// Delta-v, m/s.
+    pub delta_v_m_s: f64,
+    /// Propellant and the mass at the end, if the specific impulse is known.
+    pub propellant: Option<Propellant>,
+    /// The propellant that the machine has, kg, if it is given.
+    pub propellant_max_kg: Option<f64>,
+    /// Whether the machine has brakes, an overhead or a specific impulse.
+    pub propulsive: bool,
+    /// Whether the energies are more than those of motion.
+    pub of_store: bool,
+}
+
+impl Totals {
+    /// Propellant beyond what the machine has, kg; `None` if it suffices or no amount is given.
+    pub fn propellant_short_kg(&self) -> Option<f64> {
+        /// Propellant beyond the greatest by less than this share is within it: the tolerance of speeds.
+        const ROUNDING: f64 = 1e-9;
+        let max_kg = self.propellant_max_kg?;
+        Some(self.propellant?.used_kg - max_kg).filter(|short_kg| *short_kg > ROUNDING * max_kg)
+    }
+}
+
+/// Propellant used, and the mass left.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Propellant {
+    /// Propellant used, kg.
+    pub used_kg: f64,
+    /// Mass after it, kg.
+    pub mass_end_kg: f64,
 }

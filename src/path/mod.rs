@@ -8,6 +8,6 @@ mod timetable;
 
 pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLimit, Violation, execute};
 pub use generate::{PathError, TooManyHops, generate};
-pub use hop::{Aim, Hop, HopPath, Totals, heading_deg};
+pub use hop::{Aim, Hop, HopPath, Propellant, Totals, heading_deg};
 pub use steps::NoCommand;
 pub use timetable::{Phase, TimedState, Timetable, TimetableError};

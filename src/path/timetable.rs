@@ -16,6 +16,10 @@ pub enum Phase {
     Flight,
     /// It rests where it landed.
     Rest,
+    /// It prepares a hop.
+    Preparation,
+    /// It settles where it landed.
+    Settling,
 }
 
 impl Phase {
@@ -24,6 +28,8 @@ impl Phase {
         match self {
             Self::Flight => "flight",
             Self::Rest => "rest",
+            Self::Preparation => "preparation",
+            Self::Settling => "settling",
         }
     }
 }
@@ -36,10 +42,13 @@ struct Waits {
 }
 
 impl Waits {
-    /// Those of a hop of a path. A hopper rests between hops, so not after the last one: the waits add up to what
+    /// Those of a hop of a path. A hopper settles between hops, so not after the last one: the waits add up to what
     /// [`Totals::mission_time_s`](super::Totals::mission_time_s) has beside the flights.
     fn of(hopper: &HopperLimits, is_last: bool) -> Self {
-        Self { before: None, after: hopper.rest_time_s.filter(|_| !is_last).map(|rest_s| (Phase::Rest, rest_s)) }
+        let before = hopper.preparation_time_s.map(|time_s| (Phase::Preparation, time_s));
+        // The old rest time keeps its own name.
+        let phase = if hopper.settling_time_s.is_some() { Phase::Settling } else { Phase::Rest };
+        Self { before, after: hopper.settling_s().filter(|_| !is_last).map(|time_s| (phase, time_s)) }
     }
 }
 
@@ -225,8 +234,8 @@ impl Span<'_> {
         let share = match self.phase {
             Phase::Flight if time_s >= self.end_s => 1.0,
             Phase::Flight => ((time_s - self.begin_s) / (self.end_s - self.begin_s)).max(0.0),
-            Phase::Rest if self.is_landed => 1.0,
-            Phase::Rest => 0.0,
+            Phase::Rest | Phase::Preparation | Phase::Settling if self.is_landed => 1.0,
+            Phase::Rest | Phase::Preparation | Phase::Settling => 0.0,
         };
         let run_m = arc.line_of_sight().run_m();
         let across_m_s = if flies { self.hop.horizontal_speed_m_s() } else { 0.0 };

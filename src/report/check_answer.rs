@@ -7,10 +7,15 @@ use serde::Serialize;
 use super::{
     hop_answer::{BindingRecord, end_name},
     proof_record::ProofRecord,
+    propellant_record::PropellantShortage,
 };
 use crate::{
-    graph::{Answer, Effort, EndpointRefusal, Frontier, Outcome, PointSpacing, RefusalCounts, proof::Bounds},
+    graph::{
+        Answer, Effort, EndpointRefusal, Frontier, Outcome, PointSpacing, RefusalCounts,
+        proof::{Bounds, ProofVerdict},
+    },
     hop::HopTest,
+    path::HopPath,
 };
 
 /// The answer of `chta check` for one pair.
@@ -43,6 +48,9 @@ pub struct CheckAnswer {
     pub endpoint_refusals: Vec<EndpointRecord>,
     /// Without a path: how far one gets over these nodes, and which limits refuse to go on.
     pub frontier: Option<FrontierRecord>,
+    /// If the path takes more propellant than the machine has; the verdict is then `no-path-found`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub propellant_shortage: Option<PropellantShortage>,
     /// The bounds; absent if no proof was requested.
     #[serde(flatten)]
     pub proof: Option<ProofRecord>,
@@ -143,6 +151,7 @@ impl CheckAnswer {
             refusals: counts(&answer.refusals),
             endpoint_refusals,
             frontier,
+            propellant_shortage: None,
             proof: None,
         }
     }
@@ -156,9 +165,23 @@ impl CheckAnswer {
         self
     }
 
-    /// Whether there is a path.
-    pub fn is_traversable(&self) -> bool {
-        self.hops.is_some()
+    /// Adds what the path takes from the machine. A path that takes more propellant than there is answers no: another path may take
+    /// less, which the search, and a proof about hops, do not know.
+    #[must_use]
+    pub fn with_path(mut self, path: Option<&HopPath>) -> Self {
+        self.propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
+        if self.propellant_shortage.is_some() {
+            self.verdict = ProofVerdict::Open.name();
+            if let Some(proof) = &mut self.proof {
+                (proof.upper_bound, proof.proved) = (None, false);
+            }
+        }
+        self
+    }
+
+    /// Whether there is a path that the machine can fly.
+    pub const fn is_traversable(&self) -> bool {
+        self.hops.is_some() && self.propellant_shortage.is_none()
     }
 }
 

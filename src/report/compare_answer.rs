@@ -68,17 +68,23 @@ impl MarginsRecord {
 }
 
 /// The columns with numbers of a path.
-const COLUMNS: [&str; 9] = [
+const COLUMNS: [&str; 12] = [
     "flight_time_s",
     "energy_j_kg",
     "peak_takeoff_speed_m_s",
     "ground_distance_m",
     "energy_j",
     "mission_time_s",
+    "delta_v_m_s",
+    "propellant_kg",
+    "mass_end_kg",
     "speed_margin_least_m_s",
     "angle_margin_least_deg",
     "angle_span_least_deg",
 ];
+
+/// The column of delta-v.
+const DELTA_V: &str = "delta_v_m_s";
 
 impl CompareRow {
     /// The numbers of [`COLUMNS`].
@@ -91,6 +97,9 @@ impl CompareRow {
             totals.map(|t| t.ground_distance_m),
             totals.and_then(|t| t.energy_j),
             totals.and_then(|t| t.mission_time_s),
+            totals.map(|t| t.delta_v_m_s),
+            totals.and_then(|t| t.propellant_kg),
+            totals.and_then(|t| t.mass_end_kg),
             margins.map(|m| m.speed_margin_least_m_s),
             margins.map(|m| m.angle_margin_least_deg),
             margins.map(|m| m.angle_span_least_deg),
@@ -121,7 +130,11 @@ impl CompareAnswer {
         let mut lines: Vec<Vec<String>> =
             vec![numbers, self.line("verdict", |row| row.verdict.to_owned()), self.line("hops", CompareRow::format_hops)];
         for (i, column) in COLUMNS.into_iter().enumerate() {
-            if self.compared.iter().any(|row| row.numbers()[i].is_some()) {
+            // The delta-v of machines without propulsion is the sum of their take-off speeds: no line of its own.
+            let told = |row: &CompareRow| {
+                row.numbers()[i].is_some() && (column != DELTA_V || row.totals.is_some_and(|totals| totals.propulsive))
+            };
+            if self.compared.iter().any(told) {
                 lines.push(self.line(column, |row| row.numbers()[i].map_or("-".to_owned(), |number| format!("{number:.3}"))));
             }
         }

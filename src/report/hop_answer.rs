@@ -4,11 +4,11 @@ use serde::Serialize;
 
 use super::{hop_margins::HopMarginsRecord, path_record::unsigned_zero};
 use crate::{
-    ballistics::{Arc, TakeoffChoice},
+    ballistics::{Arc, TakeoffChoice, delta_v_m_s},
     chain::Station,
     hop::{Conflict, HopMargins, HopTest, LimitInterval, ReachAlongSight, Shortfall, TakeoffSet},
     quantity::{Angle, VertexId},
-    world::Contact,
+    world::{Contact, HopperLimits},
 };
 
 /// The answer of `chta hop`.
@@ -133,6 +133,8 @@ pub struct BestRecord {
     pub flight_time_s: f64,
     /// Highest point above the take-off.
     pub apex_height_m: f64,
+    /// Delta-v: of the take-off, of the brakes and the overhead.
+    pub delta_v_m_s: f64,
 }
 
 /// The greatest reach of one hop along the line of sight at a take-off angle, by the two greatest speeds.
@@ -175,7 +177,7 @@ impl HopAnswer {
         let set = test.takeoff_set(takeoff, landing)?;
         let angles = set.angles();
         let reach = test.reach_along_sight(takeoff, landing);
-        let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice));
+        let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice, test.hopper().limits()));
         Some(Self {
             from_x_m: takeoff.point.x_m,
             to_x_m: landing.point.x_m,
@@ -277,7 +279,7 @@ impl BindingRecord {
 }
 
 impl BestRecord {
-    fn new(arc: &Arc, choice: TakeoffChoice) -> Self {
+    fn new(arc: &Arc, choice: TakeoffChoice, limits: &HopperLimits) -> Self {
         Self {
             choice: choice.name(),
             takeoff_angle_deg: arc.takeoff_angle().degrees(),
@@ -286,6 +288,7 @@ impl BestRecord {
             landing_speed_m_s: arc.landing_speed_m_s(),
             flight_time_s: arc.flight_time_s(),
             apex_height_m: arc.apex_height_m(),
+            delta_v_m_s: delta_v_m_s(arc, limits),
         }
     }
 }

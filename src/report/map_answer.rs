@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde::Serialize;
 
-use super::{HopRecord, SimulationRecord, TotalsRecord};
+use super::{HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines};
 use crate::{
     graph::Effort,
     quantity::MapPoint,
@@ -110,6 +110,9 @@ pub struct GoalRecord {
     pub path: Vec<HopRecord>,
     /// Their totals; null: not reachable.
     pub totals: Option<TotalsRecord>,
+    /// If the path takes more propellant than the machine has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub propellant_shortage: Option<PropellantShortage>,
     /// Whether the path was flown again over the DEM by the independent checker and broke no limit; null: not reachable.
     pub verified: Option<bool>,
     /// The results of the trials along the path, if requested.
@@ -188,9 +191,9 @@ impl MapAnswer {
         }
     }
 
-    /// Whether every goal is reachable.
+    /// Whether every goal is reachable by a path that the machine can fly.
     pub fn reaches_all_goals(&self) -> bool {
-        self.goals.iter().all(|goal| goal.hops.is_some())
+        self.goals.iter().all(|goal| goal.hops.is_some() && goal.propellant_shortage.is_none())
     }
 
     /// The answer as text.
@@ -250,6 +253,12 @@ impl MapAnswer {
                 "goal ({:.3}, {:.3}) m, {:.3} m from the place asked for: {hops}{back}",
                 goal.x_m, goal.y_m, goal.offset_m
             );
+            for line in goal.totals.iter().flat_map(stores_lines) {
+                let _ = writeln!(text, "  {line}");
+            }
+            if let Some(shortage) = &goal.propellant_shortage {
+                let _ = writeln!(text, "  not with its propellant: {}", shortage.sentence());
+            }
         }
         if !self.hops_histogram.is_empty() {
             let _ = writeln!(text, "\n{:>6}{:>12}", "hops", "posts");

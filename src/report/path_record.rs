@@ -4,7 +4,10 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use super::hop_margins::HopMarginsRecord;
+use super::{
+    hop_margins::HopMarginsRecord,
+    propellant_record::{STORES_COLUMNS, StoresRecord},
+};
 use crate::{
     path::{Hop, HopPath, Totals},
     quantity::MapPoint,
@@ -51,6 +54,9 @@ pub struct HopRecord {
     pub map: Option<MapRecord>,
     /// By how much it keeps each limit.
     pub margins: HopMarginsRecord,
+    /// Delta-v, propellant and mass.
+    #[serde(flatten)]
+    pub stores: StoresRecord,
 }
 
 /// The columns of a hop on a map.
@@ -118,7 +124,7 @@ pub(super) fn heading_true_deg(projection: &MapProjection, takeoff: MapPoint, he
 pub struct TotalsRecord {
     /// Time in flight.
     pub flight_time_s: f64,
-    /// Energy per unit mass.
+    /// Energy from the store, per unit mass.
     pub energy_j_kg: f64,
     /// The greatest take-off speed.
     pub peak_takeoff_speed_m_s: f64,
@@ -127,9 +133,26 @@ pub struct TotalsRecord {
     /// Energy, if the mass is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy_j: Option<f64>,
-    /// Time in flight and at rest, if the rest time is given.
+    /// Time in flight, of preparations and of settling between hops, if one of the last two is given.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mission_time_s: Option<f64>,
+    /// `store` where the energies are more than those of motion: with an efficiency or a preparation energy.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_basis: Option<&'static str>,
+    /// Delta-v.
+    pub delta_v_m_s: f64,
+    /// Propellant, if the specific impulse is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub propellant_kg: Option<f64>,
+    /// Mass at the end, if the specific impulse is given.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass_end_kg: Option<f64>,
+    /// Propellant beyond what the machine has, if the path takes too much.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub propellant_short_kg: Option<f64>,
+    /// Whether the machine has a key of propulsion, so that text states the delta-v.
+    #[serde(skip)]
+    pub propulsive: bool,
 }
 
 impl HopRecord {
@@ -166,6 +189,7 @@ impl HopRecord {
                 heading_true_deg: projection.map(|projection| heading_true_deg(projection, takeoff, hop.heading_deg)),
             }),
             margins: HopMarginsRecord(hop.margins),
+            stores: hop.into(),
         }
     }
 }
@@ -179,6 +203,12 @@ impl From<&Totals> for TotalsRecord {
             ground_distance_m: unsigned_zero(totals.ground_distance_m),
             energy_j: totals.energy_j.map(unsigned_zero),
             mission_time_s: totals.mission_time_s.map(unsigned_zero),
+            energy_basis: totals.of_store.then_some("store"),
+            delta_v_m_s: unsigned_zero(totals.delta_v_m_s),
+            propellant_kg: totals.propellant.map(|propellant| unsigned_zero(propellant.used_kg)),
+            mass_end_kg: totals.propellant.map(|propellant| propellant.mass_end_kg),
+            propellant_short_kg: totals.propellant_short_kg(),
+            propulsive: totals.propulsive,
         }
     }
 }
@@ -264,7 +294,7 @@ fn columns(known: MapKnowledge) -> Vec<String> {
     let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
     let projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
     let own = COLUMNS.iter().chain(map).chain(projection).map(|&column| column.to_owned());
-    own.chain(HopMarginsRecord::columns()).collect()
+    own.chain(HopMarginsRecord::columns()).chain(STORES_COLUMNS.map(str::to_owned)).collect()
 }
 
 impl HopRecord {
@@ -304,6 +334,7 @@ impl HopRecord {
             fields.extend(texts(heading.map(|heading| [heading])));
         }
         fields.extend(self.margins.fields());
+        fields.extend(self.stores.fields());
         fields
     }
 }

@@ -2,7 +2,10 @@
 
 use std::fmt::Write;
 
-use super::{BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, TotalsRecord};
+use super::{
+    BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, TotalsRecord,
+    propellant_record::{delta_v_field, stores_lines},
+};
 use crate::quantity::{format_number, unit_of};
 
 /// A sheet of text; writing to it does not fail.
@@ -229,10 +232,15 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         place(answer.start_x_m),
         place(answer.goal_x_m)
     ));
+    if let Some(shortage) = &answer.propellant_shortage {
+        sheet.line(format_args!("not with its propellant: {}", shortage.sentence()));
+    }
     if let Some(effort) = answer.effort {
         sheet.line(format_args!("{}: {:.4} {}", effort.total, effort.value, effort.unit));
     }
-    if let Some(proof) = &answer.proof {
+    if let (Some(lower), true) = (answer.proof.as_ref().and_then(|proof| proof.lower_bound), answer.propellant_shortage.is_some()) {
+        sheet.line(format_args!("no path has fewer than {lower} hop{}, whatever propellant it takes", plural(lower)));
+    } else if let Some(proof) = &answer.proof {
         proof_lines(&mut sheet, proof, means);
     }
     sheet.line(format_args!(
@@ -303,12 +311,22 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
     let has_north = rows.iter().any(|row| row.map.is_some_and(|map| map.heading_true_deg.is_some()));
     let columns = if has_north { format!("{:>11}{:>11}", "grid (deg)", "true (deg)") } else { String::new() };
     sheet.line(format_args!(
-        "{:>4} {:<8}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>9}{columns}  {}",
-        "hop", "", "from x (m)", "to x (m)", "up (deg)", "m/s", "down(deg)", "m/s", "s", "binding (lower/upper)"
+        "{:>4} {:<8}{:>12}{:>12}{:>10}{:>10}{:>10}{:>10}{:>9}{columns}{}  {}",
+        "hop",
+        "",
+        "from x (m)",
+        "to x (m)",
+        "up (deg)",
+        "m/s",
+        "down(deg)",
+        "m/s",
+        "s",
+        delta_v_field(None, totals),
+        "binding (lower/upper)"
     ));
     for row in rows {
         sheet.line(format_args!(
-            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}{}  {}",
+            "{:>4} {:<8}{:>12.3}{:>12.3}{:>10.3}{:>10.4}{:>10.3}{:>10.4}{:>9.3}{}{}  {}",
             row.hop,
             row.direction,
             row.takeoff_x_m,
@@ -319,6 +337,7 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
             row.landing_speed_m_s,
             row.flight_time_s,
             row.map.and_then(headings).unwrap_or_default(),
+            delta_v_field(Some(row), totals),
             row.binding
         ));
     }
@@ -331,6 +350,9 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
     }
     if let Some(mission_time_s) = totals.mission_time_s {
         sheet.line(format_args!("mission time {mission_time_s:.3} s"));
+    }
+    for line in stores_lines(totals) {
+        sheet.line(format_args!("{line}"));
     }
     sheet.0
 }

@@ -5,14 +5,21 @@ use crate::world::{Hopper, HopperLimits};
 
 /// Whether two scenarios put the same limits on every hop between the same ends over the same points: ground, hopper and gravity.
 ///
-/// Speed limits are compared after the segments' own limits are applied, so one beyond the chain's limits makes no difference. Mass
-/// and rest time are ignored.
+/// Speed limits are compared after the segments' own limits are applied, so one beyond the chain's limits makes no difference. What
+/// only counts in totals (mass, propellant, times, energies) is ignored.
 pub fn ask_the_same((a, on_a): (&Scenario, &Prepared), (b, on_b): (&Scenario, &Prepared)) -> bool {
     let machine = |hopper: &Hopper| HopperLimits {
         takeoff_speed_max_m_s: 0.0,
         landing_speed_max_m_s: 0.0,
         mass_kg: None,
         rest_time_s: None,
+        hop_delta_v_overhead_m_s: None,
+        isp_s: None,
+        propellant_max_kg: None,
+        preparation_time_s: None,
+        settling_time_s: None,
+        preparation_energy_j: None,
+        efficiency: None,
         ..*hopper.limits()
     };
     machine(&a.hopper) == machine(&b.hopper)

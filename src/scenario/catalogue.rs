@@ -5,7 +5,7 @@ use crate::{
     graph::{Effort, ReliabilityUse},
     hop::Split,
     uncertainty::Policy,
-    world::ClearanceRule,
+    world::{ClearanceRule, LandingMode},
 };
 
 /// The kind of value that a key takes.
@@ -131,7 +131,7 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 60] = [
+pub const CATALOGUE: [Key; 69] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -157,8 +157,42 @@ pub const CATALOGUE: [Key; 60] = [
     key("hopper", "takeoff_angle_step_deg", STEP_ANGLE, "take-off angles are multiples of this, degrees; absent: any angle"),
     key("hopper", "takeoff_speed_step_m_s", SPEED, "take-off speeds are multiples of this, m/s; absent: any speed"),
     key("hopper", "heading_step_deg", STEP_ANGLE, "headings from grid north are multiples of this, degrees; absent: any heading"),
-    key("hopper", "mass_kg", LENGTH, "mass, kg, for the total of energy"),
-    key("hopper", "rest_time_s", FROM_ZERO, "rest between hops, s, for the mission time"),
+    key("hopper", "mass_kg", LENGTH, "mass at the start, kg, for the totals of energy and propellant"),
+    key("hopper", "rest_time_s", FROM_ZERO, "older name of settling_time_s, s; not beside it or preparation_time_s"),
+    key(
+        "hopper",
+        "landing",
+        Kind::Word(&LandingMode::NAMES),
+        "ballistic: the arc meets the ground; braked: it brakes to touch down straight down at touchdown_speed_m_s; absent: ballistic",
+    ),
+    key(
+        "hopper",
+        "touchdown_speed_m_s",
+        Kind::Number { min: 0.0, max: 1e5 },
+        "speed of a braked touchdown, m/s, at most landing_speed_max_m_s; needs landing = \"braked\"",
+    ),
+    key(
+        "hopper",
+        "hop_delta_v_overhead_m_s",
+        Kind::Number { min: 0.0, max: 1e5 },
+        "delta-v of every hop beyond its changes of velocity (gravity and steering losses), m/s; absent: 0",
+    ),
+    key("hopper", "isp_s", Kind::Number { min: 1e-3, max: 1e6 }, "specific impulse, s, for the propellant; needs mass_kg"),
+    key(
+        "hopper",
+        "propellant_max_kg",
+        LENGTH,
+        "propellant at the start, kg, below mass_kg; a path that needs more is no; needs isp_s",
+    ),
+    key("hopper", "preparation_time_s", FROM_ZERO, "time to prepare each hop, s, for the mission time; absent: 0"),
+    key("hopper", "settling_time_s", FROM_ZERO, "time to settle between hops, s, for the mission time; absent: 0"),
+    key("hopper", "preparation_energy_j", FROM_ZERO, "energy to prepare each hop, J, for the totals of energy; needs mass_kg"),
+    key(
+        "hopper",
+        "efficiency",
+        Kind::Number { min: 1e-9, max: 1.0 },
+        "share of the energy store that becomes motion, for the totals of energy; absent: 1",
+    ),
     key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),
     key("surface", "takeoff_from_slope_deg", Kind::AngleRange, "take-off angles above the slope, degrees, instead of friction"),
     key("surface", "landing_from_slope_deg", Kind::AngleRange, "landing angles above the slope, degrees, instead of friction"),
@@ -277,10 +311,11 @@ mod tests {
 
     #[test]
     fn every_number_ends_in_its_unit() {
-        let units = ["_m", "_m_s", "_m_s2", "_s", "_kg", "_deg"];
+        let units = ["_m", "_m_s", "_m_s2", "_s", "_kg", "_j", "_deg"];
         let pure = [
             "friction_coefficient",
             "clearance_taper",
+            "efficiency",
             "points_per_segment",
             "mesh_scale",
             "no_data",

@@ -78,6 +78,15 @@ fn hopper(scenario: &Scenario) -> Value {
         ("heading_step_deg", hopper.limits().steps.heading.map(|angle| degrees(angle).into())),
         ("mass_kg", hopper.limits().mass_kg.map(Value::from)),
         ("rest_time_s", hopper.limits().rest_time_s.map(Value::from)),
+        ("landing", hopper.limits().landing.brakes().then(|| hopper.limits().landing.name().into())),
+        ("touchdown_speed_m_s", hopper.limits().landing.touchdown_speed_m_s().map(Value::from)),
+        ("hop_delta_v_overhead_m_s", hopper.limits().hop_delta_v_overhead_m_s.map(Value::from)),
+        ("isp_s", hopper.limits().isp_s.map(Value::from)),
+        ("propellant_max_kg", hopper.limits().propellant_max_kg.map(Value::from)),
+        ("preparation_time_s", hopper.limits().preparation_time_s.map(Value::from)),
+        ("settling_time_s", hopper.limits().settling_time_s.map(Value::from)),
+        ("preparation_energy_j", hopper.limits().preparation_energy_j.map(Value::from)),
+        ("efficiency", hopper.limits().efficiency.map(Value::from)),
     ])
 }
 

@@ -10,6 +10,7 @@ mod on_body;
 mod physics;
 mod pipeline;
 mod problem;
+mod propulsion;
 mod read;
 mod sense;
 mod trade;

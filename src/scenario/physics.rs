@@ -77,8 +77,10 @@ pub(super) fn escape_warnings(scenario: &Scenario, chain: Option<&PolygonalChain
     let limits = scenario.hopper.limits();
     let contacts =
         [("takeoff_speed_max_m_s", limits.takeoff_speed_max_m_s, 0), ("landing_speed_max_m_s", limits.landing_speed_max_m_s, 1)];
+    // With brakes the landing speed limit is one of the touchdown, not of an arc.
+    let of_arcs = if limits.landing.brakes() { 1 } else { 2 };
     let mut warnings = Vec::new();
-    for (key, of_hopper_m_s, contact) in contacts {
+    for (key, of_hopper_m_s, contact) in contacts.into_iter().take(of_arcs) {
         if of_hopper_m_s.is_finite() {
             warnings.extend(stated(&format!("hopper.{key}"), of_hopper_m_s));
         }

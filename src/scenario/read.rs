@@ -2,7 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use super::{Entries, Place, ProblemKind, ScenarioProblem, UncertaintyKeys};
+use super::{
+    Entries, Place, ProblemKind, ScenarioProblem, UncertaintyKeys,
+    propulsion::{self, landing},
+};
 use crate::{
     ballistics::TakeoffChoice,
     graph::{Effort, PointSpacing, ReliabilityUse, SearchOptions},
@@ -258,6 +261,8 @@ fn hopper(entries: &mut Entries) -> Hopper {
         Some(rule) if rule == ClearanceRule::Vertex.name() => ClearanceRule::Vertex,
         _ => taper.map_or(ClearanceRule::TAPERED, ClearanceRule::Tapered),
     };
+    let landing = landing(entries);
+    let number = |name| entries.number("hopper", name);
     let limits = HopperLimits {
         takeoff_speed_max_m_s: number("takeoff_speed_max_m_s").unwrap_or(f64::INFINITY),
         landing_speed_max_m_s: number("landing_speed_max_m_s").unwrap_or(f64::INFINITY),
@@ -274,6 +279,14 @@ fn hopper(entries: &mut Entries) -> Hopper {
         },
         mass_kg: number("mass_kg"),
         rest_time_s: number("rest_time_s"),
+        landing,
+        hop_delta_v_overhead_m_s: number("hop_delta_v_overhead_m_s"),
+        isp_s: number("isp_s"),
+        propellant_max_kg: number("propellant_max_kg"),
+        preparation_time_s: number("preparation_time_s"),
+        settling_time_s: number("settling_time_s"),
+        preparation_energy_j: number("preparation_energy_j"),
+        efficiency: number("efficiency"),
     };
     if let (Some(min), Some(max)) = (limits.takeoff_angle_min, limits.takeoff_angle_max)
         && min > max
@@ -295,10 +308,11 @@ fn hopper(entries: &mut Entries) -> Hopper {
         let help = "remove clearance_taper, or say clearance_rule = \"tapered\"";
         entries.problem(("hopper", "clearance_taper"), ProblemKind::Conflict, message, help);
     }
-    // The catalogue's ranges lie within those of a hopper; if they ever do not, the hopper's own message is reported.
+    // The catalogue's ranges lie within those of a hopper; what two keys mean together, the hopper itself checks.
     Hopper::new(limits).unwrap_or_else(|InvalidHopper(problems)| {
         for problem in problems {
-            entries.problem(("hopper", problem.key), ProblemKind::Value, problem.to_string(), "give a value in that range");
+            let help = propulsion::help(problem.key).unwrap_or("give a value in that range");
+            entries.problem(("hopper", problem.key), ProblemKind::Value, problem.to_string(), help);
         }
         Hopper::UNLIMITED
     })

@@ -94,7 +94,7 @@ impl MapReplan {
         let sight = LineOfSight::new(run_m, target.z_m - from.z_m);
         let squared = |speed_m_s: f64| tolerant_speed_m_s(speed_m_s) * tolerant_speed_m_s(speed_m_s) * (1.0 + SPEED_TOLERANCE);
         let too_far = g * run_m * sight.min_speed_ratio() > squared(limits.takeoff_speed_max_m_s)
-            || g * run_m * sight.min_speed_ratio_reversed() > squared(limits.landing_speed_max_m_s);
+            || g * run_m * sight.min_speed_ratio_reversed() > squared(limits.arc_landing_speed_max_m_s());
         if too_far || best.is_some_and(|best| to_go.least_cost(sight, g) + rest >= best) {
             return None;
         }

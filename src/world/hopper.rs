@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{CommandSteps, Gravity};
+use super::{CommandSteps, Gravity, LandingMode, propulsion};
 use crate::quantity::Angle;
 
 /// Where a hopper keeps its clearance.
@@ -64,10 +64,26 @@ pub struct HopperLimits {
     pub flight_time_max_s: Option<f64>,
     /// The steps of its commands.
     pub steps: CommandSteps,
-    /// Mass, kg, only used for energies.
+    /// Mass at the start, kg, used for energies and propellant.
     pub mass_kg: Option<f64>,
-    /// Rest between hops, s, only used for the mission time.
+    /// Rest between hops, s, only used for the mission time: the older name of `settling_time_s`.
     pub rest_time_s: Option<f64>,
+    /// How it lands.
+    pub landing: LandingMode,
+    /// Delta-v of every hop beyond its changes of velocity, m/s: gravity and steering losses.
+    pub hop_delta_v_overhead_m_s: Option<f64>,
+    /// Specific impulse, s, for the propellant.
+    pub isp_s: Option<f64>,
+    /// The propellant that it has at the start, kg.
+    pub propellant_max_kg: Option<f64>,
+    /// Time to prepare a hop, s.
+    pub preparation_time_s: Option<f64>,
+    /// Time to settle after a landing, s.
+    pub settling_time_s: Option<f64>,
+    /// Energy to prepare a hop, J, from the energy store.
+    pub preparation_energy_j: Option<f64>,
+    /// Share of the energy taken from the store that becomes motion; 1 unless given.
+    pub efficiency: Option<f64>,
 }
 
 impl HopperLimits {
@@ -84,6 +100,14 @@ impl HopperLimits {
         steps: CommandSteps::CONTINUOUS,
         mass_kg: None,
         rest_time_s: None,
+        landing: LandingMode::Ballistic,
+        hop_delta_v_overhead_m_s: None,
+        isp_s: None,
+        propellant_max_kg: None,
+        preparation_time_s: None,
+        settling_time_s: None,
+        preparation_energy_j: None,
+        efficiency: None,
     };
 
     /// The two speed limits that every analysis needs, without other limits.
@@ -164,6 +188,15 @@ impl Hopper {
             steps,
             mass_kg,
             rest_time_s,
+            // `propulsion::problems` checks these, and the rest time beside them.
+            landing: _,
+            hop_delta_v_overhead_m_s: _,
+            isp_s: _,
+            propellant_max_kg: _,
+            preparation_time_s: _,
+            settling_time_s: _,
+            preparation_energy_j: _,
+            efficiency: _,
         } = limits;
         let not_negative = |number: f64| number.is_finite() && number >= 0.0;
         let positive = |number: f64| number.is_finite() && number > 0.0;
@@ -209,6 +242,7 @@ impl Hopper {
             .into_iter()
             .filter(|(_, holds, ..)| !holds)
             .map(|(key, _, found, expected)| HopperProblem { key, found, expected })
+            .chain(propulsion::problems(&limits))
             .collect();
         if problems.is_empty() { Ok(Self { limits }) } else { Err(InvalidHopper(problems)) }
     }
@@ -222,13 +256,14 @@ impl Hopper {
     }
 
     /// The same hopper with speed limits below the escape speed of the body under this gravity, since a faster hop never lands, and with
-    /// the greatest take-off speed that it can command. A speed
-    /// without limit stays so, since the chain's own limits then apply, which the chain caps in the same way.
+    /// the greatest take-off speed that it can command. A speed without limit stays so, since the chain's own limits then apply, which
+    /// the chain caps in the same way; so does the landing speed of a hopper that brakes, which is not one of an arc.
     #[must_use]
     pub fn below_escape(&self, gravity: Gravity) -> Self {
         let capped = |speed_m_s: f64| if speed_m_s.is_finite() { speed_m_s.min(gravity.speed_cap_m_s()) } else { speed_m_s };
         let takeoff_speed_max_m_s = self.limits.steps.speed_not_above_m_s(capped(self.limits.takeoff_speed_max_m_s));
-        let landing_speed_max_m_s = capped(self.limits.landing_speed_max_m_s);
+        let landing_m_s = self.limits.landing_speed_max_m_s;
+        let landing_speed_max_m_s = if self.limits.landing.brakes() { landing_m_s } else { capped(landing_m_s) };
         Self { limits: HopperLimits { takeoff_speed_max_m_s, landing_speed_max_m_s, ..self.limits } }
     }
 

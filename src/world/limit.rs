@@ -22,6 +22,8 @@ pub enum Limit {
     TakeoffSpeed,
     /// Landing speed: limit of the structure.
     LandingSpeed,
+    /// With brakes: the touchdown straight down must lie in the landing cone of the ground and be no faster than a landing may be.
+    Touchdown,
     /// The arc must rise above the line of sight from take-off to landing.
     LineOfSight,
     /// The arc must clear every vertex flown over.
@@ -42,7 +44,7 @@ pub enum Limit {
 
 impl Limit {
     /// All limits, in the order in which results list them.
-    pub const ALL: [Self; 16] = [
+    pub const ALL: [Self; 17] = [
         Self::Direction,
         Self::KeepOut,
         Self::RestSlope,
@@ -51,6 +53,7 @@ impl Limit {
         Self::LandingCone,
         Self::TakeoffSpeed,
         Self::LandingSpeed,
+        Self::Touchdown,
         Self::LineOfSight,
         Self::Terrain,
         Self::MechanicalAngle,
@@ -72,6 +75,7 @@ impl Limit {
             Self::LandingCone => "landing-cone",
             Self::TakeoffSpeed => "takeoff-speed",
             Self::LandingSpeed => "landing-speed",
+            Self::Touchdown => "touchdown",
             Self::LineOfSight => "line-of-sight",
             Self::Terrain => "terrain",
             Self::MechanicalAngle => "mechanical-angle",

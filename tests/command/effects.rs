@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 59] = [
+const TELLING: [(&str, &str); 68] = [
     ("body.name", "earth"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -25,6 +25,15 @@ const TELLING: [(&str, &str); 59] = [
     ("hopper.heading_step_deg", "20"),
     ("hopper.mass_kg", "7"),
     ("hopper.rest_time_s", "100"),
+    ("hopper.landing", "braked"),
+    ("hopper.touchdown_speed_m_s", "0.5"),
+    ("hopper.hop_delta_v_overhead_m_s", "2"),
+    ("hopper.isp_s", "200"),
+    ("hopper.propellant_max_kg", "1"),
+    ("hopper.preparation_time_s", "60"),
+    ("hopper.settling_time_s", "60"),
+    ("hopper.preparation_energy_j", "60"),
+    ("hopper.efficiency", "0.5"),
     ("surface.friction_coefficient", "0.3"),
     ("surface.rest_slope_max_deg", "1"),
     ("surface.keep_out", "none.tif"),

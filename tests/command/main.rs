@@ -22,6 +22,7 @@ mod missing_data;
 mod picture_files;
 #[cfg(unix)]
 mod pipes;
+mod propulsion;
 mod real_terrain;
 mod same_answers;
 mod sentences;

@@ -68,6 +68,7 @@ impl Case {
             Limit::Direction
             | Limit::KeepOut
             | Limit::RestSlope
+            | Limit::Touchdown
             | Limit::Bend
             | Limit::LineOfSight
             | Limit::TakeoffAngleStep

@@ -86,7 +86,7 @@ fn toml() -> impl Strategy<Value = String> {
             _ => true,
         };
         let mut text = String::new();
-        for (key, value) in keys {
+        for (key, value) in sensible_hopper(keys) {
             if let Some(value) = value.filter(|_| kept(key)) {
                 // Dotted keys, so that no table header is needed.
                 let _ = writeln!(text, "{}.{} = {value}", key.table, key.name);
@@ -94,6 +94,31 @@ fn toml() -> impl Strategy<Value = String> {
         }
         text
     })
+}
+
+/// The keys of the hopper that fit each other: brakes with a touchdown speed that the landing speed limit allows, propellant below the
+/// mass, and so on. The other choices are left to chance.
+fn sensible_hopper(keys: Vec<(&Key, Option<String>)>) -> Vec<(&Key, Option<String>)> {
+    let of = |name: &str| {
+        let found = keys.iter().find(|(key, _)| key.table == "hopper" && key.name == name);
+        found.and_then(|(_, value)| value.as_ref()).map(|value| value.parse::<f64>().unwrap_or(f64::NAN))
+    };
+    let (mass, isp) = (of("mass_kg"), of("isp_s"));
+    let brakes = of("touchdown_speed_m_s").is_some_and(|speed| of("landing_speed_max_m_s").is_none_or(|most| speed <= most));
+    let newer = of("preparation_time_s").is_some() || of("settling_time_s").is_some();
+    let fits = |name: &str| match name {
+        "landing" | "touchdown_speed_m_s" => brakes,
+        "isp_s" | "preparation_energy_j" => mass.is_some(),
+        "propellant_max_kg" => isp.is_some() && mass.zip(of("propellant_max_kg")).is_some_and(|(mass, most)| most < mass),
+        "rest_time_s" => !newer,
+        _ => true,
+    };
+    let fitting = keys.iter().map(|(key, value)| match (key.table, key.name) {
+        ("hopper", "landing") if brakes => (*key, Some("\"braked\"".to_owned())),
+        ("hopper", name) if !fits(name) => (*key, None),
+        _ => (*key, value.clone()),
+    });
+    fitting.collect()
 }
 
 proptest! {
@@ -130,6 +155,7 @@ fn many_generated_scenarios_are_valid() {
 #[test]
 fn every_key_reaches_the_document() {
     let alone = |key: &Key| match key.kind {
+        Kind::Number { max, .. } if max < 12.5 => "0.5",
         Kind::Number { .. } => "12.5",
         Kind::AngleOrUnlimited => "31.5",
         Kind::AngleRange => "[12.5, 60.25]",
@@ -164,6 +190,13 @@ fn every_key_reaches_the_document() {
                 with("terrain", "goal_m", "[0, 0]");
             }
             ("terrain", "start_x_m" | "goal_x_m") => with("terrain", "chain", "x.csv"),
+            ("hopper", "landing") => with("hopper", "touchdown_speed_m_s", "1"),
+            ("hopper", "touchdown_speed_m_s") => with("hopper", "landing", "braked"),
+            ("hopper", "isp_s" | "preparation_energy_j") => with("hopper", "mass_kg", "50"),
+            ("hopper", "propellant_max_kg") => {
+                with("hopper", "mass_kg", "50");
+                with("hopper", "isp_s", "200");
+            }
             ("uncertainty", "height_sigma_m") => with("uncertainty", "height_correlation_m", "3"),
             ("uncertainty", "height_correlation_m") => with("uncertainty", "height_sigma_m", "3"),
             ("search", "risk_extra_hops_max") => with("search", "risk", "traded"),

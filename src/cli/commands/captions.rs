@@ -17,9 +17,11 @@ pub(super) struct SpeedLimit {
 impl SpeedLimit {
     /// The take-off and landing speed limits.
     pub(super) const fn of(hopper: &Hopper) -> [Self; 2] {
+        // With brakes the landing speed limit is one of the touchdown.
+        let landing = if hopper.limits().landing.brakes() { "touchdown" } else { "landing" };
         [
             Self { key: "hopper.takeoff_speed_max_m_s", contact: "take-off", most_m_s: hopper.limits().takeoff_speed_max_m_s },
-            Self { key: "hopper.landing_speed_max_m_s", contact: "landing", most_m_s: hopper.limits().landing_speed_max_m_s },
+            Self { key: "hopper.landing_speed_max_m_s", contact: landing, most_m_s: hopper.limits().landing_speed_max_m_s },
         ]
     }
 

@@ -118,7 +118,7 @@ fn answers(
             let of_path = constant_gravity_warnings(&loaded.scenario.body, Extremes::of(&path.hops));
             warnings.extend(of_path.into_iter().filter(|warning| !warnings.contains(warning)).collect::<Vec<_>>());
         }
-        let answer = searched.answer(&test, ends, options.effort);
+        let answer = searched.answer(&test, ends, options.effort).with_path(path.as_ref());
         if let (Some(file), Some(bounds)) = (args.plot.as_deref(), searched.bounds()) {
             drawn = Some(picture(loaded, ends, (bounds, path.as_ref()), file)?);
         }

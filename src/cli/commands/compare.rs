@@ -93,13 +93,13 @@ impl Compared {
         let test = loaded.hop_test();
         let options = &loaded.scenario.search;
         let searched = Searched::new(&test, ends, &loaded.scenario, Some(args.prove), args.quiet)?;
-        let check = searched.answer(&test, ends, options.effort);
         let path = match &searched.found.outcome {
             chta::graph::Outcome::Path { legs, .. } => {
                 Some(generate(&test, legs, options.takeoff, options.split).map_err(|e| Failure::of(&e))?)
             }
             _ => None,
         };
+        let check = searched.answer(&test, ends, options.effort).with_path(path.as_ref());
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
         let warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
         for warning in &warnings {

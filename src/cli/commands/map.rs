@@ -13,7 +13,8 @@ use chta::{
         search, verify,
     },
     report::{
-        Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, SimulationRecord, TotalsRecord,
+        Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, PropellantShortage, SimulationRecord,
+        TotalsRecord,
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
@@ -357,6 +358,7 @@ fn goal_record(inputs: &PreparedMap, maps: &Maps, goal: &Spot, index: usize) -> 
         return_hops: maps.back.as_ref().map(reached),
         path: path.map(|path| HopRecord::rows(path, inputs.projection.as_ref().ok())).unwrap_or_default(),
         totals: path.map(|path| TotalsRecord::from(&path.totals)),
+        propellant_shortage: path.and_then(|path| PropellantShortage::of(&path.totals)),
         // A path that fails the check has already ended the command with an error.
         verified: path.map(|_| true),
         simulation: maps.trials[index].clone(),

@@ -83,7 +83,7 @@ impl Planned {
         }
         let warnings = loaded.warnings_with(warnings);
         let answer = PlanAnswer {
-            check: searched.answer(test, ends, options.effort),
+            check: searched.answer(test, ends, options.effort).with_path(path.as_ref()),
             verified: (verify && path.is_some()).then_some(true),
             path: path.as_ref().map(|path| HopRecord::rows(path, loaded.prepared.projection.as_ref())).unwrap_or_default(),
             totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
@@ -97,9 +97,9 @@ impl Planned {
         &self.answer.check
     }
 
-    /// The exit status: yes with a path, no without.
-    pub(super) fn verdict(&self) -> Answer {
-        if self.path.is_some() { Answer::Yes } else { Answer::No }
+    /// The exit status: yes with a path that the machine can fly, no without.
+    pub(super) const fn verdict(&self) -> Answer {
+        if self.answer.check.is_traversable() { Answer::Yes } else { Answer::No }
     }
 
     /// The answer for reading.

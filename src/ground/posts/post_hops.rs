@@ -224,7 +224,7 @@ impl PostHops {
         let lofts = self.envelope().lofts(
             sight,
             ContactLimits { slopes: slopes[0], speed_max_m_s: limits.takeoff_speed_max_m_s },
-            ContactLimits { slopes: slopes[1], speed_max_m_s: limits.landing_speed_max_m_s },
+            ContactLimits { slopes: slopes[1], speed_max_m_s: limits.arc_landing_speed_max_m_s() },
         );
         let most = lofts.upper + near(lofts.upper);
         if lofts.lower - near(lofts.lower) > most || most <= 0.0 || !worth(sight, lofts) {
@@ -296,7 +296,8 @@ impl PostHops {
         let (slope, steepness) = self.facet(takeoff, offset.departure, offset);
         let ahead = open(grip.takeoff(slope, steepness))?;
         let (slope, steepness) = self.facet(landing, offset.arrival, offset);
-        let behind = open(grip.landing(slope, steepness))?;
+        let brakes = self.ground.hopper().limits().landing.brakes();
+        let behind = open(if brakes { grip.touchdown(slope, steepness) } else { grip.landing(slope, steepness) })?;
         Some(([ahead, behind], sure))
     }
 

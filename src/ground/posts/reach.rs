@@ -21,7 +21,7 @@ impl PostHops {
     /// Makes the table of offsets, and finds how far hops reach from each block.
     pub(super) fn set_reach(&mut self) -> Result<(), MapError> {
         let hopper = self.ground.hopper().limits();
-        let speeds = [hopper.takeoff_speed_max_m_s, hopper.landing_speed_max_m_s].map(|v| tolerant_speed_m_s(v) * WIDER);
+        let speeds = [hopper.takeoff_speed_max_m_s, hopper.arc_landing_speed_max_m_s()].map(|v| tolerant_speed_m_s(v) * WIDER);
         let gravity = self.ground.gravity_m_s2();
         // The longest hop that rises or falls by at most a height.
         let range_m =
@@ -64,9 +64,11 @@ impl PostHops {
             return Err(MapError::TooFar { range_m: longest_m, posts, offsets: size.offsets, stride });
         }
         let rises_m = |run_m: f64| {
-            let ceiling = |v: f64| safety_ceiling_m(run_m, v, gravity);
-            let slack_m = 1.0e-9 * (run_m + ceiling(speeds[0]).abs() + ceiling(speeds[1]).abs());
-            (-ceiling(speeds[1]) - slack_m, ceiling(speeds[0]) + slack_m)
+            let [takeoff_m, landing_m] = speeds.map(|v| safety_ceiling_m(run_m, v, gravity));
+            // With brakes the speed of an arc's landing, and so the drop, has no limit.
+            let drop_m = if landing_m.is_finite() { landing_m.abs() } else { 0.0 };
+            let slack_m = 1.0e-9 * (run_m + takeoff_m.abs() + drop_m);
+            (-landing_m - slack_m, takeoff_m + slack_m)
         };
         self.table = OffsetTable::new(spacing, longest_m, bounds, self.envelope().clearance(), rises_m);
         let count = |range_m: &f64| self.table.offsets.partition_point(|offset| offset.run_m <= *range_m);

@@ -15,13 +15,13 @@ use crate::{
 
 /// Tolerance of an angle over its limit, rad: it corresponds to the tolerance of speeds. A tangent and an arc tangent between limit
 /// and command leave an error of some 1e-15; a nanoradian is a millimetre in 1000 km.
-const ANGLE_TOLERANCE_RAD: f64 = 1e-9;
+pub(super) const ANGLE_TOLERANCE_RAD: f64 = 1e-9;
 
 /// Relative tolerance of a time over its limit: the same as for speeds.
 const TIME_TOLERANCE: f64 = 1e-9;
 
 /// Relative rounding error of a speed from the formulas that gave it, allowed beyond the crate's tolerance.
-const SPEED_ROUNDING: f64 = 1e-12;
+pub(super) const SPEED_ROUNDING: f64 = 1e-12;
 
 /// Rounding error of a position along the profile, in units in the last place of its x: of each end of a hop when hops are laid end to
 /// end along a segment (a product and a sum).
@@ -66,7 +66,7 @@ impl<S: Surface> Checker<'_, S> {
         self.violations.push(Violation { hop: self.number, limit, measure, at_x_m, vertex: None });
     }
 
-    fn note_limit(&mut self, limit: Limit, found: f64, allowed: f64, unit: &'static str, at_x_m: f64) {
+    pub(super) fn note_limit(&mut self, limit: Limit, found: f64, allowed: f64, unit: &'static str, at_x_m: f64) {
         self.note(ViolatedLimit::Limit(limit), Some(Measure { found, allowed, unit }), at_x_m);
     }
 
@@ -219,8 +219,10 @@ impl<S: Surface> Checker<'_, S> {
         if let Some(refusal) = facet.refusal.filter(|refusal| !self.is_rounding(*refusal)) {
             self.note(ViolatedLimit::Limit(refusal.limit(meeting.contact)), refusal_measure(refusal), x_m);
         }
-        match facet.hold {
-            Hold::Friction { normal, cone } => {
+        let brakes = self.surface.hopper().limits().landing.touchdown_speed_m_s().filter(|_| meeting.contact == Contact::Landing);
+        match (facet.hold, brakes) {
+            (hold, Some(touchdown_m_s)) => self.touchdown(&hold, touchdown_m_s, x_m),
+            (Hold::Friction { normal, cone }, None) => {
                 self.friction(normal, cone, meeting, x_m);
                 let limits = self.surface.hopper().limits();
                 self.speed(
@@ -229,7 +231,7 @@ impl<S: Surface> Checker<'_, S> {
                     x_m,
                 );
             }
-            Hold::Stated { line, .. } => {
+            (Hold::Stated { line, .. }, None) => {
                 if let Some(line) = line {
                     let rule = line.contact(meeting.contact);
                     self.cone(rule.angles(), meeting, x_m);
@@ -245,10 +247,14 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// Whether a refusal is within rounding: a facet exactly at the rest slope.
+    /// Whether a refusal is within rounding: a facet exactly at the rest slope or the friction angle.
     fn is_rounding(&self, refusal: GroundRefusal) -> bool {
         let tolerance_rad = ANGLE_TOLERANCE_RAD + self.surface.slope_rounding();
-        matches!(refusal, GroundRefusal::TooSteep { tilt, max } if tilt.radians() - max.radians() <= tolerance_rad)
+        match refusal {
+            GroundRefusal::TooSteep { tilt, max } => tilt.radians() - max.radians() <= tolerance_rad,
+            GroundRefusal::TouchdownSlope { tilt, friction } => tilt.radians() - friction.half_angle().radians() <= tolerance_rad,
+            _ => false,
+        }
     }
 
     /// Rounding error of the hop's length, as a share of it: far from x = 0, the last digit of the two ends is a part of a short hop. At
@@ -436,7 +442,7 @@ impl<S: Surface> Checker<'_, S> {
         let limits = self.surface.hopper().limits();
         let of = |facet: Facet| match facet.hold.stated(contact) {
             Some(rule) => rule.ok().map(|rule: ContactRule| rule.speed_max_m_s()),
-            None => Some(speed_max_m_s(limits.takeoff_speed_max_m_s, limits.landing_speed_max_m_s, contact)),
+            None => Some(speed_max_m_s(limits.takeoff_speed_max_m_s, limits.arc_landing_speed_max_m_s(), contact)),
         };
         self.ruling(contact).map(of).reduce(|a, b| Some(a?.min(b?)))?
     }
@@ -502,6 +508,14 @@ fn refusal_measure(refusal: GroundRefusal) -> Option<Measure> {
     match refusal {
         GroundRefusal::TooSteep { tilt, max } => degrees(tilt.degrees(), max.degrees()),
         GroundRefusal::CrossSlope { cross_slope, friction } => degrees(cross_slope.degrees(), friction.half_angle().degrees()),
-        GroundRefusal::NoGround | GroundRefusal::KeepOut | GroundRefusal::SpeedZero | GroundRefusal::NothingAhead { .. } => None,
+        GroundRefusal::TouchdownSlope { tilt, friction } => degrees(tilt.degrees(), friction.half_angle().degrees()),
+        GroundRefusal::TouchdownSpeed { touchdown_m_s, max_m_s } => {
+            Some(Measure { found: touchdown_m_s, allowed: max_m_s, unit: "m/s" })
+        }
+        GroundRefusal::TouchdownCone { .. }
+        | GroundRefusal::NoGround
+        | GroundRefusal::KeepOut
+        | GroundRefusal::SpeedZero
+        | GroundRefusal::NothingAhead { .. } => None,
     }
 }

@@ -7,11 +7,14 @@
 
 mod checker;
 mod flight;
+mod stores;
+mod touchdown;
 mod violation;
 
 use checker::Checker;
 use flight::Course;
 pub use flight::{Clearance, Flight};
+use stores::Stores;
 pub use violation::{Measure, StatedValue, ViolatedLimit, Violation};
 
 use super::{Hop, HopPath};
@@ -44,8 +47,8 @@ impl Execution {
 ///
 /// Checks of each hop: it begins where the one before landed; the ground's refusals (direction, keep-out, rest slope); directions
 /// and speeds at both ends; the machine's angles, height and time; the clearance over every vertex flown past, and that
-/// the arc stays above the ground between them; the actual landing point; and the numbers that the plan states. Every violation is
-/// reported.
+/// the arc stays above the ground between them; the actual landing point; with brakes the touchdown instead of the arc's landing;
+/// and the numbers that the plan states, delta-v and propellant among them. Every violation is reported.
 ///
 /// Speed limits have the crate's tolerance, [`tolerant_speed_m_s`](crate::world::tolerant_speed_m_s). The checker's own tolerances
 /// are a nanoradian for directions, 1e-12 of a flight's size for positions (plus the rounding of the ground's heights), and the
@@ -82,6 +85,7 @@ pub fn execute<S: Surface>(surface: &S, path: &HopPath, ends: Option<(S::Contact
     let mut flights = Vec::with_capacity(path.hops.len());
     let ends = ends.map(|(start, goal)| (surface.contact_point(&start), surface.contact_point(&goal)));
     let mut before: Option<ContactPoint> = None;
+    let mut stores = Stores::full(surface.hopper().limits(), surface.gravity_m_s2());
     for (i, hop) in path.hops.iter().enumerate() {
         match (before, ends) {
             (Some(before), _) => continuous(i + 1, (&before, &hop.takeoff), before == hop.takeoff, &mut violations),
@@ -90,10 +94,13 @@ pub fn execute<S: Surface>(surface: &S, path: &HopPath, ends: Option<(S::Contact
         }
         before = Some(hop.landing);
         let Some(direction) = flyable(i + 1, hop, &mut violations) else {
+            stores.check(i + 1, hop, None, &mut violations);
             flights.push(None);
             continue;
         };
-        flights.push(checked(surface, i + 1, hop, direction, &mut violations));
+        let flown = checked(surface, i + 1, hop, direction, &mut violations);
+        stores.check(i + 1, hop, flown.as_ref(), &mut violations);
+        flights.push(flown);
     }
     match (before, ends) {
         (Some(before), Some((_, goal))) => joins(path.hops.len(), (&before, &goal), &mut violations),

@@ -33,6 +33,12 @@ pub enum StatedValue {
     Heading,
     /// The distance along the path.
     Distance,
+    /// The delta-v.
+    DeltaV,
+    /// The propellant.
+    Propellant,
+    /// The mass after the hop.
+    MassEnd,
 }
 
 impl StatedValue {
@@ -52,6 +58,9 @@ impl StatedValue {
             Self::MapEnds => "map ends",
             Self::Heading => "heading",
             Self::Distance => "distance",
+            Self::DeltaV => "delta-v",
+            Self::Propellant => "propellant",
+            Self::MassEnd => "mass at the end",
         }
     }
 }

@@ -28,7 +28,7 @@ pub struct Mobility {
 /// Tests every hop from every node within the disc and reports every block of nodes; the result does not depend on the number of
 /// threads.
 ///
-/// The disc is that of level ground, `v^2 / g` for the smaller of both speed limits, so that different terrains are comparable.
+/// The disc is that of level ground, `v^2 / g` for the smaller of both speed limits of an arc, so that different terrains are comparable.
 ///
 /// # Errors
 /// [`MapError`]; of several, the one of the first block.
@@ -36,7 +36,7 @@ pub fn mobility(hops: &PostHops, progress: &dyn Progress) -> Result<Mobility, Ma
     let lattice = hops.lattice();
     let limits = hops.ground().hopper().limits();
     let range_m = |speed_m_s: f64| safety_range_m(0.0, tolerant_speed_m_s(speed_m_s), hops.ground().gravity_m_s2());
-    let disc_radius_m = range_m(limits.takeoff_speed_max_m_s.min(limits.landing_speed_max_m_s));
+    let disc_radius_m = range_m(limits.takeoff_speed_max_m_s.min(limits.arc_landing_speed_max_m_s()));
     let disc: Vec<(usize, &Offset)> =
         hops.offsets().iter().enumerate().take_while(|(_, offset)| offset.run_m <= disc_radius_m).collect();
     let sectors: Vec<u16> = disc.iter().map(|(_, offset)| 1 << sector(offset)).collect();

@@ -81,6 +81,8 @@ pub struct HopFigure {
     pub arc: Arc,
     /// The take-off cone at its take-off and the landing cone at its landing; `None` if the ground allows no contact.
     pub cones: [Option<Cone>; 2],
+    /// With brakes: the speed of the touchdown straight down, m/s, instead of a landing cone.
+    pub touchdown_m_s: Option<f64>,
 }
 
 /// The allowed directions at a contact.
@@ -202,12 +204,15 @@ fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
         let rule = test.chain().check_contact(&station, contact, hop.direction).ok()?;
         Some(Cone { apex: station.point, contact, direction: hop.direction, slopes: rule.slopes() })
     };
+    let touchdown_m_s = test.hopper().limits().landing.touchdown_speed_m_s();
+    let landing_cone = if touchdown_m_s.is_some() { None } else { cone(hop.landing.station, Contact::Landing) };
     HopFigure {
         number,
         hop: *hop,
         // The loft from the flight time, n = g T^2 / (2 X), since tangents of steep angles lose digits.
         arc: Arc::new(sight, 0.5 * gravity_m_s2 * hop.flight_time_s * (hop.flight_time_s / sight.run_m()), gravity_m_s2),
-        cones: [cone(hop.takeoff.station, Contact::Takeoff), cone(hop.landing.station, Contact::Landing)],
+        cones: [cone(hop.takeoff.station, Contact::Takeoff), landing_cone],
+        touchdown_m_s,
     }
 }
 

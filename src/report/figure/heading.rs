@@ -7,6 +7,7 @@ use super::{
     picture::paragraph,
     sheet::Sheet,
     ticks::short,
+    touchdown,
 };
 use crate::{
     graph::{Answer, EndpointRefusal},
@@ -48,15 +49,20 @@ pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
 /// assert_eq!(words, "Mars, g = 3.711 m/s²; take-off speed ≤ 6 m/s; landing speed ≤ 6 m/s; clearance 0 m; friction coefficient 0.6");
 /// ```
 pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m_s: (f64, f64), ground: &str) -> String {
+    const LANDING: &str = "landing speed";
     let mut parts = Vec::new();
     let gravity = format!("g = {} m/s²", short(gravity_m_s2));
     parts.push(if body.is_empty() { gravity } else { format!("{body}, {gravity}") });
     for (name, limit, bound) in [
         ("take-off speed", hopper.limits().takeoff_speed_max_m_s, speed_bounds_m_s.0),
-        ("landing speed", hopper.limits().landing_speed_max_m_s, speed_bounds_m_s.1),
+        (LANDING, hopper.limits().landing_speed_max_m_s, speed_bounds_m_s.1),
     ] {
         // If the hopper has no limit of its own, the chain's explicit limits apply.
         let most = if limit.is_finite() { limit } else { bound };
+        if let Some(touchdown_m_s) = hopper.limits().landing.touchdown_speed_m_s().filter(|_| name == LANDING) {
+            parts.push(touchdown::conditions(touchdown_m_s, most));
+            continue;
+        }
         parts.push(format!("{name} ≤ {} m/s", short(most)));
     }
     parts.push(clearance(hopper));
@@ -91,6 +97,9 @@ fn clearance(hopper: &Hopper) -> String {
 /// The answer in a few words.
 fn verdict(answer: &Answer, data: &FigureData) -> String {
     match &data.subject {
+        Subject::Path { hops, totals } if totals.propellant_short_kg().is_some() => {
+            format!("a path of {} hops takes more propellant than the hopper has", hops.of)
+        }
         Subject::Path { hops, .. } => match hops.of {
             0 => "no hop needed".to_owned(),
             1 => "1 hop, traversable".to_owned(),
@@ -145,6 +154,10 @@ fn total(totals: &Totals) -> String {
     ];
     parts.extend(totals.energy_j.map(|energy| format!("{} J in all", short(energy))));
     parts.extend(totals.mission_time_s.map(|time| format!("{} s with rests", short(time))));
+    if totals.propulsive {
+        parts.push(format!("delta-v {} m/s", short(totals.delta_v_m_s)));
+    }
+    parts.extend(totals.propellant.map(|p| format!("propellant {} kg, {} kg left", short(p.used_kg), short(p.mass_end_kg))));
     format!("Totals: {}.", parts.join(", "))
 }
 

@@ -6,7 +6,7 @@ use super::{
     palette::{LEFT_MM, RIGHT_MM, SMALL_MM},
     sheet::{Label, Place, Sheet, text_width_mm},
     spans::{Closure, GroundUse},
-    symbols,
+    symbols, touchdown,
 };
 use crate::world::{Contact, Direction};
 
@@ -22,6 +22,7 @@ pub(super) enum Key {
     Cone(Contact),
     Contact(Contact),
     Clearance,
+    Touchdown,
     Node,
     Ground(GroundUse),
     Reached,
@@ -45,7 +46,10 @@ pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
                 found.push((Key::Contact(Contact::Takeoff), "take-off".to_owned()));
                 found.push((Key::Contact(Contact::Landing), "landing".to_owned()));
                 found.push((Key::Cone(Contact::Takeoff), "take-off cone".to_owned()));
-                found.push((Key::Cone(Contact::Landing), "landing cone".to_owned()));
+                match hops.shown.iter().find_map(|hop| hop.touchdown_m_s) {
+                    None => found.push((Key::Cone(Contact::Landing), "landing cone".to_owned())),
+                    Some(speed_m_s) => found.push((Key::Touchdown, touchdown::words(speed_m_s))),
+                }
                 if data.clearance.has_kinks() {
                     found.push((Key::Clearance, "clearance".to_owned()));
                 }
@@ -117,6 +121,7 @@ fn sample(sheet: &mut Sheet, key: Key, (x, y): Place) {
         Key::Contact(Contact::Takeoff) => symbols::takeoff(sheet, middle),
         Key::Contact(Contact::Landing) => symbols::landing(sheet, middle),
         Key::Clearance => clearance::band(sheet, &across.map(|(x, y)| (x, y - 1.0)), &across.map(|(x, y)| (x, y + 1.0))),
+        Key::Touchdown => touchdown::arrow(sheet, (middle.0, middle.1 + 1.6)),
         Key::Node => {
             sheet.line(across.to_vec(), symbols::SURFACE_PEN);
             symbols::node(sheet, middle);

@@ -38,6 +38,7 @@ mod stop_panel;
 mod symbols;
 mod terrain_panel;
 mod ticks;
+mod touchdown;
 mod trials;
 
 #[cfg(test)]

@@ -41,6 +41,10 @@ impl Closure {
             GroundRefusal::KeepOut => Self::KeepOut,
             GroundRefusal::TooSteep { .. } => Self::RestSlope,
             GroundRefusal::CrossSlope { .. } | GroundRefusal::NothingAhead { .. } => Self::Cones,
+            // A landing alone: such ground allows take-offs, or is closed for their reason.
+            GroundRefusal::TouchdownSlope { .. } | GroundRefusal::TouchdownCone { .. } | GroundRefusal::TouchdownSpeed { .. } => {
+                Self::Cones
+            }
             GroundRefusal::SpeedZero => Self::SpeedZero,
             GroundRefusal::NoGround => Self::NoLimits,
         }

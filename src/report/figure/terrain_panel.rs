@@ -10,6 +10,7 @@ use super::{
     spans::{GroundUse, stretch},
     symbols,
     ticks::{Ticks, one_in, short},
+    touchdown,
 };
 use crate::{chain::ConstrainedChain, quantity::ChainPoint};
 
@@ -115,6 +116,12 @@ impl<'a> TerrainPanel<'a> {
         for hop in hops {
             symbols::takeoff(sheet, frame.place(hop.hop.takeoff.in_profile()));
             symbols::landing(sheet, frame.place(hop.hop.landing.in_profile()));
+            if hop.touchdown_m_s.is_some() {
+                touchdown::arrow(sheet, frame.place(hop.hop.landing.in_profile()));
+            }
+        }
+        if let Some((speed_m_s, hop)) = hops.first().and_then(|hop| hop.touchdown_m_s.zip(Some(hop))) {
+            touchdown::speed(sheet, frame.place(hop.hop.landing.in_profile()), speed_m_s);
         }
         let widest = hops.last().map_or(0.0, |hop| text_width_mm(&hop.number.to_string(), SMALL_MM));
         let every = one_in((widest + 1.2) / lengths.get(lengths.len() / 2).copied().unwrap_or(1.0));

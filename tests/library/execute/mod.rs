@@ -5,7 +5,8 @@
 mod spoiled;
 pub(crate) mod world;
 
-use self::world::{Dice, World};
+use self::world::World;
+pub(crate) use self::world::{Dice, World as RandomWorld};
 use chta::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     chain::{ConstrainedChain, PolygonalChain},
@@ -25,6 +26,8 @@ pub(crate) fn with_arc(hop: &Hop, arc: &Arc) -> Hop {
         landing_speed_m_s: arc.landing_speed_m_s(),
         flight_time_s: arc.flight_time_s(),
         apex_z_m: hop.takeoff.point_m.z + arc.apex_height_m(),
+        // Without brakes.
+        delta_v_m_s: hop.delta_v_m_s + (arc.takeoff_speed_m_s() - hop.takeoff_speed_m_s),
         ..*hop
     }
 }
@@ -84,14 +87,14 @@ type Change = fn(&mut Hop);
 #[test]
 fn a_changed_number_is_named() {
     let mut dice = Dice::new(7);
-    let mut changed = [0; 8];
+    let mut changed = [0; 9];
     for _ in 0..400 {
         let world = World::random(&mut dice);
         let Some(chain) = world.chain() else { continue };
         let test = HopTest::new(chain.clone());
         let Some(path) = world.plan(&test) else { continue };
         let Some(last) = path.hops.len().checked_sub(1) else { continue };
-        let changes: [(StatedValue, Change); 8] = [
+        let changes: [(StatedValue, Change); 9] = [
             (StatedValue::LandingSpeed, |h| h.landing_speed_m_s *= 1.01),
             (StatedValue::LandingAngle, |h| {
                 h.landing_angle = Angle::from_radians(h.landing_angle.radians() + 0.01);
@@ -101,6 +104,7 @@ fn a_changed_number_is_named() {
             (StatedValue::SpeedMargin, |h| h.speed_margin_m_s += 0.01 * h.takeoff_speed_m_s),
             (StatedValue::TakeoffSpeed, |h| h.takeoff_speed_m_s = f64::NAN),
             (StatedValue::LandingStation, |h| h.landing.point_m.z += 0.01 * h.run_m()),
+            (StatedValue::DeltaV, |h| h.delta_v_m_s *= 1.01),
             (StatedValue::Heading, |h| h.heading_deg = (h.heading_deg + 1.0) % 360.0),
         ];
         for (i, (value, change)) in changes.into_iter().enumerate() {
@@ -175,6 +179,8 @@ fn flown_over_the_needle(m: f64, clearance_m: f64, change: Change) -> (Option<Fl
         landing_speed_m_s: arc.landing_speed_m_s(),
         flight_time_s: arc.flight_time_s(),
         apex_z_m: arc.apex_height_m(),
+        delta_v_m_s: arc.takeoff_speed_m_s(),
+        propellant: None,
         takeoff_angles: AngleInterval::from_degrees(45.0, 80.0),
         speed_margin_m_s: 20.0 - arc.takeoff_speed_m_s(),
         lower_limit: Limit::Terrain,

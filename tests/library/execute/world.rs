@@ -8,7 +8,7 @@ use chta::{
     hop::{HopTest, Split},
     path::{HopPath, generate},
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint},
-    world::{CommandSteps, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
+    world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
 use crate::support::Draw;
@@ -166,9 +166,7 @@ fn hopper(dice: &mut Dice, size_m: f64, speed_m_s: f64, gravity_m_s2: f64) -> Ho
         takeoff_angle_max: angle(some(dice, 40.0, 89.0)),
         apex_height_max_m: some(dice, 0.05, 0.6).map(|share| share * scale_m),
         flight_time_max_s: some(dice, 0.3, 1.8).map(|share| share * speed_m_s / gravity_m_s2),
-        mass_kg: None,
-        steps: CommandSteps::CONTINUOUS,
-        rest_time_s: None,
+        ..HopperLimits::UNLIMITED
     };
     if limits.takeoff_angle_min > limits.takeoff_angle_max && limits.takeoff_angle_max.is_some() {
         std::mem::swap(&mut limits.takeoff_angle_min, &mut limits.takeoff_angle_max);

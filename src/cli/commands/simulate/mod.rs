@@ -109,7 +109,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     files.extend(trajectory_csv);
     output::finish(files)?;
     if to_stdout {
-        return Ok(Answer::Yes);
+        return Ok(planned.verdict());
     }
     let records: Vec<_> = flown.iter().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())).collect();
     let asked = records.iter().find(|record| record.policy == keys.policy.name()).cloned();
@@ -129,7 +129,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
         }
     };
     output::to_stdout(text.as_bytes())?;
-    Ok(Answer::Yes)
+    Ok(planned.verdict())
 }
 
 /// The trials of a whole run.

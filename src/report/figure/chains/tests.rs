@@ -344,6 +344,8 @@ fn hop_profile(i: usize, hops: usize) -> HopProfile {
         landing_speed_m_s: 4.5,
         flight_time_s: 2.5,
         apex_z_m: 1703.0,
+        delta_v_m_s: 5.0,
+        propellant: None,
         takeoff_angles: angles,
         speed_margin_m_s: 0.5,
         lower_limit: Limit::TakeoffCone,
