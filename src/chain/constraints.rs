@@ -167,6 +167,8 @@ pub enum GroundRefusal {
         /// Half-angle of the cone.
         friction: FrictionCone,
     },
+    /// The ground under the hopper's footprint is too steep, too rough or not known.
+    Footprint(super::FootprintRefusal),
     /// A speed limit of zero.
     SpeedZero,
     /// The cone contains no direction inside (-90, 90) degrees.
@@ -183,6 +185,7 @@ impl GroundRefusal {
             (Self::NoGround, _) => Limit::Direction,
             (Self::KeepOut, _) => Limit::KeepOut,
             (Self::TooSteep { .. }, _) => Limit::RestSlope,
+            (Self::Footprint(refusal), _) => refusal.limit(),
             (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Takeoff) => Limit::TakeoffCone,
             (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Landing) => Limit::LandingCone,
             (Self::SpeedZero, Contact::Takeoff) => Limit::TakeoffSpeed,
@@ -199,6 +202,7 @@ impl GroundRefusal {
                 let (min, max) = (angles.min.degrees(), angles.max.degrees());
                 Some(if min > max { min - max } else { (min - 90.0).max(-90.0 - max) })
             }
+            Self::Footprint(refusal) => refusal.excess_deg(),
             Self::NoGround | Self::KeepOut | Self::SpeedZero => None,
         }
     }
@@ -218,6 +222,7 @@ impl fmt::Display for GroundRefusal {
                 cross_slope.degrees(),
                 friction.half_angle().degrees()
             ),
+            Self::Footprint(refusal) => refusal.fmt(f),
             Self::SpeedZero => write!(f, "its speed limit is 0"),
             Self::NothingAhead { angles } => {
                 write!(

@@ -130,7 +130,7 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 57] = [
+pub const CATALOGUE: [Key; 59] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -153,6 +153,18 @@ pub const CATALOGUE: [Key; 57] = [
     key("hopper", "takeoff_angle_max_deg", ELEVATION_ANGLE, "mechanical greatest take-off angle from the horizontal, degrees"),
     key("hopper", "apex_height_max_m", FROM_ZERO, "greatest height of the flight above its take-off, m"),
     key("hopper", "flight_time_max_s", LENGTH, "longest flight, s"),
+    key(
+        "hopper",
+        "footprint_m",
+        FROM_ZERO,
+        "diameter of the ground stood on, m: the plane fitted over it is held against the rest slope; absent or 0: none",
+    ),
+    key(
+        "hopper",
+        "roughness_max_m",
+        FROM_ZERO,
+        "greatest distance of the ground under the footprint from the fitted plane, m; absent: not limited",
+    ),
     key("hopper", "mass_kg", LENGTH, "mass, kg, for the total of energy"),
     key("hopper", "rest_time_s", FROM_ZERO, "rest between hops, s, for the mission time"),
     key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),

@@ -73,6 +73,8 @@ fn hopper(scenario: &Scenario) -> Value {
         ("takeoff_angle_max_deg", hopper.limits().takeoff_angle_max.map(|angle| degrees(angle).into())),
         ("apex_height_max_m", hopper.limits().apex_height_max_m.map(Value::from)),
         ("flight_time_max_s", hopper.limits().flight_time_max_s.map(Value::from)),
+        ("footprint_m", hopper.limits().footprint_m.map(Value::from)),
+        ("roughness_max_m", hopper.limits().roughness_max_m.map(Value::from)),
         ("mass_kg", hopper.limits().mass_kg.map(Value::from)),
         ("rest_time_s", hopper.limits().rest_time_s.map(Value::from)),
     ])

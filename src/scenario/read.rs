@@ -267,6 +267,8 @@ fn hopper(entries: &mut Entries) -> Hopper {
         takeoff_angle_max: number("takeoff_angle_max_deg").map(Angle::from_degrees),
         apex_height_max_m: number("apex_height_max_m"),
         flight_time_max_s: number("flight_time_max_s"),
+        footprint_m: number("footprint_m"),
+        roughness_max_m: number("roughness_max_m"),
         mass_kg: number("mass_kg"),
         rest_time_s: number("rest_time_s"),
     };

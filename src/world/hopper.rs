@@ -62,6 +62,11 @@ pub struct HopperLimits {
     pub apex_height_max_m: Option<f64>,
     /// Longest flight, s.
     pub flight_time_max_s: Option<f64>,
+    /// Diameter of the ground that the hopper stands on, m. The plane fitted over it is then held against the rest slope, instead of
+    /// the facet under the contact; 0 counts as none.
+    pub footprint_m: Option<f64>,
+    /// Greatest deviation of the ground under the footprint from the plane fitted over it, m.
+    pub roughness_max_m: Option<f64>,
     /// Mass, kg, only used for energies.
     pub mass_kg: Option<f64>,
     /// Rest between hops, s, only used for the mission time.
@@ -79,6 +84,8 @@ impl HopperLimits {
         takeoff_angle_max: None,
         apex_height_max_m: None,
         flight_time_max_s: None,
+        footprint_m: None,
+        roughness_max_m: None,
         mass_kg: None,
         rest_time_s: None,
     };
@@ -158,6 +165,8 @@ impl Hopper {
             takeoff_angle_max,
             apex_height_max_m,
             flight_time_max_s,
+            footprint_m,
+            roughness_max_m,
             mass_kg,
             rest_time_s,
         } = limits;
@@ -189,6 +198,14 @@ impl Hopper {
             ),
             number("apex_height_max_m", apex_height_max_m, not_negative, NOT_NEGATIVE),
             number("flight_time_max_s", flight_time_max_s, positive, POSITIVE),
+            number("footprint_m", footprint_m, not_negative, NOT_NEGATIVE),
+            number("roughness_max_m", roughness_max_m, not_negative, NOT_NEGATIVE),
+            (
+                "roughness_max_m",
+                roughness_max_m.is_none_or(|_| footprint_m.is_some_and(|footprint_m| footprint_m != 0.0)),
+                roughness_max_m.unwrap_or(0.0),
+                "a footprint_m above 0 beside it, over which the roughness is measured",
+            ),
             number("mass_kg", mass_kg, positive, POSITIVE),
             number("rest_time_s", rest_time_s, not_negative, NOT_NEGATIVE),
         ];

@@ -52,7 +52,7 @@ pub(super) fn contact_success(
             at
         };
         let near = scatter.tolerance_m.is_none_or(|tolerance_m| scatter.shift_m.abs() <= tolerance_m);
-        let rule = chain.ruling(&at, scatter.contact, direction).and_then(|rule| rule.allowed(scatter.contact, direction));
+        let rule = chain.allowed(&at, scatter.contact, direction);
         return kept(rule.filter(|_| near), 0.0);
     }
     let tolerance_m = scatter.tolerance_m.unwrap_or(f64::INFINITY);

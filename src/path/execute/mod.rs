@@ -7,6 +7,7 @@
 
 mod checker;
 mod flight;
+mod footprint;
 mod violation;
 
 use checker::Checker;
