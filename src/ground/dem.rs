@@ -4,7 +4,7 @@ use std::{ops::ControlFlow, sync::Arc};
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{Around, ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Realization, Side, Surface, TakeoffWindows, Windows};
+use super::{Around, ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Realization, Side, Surface, TakeoffWindows, Windows, posts::Standing};
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, limits},
     chain::{
@@ -13,7 +13,7 @@ use crate::{
     },
     hop::HopTest,
     quantity::{ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
-    terrain::{OverlaidDem, Profile, ProfileFacet, ProfilePoint, Surroundings, TerrainError, Triangles},
+    terrain::{FootprintFit, FootprintGap, OverlaidDem, Profile, ProfileFacet, ProfilePoint, Surroundings, TerrainError, Triangles},
     world::{Contact, Direction, FrictionCone, Gravity, Hopper, RestSlope, SurfaceProperties},
 };
 
@@ -155,13 +155,45 @@ impl DemGround {
     /// Why the ground under the footprint refuses every contact at a position, under friction of this coefficient; `None` if it does
     /// not, or if the hopper has no footprint.
     pub(super) fn footprint_refusal(&self, position: &MapPosition, friction: Option<f64>) -> Option<FootprintRefusal> {
+        self.footprint_against(position, rest_slope(self.surface.rest, friction))
+    }
+
+    /// The same where the rest slope has this tangent.
+    pub(super) fn footprint_against(&self, position: &MapPosition, rest: Option<f64>) -> Option<FootprintRefusal> {
+        let (footprint, _) = self.footprint.as_ref()?;
+        footprint.judge(self.fitted(position)?, rest, self.height_rounding_m / (ULPS * f64::EPSILON))
+    }
+
+    /// What the ground under the footprint allows at a position, where the rest slope has this tangent.
+    pub(super) fn standing(&self, position: &MapPosition, rest: Option<f64>) -> Standing {
+        let (Some((footprint, _)), Some(fit)) = (self.footprint.as_ref(), self.fitted(position)) else { return Standing::Sound };
+        if fit.is_ok_and(|fit| footprint.is_close(&fit, rest)) {
+            return Standing::Close;
+        }
+        match footprint.judge(fit, rest, self.height_rounding_m / (ULPS * f64::EPSILON)) {
+            None => Standing::Sound,
+            Some(FootprintRefusal::TooSteep { .. }) => Standing::TooSteep,
+            Some(FootprintRefusal::TooRough { .. } | FootprintRefusal::Unknown { .. }) => Standing::Refused,
+        }
+    }
+
+    /// What is wrong with a footprint that has no room anywhere on the DEM: its size and that of the DEM.
+    pub(crate) fn footprint_without_room(&self) -> Option<String> {
+        let (footprint, _) = self.footprint.as_ref()?;
+        let bounds = self.terrain.dem().bounds();
+        let side_m = (bounds.max - bounds.min).min();
+        (footprint.diameter_m > side_m)
+            .then(|| format!("{} m on a DEM whose shorter side is {side_m} m", footprint.diameter_m))
+    }
+
+    /// The ground fitted under the footprint; `None` without one.
+    fn fitted(&self, position: &MapPosition) -> Option<Result<FootprintFit, FootprintGap>> {
         let (footprint, dem) = self.footprint.as_ref()?;
         let origin = self.terrain.dem().georeference().north_west();
         let field = self.realization.heights.as_deref();
         let raised = field.map(|field| move |post: MapPoint| field.at(post.x - origin.x, post.y - origin.y));
         let raised = raised.as_ref().map(|raised| raised as &dyn Fn(MapPoint) -> f64);
-        let fit = dem.fit_raised(position.at, position.z_m, footprint.diameter_m, raised);
-        footprint.judge(fit, rest_slope(self.surface.rest, friction), self.height_rounding_m / (ULPS * f64::EPSILON))
+        Some(dem.fit_raised(position.at, position.z_m, footprint.diameter_m, raised))
     }
 
     /// The same on the nominal ground, whose friction is looked up beside the contact.

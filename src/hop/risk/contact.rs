@@ -68,7 +68,11 @@ pub(super) fn contact_success(
         if to > from {
             let middle_m = 0.5 * (from + to) * scatter.place_m;
             let rule = chain.segments()[segment].allowed(scatter.contact, direction);
-            success += (normal(to) - normal(from)) * kept(rule, direction.sign() * middle_m);
+            let there = match test.footing_samples() {
+                None => normal(to) - normal(from),
+                Some(samples) => samples.probability((from, to), mean_m, scatter.place_m),
+            };
+            success += there * kept(rule, direction.sign() * middle_m);
         }
     }
     success
