@@ -125,9 +125,7 @@ impl Footprint {
         let fitted = Angle::from_slope(tilt_slope);
         let rounding_m = HEIGHT_ULPS * f64::EPSILON * height_m.abs();
         // Written so that NaN is refused.
-        let rests = rest_slope.is_none_or(|max| {
-            tilt_slope <= max + (FIT_TOLERANCE + rounding_m / footprint_m) * (1.0 + max * max)
-        });
+        let rests = rest_slope.is_none_or(|max| tilt_slope <= max + (FIT_TOLERANCE + rounding_m / footprint_m) * (1.0 + max * max));
         if !rests {
             let max = Angle::from_slope(rest_slope.unwrap_or(f64::INFINITY));
             return Some(FootprintRefusal::TooSteep { fitted, max, residual_m, footprint_m });

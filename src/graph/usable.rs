@@ -61,7 +61,10 @@ fn nearest_usable(chain: &ConstrainedChain, station: &Station, contact: Contact)
         [0.01, 0.99].into_iter().filter_map(move |share| geometry.station(pair[0].x_m + share * run_m).ok())
     });
     let Some(footprint) = chain.footprint() else {
-        return vertices.chain(insides).filter(|candidate| is_usable(chain, candidate, contact)).min_by(|a, b| away(a).total_cmp(&away(b)));
+        return vertices
+            .chain(insides)
+            .filter(|candidate| is_usable(chain, candidate, contact))
+            .min_by(|a, b| away(a).total_cmp(&away(b)));
     };
     let ((first_m, last_m), half_m) = (geometry.extent_m(), 0.5 * footprint.diameter_m);
     let beside = geometry.vertices().iter().flat_map(|vertex| [vertex.x_m - half_m, vertex.x_m + half_m]);

@@ -119,14 +119,13 @@ impl Surface for ConstrainedChain {
             return Around::Map;
         }
         let (low_m, high_m) = (at.point.x_m - distance_m, at.point.x_m + distance_m);
-        let across = self.geometry().vertices().windows(2).zip(self.geometry().grounds()).filter_map(|(ends, ground)| {
-            match ground.form {
+        let across =
+            self.geometry().vertices().windows(2).zip(self.geometry().grounds()).filter_map(|(ends, ground)| match ground.form {
                 GroundForm::Surface { cross_slope, .. } if ends[0].x_m < high_m && low_m < ends[1].x_m => {
                     Some(cross_slope.slope().abs())
                 }
                 _ => None,
-            }
-        });
+            });
         Around::Profile { cross_slope: across.fold(0.0, f64::max) }
     }
 

@@ -5,7 +5,8 @@ use std::ops::ControlFlow;
 use nalgebra::{Point3, Vector2};
 
 use super::{
-    Around, ContactPoint, Element, Facet, FirstContact, Flight, HeightField, LiftoffVelocity, Side, Surface, TakeoffWindows, TouchdownState, Windows,
+    Around, ContactPoint, Element, Facet, FirstContact, Flight, HeightField, LiftoffVelocity, Side, Surface, TakeoffWindows,
+    TouchdownState, Windows,
     chain::{direction_of, next_vertex},
     first_contact::{ContactFailure, PLACE_TOLERANCE, Realization, check_landing, failure_of, holds},
 };
@@ -211,9 +212,7 @@ impl ChainGround {
         let checked = self.check_segment(segment, contact, direction);
         match (checked, segment) {
             (Err(GroundRefusal::NoGround | GroundRefusal::KeepOut | GroundRefusal::TooSteep { .. }), _) | (_, None) => checked,
-            (_, Some(id)) => {
-                self.footprint_refusal(at, id).map_or(checked, |refusal| Err(GroundRefusal::Footprint(refusal)))
-            }
+            (_, Some(id)) => self.footprint_refusal(at, id).map_or(checked, |refusal| Err(GroundRefusal::Footprint(refusal))),
         }
     }
 

@@ -4,16 +4,21 @@ use std::{ops::ControlFlow, sync::Arc};
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{Around, ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Realization, Side, Surface, TakeoffWindows, Windows, posts::Standing};
+use super::{
+    Around, ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Realization, Side, Surface, TakeoffWindows, Windows,
+    posts::Standing,
+};
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, limits},
     chain::{
-        ConstrainedChain, ConstraintProblem, ConstraintProblems, ContactRule, Footprint, FootprintRefusal, GroundForm, InvalidChain,
-        PolygonalChain, SegmentConstraints, SegmentGround, resolve_constraints,
+        ConstrainedChain, ConstraintProblem, ConstraintProblems, ContactRule, Footprint, FootprintRefusal, GroundForm,
+        InvalidChain, PolygonalChain, SegmentConstraints, SegmentGround, resolve_constraints,
     },
     hop::HopTest,
     quantity::{ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
-    terrain::{FootprintFit, FootprintGap, OverlaidDem, Profile, ProfileFacet, ProfilePoint, Surroundings, TerrainError, Triangles},
+    terrain::{
+        FootprintFit, FootprintGap, OverlaidDem, Profile, ProfileFacet, ProfilePoint, Surroundings, TerrainError, Triangles,
+    },
     world::{Contact, Direction, FrictionCone, Gravity, Hopper, RestSlope, SurfaceProperties},
 };
 
@@ -182,8 +187,7 @@ impl DemGround {
         let (footprint, _) = self.footprint.as_ref()?;
         let bounds = self.terrain.dem().bounds();
         let side_m = (bounds.max - bounds.min).min();
-        (footprint.diameter_m > side_m)
-            .then(|| format!("{} m on a DEM whose shorter side is {side_m} m", footprint.diameter_m))
+        (footprint.diameter_m > side_m).then(|| format!("{} m on a DEM whose shorter side is {side_m} m", footprint.diameter_m))
     }
 
     /// The ground fitted under the footprint; `None` without one.
@@ -444,7 +448,9 @@ impl Surface for DemGround {
         let [left, right] = gradients;
         let right = right.filter(|right| left != Some(*right));
         let overlaid = |gradient| self.overlaid(at.at, heading, side, gradient);
-        [left, right].map(|gradient| gradient.and_then(|gradient| overlaid(gradient).map(|known| facet_of(gradient, self.surface.rest, known))))
+        [left, right].map(|gradient| {
+            gradient.and_then(|gradient| overlaid(gradient).map(|known| facet_of(gradient, self.surface.rest, known)))
+        })
     }
 
     fn around(&self, _: &MapPosition, _: f64) -> Around {

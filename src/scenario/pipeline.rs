@@ -22,8 +22,8 @@ use crate::{
     quantity::MapPoint,
     terrain::{
         self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection,
-        NoDataRule, OverlaidDem, OverlayEffect, Profile, Surroundings, TerrainError, check_scale, read_friction_raster, read_keep_out,
-        read_mesh_with, slice_legs, slice_mesh,
+        NoDataRule, OverlaidDem, OverlayEffect, Profile, Surroundings, TerrainError, check_scale, read_friction_raster,
+        read_keep_out, read_mesh_with, slice_legs, slice_mesh,
     },
     world::FrictionCone,
 };

@@ -133,7 +133,8 @@ impl Surroundings {
         let north_west = map.post(*rows.start(), *cols.start());
         let cut = GeoReference::local(north_west, map.dx_m(), map.dy_m()).ok()?;
         let lattice = PostLattice::new(rows.clone().count(), cols.clone().count(), cut).ok()?;
-        let posts = rows.flat_map(|row| cols.clone().map(move |col| (row, col))).map(|(row, col)| self.height_m(row, col)).collect();
+        let posts =
+            rows.flat_map(|row| cols.clone().map(move |col| (row, col))).map(|(row, col)| self.height_m(row, col)).collect();
         Dem::from_lattice(lattice, Posts::Double(posts)).ok()
     }
 }
@@ -141,11 +142,7 @@ impl Surroundings {
 /// The rows and columns of the posts within a distance of the rectangle between two map points, and one more on each side.
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to the raster first")]
 #[expect(clippy::cast_precision_loss, reason = "rows and columns stay far below 2^53")]
-fn around(
-    lattice: &PostLattice,
-    [a, b]: [MapPoint; 2],
-    distance_m: f64,
-) -> Option<(RangeInclusive<usize>, RangeInclusive<usize>)> {
+fn around(lattice: &PostLattice, [a, b]: [MapPoint; 2], distance_m: f64) -> Option<(RangeInclusive<usize>, RangeInclusive<usize>)> {
     let map = lattice.georeference();
     let (origin, dx_m, dy_m) = (map.north_west(), map.dx_m(), map.dy_m());
     let range = |low: f64, high: f64, posts: usize| {

@@ -65,7 +65,13 @@ impl Case {
             Limit::MechanicalAngle => (other.limits.takeoff_angle_min, other.limits.takeoff_angle_max) = (None, None),
             Limit::ApexHeight => other.limits.apex_height_max_m = None,
             Limit::FlightTime => other.limits.flight_time_max_s = None,
-            Limit::Direction | Limit::KeepOut | Limit::RestSlope | Limit::Bend | Limit::LineOfSight => {
+            Limit::Direction
+            | Limit::KeepOut
+            | Limit::RestSlope
+            | Limit::FootprintSlope
+            | Limit::Roughness
+            | Limit::Bend
+            | Limit::LineOfSight => {
                 panic!("{limit} cannot be removed")
             }
         }

@@ -19,6 +19,7 @@ mod clearance;
 mod docs_commands;
 mod execute;
 mod fly;
+mod footprint;
 mod formats_table;
 #[cfg(feature = "gdal")]
 mod gdal_feature;

@@ -67,6 +67,14 @@ pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m
     }
     parts.extend(hopper.limits().apex_height_max_m.map(|height| format!("apex ≤ {} m", short(height))));
     parts.extend(hopper.limits().flight_time_max_s.map(|time| format!("flight ≤ {} s", short(time))));
+    parts.extend(
+        hopper
+            .limits()
+            .footprint_m
+            .filter(|footprint| *footprint > 0.0)
+            .map(|footprint| format!("footprint {} m", short(footprint))),
+    );
+    parts.extend(hopper.limits().roughness_max_m.map(|roughness| format!("roughness ≤ {} m", short(roughness))));
     if !ground.is_empty() {
         parts.push(ground.to_owned());
     }

@@ -270,8 +270,9 @@ fn every_spoiled_hop_is_refused_under_its_limits_name() {
     println!("landing points {landing_points}, speeds {speeds}, reaches {reaches}, too fine to tell {too_fine}");
     for limit in Limit::ALL {
         // No finite speed lets an arc come down to its line of sight, so that limit never sets an end. These chains have no bends;
-        // for those see tests/library/bends.rs.
-        let least = if matches!(limit, Limit::LineOfSight | Limit::Bend) { 0 } else { 300 };
+        // for those see tests/library/bends.rs, and for footprints tests/library/footprint.rs.
+        let least =
+            if matches!(limit, Limit::LineOfSight | Limit::Bend | Limit::FootprintSlope | Limit::Roughness) { 0 } else { 300 };
         assert!(tally.by_limit[limit.index()] >= least, "{limit} was tested only {} times", tally.by_limit[limit.index()]);
     }
     assert!(landing_points >= 20_000 && speeds >= 20_000 && reaches >= 5000, "{landing_points}, {speeds}, {reaches}");

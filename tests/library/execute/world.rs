@@ -166,6 +166,8 @@ fn hopper(dice: &mut Dice, size_m: f64, speed_m_s: f64, gravity_m_s2: f64) -> Ho
         takeoff_angle_max: angle(some(dice, 40.0, 89.0)),
         apex_height_max_m: some(dice, 0.05, 0.6).map(|share| share * scale_m),
         flight_time_max_s: some(dice, 0.3, 1.8).map(|share| share * speed_m_s / gravity_m_s2),
+        footprint_m: None,
+        roughness_max_m: None,
         mass_kg: None,
         rest_time_s: None,
     };
