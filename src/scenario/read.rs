@@ -292,6 +292,15 @@ fn hopper(entries: &mut Entries) -> Hopper {
         let help = "remove clearance_taper, or say clearance_rule = \"tapered\"";
         entries.problem(("hopper", "clearance_taper"), ProblemKind::Conflict, message, help);
     }
+    if limits.roughness_max_m.is_some() && !limits.footprint_m.is_some_and(|footprint_m| footprint_m > 0.0) {
+        let message = format!(
+            "hopper.roughness_max_m is {}, expected a footprint_m above 0 beside it, over which the roughness is measured",
+            limits.roughness_max_m.unwrap_or(0.0)
+        );
+        let help = "give hopper.footprint_m, the diameter of the ground that the hopper stands on, or remove roughness_max_m";
+        entries.problem(("hopper", "roughness_max_m"), ProblemKind::Conflict, message, help);
+        return Hopper::UNLIMITED;
+    }
     // The catalogue's ranges lie within those of a hopper; if they ever do not, the hopper's own message is reported.
     Hopper::new(limits).unwrap_or_else(|InvalidHopper(problems)| {
         for problem in problems {

@@ -5,7 +5,7 @@
 //! ```text
 //!      .-'''-.
 //!     /   |   \        the disc touches every side in its middle, so the polygon reaches exactly half a footprint
-//!    |----+----|       to the east, north, west and south, and 1 % farther in its corners
+//!    |----+----|       to the east, north, west and south, and 2 % farther in its corners
 //!     \   |   /
 //!      '-...-'
 //! ```

@@ -497,6 +497,43 @@ fn the_checker_names_hops_that_are_spoiled_by_their_footprint() {
     assert!(all.iter().all(|count| *count > 10), "clean, steep, rough, unknown {all:?}; {close} close");
 }
 
+/// The checker's rays against the closed form: their slope and residual stand in the violations of a hopper that tolerates nothing.
+#[test]
+fn the_rays_of_the_checker_come_close_to_the_closed_form() {
+    let draw = &mut Draw::seeded(12);
+    let (mut worst_slope, mut worst_residual, mut compared) = (0.0f64, 0.0f64, 0);
+    for _ in 0..150 {
+        let bumpy = dem(14, 14, (1.0, 0.9), |_, _| draw.uniform(0.0, 0.5));
+        let footprint_m = draw.log_uniform(0.1, 4.0);
+        let planner = ground_of(bumpy.clone(), &Hopper::with_speeds(2.5, 2.5).unwrap(), 89.0);
+        let judge = ground_of(bumpy.clone(), &hopper(2.5, footprint_m, Some(0.0)), 0.0);
+        let mut place = || MapPoint::new(draw.uniform(2.1, 10.9), -draw.uniform(2.1, 9.6));
+        let (from, to) = (place(), place());
+        let Some(hop) = one_hop(&planner, from, to) else { continue };
+        let path = HopPath { hops: vec![hop], totals: chta::path::Totals::default() };
+        let execution = execute(&judge.chain(from, to).unwrap(), &path, None);
+        for (at, along_m) in [(from, hop.takeoff.along_m), (to, hop.landing.along_m)] {
+            let exact = fit(&bumpy, at, footprint_m).unwrap();
+            let found = |limit| {
+                let mut violations = execution.violations.iter();
+                violations.find(|v| v.limit == ViolatedLimit::Limit(limit) && v.at_x_m == along_m).and_then(|v| v.measure)
+            };
+            if let Some(measure) = found(Limit::FootprintSlope) {
+                let off = (measure.found.to_radians().tan() - exact.tilt_slope).abs();
+                worst_slope = worst_slope.max((off - 1e-9) * 0.5 * footprint_m / exact.residual_m.max(1e-9));
+            }
+            if let Some(measure) = found(Limit::Roughness) {
+                compared += 1;
+                worst_residual = worst_residual.max((measure.found - exact.residual_m) / exact.residual_m);
+                assert!(measure.found > 0.97 * exact.residual_m, "{measure:?} {exact:?}");
+            }
+        }
+    }
+    println!("slope {worst_slope:.1e}, residual {worst_residual:.1e} of the residual, {compared} contacts");
+    // The tolerance that the checker allows its rays.
+    assert!(compared > 40 && worst_slope < 4e-4 && worst_residual < 4e-4, "{worst_slope} {worst_residual} {compared}");
+}
+
 /// The same path with the map's own contacts instead of stations.
 fn path_on(ground: &DemGround, path: &HopPath) -> HopPath {
     let own = |point: &chta::ground::ContactPoint| {

@@ -81,12 +81,21 @@ fn toml() -> impl Strategy<Value = String> {
             ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
             ("uncertainty", "heading_sigma_deg") => ground < 2,
             ("search", "risk_extra_hops_max") => false,
+            // Roughness needs a footprint.
+            ("hopper", "roughness_max_m") => points,
             ("search", "points_per_segment") => points,
             ("search", "node_spacing_max_m") => !points,
             _ => true,
         };
         let mut text = String::new();
+        let is_given = |name: &str| {
+            keys.iter().any(|(key, value)| key.name == name && value.as_ref().is_some_and(|value| value.parse() != Ok(0.0)))
+        };
+        let footprint_alone = !is_given("footprint_m");
         for (key, value) in keys {
+            if footprint_alone && key.name == "roughness_max_m" {
+                continue;
+            }
             if let Some(value) = value.filter(|_| kept(key)) {
                 // Dotted keys, so that no table header is needed.
                 let _ = writeln!(text, "{}.{} = {value}", key.table, key.name);
@@ -166,6 +175,7 @@ fn every_key_reaches_the_document() {
             ("terrain", "start_x_m" | "goal_x_m") => with("terrain", "chain", "x.csv"),
             ("uncertainty", "height_sigma_m") => with("uncertainty", "height_correlation_m", "3"),
             ("uncertainty", "height_correlation_m") => with("uncertainty", "height_sigma_m", "3"),
+            ("hopper", "roughness_max_m") => with("hopper", "footprint_m", "3"),
             ("search", "risk_extra_hops_max") => with("search", "risk", "traded"),
             _ => {}
         }
