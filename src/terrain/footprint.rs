@@ -135,6 +135,12 @@ impl Piece {
         }
         let mut piece = self;
         for normal in normals() {
+            let beyond = |corner: &Corner| normal.x * corner.x + normal.y * corner.y > 1.0;
+            match piece.corners().iter().filter(|corner| beyond(corner)).count() {
+                0 => continue,
+                all if all == piece.count => return None,
+                _ => {}
+            }
             piece = piece.clipped(normal);
             if piece.count < 3 {
                 return None;

@@ -190,12 +190,15 @@ fn refusal(chain: &ConstrainedChain, x_m: f64) -> Option<GroundRefusal> {
     chain.check_contact(&station, Contact::Landing, Direction::Forward).err()
 }
 
+/// A name, a profile, a contact, its slope and its residual.
+type Row<'a> = (&'a str, &'a [(f64, f64)], f64, f64, f64);
+
 /// Each row: the profile, the contact, and the slope and residual known by hand (a least-squares line over 2 m).
 #[test]
 fn profiles_are_fitted_as_known_by_hand() {
     let corner = [(0.0, 0.0), (10.0, 0.0), (20.0, 10.0)];
     let roof = [(0.0, 0.0), (10.0, 10.0), (20.0, 0.0)];
-    let table: [(&str, &[(f64, f64)], f64, f64, f64); 4] = [
+    let table: [Row<'_>; 4] = [
         ("inside a straight segment", &corner, 15.0, 1.0, 0.0),
         // z = max(0, x): a = 1/4, slope = (3/2) / 3 = 1/2; residuals at -1, 0 and 1: 1/4, -1/4, 1/4.
         ("at a corner", &corner, 10.0, 0.5, 0.25),
@@ -529,7 +532,6 @@ fn the_rays_of_the_checker_come_close_to_the_closed_form() {
             }
         }
     }
-    println!("slope {worst_slope:.1e}, residual {worst_residual:.1e} of the residual, {compared} contacts");
     // The tolerance that the checker allows its rays.
     assert!(compared > 40 && worst_slope < 4e-4 && worst_residual < 4e-4, "{worst_slope} {worst_residual} {compared}");
 }

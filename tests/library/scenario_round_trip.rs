@@ -81,13 +81,12 @@ fn toml() -> impl Strategy<Value = String> {
             ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
             ("uncertainty", "heading_sigma_deg") => ground < 2,
             ("search", "risk_extra_hops_max") => false,
-            // Roughness needs a footprint.
-            ("hopper", "roughness_max_m") => points,
-            ("search", "points_per_segment") => points,
+            ("search", "points_per_segment") | ("hopper", "roughness_max_m") => points,
             ("search", "node_spacing_max_m") => !points,
             _ => true,
         };
         let mut text = String::new();
+        // Roughness needs a footprint.
         let is_given = |name: &str| {
             keys.iter().any(|(key, value)| key.name == name && value.as_ref().is_some_and(|value| value.parse() != Ok(0.0)))
         };

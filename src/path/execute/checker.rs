@@ -7,7 +7,7 @@ use nalgebra::{Vector2, Vector3};
 use super::{
     Flight, Measure, StatedValue, ViolatedLimit, Violation,
     flight::TooLow,
-    footprint::{Fitted, RAY_TOLERANCE, fitted},
+    footprint::{Fitted, Footing, RAY_TOLERANCE, fitted},
 };
 use crate::{
     chain::{ContactRule, GroundRefusal},
@@ -195,10 +195,10 @@ impl<S: Surface> Checker<'_, S> {
     fn ground(&mut self, stated: &ContactPoint, meeting: Meeting) {
         let x_m = stated.along_m;
         let mut known = false;
-        let fit = self.fitted(meeting.contact);
+        let footing = self.footing(meeting.contact);
         for facet in self.ruling(meeting.contact) {
             let before = self.violations.len();
-            self.footprint(fit, facet.rest_slope, x_m);
+            self.footprint(footing, facet.rest_slope, x_m);
             self.facet(&facet, meeting, x_m);
             known = true;
             // A violation on one facet is not reported again for its neighbour.
@@ -211,19 +211,21 @@ impl<S: Surface> Checker<'_, S> {
         }
     }
 
-    /// The ground fitted under the footprint of a contact; `None` for a hopper without one, `Some(None)` where it is not known.
-    fn fitted(&self, contact: Contact) -> Option<Option<Fitted>> {
-        let footprint_m = self.surface.hopper().limits().footprint_m.filter(|footprint_m| *footprint_m > 0.0)?;
-        Some(fitted(self.surface, &self.own(contact)?, footprint_m))
+    /// What is found under the footprint of a contact.
+    fn footing(&self, contact: Contact) -> Footing {
+        let footprint_m = self.surface.hopper().limits().footprint_m.filter(|footprint_m| *footprint_m > 0.0);
+        let (Some(footprint_m), Some(own)) = (footprint_m, self.own(contact)) else { return Footing::NotAsked };
+        fitted(self.surface, &own, footprint_m).map_or(Footing::Unknown, Footing::Fitted)
     }
 
     /// The plane fitted over the footprint, against the rest slope of the facet under the contact and the roughness.
-    fn footprint(&mut self, fit: Option<Option<Fitted>>, rest_slope: Option<f64>, x_m: f64) {
+    fn footprint(&mut self, footing: Footing, rest_slope: Option<f64>, x_m: f64) {
         let limits = *self.surface.hopper().limits();
-        let (Some(fit), Some(footprint_m)) = (fit, limits.footprint_m) else { return };
-        let Some(Fitted { tilt_rad, residual_m }) = fit else {
-            self.note(ViolatedLimit::Limit(Limit::FootprintSlope), None, x_m);
-            return;
+        let footprint_m = limits.footprint_m.unwrap_or(f64::INFINITY);
+        let Fitted { tilt_rad, residual_m } = match footing {
+            Footing::NotAsked => return,
+            Footing::Unknown => return self.note(ViolatedLimit::Limit(Limit::FootprintSlope), None, x_m),
+            Footing::Fitted(fit) => fit,
         };
         let max_rad = rest_slope.map_or(FRAC_PI_2, libm::atan);
         let height_rounding_m = self.surface.height_rounding_m();

@@ -20,6 +20,17 @@ const SIDES: f64 = 16.0;
 /// A distance short of the footprint's border by less than this share of it is rounding.
 const SHORT: f64 = 1e-8;
 
+/// What is found under the footprint of a contact.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Footing {
+    /// The hopper has no footprint, or the contact is none of the ground.
+    NotAsked,
+    /// The ground is not known as far as the footprint reaches.
+    Unknown,
+    /// The fit.
+    Fitted(Fitted),
+}
+
 /// The ground fitted around a contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Fitted {
@@ -48,7 +59,7 @@ pub(super) fn fitted<S: Surface>(surface: &S, at: &S::Contact, footprint_m: f64)
             .collect(),
     };
     // The ring of a ray widens with the distance on a map.
-    let power = if around == Around::Map { 1 } else { 0 };
+    let power = i32::from(around == Around::Map);
     let reach_m = |heading: &Vector2<f64>| match around {
         Around::Profile { .. } => half_m,
         Around::Map => {
