@@ -1,12 +1,15 @@
 //! The chain with the constraints of every segment resolved: the input of all analyses.
 
+use std::sync::Arc;
+
 use super::{
-    GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints, SegmentGround, Station,
-    touchdown::touchdown_rule,
+    Footing, Footprint, FootprintRefusal, GroundForm, GroundRefusal, LineConstraints, PolygonalChain, SegmentConstraints,
+    SegmentGround, Station, rest_slope, touchdown::touchdown_rule,
 };
 use crate::{
     quantity::{Angle, SegmentId},
-    world::{Contact, Direction, FrictionCone, Gravity, Grip, Hopper, InvalidSurface, RestSlope, SurfaceProperties},
+    terrain::{FootprintFit, Surroundings},
+    world::{Contact, Direction, Gravity, Grip, Hopper, InvalidSurface, SurfaceProperties},
 };
 
 /// A chain with the resolved constraints of every segment, for one hopper and one gravity.
@@ -21,6 +24,9 @@ pub struct ConstrainedChain {
     speed_bounds_m_s: (f64, f64),
     /// The greatest height above or below 0, m; it bounds the rounding error of heights.
     height_bound_m: f64,
+    /// The footprint of the hopper, if it has one, and what is known of the ground under it.
+    footprint: Option<Footprint>,
+    footing: Footing,
 }
 
 /// Why a chain cannot be analysed.
@@ -43,6 +49,20 @@ pub enum ConstraintProblem {
     /// A property of the surface that has no meaning.
     #[error(transparent)]
     Surface(#[from] InvalidSurface),
+    /// A footprint for which no contact of the terrain has room.
+    #[error(
+        "hopper.footprint_m is {footprint_m} m, expected less than {} of {extent_m} m: no contact has room for it; check its unit, or \
+         leave it out",
+        if *on_a_dem { "the shorter side of the DEM," } else { "the length of the chain," }
+    )]
+    Footprint {
+        /// Its diameter, m.
+        footprint_m: f64,
+        /// The shorter side of the DEM, or the length of the chain, m.
+        extent_m: f64,
+        /// Whether the chain is a slice of a DEM.
+        on_a_dem: bool,
+    },
 }
 
 /// All reasons why a chain cannot be analysed: the first segment with each problem, and how many more segments have it.
@@ -77,6 +97,34 @@ impl ConstrainedChain {
         gravity: Gravity,
         surface: &SurfaceProperties,
     ) -> Result<Self, ConstraintProblems> {
+        Self::on(Footing::Profile, geometry, hopper, gravity, surface)
+    }
+
+    /// The same for a slice of a DEM: the footprint of a contact lies on the DEM, not along the slice alone.
+    ///
+    /// # Errors
+    /// [`ConstraintProblems`], as [`new`](Self::new).
+    pub fn on_dem(
+        surroundings: Arc<Surroundings>,
+        geometry: PolygonalChain,
+        hopper: &Hopper,
+        gravity: Gravity,
+        surface: &SurfaceProperties,
+    ) -> Result<Self, ConstraintProblems> {
+        Self::on(Footing::Map(surroundings), geometry, hopper, gravity, surface)
+    }
+
+    fn on(
+        footing: Footing,
+        geometry: PolygonalChain,
+        hopper: &Hopper,
+        gravity: Gravity,
+        surface: &SurfaceProperties,
+    ) -> Result<Self, ConstraintProblems> {
+        let footprint = Footprint::of(hopper);
+        if let Some(problem) = footprint.and_then(|footprint| without_room(footprint.diameter_m, &footing, &geometry)) {
+            return Err(ConstraintProblems(vec![(problem, 0)]));
+        }
         surface.check().map_err(|problem| ConstraintProblems(vec![(problem.into(), 0)]))?;
         let mut problems: Vec<(ConstraintProblem, usize)> = Vec::new();
         let mut segments = Vec::with_capacity(geometry.segment_count());
@@ -103,7 +151,7 @@ impl ConstrainedChain {
         let speed_bounds_m_s = (bound(Contact::Takeoff), bound(Contact::Landing));
         let height_bound_m = geometry.vertices().iter().map(|v| v.z_m.abs()).fold(0.0, f64::max);
         let hopper = hopper.below_escape(gravity);
-        Ok(Self { geometry, hopper, gravity, surface: *surface, segments, speed_bounds_m_s, height_bound_m })
+        Ok(Self { geometry, hopper, gravity, surface: *surface, segments, speed_bounds_m_s, height_bound_m, footprint, footing })
     }
 
     /// The same geometry and surface for another hopper and gravity.
@@ -111,7 +159,7 @@ impl ConstrainedChain {
     /// # Errors
     /// [`ConstraintProblems`], as [`new`](Self::new).
     pub fn with_hopper(&self, hopper: &Hopper, gravity: Gravity) -> Result<Self, ConstraintProblems> {
-        Self::new(self.geometry.clone(), hopper, gravity, &self.surface)
+        Self::on(self.footing.clone(), self.geometry.clone(), hopper, gravity, &self.surface)
     }
 
     /// The greatest height of a vertex above or below 0, m.
@@ -168,16 +216,74 @@ impl ConstrainedChain {
         contact: Contact,
         direction: Direction,
     ) -> Result<super::ContactRule, GroundRefusal> {
-        self.ruling(station, contact, direction).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction)
+        let id = station.ruling_segment(contact, direction, self.segments.len()).ok_or(GroundRefusal::NoGround)?;
+        let checked = self.segments.get(id.index()).ok_or(GroundRefusal::NoGround)?.check_contact(contact, direction);
+        match checked {
+            Err(refusal @ (GroundRefusal::NoGround | GroundRefusal::KeepOut | GroundRefusal::TooSteep { .. })) => Err(refusal),
+            other => self.footprint_refusal(station, id).map_or(other, |refusal| Err(GroundRefusal::Footprint(refusal))),
+        }
     }
 
-    /// The inclination of the surface that rules a contact at a station, and the greatest on which the hopper rests; `None` without a
-    /// rest slope, and beyond the chain's ends.
+    /// The inclination of the surface that rules a contact at a station, or of the plane fitted over the footprint, and the greatest on
+    /// which the hopper rests; `None` without a rest slope, and where no ground is known.
     pub fn rest_slope(&self, station: &Station, contact: Contact, direction: Direction) -> Option<(Angle, Angle)> {
         let segment = station.ruling_segment(contact, direction, self.segments.len())?.index();
-        let (tilt, max) = rest_slope(self.geometry.slopes()[segment], &self.geometry.grounds()[segment].form, &self.surface);
-        max.map(|max| (Angle::from_slope(tilt), Angle::from_slope(max)))
+        let ground = &self.geometry.grounds()[segment];
+        let max = rest_slope(ground, &self.surface)?;
+        let tilt = match self.footprint {
+            Some(_) => self.footprint_fit(station)?.tilt_slope,
+            None => tilt_slope(self.geometry.slopes()[segment], ground.cross_slope().slope()),
+        };
+        Some((Angle::from_slope(tilt), Angle::from_slope(max)))
     }
+
+    /// The plane fitted over the footprint at a station; `None` without a footprint, and where no ground is known.
+    pub(crate) fn footprint_fit(&self, station: &Station) -> Option<FootprintFit> {
+        let footprint = self.footprint?;
+        self.footing.fit(&self.geometry, self.geometry.vertices(), station, footprint.diameter_m, None).ok()
+    }
+
+    /// The rule of a contact at a station if the ground allows it. This is the version for inner loops.
+    #[inline]
+    pub(crate) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Option<&super::ContactRule> {
+        let id = station.ruling_segment(contact, direction, self.segments.len())?;
+        let rule = self.segments.get(id.index())?.allowed(contact, direction)?;
+        (self.footprint.is_none() || self.footprint_refusal(station, id).is_none()).then_some(rule)
+    }
+
+    /// Why the ground under the footprint refuses every contact at a station that a segment rules; `None` if it does not, or if the
+    /// hopper has no footprint.
+    pub(crate) fn footprint_refusal(&self, station: &Station, segment: SegmentId) -> Option<FootprintRefusal> {
+        let footprint = self.footprint?;
+        let rest = self.geometry.grounds().get(segment.index()).and_then(|ground| rest_slope(ground, &self.surface));
+        let fit = self.footing.fit(&self.geometry, self.geometry.vertices(), station, footprint.diameter_m, None);
+        footprint.judge(fit, rest, self.height_bound_m)
+    }
+
+    /// The footprint of the hopper, if it has one.
+    pub(crate) const fn footprint(&self) -> Option<Footprint> {
+        self.footprint
+    }
+
+    /// What is known of the ground under a footprint.
+    pub(crate) const fn footing(&self) -> &Footing {
+        &self.footing
+    }
+}
+
+/// The problem of a footprint that is larger than the terrain.
+fn without_room(footprint_m: f64, footing: &Footing, geometry: &PolygonalChain) -> Option<ConstraintProblem> {
+    let (extent_m, on_a_dem) = match footing {
+        Footing::Profile => {
+            let (first_m, last_m) = geometry.extent_m();
+            (last_m - first_m, false)
+        }
+        Footing::Map(surroundings) => {
+            let bounds = surroundings.lattice().bounds();
+            ((bounds.max.x - bounds.min.x).min(bounds.max.y - bounds.min.y), true)
+        }
+    };
+    (footprint_m > extent_m).then_some(ConstraintProblem::Footprint { footprint_m, extent_m, on_a_dem })
 }
 
 /// Resolves the constraints of one segment: what its ground, given by its slope along the plane of travel, allows this
@@ -217,8 +323,8 @@ pub(crate) fn resolve_constraints(
     if unbounded(&forward) || unbounded(&reverse) {
         return Err(ConstraintProblem::NoSpeed(id));
     }
-    let (tilt, rest_slope) = rest_slope(slope, &ground.form, surface);
-    let friction = friction_under(&ground.form, surface);
+    let tilt = tilt_slope(slope, ground.cross_slope().slope());
+    let friction = ground.friction_under(surface);
     let touchdown =
         hopper.limits().landing.touchdown_speed_m_s().map(|speed_m_s| {
             [forward, reverse].map(|line| touchdown_rule(line, friction.map(|friction| (tilt, friction)), speed_m_s))
@@ -232,50 +338,29 @@ pub(crate) fn resolve_constraints(
         line.capped(takeoff_m_s, landing_cap_m_s)
     };
     let [forward, reverse] = [forward, reverse].map(|line| line.map(commanded));
-    let too_steep = rest_slope
-        .filter(|&max| tilt > max)
+    // With a footprint, the plane fitted over it is held against the rest slope, contact by contact.
+    let too_steep = rest_slope(ground, surface)
+        .filter(|&max| tilt > max && Footprint::of(hopper).is_none())
         .map(|max| GroundRefusal::TooSteep { tilt: Angle::from_slope(tilt), max: Angle::from_slope(max) });
     let refusal = if ground.keep_out { Some(GroundRefusal::KeepOut) } else { too_steep };
     let constraints = SegmentConstraints::new(forward, reverse, refusal);
     Ok(touchdown.map_or(constraints, |touchdown| constraints.with_touchdown(touchdown)))
 }
 
-/// The tangent of a segment's inclination, and of the greatest on which the hopper rests.
-fn rest_slope(slope: f64, form: &GroundForm, surface: &SurfaceProperties) -> (f64, Option<f64>) {
-    let cross_slope = match *form {
-        GroundForm::Explicit { .. } => Angle::default(),
-        GroundForm::Surface { cross_slope, .. } => cross_slope,
-    };
-    let max = match surface.rest {
-        RestSlope::AsFrictionHolds => friction_under(form, surface).map(FrictionCone::coefficient),
-        RestSlope::AtMost(angle) => Some(angle.slope()),
-        RestSlope::Unlimited => None,
-    };
-    (tilt_slope(slope, cross_slope.slope()), max)
-}
-
-/// The friction cone of a segment; `None` if its angles are stated.
-fn friction_under(form: &GroundForm, surface: &SurfaceProperties) -> Option<FrictionCone> {
-    match *form {
-        GroundForm::Explicit { .. } => None,
-        GroundForm::Surface { friction, .. } => match friction.map(Grip::Friction).or(surface.grip) {
-            Some(Grip::Friction(cone)) => Some(cone),
-            Some(Grip::FromSlope { .. }) | None => None,
-        },
-    }
-}
-
 /// The tangent of a surface's inclination, from its slope `s` along the plane of travel and the tangent `t` of its
 /// cross-slope: `n_z = cos chi cos alpha` gives `tan^2 = (1 + s^2)(1 + t^2) - 1`. Returns exactly `|s|` for `t = 0`, so that
 /// a slope of exactly the limit is allowed.
-fn tilt_slope(s: f64, t: f64) -> f64 {
+pub(super) fn tilt_slope(s: f64, t: f64) -> f64 {
     if t == 0.0 { s.abs() } else { libm::hypot(s, t * libm::hypot(1.0, s)) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quantity::{AngleInterval, ChainPoint};
+    use crate::{
+        quantity::{AngleInterval, ChainPoint},
+        world::{FrictionCone, RestSlope},
+    };
 
     fn one_segment(rise: f64, form: GroundForm) -> PolygonalChain {
         let vertices = vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(10.0, rise)];

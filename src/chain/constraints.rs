@@ -167,6 +167,8 @@ pub enum GroundRefusal {
         /// Half-angle of the cone.
         friction: FrictionCone,
     },
+    /// The ground under the hopper's footprint is too steep, too rough or not known.
+    Footprint(super::FootprintRefusal),
     /// A speed limit of zero.
     SpeedZero,
     /// The cone contains no direction inside (-90, 90) degrees.
@@ -202,6 +204,7 @@ impl GroundRefusal {
             (Self::NoGround, _) => Limit::Direction,
             (Self::KeepOut, _) => Limit::KeepOut,
             (Self::TooSteep { .. }, _) => Limit::RestSlope,
+            (Self::Footprint(refusal), _) => refusal.limit(),
             (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Takeoff) => Limit::TakeoffCone,
             (Self::CrossSlope { .. } | Self::NothingAhead { .. }, Contact::Landing) => Limit::LandingCone,
             (Self::TouchdownSlope { .. } | Self::TouchdownCone { .. } | Self::TouchdownSpeed { .. }, _) => Limit::Touchdown,
@@ -221,6 +224,7 @@ impl GroundRefusal {
             }
             Self::TouchdownSlope { tilt, friction } => Some(tilt.degrees() - friction.half_angle().degrees()),
             Self::TouchdownCone { angles } => Some((angles.min.degrees() + 90.0).max(-90.0 - angles.max.degrees())),
+            Self::Footprint(refusal) => refusal.excess_deg(),
             Self::NoGround | Self::KeepOut | Self::SpeedZero | Self::TouchdownSpeed { .. } => None,
         }
     }
@@ -240,6 +244,7 @@ impl fmt::Display for GroundRefusal {
                 cross_slope.degrees(),
                 friction.half_angle().degrees()
             ),
+            Self::Footprint(refusal) => refusal.fmt(f),
             Self::SpeedZero => write!(f, "its speed limit is 0"),
             Self::TouchdownSlope { tilt, friction } => write!(
                 f,

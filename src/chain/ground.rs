@@ -1,7 +1,10 @@
 //! What a chain states of its segments, before hopper and scenario are known.
 
 use super::LineConstraints;
-use crate::{quantity::Angle, world::FrictionCone};
+use crate::{
+    quantity::Angle,
+    world::{FrictionCone, SurfaceProperties},
+};
 
 /// What the chain states of one segment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +38,22 @@ impl SegmentGround {
     /// Level across, everything else from the scenario: the ground of a chain with only `x_m,z_m`.
     pub const BARE: Self =
         Self { form: GroundForm::Surface { friction: None, cross_slope: Angle::from_radians(0.0) }, keep_out: false };
+
+    /// The angle between its normal and the plane of travel; 0 where angles are stated.
+    pub(crate) fn cross_slope(&self) -> Angle {
+        match self.form {
+            GroundForm::Explicit { .. } => Angle::default(),
+            GroundForm::Surface { cross_slope, .. } => cross_slope,
+        }
+    }
+
+    /// The friction that decides a contact, of the segment or of the surface; `None` where angles are stated.
+    pub(crate) fn friction_under(&self, surface: &SurfaceProperties) -> Option<FrictionCone> {
+        match self.form {
+            GroundForm::Explicit { .. } => None,
+            GroundForm::Surface { friction, .. } => friction.or(surface.constant_friction()),
+        }
+    }
 
     /// A stated limit that is not a number, or a cross-slope beyond the vertical: what it is, and its value.
     pub(super) fn not_a_limit(&self) -> Option<(&'static str, f64)> {

@@ -11,6 +11,7 @@
 mod constrained;
 mod constraints;
 pub mod csv;
+mod footing;
 mod ground;
 mod polygonal;
 mod quick_cones;
@@ -20,6 +21,8 @@ mod touchdown;
 pub(crate) use constrained::resolve_constraints;
 pub use constrained::{ConstrainedChain, ConstraintProblem, ConstraintProblems};
 pub use constraints::{ContactRule, GroundRefusal, LineConstraints, SegmentConstraints};
+pub use footing::FootprintRefusal;
+pub(crate) use footing::{Footing, Footprint, contacts_stand, rest_slope};
 pub use ground::{GroundForm, SegmentGround};
 pub use polygonal::{ChainProblem, InvalidChain, PolygonalChain};
 pub use quick_cones::{QuickCone, QuickGrip, Turn};

@@ -23,9 +23,7 @@ pub struct EndpointRefusal {
 
 /// Whether a contact is allowed at a station in at least one direction of travel.
 pub fn is_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> bool {
-    Direction::BOTH.into_iter().any(|direction| {
-        chain.ruling(station, contact, direction).is_some_and(|segment| segment.allowed(contact, direction).is_some())
-    })
+    Direction::BOTH.into_iter().any(|direction| chain.allowed(station, contact, direction).is_some())
 }
 
 /// Why a start or goal refuses every hop in both directions; `None` if it does not.
@@ -52,7 +50,8 @@ pub fn endpoint_refusal(
 /// The nearest usable point by x.
 ///
 /// The constraints of a segment are the same all over it, so the point is an end of a segment, or, if another segment rules
-/// that vertex, a point inside at a hundredth of the segment's length.
+/// that vertex, a point inside at a hundredth of the segment's length. With a footprint they are not: then the points half a footprint
+/// beside every vertex, and those of a grid of quarters of a footprint (at most 10 000 points), are tried as well.
 fn nearest_usable(chain: &ConstrainedChain, station: &Station, contact: Contact) -> Option<Station> {
     let geometry = chain.geometry();
     let away = |other: &Station| (other.point.x_m - station.point.x_m).abs();
@@ -61,7 +60,20 @@ fn nearest_usable(chain: &ConstrainedChain, station: &Station, contact: Contact)
         let run_m = pair[1].x_m - pair[0].x_m;
         [0.01, 0.99].into_iter().filter_map(move |share| geometry.station(pair[0].x_m + share * run_m).ok())
     });
-    vertices.chain(insides).filter(|candidate| is_usable(chain, candidate, contact)).min_by(|a, b| away(a).total_cmp(&away(b)))
+    let Some(footprint) = chain.footprint() else {
+        return vertices
+            .chain(insides)
+            .filter(|candidate| is_usable(chain, candidate, contact))
+            .min_by(|a, b| away(a).total_cmp(&away(b)));
+    };
+    let ((first_m, last_m), half_m) = (geometry.extent_m(), 0.5 * footprint.diameter_m);
+    let beside = geometry.vertices().iter().flat_map(|vertex| [vertex.x_m - half_m, vertex.x_m + half_m]);
+    let step_m = (0.5 * half_m).max((last_m - first_m) / 10_000.0);
+    let grid = (0..=10_000).map(|i| first_m + f64::from(i) * step_m).take_while(|x_m| *x_m <= last_m);
+    let added = beside.chain(grid).filter_map(|x_m| geometry.station(x_m).ok());
+    let mut nearest: Vec<Station> = vertices.chain(insides).chain(added).collect();
+    nearest.sort_by(|a, b| away(a).total_cmp(&away(b)));
+    nearest.into_iter().find(|candidate| is_usable(chain, candidate, contact))
 }
 
 #[cfg(test)]

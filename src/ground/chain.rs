@@ -4,10 +4,11 @@ use std::ops::ControlFlow;
 
 use nalgebra::{Point3, Vector2};
 
-use super::{ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface};
+use super::{Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface};
 use crate::{
-    chain::{ConstrainedChain, SegmentConstraints, Site, Station},
-    quantity::VertexId,
+    chain::{ConstrainedChain, Footing, GroundForm, SegmentConstraints, Site, Station, rest_slope},
+    quantity::{SegmentId, VertexId},
+    terrain::{FacetSpan, Triangles},
     world::{Contact, Direction, Gravity, Hopper},
 };
 
@@ -38,11 +39,11 @@ pub(super) fn next_vertex(site: Site, direction: Direction, last: usize) -> Opti
 }
 
 /// The facet of a segment for a direction of travel.
-fn facet(segment: &SegmentConstraints, direction: Direction) -> Facet {
+fn facet(segment: &SegmentConstraints, direction: Direction, rest_slope: Option<f64>) -> Facet {
     let contact = |contact| segment.check_contact(contact, direction);
     let hold =
         Hold::Stated { line: segment.stated(direction), takeoff: contact(Contact::Takeoff), landing: contact(Contact::Landing) };
-    Facet { refusal: segment.refusal(), hold }
+    Facet { refusal: segment.refusal(), hold, rest_slope }
 }
 
 impl Surface for ConstrainedChain {
@@ -108,7 +109,51 @@ impl Surface for ConstrainedChain {
             Side::Ahead => Contact::Takeoff,
             Side::Behind => Contact::Landing,
         };
-        [self.ruling(at, contact, direction).map(|segment| facet(segment, direction)), None]
+        let id = at.ruling_segment(contact, direction, self.segments().len());
+        let rest = |id: SegmentId| self.geometry().grounds().get(id.index()).and_then(|ground| rest_slope(ground, self.surface()));
+        [id.and_then(|id| Some(facet(self.segments().get(id.index())?, direction, rest(id)))), None]
+    }
+
+    fn around(&self, at: &Station, distance_m: f64) -> Around {
+        if matches!(self.footing(), Footing::Map(_)) && self.geometry().map_points().is_some() {
+            return Around::Map;
+        }
+        let (low_m, high_m) = (at.point.x_m - distance_m, at.point.x_m + distance_m);
+        let across =
+            self.geometry().vertices().windows(2).zip(self.geometry().grounds()).filter_map(|(ends, ground)| match ground.form {
+                GroundForm::Surface { cross_slope, .. } if ends[0].x_m < high_m && low_m < ends[1].x_m => {
+                    Some(cross_slope.slope().abs())
+                }
+                _ => None,
+            });
+        Around::Profile { cross_slope: across.fold(0.0, f64::max) }
+    }
+
+    fn rays(
+        &self,
+        at: &Station,
+        distance_m: f64,
+        headings: &[Vector2<f64>],
+        visit: &mut dyn FnMut(usize, &Element) -> ControlFlow<()>,
+    ) {
+        let (Footing::Map(surroundings), Some(map)) = (self.footing(), self.geometry().map_point(at)) else {
+            for (ray, heading) in headings.iter().enumerate() {
+                self.walk(at, *heading, &mut |element| visit(ray, element));
+            }
+            return;
+        };
+        // The triangles of the DEM itself, of which the chain is a slice.
+        let Some(dem) = surroundings.cut_out(map, distance_m) else { return };
+        let triangles = Triangles::of(&dem);
+        for (ray, heading) in headings.iter().enumerate() {
+            for span in triangles.walk(map, *heading, triangles.nominal()) {
+                let FacetSpan { from_m, to_m, from_z_m, to_z_m, .. } = span;
+                let element = Element { from_m, to_m, from_z_m, to_z_m, vertex: None, bends: false };
+                if visit(ray, &element).is_break() {
+                    break;
+                }
+            }
+        }
     }
 
     fn height_rounding_m(&self) -> f64 {

@@ -5,14 +5,18 @@ use std::ops::ControlFlow;
 use nalgebra::{Point3, Vector2};
 
 use super::{
-    ContactPoint, Element, Facet, FirstContact, Flight, LiftoffVelocity, Side, Surface, TakeoffWindows, TouchdownState, Windows,
+    Around, ContactPoint, Element, Facet, FirstContact, Flight, HeightField, LiftoffVelocity, Side, Surface, TakeoffWindows,
+    TouchdownState, Windows,
     chain::{direction_of, next_vertex},
-    first_contact::{ContactFailure, PLACE_TOLERANCE, Realization, check_landing, holds},
+    first_contact::{ContactFailure, PLACE_TOLERANCE, Realization, check_landing, failure_of, holds},
 };
 use crate::{
-    chain::{ContactRule, GroundForm, GroundRefusal, SegmentConstraints, SegmentGround, Site, Station, resolve_constraints},
+    chain::{
+        ContactRule, FootprintRefusal, GroundForm, GroundRefusal, SegmentConstraints, SegmentGround, Site, Station,
+        resolve_constraints, rest_slope,
+    },
     hop::HopTest,
-    quantity::{ChainPoint, SegmentId, VertexId},
+    quantity::{ChainPoint, MapPoint, SegmentId, VertexId},
     world::{Contact, Direction, FrictionCone, Gravity, Hopper},
 };
 
@@ -26,6 +30,8 @@ pub struct ChainGround {
     friction: f64,
     /// The vertices of this trial; empty if they are as planned.
     found: Vec<ChainPoint>,
+    /// The field by which they are higher, where the hopper has a footprint.
+    field: Option<Box<HeightField>>,
 }
 
 /// A position: a station of the chain, and the distance to the left of it.
@@ -125,7 +131,7 @@ impl Ahead {
 impl ChainGround {
     /// The nominal ground of a hop test's chain.
     pub fn new(test: HopTest) -> Self {
-        Self { test, friction: 0.0, found: Vec::new() }
+        Self { test, friction: 0.0, found: Vec::new(), field: None }
     }
 
     /// The hop test of the chain.
@@ -148,15 +154,22 @@ impl ChainGround {
         if self.is_nominal() {
             return chain.segments().get(segment).copied();
         }
+        let ground = self.ground_of(segment)?;
+        let (a, b) = (self.vertices()[segment], self.vertices()[segment + 1]);
+        let slope = (b.z_m - a.z_m) / (b.x_m - a.x_m);
+        resolve_constraints(SegmentId(segment), slope, &ground, self.test.hopper(), chain.gravity(), chain.surface()).ok()
+    }
+
+    /// What this trial's ground states of a segment: its friction.
+    fn ground_of(&self, segment: usize) -> Option<SegmentGround> {
+        let chain = self.test.chain();
         let mut ground: SegmentGround = *chain.geometry().grounds().get(segment)?;
         if let GroundForm::Surface { friction, .. } = &mut ground.form
             && let Some(cone) = friction.or(chain.surface().constant_friction())
         {
             *friction = FrictionCone::new((cone.coefficient() + self.friction).max(0.0)).ok();
         }
-        let (a, b) = (self.vertices()[segment], self.vertices()[segment + 1]);
-        let slope = (b.z_m - a.z_m) / (b.x_m - a.x_m);
-        resolve_constraints(SegmentId(segment), slope, &ground, self.test.hopper(), chain.gravity(), chain.surface()).ok()
+        Some(ground)
     }
 
     /// Why a segment refuses any contact; `None` if it does not.
@@ -167,8 +180,44 @@ impl ChainGround {
         self.resolved(segment)?.refusal()
     }
 
-    /// The rule of a contact on a segment, or why the ground refuses it.
+    /// Why the ground of this trial under the footprint refuses every contact at a station that a segment rules.
+    fn footprint_refusal(&self, at: &Station, segment: SegmentId) -> Option<FootprintRefusal> {
+        let chain = self.test.chain();
+        let footprint = chain.footprint()?;
+        if self.is_nominal() {
+            return chain.footprint_refusal(at, segment);
+        }
+        let geometry = chain.geometry();
+        let ground = self.ground_of(segment.index())?;
+        // On the map of a slice, the heights change along the slice alone, as those of its vertices.
+        let along = geometry.map_points().zip(geometry.map_point(at)).and_then(|(map, here)| {
+            let heading = (map.get(segment.index() + 1)? - map.get(segment.index())?).try_normalize(0.0)?;
+            let from_m = at.point.x_m - geometry.extent_m().0;
+            Some(move |post: MapPoint| from_m + (post - here).dot(&heading))
+        });
+        let raised = self.field.as_deref().zip(along).map(|(field, along)| move |post| field.at(along(post), 0.0));
+        let raised = raised.as_ref().map(|raised| raised as &dyn Fn(MapPoint) -> f64);
+        let fit = chain.footing().fit(geometry, self.vertices(), at, footprint.diameter_m, raised);
+        footprint.judge(fit, rest_slope(&ground, chain.surface()), chain.height_bound_m())
+    }
+
+    /// The rule of a contact at a station on a segment, or why the ground refuses it.
     fn check_contact(
+        &self,
+        at: &Station,
+        segment: Option<SegmentId>,
+        contact: Contact,
+        direction: Direction,
+    ) -> Result<ContactRule, GroundRefusal> {
+        let checked = self.check_segment(segment, contact, direction);
+        match (checked, segment) {
+            (Err(GroundRefusal::NoGround | GroundRefusal::KeepOut | GroundRefusal::TooSteep { .. }), _) | (_, None) => checked,
+            (_, Some(id)) => self.footprint_refusal(at, id).map_or(checked, |refusal| Err(GroundRefusal::Footprint(refusal))),
+        }
+    }
+
+    /// The same for the segment alone, without a footprint.
+    fn check_segment(
         &self,
         segment: Option<SegmentId>,
         contact: Contact,
@@ -267,6 +316,20 @@ impl Surface for ChainGround {
         self.test.chain().facets(&at.station, heading, side)
     }
 
+    fn around(&self, at: &ChainPosition, distance_m: f64) -> Around {
+        self.test.chain().around(&at.station, distance_m)
+    }
+
+    fn rays(
+        &self,
+        at: &ChainPosition,
+        distance_m: f64,
+        headings: &[Vector2<f64>],
+        visit: &mut dyn FnMut(usize, &Element) -> ControlFlow<()>,
+    ) {
+        self.test.chain().rays(&at.station, distance_m, headings, visit);
+    }
+
     fn height_rounding_m(&self) -> f64 {
         self.test.chain().height_rounding_m()
     }
@@ -298,10 +361,12 @@ impl FirstContact for ChainGround {
     fn realize(&mut self, realization: Realization) {
         self.friction = realization.friction;
         self.found.clear();
+        self.field = None;
         if let Some(field) = realization.heights {
             let nominal = self.test.chain().geometry().vertices();
             let first_m = nominal[0].x_m;
             self.found.extend(nominal.iter().map(|v| ChainPoint::new(v.x_m, v.z_m + field.at(v.x_m - first_m, 0.0))));
+            self.field = self.test.chain().footprint().map(|_| field);
         }
     }
 
@@ -323,7 +388,7 @@ impl FirstContact for ChainGround {
     fn holds_takeoff(&self, from: &ChainPosition, liftoff: &LiftoffVelocity) -> bool {
         let direction = direction_of(liftoff.heading);
         let segment = from.station.ruling_segment(Contact::Takeoff, direction, self.test.chain().segments().len());
-        holds(self.check_contact(segment, Contact::Takeoff, direction), liftoff)
+        holds(self.check_contact(&from.station, segment, Contact::Takeoff, direction), liftoff)
     }
 
     fn first_contact(
@@ -389,11 +454,11 @@ impl FirstContact for ChainGround {
 
     fn check_landing(
         &self,
-        _end: &ChainPosition,
+        end: &ChainPosition,
         support_facet: &SegmentId,
         touchdown: &TouchdownState,
     ) -> Result<(), ContactFailure> {
-        let rule = self.check_contact(Some(*support_facet), Contact::Landing, direction_of(touchdown.heading));
+        let rule = self.check_contact(&end.station, Some(*support_facet), Contact::Landing, direction_of(touchdown.heading));
         check_landing(rule, self.test.hopper().limits().arc_landing_speed_max_m_s(), touchdown)
     }
 
@@ -413,8 +478,13 @@ impl FirstContact for ChainGround {
         let nominal = geometry.station(x_m).map_err(|_| ContactFailure::OffLimits)?;
         let position = self.realized(ChainPosition { station: nominal, left_m: from.left_m + sign * left_m });
         let under = position.station.ruling_segment(Contact::Landing, direction_of(heading), geometry.segment_count());
-        match under.and_then(|segment| self.refusal(segment.index())) {
+        let refusal = under.and_then(|segment| {
+            let footprint = || self.footprint_refusal(&position.station, segment).map(GroundRefusal::Footprint);
+            self.refusal(segment.index()).or_else(footprint)
+        });
+        match refusal {
             None => Ok(position),
+            Some(GroundRefusal::Footprint(refusal)) => Err(failure_of(&refusal)),
             Some(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
             Some(_) => Err(ContactFailure::Slides),
         }

@@ -1,19 +1,24 @@
 //! A DEM with its overlays as a ground: hops in any direction.
 
-use std::ops::ControlFlow;
+use std::{ops::ControlFlow, sync::Arc};
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Realization, Side, Surface, TakeoffWindows, Windows};
+use super::{
+    Around, ContactPoint, Element, Facet, Frame, Hold, NodeLattice, Realization, Side, Surface, TakeoffWindows, Windows,
+    posts::Standing,
+};
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, limits},
     chain::{
-        ConstrainedChain, ConstraintProblem, ConstraintProblems, ContactRule, GroundForm, InvalidChain, PolygonalChain,
-        SegmentConstraints, SegmentGround, resolve_constraints,
+        ConstrainedChain, ConstraintProblem, ConstraintProblems, ContactRule, Footprint, FootprintRefusal, GroundForm,
+        InvalidChain, PolygonalChain, SegmentConstraints, SegmentGround, resolve_constraints,
     },
     hop::HopTest,
     quantity::{ChainPoint, MapPoint, SegmentId, SlopeInterval, VertexId},
-    terrain::{OverlaidDem, Profile, ProfileFacet, ProfilePoint, TerrainError, Triangles},
+    terrain::{
+        FootprintFit, FootprintGap, OverlaidDem, Profile, ProfileFacet, ProfilePoint, Surroundings, TerrainError, Triangles,
+    },
     world::{Contact, Direction, FrictionCone, Gravity, Hopper, RestSlope, SurfaceProperties},
 };
 
@@ -50,6 +55,8 @@ pub struct DemGround {
     aside_posts: f64,
     /// How this ground differs from the map in one trial; by default, not at all.
     pub(super) realization: Realization,
+    /// The footprint of the hopper, if it has one, and the DEM that it stands on.
+    pub(super) footprint: Option<(Footprint, Arc<Surroundings>)>,
 }
 
 /// A position on a map, and its height.
@@ -98,6 +105,7 @@ impl DemGround {
             envelope: FlightEnvelope::new(hopper, gravity),
             surface: *surface,
             realization: Realization::default(),
+            footprint: Footprint::of(hopper).map(|footprint| (footprint, Arc::new(Surroundings::whole(terrain.shared_dem())))),
             terrain,
         }
     }
@@ -142,7 +150,60 @@ impl DemGround {
 
     fn constrained(&self, profile: &Profile) -> Result<ConstrainedChain, SliceProblem> {
         let chain = PolygonalChain::from_profile(profile, self.constant_friction())?;
-        Ok(ConstrainedChain::new(chain, self.hopper(), self.envelope.gravity(), &self.surface)?)
+        let gravity = self.envelope.gravity();
+        Ok(match &self.footprint {
+            Some((_, dem)) => ConstrainedChain::on_dem(Arc::clone(dem), chain, self.hopper(), gravity, &self.surface)?,
+            None => ConstrainedChain::new(chain, self.hopper(), gravity, &self.surface)?,
+        })
+    }
+
+    /// Why the ground under the footprint refuses every contact at a position, under friction of this coefficient; `None` if it does
+    /// not, or if the hopper has no footprint.
+    pub(super) fn footprint_refusal(&self, position: &MapPosition, friction: Option<f64>) -> Option<FootprintRefusal> {
+        self.footprint_against(position, rest_slope(self.surface.rest, friction))
+    }
+
+    /// The same where the rest slope has this tangent.
+    pub(super) fn footprint_against(&self, position: &MapPosition, rest: Option<f64>) -> Option<FootprintRefusal> {
+        let (footprint, _) = self.footprint.as_ref()?;
+        footprint.judge(self.fitted(position)?, rest, self.height_rounding_m / (ULPS * f64::EPSILON))
+    }
+
+    /// What the ground under the footprint allows at a position, where the rest slope has this tangent.
+    pub(super) fn standing(&self, position: &MapPosition, rest: Option<f64>) -> Standing {
+        let (Some((footprint, _)), Some(fit)) = (self.footprint.as_ref(), self.fitted(position)) else { return Standing::Sound };
+        if fit.is_ok_and(|fit| footprint.is_close(&fit, rest)) {
+            return Standing::Close;
+        }
+        match footprint.judge(fit, rest, self.height_rounding_m / (ULPS * f64::EPSILON)) {
+            None => Standing::Sound,
+            Some(FootprintRefusal::TooSteep { .. }) => Standing::TooSteep,
+            Some(FootprintRefusal::TooRough { .. } | FootprintRefusal::Unknown { .. }) => Standing::Refused,
+        }
+    }
+
+    /// What is wrong with a footprint that has no room anywhere on the DEM: its size and that of the DEM.
+    pub(crate) fn footprint_without_room(&self) -> Option<String> {
+        let (footprint, _) = self.footprint.as_ref()?;
+        let bounds = self.terrain.dem().bounds();
+        let side_m = (bounds.max - bounds.min).min();
+        (footprint.diameter_m > side_m).then(|| format!("{} m on a DEM whose shorter side is {side_m} m", footprint.diameter_m))
+    }
+
+    /// The ground fitted under the footprint; `None` without one.
+    fn fitted(&self, position: &MapPosition) -> Option<Result<FootprintFit, FootprintGap>> {
+        let (footprint, dem) = self.footprint.as_ref()?;
+        let origin = self.terrain.dem().georeference().north_west();
+        let field = self.realization.heights.as_deref();
+        let raised = field.map(|field| move |post: MapPoint| field.at(post.x - origin.x, post.y - origin.y));
+        let raised = raised.as_ref().map(|raised| raised as &dyn Fn(MapPoint) -> f64);
+        Some(dem.fit_raised(position.at, position.z_m, footprint.diameter_m, raised))
+    }
+
+    /// The same on the nominal ground, whose friction is looked up beside the contact.
+    fn refuses_footprint(&self, position: &MapPosition, beside: MapPoint) -> bool {
+        let friction = || self.nominal_friction(beside).map(FrictionCone::coefficient);
+        self.footprint.is_some() && self.footprint_refusal(position, friction()).is_some()
     }
 
     pub(super) fn triangles(&self) -> Triangles<'_> {
@@ -216,7 +277,7 @@ impl DemGround {
         let takeoff = self.allowed(triangles.at(ahead, nominal)?.1, heading, ahead, Contact::Takeoff)?;
         let landing = self.allowed(triangles.at(before, nominal)?.1, heading, before, Contact::Landing)?;
         let mut lofts = self.envelope.lofts(sight, takeoff.contact_limits(), landing.contact_limits());
-        if lofts.is_empty() || lofts.upper <= 0.0 {
+        if lofts.is_empty() || lofts.upper <= 0.0 || self.refuses_footprint(from, ahead) || self.refuses_footprint(to, before) {
             return None;
         }
         let end_m = sight.run_m() - self.position_rounding_m - BESIDE_M;
@@ -298,7 +359,7 @@ impl DemGround {
 }
 
 /// A facet with the given gradient, constraints and friction, for the checker.
-fn facet_of(gradient: Gradient, (constraints, friction): (SegmentConstraints, Option<FrictionCone>)) -> Facet {
+fn facet_of(gradient: Gradient, rest: RestSlope, (constraints, friction): (SegmentConstraints, Option<FrictionCone>)) -> Facet {
     let hold = match friction {
         Some(cone) => Hold::Friction { normal: Vector3::new(-gradient.x, -gradient.y, 1.0).normalize(), cone },
         None => Hold::Stated {
@@ -307,7 +368,7 @@ fn facet_of(gradient: Gradient, (constraints, friction): (SegmentConstraints, Op
             landing: constraints.check_contact(Contact::Landing, Direction::Forward),
         },
     };
-    Facet { refusal: constraints.refusal(), hold }
+    Facet { refusal: constraints.refusal(), hold, rest_slope: rest_slope(rest, friction.map(FrictionCone::coefficient)) }
 }
 
 impl Surface for DemGround {
@@ -387,7 +448,13 @@ impl Surface for DemGround {
         let [left, right] = gradients;
         let right = right.filter(|right| left != Some(*right));
         let overlaid = |gradient| self.overlaid(at.at, heading, side, gradient);
-        [left, right].map(|gradient| gradient.and_then(|gradient| overlaid(gradient).map(|known| facet_of(gradient, known))))
+        [left, right].map(|gradient| {
+            gradient.and_then(|gradient| overlaid(gradient).map(|known| facet_of(gradient, self.surface.rest, known)))
+        })
+    }
+
+    fn around(&self, _: &MapPosition, _: f64) -> Around {
+        Around::Map
     }
 
     fn height_rounding_m(&self) -> f64 {
@@ -424,15 +491,19 @@ pub(super) fn end_to_end(chain: ConstrainedChain) -> Option<(LineOfSight, Option
     Some((test.line_of_sight(&start, &end)?, test.lofts(&start, &end).ok()))
 }
 
-/// Whether the facet is flat enough to rest on; an absent limit always holds. `friction` is its coefficient, if it has one;
-/// `tolerance_rad`, an angle, is converted to a slope: d tan = (1 + tan^2) d angle.
-pub(super) fn rests(rest: RestSlope, gradient: Gradient, friction: Option<f64>, tolerance_rad: f64) -> bool {
-    let max = match rest {
+/// The tangent of the steepest slope to rest on, under friction of this coefficient; `None` if every slope holds.
+pub(super) fn rest_slope(rest: RestSlope, friction: Option<f64>) -> Option<f64> {
+    match rest {
         RestSlope::AsFrictionHolds => friction,
         RestSlope::AtMost(angle) => Some(angle.slope()),
         RestSlope::Unlimited => None,
-    };
-    max.is_none_or(|max| gradient.norm() <= max + tolerance_rad * (1.0 + max * max))
+    }
+}
+
+/// Whether the facet is flat enough to rest on; an absent limit always holds. `friction` is its coefficient, if it has one;
+/// `tolerance_rad`, an angle, is converted to a slope: d tan = (1 + tan^2) d angle.
+pub(super) fn rests(rest: RestSlope, gradient: Gradient, friction: Option<f64>, tolerance_rad: f64) -> bool {
+    rest_slope(rest, friction).is_none_or(|max| gradient.norm() <= max + tolerance_rad * (1.0 + max * max))
 }
 
 #[cfg(test)]

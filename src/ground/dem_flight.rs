@@ -6,7 +6,7 @@ use super::{
     DemGround, FirstContact, Flight, LiftoffVelocity, MapPosition, Surface, TouchdownState,
     chain_flight::comes_down_m,
     dem::{BESIDE_M, Gradient, rests},
-    first_contact::{ANGLE_TOLERANCE_RAD, ContactFailure, PLACE_TOLERANCE, Realization, check_landing, holds},
+    first_contact::{ANGLE_TOLERANCE_RAD, ContactFailure, PLACE_TOLERANCE, Realization, check_landing, failure_of, holds},
 };
 use crate::{
     chain::{LineConstraints, contains_straight_down},
@@ -46,9 +46,14 @@ impl DemGround {
         self.terrain().overlays().keeps_out(at)
     }
 
-    /// Whether the hopper rests on a facet with this friction.
-    fn rests(&self, gradient: Gradient, friction: Option<f64>) -> bool {
-        rests(self.surface().rest, gradient, friction, ANGLE_TOLERANCE_RAD)
+    /// Whether the hopper rests at a position on a facet with this friction: on the facet, or with a footprint on the plane fitted
+    /// over it.
+    fn rests(&self, at: &MapPosition, gradient: Gradient, friction: Option<f64>) -> Result<(), ContactFailure> {
+        if self.footprint.is_some() {
+            return self.footprint_refusal(at, friction).map_or(Ok(()), |refusal| Err(failure_of(&refusal)));
+        }
+        let rests = rests(self.surface().rest, gradient, friction, ANGLE_TOLERANCE_RAD);
+        if rests { Ok(()) } else { Err(ContactFailure::Slides) }
     }
 
     /// The stated angles of a facet for a heading, if angles are stated.
@@ -118,7 +123,7 @@ impl FirstContact for DemGround {
             return false;
         }
         let friction = self.friction(ahead);
-        if !self.rests(gradient, friction) {
+        if self.rests(from, gradient, friction).is_err() {
             return false;
         }
         match (friction, self.stated(gradient, liftoff.heading)) {
@@ -188,9 +193,7 @@ impl FirstContact for DemGround {
             return Err(ContactFailure::TooFast);
         }
         let friction = self.friction(flown_over);
-        if !self.rests(*support_facet, friction) {
-            return Err(ContactFailure::Slides);
-        }
+        self.rests(end, *support_facet, friction)?;
         match (friction, self.stated(*support_facet, touchdown.heading)) {
             (Some(friction), _) if limits.landing.brakes() => {
                 let held = holds_on(*support_facet, friction, Vector3::z(), touchdown.angle_tolerance_rad);
@@ -230,7 +233,8 @@ impl FirstContact for DemGround {
         if self.is_kept_out(at) {
             return Err(ContactFailure::OffLimits);
         }
-        if self.rests(gradient, self.friction(at)) { Ok(MapPosition { at, z_m }) } else { Err(ContactFailure::Slides) }
+        let position = MapPosition { at, z_m };
+        self.rests(&position, gradient, self.friction(at)).map(|()| position)
     }
 
     fn believed(&self, position: &MapPosition, along_m: f64, across_m: f64) -> Option<MapPosition> {

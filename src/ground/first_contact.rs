@@ -4,7 +4,7 @@ use nalgebra::{Point3, Vector2};
 
 use super::{HeightField, Surface};
 use crate::{
-    chain::{ContactRule, GroundRefusal},
+    chain::{ContactRule, FootprintRefusal, GroundRefusal},
     world::tolerant_speed_m_s,
 };
 
@@ -49,7 +49,7 @@ pub struct Realization {
 /// Why a contact does not hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ContactFailure {
-    /// The direction lies outside the cone, or the surface is too steep to rest on.
+    /// The direction lies outside the cone, or the surface is too steep to rest on, or under the footprint too rough.
     Slides,
     /// The landing is faster than its limit.
     TooFast,
@@ -171,6 +171,14 @@ pub(super) fn within(rule: &ContactRule, horizontal_m_s: f64, vertical_m_s: f64,
     rule.slopes().lower - tolerance <= slope && slope <= rule.slopes().upper + tolerance
 }
 
+/// The failure of a contact whose footprint the ground refuses.
+pub(super) const fn failure_of(refusal: &FootprintRefusal) -> ContactFailure {
+    match refusal {
+        FootprintRefusal::TooSteep { .. } | FootprintRefusal::TooRough { .. } => ContactFailure::Slides,
+        FootprintRefusal::Unknown { .. } => ContactFailure::OffLimits,
+    }
+}
+
 /// Whether a rule holds a take-off; a refusal does not.
 pub(super) fn holds(rule: Result<ContactRule, GroundRefusal>, liftoff: &LiftoffVelocity) -> bool {
     rule.is_ok_and(|rule| within(&rule, liftoff.horizontal_m_s, liftoff.vertical_m_s, ANGLE_TOLERANCE_RAD))
@@ -184,6 +192,7 @@ pub(super) fn check_landing(
 ) -> Result<(), ContactFailure> {
     match rule {
         Err(GroundRefusal::KeepOut) => Err(ContactFailure::OffLimits),
+        Err(GroundRefusal::Footprint(refusal)) if !touchdown.is_over(landing_speed_max_m_s) => Err(failure_of(&refusal)),
         Err(refusal) => {
             let stated = matches!(refusal, GroundRefusal::SpeedZero | GroundRefusal::TouchdownSpeed { .. });
             let too_fast = stated || touchdown.is_over(landing_speed_max_m_s);

@@ -101,6 +101,20 @@ pub struct Facet {
     pub refusal: Option<GroundRefusal>,
     /// What keeps the hopper from sliding.
     pub hold: Hold,
+    /// The tangent of the steepest slope to rest on here; `None` if every slope holds.
+    pub rest_slope: Option<f64>,
+}
+
+/// In which directions the ground around a contact is known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Around {
+    /// Along a profile alone, which slopes across by at most this tangent.
+    Profile {
+        /// The tangent of the greatest cross-slope of the ground touched.
+        cross_slope: f64,
+    },
+    /// In every direction of a map.
+    Map,
 }
 
 /// Straight ground under a part of a line of travel.
@@ -175,6 +189,23 @@ pub trait Surface {
     /// The facets under a line of travel next to a contact: the facet under the line, or both facets if it runs along their common
     /// edge.
     fn facets(&self, at: &Self::Contact, heading: Vector2<f64>, side: Side) -> [Option<Facet>; 2];
+
+    /// In which directions the ground within a distance of a contact is known, m.
+    fn around(&self, at: &Self::Contact, distance_m: f64) -> Around;
+
+    /// Visits the ground around a contact along rays in the directions given, each up to at least a distance or the end of the known
+    /// ground, m: the number of the ray, and its elements as in [`walk`](Self::walk).
+    fn rays(
+        &self,
+        at: &Self::Contact,
+        _distance_m: f64,
+        headings: &[Vector2<f64>],
+        visit: &mut dyn FnMut(usize, &Element) -> ControlFlow<()>,
+    ) {
+        for (ray, heading) in headings.iter().enumerate() {
+            self.walk(at, *heading, &mut |element| visit(ray, element));
+        }
+    }
 
     /// Rounding error of the heights of this ground, m.
     fn height_rounding_m(&self) -> f64;

@@ -2,10 +2,10 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief, terrain::kinks_loft};
+use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief, risk::FootingSamples, terrain::kinks_loft};
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, limits},
-    chain::{ConstrainedChain, ContactRule, Station},
+    chain::{ConstrainedChain, ContactRule, Footing, Station, contacts_stand},
     quantity::{SegmentId, SlopeInterval},
     world::{Contact, Direction, Hopper, Limit},
 };
@@ -31,6 +31,8 @@ struct Tables {
     relief: OnceLock<Relief>,
     /// The reach of one hop along each segment, by direction.
     reaches: OnceLock<Vec<[Option<SegmentReach>; 2]>>,
+    /// Where the hopper's footprint stands, for estimates of risk.
+    footing: OnceLock<Option<FootingSamples>>,
 }
 
 impl HopTest {
@@ -71,6 +73,11 @@ impl HopTest {
     /// Bounds of height and speed over any part of the chain.
     pub(super) fn relief(&self) -> &Relief {
         self.tables.relief.get_or_init(|| Relief::of(&self.chain))
+    }
+
+    /// Samples of the ground under the hopper's footprint, if it has one.
+    pub(super) fn footing_samples(&self) -> Option<&FootingSamples> {
+        self.tables.footing.get_or_init(|| FootingSamples::of(&self.chain)).as_ref()
     }
 
     /// The reach of one hop along each segment, by direction.
@@ -143,8 +150,7 @@ impl HopTest {
     /// The rule of a contact, or the limit by which the ground refuses it.
     #[inline]
     pub(crate) fn allowed(&self, station: &Station, contact: Contact, direction: Direction) -> Result<&ContactRule, Limit> {
-        let segment = self.chain.ruling(station, contact, direction).ok_or(Limit::Direction)?;
-        segment.allowed(contact, direction).ok_or_else(|| match segment.check_contact(contact, direction) {
+        self.chain.allowed(station, contact, direction).ok_or_else(|| match self.chain.check_contact(station, contact, direction) {
             Err(refusal) => refusal.limit(contact),
             Ok(_) => Limit::Direction,
         })
@@ -235,7 +241,25 @@ impl HopTest {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let segment = takeoff.shared_segment(landing)?;
         let reach = self.segment_reach(segment, direction)?;
-        reach.hops_over((landing.point.x_m - takeoff.point.x_m).abs())
+        let hops = reach.hops_over((landing.point.x_m - takeoff.point.x_m).abs())?;
+        if self.chain.footprint().is_some() { self.hops_that_stand(takeoff, landing, segment, hops) } else { Some(hops) }
+    }
+
+    /// The hops along a segment with the splits of which the footprint allows every contact; `None` if it allows no split.
+    fn hops_that_stand(&self, takeoff: &Station, landing: &Station, segment: SegmentId, hops: SegmentHops) -> Option<SegmentHops> {
+        let (geometry, footprint) = (self.chain.geometry(), self.chain.footprint()?);
+        let refuses = |station: &Station| self.chain.footprint_refusal(station, segment).is_some();
+        if refuses(takeoff) || refuses(landing) {
+            return None;
+        }
+        let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
+        // Along a profile the ground in the middle of a segment is plane.
+        let half_m = 0.5 * footprint.diameter_m;
+        let ends = geometry.vertices().get(segment.index()..segment.index() + 2)?;
+        let plain = matches!(self.chain.footing(), Footing::Profile).then(|| (ends[0].x_m + half_m, ends[1].x_m - half_m));
+        let refused = |x_m: f64| geometry.station(x_m).map_or(true, |station| refuses(&station));
+        let stands = |each_m| contacts_stand(refused, takeoff.point.x_m, direction, each_m, hops.hops(), plain);
+        hops.where_standing(stands)
     }
 
     /// The reach of one hop along a segment; `None` if its ground allows no hop along it.

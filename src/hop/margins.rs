@@ -19,6 +19,8 @@ struct Flown<'a> {
     height_m: f64,
     /// By how much the ground at take-off and landing is less steep than the rest slope, degrees.
     rest_deg: [f64; 2],
+    /// By how much the ground under the footprint at take-off and landing is more even than it has to be, m.
+    roughness_m: [f64; 2],
 }
 
 /// One margin: its name, its limit and its equation. A further limit of the hopper is one more row of [`MARGINS`].
@@ -33,7 +35,7 @@ pub struct MarginRow {
 }
 
 /// All margins, in the order in which results list them.
-pub const MARGINS: [MarginRow; 14] = [
+pub const MARGINS: [MarginRow; 16] = [
     row("takeoff_speed_m_s", Limit::TakeoffSpeed, |f| f.takeoff.speed_max_m_s() - f.arc.takeoff_speed_m_s()),
     row("landing_speed_m_s", Limit::LandingSpeed, |f| f.landing.speed_max_m_s() - f.arc.landing_speed_m_s()),
     row("takeoff_cone_min_deg", Limit::TakeoffCone, |f| above_deg(f.arc.takeoff_angle(), f.takeoff.slopes())),
@@ -56,6 +58,8 @@ pub const MARGINS: [MarginRow; 14] = [
     row("flight_time_s", Limit::FlightTime, |f| f.hopper.flight_time_max_s.map_or(f64::INFINITY, |s| s - f.arc.flight_time_s())),
     row("takeoff_rest_slope_deg", Limit::RestSlope, |f| f.rest_deg[0]),
     row("landing_rest_slope_deg", Limit::RestSlope, |f| f.rest_deg[1]),
+    row("takeoff_roughness_m", Limit::Roughness, |f| f.roughness_m[0]),
+    row("landing_roughness_m", Limit::Roughness, |f| f.roughness_m[1]),
 ];
 
 const fn row(key: &'static str, limit: Limit, of: fn(&Flown<'_>) -> f64) -> MarginRow {
@@ -97,6 +101,10 @@ impl HopMargins {
             let rest = test.chain().rest_slope(station, contact, direction);
             rest.map_or(f64::INFINITY, |(tilt, max)| max.degrees() - tilt.degrees())
         };
+        let roughness_m = |station| {
+            let fit = test.hopper().limits().roughness_max_m.zip(test.chain().footprint_fit(station));
+            fit.map_or(f64::INFINITY, |(max_m, fit)| max_m - fit.residual_m)
+        };
         let terrain = least_height(test.chain().geometry(), takeoff, landing, arc, test.clearance());
         let (height_m, terrain_from_takeoff_m) = terrain.unwrap_or((f64::INFINITY, f64::INFINITY));
         let flown = Flown {
@@ -107,6 +115,7 @@ impl HopMargins {
             mechanism: test.mechanism_slopes(),
             height_m,
             rest_deg: [rest_deg(takeoff, Contact::Takeoff), rest_deg(landing, Contact::Landing)],
+            roughness_m: [roughness_m(takeoff), roughness_m(landing)],
         };
         Some(Self { values: MARGINS.map(|row| (row.of)(&flown)), terrain_from_takeoff_m })
     }

@@ -69,6 +69,8 @@ pub struct SegmentHops {
     reach: SegmentReach,
     run_m: f64,
     hops: u64,
+    /// The only split whose contacts the hopper's footprint allows, if it does not allow both.
+    only: Option<Split>,
 }
 
 impl SegmentReach {
@@ -210,7 +212,7 @@ impl SegmentReach {
             return if self.near_m > 0.0 { near.hops_over(run_m) } else { None };
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1 and at most 2^53")]
-        (hops <= 9_007_199_254_740_992.0).then_some(SegmentHops { reach: *self, run_m, hops: hops as u64 })
+        (hops <= 9_007_199_254_740_992.0).then_some(SegmentHops { reach: *self, run_m, hops: hops as u64, only: None })
     }
 }
 
@@ -227,11 +229,12 @@ impl SegmentHops {
 
     /// The horizontal lengths of the hops, m: of each but the last, and of the last.
     ///
-    /// With full reach the last hop covers the rest. If rounding leaves a rest slightly over the reach (a stretch of exactly
+    /// If the hopper's footprint allows the contacts of one split alone, that one is taken. With full reach the last hop covers the
+    /// rest. If rounding leaves a rest slightly over the reach (a stretch of exactly
     /// a multiple of the reach), or under the shortest hop, the hops are equal.
     #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
     pub fn lengths_m(&self, split: Split) -> (f64, f64) {
-        let equal = self.run_m / self.hops as f64;
+        let (equal, split) = (self.equal_m(), self.only.unwrap_or(split));
         let stride_m = self.reach.stride_m;
         let rest = self.run_m - (self.hops - 1) as f64 * stride_m;
         match split {
@@ -239,6 +242,24 @@ impl SegmentHops {
                 (stride_m, rest)
             }
             _ => (equal, equal),
+        }
+    }
+
+    /// The length of each of as many hops of equal length, m.
+    #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
+    pub(crate) fn equal_m(&self) -> f64 {
+        self.run_m / self.hops as f64
+    }
+
+    /// The same hops in the splits whose contacts stand: those at multiples of the length given from the take-off. `None` if neither
+    /// does.
+    pub(super) fn where_standing(self, stands: impl Fn(f64) -> bool) -> Option<Self> {
+        let [full, equal] = Split::ALL.map(|split| stands(Self { only: None, ..self }.lengths_m(split).0));
+        match (full, equal) {
+            (true, true) => Some(self),
+            (true, false) => Some(Self { only: Some(Split::FullReach), ..self }),
+            (false, true) => Some(Self { only: Some(Split::Equal), ..self }),
+            (false, false) => None,
         }
     }
 

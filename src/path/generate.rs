@@ -127,7 +127,7 @@ fn full_reach_m(leg: &Leg, along: &SegmentHops, direction: Direction, split: Spl
 
 /// The x of all landings but the last for hops of equal length, m.
 fn equal_m(leg: &Leg, along: &SegmentHops, direction: Direction) -> Vec<f64> {
-    let (each_m, _) = along.lengths_m(Split::Equal);
+    let each_m = along.equal_m();
     #[expect(clippy::cast_precision_loss, reason = "at most a million hops")]
     let x_m = |i: u64| leg.takeoff.point.x_m + direction.sign() * each_m * i as f64;
     (1..along.hops()).map(x_m).collect()

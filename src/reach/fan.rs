@@ -135,6 +135,9 @@ pub fn fan(request: &FanRequest<'_>, progress: &dyn Progress) -> Result<Vec<FanR
     if !(length_m.is_finite() && length_m > 0.0) {
         return refused("length", format!("{length_m} m"), "a finite length above 0 m");
     }
+    if let Some(found) = request.ground.footprint_without_room() {
+        return refused("hopper.footprint_m", found, "one that has room on the DEM: check its unit, or take a larger DEM");
+    }
     let bounds = request.ground.terrain().dem().bounds();
     let inside = |value: f64, low: f64, high: f64| low <= value && value <= high;
     if !(inside(request.from.x, bounds.min.x, bounds.max.x) && inside(request.from.y, bounds.min.y, bounds.max.y)) {

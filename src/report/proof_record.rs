@@ -39,6 +39,9 @@ pub struct ProofSummaryRecord {
     pub pairs_tested: u64,
     /// Whether the best path uses points of the cells instead of the nodes of the search.
     pub path_over_cells: bool,
+    /// Whether the hopper has a footprint, which the proof uses at vertices alone; absent if it has none.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub footprint_at_vertices_alone: bool,
 }
 
 /// A stretch of the chain.
@@ -80,6 +83,7 @@ impl ProofRecord {
                 rounds: summary.rounds,
                 pairs_tested: summary.pairs_tested,
                 path_over_cells: summary.path_over_cells,
+                footprint_at_vertices_alone: summary.footprint_at_vertices_alone,
             },
             stretches: merged(&bounds.stretches),
             gap: bounds.gap.as_ref().map(GapRecord::of),

@@ -191,6 +191,9 @@ fn proof_lines(sheet: &mut Sheet, proof: &ProofRecord, means: FurtherMeans<'_>) 
             means.budget
         )),
     }
+    if proof.proof.footprint_at_vertices_alone {
+        sheet.line(format_args!("the proof uses the footprint at vertices alone: it holds, and may be weaker than it could be"));
+    }
     let summary = proof.proof;
     sheet.line(format_args!(
         "proof: {} cells, {} split, {} rounds, {} pairs of cells tested",

@@ -131,7 +131,7 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 69] = [
+pub const CATALOGUE: [Key; 71] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -157,6 +157,18 @@ pub const CATALOGUE: [Key; 69] = [
     key("hopper", "takeoff_angle_step_deg", STEP_ANGLE, "take-off angles are multiples of this, degrees; absent: any angle"),
     key("hopper", "takeoff_speed_step_m_s", SPEED, "take-off speeds are multiples of this, m/s; absent: any speed"),
     key("hopper", "heading_step_deg", STEP_ANGLE, "headings from grid north are multiples of this, degrees; absent: any heading"),
+    key(
+        "hopper",
+        "footprint_m",
+        FROM_ZERO,
+        "diameter of the ground stood on, m: the plane fitted over it is held against the rest slope; absent or 0: none",
+    ),
+    key(
+        "hopper",
+        "roughness_max_m",
+        FROM_ZERO,
+        "greatest distance of the ground under the footprint from the fitted plane, m; absent: not limited",
+    ),
     key("hopper", "mass_kg", LENGTH, "mass at the start, kg, for the totals of energy and propellant"),
     key("hopper", "rest_time_s", FROM_ZERO, "older name of settling_time_s, s; not beside it or preparation_time_s"),
     key(

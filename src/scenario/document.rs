@@ -76,6 +76,8 @@ fn hopper(scenario: &Scenario) -> Value {
         ("takeoff_angle_step_deg", hopper.limits().steps.takeoff_angle.map(|angle| degrees(angle).into())),
         ("takeoff_speed_step_m_s", hopper.limits().steps.takeoff_speed_m_s.map(Value::from)),
         ("heading_step_deg", hopper.limits().steps.heading.map(|angle| degrees(angle).into())),
+        ("footprint_m", hopper.limits().footprint_m.map(Value::from)),
+        ("roughness_max_m", hopper.limits().roughness_max_m.map(Value::from)),
         ("mass_kg", hopper.limits().mass_kg.map(Value::from)),
         ("rest_time_s", hopper.limits().rest_time_s.map(Value::from)),
         ("landing", hopper.limits().landing.brakes().then(|| hopper.limits().landing.name().into())),

@@ -12,6 +12,7 @@ use sha2::{Digest, Sha256};
 
 use super::{
     Scenario, TerrainSource,
+    footprint::{SlicedDem, coarse_dem_warning},
     on_body::{contradictions, on_body},
     physics::{Extent, TooLarge},
 };
@@ -21,8 +22,8 @@ use crate::{
     quantity::MapPoint,
     terrain::{
         self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection,
-        NoDataRule, OverlaidDem, OverlayEffect, Profile, TerrainError, check_scale, read_friction_raster, read_keep_out,
-        read_mesh_with, slice_legs, slice_mesh,
+        NoDataRule, OverlaidDem, OverlayEffect, Profile, Surroundings, TerrainError, check_scale, read_friction_raster,
+        read_keep_out, read_mesh_with, slice_legs, slice_mesh,
     },
     world::FrictionCone,
 };
@@ -107,15 +108,16 @@ pub enum PipelineError {
 /// [`PipelineError`].
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let Survey { ground, projection, mut warnings } = Survey::of(scenario, source, base)?;
-    let (geometry, ends) = match ground {
-        Surveyed::Slice { legs, overlays } => {
+    let (geometry, dem, ends) = match ground {
+        Surveyed::Slice { legs, overlays, dem } => {
+            let around = dem.map(|dem| dem.around(&legs, &scenario.hopper)).transpose()?.flatten();
             let (chain, without_effect) = overlays.laid(legs, friction(scenario))?;
             warnings.extend(without_effect);
-            whole(chain)
+            whole(chain, around)
         }
-        Surveyed::Chain(chain) => (chain, (None, None)),
+        Surveyed::Chain(chain) => (chain, None, (None, None)),
     };
-    resolved(scenario, geometry, ends, projection, warnings)
+    resolved(scenario, (geometry, dem), ends, projection, warnings)
 }
 
 /// The terrain of a scenario, read and sliced once. Chains for any hopper, grip and search are prepared from it.
@@ -130,7 +132,7 @@ pub struct Survey {
 #[derive(Clone, Debug)]
 enum Surveyed {
     /// A slice and its overlays.
-    Slice { legs: Vec<Profile>, overlays: Box<Overlays> },
+    Slice { legs: Vec<Profile>, overlays: Box<Overlays>, dem: Option<SlicedDem> },
     /// A chain as given.
     Chain(PolygonalChain),
 }
@@ -160,7 +162,13 @@ impl Survey {
         let mut warnings = transect.warnings;
         warnings.extend(of_extent);
         let overlays = Overlays::read(scenario, base, transect.coordinates.as_ref(), transect.extent.bounds)?;
-        let ground = Surveyed::Slice { legs: transect.legs, overlays: Box::new(overlays) };
+        let dem = match source {
+            TerrainSource::Dem { path, .. } => {
+                Some(SlicedDem::of(base.join(path), DemReading::of(scenario), &transect.legs, &scenario.hopper)?)
+            }
+            TerrainSource::Mesh { .. } | TerrainSource::Chain { .. } => None,
+        };
+        let ground = Surveyed::Slice { legs: transect.legs, overlays: Box::new(overlays), dem };
         Ok(Self { ground, projection: transect.projection, warnings })
     }
 
@@ -170,34 +178,46 @@ impl Survey {
     /// [`PipelineError`], if segments are left without constraints or an end lies off the chain.
     pub fn prepare(&self, scenario: &Scenario) -> Result<Prepared, PipelineError> {
         let mut warnings = self.warnings.clone();
-        let (geometry, ends) = match &self.ground {
-            Surveyed::Slice { legs, overlays } => {
+        let (geometry, dem, ends) = match &self.ground {
+            Surveyed::Slice { legs, overlays, dem } => {
+                let around = dem.as_ref().map(|dem| dem.around(legs, &scenario.hopper)).transpose()?.flatten();
                 let (chain, without_effect) = overlays.laid(legs.clone(), friction(scenario))?;
                 warnings.extend(without_effect);
-                whole(chain)
+                whole(chain, around)
             }
-            Surveyed::Chain(chain) => (chain.clone(), (None, None)),
+            Surveyed::Chain(chain) => (chain.clone(), None, (None, None)),
         };
-        resolved(scenario, geometry, ends, self.projection.clone(), warnings)
+        resolved(scenario, (geometry, dem), ends, self.projection.clone(), warnings)
     }
 }
 
+/// A chain with the DEM around it, if footprints need it, and the ends of a journey.
+type Whole = (PolygonalChain, Option<Arc<Surroundings>>, (Option<f64>, Option<f64>));
+
 /// A chain, with its ends as the default start and goal.
-fn whole(chain: PolygonalChain) -> (PolygonalChain, (Option<f64>, Option<f64>)) {
+fn whole(chain: PolygonalChain, dem: Option<Arc<Surroundings>>) -> Whole {
     let (first_m, last_m) = chain.extent_m();
-    (chain, (Some(first_m), Some(last_m)))
+    (chain, dem, (Some(first_m), Some(last_m)))
 }
 
 /// Resolves the constraints of a chain and finds start and goal on it.
 fn resolved(
     scenario: &Scenario,
-    geometry: PolygonalChain,
+    (geometry, dem): (PolygonalChain, Option<Arc<Surroundings>>),
     ends: (Option<f64>, Option<f64>),
     projection: Option<MapProjection>,
     mut warnings: Vec<String>,
 ) -> Result<Prepared, PipelineError> {
     warnings.extend(contradictions(scenario, Some(&geometry)));
-    let chain = Arc::new(ConstrainedChain::new(geometry, &scenario.hopper, scenario.body.gravity, &scenario.surface)?);
+    let Scenario { hopper, surface, .. } = scenario;
+    let gravity = scenario.body.gravity;
+    let chain = Arc::new(match dem {
+        Some(dem) => {
+            warnings.extend(coarse_dem_warning(hopper, dem.lattice().georeference()));
+            ConstrainedChain::on_dem(dem, geometry, hopper, gravity, surface)?
+        }
+        None => ConstrainedChain::new(geometry, hopper, gravity, surface)?,
+    });
     let station = |which, x_m: Option<f64>| {
         x_m.map(|x_m| chain.geometry().station(x_m)).transpose().map_err(|problem| PipelineError::OffChain { which, problem })
     };

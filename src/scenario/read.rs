@@ -277,6 +277,8 @@ fn hopper(entries: &mut Entries) -> Hopper {
             takeoff_speed_m_s: number("takeoff_speed_step_m_s"),
             heading: number("heading_step_deg").map(Angle::from_degrees),
         },
+        footprint_m: number("footprint_m"),
+        roughness_max_m: number("roughness_max_m"),
         mass_kg: number("mass_kg"),
         rest_time_s: number("rest_time_s"),
         landing,
@@ -307,6 +309,15 @@ fn hopper(entries: &mut Entries) -> Hopper {
                 .to_owned();
         let help = "remove clearance_taper, or say clearance_rule = \"tapered\"";
         entries.problem(("hopper", "clearance_taper"), ProblemKind::Conflict, message, help);
+    }
+    if limits.roughness_max_m.is_some() && !limits.footprint_m.is_some_and(|footprint_m| footprint_m > 0.0) {
+        let message = format!(
+            "hopper.roughness_max_m is {}, expected a footprint_m above 0 beside it, over which the roughness is measured",
+            limits.roughness_max_m.unwrap_or(0.0)
+        );
+        let help = "give hopper.footprint_m, the diameter of the ground that the hopper stands on, or remove roughness_max_m";
+        entries.problem(("hopper", "roughness_max_m"), ProblemKind::Conflict, message, help);
+        return Hopper::UNLIMITED;
     }
     // The catalogue's ranges lie within those of a hopper; what two keys mean together, the hopper itself checks.
     Hopper::new(limits).unwrap_or_else(|InvalidHopper(problems)| {

@@ -19,6 +19,7 @@
 mod ascii_grid;
 mod dem;
 mod error;
+mod footprint;
 mod foreign;
 mod format;
 #[cfg(feature = "gdal")]
@@ -37,6 +38,7 @@ mod shell_word;
 mod sidecar;
 mod slice;
 mod stored;
+mod surroundings;
 mod synth;
 mod text_lines;
 mod void;
@@ -48,6 +50,7 @@ mod zones;
 pub use ascii_grid::{read_ascii_grid_bytes, write_ascii_grid};
 pub use dem::{Dem, ELEVATION_LIMIT_M, Samples};
 pub use error::{AsciiProblem, GapCause, TerrainError};
+pub use footprint::{FootprintFit, FootprintGap};
 pub(crate) use foreign::{Foreign, Group as ForeignGroup, name as foreign_kind};
 pub(crate) use format::format_name as raster_format;
 pub use format::{DemOptions, DemReader, FORMATS, open_dem, read_dem};
@@ -70,6 +73,7 @@ pub use projection::{
 pub use shell_word::shell_word;
 pub use sidecar::sidecar_files;
 pub use slice::{slice, slice_file, slice_legs};
+pub use surroundings::Surroundings;
 pub use synth::{Boulders, Craters, DepthLaw, FractalGround, Rille, SyntheticTerrain, synthesise};
 pub(crate) use text_lines::without_mark;
 pub(crate) use void::find_void_of_chain;

@@ -93,6 +93,11 @@ impl OverlaidDem {
         &self.dem
     }
 
+    /// The DEM, as a shared pointer.
+    pub fn shared_dem(&self) -> Arc<Dem> {
+        Arc::clone(&self.dem)
+    }
+
     /// The overlays.
     pub fn overlays(&self) -> &Overlays {
         &self.overlays

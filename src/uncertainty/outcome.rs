@@ -30,10 +30,11 @@ pub enum TrialOutcome {
     Reached,
     /// It stopped elsewhere: all planned commands were flown (open loop), or its estimated position was at the goal (replan).
     Missed,
-    /// The actual direction of a take-off was outside the cone of the ground there, or that ground allows no take-off.
+    /// The actual direction of a take-off was outside the cone of the ground there, or that ground, under the hopper's footprint if it
+    /// has one, allows no take-off.
     SlidAtTakeoff,
     /// The actual direction of a landing was outside the cone of the ground there, or the ground at the landing or at the place of
-    /// rest is too steep to rest on.
+    /// rest is too steep to rest on, or under the hopper's footprint too steep or too rough.
     SlidAtLanding,
     /// It met the ground faster than its landing speed limit.
     Damaged,

@@ -64,6 +64,11 @@ pub struct HopperLimits {
     pub flight_time_max_s: Option<f64>,
     /// The steps of its commands.
     pub steps: CommandSteps,
+    /// Diameter of the ground that the hopper stands on, m. The plane fitted over it is then held against the rest slope, instead of
+    /// the facet under the contact; 0 counts as none.
+    pub footprint_m: Option<f64>,
+    /// Greatest deviation of the ground under the footprint from the plane fitted over it, m.
+    pub roughness_max_m: Option<f64>,
     /// Mass at the start, kg, used for energies and propellant.
     pub mass_kg: Option<f64>,
     /// Rest between hops, s, only used for the mission time: the older name of `settling_time_s`.
@@ -98,6 +103,8 @@ impl HopperLimits {
         apex_height_max_m: None,
         flight_time_max_s: None,
         steps: CommandSteps::CONTINUOUS,
+        footprint_m: None,
+        roughness_max_m: None,
         mass_kg: None,
         rest_time_s: None,
         landing: LandingMode::Ballistic,
@@ -186,6 +193,8 @@ impl Hopper {
             apex_height_max_m,
             flight_time_max_s,
             steps,
+            footprint_m,
+            roughness_max_m,
             mass_kg,
             rest_time_s,
             // `propulsion::problems` checks these, and the rest time beside them.
@@ -235,6 +244,14 @@ impl Hopper {
                 "no more than takeoff_speed_max_m_s",
             ),
             number("heading_step_deg", steps.heading.map(Angle::degrees), positive, POSITIVE),
+            number("footprint_m", footprint_m, not_negative, NOT_NEGATIVE),
+            number("roughness_max_m", roughness_max_m, not_negative, NOT_NEGATIVE),
+            (
+                "roughness_max_m",
+                roughness_max_m.is_none_or(|_| footprint_m.is_some_and(|footprint_m| footprint_m != 0.0)),
+                roughness_max_m.unwrap_or(0.0),
+                "a footprint_m above 0 beside it, over which the roughness is measured",
+            ),
             number("mass_kg", mass_kg, positive, POSITIVE),
             number("rest_time_s", rest_time_s, not_negative, NOT_NEGATIVE),
         ];

@@ -12,6 +12,10 @@ pub enum Limit {
     KeepOut,
     /// The surface is steeper than the hopper's rest slope.
     RestSlope,
+    /// The plane fitted over the hopper's footprint is steeper than the rest slope, or the ground under the footprint is not known.
+    FootprintSlope,
+    /// The ground under the hopper's footprint deviates from the plane fitted over it by more than the limit.
+    Roughness,
     /// A hop is flown in one vertical plane, so it may not span a bend of the chain. It may begin or end at one.
     Bend,
     /// The take-off direction must lie in the take-off cone of the ground.
@@ -44,10 +48,12 @@ pub enum Limit {
 
 impl Limit {
     /// All limits, in the order in which results list them.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 19] = [
         Self::Direction,
         Self::KeepOut,
         Self::RestSlope,
+        Self::FootprintSlope,
+        Self::Roughness,
         Self::Bend,
         Self::TakeoffCone,
         Self::LandingCone,
@@ -70,6 +76,8 @@ impl Limit {
             Self::Direction => "direction",
             Self::KeepOut => "keep-out",
             Self::RestSlope => "rest-slope",
+            Self::FootprintSlope => "footprint-slope",
+            Self::Roughness => "roughness",
             Self::Bend => "bend",
             Self::TakeoffCone => "takeoff-cone",
             Self::LandingCone => "landing-cone",

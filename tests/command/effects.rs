@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 68] = [
+const TELLING: [(&str, &str); 70] = [
     ("body.name", "earth"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -23,6 +23,8 @@ const TELLING: [(&str, &str); 68] = [
     ("hopper.takeoff_angle_step_deg", "7"),
     ("hopper.takeoff_speed_step_m_s", "0.7"),
     ("hopper.heading_step_deg", "20"),
+    ("hopper.footprint_m", "25"),
+    ("hopper.roughness_max_m", "0.01"),
     ("hopper.mass_kg", "7"),
     ("hopper.rest_time_s", "100"),
     ("hopper.landing", "braked"),

@@ -13,6 +13,7 @@ mod cli_bad_input;
 mod cli_options;
 mod effects;
 mod escape;
+mod footprint;
 #[cfg(unix)]
 mod interrupt;
 mod map_command;

@@ -68,6 +68,8 @@ impl Case {
             Limit::Direction
             | Limit::KeepOut
             | Limit::RestSlope
+            | Limit::FootprintSlope
+            | Limit::Roughness
             | Limit::Touchdown
             | Limit::Bend
             | Limit::LineOfSight

@@ -21,6 +21,7 @@ mod command_steps;
 mod docs_commands;
 mod execute;
 mod fly;
+mod footprint;
 mod formats_table;
 #[cfg(feature = "gdal")]
 mod gdal_feature;

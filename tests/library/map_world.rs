@@ -10,7 +10,7 @@ use chta::{
     hop::HopTest,
     quantity::{Angle, AngleInterval, MapPoint, SlopeInterval, VertexId},
     reach::map::{Journey, NO_GROUND, Post, UNREACHED},
-    terrain::{Dem, FrictionRaster, GeoReference, KeepOut, OverlaidDem, Overlays, Profile, slice},
+    terrain::{Dem, FrictionRaster, GeoReference, KeepOut, OverlaidDem, Overlays, Profile, Surroundings, slice},
     world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
 };
 
@@ -44,7 +44,8 @@ impl World {
             zones.mark(&mut profile)?;
         }
         let geometry = PolygonalChain::from_profile(&profile, constant)?;
-        Ok(ConstrainedChain::new(geometry, &self.hopper, Gravity::new(self.gravity_m_s2).unwrap(), &self.surface)?)
+        let (dem, gravity) = (Surroundings::whole(self.dem.clone().into()), Gravity::new(self.gravity_m_s2).unwrap());
+        Ok(ConstrainedChain::on_dem(dem.into(), geometry, &self.hopper, gravity, &self.surface)?)
     }
 
     /// The ground for the fast form.
@@ -143,6 +144,10 @@ pub(crate) fn random_hopper(draw: &mut Draw) -> (Hopper, f64) {
     if draw.chance(0.25) {
         limits.takeoff_angle_min = Some(Angle::from_degrees(draw.uniform(0.0, 50.0)));
         limits.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(50.0, 90.0)));
+    }
+    if draw.chance(0.2) {
+        limits.footprint_m = Some(draw.log_uniform(0.1, 4.0));
+        limits.roughness_max_m = draw.chance(0.6).then(|| draw.log_uniform(0.01, 1.0));
     }
     (Hopper::new(limits).unwrap(), gravity)
 }

@@ -81,7 +81,7 @@ fn toml() -> impl Strategy<Value = String> {
             ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
             ("uncertainty", "heading_sigma_deg") => ground < 2,
             ("search", "risk_extra_hops_max") => false,
-            ("search", "points_per_segment") => points,
+            ("search", "points_per_segment") | ("hopper", "roughness_max_m") => points,
             ("search", "node_spacing_max_m") => !points,
             _ => true,
         };
@@ -109,6 +109,10 @@ fn sensible_hopper(keys: Vec<(&Key, Option<String>)>) -> Vec<(&Key, Option<Strin
     let fits = |name: &str| match name {
         "landing" | "touchdown_speed_m_s" => brakes,
         "isp_s" | "preparation_energy_j" => mass.is_some(),
+        "roughness_max_m" => of("footprint_m").is_some_and(|footprint_m| footprint_m > 0.0),
+        "takeoff_speed_step_m_s" => {
+            of("takeoff_speed_step_m_s").zip(of("takeoff_speed_max_m_s")).is_none_or(|(step, most)| step <= most)
+        }
         "propellant_max_kg" => isp.is_some() && mass.zip(of("propellant_max_kg")).is_some_and(|(mass, most)| most < mass),
         "rest_time_s" => !newer,
         _ => true,
@@ -199,6 +203,7 @@ fn every_key_reaches_the_document() {
             }
             ("uncertainty", "height_sigma_m") => with("uncertainty", "height_correlation_m", "3"),
             ("uncertainty", "height_correlation_m") => with("uncertainty", "height_sigma_m", "3"),
+            ("hopper", "roughness_max_m") => with("hopper", "footprint_m", "3"),
             ("search", "risk_extra_hops_max") => with("search", "risk", "traded"),
             _ => {}
         }

@@ -111,6 +111,7 @@ fn some_hopper(draw: &mut Draw, size_m: f64, g: f64) -> Hopper {
 #[test]
 fn random_chains_with_bends_have_the_verdicts_of_the_hop_test() {
     let draw = &mut Draw::seeded(401);
+    let stands = &mut Draw::seeded(402);
     let mut compared = Compared::default();
     for _ in 0..200 {
         let (g, size_m) = (draw.gravity(), draw.log_uniform(1e-1, 1e2));
@@ -122,7 +123,14 @@ fn random_chains_with_bends_have_the_verdicts_of_the_hop_test() {
         let bends = (1..segments).filter(|_| draw.chance(0.01)).map(VertexId).collect();
         let bent = straight.geometry().clone().with_bends(bends).unwrap();
         let chain = ConstrainedChain::new(bent, &Hopper::UNLIMITED, Gravity::new(g).unwrap(), &crate::support::NO_SURFACE).unwrap();
-        let hopper = some_hopper(draw, size_m, g);
+        let mut limits = *some_hopper(draw, size_m, g).limits();
+        if stands.chance(0.25) {
+            let (first_m, last_m) = chain.geometry().extent_m();
+            let footprint_m = (last_m - first_m) * stands.log_uniform(1e-4, 0.05);
+            limits.footprint_m = Some(footprint_m);
+            limits.roughness_max_m = Some(footprint_m * stands.log_uniform(1e-2, 1.0));
+        }
+        let hopper = Hopper::new(limits).unwrap();
         let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
         let inside = u32::try_from(draw.below(4)).unwrap();
         compare(&test, &stations(&chain, inside), 12, &mut compared);

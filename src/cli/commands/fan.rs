@@ -5,7 +5,7 @@ use chta::{
     quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer, figure::draw_rose},
-    scenario::{Extremes, Overlays, constant_gravity_warnings, dem_on_body},
+    scenario::{Extremes, Overlays, coarse_dem_warning, constant_gravity_warnings, dem_on_body},
     terrain::check_scale,
 };
 use nalgebra::Vector2;
@@ -59,6 +59,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let rays = fan(&request, &Progress::new(common.quiet)).map_err(|e| failed(&e))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
+    warnings.extend(coarse_dem_warning(&scenario.hopper, dem.georeference()));
     for ray in &rays {
         let heading = Angle::from_degrees(ray.heading_deg).radians();
         let end = from + Vector2::new(libm::sin(heading), libm::cos(heading)) * ray.length_m;

@@ -18,7 +18,9 @@ use chta::{
         figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
         paths_geojson, write_paths_csv,
     },
-    scenario::{Extremes, Overlays, Scenario, TrialGround, UncertaintyKeys, constant_gravity_warnings, dem_on_body},
+    scenario::{
+        Extremes, Overlays, Scenario, TrialGround, UncertaintyKeys, coarse_dem_warning, constant_gravity_warnings, dem_on_body,
+    },
     terrain::{Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, result_geotiff_bytes},
     uncertainty::{Mission, Policy, Simulation, SimulationError},
     world::FrictionCone,
@@ -173,6 +175,7 @@ fn prepared(args: &MapArgs) -> Result<(PreparedMap, Spot, Vec<Spot>), Failure> {
         .map_err(|message| failed(&std::io::Error::other(message)))?;
     let accepted = common.accept_map_scale || scenario.accept_map_scale;
     warnings.extend(overlays.without_effect_on_dem(dem.bounds()));
+    warnings.extend(coarse_dem_warning(&scenario.hopper, dem.georeference()));
     let scale = check_map_scale(&dem, projection.as_ref(), start.at, accepted, file).map_err(|e| failed(&e))?;
     warnings.extend(scale.warning());
     let ground = overlays.ground(dem, &scenario);

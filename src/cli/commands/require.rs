@@ -37,7 +37,7 @@ const fn capability(path: &'static str, more_is_more: bool, from: f64, to: f64) 
 }
 
 /// All keys for which a more capable value never removes a feasible hop.
-const CAPABILITIES: [Capability; 10] = [
+const CAPABILITIES: [Capability; 11] = [
     capability("hopper.takeoff_speed_max_m_s", true, 0.01, 100.0),
     capability("hopper.landing_speed_max_m_s", true, 0.01, 100.0),
     capability("hopper.clearance_m", false, 0.0, 100.0),
@@ -45,6 +45,7 @@ const CAPABILITIES: [Capability; 10] = [
     capability("hopper.takeoff_angle_max_deg", true, -90.0, 90.0),
     capability("hopper.apex_height_max_m", true, 0.001, 1000.0),
     capability("hopper.flight_time_max_s", true, 0.001, 1000.0),
+    capability("hopper.roughness_max_m", true, 0.0, 100.0),
     capability("surface.friction_coefficient", true, 0.01, 10.0),
     capability("surface.rest_slope_max_deg", true, 0.0, 90.0),
     capability("body.gravity_m_s2", false, 0.001, 30.0),

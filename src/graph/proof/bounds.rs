@@ -81,6 +81,8 @@ pub struct ProofSummary {
     pub pairs_tested: u64,
     /// Whether the best path uses points of the cells rather than nodes of the search.
     pub path_over_cells: bool,
+    /// Whether the hopper has a footprint: the proof uses it at vertices alone, so that it holds and may be weaker than it could be.
+    pub footprint_at_vertices_alone: bool,
 }
 
 /// The best path found, and a lower bound on the hops of every path.
@@ -274,6 +276,7 @@ impl<F: Faults> Closing<'_, '_, F> {
             rounds: self.rounds,
             pairs_tested: self.refinement.from_start.pairs_tested + self.refinement.to_goal.pairs_tested,
             path_over_cells: self.path_over_cells,
+            footprint_at_vertices_alone: self.refinement.prover.test().chain().footprint().is_some(),
         }
     }
 }

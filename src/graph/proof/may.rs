@@ -1,5 +1,7 @@
 //! The may-hop test: whether interval arithmetic can exclude every hop from one cell to another.
 
+use rayon::prelude::*;
+
 use super::{
     Faults,
     arcs::{Arcs, least_speed_slopes},
@@ -7,9 +9,9 @@ use super::{
 };
 use crate::{
     ballistics::limits::ClearanceProfile,
-    chain::{ContactRule, SegmentConstraints, Site},
+    chain::{ConstrainedChain, ContactRule, SegmentConstraints, Site},
     hop::HopTest,
-    quantity::{Interval, Rounding, SegmentId, SlopeInterval},
+    quantity::{Interval, Rounding, SegmentId, SlopeInterval, VertexId},
     world::{ClearanceRule, Contact, Direction, HopperLimits, Limit, SPEED_TOLERANCE},
 };
 
@@ -41,6 +43,9 @@ pub(super) struct Prover<'a, F: Faults> {
     test: &'a HopTest,
     /// By segment and direction.
     rules: Vec<[Contacts<F::Rounding>; 2]>,
+    /// By vertex: the limit by which the ground under the footprint refuses contacts that the segment before it rules, and the segment
+    /// after it; empty for a hopper without footprint. Inside segments the footprint is left out, which only weakens a proof.
+    footing: Vec<[Option<Limit>; 2]>,
     slopes: Vec<Interval<F::Rounding>>,
     mechanical: Interval<F::Rounding>,
     /// Relaxed; with the taper and the ramp it is below the hop test's everywhere.
@@ -78,6 +83,7 @@ impl<'a, F: Faults> Prover<'a, F> {
             slopes: slopes::<F>(chain.geometry()),
             speeds_squared: [fastest(0), fastest(1)],
             rules,
+            footing: footing(chain),
             mechanical: relaxed::<F>(test.mechanism_slopes()),
             clearance: relaxed_clearance::<F>(hopper.limits()),
             apex_height_max_m: hopper.limits().apex_height_max_m.map(|height_m| height_m * (1.0 + RELAXATION * F::SLACK)),
@@ -144,7 +150,14 @@ impl<'a, F: Faults> Prover<'a, F> {
             }
         };
         let both = self.rules.get(segment.index()).ok_or(Limit::Direction)?;
-        both[direction as usize][contact as usize]
+        let rule = both[direction as usize][contact as usize]?;
+        if let Site::Vertex(vertex) = site
+            && let Some(refusals) = self.footing.get(vertex.index())
+            && let Some(limit) = refusals[usize::from(segment.index() == vertex.index())]
+        {
+            return Err(limit);
+        }
+        Ok(rule)
     }
 
     /// The slopes of all lines of sight from one cell to the other, along the direction of travel.
@@ -382,6 +395,19 @@ fn relaxed_clearance<F: Faults>(limits: &HopperLimits) -> ClearanceProfile {
 fn quotient_down<R: Rounding>(dividend: f64, distance: f64) -> f64 {
     let divisor = if dividend >= 0.0 { R::up(distance) } else { R::down(distance) };
     if divisor > 0.0 { R::down(dividend / divisor) } else { f64::NEG_INFINITY }
+}
+
+/// The limits by which the ground under the footprint refuses contacts at every vertex, by the segment that rules them.
+fn footing(chain: &ConstrainedChain) -> Vec<[Option<Limit>; 2]> {
+    if chain.footprint().is_none() {
+        return Vec::new();
+    }
+    let of_vertex = |index: usize| {
+        let station = chain.geometry().vertex_station(VertexId(index));
+        let refusal = |segment: usize| chain.footprint_refusal(&station, SegmentId(segment)).map(|refusal| refusal.limit());
+        [index.checked_sub(1).and_then(refusal), refusal(index)]
+    };
+    (0..=chain.geometry().segment_count()).into_par_iter().map(of_vertex).collect()
 }
 
 /// The relaxed rules of a segment for one direction.

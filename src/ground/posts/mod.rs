@@ -5,6 +5,7 @@ mod error;
 mod exact;
 mod facet_table;
 mod facets;
+mod footings;
 mod lattice;
 mod offsets;
 mod overlays;
@@ -14,6 +15,7 @@ mod refusal;
 mod samples;
 
 pub use error::MapError;
+pub(in crate::ground) use footings::Standing;
 pub use lattice::{NodeLattice, Post};
 pub(crate) use offsets::Offset;
 #[cfg(test)]

@@ -8,6 +8,7 @@ use super::{
     MapError, Post, exact,
     facet_table::{FacetTable, Footing},
     facets::Facets,
+    footings::{FootingTable, Standing},
     lattice::NodeLattice,
     offsets::{Offset, OffsetTable},
     overlays::OverlayTable,
@@ -38,6 +39,8 @@ pub struct PostHops {
     pub(super) table: OffsetTable,
     pub(super) facets: FacetTable,
     pub(super) overlays: Option<OverlayTable>,
+    /// The ground under the footprint of every node, if the hopper has one.
+    pub(super) footings: Option<FootingTable>,
     grip: Option<QuickGrip>,
     /// For each block, how many of the nearest offsets are within reach of its nodes.
     pub(super) within_reach: Vec<usize>,
@@ -75,11 +78,18 @@ impl PostHops {
     pub fn new(ground: DemGround, stride: usize) -> Result<Self, MapError> {
         let dem = ground.terrain().dem();
         let lattice = NodeLattice::new(dem, stride);
+        if let Some(found) = ground.footprint_without_room() {
+            let expected = "one that has room on the DEM: check its unit, or take a larger DEM";
+            return Err(MapError::Request { what: "hopper.footprint_m", found, expected });
+        }
         exact::probe(&ground)?;
         let scale = HeightScale::of(dem);
         let heights = Heights::of(dem, &scale);
         let overlays = OverlayTable::new(ground.terrain(), ground.constant_friction())?;
-        let facets = FacetTable::new(heights, &|post| rest_tangent(&ground, overlays.as_ref(), post));
+        let footings = FootingTable::new(&ground, lattice, overlays.as_ref());
+        // With a footprint, the plane fitted over it is held against the rest slope, not the facets.
+        let rest = |post| rest_tangent(&ground, overlays.as_ref(), post).filter(|_| footings.is_none());
+        let facets = FacetTable::new(heights, &rest);
         let grip = match ground.surface().grip {
             Some(Grip::Friction(cone)) => Some(QuickGrip::friction(cone)),
             Some(Grip::FromSlope { takeoff, landing }) => Some(QuickGrip::from_slope(takeoff, landing)),
@@ -92,7 +102,7 @@ impl PostHops {
             [bounds.min.x, bounds.min.y, bounds.max.x, bounds.max.y, low_m, high_m].map(f64::abs).into_iter().fold(0.0, f64::max);
         let coarse = f64::EPSILON * largest_m > FINE * step_m;
         let table = OffsetTable::default();
-        let mut hops = Self { scale, lattice, table, facets, overlays, grip, within_reach: Vec::new(), coarse, ground };
+        let mut hops = Self { scale, lattice, table, facets, overlays, footings, grip, within_reach: Vec::new(), coarse, ground };
         hops.set_reach()?;
         Ok(hops)
     }
@@ -148,7 +158,31 @@ impl PostHops {
 
     /// Whether a hop in some direction may begin or end at a node.
     pub(crate) fn usable(&self, node: Post) -> bool {
-        self.facets.usable(self.lattice.post_index(node))
+        self.facets.usable(self.lattice.post_index(node)) && !matches!(self.standing(node), Standing::Refused | Standing::TooSteep)
+    }
+
+    /// What the ground under the footprint at a node allows; everything without a footprint.
+    #[inline]
+    pub(super) fn standing(&self, node: Post) -> Standing {
+        self.footings.as_ref().map_or(Standing::Sound, |footings| footings.of(self.lattice.index(node)))
+    }
+
+    /// Whether the ground under the footprint at both ends of an offset allows contacts, and whether that is certain; `None` if it does
+    /// not. Where overlays change on the way, the slope is left to the exact code, which knows the friction on either side.
+    #[inline]
+    fn stands(&self, from: Post, offset: &Offset, overlay: Overlay) -> Option<bool> {
+        let Some(footings) = &self.footings else { return Some(true) };
+        let to = self.moved(from, offset.rows, offset.cols)?;
+        let mut sure = true;
+        for node in [from, to] {
+            match footings.of(self.lattice.index(node)) {
+                Standing::Sound => {}
+                Standing::Refused => return None,
+                Standing::TooSteep if overlay != Overlay::Mixed => return None,
+                Standing::TooSteep | Standing::Close => sure = false,
+            }
+        }
+        Some(sure)
     }
 
     /// The number of offsets from one node to another: `0..offset_count()` are their numbers, nearest first.
@@ -217,7 +251,9 @@ impl PostHops {
         if overlay == Overlay::Kept {
             return Verdict::No;
         }
+        let Some(stands) = self.stands(from, offset, overlay) else { return Verdict::No };
         let Some((slopes, mut sure)) = self.cones(takeoff, landing, offset, overlay) else { return Verdict::No };
+        sure &= stands;
         sure &= overlay != Overlay::Mixed && !self.coarse;
         let limits = self.ground.hopper().limits();
         let sight = LineOfSight::new(offset.run_m, rise_m);

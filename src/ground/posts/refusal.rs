@@ -2,8 +2,9 @@
 
 use std::fmt;
 
-use super::{Post, PostHops, overlays::OverlayTable};
+use super::{Post, PostHops, footings::Standing, overlays::OverlayTable};
 use crate::{
+    chain::FootprintRefusal,
     ground::DemGround,
     quantity::Angle,
     world::{FrictionCone, RestSlope},
@@ -23,6 +24,8 @@ pub enum PostRefusal {
         /// The steepest slope to rest on there.
         rest_slope: Angle,
     },
+    /// The ground under the hopper's footprint is too steep, too rough or not known.
+    Footprint(FootprintRefusal),
 }
 
 impl fmt::Display for PostRefusal {
@@ -30,6 +33,7 @@ impl fmt::Display for PostRefusal {
         match self {
             Self::NoGround => write!(formatter, "has no elevation around it"),
             Self::KeptOut => write!(formatter, "lies in a keep-out zone"),
+            Self::Footprint(refusal) => write!(formatter, "is refused: {refusal}"),
             Self::TooSteep { slope, rest_slope } => {
                 let (slope_deg, rest_deg) = (slope.degrees(), rest_slope.degrees());
                 write!(
@@ -64,13 +68,18 @@ impl PostHops {
             return None;
         }
         let index = self.lattice.post_index(node);
+        let rest = rest_tangent(&self.ground, self.overlays.as_ref(), index);
+        if matches!(self.standing(node), Standing::Refused | Standing::TooSteep)
+            && let Some(refusal) = self.position(node).and_then(|position| self.ground.footprint_against(&position, rest))
+        {
+            return Some(PostRefusal::Footprint(refusal));
+        }
         let heights = self.heights();
         let mildest = (0..6)
             .filter(|&facet| self.facets.has(index, facet))
             .map(|facet| heights.gradient(index, facet))
             .map(|(east, north)| libm::hypot(east, north))
             .fold(f64::INFINITY, f64::min);
-        let rest = rest_tangent(&self.ground, self.overlays.as_ref(), index);
         Some(match rest.filter(|_| mildest.is_finite()) {
             Some(rest) => PostRefusal::TooSteep { slope: Angle::from_slope(mildest), rest_slope: Angle::from_slope(rest) },
             None => PostRefusal::NoGround,

@@ -2,6 +2,8 @@
 
 use std::{ops::Range, sync::Arc};
 
+use rayon::prelude::*;
+
 use super::{lanes::Departure, near::NearGround, terrain::Approach};
 use crate::{
     ballistics::LineOfSight,
@@ -224,8 +226,11 @@ impl LandingRules {
             let steepest = rules.seen_back.iter().zip(&rules.near).map(|(kink, near)| kink.max(near.steepest_back()));
             rules.steepest_back = steepest.collect();
         }
-        for station in stations {
-            let allowed = test.allowed(station, Contact::Landing, direction);
+        let allowed = |station| test.allowed(station, Contact::Landing, direction);
+        // Fitting the ground under a footprint takes microseconds, reading the rule of a segment nanoseconds.
+        let fitted: Option<Vec<_>> = test.chain().footprint().map(|_| stations.par_iter().map(allowed).collect());
+        for (index, station) in stations.iter().enumerate() {
+            let allowed = fitted.as_ref().map_or_else(|| allowed(station), |fitted| fitted[index]);
             let speed = allowed.map_or(0.0, |rule| tolerant_speed_m_s(rule.speed_max_m_s()));
             rules.speed_squared.push(speed * speed);
             rules.cone_lower.push(allowed.map_or(0.0, |rule| rule.slopes().lower));

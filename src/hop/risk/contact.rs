@@ -52,7 +52,7 @@ pub(super) fn contact_success(
             at
         };
         let near = scatter.tolerance_m.is_none_or(|tolerance_m| scatter.shift_m.abs() <= tolerance_m);
-        let rule = chain.ruling(&at, scatter.contact, direction).and_then(|rule| rule.allowed(scatter.contact, direction));
+        let rule = chain.allowed(&at, scatter.contact, direction);
         return kept(rule.filter(|_| near), 0.0);
     }
     let tolerance_m = scatter.tolerance_m.unwrap_or(f64::INFINITY);
@@ -68,7 +68,11 @@ pub(super) fn contact_success(
         if to > from {
             let middle_m = 0.5 * (from + to) * scatter.place_m;
             let rule = chain.segments()[segment].allowed(scatter.contact, direction);
-            success += (normal(to) - normal(from)) * kept(rule, direction.sign() * middle_m);
+            let there = match test.footing_samples() {
+                None => normal(to) - normal(from),
+                Some(samples) => samples.probability((from, to), mean_m, scatter.place_m),
+            };
+            success += there * kept(rule, direction.sign() * middle_m);
         }
     }
     success

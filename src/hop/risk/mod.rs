@@ -12,6 +12,7 @@
 
 mod contact;
 mod flight;
+mod footing;
 
 use super::HopTest;
 use crate::{
@@ -22,6 +23,7 @@ use crate::{
 };
 use contact::{ContactScatter, contact_success};
 use flight::{Flight, Ground, cells};
+pub(super) use footing::FootingSamples;
 
 /// Standard deviations of the quantities with which a hop is flown.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

@@ -4,7 +4,11 @@ use std::{f64::consts::FRAC_PI_2, ops::ControlFlow};
 
 use nalgebra::{Vector2, Vector3};
 
-use super::{Flight, Measure, StatedValue, ViolatedLimit, Violation, flight::TooLow};
+use super::{
+    Flight, Measure, StatedValue, ViolatedLimit, Violation,
+    flight::TooLow,
+    footprint::{Fitted, Footing, RAY_TOLERANCE, fitted},
+};
 use crate::{
     chain::{ContactRule, GroundRefusal},
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface},
@@ -199,8 +203,10 @@ impl<S: Surface> Checker<'_, S> {
     fn ground(&mut self, stated: &ContactPoint, meeting: Meeting) {
         let x_m = stated.along_m;
         let mut known = false;
+        let footing = self.footing(meeting.contact);
         for facet in self.ruling(meeting.contact) {
             let before = self.violations.len();
+            self.footprint(footing, facet.rest_slope, x_m);
             self.facet(&facet, meeting, x_m);
             known = true;
             // A violation on one facet is not reported again for its neighbour.
@@ -210,6 +216,38 @@ impl<S: Surface> Checker<'_, S> {
         }
         if !known {
             self.note(ViolatedLimit::Limit(Limit::Direction), None, x_m);
+        }
+    }
+
+    /// What is found under the footprint of a contact.
+    fn footing(&self, contact: Contact) -> Footing {
+        let footprint_m = self.surface.hopper().limits().footprint_m.filter(|footprint_m| *footprint_m > 0.0);
+        let (Some(footprint_m), Some(own)) = (footprint_m, self.own(contact)) else { return Footing::NotAsked };
+        fitted(self.surface, &own, footprint_m).map_or(Footing::Unknown, Footing::Fitted)
+    }
+
+    /// The plane fitted over the footprint, against the rest slope of the facet under the contact and the roughness.
+    fn footprint(&mut self, footing: Footing, rest_slope: Option<f64>, x_m: f64) {
+        let limits = *self.surface.hopper().limits();
+        let footprint_m = limits.footprint_m.unwrap_or(f64::INFINITY);
+        let Fitted { tilt_rad, residual_m } = match footing {
+            Footing::NotAsked => return,
+            Footing::Unknown => return self.note(ViolatedLimit::Limit(Limit::FootprintSlope), None, x_m),
+            Footing::Fitted(fit) => fit,
+        };
+        let max_rad = rest_slope.map_or(FRAC_PI_2, libm::atan);
+        let height_rounding_m = self.surface.height_rounding_m();
+        let tolerance_rad = 2.0 * ANGLE_TOLERANCE_RAD
+            + self.surface.slope_rounding()
+            + 2.0 * (RAY_TOLERANCE * residual_m + 4.0 * height_rounding_m) / footprint_m;
+        if tilt_rad > max_rad + tolerance_rad {
+            self.note_limit(Limit::FootprintSlope, tilt_rad.to_degrees(), max_rad.to_degrees(), "deg", x_m);
+        }
+        if let Some(max_m) = limits.roughness_max_m {
+            let tolerance_m = RAY_TOLERANCE * residual_m + 2.0 * ANGLE_TOLERANCE_RAD * footprint_m + 4.0 * height_rounding_m;
+            if residual_m > max_m + tolerance_m {
+                self.note_limit(Limit::Roughness, residual_m, max_m, "m", x_m);
+            }
         }
     }
 
@@ -516,6 +554,8 @@ fn refusal_measure(refusal: GroundRefusal) -> Option<Measure> {
         | GroundRefusal::NoGround
         | GroundRefusal::KeepOut
         | GroundRefusal::SpeedZero
-        | GroundRefusal::NothingAhead { .. } => None,
+        | GroundRefusal::NothingAhead { .. }
+        // The checker fits the ground under a footprint itself.
+        | GroundRefusal::Footprint(_) => None,
     }
 }

@@ -7,6 +7,7 @@
 
 mod checker;
 mod flight;
+mod footprint;
 mod stores;
 mod touchdown;
 mod violation;

@@ -77,6 +77,14 @@ pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m
     parts.extend(steps.takeoff_angle.map(|step| format!("take-off angle in steps of {} deg", short(step.degrees()))));
     parts.extend(steps.takeoff_speed_m_s.map(|step| format!("take-off speed in steps of {} m/s", short(step))));
     parts.extend(steps.heading.map(|step| format!("heading in steps of {} deg", short(step.degrees()))));
+    parts.extend(
+        hopper
+            .limits()
+            .footprint_m
+            .filter(|footprint| *footprint > 0.0)
+            .map(|footprint| format!("footprint {} m", short(footprint))),
+    );
+    parts.extend(hopper.limits().roughness_max_m.map(|roughness| format!("roughness ≤ {} m", short(roughness))));
     if !ground.is_empty() {
         parts.push(ground.to_owned());
     }

@@ -1,7 +1,7 @@
 //! Stretches of ground by the contacts that they allow.
 
 use crate::{
-    chain::{ConstrainedChain, GroundRefusal, SegmentConstraints},
+    chain::{ConstrainedChain, FootprintRefusal, GroundRefusal, SegmentConstraints, Station},
     quantity::{ChainPoint, SegmentId},
     world::{Contact, Direction},
 };
@@ -13,6 +13,10 @@ pub enum Closure {
     KeepOut,
     /// Too steep to rest on.
     RestSlope,
+    /// The plane fitted over the footprint is too steep, or the ground under the footprint is not known.
+    FootprintSlope,
+    /// The ground under the footprint is too rough.
+    Roughness,
     /// The cones contain no direction of travel: the plane misses the friction cone, or the cone lies beyond the vertical.
     Cones,
     /// A speed limit of zero.
@@ -23,13 +27,16 @@ pub enum Closure {
 
 impl Closure {
     /// All closures, in the order of the legend.
-    pub const ALL: [Self; 5] = [Self::KeepOut, Self::RestSlope, Self::Cones, Self::SpeedZero, Self::NoLimits];
+    pub const ALL: [Self; 7] =
+        [Self::KeepOut, Self::RestSlope, Self::FootprintSlope, Self::Roughness, Self::Cones, Self::SpeedZero, Self::NoLimits];
 
     /// The legend text.
     pub const fn text(self) -> &'static str {
         match self {
             Self::KeepOut => "no contact: keep-out",
             Self::RestSlope => "no contact: rest-slope",
+            Self::FootprintSlope => "no contact: footprint-slope",
+            Self::Roughness => "no contact: roughness",
             Self::Cones => "no contact: cones (cross-slope or direction)",
             Self::SpeedZero => "no contact: speed limit 0",
             Self::NoLimits => "no contact: no limits stated (direction)",
@@ -40,6 +47,8 @@ impl Closure {
         match refusal {
             GroundRefusal::KeepOut => Self::KeepOut,
             GroundRefusal::TooSteep { .. } => Self::RestSlope,
+            GroundRefusal::Footprint(FootprintRefusal::TooRough { .. }) => Self::Roughness,
+            GroundRefusal::Footprint(_) => Self::FootprintSlope,
             GroundRefusal::CrossSlope { .. } | GroundRefusal::NothingAhead { .. } => Self::Cones,
             // A landing alone: such ground allows take-offs, or is closed for their reason.
             GroundRefusal::TouchdownSlope { .. } | GroundRefusal::TouchdownCone { .. } | GroundRefusal::TouchdownSpeed { .. } => {
@@ -75,6 +84,26 @@ pub struct GroundSpan {
     pub allows: GroundUse,
 }
 
+/// The use of the ground around a station that a segment rules: that of the segment, unless the hopper's footprint closes it.
+fn use_at(chain: &ConstrainedChain, station: &Station, id: SegmentId, of_segment: GroundUse) -> GroundUse {
+    if of_segment == GroundUse::Closed(Closure::KeepOut) || of_segment == GroundUse::Closed(Closure::NoLimits) {
+        return of_segment;
+    }
+    let refusal = chain.footprint_refusal(station, id).map(GroundRefusal::Footprint);
+    refusal.map_or(of_segment, |refusal| GroundUse::Closed(Closure::of(&refusal)))
+}
+
+/// The x that divide a stretch so finely that the use of each part is that of its middle, m: with a footprint, quarters of it, but no
+/// more than a picture shows.
+fn divided(chain: &ConstrainedChain, (from, to): (f64, f64), of_m: f64) -> Vec<f64> {
+    /// More parts than this over the whole picture cannot be told apart in it.
+    const PARTS: f64 = 2000.0;
+    let Some(footprint) = chain.footprint() else { return vec![from, to] };
+    let step_m = (0.25 * footprint.diameter_m).max(of_m / PARTS);
+    let inner = (1..).map(|i| from + f64::from(i) * step_m).take_while(|x_m| *x_m < to);
+    std::iter::once(from).chain(inner).chain([to]).collect()
+}
+
 /// The use of one segment. The reason of a closed one is that for the journey's direction, unless the chain states no limits for
 /// that direction.
 fn use_of(segment: &SegmentConstraints, towards: Direction) -> GroundUse {
@@ -100,10 +129,14 @@ pub(super) fn spans(chain: &ConstrainedChain, (from_x_m, to_x_m): (f64, f64), to
     for (i, ends) in vertices.windows(2).enumerate() {
         let (from, to) = (ends[0].x_m.max(from_x_m), ends[1].x_m.min(to_x_m));
         let Some(segment) = chain.segments().get(SegmentId(i).index()).filter(|_| from < to) else { continue };
-        let allows = use_of(segment, towards);
-        match found.last_mut() {
-            Some(last) if last.allows == allows => last.to_x_m = to,
-            _ => found.push(GroundSpan { from_x_m: from, to_x_m: to, allows }),
+        let of_segment = use_of(segment, towards);
+        for part in divided(chain, (from, to), to_x_m - from_x_m).windows(2) {
+            let middle = chain.geometry().station_inside(SegmentId(i), 0.5 * (part[0] + part[1]));
+            let allows = use_at(chain, &middle, SegmentId(i), of_segment);
+            match found.last_mut() {
+                Some(last) if last.allows == allows => last.to_x_m = part[1],
+                _ => found.push(GroundSpan { from_x_m: part[0], to_x_m: part[1], allows }),
+            }
         }
     }
     found

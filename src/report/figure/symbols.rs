@@ -111,6 +111,8 @@ const fn hatch(closure: Closure) -> Hatch {
     match closure {
         Closure::KeepOut => Hatch { colour: BLACK, leans: &[1.0, -1.0], step_mm: 1.8, length_mm: 1.8 },
         Closure::RestSlope => Hatch { colour: VERMILION, leans: &[-1.0], step_mm: 1.1, length_mm: 2.0 },
+        Closure::FootprintSlope => Hatch { colour: ORANGE, leans: &[-1.0], step_mm: 1.1, length_mm: 2.0 },
+        Closure::Roughness => Hatch { colour: ORANGE, leans: &[1.0, -1.0], step_mm: 1.8, length_mm: 1.8 },
         Closure::Cones => Hatch { colour: PURPLE, leans: &[1.0], step_mm: 1.1, length_mm: 2.0 },
         Closure::SpeedZero => Hatch { colour: BLUE, leans: &[0.0], step_mm: 1.1, length_mm: 1.6 },
         Closure::NoLimits => Hatch { colour: SURFACE, leans: &[0.0], step_mm: 2.4, length_mm: 1.0 },

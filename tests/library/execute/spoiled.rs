@@ -272,8 +272,19 @@ fn every_spoiled_hop_is_refused_under_its_limits_name() {
     println!("landing points {landing_points}, speeds {speeds}, reaches {reaches}, too fine to tell {too_fine}");
     for limit in Limit::ALL {
         // No finite speed lets an arc come down to its line of sight, so that limit never sets an end. These chains have no bends;
-        // for those see tests/library/bends.rs. Nor do these hoppers brake: see tests/library/braked.rs.
-        let least = if matches!(limit, Limit::LineOfSight | Limit::Bend | Limit::Touchdown) { 0 } else { 300 };
+        // for those see tests/library/bends.rs. Nor do these hoppers brake, have a footprint, or take their commands in steps: see
+        // braked.rs, footprint.rs and command_steps.rs there.
+        let elsewhere = [
+            Limit::LineOfSight,
+            Limit::Bend,
+            Limit::Touchdown,
+            Limit::FootprintSlope,
+            Limit::Roughness,
+            Limit::TakeoffAngleStep,
+            Limit::TakeoffSpeedStep,
+            Limit::HeadingStep,
+        ];
+        let least = if elsewhere.contains(&limit) { 0 } else { 300 };
         assert!(tally.by_limit[limit.index()] >= least, "{limit} was tested only {} times", tally.by_limit[limit.index()]);
     }
     assert!(landing_points >= 20_000 && speeds >= 20_000 && reaches >= 5000, "{landing_points}, {speeds}, {reaches}");

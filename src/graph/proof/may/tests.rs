@@ -136,8 +136,7 @@ fn refusals(chains: usize) -> (usize, usize) {
         let test = HopTest::new(chain.with_hopper(&hopper, chain.gravity()).unwrap());
         let prover = Prover::<Sound>::new(&test);
         let geometry = chain.geometry();
-        let (first, last) =
-            (geometry.vertex_station(crate::quantity::VertexId(0)), geometry.station(geometry.extent_m().1).unwrap());
+        let (first, last) = (geometry.vertex_station(VertexId(0)), geometry.station(geometry.extent_m().1).unwrap());
         let whole = partition::<Sound>(geometry, prover.slopes(), [&first, &last]);
         // Stretches of all widths, some of them single points.
         let cells: Vec<_> = whole

@@ -1,0 +1,60 @@
+//! The footprint of a scenario's hopper on the terrain that it is sliced from.
+
+use std::{path::PathBuf, sync::Arc};
+
+use super::{DemReading, PipelineError};
+use crate::{
+    quantity::format_number,
+    terrain::{GeoReference, Profile, Surroundings},
+    world::Hopper,
+};
+
+/// The footprint of a hopper, m; `None` if it has none.
+pub(super) fn footprint_m(hopper: &Hopper) -> Option<f64> {
+    hopper.limits().footprint_m.filter(|footprint_m| *footprint_m > 0.0)
+}
+
+/// A warning where the posts of a DEM lie farther apart than the footprint is wide.
+pub fn coarse_dem_warning(hopper: &Hopper, map: &GeoReference) -> Option<String> {
+    let footprint_m = footprint_m(hopper)?;
+    let spacing_m = map.dx_m().max(map.dy_m());
+    (spacing_m > footprint_m).then(|| {
+        format!(
+            "the posts of the DEM lie {} m apart, farther than hopper.footprint_m of {} m: the slope at the scale of the vehicle is not \
+             known, and the facets of the DEM stand for it; take a finer DEM",
+            format_number(spacing_m),
+            format_number(footprint_m)
+        )
+    })
+}
+
+/// A DEM that was sliced, of which the posts around the slice are read when a hopper has a footprint.
+#[derive(Clone, Debug)]
+pub(super) struct SlicedDem {
+    file: PathBuf,
+    reading: DemReading,
+    /// What was read for the first hopper, and its footprint, m.
+    read: Option<(f64, Arc<Surroundings>)>,
+}
+
+impl SlicedDem {
+    /// The DEM of a file, with the posts around its slice for a hopper.
+    pub(super) fn of(file: PathBuf, reading: DemReading, legs: &[Profile], hopper: &Hopper) -> Result<Self, PipelineError> {
+        let mut sliced = Self { file, reading, read: None };
+        sliced.read = footprint_m(hopper).zip(sliced.around(legs, hopper)?);
+        Ok(sliced)
+    }
+
+    /// The posts around the slice for a hopper; `None` if it has no footprint.
+    pub(super) fn around(&self, legs: &[Profile], hopper: &Hopper) -> Result<Option<Arc<Surroundings>>, PipelineError> {
+        let Some(footprint_m) = footprint_m(hopper) else { return Ok(None) };
+        if let Some((_, read)) = self.read.as_ref().filter(|(of_m, _)| footprint_m <= *of_m) {
+            return Ok(Some(Arc::clone(read)));
+        }
+        let dem = self.reading.options.open(&self.file)?;
+        // A footprint beyond the DEM is refused as such, not read.
+        let bounds = dem.lattice().bounds();
+        let distance_m = footprint_m.min((bounds.max - bounds.min).norm());
+        Ok(Some(Arc::new(Surroundings::along(dem.as_ref(), legs, distance_m)?)))
+    }
+}
