@@ -4,7 +4,7 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use super::propellant_record::{STORES_COLUMNS, StoresRecord};
+use super::propellant_record::{StoresRecord, stores_columns};
 use crate::{
     path::{Hop, HopPath, Totals},
     quantity::MapPoint,
@@ -46,12 +46,12 @@ pub struct HopRecord {
     pub speed_margin_m_s: f64,
     /// Which limits set the least and the greatest feasible angle, `lower/upper`.
     pub binding: String,
-    /// On a map: direction of flight, clockwise from grid north.
-    #[serde(flatten, skip_serializing_if = "Option::is_none")]
-    pub map: Option<MapRecord>,
     /// Delta-v, propellant and mass.
     #[serde(flatten)]
     pub stores: StoresRecord,
+    /// On a map: direction of flight, clockwise from grid north.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub map: Option<MapRecord>,
 }
 
 /// The columns of a hop on a map.
@@ -243,9 +243,10 @@ pub enum MapKnowledge {
 /// An error of the writer.
 pub fn write_path_csv(rows: &[HopRecord], known: MapKnowledge, out: impl Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(columns(known))?;
+    let stores = stores_columns(rows);
+    writer.write_record(columns(known, stores))?;
     for row in rows {
-        writer.write_record(row.fields(known))?;
+        writer.write_record(row.fields(known, stores))?;
     }
     writer.flush()
 }
@@ -260,26 +261,28 @@ pub fn write_paths_csv<'a>(
     out: impl Write,
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record([&["goal"], &columns(known)[..]].concat())?;
+    let paths: Vec<&[HopRecord]> = paths.into_iter().collect();
+    let stores = stores_columns(paths.iter().copied().flatten());
+    writer.write_record([&["goal"], &columns(known, stores)[..]].concat())?;
     for (index, rows) in paths.into_iter().enumerate() {
         let goal = (index + 1).to_string();
         for row in rows {
-            writer.write_record(std::iter::once(goal.clone()).chain(row.fields(known)))?;
+            writer.write_record(std::iter::once(goal.clone()).chain(row.fields(known, stores)))?;
         }
     }
     writer.flush()
 }
 
-/// The columns of a path.
-fn columns(known: MapKnowledge) -> Vec<&'static str> {
+/// The columns of a path; those of propellant only if some hop states it.
+fn columns(known: MapKnowledge, stores: &[&'static str]) -> Vec<&'static str> {
     let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
     let lon_lat: &[&str] = if known >= MapKnowledge::Projection { &LON_LAT_COLUMNS } else { &[] };
-    [&COLUMNS[..], map, lon_lat, &STORES_COLUMNS].concat()
+    [&COLUMNS[..], stores, map, lon_lat].concat()
 }
 
 impl HopRecord {
     /// The fields of a row of path.csv.
-    fn fields(&self, known: MapKnowledge) -> Vec<String> {
+    fn fields(&self, known: MapKnowledge, stores: &[&str]) -> Vec<String> {
         let numbers = [
             self.takeoff_x_m,
             self.takeoff_z_m,
@@ -298,6 +301,7 @@ impl HopRecord {
         let mut fields = vec![self.hop.to_string(), self.direction.to_owned()];
         fields.extend(numbers.iter().map(ToString::to_string));
         fields.push(self.binding.clone());
+        fields.extend(self.stores.fields().into_iter().take(stores.len()));
         if known >= MapKnowledge::Metres {
             let numbers = self
                 .map
@@ -311,7 +315,6 @@ impl HopRecord {
                 .map(|place| [place.takeoff_lon_deg, place.takeoff_lat_deg, place.landing_lon_deg, place.landing_lat_deg]);
             fields.extend(texts(numbers));
         }
-        fields.extend(self.stores.fields());
         fields
     }
 }
