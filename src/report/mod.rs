@@ -32,7 +32,7 @@ pub use geojson::{path_geojson, paths_geojson, slice_geojson};
 pub use hop_answer::{BestRecord, BindingRecord, GreatestReachRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
 pub use hop_margins::HopMarginsRecord;
 pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord};
-pub use path_record::{HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv};
+pub use path_record::{AimRecord, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, reliable_paths_text};

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{
     hop_margins::HopMarginsRecord,
-    propellant_record::{STORES_COLUMNS, StoresRecord},
+    propellant_record::{StoresRecord, stores_columns},
 };
 use crate::{
     path::{Hop, HopPath, Totals},
@@ -54,9 +54,21 @@ pub struct HopRecord {
     pub map: Option<MapRecord>,
     /// By how much it keeps each limit.
     pub margins: HopMarginsRecord,
+    /// For a machine that takes its commands in steps: what the command was aimed at.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub aim: Option<AimRecord>,
     /// Delta-v, propellant and mass.
     #[serde(flatten)]
     pub stores: StoresRecord,
+}
+
+/// The point that a command in steps was aimed at.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AimRecord {
+    /// The planned landing, x along the chain.
+    pub aim_x_m: f64,
+    /// By how much the landing lies beyond it along the profile; negative short of it.
+    pub landing_miss_m: f64,
 }
 
 /// The columns of a hop on a map.
@@ -190,6 +202,7 @@ impl HopRecord {
             }),
             margins: HopMarginsRecord(hop.margins),
             stores: hop.into(),
+            aim: hop.aim.map(|aim| AimRecord { aim_x_m: aim.point.along_m, landing_miss_m: unsigned_zero(aim.miss_m) }),
         }
     }
 }
@@ -262,9 +275,10 @@ pub enum MapKnowledge {
 /// An error of the writer.
 pub fn write_path_csv(rows: &[HopRecord], known: MapKnowledge, out: impl Write) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(columns(known))?;
+    let extra = ExtraColumns::of(rows.iter());
+    writer.write_record(columns(known, extra))?;
     for row in rows {
-        writer.write_record(row.fields(known))?;
+        writer.write_record(row.fields(known, extra))?;
     }
     writer.flush()
 }
@@ -279,27 +293,48 @@ pub fn write_paths_csv<'a>(
     out: impl Write,
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    writer.write_record(std::iter::once("goal".to_owned()).chain(columns(known)))?;
+    let paths: Vec<&[HopRecord]> = paths.into_iter().collect();
+    let extra = ExtraColumns::of(paths.iter().copied().flatten());
+    writer.write_record(std::iter::once("goal".to_owned()).chain(columns(known, extra)))?;
     for (index, rows) in paths.into_iter().enumerate() {
         let goal = (index + 1).to_string();
         for row in rows {
-            writer.write_record(std::iter::once(goal.clone()).chain(row.fields(known)))?;
+            writer.write_record(std::iter::once(goal.clone()).chain(row.fields(known, extra)))?;
         }
     }
     writer.flush()
 }
 
+/// The additional columns of commands in steps.
+const AIM_COLUMNS: [&str; 2] = ["aim_x_m", "landing_miss_m"];
+
+/// The columns that only some paths have.
+#[derive(Clone, Copy)]
+struct ExtraColumns {
+    /// Of propellant, if some hop states it.
+    stores: &'static [&'static str],
+    /// Of commands in steps, if some hop has one.
+    aims: bool,
+}
+
+impl ExtraColumns {
+    fn of<'a>(rows: impl Iterator<Item = &'a HopRecord> + Clone) -> Self {
+        Self { stores: stores_columns(rows.clone()), aims: rows.clone().any(|row| row.aim.is_some()) }
+    }
+}
+
 /// The columns of a path.
-fn columns(known: MapKnowledge) -> Vec<String> {
+fn columns(known: MapKnowledge, extra: ExtraColumns) -> Vec<String> {
     let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
     let projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
-    let own = COLUMNS.iter().chain(map).chain(projection).map(|&column| column.to_owned());
-    own.chain(HopMarginsRecord::columns()).chain(STORES_COLUMNS.map(str::to_owned)).collect()
+    let aims: &[&str] = if extra.aims { &AIM_COLUMNS } else { &[] };
+    let own = COLUMNS.iter().chain(map).chain(projection).chain(extra.stores).chain(aims).map(|&column| column.to_owned());
+    own.chain(HopMarginsRecord::columns()).collect()
 }
 
 impl HopRecord {
     /// The fields of a row of path.csv.
-    fn fields(&self, known: MapKnowledge) -> Vec<String> {
+    fn fields(&self, known: MapKnowledge, extra: ExtraColumns) -> Vec<String> {
         let numbers = [
             self.takeoff_x_m,
             self.takeoff_z_m,
@@ -333,8 +368,11 @@ impl HopRecord {
             let heading = self.map.and_then(|map| map.heading_true_deg.flatten());
             fields.extend(texts(heading.map(|heading| [heading])));
         }
+        fields.extend(self.stores.fields().into_iter().take(extra.stores.len()));
+        if extra.aims {
+            fields.extend(texts(self.aim.map(|aim| [aim.aim_x_m, aim.landing_miss_m])));
+        }
         fields.extend(self.margins.fields());
-        fields.extend(self.stores.fields());
         fields
     }
 }

@@ -21,8 +21,12 @@ pub struct StoresRecord {
     pub mass_end_kg: Option<f64>,
 }
 
-/// The columns of [`StoresRecord`] in path.csv, the last of every path.
-pub(super) const STORES_COLUMNS: [&str; 3] = ["delta_v_m_s", "propellant_kg", "mass_end_kg"];
+/// The columns of [`StoresRecord`] in path.csv: delta-v, and propellant and mass if some hop states them.
+pub(super) fn stores_columns<'a>(rows: impl IntoIterator<Item = &'a HopRecord>) -> &'static [&'static str] {
+    const ALL: [&str; 3] = ["delta_v_m_s", "propellant_kg", "mass_end_kg"];
+    let has_propellant = rows.into_iter().any(|row| row.stores.propellant_kg.is_some());
+    if has_propellant { &ALL } else { &ALL[..1] }
+}
 
 impl From<&Hop> for StoresRecord {
     fn from(hop: &Hop) -> Self {
@@ -35,7 +39,7 @@ impl From<&Hop> for StoresRecord {
 }
 
 impl StoresRecord {
-    /// The fields of [`STORES_COLUMNS`]; an absent number is an empty field.
+    /// The fields of all [`stores_columns`]; an absent number is an empty field.
     pub(super) fn fields(&self) -> [String; 3] {
         [Some(self.delta_v_m_s), self.propellant_kg, self.mass_end_kg]
             .map(|number| number.map(|number| number.to_string()).unwrap_or_default())
@@ -76,11 +80,11 @@ impl PropellantShortage {
 pub(super) fn stores_lines(totals: &TotalsRecord) -> Vec<String> {
     let mut lines = Vec::new();
     if totals.propulsive {
-        let mut line = format!("delta-v {:.4} m/s", totals.delta_v_m_s);
-        if let (Some(used_kg), Some(end_kg)) = (totals.propellant_kg, totals.mass_end_kg) {
-            line.push_str(&format!(", propellant {used_kg:.4} kg, mass at the end {end_kg:.4} kg"));
-        }
-        lines.push(line);
+        let propellant = totals
+            .propellant_kg
+            .zip(totals.mass_end_kg)
+            .map_or_else(String::new, |(used_kg, end_kg)| format!(", propellant {used_kg:.4} kg, mass at the end {end_kg:.4} kg"));
+        lines.push(format!("delta-v {:.4} m/s{propellant}", totals.delta_v_m_s));
     }
     if totals.energy_basis.is_some() {
         lines.push("energies are those taken from the store: of motion over the efficiency, and of the preparations".to_owned());

@@ -344,6 +344,12 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
             row.binding
         ));
     }
+    let misses_m = rows.iter().filter_map(|row| row.aim).map(|aim| aim.landing_miss_m);
+    if let (Some(greatest_m), Some(last_m)) = (misses_m.clone().map(f64::abs).reduce(f64::max), misses_m.last()) {
+        sheet.line(format_args!(
+            "commands in steps: landings miss their aims by {greatest_m:.3} m at most, and the last one misses the goal by {last_m:.3} m"
+        ));
+    }
     sheet.line(format_args!(
         "in all: {:.3} m over ground, {:.3} s in flight, {:.4} J/kg, {:.4} m/s at most",
         totals.ground_distance_m, totals.flight_time_s, totals.energy_j_kg, totals.peak_takeoff_speed_m_s

@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::desk::{Desk, FORWARD_ONLY, SCENARIO};
 use serde_json::Value;
 
-const PATH_COLUMNS: [&str; 16] = [
+const PATH_COLUMNS: [&str; 17] = [
     "hop",
     "direction",
     "takeoff_x_m",
@@ -24,6 +24,7 @@ const PATH_COLUMNS: [&str; 16] = [
     "takeoff_angle_max_deg",
     "speed_margin_m_s",
     "binding",
+    "delta_v_m_s",
 ];
 const MARGIN_COLUMNS: [&str; 15] = [
     "margin_takeoff_speed_m_s",

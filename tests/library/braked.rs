@@ -41,7 +41,7 @@ fn braked(hopper: &Hopper, dice: &mut Dice) -> Hopper {
         landing: LandingMode::Braked { touchdown_speed_m_s },
         mass_kg: Some(50.0),
         isp_s: Some(limits.takeoff_speed_max_m_s * dice.between(0.05, 5.0)),
-        hop_delta_v_overhead_m_s: dice.chance(0.5).then(|| 0.1 * limits.takeoff_speed_max_m_s),
+        hop_delta_v_overhead_m_s: dice.chance(0.5).then_some(0.1 * limits.takeoff_speed_max_m_s),
         ..*limits
     })
     .unwrap()
@@ -476,7 +476,7 @@ fn trials_judge_the_touchdown_where_it_lands() {
     let share = |friction_sigma: f64, outcome| {
         let uncertainty = Uncertainty { friction_sigma, ..Uncertainty::NONE };
         let summary = Simulation::new(&mission, uncertainty).unwrap().run(&options, &mut (), &()).unwrap();
-        summary.outcomes.of(outcome) as f64 / 20_000.0
+        f64::from(u32::try_from(summary.outcomes.of(outcome)).unwrap()) / 20_000.0
     };
     assert_eq!(share(0.0, TrialOutcome::Reached), 1.0);
     // P(0.5 + 0.1 N < tan 20 deg = 0.36397) = P(N < -1.3603) = 0.08687.

@@ -86,7 +86,7 @@ fn toml() -> impl Strategy<Value = String> {
             _ => true,
         };
         let mut text = String::new();
-        for (key, value) in sensible_hopper(keys) {
+        for (key, value) in sensible_hopper(&keys) {
             if let Some(value) = value.filter(|_| kept(key)) {
                 // Dotted keys, so that no table header is needed.
                 let _ = writeln!(text, "{}.{} = {value}", key.table, key.name);
@@ -98,7 +98,7 @@ fn toml() -> impl Strategy<Value = String> {
 
 /// The keys of the hopper that fit each other: brakes with a touchdown speed that the landing speed limit allows, propellant below the
 /// mass, and so on. The other choices are left to chance.
-fn sensible_hopper(keys: Vec<(&Key, Option<String>)>) -> Vec<(&Key, Option<String>)> {
+fn sensible_hopper<'a>(keys: &[(&'a Key, Option<String>)]) -> Vec<(&'a Key, Option<String>)> {
     let of = |name: &str| {
         let found = keys.iter().find(|(key, _)| key.table == "hopper" && key.name == name);
         found.and_then(|(_, value)| value.as_ref()).map(|value| value.parse::<f64>().unwrap_or(f64::NAN))

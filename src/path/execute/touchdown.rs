@@ -17,7 +17,8 @@ impl<S: Surface> Checker<'_, S> {
             Hold::Friction { normal, cone } => {
                 // The ground pushes straight up.
                 let off_rad = libm::acos(normal.normalize().z.clamp(-1.0, 1.0));
-                if !(off_rad <= cone.half_angle().radians() + tolerance_rad) {
+                let held = off_rad <= cone.half_angle().radians() + tolerance_rad;
+                if !held {
                     self.note_limit(Limit::Touchdown, off_rad.to_degrees(), cone.half_angle().degrees(), "deg", x_m);
                 }
             }
@@ -36,9 +37,11 @@ impl<S: Surface> Checker<'_, S> {
             // The refusal of the direction is reported by itself.
             Hold::Stated { line: None, .. } => {}
         }
+        // Written so that NaN fails.
+        let within = touchdown_m_s <= tolerant_speed_m_s(max_m_s) * (1.0 + SPEED_ROUNDING);
         if max_m_s <= 0.0 {
             self.note_limit(Limit::LandingSpeed, touchdown_m_s, max_m_s, "m/s", x_m);
-        } else if !(touchdown_m_s <= tolerant_speed_m_s(max_m_s) * (1.0 + SPEED_ROUNDING)) {
+        } else if !within {
             self.note_limit(Limit::Touchdown, touchdown_m_s, max_m_s, "m/s", x_m);
         }
     }
