@@ -16,6 +16,6 @@ pub use conflict::{Conflict, Shortfall};
 pub use hop_test::HopTest;
 pub use risk::{HopDeviations, InvalidDeviation, PlannedHop, RiskModel};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
-pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};
+pub use takeoff_set::{Binding, LimitInterval, SetWindow, TakeoffSet};
 pub use terrain::{TerrainPoint, terrain_limit};
 pub(crate) use terrain::{first_ahead, flown_past, ground_slope, slope_beyond};

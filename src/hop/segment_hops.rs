@@ -1,5 +1,7 @@
 //! Several hops along one segment.
 
+mod commanded;
+
 use super::HopTest;
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice, limits},
@@ -72,8 +74,18 @@ pub struct SegmentHops {
 }
 
 impl SegmentReach {
-    /// The reach along a segment; `None` if its ground or its cones allow no arc along it.
-    pub(super) fn on(test: &HopTest, segment: SegmentId, direction: Direction) -> Option<Self> {
+    /// The ranges of length of hops along a segment, the longest first; none if its ground or its cones allow no arc along it. There
+    /// is one unless the machine cannot be commanded every take-off speed.
+    pub(super) fn all_on(test: &HopTest, segment: SegmentId, direction: Direction) -> Vec<Self> {
+        match Self::on(test, segment, direction) {
+            Some(reach) if test.takeoff_speeds().are_any() => vec![reach],
+            Some(reach) => commanded::ranges(reach, test),
+            None => Vec::new(),
+        }
+    }
+
+    /// The reach along a segment for a machine of any take-off speed; `None` if its ground or its cones allow no arc along it.
+    fn on(test: &HopTest, segment: SegmentId, direction: Direction) -> Option<Self> {
         let constraints = test.chain().segments().get(segment.index())?;
         let from = constraints.allowed(Contact::Takeoff, direction)?;
         let to = constraints.allowed(Contact::Landing, direction)?;
@@ -102,6 +114,12 @@ impl SegmentReach {
             return None;
         }
         if test.clearance().has_kinks() { by_others.with_clearance(test, &ends) } else { Some(by_others) }
+    }
+
+    /// Whether the machine has the arcs of every split of these hops.
+    pub(super) fn flies(&self, test: &HopTest, hops: &SegmentHops) -> bool {
+        let lengths_m = Split::ALL.into_iter().flat_map(|split| <[f64; 2]>::from(hops.lengths_m(split)));
+        test.takeoff_speeds().are_any() || lengths_m.into_iter().all(|length_m| self.has_commanded_arc(test, length_m))
     }
 
     /// The lengths that a tapered clearance leaves of those from 0 to the reach.
@@ -160,7 +178,7 @@ impl SegmentReach {
         self.reach_m
     }
 
-    /// The horizontal distance of the shortest hop, m: 0 unless a tapered clearance refuses short hops.
+    /// The horizontal distance of the shortest hop, m: 0 unless a tapered clearance or the machine's take-off speeds refuse short hops.
     pub const fn shortest_m(&self) -> f64 {
         self.shortest_m
     }
@@ -248,19 +266,14 @@ impl SegmentHops {
     /// section 3); a hop of full reach has only one arc.
     pub fn arc(&self, test: &HopTest, length_m: f64, choice: TakeoffChoice) -> Arc {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
-        Arc::new(sight, choice.loft(sight, self.lofts(test, length_m)), test.gravity_m_s2())
+        Arc::new(sight, test.loft(choice, sight, self.lofts(test, length_m)), test.gravity_m_s2())
     }
 
-    /// The feasible lofts of a hop of this length along the segment; at least a single loft.
+    /// The lofts that all limits but the machine's take-off speeds allow a hop of this length along the segment; at least a single loft.
     pub fn lofts(&self, test: &HopTest, length_m: f64) -> SlopeInterval {
-        let sight = LineOfSight::along(length_m, self.reach.sight_slope);
         // At full reach the set is a single loft, which rounding may lose.
         let only = SlopeInterval { lower: self.reach.loft, upper: self.reach.loft };
-        let clearance = test.clearance();
-        let clearing = if clearance.has_kinks() { clearance.kink_loft(0.0, length_m) } else { f64::NEG_INFINITY };
-        let cleared = |lofts: SlopeInterval| SlopeInterval { lower: lofts.lower.max(clearing), ..lofts };
-        let found = test.lofts_in_envelope(sight, &self.reach.from, &self.reach.to).map(cleared);
-        found.ok().filter(|lofts| !lofts.is_empty()).unwrap_or(only)
+        self.reach.lofts_of(test, length_m).unwrap_or(only)
     }
 }
 

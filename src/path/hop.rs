@@ -31,7 +31,8 @@ pub struct Hop {
     pub flight_time_s: f64,
     /// Height of the highest point of the flight, m, in the height reference of the ground.
     pub apex_z_m: f64,
-    /// All feasible take-off angles between the two contacts.
+    /// The window of feasible take-off angles that contains the one flown: all of them, unless the machine cannot be commanded every
+    /// take-off speed.
     pub takeoff_angles: AngleInterval,
     /// The smaller of the margins of take-off and landing speed to their limits, m/s.
     pub speed_margin_m_s: f64,

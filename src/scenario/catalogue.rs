@@ -5,7 +5,7 @@ use crate::{
     graph::{Effort, ReliabilityUse},
     hop::Split,
     uncertainty::Policy,
-    world::ClearanceRule,
+    world::{ClearanceRule, SpeedLevels},
 };
 
 /// The kind of value that a key takes.
@@ -45,6 +45,8 @@ pub enum Kind {
     NumberOrNone,
     /// One of these words.
     Word(&'static [&'static str]),
+    /// A list of speeds in m/s, ascending.
+    Speeds,
     /// Any text.
     Text,
 }
@@ -96,6 +98,12 @@ impl Kind {
             Self::Count { min, max } if *max == MOST => format!("a whole number of at least {min}"),
             Self::Count { min, max } => format!("a whole number from {min} to {max}"),
             Self::Word(words) => format!("one of {}", words.join(", ")),
+            Self::Speeds => format!(
+                "a list of 1 to {} speeds in m/s, ascending without repetition, each from {} to {}, such as [2.0, 4.0]",
+                SpeedLevels::MOST,
+                bound(SPEED_LEAST),
+                bound(SPEED_MOST)
+            ),
             Self::Text => "a text in quotes, not empty".to_owned(),
         }
     }
@@ -111,7 +119,9 @@ const fn key(table: &'static str, name: &'static str, kind: Kind, help: &'static
 }
 
 /// Lengths and speeds beyond these bounds are mistakes of units.
-const SPEED: Kind = Kind::Number { min: 1e-9, max: 1e5 };
+pub(super) const SPEED_LEAST: f64 = 1e-9;
+pub(super) const SPEED_MOST: f64 = 1e5;
+const SPEED: Kind = Kind::Number { min: SPEED_LEAST, max: SPEED_MOST };
 const LENGTH: Kind = Kind::Number { min: 1e-9, max: 1e9 };
 const FROM_ZERO: Kind = Kind::Number { min: 0.0, max: 1e9 };
 const COORDINATE: Kind = Kind::Number { min: -1e12, max: 1e12 };
@@ -130,7 +140,7 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 57] = [
+pub const CATALOGUE: [Key; 59] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -153,6 +163,8 @@ pub const CATALOGUE: [Key; 57] = [
     key("hopper", "takeoff_angle_max_deg", ELEVATION_ANGLE, "mechanical greatest take-off angle from the horizontal, degrees"),
     key("hopper", "apex_height_max_m", FROM_ZERO, "greatest height of the flight above its take-off, m"),
     key("hopper", "flight_time_max_s", LENGTH, "longest flight, s"),
+    key("hopper", "takeoff_speed_min_m_s", SPEED, "least take-off speed that the machine can be commanded, m/s"),
+    key("hopper", "takeoff_speed_levels_m_s", Kind::Speeds, "the only take-off speeds that the machine can be commanded, m/s, ascending"),
     key("hopper", "mass_kg", LENGTH, "mass, kg, for the total of energy"),
     key("hopper", "rest_time_s", FROM_ZERO, "rest between hops, s, for the mission time"),
     key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::Gravity;
+use super::{Gravity, SpeedLevels};
 use crate::quantity::Angle;
 
 /// Where a hopper keeps its clearance.
@@ -62,6 +62,10 @@ pub struct HopperLimits {
     pub apex_height_max_m: Option<f64>,
     /// Longest flight, s.
     pub flight_time_max_s: Option<f64>,
+    /// Least take-off speed that the machine can be commanded, m/s.
+    pub takeoff_speed_min_m_s: Option<f64>,
+    /// The only take-off speeds that the machine can be commanded.
+    pub takeoff_speed_levels: Option<SpeedLevels>,
     /// Mass, kg, only used for energies.
     pub mass_kg: Option<f64>,
     /// Rest between hops, s, only used for the mission time.
@@ -79,6 +83,8 @@ impl HopperLimits {
         takeoff_angle_max: None,
         apex_height_max_m: None,
         flight_time_max_s: None,
+        takeoff_speed_min_m_s: None,
+        takeoff_speed_levels: None,
         mass_kg: None,
         rest_time_s: None,
     };
@@ -158,6 +164,8 @@ impl Hopper {
             takeoff_angle_max,
             apex_height_max_m,
             flight_time_max_s,
+            takeoff_speed_min_m_s,
+            takeoff_speed_levels,
             mass_kg,
             rest_time_s,
         } = limits;
@@ -189,6 +197,25 @@ impl Hopper {
             ),
             number("apex_height_max_m", apex_height_max_m, not_negative, NOT_NEGATIVE),
             number("flight_time_max_s", flight_time_max_s, positive, POSITIVE),
+            number("takeoff_speed_min_m_s", takeoff_speed_min_m_s, positive, POSITIVE),
+            (
+                "takeoff_speed_min_m_s",
+                takeoff_speed_min_m_s.is_none_or(|least_m_s| !(least_m_s > takeoff_speed_max_m_s)),
+                takeoff_speed_min_m_s.unwrap_or(0.0),
+                "no more than takeoff_speed_max_m_s",
+            ),
+            (
+                "takeoff_speed_levels_m_s",
+                takeoff_speed_levels.is_none_or(|levels| !(levels.highest_m_s() > takeoff_speed_max_m_s)),
+                takeoff_speed_levels.map_or(0.0, |levels| levels.highest_m_s()),
+                "no level above takeoff_speed_max_m_s",
+            ),
+            (
+                "takeoff_speed_levels_m_s",
+                !takeoff_speed_levels.zip(takeoff_speed_min_m_s).is_some_and(|(levels, least)| levels.lowest_m_s() < least),
+                takeoff_speed_levels.map_or(0.0, |levels| levels.lowest_m_s()),
+                "no level below takeoff_speed_min_m_s",
+            ),
             number("mass_kg", mass_kg, positive, POSITIVE),
             number("rest_time_s", rest_time_s, not_negative, NOT_NEGATIVE),
         ];

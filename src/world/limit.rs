@@ -32,11 +32,15 @@ pub enum Limit {
     ApexHeight,
     /// The hopper's longest flight time.
     FlightTime,
+    /// The least take-off speed that the machine can be commanded.
+    TakeoffSpeedMin,
+    /// The only take-off speeds that the machine can be commanded.
+    TakeoffSpeedLevels,
 }
 
 impl Limit {
     /// All limits, in the order in which results list them.
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::Direction,
         Self::KeepOut,
         Self::RestSlope,
@@ -50,6 +54,8 @@ impl Limit {
         Self::MechanicalAngle,
         Self::ApexHeight,
         Self::FlightTime,
+        Self::TakeoffSpeedMin,
+        Self::TakeoffSpeedLevels,
     ];
 
     /// The name used in JSON, CSV and messages.
@@ -68,6 +74,8 @@ impl Limit {
             Self::MechanicalAngle => "mechanical-angle",
             Self::ApexHeight => "apex-height",
             Self::FlightTime => "flight-time",
+            Self::TakeoffSpeedMin => "takeoff-speed-min",
+            Self::TakeoffSpeedLevels => "takeoff-speed-levels",
         }
     }
 

@@ -5,6 +5,7 @@ mod friction_cone;
 mod gravity;
 mod hopper;
 mod limit;
+mod speed_levels;
 mod surface;
 mod travel;
 
@@ -13,5 +14,6 @@ pub use friction_cone::{FrictionCone, InvalidFriction};
 pub use gravity::{Gravity, InvalidGravity, InvalidRadius};
 pub use hopper::{ClearanceRule, Hopper, HopperLimits, HopperProblem, InvalidHopper};
 pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
+pub use speed_levels::{InvalidLevels, SpeedLevels};
 pub use surface::{Grip, InvalidSurface, RestSlope, SurfaceProperties};
 pub use travel::{Contact, Direction};
