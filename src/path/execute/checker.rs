@@ -10,7 +10,7 @@ use crate::{
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface},
     path::Hop,
     quantity::{Angle, AngleInterval, MapPoint},
-    world::{Contact, Direction, FrictionCone, Limit, tolerant_speed_m_s},
+    world::{Contact, Direction, FrictionCone, Limit, SPEED_TOLERANCE, tolerant_speed_m_s},
 };
 
 /// Tolerance of an angle over its limit, rad: it corresponds to the tolerance of speeds. A tangent and an arc tangent between limit
@@ -79,6 +79,7 @@ impl<S: Surface> Checker<'_, S> {
         let (takeoff, landing) = (self.hop.takeoff.in_profile(), self.hop.landing.in_profile());
         self.takeoff(self.hop);
         self.mechanical_angle();
+        self.commands();
         let found = libm::hypot(landing.x_m - takeoff.x_m, landing.z_m - takeoff.z_m);
         let measure = Measure { found, allowed: self.surface.height_rounding_m(), unit: "m" };
         self.note(ViolatedLimit::LandingPoint, Some(measure), takeoff.x_m);
@@ -90,6 +91,7 @@ impl<S: Surface> Checker<'_, S> {
         self.landing(flight);
         self.bends();
         self.mechanical_angle();
+        self.commands();
         self.terrain(flight);
         self.landing_point(flight);
         self.machine(flight);
@@ -306,6 +308,28 @@ impl<S: Surface> Checker<'_, S> {
             let ends = (min.map_or(-FRAC_PI_2, Angle::radians), max.map_or(FRAC_PI_2, Angle::radians));
             let (angle_rad, x_m) = (self.hop.takeoff_angle.radians(), self.hop.takeoff.along_m);
             self.angle_between(Limit::MechanicalAngle, angle_rad, ends, ANGLE_TOLERANCE_RAD, x_m);
+        }
+    }
+
+    /// The take-off speeds of the machine: at least its least one, and one of its levels.
+    fn commands(&mut self) {
+        let limits = self.surface.hopper().limits();
+        let (speed_m_s, x_m) = (self.hop.takeoff_speed_m_s, self.hop.takeoff.along_m);
+        let tolerance = SPEED_TOLERANCE + SPEED_ROUNDING + self.run_rounding();
+        if let Some(least_m_s) = limits.takeoff_speed_min_m_s {
+            let within = speed_m_s >= least_m_s * (1.0 - tolerance);
+            if !within {
+                self.note_limit(Limit::TakeoffSpeedMin, speed_m_s, least_m_s, "m/s", x_m);
+            }
+        }
+        if let Some(levels) = limits.takeoff_speed_levels {
+            let off_m_s = |level_m_s: &f64| (speed_m_s - level_m_s).abs();
+            let nearest = levels.as_slice().iter().min_by(|a, b| off_m_s(a).total_cmp(&off_m_s(b)));
+            let nearest_m_s = nearest.copied().unwrap_or_default();
+            let within = off_m_s(&nearest_m_s) <= nearest_m_s * tolerance;
+            if !within {
+                self.note_limit(Limit::TakeoffSpeedLevels, speed_m_s, nearest_m_s, "m/s", x_m);
+            }
         }
     }
 
