@@ -40,6 +40,7 @@ pub struct TakeoffSet {
     direction: Direction,
     sight: LineOfSight,
     limits: Vec<LimitInterval>,
+    speeds: TakeoffSpeeds,
     verdict: Verdict,
 }
 
@@ -67,7 +68,7 @@ impl TakeoffSet {
         let sight = test.line_of_sight(takeoff, landing)?;
         let limits = all_limits(test, takeoff, landing, direction, sight);
         let verdict = evaluate(test, sight, &limits);
-        Some(Self { direction, sight, limits, verdict })
+        Some(Self { direction, sight, limits, speeds: *test.takeoff_speeds(), verdict })
     }
 
     /// The direction of travel.
@@ -101,6 +102,18 @@ impl TakeoffSet {
         }
     }
 
+    /// The limits that set the least and the greatest angle of the feasible set; `None` if it is empty.
+    pub fn binding(&self) -> Option<Binding> {
+        let (first, last) = (self.windows().first()?, self.windows().last()?);
+        Some(Binding { lower: first.binding.lower, upper: last.binding.upper })
+    }
+
+    /// From the least to the greatest feasible take-off angle, whatever lies between them; `None` if the hop is infeasible.
+    pub fn angles(&self) -> Option<AngleInterval> {
+        let (first, last) = (self.windows().first()?, self.windows().last()?);
+        self.angles_of(SlopeInterval { lower: first.lofts.lower, upper: last.lofts.upper })
+    }
+
     /// The window with a loft, or else the one nearest to it; `None` if the hop is infeasible.
     pub fn window_of(&self, loft: f64) -> Option<SetWindow> {
         let outside = |window: &SetWindow| (window.lofts.lower - loft).max(loft - window.lofts.upper).max(0.0);
@@ -121,8 +134,9 @@ impl TakeoffSet {
     }
 
     /// The arc selected by `choice`; `None` if the hop is infeasible.
-    pub fn arc(&self, test: &HopTest, choice: TakeoffChoice) -> Option<Arc> {
-        Some(Arc::new(self.sight, test.loft(choice, self.sight, self.lofts()?), test.gravity_m_s2()))
+    pub fn arc(&self, choice: TakeoffChoice, gravity_m_s2: f64) -> Option<Arc> {
+        let loft = self.speeds.loft(choice, self.sight, self.lofts()?, gravity_m_s2)?;
+        Some(Arc::new(self.sight, loft, gravity_m_s2))
     }
 }
 

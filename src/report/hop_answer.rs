@@ -180,8 +180,8 @@ impl HopAnswer {
     /// The answer for two stations; `None` where they share the same x.
     pub fn new(test: &HopTest, takeoff: &Station, landing: &Station, choice: TakeoffChoice) -> Option<Self> {
         let set = test.takeoff_set(takeoff, landing)?;
-        let best = |choice| set.arc(test, choice).map(|arc| BestRecord::new(&arc, choice));
-        let window = set.arc(test, choice).and_then(|arc| set.window_of(arc.loft()));
+        let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice));
+        let window = set.arc(choice, test.gravity_m_s2()).and_then(|arc| set.window_of(arc.loft()));
         let angles = window.and_then(|window| set.angles_of(window.lofts));
         Some(Self {
             from_x_m: takeoff.point.x_m,

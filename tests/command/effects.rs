@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 56] = [
+const TELLING: [(&str, &str); 58] = [
     ("body.name", "earth"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -20,6 +20,8 @@ const TELLING: [(&str, &str); 56] = [
     ("hopper.takeoff_angle_max_deg", "50"),
     ("hopper.apex_height_max_m", "0.5"),
     ("hopper.flight_time_max_s", "1.5"),
+    ("hopper.takeoff_speed_min_m_s", "1.1"),
+    ("hopper.takeoff_speed_levels_m_s", "[1.1]"),
     ("hopper.mass_kg", "7"),
     ("hopper.rest_time_s", "100"),
     ("surface.friction_coefficient", "0.3"),

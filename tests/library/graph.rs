@@ -504,6 +504,7 @@ fn lower_speeds_or_more_limits_never_give_fewer_hops() {
             clearance_m: world.hopper.limits().clearance_m * 2.0,
             apex_height_max_m: Some(reach * draw.uniform(0.05, 1.0)),
             flight_time_max_s: Some((reach / world.g).sqrt() * draw.uniform(0.5, 3.0)),
+            takeoff_speed_min_m_s: draw.chance(0.3).then(|| (reach * world.g).sqrt() * draw.uniform(0.3, 0.9)),
             ..*world.hopper.limits()
         })
         .unwrap();

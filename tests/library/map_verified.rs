@@ -65,6 +65,8 @@ fn paths_over_random_grids_hold_when_flown_again() {
             takeoff_speed_max_m_s: limits.takeoff_speed_max_m_s * scale.sqrt(),
             landing_speed_max_m_s: limits.landing_speed_max_m_s * scale.sqrt(),
             flight_time_max_s: limits.flight_time_max_s.map(|time_s| time_s / scale.sqrt()),
+            takeoff_speed_min_m_s: limits.takeoff_speed_min_m_s.map(|speed_m_s| speed_m_s * scale.sqrt()),
+            takeoff_speed_levels: limits.takeoff_speed_levels.map(|levels| levels.scaled(scale.sqrt())),
             ..*limits
         };
         let world = World::new(dem, Hopper::new(limits).unwrap(), random_surface(&mut draw), gravity * scale);
@@ -234,6 +236,8 @@ fn a_hop_spoiled_by_one_percent_is_refused_under_its_limits_name() {
         Limit::MechanicalAngle,
         Limit::ApexHeight,
         Limit::FlightTime,
+        Limit::TakeoffSpeedMin,
+        Limit::TakeoffSpeedLevels,
     ] {
         assert!(by_limit[limit.index()] >= 8, "{limit} was tested only {} times", by_limit[limit.index()]);
     }

@@ -144,6 +144,7 @@ pub(crate) fn random_hopper(draw: &mut Draw) -> (Hopper, f64) {
         limits.takeoff_angle_min = Some(Angle::from_degrees(draw.uniform(0.0, 50.0)));
         limits.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(50.0, 90.0)));
     }
+    draw.commands(&mut limits, speed);
     (Hopper::new(limits).unwrap(), gravity)
 }
 

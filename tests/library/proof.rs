@@ -53,6 +53,7 @@ impl Journey {
         if draw.chance(0.2) {
             limits.takeoff_angle_max = Some(Angle::from_degrees(draw.uniform(40.0, 89.0)));
         }
+        draw.commands(&mut limits, 1.2 * speed);
         let hopper = Hopper::new(limits).unwrap();
         let bent = segments > 2 && draw.chance(0.2);
         let chain = if bent {
@@ -236,6 +237,7 @@ fn flies(journey: &Journey, from: &Station, to: &Station, angles: u32) -> bool {
             && within(m, &takeoff)
             && within(end_slope, &landing)
             && hopper.limits().flight_time_max_s.is_none_or(|t| time <= t * SLACK)
+            && hopper.limits().takeoff_speed_min_m_s.is_none_or(|v| v_t >= v / SLACK)
             && hopper.limits().apex_height_max_m.is_none_or(|h| top <= h * SLACK)
             && clear
     })

@@ -49,6 +49,12 @@ fn value(key: &Key) -> BoxedStrategy<String> {
             (min..=max.min(50)).prop_map(|count| count.to_string()),
         ]
         .boxed(),
+        Kind::Speeds => proptest::collection::btree_set(1..1000_u32, 1..4)
+            .prop_map(|tenths| {
+                let speeds: Vec<_> = tenths.into_iter().map(|tenth| format!("{:?}", f64::from(tenth) / 10.0)).collect();
+                format!("[{}]", speeds.join(", "))
+            })
+            .boxed(),
         Kind::NumberOrNone => {
             prop_oneof![Just("\"none\"".to_owned()), Just("\"-3.40282e+38\"".to_owned()), number(-1e6, 1e6)].boxed()
         }
@@ -136,6 +142,7 @@ fn every_key_reaches_the_document() {
         Kind::MapPoint | Kind::LonLat => "[12.5, -3.0]",
         Kind::Flag => "true",
         Kind::NumberOrNone => "-9999.5",
+        Kind::Speeds => "[2.0, 4.5]",
         Kind::MapPoints | Kind::LonLats => "[[12.5, -3.0], [1.0, 2.0]]",
         Kind::CountOrAuto | Kind::Count { .. } => "7",
         Kind::Word(words) => words[words.len() - 1],

@@ -145,6 +145,7 @@ fn cases() -> Vec<Case> {
     let tall = Hopper::new(HopperLimits {
         clearance_m: 0.2,
         flight_time_max_s: Some(60.0),
+        takeoff_speed_min_m_s: Some(0.5),
         mass_kg: Some(20.0),
         rest_time_s: Some(120.0),
         ..*ten.limits()
