@@ -4,7 +4,7 @@ use std::fmt;
 
 use super::{Binding, HopTest, LimitInterval};
 use crate::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice, TakeoffSpeeds},
+    ballistics::{Arc, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_takeoff_speed_m_s},
     chain::GroundRefusal,
     quantity::SlopeInterval,
     world::{Contact, Limit},
@@ -64,7 +64,7 @@ pub enum Conflict {
         other: LimitInterval,
         /// The least and the greatest take-off speed that the others leave, m/s.
         left_m_s: [f64; 2],
-        /// The nearest speed that the machine has, m/s.
+        /// The nearest speed that the machine and some arc have, m/s.
         nearest_m_s: f64,
     },
 }
@@ -89,8 +89,11 @@ impl Conflict {
             TakeoffSpeeds::Any => left_m_s[0],
             TakeoffSpeeds::AtLeast(least_m_s) => *least_m_s,
             TakeoffSpeeds::Levels(levels) => {
-                let nearest = levels.as_slice().iter().min_by(|a, b| away_m_s(**a).total_cmp(&away_m_s(**b)));
-                nearest.copied().unwrap_or_default()
+                // A speed below that of the slowest arc of all is no remedy.
+                let slowest_m_s = least_takeoff_speed_m_s(sight, test.gravity_m_s2());
+                let possible = levels.as_slice().iter().filter(|level| **level >= slowest_m_s);
+                let nearest = possible.min_by(|a, b| away_m_s(**a).total_cmp(&away_m_s(**b)));
+                nearest.copied().unwrap_or(levels.highest_m_s())
             }
         };
         // Faster arcs lie beyond either end, and beyond the faster one is the nearest; slower ones beyond the slower end.

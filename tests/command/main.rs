@@ -28,6 +28,7 @@ mod sentences;
 mod shipped_scenarios;
 mod simulate_command;
 mod stated_maps;
+mod takeoff_speeds;
 mod trade_compare;
 mod wrong_things;
 mod zones_and_fan;

@@ -162,8 +162,13 @@ fn take_off_speeds_that_leave_no_arc_name_the_speeds_that_the_others_leave() {
             let speed = Arc::new(sight, loft, case.g).takeoff_speed_m_s();
             assert!(least * (1.0 - 1e-12) <= speed && speed <= greatest * (1.0 + 1e-12), "{speed} of {least} to {greatest}");
         }
+        let binding = free.binding().unwrap();
+        if binding.lower == binding.upper {
+            // One limit sets both ends.
+            continue;
+        }
         // Beyond the end that the other limit sets, the speeds go on towards the nearest one of the machine.
-        let end = if other == free.binding().unwrap().lower { lofts.lower } else { lofts.upper };
+        let end = if other == binding.lower { lofts.lower } else { lofts.upper };
         let beyond = if end == lofts.lower { end * (1.0 - 1e-6) } else { end * (1.0 + 1e-6) };
         let [at, on] = [end, beyond].map(|loft| Arc::new(sight, loft, case.g).takeoff_speed_m_s());
         // At the end nearest to the slowest arc of all, speeds hardly change.

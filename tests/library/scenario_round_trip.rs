@@ -78,6 +78,10 @@ fn toml() -> impl Strategy<Value = String> {
             ("terrain", "start_m" | "goal_m" | "via_m") => (ground == 1 && !degrees) || ground == 3,
             ("terrain", "start_lonlat_deg" | "goal_lonlat_deg" | "via_lonlat_deg") => ground == 1 && degrees,
             ("surface", "keep_out") => ground != 2,
+            // Random speeds exclude each other more often than not.
+            ("hopper", "takeoff_speed_max_m_s") => points,
+            ("hopper", "takeoff_speed_min_m_s") => !points && degrees,
+            ("hopper", "takeoff_speed_levels_m_s") => !points && !degrees,
             ("surface", "friction_raster") => friction && ground != 2,
             ("terrain", "chain") => ground == 2,
             ("terrain", _) => ground > 0,

@@ -195,7 +195,7 @@ fn every_hop_of_a_split_passes_the_hop_test_and_the_checker() {
         let (g, run) = (draw.gravity(), draw.log_uniform(1e-1, 1e4));
         let speed = (g * run / draw.log_uniform(1.0, 30.0)).sqrt();
         let mut limits = HopperLimits {
-            flight_time_max_s: draw.chance(0.3).then(|| speed / g * draw.log_uniform(0.3, 3.0)),
+            apex_height_max_m: draw.chance(0.3).then(|| speed * speed / g * draw.log_uniform(0.05, 1.0)),
             clearance_m: if draw.chance(0.3) { run * draw.log_uniform(1e-4, 1e-1) } else { 0.0 },
             ..HopperLimits::UNLIMITED
         };
@@ -241,7 +241,7 @@ fn lengths_that_scanned_arcs_have_lie_in_a_range_of_the_reach() {
         let speed = (g * run).sqrt();
         let mut limits = HopperLimits::UNLIMITED;
         draw.commands(&mut limits, speed);
-        limits.flight_time_max_s = draw.chance(0.3).then(|| speed / g * draw.log_uniform(0.3, 3.0));
+        limits.apex_height_max_m = draw.chance(0.3).then(|| speed * speed / g * draw.log_uniform(0.05, 1.0));
         if TakeoffSpeeds::of(&limits).are_any() {
             continue;
         }
@@ -253,24 +253,14 @@ fn lengths_that_scanned_arcs_have_lie_in_a_range_of_the_reach() {
             let length = draw.log_uniform(1e-3, 1.0) * run;
             let theta = draw.uniform(cone.0.max(slope.atan().to_degrees() + 1e-3), cone.1).to_radians();
             let v = speed_m_s(length, slope * length, theta, g);
-            let time = length / (v * theta.cos());
+            // An arc of a level with this angle has another length.
+            let level = limits.takeoff_speed_levels.map(|levels| levels.as_slice()[draw.below(levels.as_slice().len())]);
+            let length = length * level.map_or(1.0, |level| (level / v).powi(2));
+            let v = speed_m_s(length, slope * length, theta, g);
             let landing = (v * v - 2.0 * g * slope * length).sqrt();
-            let others = v <= speed && landing <= speed && limits.flight_time_max_s.is_none_or(|most| time <= most);
-            // An arc of a level with this angle, and so another length.
-            let levels = limits.takeoff_speed_levels.map(|levels| levels.as_slice().to_vec());
-            let length = match &levels {
-                None => length,
-                Some(levels) => length * (levels[draw.below(levels.len())] / v).powi(2),
-            };
-            let (v, others) = match levels {
-                None => (v, others),
-                Some(_) => {
-                    let v = speed_m_s(length, slope * length, theta, g);
-                    let time = length / (v * theta.cos());
-                    let landing = (v * v - 2.0 * g * slope * length).sqrt();
-                    (v, v <= speed && landing <= speed && limits.flight_time_max_s.is_none_or(|most| time <= most))
-                }
-            };
+            let (up, end) = (v * theta.sin() / g, length / (v * theta.cos()));
+            let top = v * theta.sin() * up.clamp(0.0, end) - 0.5 * g * up.clamp(0.0, end).powi(2);
+            let others = v <= speed && landing <= speed && limits.apex_height_max_m.is_none_or(|most| top <= most);
             if !others || limits.takeoff_speed_min_m_s.is_some_and(|least| v < least) {
                 outside += 1;
                 continue;
@@ -345,4 +335,31 @@ fn the_chosen_arc_is_one_that_the_machine_has() {
         }
     }
     assert!(chosen > 1000, "{chosen}");
+}
+
+/// `data/validation/takeoff_speeds.py` and the table it wrote.
+const TABLE: &str = include_str!("../../data/validation/takeoff_speeds.csv");
+
+#[test]
+fn gaps_and_levels_agree_with_60_digits_to_a_nanoradian() {
+    let (mut real, mut none) = (0, 0);
+    for row in TABLE.lines().filter(|row| !row.starts_with('#')).skip(1) {
+        let numbers: Vec<Option<f64>> = row.split(',').map(|text| (!text.is_empty()).then(|| text.parse().unwrap())).collect();
+        let [g, run, rise, speed] = [0, 1, 2, 3].map(|i| numbers[i].unwrap());
+        let sight = LineOfSight::new(run, rise);
+        let gap = chta::ballistics::limits::takeoff_speed_min(sight, speed, g);
+        let level = chta::ballistics::limits::takeoff_speed_level(sight, speed, g, SlopeInterval::ALL);
+        for (found, expected) in [(gap.map(|gap| gap.lower), numbers[4]), (gap.map(|gap| gap.upper), numbers[5])] {
+            let angle = found.map(|loft| (sight.slope() + loft).atan());
+            assert!(angle.zip(expected).map_or(found.is_none() && expected.is_none(), |(a, b)| (a - b).abs() < 1e-9), "gap: {row}");
+        }
+        // A level within its tolerance of the least speed has one arc, which the exact speed lacks.
+        for (found, expected) in level.iter().zip(&numbers[6..]) {
+            let angle = found.map(|loft| (sight.slope() + loft).atan());
+            assert!(angle.zip(*expected).map_or(found.is_none() && expected.is_none(), |(a, b)| (a - b).abs() < 1e-9), "level: {row}");
+        }
+        real += u32::from(numbers[4].is_some());
+        none += u32::from(numbers[6].is_none());
+    }
+    assert!(real > 200 && none > 100, "{real}, {none}");
 }

@@ -140,7 +140,14 @@ impl<S: Surface> Checker<'_, S> {
     /// Uncertainty of the landing's speed: it changes by `g v_z / v^2` per metre flown.
     fn landing_speed_rounding_m_s(&self, flight: &Flight) -> f64 {
         let v = flight.landing_speed_m_s;
-        flight.rounding_m * (self.surface.gravity_m_s2() / v) * (flight.landing_climb_m_s.abs() / v)
+        let of_place = flight.rounding_m * (self.surface.gravity_m_s2() / v) * (flight.landing_climb_m_s.abs() / v);
+        // The horizontal speed, and with it the time of the landing, is as exact as the cosine of the angle.
+        of_place + self.surface.gravity_m_s2() * flight.flight_time_s * self.angle_rounding()
+    }
+
+    /// Relative rounding of the horizontal speed: near the vertical, the last digit of the angle is a part of its cosine.
+    fn angle_rounding(&self) -> f64 {
+        2.0 * f64::EPSILON * libm::fabs(libm::tan(self.hop.takeoff_angle.radians()))
     }
 
     /// Checks of the landing.
@@ -390,7 +397,7 @@ impl<S: Surface> Checker<'_, S> {
             }
         }
         if let Some(time_s) = self.surface.hopper().limits().flight_time_max_s {
-            let within = flight.flight_time_s <= time_s * (1.0 + TIME_TOLERANCE + self.run_rounding()) + time_rounding_s(flight);
+            let within = flight.flight_time_s <= time_s * (1.0 + TIME_TOLERANCE + self.run_rounding() + self.angle_rounding()) + time_rounding_s(flight);
             if !within {
                 self.note_limit(Limit::FlightTime, flight.flight_time_s, time_s, "s", x_m);
             }
@@ -410,7 +417,7 @@ impl<S: Surface> Checker<'_, S> {
         );
         let speed_tolerance_m_s = flight.landing_speed_m_s * TIME_TOLERANCE + self.landing_speed_rounding_m_s(flight);
         self.stated(StatedValue::LandingSpeed, hop.landing_speed_m_s, flight.landing_speed_m_s, speed_tolerance_m_s, "m/s");
-        let time_tolerance_s = flight.flight_time_s * TIME_TOLERANCE + time_rounding_s(flight);
+        let time_tolerance_s = flight.flight_time_s * (TIME_TOLERANCE + self.angle_rounding()) + time_rounding_s(flight);
         self.stated(StatedValue::FlightTime, hop.flight_time_s, flight.flight_time_s, time_tolerance_s, "s");
         self.stated(StatedValue::Apex, hop.apex_z_m, flight.apex_z_m, flight.place_tolerance_m, "m");
         if let Some(margin_m_s) = self.margin_m_s(flight) {
