@@ -20,7 +20,7 @@ const TELLING: [(&str, &str); 58] = [
     ("hopper.takeoff_angle_max_deg", "50"),
     ("hopper.apex_height_max_m", "0.5"),
     ("hopper.flight_time_max_s", "1.5"),
-    ("hopper.takeoff_speed_min_m_s", "1.1"),
+    ("hopper.takeoff_speed_min_m_s", "2.4"),
     ("hopper.takeoff_speed_levels_m_s", "[1.1]"),
     ("hopper.mass_kg", "7"),
     ("hopper.rest_time_s", "100"),
