@@ -159,7 +159,8 @@ fn all_limits(
     sight: LineOfSight,
 ) -> Vec<LimitInterval> {
     let mut found = Vec::with_capacity(Limit::ALL.len());
-    let mut add = |limit, lofts, vertex, shortfall| found.push(LimitInterval { limit, lofts, vertex, kink_x_m: None, gap: None, shortfall });
+    let mut add =
+        |limit, lofts, vertex, shortfall| found.push(LimitInterval { limit, lofts, vertex, kink_x_m: None, gap: None, shortfall });
     let mut allowed = |contact, station: &Station| -> Option<ContactRule> {
         match test.chain().check_contact(station, contact, direction) {
             Ok(rule) => Some(rule),

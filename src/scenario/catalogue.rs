@@ -164,7 +164,12 @@ pub const CATALOGUE: [Key; 59] = [
     key("hopper", "apex_height_max_m", FROM_ZERO, "greatest height of the flight above its take-off, m"),
     key("hopper", "flight_time_max_s", LENGTH, "longest flight, s"),
     key("hopper", "takeoff_speed_min_m_s", SPEED, "least take-off speed that the machine can be commanded, m/s"),
-    key("hopper", "takeoff_speed_levels_m_s", Kind::Speeds, "the only take-off speeds that the machine can be commanded, m/s, ascending"),
+    key(
+        "hopper",
+        "takeoff_speed_levels_m_s",
+        Kind::Speeds,
+        "the only take-off speeds that the machine can be commanded, m/s, ascending",
+    ),
     key("hopper", "mass_kg", LENGTH, "mass, kg, for the total of energy"),
     key("hopper", "rest_time_s", FROM_ZERO, "rest between hops, s, for the mission time"),
     key("surface", "friction_coefficient", Kind::Number { min: 0.0, max: 1e6 }, "cone about the surface normal"),

@@ -321,8 +321,7 @@ fn commands_conflict(limits: &HopperLimits) -> Option<(&'static str, String, &'s
         return Some((key, message, "leave out that level, or raise takeoff_speed_max_m_s"));
     }
     let least = least.filter(|least| levels.lowest_m_s() < *least)?;
-    let message =
-        format!("hopper.{key} has {}, expected no level below the takeoff_speed_min_m_s of {least}", levels.lowest_m_s());
+    let message = format!("hopper.{key} has {}, expected no level below the takeoff_speed_min_m_s of {least}", levels.lowest_m_s());
     Some((key, message, "leave out that level, or takeoff_speed_min_m_s"))
 }
 

@@ -200,13 +200,13 @@ impl Hopper {
             number("takeoff_speed_min_m_s", takeoff_speed_min_m_s, positive, POSITIVE),
             (
                 "takeoff_speed_min_m_s",
-                takeoff_speed_min_m_s.is_none_or(|least_m_s| !(least_m_s > takeoff_speed_max_m_s)),
+                !takeoff_speed_min_m_s.is_some_and(|least_m_s| least_m_s > takeoff_speed_max_m_s),
                 takeoff_speed_min_m_s.unwrap_or(0.0),
                 "no more than takeoff_speed_max_m_s",
             ),
             (
                 "takeoff_speed_levels_m_s",
-                takeoff_speed_levels.is_none_or(|levels| !(levels.highest_m_s() > takeoff_speed_max_m_s)),
+                !takeoff_speed_levels.is_some_and(|levels| levels.highest_m_s() > takeoff_speed_max_m_s),
                 takeoff_speed_levels.map_or(0.0, |levels| levels.highest_m_s()),
                 "no level above takeoff_speed_max_m_s",
             ),
@@ -275,6 +275,7 @@ mod tests {
             assert_eq!(refused(|l| l.clearance_rule = ClearanceRule::Tapered(bad)), ["clearance_taper"], "{bad}");
             assert_eq!(refused(|l| l.apex_height_max_m = Some(bad)), ["apex_height_max_m"], "{bad}");
             assert_eq!(refused(|l| l.flight_time_max_s = Some(bad)), ["flight_time_max_s"], "{bad}");
+            assert_eq!(refused(|l| l.takeoff_speed_min_m_s = Some(bad)).first(), Some(&"takeoff_speed_min_m_s"), "{bad}");
             assert_eq!(refused(|l| l.mass_kg = Some(bad)), ["mass_kg"], "{bad}");
             assert_eq!(refused(|l| l.rest_time_s = Some(bad)), ["rest_time_s"], "{bad}");
         }
@@ -283,6 +284,14 @@ mod tests {
             assert_eq!(refused(|l| l.takeoff_angle_max = Some(degrees(bad))), ["takeoff_angle_max_deg"], "{bad}");
         }
         assert_eq!(refused(|l| l.clearance_rule = ClearanceRule::Tapered(0.0)), ["clearance_taper"]);
+        let levels = |list: &[f64]| SpeedLevels::new(list).ok();
+        assert_eq!(refused(|l| l.takeoff_speed_min_m_s = Some(8.5)), ["takeoff_speed_min_m_s"]);
+        assert_eq!(refused(|l| l.takeoff_speed_levels = levels(&[2.0, 8.5])), ["takeoff_speed_levels_m_s"]);
+        let below = |l: &mut HopperLimits| {
+            l.takeoff_speed_levels = levels(&[2.0, 8.0]);
+            l.takeoff_speed_min_m_s = Some(2.5);
+        };
+        assert_eq!(refused(below), ["takeoff_speed_levels_m_s"]);
         let reversed = |l: &mut HopperLimits| {
             l.takeoff_angle_min = Some(degrees(60.0));
             l.takeoff_angle_max = Some(degrees(30.0));

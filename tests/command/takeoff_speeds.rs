@@ -22,6 +22,9 @@ fn hop(desk: &Desk, keys: &[&str]) -> Value {
     serde_json::from_str(&ran.stdout).unwrap_or_else(|_| panic!("{keys:?}: {ran:?}"))
 }
 
+/// Windows: from, to, and the limits at the lower and the upper end.
+type Windows<'a> = Vec<(f64, f64, &'a str, &'a str)>;
+
 /// Degrees of a slope.
 fn deg(slope: f64) -> f64 {
     slope.atan().to_degrees()
@@ -35,21 +38,12 @@ fn the_windows_of_a_hop_are_listed_with_the_limits_of_their_ends() {
     let [fast, of_11] = [q, level].map(|q: f64| [q - (q * q - 1.0).sqrt(), q + (q * q - 1.0).sqrt()].map(deg));
     let (max, min, levels) = ("takeoff-speed", "takeoff-speed-min", "takeoff-speed-levels");
     // Keys, windows (from, to, limit at the lower end, at the upper end), and the index of the one that is flown.
-    type Windows<'a> = Vec<(f64, f64, &'a str, &'a str)>;
     let table: Vec<(Vec<&str>, Windows<'_>, usize)> = vec![
         (vec![], vec![(fast[0], fast[1], max, max)], 0),
-        (
-            vec!["hopper.takeoff_speed_min_m_s=10"],
-            vec![(fast[0], deg(0.5), max, min), (deg(2.0), fast[1], min, max)],
-            0,
-        ),
+        (vec!["hopper.takeoff_speed_min_m_s=10"], vec![(fast[0], deg(0.5), max, min), (deg(2.0), fast[1], min, max)], 0),
         // Every arc is fast enough.
         (vec!["hopper.takeoff_speed_min_m_s=8"], vec![(fast[0], fast[1], max, max)], 0),
-        (
-            vec!["hopper.takeoff_speed_min_m_s=10", "hopper.takeoff_angle_min_deg=50"],
-            vec![(deg(2.0), fast[1], min, max)],
-            0,
-        ),
+        (vec!["hopper.takeoff_speed_min_m_s=10", "hopper.takeoff_angle_min_deg=50"], vec![(deg(2.0), fast[1], min, max)], 0),
         (
             vec!["hopper.takeoff_speed_levels_m_s=[5, 10, 11]"],
             vec![
@@ -114,7 +108,8 @@ fn plans_trials_and_pictures_use_the_speeds_that_the_machine_has() {
     let desk = desk();
     let levels = ["--set", "hopper.takeoff_speed_levels_m_s=[6, 10]"];
     let far = ["--goal", "77"];
-    let ran = desk.run(&[&["plan", "flat.toml", "--verify", "--format", "json", "--plot", "path.svg"], &levels[..], &far[..]].concat());
+    let ran =
+        desk.run(&[&["plan", "flat.toml", "--verify", "--format", "json", "--plot", "path.svg"], &levels[..], &far[..]].concat());
     assert_eq!(ran.status, 0, "{ran:?}");
     let answer: Value = serde_json::from_str(&ran.stdout).unwrap();
     let hops = answer["path"].as_array().unwrap();
@@ -126,11 +121,17 @@ fn plans_trials_and_pictures_use_the_speeds_that_the_machine_has() {
         assert_eq!(hop["binding"], "takeoff-speed-levels/takeoff-speed-levels");
     }
     let picture = desk.read("path.svg");
-    assert!(picture.contains("take-off speeds 6, 10 m/s") && picture.contains("takeoff-speed-levels refuses those between"), "names");
+    assert!(
+        picture.contains("take-off speeds 6, 10 m/s") && picture.contains("takeoff-speed-levels refuses those between"),
+        "names"
+    );
     let ran = desk.run(&["plan", "flat.toml", "--plot", "two.svg", "--set", "hopper.takeoff_speed_min_m_s=10"]);
     assert_eq!(ran.status, 0, "{ran:?}");
     let picture = desk.read("two.svg");
-    assert!(picture.contains("take-off speed ≥ 10 m/s") && picture.contains("takeoff-speed-min refuses the angles between"), "names");
+    assert!(
+        picture.contains("take-off speed ≥ 10 m/s") && picture.contains("takeoff-speed-min refuses the angles between"),
+        "names"
+    );
 }
 
 #[test]
@@ -138,7 +139,8 @@ fn a_smaller_least_speed_is_more_capable() {
     let desk = desk();
     // No room to go back and forth.
     desk.write("flat.csv", "x_m,z_m\n0,0\n4,0\n8,0\n");
-    let keys = ["--set", "hopper.takeoff_angle_min_deg=40", "--set", "hopper.takeoff_angle_max_deg=50", "--points-per-segment", "0"];
+    let keys =
+        ["--set", "hopper.takeoff_angle_min_deg=40", "--set", "hopper.takeoff_angle_max_deg=50", "--points-per-segment", "0"];
     let vary = ["require", "flat.toml", "--format", "json", "--vary", "hopper.takeoff_speed_min_m_s", "--resolution", "1e-6"];
     let ran = desk.run(&[&vary[..], &keys[..]].concat());
     assert_eq!(ran.status, 0, "{ran:?}");
@@ -181,11 +183,17 @@ fn take_off_speeds_that_no_machine_has_are_refused_in_one_sentence() {
         (&["takeoff_speed_levels_m_s=[1,2,3,4,5,6,7,8,9,9.1,9.2,9.3,9.4,9.5,9.6,9.7,9.8]"], &[list]),
         (
             &["takeoff_speed_levels_m_s=[2, 12.5]"],
-            &["hopper.takeoff_speed_levels_m_s has 12.5, expected no level above the takeoff_speed_max_m_s of 12", "leave out that level"],
+            &[
+                "hopper.takeoff_speed_levels_m_s has 12.5, expected no level above the takeoff_speed_max_m_s of 12",
+                "leave out that level",
+            ],
         ),
         (
             &["takeoff_speed_levels_m_s=[2, 12]", "takeoff_speed_min_m_s=3"],
-            &["hopper.takeoff_speed_levels_m_s has 2, expected no level below the takeoff_speed_min_m_s of 3", "leave out that level"],
+            &[
+                "hopper.takeoff_speed_levels_m_s has 2, expected no level below the takeoff_speed_min_m_s of 3",
+                "leave out that level",
+            ],
         ),
     ];
     for (keys, said) in table {

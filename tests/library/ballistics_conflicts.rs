@@ -172,7 +172,10 @@ fn take_off_speeds_that_leave_no_arc_name_the_speeds_that_the_others_leave() {
         let beyond = if end == lofts.lower { end * (1.0 - 1e-6) } else { end * (1.0 + 1e-6) };
         let [at, on] = [end, beyond].map(|loft| Arc::new(sight, loft, case.g).takeoff_speed_m_s());
         // At the end nearest to the slowest arc of all, speeds hardly change.
-        assert!((on > at) == (nearest_m_s > greatest) || (on / at - 1.0).abs() < 1e-9, "{at} goes to {on}, away from {nearest_m_s}");
+        assert!(
+            (on > at) == (nearest_m_s > greatest) || (on / at - 1.0).abs() < 1e-9,
+            "{at} goes to {on}, away from {nearest_m_s}"
+        );
         seen[usize::from(limit == Limit::TakeoffSpeedLevels)] += 1;
     }
     assert!(seen.iter().all(|count| *count > 100), "{seen:?}");

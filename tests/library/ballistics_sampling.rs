@@ -482,14 +482,13 @@ fn gravity_times_four_and_speeds_times_two_change_no_bit() {
             ..HopperLimits::UNLIMITED
         })
         .unwrap();
-        let slower =
-            Hopper::new(HopperLimits {
-                flight_time_max_s: hopper.limits().flight_time_max_s.map(|t| t / v),
-                takeoff_speed_min_m_s: hopper.limits().takeoff_speed_min_m_s.map(|speed| speed * v),
-                takeoff_speed_levels: hopper.limits().takeoff_speed_levels.map(|levels| levels.scaled(v)),
-                ..*hopper.limits()
-            })
-            .unwrap();
+        let slower = Hopper::new(HopperLimits {
+            flight_time_max_s: hopper.limits().flight_time_max_s.map(|t| t / v),
+            takeoff_speed_min_m_s: hopper.limits().takeoff_speed_min_m_s.map(|speed| speed * v),
+            takeoff_speed_levels: hopper.limits().takeoff_speed_levels.map(|levels| levels.scaled(v)),
+            ..*hopper.limits()
+        })
+        .unwrap();
         let (test, other_test) = (
             HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap()),
             HopTest::new(other.with_hopper(&slower, Gravity::new(g * v * v).unwrap()).unwrap()),

@@ -79,7 +79,6 @@ fn toml() -> impl Strategy<Value = String> {
             ("terrain", "start_lonlat_deg" | "goal_lonlat_deg" | "via_lonlat_deg") => ground == 1 && degrees,
             ("surface", "keep_out") => ground != 2,
             // Random speeds exclude each other more often than not.
-            ("hopper", "takeoff_speed_max_m_s") => points,
             ("hopper", "takeoff_speed_min_m_s") => !points && degrees,
             ("hopper", "takeoff_speed_levels_m_s") => !points && !degrees,
             ("surface", "friction_raster") => friction && ground != 2,
@@ -91,7 +90,7 @@ fn toml() -> impl Strategy<Value = String> {
             ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
             ("uncertainty", "heading_sigma_deg") => ground < 2,
             ("search", "risk_extra_hops_max") => false,
-            ("search", "points_per_segment") => points,
+            ("search", "points_per_segment") | ("hopper", "takeoff_speed_max_m_s") => points,
             ("search", "node_spacing_max_m") => !points,
             _ => true,
         };

@@ -397,7 +397,8 @@ impl<S: Surface> Checker<'_, S> {
             }
         }
         if let Some(time_s) = self.surface.hopper().limits().flight_time_max_s {
-            let within = flight.flight_time_s <= time_s * (1.0 + TIME_TOLERANCE + self.run_rounding() + self.angle_rounding()) + time_rounding_s(flight);
+            let within = flight.flight_time_s
+                <= time_s * (1.0 + TIME_TOLERANCE + self.run_rounding() + self.angle_rounding()) + time_rounding_s(flight);
             if !within {
                 self.note_limit(Limit::FlightTime, flight.flight_time_s, time_s, "s", x_m);
             }

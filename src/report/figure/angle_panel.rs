@@ -47,17 +47,24 @@ fn names(hop: &HopFigure) -> [String; 2] {
     hop.windows.ends.clone()
 }
 
+/// The name of the limit that refuses the angles between a hop's two bars, if it has two.
+fn between(hop: &HopFigure) -> Option<String> {
+    hop.windows.between.filter(|_| hop.windows.angles.len() == 2).map(|limit| limit.to_string())
+}
+
 /// The least and the greatest angle of a hop's bars, degrees.
 fn extent_deg(hop: &HopFigure) -> (f64, f64) {
-    hop.windows.angles.iter().fold((90.0f64, -90.0f64), |(low, high), window| {
-        (low.min(window.min.degrees()), high.max(window.max.degrees()))
-    })
+    hop.windows
+        .angles
+        .iter()
+        .fold((90.0f64, -90.0f64), |(low, high), window| (low.min(window.min.degrees()), high.max(window.max.degrees())))
 }
 
 impl Layout {
     #[expect(clippy::cast_precision_loss, reason = "at most a few hundred hops are drawn")]
     fn new(hops: &Thinned<HopFigure>, top_mm: f64) -> Self {
-        let widest = hops.shown.iter().flat_map(names).map(|name| text_width_mm(&name, SMALL_MM)).fold(0.0, f64::max);
+        let widest = hops.shown.iter().flat_map(|hop| names(hop).into_iter().chain(between(hop)));
+        let widest = widest.map(|name| text_width_mm(&name, SMALL_MM)).fold(0.0, f64::max);
         let slot_mm = (RIGHT_MM - LEFT_MM - 2.0 * SIDE_MM) / hops.shown.len().max(1) as f64;
         let upright = slot_mm < widest + 1.5;
         let number_mm = text_width_mm(&hops.of.to_string(), SMALL_MM);
@@ -125,6 +132,12 @@ impl Layout {
         } else {
             sheet.label(Label::new(upper, above, SMALL_MM).hung(Anchor::Middle, Hang::Above));
             sheet.label(Label::new(lower, below, SMALL_MM).hung(Anchor::Middle, Hang::Below));
+            if let (Some(name), [flat, steep]) = (between(hop), &hop.windows.angles[..]) {
+                let (from, to) = (self.y(flat.max.degrees()), self.y(steep.min.degrees()));
+                if from - to > SMALL_MM + 2.5 {
+                    sheet.label(Label::new(name, (x, 0.5 * (from + to)), SMALL_MM).hung(Anchor::Middle, Hang::Through));
+                }
+            }
         }
     }
 }
@@ -139,9 +152,8 @@ fn chosen(sheet: &mut Sheet, (x, y): (f64, f64), half: f64) {
 
 /// The caption of the panel.
 pub(super) fn caption(hops: &Thinned<HopFigure>) -> Vec<String> {
-    let mut lines = vec![
-        "Bars: feasible take-off angles above the horizontal and the limits at their ends; diamond: angle chosen.".to_owned(),
-    ];
+    let mut lines =
+        vec!["Bars: feasible take-off angles above the horizontal and the limits at their ends; diamond: angle chosen.".to_owned()];
     lines.extend(hops.shown.iter().find_map(|hop| hop.windows.between).map(|limit| match limit {
         Limit::TakeoffSpeedLevels => format!("Lines: the angles of the machine's take-off speeds; {limit} refuses those between."),
         _ => format!("Two bars of one hop: {limit} refuses the angles between them, whose arcs are slower."),
