@@ -1,10 +1,7 @@
 //! One flight: the parabola through take-off and landing.
 
 use super::LineOfSight;
-use crate::{
-    quantity::{Angle, MonicQuadratic},
-    world::SPEED_TOLERANCE,
-};
+use crate::quantity::Angle;
 
 /// The parabola from take-off to landing with a given loft `n = m - b > 0`.
 ///
@@ -175,36 +172,6 @@ impl Arc {
 /// ```
 pub fn least_takeoff_speed_m_s(sight: LineOfSight, gravity_m_s2: f64) -> f64 {
     (gravity_m_s2 * sight.run_m() * sight.min_speed_ratio()).sqrt()
-}
-
-/// The lofts of the two arcs over a line of sight that take off at a speed, the flatter one first.
-///
-/// ```text
-///     n^2 - 2 (q - b) n + 1 + b^2 = 0,   q = v^2 / (g X)                    (P eq. 9 solved for n = m - b)
-/// ```
-///
-/// # Units
-/// The speed in m/s.
-///
-/// # Degenerate
-/// `None` if the speed is below [`least_takeoff_speed_m_s`] by more than the crate's tolerance of speeds; within it, both arcs are
-/// that of the least speed, which falls short by twice this fraction at most.
-///
-/// # Examples
-/// ```
-/// use chta::ballistics::{LineOfSight, lofts_of_speed};
-/// // Flat, q = 1.25: n^2 - 2.5 n + 1 = (n - 0.5)(n - 2).
-/// assert_eq!(lofts_of_speed(LineOfSight::new(8.0, 0.0), 10.0, 10.0), Some([0.5, 2.0]));
-/// assert_eq!(lofts_of_speed(LineOfSight::new(8.0, 0.0), 8.0, 10.0), None);
-/// ```
-pub fn lofts_of_speed(sight: LineOfSight, speed_m_s: f64, gravity_m_s2: f64) -> Option<[f64; 2]> {
-    let ratio = speed_m_s / gravity_m_s2 * (speed_m_s / sight.run_m());
-    let least = sight.min_speed_ratio();
-    let excess = ratio - least;
-    if excess < 0.0 && excess >= -2.0 * SPEED_TOLERANCE * least {
-        return Some([sight.secant(); 2]);
-    }
-    MonicQuadratic { excess, geometric_mean: sight.secant() }.roots().map(|roots| [roots.smaller, roots.larger])
 }
 
 /// The least landing speed of any arc over a line of sight, m/s: that of the same line travelled backwards (P eq. 18).

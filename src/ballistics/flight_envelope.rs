@@ -1,6 +1,6 @@
 //! The flight envelope: all limits of a hop except the terrain, combined.
 
-use super::{LineOfSight, limits};
+use super::{LineOfSight, TakeoffChoice, TakeoffSpeeds, limits};
 use crate::{
     quantity::{Angle, SlopeInterval},
     world::{Gravity, Hopper},
@@ -15,6 +15,7 @@ pub struct FlightEnvelope {
     /// The take-off slopes that the mechanism allows.
     mechanical: SlopeInterval,
     clearance: limits::ClearanceProfile,
+    speeds: TakeoffSpeeds,
 }
 
 /// The limits of one contact (take-off or landing): directions of travel as slopes, and a greatest speed.
@@ -36,7 +37,8 @@ impl FlightEnvelope {
             upper: hopper.limits().takeoff_angle_max.map_or(f64::INFINITY, Angle::slope),
         };
         let clearance = limits::ClearanceProfile::of(hopper.limits());
-        Self { hopper: hopper.below_escape(gravity), gravity, mechanical, clearance }
+        let speeds = TakeoffSpeeds::of(hopper.limits());
+        Self { hopper: hopper.below_escape(gravity), gravity, mechanical, clearance, speeds }
     }
 
     /// The hopper.
@@ -65,7 +67,26 @@ impl FlightEnvelope {
         self.mechanical
     }
 
-    /// The lofts that all limits except the terrain allow: the intersection of the intervals in [`limits`].
+    /// The take-off speeds that the machine can be commanded.
+    #[inline]
+    pub const fn takeoff_speeds(&self) -> &TakeoffSpeeds {
+        &self.speeds
+    }
+
+    /// Whether the machine can be commanded an arc of an interval that all other limits allow.
+    #[inline]
+    pub fn commands(&self, sight: LineOfSight, lofts: SlopeInterval) -> bool {
+        self.speeds.allow(sight, lofts, self.gravity.m_s2())
+    }
+
+    /// The loft to fly of an interval that all other limits allow, of those that the machine can be commanded; for an interval
+    /// without any, that of a machine of any speed.
+    #[inline]
+    pub fn loft(&self, choice: TakeoffChoice, sight: LineOfSight, lofts: SlopeInterval) -> f64 {
+        self.speeds.loft(choice, sight, lofts, self.gravity.m_s2()).unwrap_or_else(|| choice.loft(sight, lofts))
+    }
+
+    /// The lofts that all limits except the terrain and the machine's commands allow: the intersection of the intervals in [`limits`].
     ///
     /// Source: CHTA paper, eq. 21 without eq. 14.
     ///

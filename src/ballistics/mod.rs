@@ -23,11 +23,14 @@
 //! | landing speed `v`, `q = v^2 / (g X)` | `n^2 - 2 (q + b) n + (1 + b^2) <= 0` |
 //! | a vertex seen at slope `s` from the take-off, from which the landing is seen at slope `t` | `n >= s - t` |
 //! | flight time `T` | `n <= g T^2 / (2 X)` |
+//! | least take-off speed `v` | `n^2 - 2 (q - b) n + (1 + b^2) >= 0`: up to two windows |
+//! | take-off speed levels | the roots for each level: single lofts |
 //!
 //! Least take-off and least landing speed are both at `n = sqrt(1 + b^2)`.
 
 mod arc;
 mod choice;
+mod commands;
 mod delta_v;
 mod flight_envelope;
 mod greatest_reach;
@@ -35,8 +38,9 @@ pub mod limits;
 mod line_of_sight;
 mod safety;
 
-pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s, lofts_of_speed};
+pub use arc::{Arc, least_landing_speed_m_s, least_takeoff_speed_m_s};
 pub use choice::TakeoffChoice;
+pub use commands::{TakeoffSpeeds, TakeoffWindow};
 pub use delta_v::{STANDARD_GRAVITY_M_S2, delta_v_m_s, propellant_kg};
 pub use flight_envelope::{ContactLimits, FlightEnvelope};
 pub use greatest_reach::{landing_reach_m, takeoff_reach_m};

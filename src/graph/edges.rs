@@ -19,7 +19,7 @@ use crate::{
 /// An edge between two nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Edge {
-    /// One hop, with its feasible lofts.
+    /// One hop, with the lofts of [`HopTest::lofts`].
     Hop(SlopeInterval),
     /// Several hops along one segment.
     Along(SegmentHops),
@@ -95,7 +95,7 @@ impl HopGraph {
         let Some(sight) = self.test.line_of_sight(takeoff, landing) else { return Cost::default() };
         let g = self.test.gravity_m_s2();
         match edge {
-            Edge::Hop(lofts) => self.effort.cost(&Arc::new(sight, self.choice.loft(sight, lofts), g), 1),
+            Edge::Hop(lofts) => self.effort.cost(&Arc::new(sight, self.test.loft(self.choice, sight, lofts), g), 1),
             Edge::Along(along) => {
                 let (each_m, last_m) = along.lengths_m(self.split);
                 let arc = |length_m| along.arc(&self.test, length_m, self.choice);

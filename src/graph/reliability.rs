@@ -292,7 +292,7 @@ pub(super) fn edge_weight(
     let tolerance_m = reliability.goal_tolerance_m.filter(|_| nodes.goal() == NodeId(to));
     match graph.edge(&takeoff, &landing) {
         Ok(Edge::Hop(lofts)) => test.line_of_sight(&takeoff, &landing).map_or(0.0, |sight| {
-            let arc = Arc::new(sight, options.takeoff.loft(sight, lofts), test.gravity_m_s2());
+            let arc = Arc::new(sight, test.loft(options.takeoff, sight, lofts), test.gravity_m_s2());
             reliability.model.weight(test, &PlannedHop { takeoff, landing, arc, lofts, tolerance_m })
         }),
         Ok(Edge::Along(along)) => {

@@ -348,10 +348,11 @@ impl Surface for ChainGround {
 }
 
 impl Windows for ChainGround {
-    /// As [`HopTest::lofts`]: at most one window.
+    /// The windows of [`HopTest::windows`].
     fn windows(&self, takeoff: &ChainPosition, landing: &ChainPosition) -> Option<TakeoffWindows> {
         let sight = self.test.line_of_sight(&takeoff.station, &landing.station)?;
-        Some(TakeoffWindows { sight, lofts: self.test.lofts(&takeoff.station, &landing.station).into_iter().collect() })
+        let lofts = self.test.lofts(&takeoff.station, &landing.station).ok();
+        Some(TakeoffWindows::of(self.test.takeoff_speeds(), sight, lofts, self.test.gravity_m_s2()))
     }
 }
 

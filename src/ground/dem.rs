@@ -315,7 +315,7 @@ impl DemGround {
             }
         }
         // A walk that ends earlier has met no-data.
-        (reached_m >= end_m).then_some(lofts)
+        (reached_m >= end_m && self.envelope.commands(sight, lofts)).then_some(lofts)
     }
 
     /// What the nominal ground allows on a facet next to a contact, and its friction; `None` where an overlay ends.
@@ -476,10 +476,10 @@ impl Surface for DemGround {
 }
 
 impl Windows for DemGround {
-    /// Slices the DEM between the two positions and runs the hop test on the slice: at most one window.
+    /// Slices the DEM between the two positions and runs the hop test on the slice.
     fn windows(&self, takeoff: &MapPosition, landing: &MapPosition) -> Option<TakeoffWindows> {
         let (sight, lofts) = end_to_end(self.chain(takeoff.at, landing.at).ok()?)?;
-        Some(TakeoffWindows { sight, lofts: lofts.into_iter().collect() })
+        Some(TakeoffWindows::of(self.envelope.takeoff_speeds(), sight, lofts, self.envelope.gravity_m_s2()))
     }
 }
 

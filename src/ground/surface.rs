@@ -5,8 +5,9 @@ use std::{fmt, ops::ControlFlow};
 use nalgebra::{Point3, Vector2, Vector3};
 
 use crate::{
+    ballistics::{LineOfSight, TakeoffSpeeds},
     chain::{ContactRule, GroundRefusal, LineConstraints, Station},
-    quantity::{ChainPoint, MapPoint, VertexId},
+    quantity::{ChainPoint, MapPoint, SlopeInterval, VertexId},
     world::{Contact, FrictionCone, Gravity, Hopper},
 };
 
@@ -224,10 +225,18 @@ pub trait Surface {
 #[derive(Clone, Debug, PartialEq)]
 pub struct TakeoffWindows {
     /// The line of sight that the lofts refer to.
-    pub sight: crate::ballistics::LineOfSight,
+    pub sight: LineOfSight,
     /// Intervals of the loft, the take-off slope minus the slope of `sight`, ascending and disjoint; empty if no arc is feasible.
-    /// Over ground without overhangs there is at most one.
-    pub lofts: Vec<crate::quantity::SlopeInterval>,
+    /// Over ground without overhangs there is at most one, unless the machine cannot be commanded every take-off speed.
+    pub lofts: Vec<SlopeInterval>,
+}
+
+impl TakeoffWindows {
+    /// Those that the machine's take-off speeds leave of the lofts that all other limits allow.
+    pub(super) fn of(speeds: &TakeoffSpeeds, sight: LineOfSight, lofts: Option<SlopeInterval>, gravity_m_s2: f64) -> Self {
+        let windows = lofts.into_iter().flat_map(|lofts| speeds.windows(sight, lofts, gravity_m_s2));
+        Self { sight, lofts: windows.map(|window| window.lofts).collect() }
+    }
 }
 
 /// A ground that gives the feasible arcs between two contacts in closed form.

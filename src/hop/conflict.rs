@@ -2,9 +2,11 @@
 
 use std::fmt;
 
-use super::LimitInterval;
+use super::{Binding, HopTest, LimitInterval};
 use crate::{
+    ballistics::{Arc, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_takeoff_speed_m_s},
     chain::GroundRefusal,
+    quantity::SlopeInterval,
     world::{Contact, Limit},
 };
 
@@ -53,9 +55,53 @@ pub enum Conflict {
         /// By how much the lower bound exceeds the upper bound, degrees.
         gap_deg: f64,
     },
+    /// The machine has none of the take-off speeds of the arcs that all other limits leave.
+    Commands {
+        /// The limit on the machine's take-off speeds.
+        limit: Limit,
+        /// The other limit that leaves too little: of the two that set the ends of what the others leave, the one beyond which the
+        /// nearest speed lies that the machine has.
+        other: LimitInterval,
+        /// The least and the greatest take-off speed that the others leave, m/s.
+        left_m_s: [f64; 2],
+        /// The nearest speed that the machine and some arc have, m/s.
+        nearest_m_s: f64,
+    },
 }
 
 impl Conflict {
+    /// The conflict of the machine's take-off speeds with an interval of lofts that all other limits leave.
+    pub(super) fn of_commands(
+        test: &HopTest,
+        sight: LineOfSight,
+        lofts: SlopeInterval,
+        binding: Binding,
+        command: LimitInterval,
+    ) -> Self {
+        let speed_m_s = |loft: f64| match loft {
+            loft if loft <= 0.0 || loft.is_infinite() => f64::INFINITY,
+            loft => Arc::new(sight, loft, test.gravity_m_s2()).takeoff_speed_m_s(),
+        };
+        let ends_m_s = [speed_m_s(lofts.lower), speed_m_s(lofts.upper)];
+        let left_m_s = [speed_m_s(TakeoffChoice::LeastSpeed.loft(sight, lofts)), ends_m_s[0].max(ends_m_s[1])];
+        let away_m_s = |speed_m_s: f64| (left_m_s[0] - speed_m_s).max(speed_m_s - left_m_s[1]);
+        let nearest_m_s = match test.takeoff_speeds() {
+            TakeoffSpeeds::Any => left_m_s[0],
+            TakeoffSpeeds::AtLeast(least_m_s) => *least_m_s,
+            TakeoffSpeeds::Levels(levels) => {
+                // A speed below that of the slowest arc of all is no remedy.
+                let slowest_m_s = least_takeoff_speed_m_s(sight, test.gravity_m_s2());
+                let possible = levels.as_slice().iter().filter(|level| **level >= slowest_m_s);
+                let nearest = possible.min_by(|a, b| away_m_s(**a).total_cmp(&away_m_s(**b)));
+                nearest.copied().unwrap_or(levels.highest_m_s())
+            }
+        };
+        // Faster arcs lie beyond either end, and beyond the faster one is the nearest; slower ones beyond the slower end.
+        let beyond_lower = (ends_m_s[0] > ends_m_s[1]) == (nearest_m_s > left_m_s[0]);
+        let other = if beyond_lower { binding.lower } else { binding.upper };
+        Self::Commands { limit: command.limit, other, left_m_s, nearest_m_s }
+    }
+
     /// The limit under which this conflict is counted: the one that refuses alone, or the one of a pair with the lower bound,
     /// unless that is only the line of sight.
     pub const fn counted_under(&self) -> Limit {
@@ -65,6 +111,7 @@ impl Conflict {
                 Limit::LineOfSight => upper.limit,
                 limit => limit,
             },
+            Self::Commands { limit, .. } => *limit,
         }
     }
 }
@@ -98,6 +145,13 @@ impl fmt::Display for Conflict {
                     (Some(vertex), _) => write!(f, ", over vertex {}", vertex.index() + 1),
                     (None, Some(x_m)) => write!(f, ", for the clearance over the ground at x = {x_m} m"),
                     (None, None) => Ok(()),
+                }
+            }
+            Self::Commands { limit, left_m_s: [least, greatest], nearest_m_s, .. } => {
+                write!(f, "{limit} leaves no arc: the other limits leave take-off speeds from {least:.6} to {greatest:.6} m/s, ")?;
+                match limit {
+                    Limit::TakeoffSpeedMin => write!(f, "the least one of the machine is {nearest_m_s} m/s"),
+                    _ => write!(f, "the nearest one that the machine has is {nearest_m_s} m/s"),
                 }
             }
         }

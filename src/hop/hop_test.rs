@@ -4,7 +4,7 @@ use std::sync::{Arc, OnceLock};
 
 use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief, risk::FootingSamples, terrain::kinks_loft};
 use crate::{
-    ballistics::{FlightEnvelope, LineOfSight, limits},
+    ballistics::{FlightEnvelope, LineOfSight, TakeoffChoice, TakeoffSpeeds, TakeoffWindow, limits},
     chain::{ConstrainedChain, ContactRule, Footing, Station, contacts_stand},
     quantity::{SegmentId, SlopeInterval},
     world::{Contact, Direction, Hopper, Limit},
@@ -29,8 +29,8 @@ pub struct HopTest {
 struct Tables {
     /// Bounds of height and speed over any part of the chain.
     relief: OnceLock<Relief>,
-    /// The reach of one hop along each segment, by direction.
-    reaches: OnceLock<Vec<[Option<SegmentReach>; 2]>>,
+    /// The possible hops along each segment, by direction.
+    reaches: OnceLock<Vec<[Vec<SegmentReach>; 2]>>,
     /// Where the hopper's footprint stands, for estimates of risk.
     footing: OnceLock<Option<FootingSamples>>,
 }
@@ -80,11 +80,11 @@ impl HopTest {
         self.tables.footing.get_or_init(|| FootingSamples::of(&self.chain)).as_ref()
     }
 
-    /// The reach of one hop along each segment, by direction.
-    fn reaches(&self) -> &[[Option<SegmentReach>; 2]] {
+    /// The possible hops along each segment, by direction.
+    fn reaches(&self) -> &[[Vec<SegmentReach>; 2]] {
         self.tables.reaches.get_or_init(|| {
             (0..self.chain.segments().len())
-                .map(|i| Direction::BOTH.map(|direction| SegmentReach::on(self, SegmentId(i), direction)))
+                .map(|i| Direction::BOTH.map(|direction| SegmentReach::all_on(self, SegmentId(i), direction)))
                 .collect()
         })
     }
@@ -113,10 +113,13 @@ impl HopTest {
     ///
     /// Cheap limits are tested first and the terrain last; the test stops at the first point of the ground that leaves no arc.
     ///
+    /// Of a machine that cannot be commanded every take-off speed, the interval is that of all other limits: it contains an arc that
+    /// the machine has, [`windows`](Self::windows) are all of them, and [`loft`](Self::loft) is the one to fly.
+    ///
     /// Source: CHTA paper, eq. 21.
     ///
     /// # Errors
-    /// The first limit, in the order of testing (ground, bends, speeds, cones, take-off mechanism, apex and time, terrain), that
+    /// The first limit, in the order of testing (ground, bends, speeds, cones, take-off mechanism, apex and time, terrain, commands), that
     /// leaves no arc together with those before it. [`takeoff_set`](Self::takeoff_set) evaluates every limit. [`Limit::Direction`]
     /// if both stations have the same x.
     #[inline]
@@ -144,7 +147,35 @@ impl HopTest {
                 return Err(Limit::Terrain);
             }
         }
-        Ok(SlopeInterval { lower, upper: in_envelope.upper })
+        let lofts = SlopeInterval { lower, upper: in_envelope.upper };
+        match self.refused_command(sight, lofts) {
+            None => Ok(lofts),
+            Some(limit) => Err(limit),
+        }
+    }
+
+    /// The limit on the machine's take-off speeds, if it leaves none of the lofts that all other limits allow.
+    #[inline]
+    pub(crate) fn refused_command(&self, sight: LineOfSight, lofts: SlopeInterval) -> Option<Limit> {
+        let speeds = self.envelope.takeoff_speeds();
+        if speeds.are_any() || self.envelope.commands(sight, lofts) { None } else { speeds.limit() }
+    }
+
+    /// The take-off speeds that the machine can be commanded.
+    #[inline]
+    pub const fn takeoff_speeds(&self) -> &TakeoffSpeeds {
+        self.envelope.takeoff_speeds()
+    }
+
+    /// The windows of an interval of [`lofts`](Self::lofts) over a line of sight that the machine can be commanded, ascending.
+    pub fn windows(&self, sight: LineOfSight, lofts: SlopeInterval) -> impl Iterator<Item = TakeoffWindow> + '_ {
+        self.envelope.takeoff_speeds().windows(sight, lofts, self.gravity_m_s2())
+    }
+
+    /// The loft to fly of an interval of [`lofts`](Self::lofts) over a line of sight.
+    #[inline]
+    pub fn loft(&self, choice: TakeoffChoice, sight: LineOfSight, lofts: SlopeInterval) -> f64 {
+        self.envelope.loft(choice, sight, lofts)
     }
 
     /// The rule of a contact, or the limit by which the ground refuses it.
@@ -240,9 +271,16 @@ impl HopTest {
     pub fn segment_hops(&self, takeoff: &Station, landing: &Station) -> Option<SegmentHops> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let segment = takeoff.shared_segment(landing)?;
-        let reach = self.segment_reach(segment, direction)?;
-        let hops = reach.hops_over((landing.point.x_m - takeoff.point.x_m).abs())?;
-        if self.chain.footprint().is_some() { self.hops_that_stand(takeoff, landing, segment, hops) } else { Some(hops) }
+        let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
+        let ranges = self.segment_reaches(segment, direction);
+        let alone = ranges.iter().filter_map(|reach| reach.hops_over(run_m));
+        let pairs = ranges.iter().flat_map(|reach| ranges.iter().map(move |last| (reach, last)));
+        let mixed = pairs.filter(|(reach, last)| reach != last).filter_map(|(reach, last)| reach.hops_before(last, run_m));
+        let found = alone.chain(mixed).filter(|hops| hops.reach().flies(self, hops));
+        if self.chain.footprint().is_some() {
+            return found.filter_map(|hops| self.hops_that_stand(takeoff, landing, segment, hops)).min_by_key(SegmentHops::hops);
+        }
+        found.min_by_key(SegmentHops::hops)
     }
 
     /// The hops along a segment with the splits of which the footprint allows every contact; `None` if it allows no split.
@@ -264,6 +302,12 @@ impl HopTest {
 
     /// The reach of one hop along a segment; `None` if its ground allows no hop along it.
     pub fn segment_reach(&self, segment: SegmentId, direction: Direction) -> Option<SegmentReach> {
-        self.reaches().get(segment.index()).and_then(|both| both[direction as usize])
+        self.segment_reaches(segment, direction).first().copied()
+    }
+
+    /// The possible hops along a segment: ranges of their length, the longest first. There are several only for a machine that cannot
+    /// be commanded every take-off speed.
+    pub fn segment_reaches(&self, segment: SegmentId, direction: Direction) -> &[SegmentReach] {
+        self.reaches().get(segment.index()).map_or(&[], |both| &both[direction as usize])
     }
 }

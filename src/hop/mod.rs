@@ -20,6 +20,6 @@ pub use margins::{HopMargins, MARGINS, MarginRow};
 pub use reach_along_sight::ReachAlongSight;
 pub use risk::{HopDeviations, InvalidDeviation, PlannedHop, RiskModel};
 pub use segment_hops::{SegmentHops, SegmentReach, Split};
-pub use takeoff_set::{Binding, LimitInterval, TakeoffSet};
+pub use takeoff_set::{Binding, LimitInterval, SetWindow, TakeoffSet};
 pub use terrain::{TerrainPoint, terrain_limit};
 pub(crate) use terrain::{first_ahead, flown_past, ground_slope, slope_beyond};

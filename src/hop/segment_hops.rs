@@ -1,5 +1,7 @@
 //! Several hops along one segment.
 
+mod commanded;
+
 use super::HopTest;
 use crate::{
     ballistics::{Arc, LineOfSight, TakeoffChoice, limits},
@@ -71,11 +73,23 @@ pub struct SegmentHops {
     hops: u64,
     /// The only split whose contacts the hopper's footprint allows, if it does not allow both.
     only: Option<Split>,
+    /// The range of lengths of the last hop, if that is another one.
+    last: Option<SegmentReach>,
 }
 
 impl SegmentReach {
-    /// The reach along a segment; `None` if its ground or its cones allow no arc along it.
-    pub(super) fn on(test: &HopTest, segment: SegmentId, direction: Direction) -> Option<Self> {
+    /// The ranges of length of hops along a segment, the longest first; none if its ground or its cones allow no arc along it. There
+    /// is one unless the machine cannot be commanded every take-off speed.
+    pub(super) fn all_on(test: &HopTest, segment: SegmentId, direction: Direction) -> Vec<Self> {
+        match Self::on(test, segment, direction) {
+            Some(reach) if test.takeoff_speeds().are_any() => vec![reach],
+            Some(reach) => commanded::ranges(reach, test),
+            None => Vec::new(),
+        }
+    }
+
+    /// The reach along a segment for a machine of any take-off speed; `None` if its ground or its cones allow no arc along it.
+    fn on(test: &HopTest, segment: SegmentId, direction: Direction) -> Option<Self> {
         let constraints = test.chain().segments().get(segment.index())?;
         let from = constraints.allowed(Contact::Takeoff, direction)?;
         let to = constraints.allowed(Contact::Landing, direction)?;
@@ -104,6 +118,12 @@ impl SegmentReach {
             return None;
         }
         if test.clearance().has_kinks() { by_others.with_clearance(test, &ends) } else { Some(by_others) }
+    }
+
+    /// Whether the machine has the arcs of every split of these hops.
+    pub(super) fn flies(&self, test: &HopTest, hops: &SegmentHops) -> bool {
+        let lengths_m = Split::ALL.into_iter().flat_map(|split| <[f64; 2]>::from(hops.lengths_m(split)));
+        test.takeoff_speeds().are_any() || lengths_m.into_iter().all(|length_m| self.has_commanded_arc(test, length_m))
     }
 
     /// The lengths that a tapered clearance leaves of those from 0 to the reach.
@@ -162,7 +182,7 @@ impl SegmentReach {
         self.reach_m
     }
 
-    /// The horizontal distance of the shortest hop, m: 0 unless a tapered clearance refuses short hops.
+    /// The horizontal distance of the shortest hop, m: 0 unless a tapered clearance or the machine's take-off speeds refuse short hops.
     pub const fn shortest_m(&self) -> f64 {
         self.shortest_m
     }
@@ -212,7 +232,15 @@ impl SegmentReach {
             return if self.near_m > 0.0 { near.hops_over(run_m) } else { None };
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1 and at most 2^53")]
-        (hops <= 9_007_199_254_740_992.0).then_some(SegmentHops { reach: *self, run_m, hops: hops as u64, only: None })
+        (hops <= 9_007_199_254_740_992.0).then_some(SegmentHops { reach: *self, run_m, hops: hops as u64, only: None, last: None })
+    }
+
+    /// The least number of hops over a distance of which all but the last have lengths of this range, and the last one of another.
+    pub(super) fn hops_before(&self, last: &Self, run_m: f64) -> Option<SegmentHops> {
+        let before = ((run_m - last.tolerant_reach_m) / self.tolerant_reach_m).ceil().max(1.0);
+        let fits = before * self.shortest_m + last.shortest_m <= run_m && before < 9_007_199_254_740_992.0;
+        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1 and below 2^53")]
+        fits.then(|| SegmentHops { reach: *self, run_m, hops: before as u64 + 1, only: None, last: Some(*last) })
     }
 }
 
@@ -232,9 +260,22 @@ impl SegmentHops {
     /// If the hopper's footprint allows the contacts of one split alone, that one is taken. With full reach the last hop covers the
     /// rest. If rounding leaves a rest slightly over the reach (a stretch of exactly
     /// a multiple of the reach), or under the shortest hop, the hops are equal.
+    ///
+    /// A last hop of another range of lengths covers the rest as well; with equal hops the others are as near to the mean as the ranges
+    /// allow.
     #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
     pub fn lengths_m(&self, split: Split) -> (f64, f64) {
         let (equal, split) = (self.equal_m(), self.only.unwrap_or(split));
+        if let Some(last) = self.last {
+            let before = (self.hops - 1) as f64;
+            let least = self.reach.shortest_m.max((self.run_m - last.stride_m) / before);
+            let most = self.reach.stride_m.min((self.run_m - last.shortest_m) / before);
+            let each = match split {
+                Split::FullReach => most,
+                Split::Equal => equal.max(least).min(most),
+            };
+            return (each, self.run_m - before * each);
+        }
         let stride_m = self.reach.stride_m;
         let rest = self.run_m - (self.hops - 1) as f64 * stride_m;
         match split {
@@ -263,25 +304,25 @@ impl SegmentHops {
         }
     }
 
+    /// Whether a last hop that rounding has changed may have this length, after others of a length.
+    pub fn may_end_m(&self, each_m: f64, last_m: f64) -> bool {
+        self.last.is_some() || (last_m <= each_m && last_m >= self.reach.shortest_m)
+    }
+
     /// The arc of a hop of this length along the segment, selected by `choice`.
     ///
     /// With the mid-range choice each hop takes the middle of its own set, between the line of sight and the vertical (model
     /// section 3); a hop of full reach has only one arc.
     pub fn arc(&self, test: &HopTest, length_m: f64, choice: TakeoffChoice) -> Arc {
         let sight = LineOfSight::along(length_m, self.reach.sight_slope);
-        Arc::new(sight, choice.loft(sight, self.lofts(test, length_m)), test.gravity_m_s2())
+        Arc::new(sight, test.loft(choice, sight, self.lofts(test, length_m)), test.gravity_m_s2())
     }
 
-    /// The feasible lofts of a hop of this length along the segment; at least a single loft.
+    /// The lofts that all limits but the machine's take-off speeds allow a hop of this length along the segment; at least a single loft.
     pub fn lofts(&self, test: &HopTest, length_m: f64) -> SlopeInterval {
-        let sight = LineOfSight::along(length_m, self.reach.sight_slope);
         // At full reach the set is a single loft, which rounding may lose.
         let only = SlopeInterval { lower: self.reach.loft, upper: self.reach.loft };
-        let clearance = test.clearance();
-        let clearing = if clearance.has_kinks() { clearance.kink_loft(0.0, length_m) } else { f64::NEG_INFINITY };
-        let cleared = |lofts: SlopeInterval| SlopeInterval { lower: lofts.lower.max(clearing), ..lofts };
-        let found = test.lofts_in_envelope(sight, &self.reach.from, &self.reach.to).map(cleared);
-        found.ok().filter(|lofts| !lofts.is_empty()).unwrap_or(only)
+        self.reach.lofts_of(test, length_m).unwrap_or(only)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Conflict, HopTest, Shortfall, TerrainPoint, terrain_limit};
 use crate::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice, least_landing_speed_m_s, least_takeoff_speed_m_s, limits},
+    ballistics::{Arc, LineOfSight, TakeoffChoice, TakeoffSpeeds, least_landing_speed_m_s, least_takeoff_speed_m_s, limits},
     chain::{ContactRule, Station},
     quantity::{Angle, AngleInterval, SlopeInterval, VertexId},
     world::{Contact, Direction, Limit},
@@ -19,6 +19,8 @@ pub struct LimitInterval {
     pub vertex: Option<VertexId>,
     /// For the terrain: the x of the kink of the clearance that sets the limit, m along the chain.
     pub kink_x_m: Option<f64>,
+    /// The lofts between the ends of `lofts` that it refuses, if it does: those of arcs slower than a least take-off speed.
+    pub gap: Option<SlopeInterval>,
     /// By how much it refuses every arc, if it does.
     pub shortfall: Option<Shortfall>,
 }
@@ -38,13 +40,24 @@ pub struct TakeoffSet {
     direction: Direction,
     sight: LineOfSight,
     limits: Vec<LimitInterval>,
+    speeds: TakeoffSpeeds,
     verdict: Verdict,
 }
 
-/// The combined result of all limits.
+/// One window of a feasible set.
 #[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SetWindow {
+    /// Its lofts.
+    pub lofts: SlopeInterval,
+    /// The limits that set its ends.
+    pub binding: Binding,
+}
+
+/// The combined result of all limits.
+#[derive(Clone, Debug, PartialEq)]
 enum Verdict {
-    Feasible(SlopeInterval, Binding),
+    /// The interval that all limits but the machine's take-off speeds leave, and the windows of it.
+    Feasible(SlopeInterval, Vec<SetWindow>),
     Refused(Conflict),
 }
 
@@ -54,8 +67,8 @@ impl TakeoffSet {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let sight = test.line_of_sight(takeoff, landing)?;
         let limits = all_limits(test, takeoff, landing, direction, sight);
-        let verdict = evaluate(sight, &limits);
-        Some(Self { direction, sight, limits, verdict })
+        let verdict = evaluate(test, sight, &limits);
+        Some(Self { direction, sight, limits, speeds: *test.takeoff_speeds(), verdict })
     }
 
     /// The direction of travel.
@@ -73,7 +86,7 @@ impl TakeoffSet {
         &self.limits
     }
 
-    /// The feasible lofts; `None` if the hop is infeasible.
+    /// As [`HopTest::lofts`]: the lofts that all limits but the machine's take-off speeds allow; `None` if the hop is infeasible.
     pub fn lofts(&self) -> Option<SlopeInterval> {
         match self.verdict {
             Verdict::Feasible(lofts, _) => Some(lofts),
@@ -81,12 +94,30 @@ impl TakeoffSet {
         }
     }
 
-    /// The limits that set the ends of the feasible set; `None` if it is empty.
-    pub fn binding(&self) -> Option<Binding> {
-        match self.verdict {
-            Verdict::Feasible(_, binding) => Some(binding),
-            Verdict::Refused(_) => None,
+    /// The windows of the feasible set, ascending; empty if the hop is infeasible.
+    pub fn windows(&self) -> &[SetWindow] {
+        match &self.verdict {
+            Verdict::Feasible(_, windows) => windows,
+            Verdict::Refused(_) => &[],
         }
+    }
+
+    /// The limits that set the least and the greatest angle of the feasible set; `None` if it is empty.
+    pub fn binding(&self) -> Option<Binding> {
+        let (first, last) = (self.windows().first()?, self.windows().last()?);
+        Some(Binding { lower: first.binding.lower, upper: last.binding.upper })
+    }
+
+    /// From the least to the greatest feasible take-off angle, whatever lies between them; `None` if the hop is infeasible.
+    pub fn angles(&self) -> Option<AngleInterval> {
+        let (first, last) = (self.windows().first()?, self.windows().last()?);
+        self.angles_of(SlopeInterval { lower: first.lofts.lower, upper: last.lofts.upper })
+    }
+
+    /// The window with a loft, or else the one nearest to it; `None` if the hop is infeasible.
+    pub fn window_of(&self, loft: f64) -> Option<SetWindow> {
+        let outside = |window: &SetWindow| (window.lofts.lower - loft).max(loft - window.lofts.upper).max(0.0);
+        self.windows().iter().min_by(|a, b| outside(a).total_cmp(&outside(b))).copied()
     }
 
     /// Why the set is empty; `None` if it is not.
@@ -97,11 +128,6 @@ impl TakeoffSet {
         }
     }
 
-    /// The feasible take-off angles; `None` if the hop is infeasible.
-    pub fn angles(&self) -> Option<AngleInterval> {
-        self.angles_of(self.lofts()?)
-    }
-
     /// Lofts as take-off angles; `None` for an empty interval.
     pub fn angles_of(&self, lofts: SlopeInterval) -> Option<AngleInterval> {
         lofts.shifted(self.sight.slope()).angles()
@@ -109,7 +135,8 @@ impl TakeoffSet {
 
     /// The arc selected by `choice`; `None` if the hop is infeasible.
     pub fn arc(&self, choice: TakeoffChoice, gravity_m_s2: f64) -> Option<Arc> {
-        Some(Arc::new(self.sight, choice.loft(self.sight, self.lofts()?), gravity_m_s2))
+        let loft = self.speeds.loft(choice, self.sight, self.lofts()?, gravity_m_s2)?;
+        Some(Arc::new(self.sight, loft, gravity_m_s2))
     }
 }
 
@@ -119,6 +146,7 @@ const ABOVE_SIGHT: LimitInterval = LimitInterval {
     lofts: SlopeInterval { lower: 0.0, upper: f64::INFINITY },
     vertex: None,
     kink_x_m: None,
+    gap: None,
     shortfall: None,
 };
 
@@ -131,7 +159,8 @@ fn all_limits(
     sight: LineOfSight,
 ) -> Vec<LimitInterval> {
     let mut found = Vec::with_capacity(Limit::ALL.len());
-    let mut add = |limit, lofts, vertex, shortfall| found.push(LimitInterval { limit, lofts, vertex, kink_x_m: None, shortfall });
+    let mut add =
+        |limit, lofts, vertex, shortfall| found.push(LimitInterval { limit, lofts, vertex, kink_x_m: None, gap: None, shortfall });
     let mut allowed = |contact, station: &Station| -> Option<ContactRule> {
         match test.chain().check_contact(station, contact, direction) {
             Ok(rule) => Some(rule),
@@ -169,6 +198,7 @@ fn all_limits(
     add(Limit::LineOfSight, ABOVE_SIGHT.lofts, None, None);
     machine_limits(test, sight, &mut add);
     found.push(terrain(test, takeoff, landing, sight));
+    found.extend(commands(test, sight));
     found.sort_by_key(|limit| limit.limit);
     found
 }
@@ -181,7 +211,7 @@ fn terrain(test: &HopTest, takeoff: &Station, landing: &Station, sight: LineOfSi
         Some(TerrainPoint::Kink(x_m)) => (None, Some(x_m)),
         None => (None, None),
     };
-    LimitInterval { limit: Limit::Terrain, lofts, vertex, kink_x_m, shortfall: None }
+    LimitInterval { limit: Limit::Terrain, lofts, vertex, kink_x_m, gap: None, shortfall: None }
 }
 
 /// The limits of the machine that this hopper has.
@@ -204,13 +234,36 @@ fn machine_limits(
     }
 }
 
+/// The take-off speeds that the machine can be commanded, if they are a limit.
+fn commands(test: &HopTest, sight: LineOfSight) -> Option<LimitInterval> {
+    let (g, speeds) = (test.gravity_m_s2(), test.takeoff_speeds());
+    let limit = speeds.limit()?;
+    let (mut lofts, mut gap, mut shortfall) = (SlopeInterval::ALL, None, None);
+    match speeds {
+        TakeoffSpeeds::Any => return None,
+        TakeoffSpeeds::AtLeast(least_m_s) => gap = limits::takeoff_speed_min(sight, *least_m_s, g),
+        TakeoffSpeeds::Levels(levels) => {
+            // From the flattest to the steepest arc of all levels.
+            let hull = |all: SlopeInterval, one: SlopeInterval| SlopeInterval {
+                lower: all.lower.min(one.lower),
+                upper: all.upper.max(one.upper),
+            };
+            lofts = speeds.windows(sight, SlopeInterval::ALL, g).map(|window| window.lofts).fold(SlopeInterval::EMPTY, hull);
+            let needed_m_s = least_takeoff_speed_m_s(sight, g);
+            shortfall = lofts.is_empty().then(|| Shortfall::Speed { needed_m_s, limit_m_s: levels.highest_m_s() });
+        }
+    }
+    Some(LimitInterval { limit, lofts, vertex: None, kink_x_m: None, gap, shortfall })
+}
+
 /// The intersection of all limits with those that set its ends, or the conflict that leaves it empty.
-fn evaluate(sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
+fn evaluate(test: &HopTest, sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
     if let Some(alone) = limits.iter().find(|limit| limit.lofts.is_empty()) {
         return Verdict::Refused(Conflict::Alone(*alone));
     }
     let mut binding = Binding { lower: ABOVE_SIGHT, upper: ABOVE_SIGHT };
-    for &limit in limits {
+    let commanded = test.takeoff_speeds().limit();
+    for &limit in limits.iter().filter(|limit| Some(limit.limit) != commanded) {
         if limit.lofts.lower > binding.lower.lofts.lower {
             binding.lower = limit;
         }
@@ -227,5 +280,18 @@ fn evaluate(sight: LineOfSight, limits: &[LimitInterval]) -> Verdict {
             gap_deg: angle(lofts.lower) - angle(lofts.upper),
         });
     }
-    Verdict::Feasible(lofts, binding)
+    // The machine's take-off speeds are the last of the limits: they cut the interval of the others.
+    let command = limits.iter().find(|limit| Some(limit.limit) == commanded).copied();
+    let end = |by: Option<Limit>, otherwise| command.filter(|command| by == Some(command.limit)).unwrap_or(otherwise);
+    let windows: Vec<_> = test
+        .windows(sight, lofts)
+        .map(|window| SetWindow {
+            lofts: window.lofts,
+            binding: Binding { lower: end(window.lower, binding.lower), upper: end(window.upper, binding.upper) },
+        })
+        .collect();
+    match command {
+        Some(command) if windows.is_empty() => Verdict::Refused(Conflict::of_commands(test, sight, lofts, binding, command)),
+        _ => Verdict::Feasible(lofts, windows),
+    }
 }

@@ -6,8 +6,8 @@ use crate::{
     chain::Station,
     graph::{Edge, Leg},
     ground::Surface,
-    hop::{HopMargins, HopTest, SegmentHops, Split, TakeoffSet},
-    quantity::SlopeInterval,
+    hop::{HopMargins, HopTest, SegmentHops, Split},
+    quantity::{Angle, AngleInterval, SlopeInterval},
     world::{Contact, Direction, Hopper, Limit},
 };
 
@@ -82,7 +82,7 @@ impl HopPath {
 /// The hop of a leg with one hop.
 fn single(test: &HopTest, leg: &Leg, lofts: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
     let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
-    let arc = Arc::new(sight, choice.loft(sight, lofts), test.gravity_m_s2());
+    let arc = Arc::new(sight, test.loft(choice, sight, lofts), test.gravity_m_s2());
     Some(hop(test, leg.takeoff, leg.landing, &arc, lofts, Limit::TakeoffSpeed))
 }
 
@@ -122,7 +122,7 @@ fn full_reach_m(leg: &Leg, along: &SegmentHops, direction: Direction, split: Spl
         landings.push(from_m);
     }
     let last_m = (leg.landing.point.x_m - from_m).abs();
-    (last_m <= each_m && last_m >= along.reach().shortest_m()).then_some(landings)
+    along.may_end_m(each_m, last_m).then_some(landings)
 }
 
 /// The x of all landings but the last for hops of equal length, m.
@@ -141,10 +141,19 @@ pub(super) fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc,
     let limit = |contact, station: &Station| {
         test.chain().check_contact(station, contact, direction).map_or(0.0, |rule| rule.speed_max_m_s())
     };
-    let binding = test.takeoff_set(&takeoff, &landing).as_ref().and_then(TakeoffSet::binding);
+    let set = test.takeoff_set(&takeoff, &landing);
+    let window = set.as_ref().and_then(|set| set.window_of(arc.loft()));
+    let binding = window.map(|window| window.binding);
+    let lofts = if test.takeoff_speeds().are_any() {
+        lofts
+    } else {
+        let flown = SlopeInterval { lower: arc.loft(), upper: arc.loft() };
+        window.map_or(flown, |window| window.lofts)
+    };
+    let angle = |loft: f64| Angle::from_slope(arc.line_of_sight().slope() + loft);
+    let angles = |lofts: SlopeInterval| AngleInterval { min: angle(lofts.lower), max: angle(lofts.upper) };
     let takeoff_speed_m_s = arc.takeoff_speed_m_s();
     let landing_speed_m_s = arc.landing_speed_m_s();
-    let angle = |loft: f64| crate::quantity::Angle::from_slope(arc.line_of_sight().slope() + loft);
     let (from, to) = (test.chain().contact_point(&takeoff), test.chain().contact_point(&landing));
     Hop {
         direction,
@@ -159,7 +168,7 @@ pub(super) fn hop(test: &HopTest, takeoff: Station, landing: Station, arc: &Arc,
         apex_z_m: takeoff.point.z_m + arc.apex_height_m(),
         delta_v_m_s: delta_v_m_s(arc, test.hopper().limits()),
         propellant: None,
-        takeoff_angles: crate::quantity::AngleInterval { min: angle(lofts.lower), max: angle(lofts.upper) },
+        takeoff_angles: angles(lofts),
         speed_margin_m_s: (limit(Contact::Takeoff, &takeoff) - takeoff_speed_m_s)
             .min(limit(Contact::Landing, &landing) - landing_speed_m_s),
         lower_limit: binding.map_or(otherwise, |b| b.lower.limit),

@@ -36,7 +36,8 @@ pub struct Hop {
     pub delta_v_m_s: f64,
     /// The propellant of the hop, if the specific impulse is known; [`HopPath::of_hops`] states it.
     pub propellant: Option<Propellant>,
-    /// All feasible take-off angles between the two contacts.
+    /// The window of feasible take-off angles that contains the one flown: all of them, unless the machine cannot be commanded every
+    /// take-off speed.
     pub takeoff_angles: AngleInterval,
     /// The smaller of the margins of take-off and landing speed to their limits, m/s; with brakes that of the take-off.
     pub speed_margin_m_s: f64,

@@ -14,12 +14,12 @@
 
 use super::{Aim, Hop, generate::hop};
 use crate::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice, lofts_of_speed},
+    ballistics::{Arc, LineOfSight, TakeoffChoice, limits},
     chain::Station,
     ground::{ChainGround, ChainPosition, FirstContact, LiftoffVelocity, Surface, heading_of},
     hop::HopTest,
     quantity::{Angle, SlopeInterval},
-    world::{CommandSteps, Direction, Limit, is_multiple, nearest_multiple, tolerant_speed_m_s},
+    world::{CommandSteps, Direction, Limit, SPEED_TOLERANCE, is_multiple, nearest_multiple, tolerant_speed_m_s},
 };
 
 /// No sequence of commands in the machine's steps flies a path that exact commands would.
@@ -182,7 +182,7 @@ impl Machine<'_> {
     fn commands(&self, takeoff: &Station, aim: &Station) -> Result<Vec<Command>, Limit> {
         let sight = self.test.line_of_sight(takeoff, aim).ok_or(Limit::Direction)?;
         let lofts = self.test.lofts(takeoff, aim)?;
-        let exact = self.arc(sight, self.choice.loft(sight, lofts));
+        let exact = self.arc(sight, self.test.loft(self.choice, sight, lofts));
         let (angle, speed_m_s) = (exact.takeoff_angle(), exact.takeoff_speed_m_s());
         Ok(match (self.steps.takeoff_angle, self.steps.takeoff_speed_m_s) {
             (None, None) => vec![(angle, speed_m_s)],
@@ -193,15 +193,21 @@ impl Machine<'_> {
                     angles.filter(inside).map(|angle| (angle, angle.slope() - sight.slope())).filter(|(_, loft)| *loft > 0.0);
                 arcs.flat_map(|(angle, loft)| {
                     let exact_m_s = self.arc(sight, loft).takeoff_speed_m_s();
-                    let speeds = speed_step.map_or_else(|| vec![exact_m_s], |step| multiples(exact_m_s, step).take(3).collect());
-                    speeds.into_iter().map(move |speed_m_s| (angle, speed_m_s))
+                    let mut speeds = match (speed_step, self.test.hopper().limits().takeoff_speed_levels) {
+                        (_, Some(levels)) => levels.as_slice().to_vec(),
+                        (Some(step), None) => multiples(exact_m_s, step).collect(),
+                        (None, None) => vec![exact_m_s],
+                    };
+                    speeds.sort_by(|a, b| (a - exact_m_s).abs().total_cmp(&(b - exact_m_s).abs()));
+                    speeds.into_iter().take(3).map(move |speed_m_s| (angle, speed_m_s))
                 })
                 .filter(|(_, speed_m_s)| *speed_m_s > 0.0)
                 .collect()
             }
             (None, Some(step)) => {
                 let speeds = multiples(speed_m_s, step).filter(|speed_m_s| *speed_m_s > 0.0);
-                let lofts = |speed_m_s: f64| lofts_of_speed(sight, speed_m_s, self.test.gravity_m_s2()).into_iter().flatten();
+                let gravity = self.test.gravity_m_s2();
+                let lofts = |speed_m_s: f64| limits::takeoff_speed_level(sight, speed_m_s, gravity, lofts).into_iter().flatten();
                 speeds
                     .flat_map(|speed_m_s| {
                         let mut both: Vec<f64> = lofts(speed_m_s).collect();
@@ -251,8 +257,12 @@ impl Machine<'_> {
     ) -> Option<Limit> {
         let slope = sight.slope() + loft;
         let tolerance = TOLERANCE * (1.0 + slope * slope);
+        let limits = self.test.hopper().limits();
         if speed_m_s > tolerant_speed_m_s(self.test.chain().speed_bounds_m_s().0) {
             return Some(Limit::TakeoffSpeed);
+        }
+        if limits.takeoff_speed_min_m_s.is_some_and(|least_m_s| speed_m_s < least_m_s * (1.0 - SPEED_TOLERANCE)) {
+            return Some(Limit::TakeoffSpeedMin);
         }
         let binding = || self.test.takeoff_set(takeoff, landing).and_then(|set| set.binding());
         if loft < lofts.lower - tolerance {

@@ -6,7 +6,7 @@ use super::{hop_margins::HopMarginsRecord, path_record::unsigned_zero};
 use crate::{
     ballistics::{Arc, TakeoffChoice, delta_v_m_s},
     chain::Station,
-    hop::{Conflict, HopMargins, HopTest, LimitInterval, ReachAlongSight, Shortfall, TakeoffSet},
+    hop::{Binding, Conflict, HopMargins, HopTest, LimitInterval, ReachAlongSight, SetWindow, Shortfall, TakeoffSet},
     quantity::{Angle, VertexId},
     world::{Contact, HopperLimits},
 };
@@ -22,14 +22,16 @@ pub struct HopAnswer {
     pub direction: &'static str,
     /// Whether a single hop is feasible.
     pub feasible: bool,
-    /// The least feasible take-off angle.
+    /// The least take-off angle of the window with the hop to fly.
     pub takeoff_angle_min_deg: Option<f64>,
-    /// The greatest feasible take-off angle.
+    /// The greatest take-off angle of the window with the hop to fly.
     pub takeoff_angle_max_deg: Option<f64>,
     /// Straight-line distance.
     pub line_of_sight_m: f64,
     /// Elevation angle of the straight line.
     pub line_of_sight_angle_deg: f64,
+    /// All windows of feasible take-off angles, ascending; empty if no hop is feasible.
+    pub windows: Vec<WindowRecord>,
     /// Each limit separately.
     pub limits: Vec<LimitRecord>,
     /// The limits that set the two ends, or the limits that conflict.
@@ -48,6 +50,31 @@ pub struct HopAnswer {
     pub segment_hops: Option<SegmentHopsRecord>,
 }
 
+/// One window of feasible take-off angles.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WindowRecord {
+    /// Its least take-off angle.
+    pub takeoff_angle_min_deg: f64,
+    /// Its greatest take-off angle.
+    pub takeoff_angle_max_deg: f64,
+    /// The limit that sets the least angle.
+    pub lower: WindowEndRecord,
+    /// The limit that sets the greatest angle.
+    pub upper: WindowEndRecord,
+}
+
+/// The limit that sets one end of a window.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WindowEndRecord {
+    /// Its name.
+    pub limit: &'static str,
+    /// For the terrain: the vertex that sets the end.
+    pub vertex: Option<VertexRecord>,
+    /// For the terrain: where between vertices the clearance sets the end, if it does, m along the chain.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub clearance_x_m: Option<f64>,
+}
+
 /// The take-off angles that one limit allows.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LimitRecord {
@@ -57,6 +84,9 @@ pub struct LimitRecord {
     pub min_deg: Option<f64>,
     /// The greatest take-off angle it allows; null if it refuses every arc.
     pub max_deg: Option<f64>,
+    /// Between these two, the angles that it refuses: those of arcs slower than the least take-off speed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub refused_deg: Option<[f64; 2]>,
     /// For the terrain: the vertex that sets the limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub vertex: Option<VertexRecord>,
@@ -175,9 +205,10 @@ impl HopAnswer {
     /// The answer for two stations; `None` where they share the same x.
     pub fn new(test: &HopTest, takeoff: &Station, landing: &Station, choice: TakeoffChoice) -> Option<Self> {
         let set = test.takeoff_set(takeoff, landing)?;
-        let angles = set.angles();
         let reach = test.reach_along_sight(takeoff, landing);
         let best = |choice| set.arc(choice, test.gravity_m_s2()).map(|arc| BestRecord::new(&arc, choice, test.hopper().limits()));
+        let window = set.arc(choice, test.gravity_m_s2()).and_then(|arc| set.window_of(arc.loft()));
+        let angles = window.and_then(|window| set.angles_of(window.lofts));
         Some(Self {
             from_x_m: takeoff.point.x_m,
             to_x_m: landing.point.x_m,
@@ -187,8 +218,9 @@ impl HopAnswer {
             takeoff_angle_max_deg: angles.map(|a| a.max.degrees()),
             line_of_sight_m: set.line_of_sight().length_m(),
             line_of_sight_angle_deg: unsigned_zero(set.line_of_sight().angle().degrees()),
+            windows: set.windows().iter().filter_map(|window| WindowRecord::new(test, &set, window)).collect(),
             limits: set.limits().iter().map(|limit| LimitRecord::new(test, &set, limit)).collect(),
-            binding: BindingRecord::new(test, &set),
+            binding: BindingRecord::new(test, &set, window.map(|window| window.binding)),
             best: best(choice),
             choices: TakeoffChoice::ALL.into_iter().filter_map(best).collect(),
             margins: set
@@ -209,10 +241,28 @@ impl LimitRecord {
             name: limit.limit.name(),
             min_deg: angles.map(|a| a.min.degrees()),
             max_deg: angles.map(|a| a.max.degrees()),
+            refused_deg: limit.gap.and_then(|gap| set.angles_of(gap)).map(|a| [a.min.degrees(), a.max.degrees()]),
             vertex: limit.vertex.map(|vertex| VertexRecord::new(test, vertex)),
             clearance_x_m: limit.kink_x_m,
             refusal: limit.shortfall.map(|shortfall| shortfall.to_string()),
         }
+    }
+}
+
+impl WindowRecord {
+    fn new(test: &HopTest, set: &TakeoffSet, window: &SetWindow) -> Option<Self> {
+        let angles = set.angles_of(window.lofts)?;
+        let end = |limit: &LimitInterval| WindowEndRecord {
+            limit: limit.limit.name(),
+            vertex: limit.vertex.map(|vertex| VertexRecord::new(test, vertex)),
+            clearance_x_m: limit.kink_x_m,
+        };
+        Some(Self {
+            takeoff_angle_min_deg: angles.min.degrees(),
+            takeoff_angle_max_deg: angles.max.degrees(),
+            lower: end(&window.binding.lower),
+            upper: end(&window.binding.upper),
+        })
     }
 }
 
@@ -224,8 +274,8 @@ impl VertexRecord {
 }
 
 impl BindingRecord {
-    fn new(test: &HopTest, set: &TakeoffSet) -> Self {
-        if let Some(binding) = set.binding() {
+    fn new(test: &HopTest, set: &TakeoffSet, binding: Option<Binding>) -> Self {
+        if let Some(binding) = binding {
             return Self::Ends {
                 lower: binding.lower.limit.name(),
                 upper: binding.upper.limit.name(),
@@ -272,6 +322,14 @@ impl BindingRecord {
                 gap_m_s: None,
                 vertex: lower.vertex.map(|vertex| VertexRecord::new(test, vertex)),
                 clearance_x_m: lower.kink_x_m,
+                sentence,
+            },
+            Conflict::Commands { limit, other, left_m_s: [least, greatest], nearest_m_s } => Self::Conflict {
+                conflict: vec![limit.name(), other.limit.name()],
+                gap_deg: None,
+                gap_m_s: Some((least - nearest_m_s).max(nearest_m_s - greatest)),
+                vertex: other.vertex.map(|vertex| VertexRecord::new(test, vertex)),
+                clearance_x_m: other.kink_x_m,
                 sentence,
             },
         }

@@ -29,7 +29,10 @@ pub use document::{CrsRecord, Document, InputFile};
 pub use experiment_answer::{ConeWidthAnswer, ConeWidthRecord, DriftRecord, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer};
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, paths_geojson, slice_geojson};
-pub use hop_answer::{BestRecord, BindingRecord, GreatestReachRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord};
+pub use hop_answer::{
+    BestRecord, BindingRecord, GreatestReachRecord, HopAnswer, LimitRecord, SegmentHopsRecord, VertexRecord, WindowEndRecord,
+    WindowRecord,
+};
 pub use hop_margins::HopMarginsRecord;
 pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord};
 pub use path_record::{AimRecord, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv};

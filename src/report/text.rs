@@ -3,7 +3,7 @@
 use std::fmt::Write;
 
 use super::{
-    BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, TotalsRecord,
+    BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, TotalsRecord, WindowRecord,
     propellant_record::{delta_v_field, stores_lines},
 };
 use crate::quantity::{format_number, unit_of};
@@ -44,11 +44,22 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         answer.line_of_sight_angle_deg
     ));
     match (answer.takeoff_angle_min_deg, answer.takeoff_angle_max_deg) {
-        (Some(min), Some(max)) => sheet.line(format_args!("feasible: take-off angles {min:.6} to {max:.6} deg")),
+        (Some(min), Some(max)) if answer.windows.len() <= 1 => {
+            sheet.line(format_args!("feasible: take-off angles {min:.6} to {max:.6} deg"));
+        }
+        (Some(_), Some(_)) => sheet.line(format_args!("feasible: take-off angles in {} windows", answer.windows.len())),
         _ => sheet.line(format_args!("not feasible in one hop")),
     }
-    sheet.line(format_args!("{}", binding_line(&answer.binding)));
-    sheet.line(format_args!("\n{:<18}{:>14}{:>14}", "limit", "min (deg)", "max (deg)"));
+    if answer.windows.len() > 1 {
+        for window in &answer.windows {
+            sheet.line(format_args!("  {}", window_line(window)));
+        }
+    } else {
+        sheet.line(format_args!("{}", binding_line(&answer.binding)));
+    }
+    // The longest name of a limit on the machine's speeds is longer than the column of the others.
+    let wide = answer.limits.iter().map(|limit| limit.name.len() + 1).fold(18, usize::max);
+    sheet.line(format_args!("\n{:<wide$}{:>14}{:>14}", "limit", "min (deg)", "max (deg)"));
     for limit in &answer.limits {
         let ends = match (limit.min_deg, limit.max_deg) {
             (Some(min), Some(max)) => format!("{min:>14.6}{max:>14.6}"),
@@ -58,7 +69,8 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         let clearance = limit.clearance_x_m.map(|x_m| format!("  clearance at x = {} m", place(x_m)));
         let vertex = vertex.or(clearance).unwrap_or_default();
         let refusal = limit.refusal.as_ref().map(|r| format!("  {r}")).unwrap_or_default();
-        sheet.line(format_args!("{:<18}{ends}{vertex}{refusal}", limit.name));
+        let gap = limit.refused_deg.map(|[from, to]| format!("  but not between {from:.6} and {to:.6} deg")).unwrap_or_default();
+        sheet.line(format_args!("{:<wide$}{ends}{gap}{vertex}{refusal}", limit.name));
     }
     if let Some(best) = answer.best {
         sheet.line(format_args!(
@@ -114,6 +126,16 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         ));
     }
     sheet.0
+}
+
+/// One of several windows in one line.
+fn window_line(window: &WindowRecord) -> String {
+    let WindowRecord { takeoff_angle_min_deg: min, takeoff_angle_max_deg: max, lower, upper } = window;
+    if min == max {
+        return format!("{min:.6} deg by {}", lower.limit);
+    }
+    let at = lower.vertex.map(|v| format!(" (vertex {} at x = {} m)", v.number, place(v.x_m))).unwrap_or_default();
+    format!("{min:.6} to {max:.6} deg, from {}{at} to {}", lower.limit, upper.limit)
 }
 
 /// The limits that set the ends, or that conflict, in one line.

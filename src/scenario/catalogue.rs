@@ -5,7 +5,7 @@ use crate::{
     graph::{Effort, ReliabilityUse},
     hop::Split,
     uncertainty::Policy,
-    world::{ClearanceRule, LandingMode},
+    world::{ClearanceRule, LandingMode, SpeedLevels},
 };
 
 /// The kind of value that a key takes.
@@ -45,6 +45,8 @@ pub enum Kind {
     NumberOrNone,
     /// One of these words.
     Word(&'static [&'static str]),
+    /// A list of speeds in m/s, ascending.
+    Speeds,
     /// Any text.
     Text,
 }
@@ -96,6 +98,12 @@ impl Kind {
             Self::Count { min, max } if *max == MOST => format!("a whole number of at least {min}"),
             Self::Count { min, max } => format!("a whole number from {min} to {max}"),
             Self::Word(words) => format!("one of {}", words.join(", ")),
+            Self::Speeds => format!(
+                "a list of 1 to {} speeds in m/s, ascending without repetition, each from {} to {}, such as [2.0, 4.0]",
+                SpeedLevels::MOST,
+                bound(SPEED_LEAST),
+                bound(SPEED_MOST)
+            ),
             Self::Text => "a text in quotes, not empty".to_owned(),
         }
     }
@@ -111,7 +119,9 @@ const fn key(table: &'static str, name: &'static str, kind: Kind, help: &'static
 }
 
 /// Lengths and speeds beyond these bounds are mistakes of units.
-const SPEED: Kind = Kind::Number { min: 1e-9, max: 1e5 };
+pub(super) const SPEED_LEAST: f64 = 1e-9;
+pub(super) const SPEED_MOST: f64 = 1e5;
+const SPEED: Kind = Kind::Number { min: SPEED_LEAST, max: SPEED_MOST };
 const LENGTH: Kind = Kind::Number { min: 1e-9, max: 1e9 };
 const FROM_ZERO: Kind = Kind::Number { min: 0.0, max: 1e9 };
 const STEP_ANGLE: Kind = Kind::Number { min: 1e-6, max: 90.0 };
@@ -131,7 +141,7 @@ const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
 
 /// All keys, in the order in which a scenario is written.
-pub const CATALOGUE: [Key; 71] = [
+pub const CATALOGUE: [Key; 73] = [
     key("body", "name", Kind::Text, "a known body, which gives gravity and radius"),
     key("body", "gravity_m_s2", Kind::Number { min: 1e-9, max: 1e3 }, "gravity, m/s^2; beside a name it replaces the body's"),
     key("body", "radius_m", LENGTH, "mean radius, m, for the escape speed, below which all speeds stay, and warnings of the model"),
@@ -154,6 +164,13 @@ pub const CATALOGUE: [Key; 71] = [
     key("hopper", "takeoff_angle_max_deg", ELEVATION_ANGLE, "mechanical greatest take-off angle from the horizontal, degrees"),
     key("hopper", "apex_height_max_m", FROM_ZERO, "greatest height of the flight above its take-off, m"),
     key("hopper", "flight_time_max_s", LENGTH, "longest flight, s"),
+    key("hopper", "takeoff_speed_min_m_s", SPEED, "least take-off speed that the machine can be commanded, m/s"),
+    key(
+        "hopper",
+        "takeoff_speed_levels_m_s",
+        Kind::Speeds,
+        "the only take-off speeds that the machine can be commanded, m/s, ascending",
+    ),
     key("hopper", "takeoff_angle_step_deg", STEP_ANGLE, "take-off angles are multiples of this, degrees; absent: any angle"),
     key("hopper", "takeoff_speed_step_m_s", SPEED, "take-off speeds are multiples of this, m/s; absent: any speed"),
     key("hopper", "heading_step_deg", STEP_ANGLE, "headings from grid north are multiples of this, degrees; absent: any heading"),

@@ -73,6 +73,8 @@ fn hopper(scenario: &Scenario) -> Value {
         ("takeoff_angle_max_deg", hopper.limits().takeoff_angle_max.map(|angle| degrees(angle).into())),
         ("apex_height_max_m", hopper.limits().apex_height_max_m.map(Value::from)),
         ("flight_time_max_s", hopper.limits().flight_time_max_s.map(Value::from)),
+        ("takeoff_speed_min_m_s", hopper.limits().takeoff_speed_min_m_s.map(Value::from)),
+        ("takeoff_speed_levels_m_s", hopper.limits().takeoff_speed_levels.map(|levels| levels.as_slice().into())),
         ("takeoff_angle_step_deg", hopper.limits().steps.takeoff_angle.map(|angle| degrees(angle).into())),
         ("takeoff_speed_step_m_s", hopper.limits().steps.takeoff_speed_m_s.map(Value::from)),
         ("heading_step_deg", hopper.limits().steps.heading.map(|angle| degrees(angle).into())),

@@ -7,8 +7,9 @@ use toml::de::{DeTable, DeValue};
 use super::{
     CATALOGUE, Key, KeyPath, Kind, ProblemKind, ScenarioProblem,
     backslashes::{Backslashed, control_character, line_at, unreadable_lines},
+    catalogue::{SPEED_LEAST, SPEED_MOST},
 };
-use crate::terrain::NoDataRule;
+use crate::{terrain::NoDataRule, world::SpeedLevels};
 
 /// The source of a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -313,6 +314,11 @@ impl Entries {
         self.value(table, name).and_then(pair)
     }
 
+    /// Speeds; `None` if they were not given.
+    pub(super) fn speeds(&self, table: &str, name: &str) -> Option<SpeedLevels> {
+        self.value(table, name).and_then(speeds)
+    }
+
     /// Points; empty if they were not given.
     pub(super) fn points(&self, table: &str, name: &str) -> Vec<[f64; 2]> {
         self.value(table, name).and_then(toml::Value::as_array).into_iter().flatten().filter_map(pair).collect()
@@ -489,6 +495,13 @@ fn pair(value: &toml::Value) -> Option<[f64; 2]> {
     }
 }
 
+/// An array of ascending speeds.
+fn speeds(value: &toml::Value) -> Option<SpeedLevels> {
+    let speeds: Option<Vec<f64>> = value.as_array()?.iter().map(number).collect();
+    let speeds = speeds.filter(|speeds| speeds.iter().all(|speed| (SPEED_LEAST..=SPEED_MOST).contains(speed)))?;
+    SpeedLevels::new(&speeds).ok()
+}
+
 /// Whether a value is of a kind.
 pub(super) fn fits(value: &toml::Value, kind: Kind) -> bool {
     match kind {
@@ -506,6 +519,7 @@ pub(super) fn fits(value: &toml::Value, kind: Kind) -> bool {
         Kind::NumberOrNone => no_data(value).is_some(),
         Kind::Count { min, max } => count(value).is_some_and(|n| (min..=max).contains(&n)),
         Kind::Word(words) => value.as_str().is_some_and(|word| words.contains(&word)),
+        Kind::Speeds => speeds(value).is_some(),
         Kind::Text => value.as_str().is_some_and(|text| !text.trim().is_empty()),
     }
 }

@@ -90,6 +90,17 @@ pub(super) fn escape_warnings(scenario: &Scenario, chain: Option<&PolygonalChain
             warnings.extend(stated(&format!("the greatest {key} of the chain's segments"), of_chain_m_s));
         }
     }
+    let highest = limits.takeoff_speed_levels.map(|levels| levels.highest_m_s());
+    for (key, speed_m_s) in [("takeoff_speed_min_m_s", limits.takeoff_speed_min_m_s), ("takeoff_speed_levels_m_s", highest)] {
+        warnings.extend(speed_m_s.filter(|speed_m_s| *speed_m_s > cap_m_s).map(|speed_m_s| {
+            format!(
+                "hopper.{key} has {} m/s, at or above the escape speed of {}, {escape_m_s:.6} m/s: no hop has that speed, since one so fast \
+                 never lands",
+                format_number(speed_m_s),
+                scenario.body.spoken()
+            )
+        }));
+    }
     warnings
 }
 

@@ -272,6 +272,8 @@ fn hopper(entries: &mut Entries) -> Hopper {
         takeoff_angle_max: number("takeoff_angle_max_deg").map(Angle::from_degrees),
         apex_height_max_m: number("apex_height_max_m"),
         flight_time_max_s: number("flight_time_max_s"),
+        takeoff_speed_min_m_s: number("takeoff_speed_min_m_s"),
+        takeoff_speed_levels: entries.speeds("hopper", "takeoff_speed_levels_m_s"),
         steps: CommandSteps {
             takeoff_angle: number("takeoff_angle_step_deg").map(Angle::from_degrees),
             takeoff_speed_m_s: number("takeoff_speed_step_m_s"),
@@ -302,6 +304,10 @@ fn hopper(entries: &mut Entries) -> Hopper {
         entries.problem(("hopper", "takeoff_angle_min_deg"), ProblemKind::Conflict, message, help);
         return Hopper::UNLIMITED;
     }
+    if let Some((key, message, help)) = commands_conflict(&limits) {
+        entries.problem(("hopper", key), ProblemKind::Conflict, message, help);
+        return Hopper::UNLIMITED;
+    }
     if clearance_rule == ClearanceRule::Vertex && taper.is_some() {
         let message =
             "hopper.clearance_taper has no effect beside clearance_rule = \"vertex\", which keeps the whole clearance over \
@@ -327,6 +333,26 @@ fn hopper(entries: &mut Entries) -> Hopper {
         }
         Hopper::UNLIMITED
     })
+}
+
+/// The key, the sentence and the remedy of take-off speeds that the machine cannot have together.
+fn commands_conflict(limits: &HopperLimits) -> Option<(&'static str, String, &'static str)> {
+    let (greatest, least) = (limits.takeoff_speed_max_m_s, limits.takeoff_speed_min_m_s);
+    if let Some(least) = least.filter(|least| *least > greatest) {
+        let message =
+            format!("hopper.takeoff_speed_min_m_s is {least}, expected no more than the takeoff_speed_max_m_s of {greatest}");
+        return Some(("takeoff_speed_min_m_s", message, "lower it, or raise takeoff_speed_max_m_s"));
+    }
+    let levels = limits.takeoff_speed_levels?;
+    let key = "takeoff_speed_levels_m_s";
+    if levels.highest_m_s() > greatest {
+        let highest = levels.highest_m_s();
+        let message = format!("hopper.{key} has {highest}, expected no level above the takeoff_speed_max_m_s of {greatest}");
+        return Some((key, message, "leave out that level, or raise takeoff_speed_max_m_s"));
+    }
+    let least = least.filter(|least| levels.lowest_m_s() < *least)?;
+    let message = format!("hopper.{key} has {}, expected no level below the takeoff_speed_min_m_s of {least}", levels.lowest_m_s());
+    Some((key, message, "leave out that level, or takeoff_speed_min_m_s"))
 }
 
 /// Friction or angles from the slope, and the rest slope.

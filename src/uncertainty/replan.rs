@@ -55,7 +55,7 @@ impl Replan<ChainPosition> for ChainReplan {
         let (arc, landing) = match leg.edge {
             Edge::Hop(lofts) => {
                 let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
-                (ballistics::Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), test.gravity_m_s2()), leg.landing)
+                (ballistics::Arc::new(sight, test.loft(to_go.options().takeoff, sight, lofts), test.gravity_m_s2()), leg.landing)
             }
             Edge::Along(along) => {
                 let (each_m, last_m) = along.lengths_m(to_go.options().split);
@@ -100,7 +100,7 @@ impl MapReplan {
         }
         let heading = away / run_m;
         let lofts = ground.lofts_by_walk(from, &target, sight, heading)?;
-        let arc = ballistics::Arc::new(sight, to_go.options().takeoff.loft(sight, lofts), g);
+        let arc = ballistics::Arc::new(sight, ground.envelope().loft(to_go.options().takeoff, sight, lofts), g);
         let cost = to_go.options().effort.cost(&arc, 1) + rest;
         if best.is_some_and(|best| cost >= best) {
             return None;

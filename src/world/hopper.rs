@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{CommandSteps, Gravity, LandingMode, propulsion};
+use super::{CommandSteps, Gravity, LandingMode, SpeedLevels, propulsion};
 use crate::quantity::Angle;
 
 /// Where a hopper keeps its clearance.
@@ -62,6 +62,10 @@ pub struct HopperLimits {
     pub apex_height_max_m: Option<f64>,
     /// Longest flight, s.
     pub flight_time_max_s: Option<f64>,
+    /// Least take-off speed that the machine can be commanded, m/s.
+    pub takeoff_speed_min_m_s: Option<f64>,
+    /// The only take-off speeds that the machine can be commanded.
+    pub takeoff_speed_levels: Option<SpeedLevels>,
     /// The steps of its commands.
     pub steps: CommandSteps,
     /// Diameter of the ground that the hopper stands on, m. The plane fitted over it is then held against the rest slope, instead of
@@ -102,6 +106,8 @@ impl HopperLimits {
         takeoff_angle_max: None,
         apex_height_max_m: None,
         flight_time_max_s: None,
+        takeoff_speed_min_m_s: None,
+        takeoff_speed_levels: None,
         steps: CommandSteps::CONTINUOUS,
         footprint_m: None,
         roughness_max_m: None,
@@ -192,6 +198,8 @@ impl Hopper {
             takeoff_angle_max,
             apex_height_max_m,
             flight_time_max_s,
+            takeoff_speed_min_m_s,
+            takeoff_speed_levels,
             steps,
             footprint_m,
             roughness_max_m,
@@ -235,6 +243,25 @@ impl Hopper {
             ),
             number("apex_height_max_m", apex_height_max_m, not_negative, NOT_NEGATIVE),
             number("flight_time_max_s", flight_time_max_s, positive, POSITIVE),
+            number("takeoff_speed_min_m_s", takeoff_speed_min_m_s, positive, POSITIVE),
+            (
+                "takeoff_speed_min_m_s",
+                !takeoff_speed_min_m_s.is_some_and(|least_m_s| least_m_s > takeoff_speed_max_m_s),
+                takeoff_speed_min_m_s.unwrap_or(0.0),
+                "no more than takeoff_speed_max_m_s",
+            ),
+            (
+                "takeoff_speed_levels_m_s",
+                !takeoff_speed_levels.is_some_and(|levels| levels.highest_m_s() > takeoff_speed_max_m_s),
+                takeoff_speed_levels.map_or(0.0, |levels| levels.highest_m_s()),
+                "no level above takeoff_speed_max_m_s",
+            ),
+            (
+                "takeoff_speed_levels_m_s",
+                !takeoff_speed_levels.zip(takeoff_speed_min_m_s).is_some_and(|(levels, least)| levels.lowest_m_s() < least),
+                takeoff_speed_levels.map_or(0.0, |levels| levels.lowest_m_s()),
+                "no level below takeoff_speed_min_m_s",
+            ),
             number("takeoff_angle_step_deg", steps.takeoff_angle.map(Angle::degrees), positive, POSITIVE),
             number("takeoff_speed_step_m_s", steps.takeoff_speed_m_s, positive, POSITIVE),
             (
@@ -242,6 +269,12 @@ impl Hopper {
                 steps.takeoff_speed_m_s.is_none_or(|step| step.is_nan() || step <= 0.0 || step <= takeoff_speed_max_m_s),
                 steps.takeoff_speed_m_s.unwrap_or(0.0),
                 "no more than takeoff_speed_max_m_s",
+            ),
+            (
+                "takeoff_speed_step_m_s",
+                steps.takeoff_speed_m_s.is_none() || takeoff_speed_levels.is_none(),
+                steps.takeoff_speed_m_s.unwrap_or(0.0),
+                "not to stand beside takeoff_speed_levels_m_s, which are all speeds that the machine has",
             ),
             number("heading_step_deg", steps.heading.map(Angle::degrees), positive, POSITIVE),
             number("footprint_m", footprint_m, not_negative, NOT_NEGATIVE),
@@ -321,6 +354,7 @@ mod tests {
             assert_eq!(refused(|l| l.clearance_rule = ClearanceRule::Tapered(bad)), ["clearance_taper"], "{bad}");
             assert_eq!(refused(|l| l.apex_height_max_m = Some(bad)), ["apex_height_max_m"], "{bad}");
             assert_eq!(refused(|l| l.flight_time_max_s = Some(bad)), ["flight_time_max_s"], "{bad}");
+            assert_eq!(refused(|l| l.takeoff_speed_min_m_s = Some(bad)).first(), Some(&"takeoff_speed_min_m_s"), "{bad}");
             assert_eq!(refused(|l| l.steps.takeoff_angle = Some(degrees(bad))), ["takeoff_angle_step_deg"], "{bad}");
             assert_eq!(refused(|l| l.steps.takeoff_speed_m_s = Some(bad)), ["takeoff_speed_step_m_s"], "{bad}");
             assert_eq!(refused(|l| l.steps.heading = Some(degrees(bad))), ["heading_step_deg"], "{bad}");
@@ -332,6 +366,14 @@ mod tests {
             assert_eq!(refused(|l| l.takeoff_angle_max = Some(degrees(bad))), ["takeoff_angle_max_deg"], "{bad}");
         }
         assert_eq!(refused(|l| l.clearance_rule = ClearanceRule::Tapered(0.0)), ["clearance_taper"]);
+        let levels = |list: &[f64]| SpeedLevels::new(list).ok();
+        assert_eq!(refused(|l| l.takeoff_speed_min_m_s = Some(8.5)), ["takeoff_speed_min_m_s"]);
+        assert_eq!(refused(|l| l.takeoff_speed_levels = levels(&[2.0, 8.5])), ["takeoff_speed_levels_m_s"]);
+        let below = |l: &mut HopperLimits| {
+            l.takeoff_speed_levels = levels(&[2.0, 8.0]);
+            l.takeoff_speed_min_m_s = Some(2.5);
+        };
+        assert_eq!(refused(below), ["takeoff_speed_levels_m_s"]);
         let reversed = |l: &mut HopperLimits| {
             l.takeoff_angle_min = Some(degrees(60.0));
             l.takeoff_angle_max = Some(degrees(30.0));

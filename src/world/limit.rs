@@ -38,6 +38,10 @@ pub enum Limit {
     ApexHeight,
     /// The hopper's longest flight time.
     FlightTime,
+    /// The least take-off speed that the machine can be commanded.
+    TakeoffSpeedMin,
+    /// The only take-off speeds that the machine can be commanded.
+    TakeoffSpeedLevels,
     /// The take-off angle is a whole number of the machine's steps.
     TakeoffAngleStep,
     /// The take-off speed is a whole number of the machine's steps.
@@ -48,7 +52,7 @@ pub enum Limit {
 
 impl Limit {
     /// All limits, in the order in which results list them.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 21] = [
         Self::Direction,
         Self::KeepOut,
         Self::RestSlope,
@@ -65,6 +69,8 @@ impl Limit {
         Self::MechanicalAngle,
         Self::ApexHeight,
         Self::FlightTime,
+        Self::TakeoffSpeedMin,
+        Self::TakeoffSpeedLevels,
         Self::TakeoffAngleStep,
         Self::TakeoffSpeedStep,
         Self::HeadingStep,
@@ -89,6 +95,8 @@ impl Limit {
             Self::MechanicalAngle => "mechanical-angle",
             Self::ApexHeight => "apex-height",
             Self::FlightTime => "flight-time",
+            Self::TakeoffSpeedMin => "takeoff-speed-min",
+            Self::TakeoffSpeedLevels => "takeoff-speed-levels",
             Self::TakeoffAngleStep => "takeoff-angle-step",
             Self::TakeoffSpeedStep => "takeoff-speed-step",
             Self::HeadingStep => "heading-step",

@@ -9,7 +9,7 @@ use chta::{
     ground::{LandingTable, Sweep},
     hop::HopTest,
     quantity::{ChainPoint, VertexId},
-    world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
+    world::{Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SpeedLevels, SurfaceProperties},
 };
 use stats_alloc::Region;
 
@@ -23,6 +23,7 @@ fn ten_thousand_pairs_are_evaluated_without_an_allocation_either_way() {
         clearance_m: 0.05,
         apex_height_max_m: Some(20.0),
         flight_time_max_s: Some(10.0),
+        takeoff_speed_levels: SpeedLevels::new(&[3.0, 6.0, 9.0]).ok(),
         ..HopperLimits::with_speeds(9.0, 9.0)
     })
     .unwrap();

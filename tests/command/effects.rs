@@ -7,7 +7,7 @@ use chta::scenario::{CATALOGUE, Key};
 use serde_json::Value;
 
 /// A value of each key that matters where the key does. A title is only a label.
-const TELLING: [(&str, &str); 70] = [
+const TELLING: [(&str, &str); 72] = [
     ("body.name", "earth"),
     ("body.gravity_m_s2", "0.05"),
     ("body.radius_m", "1000"),
@@ -20,6 +20,8 @@ const TELLING: [(&str, &str); 70] = [
     ("hopper.takeoff_angle_max_deg", "50"),
     ("hopper.apex_height_max_m", "0.5"),
     ("hopper.flight_time_max_s", "1.5"),
+    ("hopper.takeoff_speed_min_m_s", "2.4"),
+    ("hopper.takeoff_speed_levels_m_s", "[1.1]"),
     ("hopper.takeoff_angle_step_deg", "7"),
     ("hopper.takeoff_speed_step_m_s", "0.7"),
     ("hopper.heading_step_deg", "20"),

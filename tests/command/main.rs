@@ -30,6 +30,7 @@ mod sentences;
 mod shipped_scenarios;
 mod simulate_command;
 mod stated_maps;
+mod takeoff_speeds;
 mod trade_compare;
 mod trajectory;
 mod wrong_things;

@@ -4,6 +4,7 @@
 
 use crate::support::{Draw, uniform};
 use chta::{
+    ballistics::Arc,
     chain::{ContactRule, LineConstraints, Station},
     hop::{Conflict, HopTest, TakeoffSet},
     quantity::{Angle, AngleInterval, ChainPoint, SlopeInterval},
@@ -65,6 +66,8 @@ impl Case {
             Limit::MechanicalAngle => (other.limits.takeoff_angle_min, other.limits.takeoff_angle_max) = (None, None),
             Limit::ApexHeight => other.limits.apex_height_max_m = None,
             Limit::FlightTime => other.limits.flight_time_max_s = None,
+            Limit::TakeoffSpeedMin => other.limits.takeoff_speed_min_m_s = None,
+            Limit::TakeoffSpeedLevels => other.limits.takeoff_speed_levels = None,
             Limit::Direction
             | Limit::KeepOut
             | Limit::RestSlope
@@ -148,6 +151,47 @@ fn a_limit_that_refuses_alone_is_the_only_cause() {
 }
 
 #[test]
+fn take_off_speeds_that_leave_no_arc_name_the_speeds_that_the_others_leave() {
+    let draw = &mut Draw::seeded(14);
+    let mut seen = [0; 2];
+    for _ in 0..8000 {
+        let mut case = Case::draw(draw);
+        let fastest_m_s = case.line.takeoff.speed_max_m_s();
+        draw.commands(&mut case.limits, fastest_m_s);
+        let Some(Conflict::Commands { limit, other, left_m_s: [least, greatest], nearest_m_s }) = case.set().conflict() else {
+            continue;
+        };
+        assert!(least <= greatest && !(least..=greatest).contains(&nearest_m_s), "{nearest_m_s} of {least} to {greatest}");
+        let free = case.without(limit).set();
+        assert!(free.conflict().is_none(), "without {limit}: {:?}", free.conflict());
+        // Every arc that the others leave has a speed between the two.
+        let (sight, lofts) = (free.line_of_sight(), free.lofts().unwrap());
+        for i in 0..=20 {
+            let top = if lofts.upper.is_finite() { lofts.upper } else { lofts.lower + 10.0 };
+            let loft = (lofts.lower + (top - lofts.lower) * f64::from(i) / 20.0).max(1e-12);
+            let speed = Arc::new(sight, loft, case.g).takeoff_speed_m_s();
+            assert!(least * (1.0 - 1e-12) <= speed && speed <= greatest * (1.0 + 1e-12), "{speed} of {least} to {greatest}");
+        }
+        let binding = free.binding().unwrap();
+        if binding.lower == binding.upper {
+            // One limit sets both ends.
+            continue;
+        }
+        // Beyond the end that the other limit sets, the speeds go on towards the nearest one of the machine.
+        let end = if other == binding.lower { lofts.lower } else { lofts.upper };
+        let beyond = if end == lofts.lower { end * (1.0 - 1e-6) } else { end * (1.0 + 1e-6) };
+        let [at, on] = [end, beyond].map(|loft| Arc::new(sight, loft, case.g).takeoff_speed_m_s());
+        // At the end nearest to the slowest arc of all, speeds hardly change.
+        assert!(
+            (on > at) == (nearest_m_s > greatest) || (on / at - 1.0).abs() < 1e-9,
+            "{at} goes to {on}, away from {nearest_m_s}"
+        );
+        seen[usize::from(limit == Limit::TakeoffSpeedLevels)] += 1;
+    }
+    assert!(seen.iter().all(|count| *count > 100), "{seen:?}");
+}
+
+#[test]
 fn two_conflicting_limits_have_a_gap_that_shrinks_without_either() {
     let draw = &mut Draw::seeded(13);
     let mut seen = std::collections::BTreeSet::new();
@@ -167,7 +211,7 @@ fn two_conflicting_limits_have_a_gap_that_shrinks_without_either() {
         assert!(only_both.conflict().is_some(), "{} and {} alone do not conflict", lower.limit, upper.limit);
         for limit in [lower.limit, upper.limit].into_iter().filter(|l| *l != Limit::LineOfSight) {
             match case.without(limit).set().conflict() {
-                None | Some(Conflict::Alone(_)) => {}
+                None | Some(Conflict::Alone(_) | Conflict::Commands { .. }) => {}
                 Some(Conflict::Pair { gap_deg: smaller, .. }) => {
                     assert!(smaller < gap_deg, "{smaller} deg without {limit}, {gap_deg} deg with it");
                 }

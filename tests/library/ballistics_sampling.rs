@@ -7,7 +7,8 @@ use chta::{
     hop::{HopTest, TakeoffSet},
     quantity::{Angle, ChainPoint, VertexId},
     world::{
-        Contact, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SPEED_TOLERANCE, SurfaceProperties,
+        Contact, Direction, FrictionCone, Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SPEED_TOLERANCE, SpeedLevels,
+        SurfaceProperties,
     },
 };
 
@@ -108,6 +109,9 @@ fn machine(hopper: &Hopper, flight: &Flight, end: f64, size: f64, slack: &mut Sl
     if let Some(max) = hopper.limits().takeoff_angle_max {
         slack.at_most(flight.theta, max.radians(), 1.0, Limit::MechanicalAngle);
     }
+    if let Some(min) = hopper.limits().takeoff_speed_min_m_s {
+        slack.at_most(min * (1.0 - SPEED_TOLERANCE), flight.v, flight.v, Limit::TakeoffSpeedMin);
+    }
     if let Some(max) = hopper.limits().apex_height_max_m {
         slack.at_most(flight.highest(end), max, size.max(max), Limit::ApexHeight);
     }
@@ -187,6 +191,9 @@ fn world(draw: &mut Draw) -> (ConstrainedChain, Hopper, f64) {
     if draw.chance(0.3) {
         limits.flight_time_max_s = Some((size / g).sqrt() * draw.log_uniform(0.5, 3.0));
     }
+    if draw.chance(0.3) {
+        limits.takeoff_speed_min_m_s = Some(speed * draw.log_uniform(0.4, 2.0));
+    }
     (explicit(&points, &lines, rest), Hopper::new(limits).unwrap(), g)
 }
 
@@ -234,7 +241,8 @@ fn sampled_angles(draw: &mut Draw, set: &TakeoffSet) -> Vec<f64> {
     let mut angles: Vec<f64> = (0..40).map(|i| low + (high - low) * (f64::from(i) + draw.unit()) / 40.0).collect();
     if let Some(ends) = set.angles() {
         let (min, max) = (ends.min.radians(), ends.max.radians());
-        for end in [min, max] {
+        let windows = set.windows().iter().filter_map(|window| set.angles_of(window.lofts));
+        for end in windows.flat_map(|angles| [angles.min.radians(), angles.max.radians()]).collect::<Vec<_>>() {
             angles.extend((0..6).map(|_| end + draw.sign() * draw.log_uniform(1e-6, 1e-2)));
         }
         angles.extend((0..6).map(|_| draw.uniform(min, max)));
@@ -261,7 +269,8 @@ fn compare(seed: u64, worlds: u32, make: fn(&mut Draw) -> (ConstrainedChain, Hop
             feasible += u32::from(set.lofts().is_some());
             for theta in sampled_angles(draw, &set) {
                 evaluated += 1;
-                let inside = set.angles().is_some_and(|a| a.min.radians() <= theta && theta <= a.max.radians());
+                let windows = set.windows().iter().filter_map(|window| set.angles_of(window.lofts));
+                let inside = windows.into_iter().any(|a| a.min.radians() <= theta && theta <= a.max.radians());
                 match evaluate(&test, &takeoff, &landing, theta) {
                     Verdict::TooClose => close += 1,
                     Verdict::Feasible => {
@@ -352,19 +361,27 @@ fn a_planted_flight_is_found_under_limits_that_touch_it() {
         };
         let touched =
             line(touching(flight.theta, draw), flight.v * (1.0 + hair), touching(vz.atan2(vx), draw), vx.hypot(vz) * (1.0 + hair));
+        let command = draw.below(3);
         let hopper = Hopper::new(HopperLimits {
             apex_height_max_m: Some(flight.highest(end) + hair * size),
             flight_time_max_s: Some(end * (1.0 + hair)),
             takeoff_angle_max: Some(Angle::from_radians(flight.theta + hair)),
+            takeoff_speed_min_m_s: (command == 1).then_some(flight.v * (1.0 - hair)),
+            takeoff_speed_levels: if command == 2 { SpeedLevels::new(&[0.5 * flight.v, flight.v]).ok() } else { None },
             ..HopperLimits::UNLIMITED
         })
         .unwrap();
         let chain = uniform(&points, touched);
         let test = HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap());
         let set = test.takeoff_set(&takeoff, &landing).unwrap();
-        let angles = set.angles().unwrap_or_else(|| panic!("planted {} rad lost: {:?}", flight.theta, set.conflict()));
+        let angles: Vec<_> = set.windows().iter().filter_map(|window| set.angles_of(window.lofts)).collect();
+        assert!(!angles.is_empty(), "planted {} rad lost: {:?}", flight.theta, set.conflict());
+        // The simulated landing is off by rounding; near the least speed an arc of a given speed turns with the square root of it.
+        let (slope, near) = (set.line_of_sight().slope(), if command == 2 { 2e-4 } else { 1e-9 });
+        let steep = (flight.theta.tan() - slope - (1.0 + slope * slope).sqrt()).abs();
+        let near = if command == 2 && steep > 0.1 { 1e-6 } else { near };
         assert!(
-            angles.min.radians() <= flight.theta + 1e-9 && flight.theta - 1e-9 <= angles.max.radians(),
+            angles.iter().any(|a| a.min.radians() <= flight.theta + near && flight.theta - near <= a.max.radians()),
             "planted {} rad, found {angles:?}",
             flight.theta
         );
@@ -460,12 +477,18 @@ fn gravity_times_four_and_speeds_times_two_change_no_bit() {
         let hopper = Hopper::new(HopperLimits {
             flight_time_max_s: Some((size / g).sqrt() * 3.0),
             apex_height_max_m: Some(size),
+            takeoff_speed_min_m_s: draw.chance(0.3).then_some(0.7 * speed),
+            takeoff_speed_levels: if draw.chance(0.3) { SpeedLevels::new(&[0.8 * speed, speed]).ok() } else { None },
             ..HopperLimits::UNLIMITED
         })
         .unwrap();
-        let slower =
-            Hopper::new(HopperLimits { flight_time_max_s: hopper.limits().flight_time_max_s.map(|t| t / v), ..*hopper.limits() })
-                .unwrap();
+        let slower = Hopper::new(HopperLimits {
+            flight_time_max_s: hopper.limits().flight_time_max_s.map(|t| t / v),
+            takeoff_speed_min_m_s: hopper.limits().takeoff_speed_min_m_s.map(|speed| speed * v),
+            takeoff_speed_levels: hopper.limits().takeoff_speed_levels.map(|levels| levels.scaled(v)),
+            ..*hopper.limits()
+        })
+        .unwrap();
         let (test, other_test) = (
             HopTest::new(chain.with_hopper(&hopper, Gravity::new(g).unwrap()).unwrap()),
             HopTest::new(other.with_hopper(&slower, Gravity::new(g * v * v).unwrap()).unwrap()),
@@ -473,6 +496,8 @@ fn gravity_times_four_and_speeds_times_two_change_no_bit() {
         for _ in 0..6 {
             let (a, b) = (place(draw, &chain), place(draw, &chain));
             assert_eq!(test.lofts(&a, &b), other_test.lofts(&a, &b), "gravity times {}", v * v);
+            let windows = |test: &HopTest| test.takeoff_set(&a, &b).map(|set| set.windows().to_vec());
+            assert_eq!(windows(&test), windows(&other_test), "gravity times {}", v * v);
         }
     }
 }

@@ -3,7 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 use chta::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice, lofts_of_speed},
+    ballistics::TakeoffChoice,
     chain::{ConstrainedChain, PolygonalChain, Station},
     graph::{Outcome, PointSpacing, SearchOptions, search},
     hop::{HopTest, Split},
@@ -166,20 +166,4 @@ fn the_greatest_speed_is_the_greatest_command() {
     let hops =
         |test: &HopTest| planned(test, ends(test), TakeoffChoice::LeastSpeed, Split::Equal).unwrap().map(|path| path.hops.len());
     assert_eq!((hops(&exact), hops(&stepped)), (Ok(1), Ok(2)));
-}
-
-#[test]
-fn lofts_of_a_speed_are_arcs_of_that_speed() {
-    let draw = &mut Draw::seeded(1403);
-    for _ in 0..2000 {
-        let (g, run_m) = (draw.gravity(), draw.log_uniform(1e-3, 1e3));
-        let sight = LineOfSight::new(run_m, run_m * draw.uniform(-3.0, 3.0));
-        let least = (g * run_m * sight.min_speed_ratio()).sqrt();
-        let speed = least * (1.0 + draw.log_uniform(1e-9, 10.0));
-        for loft in lofts_of_speed(sight, speed, g).unwrap() {
-            let found = Arc::new(sight, loft, g).takeoff_speed_m_s();
-            assert!((found / speed - 1.0).abs() < 1e-12, "{found} and {speed}");
-        }
-        assert_eq!(lofts_of_speed(sight, least * (1.0 - 1e-8), g), None);
-    }
 }

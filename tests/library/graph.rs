@@ -41,13 +41,13 @@ impl World {
             line(takeoff, speed * fast, landing, speed * draw.uniform(0.7, 1.6))
         };
         let lines = (0..segments).map(|_| (cone(draw), cone(draw))).collect();
-        let hopper = Hopper::new(HopperLimits {
+        let mut limits = HopperLimits {
             clearance_m: if draw.chance(0.5) { 0.0 } else { size * draw.log_uniform(1e-3, 1e-1) },
             clearance_rule: draw.clearance_rule(),
             ..HopperLimits::UNLIMITED
-        })
-        .unwrap();
-        Self { points, lines, hopper, g }
+        };
+        draw.commands(&mut limits, speed);
+        Self { points, lines, hopper: Hopper::new(limits).unwrap(), g }
     }
 
     fn chain(&self) -> ConstrainedChain {
@@ -504,6 +504,10 @@ fn lower_speeds_or_more_limits_never_give_fewer_hops() {
             clearance_m: world.hopper.limits().clearance_m * 2.0,
             apex_height_max_m: Some(reach * draw.uniform(0.05, 1.0)),
             flight_time_max_s: Some((reach / world.g).sqrt() * draw.uniform(0.5, 3.0)),
+            takeoff_speed_min_m_s: world.hopper.limits().takeoff_speed_min_m_s.or_else(|| {
+                let any = world.hopper.limits().takeoff_speed_levels.is_none();
+                (any && draw.chance(0.3)).then(|| (reach * world.g).sqrt() * draw.uniform(0.3, 0.9))
+            }),
             ..*world.hopper.limits()
         })
         .unwrap();

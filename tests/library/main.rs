@@ -52,6 +52,7 @@ mod sidecars;
 mod slice_file;
 mod sound_files;
 mod sweep;
+mod takeoff_speeds;
 mod terrain_files;
 mod timetable;
 mod true_north;

@@ -15,7 +15,7 @@ use chta::{
     ballistics::{Arc, LineOfSight, TakeoffChoice},
     ground::{DemGround, MapPosition, Surface, Windows},
     path::{Hop, HopPath, StatedValue, ViolatedLimit, Violation, execute},
-    quantity::{Angle, AngleInterval, MapPoint},
+    quantity::{Angle, AngleInterval, MapPoint, SlopeInterval},
     reach::map::{HopMap, Post, PostHops, Search, joined, path_hops, search, verify},
     terrain::{Dem, GeoReference, OverlaidDem, Overlays, read_dem, read_friction_raster, read_keep_out},
     world::{Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
@@ -65,6 +65,8 @@ fn paths_over_random_grids_hold_when_flown_again() {
             takeoff_speed_max_m_s: limits.takeoff_speed_max_m_s * scale.sqrt(),
             landing_speed_max_m_s: limits.landing_speed_max_m_s * scale.sqrt(),
             flight_time_max_s: limits.flight_time_max_s.map(|time_s| time_s / scale.sqrt()),
+            takeoff_speed_min_m_s: limits.takeoff_speed_min_m_s.map(|speed_m_s| speed_m_s * scale.sqrt()),
+            takeoff_speed_levels: limits.takeoff_speed_levels.map(|levels| levels.scaled(scale.sqrt())),
             ..*limits
         };
         let world = World::new(dem, Hopper::new(limits).unwrap(), random_surface(&mut draw), gravity * scale);
@@ -235,6 +237,8 @@ fn a_hop_spoiled_by_one_percent_is_refused_under_its_limits_name() {
         Limit::MechanicalAngle,
         Limit::ApexHeight,
         Limit::FlightTime,
+        Limit::TakeoffSpeedMin,
+        Limit::TakeoffSpeedLevels,
     ] {
         assert!(by_limit[limit.index()] >= 8, "{limit} was tested only {} times", by_limit[limit.index()]);
     }
@@ -311,9 +315,11 @@ fn a_pair_has_the_same_windows_in_all_three_forms() {
         let ground = hops.ground();
         let [from, to]: [MapPosition; 2] = [&hop.takeoff, &hop.landing].map(|point| ground.contact_at(point).unwrap());
         let windows = ground.windows(&from, &to).unwrap();
-        let [lofts] = windows.lofts[..] else { panic!("no window for a hop: {hop:?}") };
         let slope = |angle: Angle| angle.slope() - windows.sight.slope();
         let near = |a: f64, b: f64| a == b || (a - b).abs() <= 1e-6 * (1.0 + a.abs().max(b.abs()));
+        let flown = slope(hop.takeoff_angle);
+        let holds = |lofts: &&SlopeInterval| near(flown.clamp(lofts.lower, lofts.upper), flown);
+        let Some(lofts) = windows.lofts.iter().find(holds) else { panic!("no window for a hop: {hop:?}") };
         let (min, max) = (slope(hop.takeoff_angles.min), slope(hop.takeoff_angles.max));
         let vertical = hop.takeoff_angles.max.degrees() > 89.999;
         assert!(near(lofts.lower, min) && (vertical || near(lofts.upper, max)), "{lofts:?} against {min} to {max}");

@@ -149,6 +149,7 @@ pub(crate) fn random_hopper(draw: &mut Draw) -> (Hopper, f64) {
         limits.footprint_m = Some(draw.log_uniform(0.1, 4.0));
         limits.roughness_max_m = draw.chance(0.6).then(|| draw.log_uniform(0.01, 1.0));
     }
+    draw.commands(&mut limits, speed);
     (Hopper::new(limits).unwrap(), gravity)
 }
 

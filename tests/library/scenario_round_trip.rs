@@ -49,6 +49,12 @@ fn value(key: &Key) -> BoxedStrategy<String> {
             (min..=max.min(50)).prop_map(|count| count.to_string()),
         ]
         .boxed(),
+        Kind::Speeds => proptest::collection::btree_set(1..1000_u32, 1..4)
+            .prop_map(|tenths| {
+                let speeds: Vec<_> = tenths.into_iter().map(|tenth| format!("{:?}", f64::from(tenth) / 10.0)).collect();
+                format!("[{}]", speeds.join(", "))
+            })
+            .boxed(),
         Kind::NumberOrNone => {
             prop_oneof![Just("\"none\"".to_owned()), Just("\"-3.40282e+38\"".to_owned()), number(-1e6, 1e6)].boxed()
         }
@@ -72,6 +78,9 @@ fn toml() -> impl Strategy<Value = String> {
             ("terrain", "start_m" | "goal_m" | "via_m") => (ground == 1 && !degrees) || ground == 3,
             ("terrain", "start_lonlat_deg" | "goal_lonlat_deg" | "via_lonlat_deg") => ground == 1 && degrees,
             ("surface", "keep_out") => ground != 2,
+            // Random speeds exclude each other more often than not.
+            ("hopper", "takeoff_speed_min_m_s") => !points && degrees,
+            ("hopper", "takeoff_speed_levels_m_s") => !points && !degrees,
             ("surface", "friction_raster") => friction && ground != 2,
             ("terrain", "chain") => ground == 2,
             ("terrain", _) => ground > 0,
@@ -81,7 +90,7 @@ fn toml() -> impl Strategy<Value = String> {
             ("uncertainty", "height_sigma_m" | "height_correlation_m") => degrees,
             ("uncertainty", "heading_sigma_deg") => ground < 2,
             ("search", "risk_extra_hops_max") => false,
-            ("search", "points_per_segment") | ("hopper", "roughness_max_m") => points,
+            ("search", "points_per_segment") | ("hopper", "roughness_max_m" | "takeoff_speed_max_m_s") => points,
             ("search", "node_spacing_max_m") => !points,
             _ => true,
         };
@@ -166,6 +175,7 @@ fn every_key_reaches_the_document() {
         Kind::MapPoint | Kind::LonLat => "[12.5, -3.0]",
         Kind::Flag => "true",
         Kind::NumberOrNone => "-9999.5",
+        Kind::Speeds => "[2.0, 4.5]",
         Kind::MapPoints | Kind::LonLats => "[[12.5, -3.0], [1.0, 2.0]]",
         Kind::CountOrAuto | Kind::Count { .. } => "7",
         Kind::Word(words) => words[words.len() - 1],

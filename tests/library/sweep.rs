@@ -86,6 +86,9 @@ fn compare_pair(
             compared.unlike += u64::from(swept != plain);
             let b = test.line_of_sight(takeoff, landing).unwrap().slope();
             let apart = |a: f64, c: f64| (Angle::from_slope(b + a).radians() - Angle::from_slope(b + c).radians()).abs();
+            let sight = test.line_of_sight(takeoff, landing).unwrap();
+            let windows = |lofts| test.windows(sight, lofts).map(|window| (window.lower, window.upper)).collect::<Vec<_>>();
+            assert_eq!(windows(swept), windows(plain), "{takeoff:?} to {landing:?}");
             assert!(apart(swept.lower, plain.lower) <= 1e-9 && apart(swept.upper, plain.upper) <= 1e-9, "{swept:?}, {plain:?}");
             let vertex = test.takeoff_set(takeoff, landing).unwrap().binding().unwrap().lower.limit;
             compared.over_ground += u64::from(vertex == Limit::Terrain);
@@ -96,7 +99,7 @@ fn compare_pair(
 
 fn some_hopper(draw: &mut Draw, size_m: f64, g: f64) -> Hopper {
     let reach_s = (size_m / g).sqrt();
-    Hopper::new(HopperLimits {
+    let mut limits = HopperLimits {
         clearance_m: if draw.chance(0.5) { 0.0 } else { size_m * draw.log_uniform(1e-4, 1.0) },
         clearance_rule: draw.clearance_rule(),
         takeoff_angle_min: draw.chance(0.2).then(|| Angle::from_degrees(draw.uniform(-20.0, 50.0))),
@@ -104,8 +107,9 @@ fn some_hopper(draw: &mut Draw, size_m: f64, g: f64) -> Hopper {
         apex_height_max_m: draw.chance(0.2).then(|| size_m * draw.log_uniform(0.1, 10.0)),
         flight_time_max_s: draw.chance(0.2).then(|| reach_s * draw.log_uniform(0.3, 10.0)),
         ..HopperLimits::UNLIMITED
-    })
-    .unwrap()
+    };
+    draw.commands(&mut limits, (size_m * g).sqrt());
+    Hopper::new(limits).unwrap()
 }
 
 #[test]

@@ -4,7 +4,7 @@
 use chta::{
     chain::{ConstrainedChain, ContactRule, GroundForm, LineConstraints, PolygonalChain, SegmentGround},
     quantity::{AngleInterval, ChainPoint},
-    world::{ClearanceRule, Gravity, Hopper, RestSlope, SurfaceProperties},
+    world::{ClearanceRule, Gravity, Hopper, HopperLimits, RestSlope, SpeedLevels, SurfaceProperties},
 };
 
 mod draw;
@@ -22,6 +22,19 @@ impl Draw {
             0 => ClearanceRule::Vertex,
             1 => ClearanceRule::TAPERED,
             _ => ClearanceRule::Tapered(self.log_uniform(0.05, 20.0)),
+        }
+    }
+
+    /// Now and then a least take-off speed or speed levels of the machine, up to a greatest speed.
+    pub(crate) fn commands(&mut self, limits: &mut HopperLimits, speed_max_m_s: f64) {
+        match self.below(5) {
+            0 => limits.takeoff_speed_min_m_s = Some(speed_max_m_s * self.uniform(0.3, 1.0)),
+            1 => {
+                let mut levels: Vec<f64> = (0..=self.below(4)).map(|_| speed_max_m_s * self.uniform(0.3, 1.0)).collect();
+                levels.sort_by(f64::total_cmp);
+                limits.takeoff_speed_levels = SpeedLevels::new(&levels).ok();
+            }
+            _ => {}
         }
     }
 

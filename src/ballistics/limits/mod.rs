@@ -4,12 +4,14 @@
 //! that the limit alone refuses every arc.
 
 mod apex;
+mod commanded;
 mod cones;
 mod flight_time;
 mod speed;
 mod terrain;
 
 pub use apex::apex_height;
+pub use commanded::{takeoff_speed_level, takeoff_speed_min};
 pub use cones::{landing_cone, takeoff_cone};
 pub use flight_time::flight_time;
 pub use speed::{landing_speed, speeds, takeoff_speed};

@@ -37,7 +37,7 @@ const fn capability(path: &'static str, more_is_more: bool, from: f64, to: f64) 
 }
 
 /// All keys for which a more capable value never removes a feasible hop.
-const CAPABILITIES: [Capability; 11] = [
+const CAPABILITIES: [Capability; 12] = [
     capability("hopper.takeoff_speed_max_m_s", true, 0.01, 100.0),
     capability("hopper.landing_speed_max_m_s", true, 0.01, 100.0),
     capability("hopper.clearance_m", false, 0.0, 100.0),
@@ -46,6 +46,7 @@ const CAPABILITIES: [Capability; 11] = [
     capability("hopper.apex_height_max_m", true, 0.001, 1000.0),
     capability("hopper.flight_time_max_s", true, 0.001, 1000.0),
     capability("hopper.roughness_max_m", true, 0.0, 100.0),
+    capability("hopper.takeoff_speed_min_m_s", false, 0.001, 100.0),
     capability("surface.friction_coefficient", true, 0.01, 10.0),
     capability("surface.rest_slope_max_deg", true, 0.0, 90.0),
     capability("body.gravity_m_s2", false, 0.001, 30.0),
@@ -68,7 +69,7 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     use_threads(args.answer.threads)?;
     let (mut weakest, strongest) = if capability.more_is_more { (from, to) } else { (to, from) };
     let first = with_value(args, strongest, args.common.quiet)?;
-    if let Some(other) = other_angle_deg(capability, &first).filter(|_| args.from.is_none() || args.to.is_none()) {
+    if let Some(other) = opposite_limit(capability, &first).filter(|_| args.from.is_none() || args.to.is_none()) {
         weakest = other;
     }
     let (from, to) = (weakest.min(strongest), weakest.max(strongest));
@@ -78,6 +79,13 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
         return Err(Failure::message(
             "--vary body.gravity_m_s2: less gravity makes hops longer, but hopper.flight_time_max_s then forbids more of them: \
              leave that limit away",
+        ));
+    }
+    let limits = first.scenario.hopper.limits();
+    if capability.path == "body.gravity_m_s2" && (limits.takeoff_speed_min_m_s.is_some() || limits.takeoff_speed_levels.is_some()) {
+        return Err(Failure::message(
+            "--vary body.gravity_m_s2: less gravity makes hops longer, but hopper.takeoff_speed_min_m_s and \
+             hopper.takeoff_speed_levels_m_s then forbid the short ones: leave those away",
         ));
     }
     let last = with_value(args, weakest, true)?;
@@ -195,12 +203,19 @@ fn asked(args: &RequireArgs) -> Result<(Capability, [f64; 2]), Failure> {
     Ok((*capability, [from, to]))
 }
 
-/// The opposite mechanical angle limit, which the varied one may not cross.
-fn other_angle_deg(capability: Capability, loaded: &Loaded) -> Option<f64> {
+/// The opposite limit of the machine, which the varied one may not cross.
+fn opposite_limit(capability: Capability, loaded: &Loaded) -> Option<f64> {
     let hopper = &loaded.scenario.hopper;
     let other = match capability.path {
         "hopper.takeoff_angle_min_deg" => hopper.limits().takeoff_angle_max,
         "hopper.takeoff_angle_max_deg" => hopper.limits().takeoff_angle_min,
+        "hopper.takeoff_speed_min_m_s" => {
+            return Some(hopper.limits().takeoff_speed_max_m_s).filter(|greatest| greatest.is_finite());
+        }
+        "hopper.takeoff_speed_max_m_s" => {
+            let highest = hopper.limits().takeoff_speed_levels.map(|levels| levels.highest_m_s());
+            return highest.or(hopper.limits().takeoff_speed_min_m_s);
+        }
         _ => None,
     };
     other.map(|angle| angle.shortest_degrees().unwrap_or_else(|| angle.degrees()))

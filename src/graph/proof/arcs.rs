@@ -44,6 +44,27 @@ impl<R: Rounding> Arcs<R> {
     }
 }
 
+/// The take-off slopes between which every arc is slower than a speed, over all lines of sight of a slope of at most `b` and for at least
+/// this ratio `q = v^2 / (g X)`: the open interval between the roots of [`least_speed_slopes`], rounded inwards. `None` if there may be
+/// none.
+///
+/// The interval grows with `q` and shrinks with `b`.
+pub(super) fn slower_slopes<R: Rounding>(ratio: f64, sight_slope: f64) -> Option<[f64; 2]> {
+    let (one, q, b) = (Interval::point(1.0), Interval::<R>::point(ratio), Interval::<R>::point(sight_slope));
+    let secant = (one + b.squared()).sqrt();
+    let speed_ratio = if sight_slope >= 0.0 { b + secant } else { one / (secant - b) };
+    let excess = q - speed_ratio;
+    // NaN fails as well.
+    let real = ratio.is_finite() && sight_slope.is_finite() && excess.lower > 0.0;
+    if !real {
+        return None;
+    }
+    let root = (excess * (excess + secant + secant)).sqrt();
+    let larger = q + root;
+    let smaller = (one + (q + q) * b) / larger;
+    (smaller.upper < larger.lower).then_some([smaller.upper, larger.lower])
+}
+
 /// The take-off slopes that a speed allows over a line of sight of slope `b`, with `q = v^2 / (g X)`:
 ///
 /// ```text

@@ -4,11 +4,11 @@ use rayon::prelude::*;
 
 use super::{
     Faults,
-    arcs::{Arcs, least_speed_slopes},
+    arcs::{Arcs, least_speed_slopes, slower_slopes},
     cell::{Cell, shared_segment, slopes},
 };
 use crate::{
-    ballistics::limits::ClearanceProfile,
+    ballistics::{TakeoffSpeeds, limits::ClearanceProfile},
     chain::{ConstrainedChain, ContactRule, SegmentConstraints, Site},
     hop::HopTest,
     quantity::{Interval, Rounding, SegmentId, SlopeInterval, VertexId},
@@ -52,6 +52,8 @@ pub(super) struct Prover<'a, F: Faults> {
     clearance: ClearanceProfile,
     apex_height_max_m: Option<f64>,
     flight_time_max_s: Option<f64>,
+    /// The limit on the take-off speeds that the machine can be commanded, with the ranges of their squares, relaxed, (m/s)^2.
+    commands: Option<(Limit, Vec<[f64; 2]>)>,
     /// Number of bends before each vertex.
     bends_before: Vec<usize>,
     heights_m: (f64, f64),
@@ -88,6 +90,7 @@ impl<'a, F: Faults> Prover<'a, F> {
             clearance: relaxed_clearance::<F>(hopper.limits()),
             apex_height_max_m: hopper.limits().apex_height_max_m.map(|height_m| height_m * (1.0 + RELAXATION * F::SLACK)),
             flight_time_max_s: hopper.limits().flight_time_max_s.map(|time_s| time_s * (1.0 + RELAXATION * F::SLACK)),
+            commands: commands::<F>(test.takeoff_speeds()),
             bends_before,
             heights_m: (heights.clone().fold(f64::INFINITY, f64::min), heights.fold(f64::NEG_INFINITY, f64::max)),
         }
@@ -130,13 +133,40 @@ impl<'a, F: Faults> Prover<'a, F> {
         arcs.limit(|arcs| arcs.landing = arcs.landing.intersect(to.slopes), Limit::LandingCone)?;
         arcs.limit(|arcs| arcs.takeoff = arcs.takeoff.intersect(self.mechanical), Limit::MechanicalAngle)?;
         self.limit_machine(&mut arcs, run_m)?;
+        self.limit_commands(&mut arcs, run_m)?;
         if flown_past.is_empty() && !self.clearance.has_kinks() {
             return Ok(());
         }
         self.limit_kinks(&mut arcs, takeoff, landing, direction, run_m.upper)?;
         self.limit_terrain(&mut arcs, takeoff, landing, flown_past)?;
         // The range of line-of-sight slopes that the other limits left restricts the speeds once more.
-        self.limit_speeds(&mut arcs, &from, &to, run_m).map_err(|_| Limit::Terrain)
+        self.limit_speeds(&mut arcs, &from, &to, run_m).map_err(|_| Limit::Terrain)?;
+        self.limit_commands(&mut arcs, run_m)
+    }
+
+    /// The take-off speeds that the machine can be commanded. An arc has a speed from `v_1` to `v_2` only if its take-off slope is one
+    /// that `v_2` allows over the shortest run and the lowest line of sight, and not one of those that are slower than `v_1` even over
+    /// the longest run and the highest line of sight.
+    fn limit_commands(&self, arcs: &mut Arcs<F::Rounding>, run_m: Interval<F::Rounding>) -> Result<(), Limit> {
+        let Some((limit, ranges)) = &self.commands else { return Ok(()) };
+        let g = Interval::<F::Rounding>::point(self.test.gravity_m_s2());
+        let mut left = Interval::EMPTY;
+        for [least, greatest] in ranges {
+            let all = if run_m.lower > 0.0 && greatest.is_finite() {
+                let ratio = Interval::point(*greatest) / (g * Interval::point(run_m.lower));
+                arcs.takeoff.intersect(least_speed_slopes(ratio.upper, arcs.sight.lower))
+            } else {
+                arcs.takeoff
+            };
+            let ratio = Interval::point(*least) / (g * Interval::point(run_m.upper));
+            let Some([flat, steep]) = slower_slopes::<F::Rounding>(ratio.lower, arcs.sight.upper) else {
+                left = hull(left, all);
+                continue;
+            };
+            left = hull(left, all.intersect(Interval::new(f64::NEG_INFINITY, flat)));
+            left = hull(left, all.intersect(Interval::new(steep, f64::INFINITY)));
+        }
+        arcs.limit(|arcs| arcs.takeoff = left, *limit)
     }
 
     /// The rule of a contact at a site.
@@ -408,6 +438,28 @@ fn footing(chain: &ConstrainedChain) -> Vec<[Option<Limit>; 2]> {
         [index.checked_sub(1).and_then(refusal), refusal(index)]
     };
     (0..=chain.geometry().segment_count()).into_par_iter().map(of_vertex).collect()
+}
+
+/// The hull of two intervals, either of which may be empty.
+fn hull<R: Rounding>(a: Interval<R>, b: Interval<R>) -> Interval<R> {
+    if b.is_empty() { a } else { a.hull(b) }
+}
+
+/// The limit on the take-off speeds that a machine can be commanded, with the ranges of their squares, relaxed.
+fn commands<F: Faults>(speeds: &TakeoffSpeeds) -> Option<(Limit, Vec<[f64; 2]>)> {
+    let tolerance = SPEED_TOLERANCE * (1.0 + SPEED_MARGIN) * F::SLACK;
+    let about = |speed_m_s: f64| {
+        let speed = Interval::<F::Rounding>::point(speed_m_s);
+        let by = speed * Interval::point(tolerance);
+        let [least, greatest] = if tolerance > 0.0 { [speed - by, speed + by] } else { [speed; 2] };
+        [least.squared().lower, greatest.squared().upper]
+    };
+    let ranges = match speeds {
+        TakeoffSpeeds::Any => return None,
+        TakeoffSpeeds::AtLeast(least_m_s) => vec![[about(*least_m_s)[0], f64::INFINITY]],
+        TakeoffSpeeds::Levels(levels) => levels.as_slice().iter().map(|level| about(*level)).collect(),
+    };
+    Some((speeds.limit()?, ranges))
 }
 
 /// The relaxed rules of a segment for one direction.

@@ -190,7 +190,7 @@ impl Tried {
         while let Some((from, lofts)) = self.reached[here]?.by {
             let (takeoff, landing) = (self.candidates[from].station, self.candidates[here].station);
             let sight = test.line_of_sight(&takeoff, &landing)?;
-            let arc = Arc::new(sight, options.takeoff.loft(sight, lofts), test.gravity_m_s2());
+            let arc = Arc::new(sight, test.loft(options.takeoff, sight, lofts), test.gravity_m_s2());
             cost = cost + options.effort.cost(&arc, 1);
             legs.push(Leg { takeoff, landing, edge: Edge::Hop(lofts) });
             here = from;

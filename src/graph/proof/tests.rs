@@ -8,7 +8,7 @@ use crate::{
     hop::HopTest,
     progress::{Meter, Stage},
     quantity::{AngleInterval, ChainPoint, Inwards, VertexId},
-    world::{ClearanceRule, Gravity, Hopper, HopperLimits, RestSlope, SurfaceProperties},
+    world::{ClearanceRule, Gravity, Hopper, HopperLimits, RestSlope, SpeedLevels, SurfaceProperties},
 };
 
 /// Ends are rounded inwards, without the tolerance, which would hide the fault.
@@ -78,6 +78,12 @@ pub(super) fn drawn_chain(draw: &mut Draw) -> ConstrainedChain {
         },
         flight_time_max_s: (draw.below(4) == 0).then(|| draw.uniform(0.5, 3.0)),
         apex_height_max_m: (draw.below(4) == 0).then(|| draw.uniform(0.5, 3.0)),
+        takeoff_speed_min_m_s: (draw.below(4) == 0).then(|| speed * draw.uniform(0.3, 1.0)),
+        takeoff_speed_levels: match draw.below(8) {
+            0 => SpeedLevels::new(&[speed * draw.uniform(1.0, 1.2)]).ok(),
+            1 => SpeedLevels::new(&[0.6, 0.8, 1.0].map(|share| speed * (share + draw.uniform(0.4, 0.5)))).ok(),
+            _ => None,
+        },
         ..HopperLimits::UNLIMITED
     })
     .unwrap();

@@ -274,7 +274,16 @@ impl PostHops {
         }
         let lower = lofts.lower.max(terrain);
         let room = lofts.upper - near(lofts.upper);
-        if sure && lower + near(lower) <= room && room > 0.0 {
+        let sure_of = SlopeInterval { lower: lower + near(lower), upper: room };
+        if !self.envelope().takeoff_speeds().are_any() {
+            // The machine has an arc well inside, or none anywhere near.
+            let possible = SlopeInterval { lower: lower - near(lower), upper: most };
+            if !self.envelope().commands(sight, possible) {
+                return Verdict::No;
+            }
+            sure &= self.envelope().commands(sight, sure_of);
+        }
+        if sure && sure_of.lower <= room && room > 0.0 {
             Verdict::Hop(sight, SlopeInterval { lower, upper: lofts.upper })
         } else {
             Verdict::Close

@@ -20,6 +20,7 @@ pub use table::LandingTable;
 use terrain::{Near, Overflight};
 
 use crate::{
+    ballistics::LineOfSight,
     chain::Station,
     quantity::SlopeInterval,
     world::{Contact, Direction, Limit, tolerant_speed_m_s},
@@ -185,7 +186,21 @@ impl Landing<'_> {
         if (lower - in_envelope.upper).abs() <= TOUCHING * (lower.abs() + in_envelope.upper.abs()) && lower > in_envelope.lower {
             return test.lofts(takeoff, landing);
         }
-        if lower > in_envelope.upper { Err(Limit::Terrain) } else { Ok(SlopeInterval { lower, upper: in_envelope.upper }) }
+        let lofts = SlopeInterval { lower, upper: in_envelope.upper };
+        if lower > in_envelope.upper {
+            return Err(Limit::Terrain);
+        }
+        if test.takeoff_speeds().are_any() {
+            return Ok(lofts);
+        }
+        let sight = LineOfSight::along((landing.point.x_m - from.x_m).abs(), self.lanes.slope(lane));
+        let refused = test.refused_command(sight, lofts);
+        let hair = if lower > in_envelope.lower { TOUCHING * lower } else { 0.0 };
+        let near = [-hair, hair].map(|by| test.refused_command(sight, SlopeInterval { lower: lower + by, ..lofts }));
+        if near != [refused; 2] {
+            return test.lofts(takeoff, landing);
+        }
+        refused.map_or(Ok(lofts), Err)
     }
 }
 

@@ -14,7 +14,7 @@ use crate::{
     ground::{ContactPoint, Facet, Frame, Hold, Side, Surface},
     path::Hop,
     quantity::{Angle, AngleInterval, MapPoint},
-    world::{Contact, Direction, FrictionCone, Limit, tolerant_speed_m_s},
+    world::{Contact, Direction, FrictionCone, Limit, SPEED_TOLERANCE, tolerant_speed_m_s},
 };
 
 /// Tolerance of an angle over its limit, rad: it corresponds to the tolerance of speeds. A tangent and an arc tangent between limit
@@ -89,7 +89,8 @@ impl<S: Surface> Checker<'_, S> {
         let (takeoff, landing) = (self.hop.takeoff.in_profile(), self.hop.landing.in_profile());
         self.takeoff(self.hop);
         self.mechanical_angle();
-        self.command();
+        self.steps();
+        self.speeds();
         let found = libm::hypot(landing.x_m - takeoff.x_m, landing.z_m - takeoff.z_m);
         let measure = Measure { found, allowed: self.surface.height_rounding_m(), unit: "m" };
         self.note(ViolatedLimit::LandingPoint, Some(measure), takeoff.x_m);
@@ -101,7 +102,8 @@ impl<S: Surface> Checker<'_, S> {
         self.landing(flight);
         self.bends();
         self.mechanical_angle();
-        self.command();
+        self.steps();
+        self.speeds();
         self.terrain(flight);
         self.landing_point(flight);
         self.machine(flight);
@@ -150,7 +152,14 @@ impl<S: Surface> Checker<'_, S> {
     /// Uncertainty of the landing's speed: it changes by `g v_z / v^2` per metre flown.
     fn landing_speed_rounding_m_s(&self, flight: &Flight) -> f64 {
         let v = flight.landing_speed_m_s;
-        flight.rounding_m * (self.surface.gravity_m_s2() / v) * (flight.landing_climb_m_s.abs() / v)
+        let of_place = flight.rounding_m * (self.surface.gravity_m_s2() / v) * (flight.landing_climb_m_s.abs() / v);
+        // The horizontal speed, and with it the time of the landing, is as exact as the cosine of the angle.
+        of_place + self.surface.gravity_m_s2() * flight.flight_time_s * self.angle_rounding()
+    }
+
+    /// Relative rounding of the horizontal speed: near the vertical, the last digit of the angle is a part of its cosine.
+    fn angle_rounding(&self) -> f64 {
+        2.0 * f64::EPSILON * libm::fabs(libm::tan(self.hop.takeoff_angle.radians()))
     }
 
     /// Checks of the landing.
@@ -362,7 +371,7 @@ impl<S: Surface> Checker<'_, S> {
     }
 
     /// The command is a whole number of the machine's steps.
-    fn command(&mut self) {
+    fn steps(&mut self) {
         let steps = self.surface.hopper().limits().steps;
         let hop = self.hop;
         let heading_deg = hop.takeoff.map().map(|_| hop.heading_deg);
@@ -377,6 +386,28 @@ impl<S: Surface> Checker<'_, S> {
             let on_step = (found - whole * step).abs() <= STEP_TOLERANCE * step.min(1.0) + STEP_ULPS * f64::EPSILON * found.abs();
             if !on_step {
                 self.note_limit(limit, found, whole * step, unit, hop.takeoff.along_m);
+            }
+        }
+    }
+
+    /// The take-off speeds of the machine: at least its least one, and one of its levels.
+    fn speeds(&mut self) {
+        let limits = self.surface.hopper().limits();
+        let (speed_m_s, x_m) = (self.hop.takeoff_speed_m_s, self.hop.takeoff.along_m);
+        let tolerance = SPEED_TOLERANCE + SPEED_ROUNDING + self.run_rounding();
+        if let Some(least_m_s) = limits.takeoff_speed_min_m_s {
+            let within = speed_m_s >= least_m_s * (1.0 - tolerance);
+            if !within {
+                self.note_limit(Limit::TakeoffSpeedMin, speed_m_s, least_m_s, "m/s", x_m);
+            }
+        }
+        if let Some(levels) = limits.takeoff_speed_levels {
+            let off_m_s = |level_m_s: &f64| (speed_m_s - level_m_s).abs();
+            let nearest = levels.as_slice().iter().min_by(|a, b| off_m_s(a).total_cmp(&off_m_s(b)));
+            let nearest_m_s = nearest.copied().unwrap_or_default();
+            let within = off_m_s(&nearest_m_s) <= nearest_m_s * tolerance;
+            if !within {
+                self.note_limit(Limit::TakeoffSpeedLevels, speed_m_s, nearest_m_s, "m/s", x_m);
             }
         }
     }
@@ -438,7 +469,8 @@ impl<S: Surface> Checker<'_, S> {
             }
         }
         if let Some(time_s) = self.surface.hopper().limits().flight_time_max_s {
-            let within = flight.flight_time_s <= time_s * (1.0 + TIME_TOLERANCE + self.run_rounding()) + time_rounding_s(flight);
+            let within = flight.flight_time_s
+                <= time_s * (1.0 + TIME_TOLERANCE + self.run_rounding() + self.angle_rounding()) + time_rounding_s(flight);
             if !within {
                 self.note_limit(Limit::FlightTime, flight.flight_time_s, time_s, "s", x_m);
             }
@@ -458,7 +490,7 @@ impl<S: Surface> Checker<'_, S> {
         );
         let speed_tolerance_m_s = flight.landing_speed_m_s * TIME_TOLERANCE + self.landing_speed_rounding_m_s(flight);
         self.stated(StatedValue::LandingSpeed, hop.landing_speed_m_s, flight.landing_speed_m_s, speed_tolerance_m_s, "m/s");
-        let time_tolerance_s = flight.flight_time_s * TIME_TOLERANCE + time_rounding_s(flight);
+        let time_tolerance_s = flight.flight_time_s * (TIME_TOLERANCE + self.angle_rounding()) + time_rounding_s(flight);
         self.stated(StatedValue::FlightTime, hop.flight_time_s, flight.flight_time_s, time_tolerance_s, "s");
         self.stated(StatedValue::Apex, hop.apex_z_m, flight.apex_z_m, flight.place_tolerance_m, "m");
         if let Some(margin_m_s) = self.margin_m_s(flight) {

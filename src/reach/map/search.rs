@@ -231,11 +231,14 @@ impl Pull<'_> {
             let so_far = self.map.effort[lattice.index(other)];
             let least = best.map_or(f64::INFINITY, |best| best.effort);
             let gravity = self.hops.envelope().gravity_m_s2();
+            let any_speed = self.hops.envelope().takeoff_speeds().are_any();
             let worth = |sight: LineOfSight, lofts: SlopeInterval| {
-                choice != TakeoffChoice::LeastSpeed || joined(effort, so_far, at_least(effort, sight, lofts, gravity)) < least
+                // Where the machine lacks the slowest arc, the flatter one flown instead may be shorter.
+                let is_bound = choice == TakeoffChoice::LeastSpeed && (any_speed || effort != Effort::Time);
+                !is_bound || joined(effort, so_far, at_least(effort, sight, lofts, gravity)) < least
             };
             if let Some((sight, lofts)) = self.hops.lofts_where(from, offset, worth)? {
-                let arc = Arc::new(sight, choice.loft(sight, lofts), gravity);
+                let arc = Arc::new(sight, self.hops.envelope().loft(choice, sight, lofts), gravity);
                 let effort = joined(effort, so_far, effort.cost(&arc, 1).effort());
                 if effort < least {
                     best = Some(Found { node: index, offset: offset_number, effort });

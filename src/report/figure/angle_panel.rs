@@ -7,6 +7,7 @@ use super::{
     sheet::{Anchor, Hang, Label, Pen, Sheet, text_width_mm},
     ticks::{Ticks, one_in},
 };
+use crate::world::Limit;
 
 /// Height of the area with the bars.
 const BARS_MM: f64 = 30.0;
@@ -41,19 +42,29 @@ struct Layout {
     range_deg: (f64, f64),
 }
 
-/// The names of the limits at a bar's lower and upper end.
+/// The names of the limits at the lower and the upper end of a hop's bars.
 fn names(hop: &HopFigure) -> [String; 2] {
-    let lower = match hop.hop.lower_vertex {
-        Some(vertex) => format!("{} v{}", hop.hop.lower_limit, vertex.index() + 1),
-        None => hop.hop.lower_limit.to_string(),
-    };
-    [lower, hop.hop.upper_limit.to_string()]
+    hop.windows.ends.clone()
+}
+
+/// The name of the limit that refuses the angles between a hop's two bars, if it has two.
+fn between(hop: &HopFigure) -> Option<String> {
+    hop.windows.between.filter(|_| hop.windows.angles.len() == 2).map(|limit| limit.to_string())
+}
+
+/// The least and the greatest angle of a hop's bars, degrees.
+fn extent_deg(hop: &HopFigure) -> (f64, f64) {
+    hop.windows
+        .angles
+        .iter()
+        .fold((90.0f64, -90.0f64), |(low, high), window| (low.min(window.min.degrees()), high.max(window.max.degrees())))
 }
 
 impl Layout {
     #[expect(clippy::cast_precision_loss, reason = "at most a few hundred hops are drawn")]
     fn new(hops: &Thinned<HopFigure>, top_mm: f64) -> Self {
-        let widest = hops.shown.iter().flat_map(names).map(|name| text_width_mm(&name, SMALL_MM)).fold(0.0, f64::max);
+        let widest = hops.shown.iter().flat_map(|hop| names(hop).into_iter().chain(between(hop)));
+        let widest = widest.map(|name| text_width_mm(&name, SMALL_MM)).fold(0.0, f64::max);
         let slot_mm = (RIGHT_MM - LEFT_MM - 2.0 * SIDE_MM) / hops.shown.len().max(1) as f64;
         let upright = slot_mm < widest + 1.5;
         let number_mm = text_width_mm(&hops.of.to_string(), SMALL_MM);
@@ -61,8 +72,8 @@ impl Layout {
         let every = one_in(needed_mm / slot_mm);
         let names_mm = 2.4 + if upright { widest } else { SMALL_MM };
         let (low, high) = hops.shown.iter().fold((90.0f64, -90.0f64), |(low, high), hop| {
-            let feasible = hop.hop.takeoff_angles;
-            (low.min(feasible.min.degrees()), high.max(feasible.max.degrees()))
+            let (least, greatest) = extent_deg(hop);
+            (low.min(least), high.max(greatest))
         });
         let spare = (0.5 * (LEAST_RANGE_DEG - (high - low))).max(0.0);
         let panel = Panel { left: LEFT_MM, top: top_mm, right: RIGHT_MM, bottom: top_mm + BARS_MM + 2.0 * names_mm };
@@ -98,11 +109,14 @@ impl Layout {
     fn bar(&self, sheet: &mut Sheet, i: usize, hop: &HopFigure) {
         let x = self.x(i);
         let half = (0.3 * self.slot_mm).min(2.2);
-        let feasible = hop.hop.takeoff_angles;
-        let (bottom, top) = (self.y(feasible.min.degrees()), self.y(feasible.max.degrees()));
-        let corners = [(x - half, bottom), (x + half, bottom), (x + half, top), (x - half, top)];
-        sheet.area(corners.to_vec(), SKY, 0.45);
-        sheet.line(corners.into_iter().chain([corners[0]]).collect(), Pen { colour: BLUE, width_mm: 0.2 });
+        for window in &hop.windows.angles {
+            let (bottom, top) = (self.y(window.min.degrees()), self.y(window.max.degrees()));
+            let corners = [(x - half, bottom), (x + half, bottom), (x + half, top), (x - half, top)];
+            sheet.area(corners.to_vec(), SKY, 0.45);
+            sheet.line(corners.into_iter().chain([corners[0]]).collect(), Pen { colour: BLUE, width_mm: 0.2 });
+        }
+        let (least, greatest) = extent_deg(hop);
+        let (bottom, top) = (self.y(least), self.y(greatest));
         chosen(sheet, (x, self.y(hop.hop.takeoff_angle.degrees())), half);
         if !i.is_multiple_of(self.every) {
             return;
@@ -118,6 +132,12 @@ impl Layout {
         } else {
             sheet.label(Label::new(upper, above, SMALL_MM).hung(Anchor::Middle, Hang::Above));
             sheet.label(Label::new(lower, below, SMALL_MM).hung(Anchor::Middle, Hang::Below));
+            if let (Some(name), [flat, steep]) = (between(hop), &hop.windows.angles[..]) {
+                let (from, to) = (self.y(flat.max.degrees()), self.y(steep.min.degrees()));
+                if from - to > SMALL_MM + 2.5 {
+                    sheet.label(Label::new(name, (x, 0.5 * (from + to)), SMALL_MM).hung(Anchor::Middle, Hang::Through));
+                }
+            }
         }
     }
 }
@@ -131,5 +151,12 @@ fn chosen(sheet: &mut Sheet, (x, y): (f64, f64), half: f64) {
 }
 
 /// The caption of the panel.
-pub(super) const CAPTION: &str =
-    "Bars: feasible take-off angles above the horizontal and the limits at their ends; diamond: angle chosen.";
+pub(super) fn caption(hops: &Thinned<HopFigure>) -> Vec<String> {
+    let mut lines =
+        vec!["Bars: feasible take-off angles above the horizontal and the limits at their ends; diamond: angle chosen.".to_owned()];
+    lines.extend(hops.shown.iter().find_map(|hop| hop.windows.between).map(|limit| match limit {
+        Limit::TakeoffSpeedLevels => format!("Lines: the angles of the machine's take-off speeds; {limit} refuses those between."),
+        _ => format!("Two bars of one hop: {limit} refuses the angles between them, whose arcs are slower."),
+    }));
+    lines
+}

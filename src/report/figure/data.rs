@@ -8,8 +8,9 @@ use crate::{
     ballistics::{Arc, limits::ClearanceProfile},
     chain::Station,
     graph::{EndpointRefusal, Frontier, NodeSet, Outcome},
+    hop::HopTest,
     path::{Hop, HopPath, Totals},
-    quantity::{ChainPoint, SlopeInterval},
+    quantity::{AngleInterval, ChainPoint, SlopeInterval, VertexId},
     world::{Contact, Direction, Limit},
 };
 
@@ -71,18 +72,31 @@ pub enum Subject {
 }
 
 /// One hop as drawn.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct HopFigure {
     /// Its number in the path, from 1.
     pub number: usize,
     /// Its record.
     pub hop: Hop,
+    /// Its feasible take-off angles.
+    pub windows: HopWindows,
     /// Its flight.
     pub arc: Arc,
     /// The take-off cone at its take-off and the landing cone at its landing; `None` if the ground allows no contact.
     pub cones: [Option<Cone>; 2],
     /// With brakes: the speed of the touchdown straight down, m/s, instead of a landing cone.
     pub touchdown_m_s: Option<f64>,
+}
+
+/// The feasible take-off angles of a hop, as drawn.
+#[derive(Clone, Debug, PartialEq)]
+pub struct HopWindows {
+    /// The windows, ascending; at least one.
+    pub angles: Vec<AngleInterval>,
+    /// The names of the limits at the lower end of the first and at the upper end of the last.
+    pub ends: [String; 2],
+    /// The limit that refuses the angles between two windows.
+    pub between: Option<Limit>,
 }
 
 /// The allowed directions at a contact.
@@ -198,6 +212,7 @@ fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
     let sight = stations
         .and_then(|(takeoff, landing)| test.line_of_sight(&takeoff, &landing))
         .unwrap_or_else(|| crate::ballistics::LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m));
+    let windows = windows(test, hop, stations);
     let gravity_m_s2 = test.gravity_m_s2();
     let cone = |station: Option<Station>, contact| {
         let station = station?;
@@ -209,11 +224,31 @@ fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
     HopFigure {
         number,
         hop: *hop,
+        windows,
         // The loft from the flight time, n = g T^2 / (2 X), since tangents of steep angles lose digits.
         arc: Arc::new(sight, 0.5 * gravity_m_s2 * hop.flight_time_s * (hop.flight_time_s / sight.run_m()), gravity_m_s2),
         cones: [cone(hop.takeoff.station, Contact::Takeoff), landing_cone],
         touchdown_m_s,
     }
+}
+
+/// The windows of a hop, with all of them where the machine cannot be commanded every take-off speed.
+fn windows(test: &HopTest, hop: &Hop, stations: Option<(Station, Station)>) -> HopWindows {
+    let lower = |limit: Limit, vertex: Option<VertexId>| match vertex {
+        Some(vertex) => format!("{limit} v{}", vertex.index() + 1),
+        None => limit.to_string(),
+    };
+    let flown = HopWindows {
+        angles: vec![hop.takeoff_angles],
+        ends: [lower(hop.lower_limit, hop.lower_vertex), hop.upper_limit.to_string()],
+        between: None,
+    };
+    let Some(between) = test.takeoff_speeds().limit() else { return flown };
+    let Some(set) = stations.and_then(|(takeoff, landing)| test.takeoff_set(&takeoff, &landing)) else { return flown };
+    let (Some(first), Some(last)) = (set.windows().first(), set.windows().last()) else { return flown };
+    let ends = [lower(first.binding.lower.limit, first.binding.lower.vertex), last.binding.upper.limit.to_string()];
+    let angles: Vec<_> = set.windows().iter().filter_map(|window| set.angles_of(window.lofts)).collect();
+    HopWindows { between: (angles.len() > 1).then_some(between), angles, ends }
 }
 
 /// How far one gets, and which limits refuse to go on.

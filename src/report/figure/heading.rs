@@ -85,6 +85,11 @@ pub fn conditions(body: &str, gravity_m_s2: f64, hopper: &Hopper, speed_bounds_m
             .map(|footprint| format!("footprint {} m", short(footprint))),
     );
     parts.extend(hopper.limits().roughness_max_m.map(|roughness| format!("roughness ≤ {} m", short(roughness))));
+    parts.extend(hopper.limits().takeoff_speed_min_m_s.map(|speed| format!("take-off speed ≥ {} m/s", short(speed))));
+    parts.extend(hopper.limits().takeoff_speed_levels.map(|levels| {
+        let all: Vec<_> = levels.as_slice().iter().map(|level| short(*level)).collect();
+        format!("take-off speeds {} m/s", all.join(", "))
+    }));
     if !ground.is_empty() {
         parts.push(ground.to_owned());
     }
@@ -137,7 +142,7 @@ fn remarks(data: &FigureData) -> Vec<String> {
         Subject::Path { hops, totals } => {
             let mut all = vec![total(totals)];
             if !hops.shown.is_empty() {
-                all.push(angle_panel::CAPTION.to_owned());
+                all.extend(angle_panel::caption(hops));
             }
             all
         }

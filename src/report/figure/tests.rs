@@ -150,6 +150,7 @@ fn cases() -> Vec<Case> {
             takeoff_speed_m_s: Some(0.25),
             heading: Some(Angle::from_degrees(15.0)),
         },
+        takeoff_speed_min_m_s: Some(0.5),
         mass_kg: Some(20.0),
         rest_time_s: Some(120.0),
         ..*ten.limits()

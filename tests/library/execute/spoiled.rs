@@ -118,6 +118,17 @@ fn is_hardly_faster(case: &Case<'_>, limit: Limit, radians: f64) -> bool {
     (1.0..1.0 + 1e-8).contains(&(speed_m_s / rule.speed_max_m_s()))
 }
 
+/// Whether the spoiled arc has nearly a speed that the machine has, as where the speed hardly depends on the angle, or by accident.
+fn is_nearly_commanded(case: &Case<'_>, limit: Limit, radians: f64) -> bool {
+    let (speed_m_s, limits) = (case.at_angle(radians).takeoff_speed_m_s, case.world.hopper.limits());
+    let near = |level: f64| (speed_m_s / level - 1.0).abs() < 1e-8;
+    match limit {
+        Limit::TakeoffSpeedMin => limits.takeoff_speed_min_m_s.is_some_and(near),
+        Limit::TakeoffSpeedLevels => limits.takeoff_speed_levels.is_some_and(|levels| levels.as_slice().iter().any(|v| near(*v))),
+        _ => false,
+    }
+}
+
 /// Both ends of the feasible take-off angles.
 fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
     let (min, max) = (case.hop.takeoff_angles.min.radians(), case.hop.takeoff_angles.max.radians());
@@ -139,6 +150,7 @@ fn spoil_angles(case: &Case<'_>, tally: &mut Tally) {
             || landing_is_top
             || (limit == Limit::Terrain && is_too_low_to_see(case, min, radians))
             || is_hardly_faster(case, limit, radians)
+            || is_nearly_commanded(case, limit, radians)
         {
             tally.too_fine += 1;
             continue;
@@ -187,6 +199,10 @@ fn spoil_reach(case: &Case<'_>, tally: &mut Tally) {
     let x_m = takeoff.point.x_m + case.hop.direction.sign() * 1.01 * reach.reach_m();
     let Ok(landing) = case.chain.geometry().station(x_m) else { return };
     if takeoff.shared_segment(&landing) != Some(segment) {
+        return;
+    }
+    if reach.limit() == Limit::TakeoffSpeedMin {
+        // The other limits end it: where they leave only slow arcs.
         return;
     }
     let sight = case.test.line_of_sight(&takeoff, &landing).unwrap();

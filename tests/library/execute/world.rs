@@ -168,6 +168,8 @@ fn hopper(dice: &mut Dice, size_m: f64, speed_m_s: f64, gravity_m_s2: f64) -> Ho
         flight_time_max_s: some(dice, 0.3, 1.8).map(|share| share * speed_m_s / gravity_m_s2),
         ..HopperLimits::UNLIMITED
     };
+    let fastest_m_s = limits.takeoff_speed_max_m_s;
+    dice.0.commands(&mut limits, fastest_m_s);
     if limits.takeoff_angle_min > limits.takeoff_angle_max && limits.takeoff_angle_max.is_some() {
         std::mem::swap(&mut limits.takeoff_angle_min, &mut limits.takeoff_angle_max);
     }

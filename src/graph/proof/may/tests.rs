@@ -122,8 +122,28 @@ fn is_hop(chain: &ConstrainedChain, hopper: &Hopper, g: f64, takeoff: &Place, la
     let half_sum = (ratio(from.speed_max_m_s()) - &b).min(ratio(to.speed_max_m_s()) + &b);
     let nearest = half_sum.clone().max(lower.clone());
     let nearest = upper.as_ref().map_or(nearest.clone(), |upper| nearest.clone().min(upper.clone()));
-    let left = upper.is_none_or(|upper| lower <= upper && upper.is_positive());
-    left && &nearest * &nearest - two * half_sum * &nearest + BigRational::one() + &b * &b <= BigRational::zero()
+    let left = upper.as_ref().is_none_or(|upper| lower <= *upper && upper.is_positive());
+    let is_slow_enough =
+        |n: &BigRational| n * n - &two * &half_sum * n + BigRational::one() + &b * &b <= BigRational::zero() && n.is_positive();
+    if !(left && is_slow_enough(&nearest)) {
+        return false;
+    }
+    // Speeds are continuous in the loft: between a slower and a faster arc of one interval lies every speed.
+    let known = [Some(lower), Some(nearest.clone()), upper];
+    let speeds_squared: Vec<_> = known
+        .into_iter()
+        .flatten()
+        .filter(is_slow_enough)
+        .map(|n| exact(g) * &run * (BigRational::one() + (&b + &n) * (&b + &n)) / (&two * n))
+        .collect();
+    let squared = |speed: f64, sign: i32| {
+        let v = exact(speed) * (BigRational::one() + BigRational::from_i32(sign).unwrap() * exact(SPEED_TOLERANCE));
+        &v * &v
+    };
+    let slower = |speed: f64| speeds_squared.iter().any(|found| *found <= squared(speed, 1));
+    let faster = |speed: f64| speeds_squared.iter().any(|found| *found >= squared(speed, -1));
+    hopper.limits().takeoff_speed_min_m_s.is_none_or(faster)
+        && hopper.limits().takeoff_speed_levels.is_none_or(|levels| levels.as_slice().iter().any(|v| slower(*v) && faster(*v)))
 }
 
 /// The number of refused pairs of cells, and the number of refusals that are wrong for some pair of points.
