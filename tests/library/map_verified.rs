@@ -46,9 +46,26 @@ fn all_hold(ground: DemGround, start: Post, stride: usize, step: usize, what: &s
         let execution = verify(&hops, &path, start, goal);
         let said: Vec<String> = execution.violations.iter().map(ToString::to_string).collect();
         assert!(execution.passes(), "{what}, {start:?} to {goal:?}: {said:#?}\n{:#?}", path.hops.first());
+        for hop in &path.hops {
+            no_margin_is_negative(hop, what);
+        }
         flown += path.hops.len();
     }
     flown
+}
+
+/// Beyond the tolerance of a speed, and the rounding of an angle; `margins.rs` compares the margins themselves, on chains.
+fn no_margin_is_negative(hop: &Hop, what: &str) {
+    let size_m = hop.run_m() + (hop.apex_z_m - hop.takeoff.point_m.z);
+    for (row, value) in hop.margins.rows() {
+        let allowed = match row.key {
+            key if key.ends_with("_deg") => 1e-7,
+            key if key.ends_with("_m_s") => 1.1e-9 * hop.takeoff_speed_m_s.max(hop.landing_speed_m_s),
+            key if key.ends_with("_m") => 1e-9 * size_m,
+            _ => 1e-9 * hop.flight_time_s,
+        };
+        assert!(value.is_none_or(|value| value >= -allowed), "{what}: {} {value:?}, allowed {allowed:e}; {hop:#?}", row.key);
+    }
 }
 
 #[test]
