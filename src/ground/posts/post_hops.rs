@@ -158,13 +158,15 @@ impl PostHops {
 
     /// Whether a hop in some direction may begin or end at a node.
     pub(crate) fn usable(&self, node: Post) -> bool {
-        self.facets.usable(self.lattice.post_index(node)) && !matches!(self.standing(node), Standing::Refused | Standing::TooSteep)
+        self.facets.usable(self.lattice.post_index(node)) && !self.never_stands(node)
     }
 
-    /// What the ground under the footprint at a node allows; everything without a footprint.
-    #[inline]
-    pub(super) fn standing(&self, node: Post) -> Standing {
-        self.footings.as_ref().map_or(Standing::Sound, |footings| footings.of(self.lattice.index(node)))
+    /// Whether the ground under the footprint at a node allows no contact in any direction. Beside the borders of a friction raster, the
+    /// rest slope may differ from one side to the other, so that a slope is then left to every pair.
+    pub(super) fn never_stands(&self, node: Post) -> bool {
+        let standing = self.footings.as_ref().map(|footings| footings.of(self.lattice.index(node)));
+        let one_friction = self.overlays.as_ref().is_none_or(|overlays| !overlays.has_friction());
+        standing == Some(Standing::Refused) || (one_friction && standing == Some(Standing::TooSteep))
     }
 
     /// Whether the ground under the footprint at both ends of an offset allows contacts, and whether that is certain; `None` if it does

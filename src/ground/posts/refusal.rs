@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{Post, PostHops, footings::Standing, overlays::OverlayTable};
+use super::{Post, PostHops, overlays::OverlayTable};
 use crate::{
     chain::FootprintRefusal,
     ground::DemGround,
@@ -69,7 +69,7 @@ impl PostHops {
         }
         let index = self.lattice.post_index(node);
         let rest = rest_tangent(&self.ground, self.overlays.as_ref(), index);
-        if matches!(self.standing(node), Standing::Refused | Standing::TooSteep)
+        if self.never_stands(node)
             && let Some(refusal) = self.position(node).and_then(|position| self.ground.footprint_against(&position, rest))
         {
             return Some(PostRefusal::Footprint(refusal));
