@@ -267,10 +267,8 @@ impl HopTest {
         let segment = takeoff.shared_segment(landing)?;
         let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
         let ranges = self.segment_reaches(segment, direction);
-        let alone = ranges.iter().filter_map(|reach| reach.hops_over(run_m));
-        let pairs = ranges.iter().flat_map(|reach| ranges.iter().map(move |last| (reach, last)));
-        let mixed = pairs.filter(|(reach, last)| reach != last).filter_map(|(reach, last)| reach.hops_before(last, run_m));
-        alone.chain(mixed).filter(|hops| hops.reach().flies(self, hops)).min_by_key(SegmentHops::hops)
+        let found = ranges.iter().filter_map(|reach| reach.hops_over(run_m).filter(|hops| reach.flies(self, hops)));
+        found.min_by_key(SegmentHops::hops)
     }
 
     /// The reach of one hop along a segment; `None` if its ground allows no hop along it.
