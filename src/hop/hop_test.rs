@@ -273,10 +273,7 @@ impl HopTest {
         let segment = takeoff.shared_segment(landing)?;
         let run_m = (landing.point.x_m - takeoff.point.x_m).abs();
         let ranges = self.segment_reaches(segment, direction);
-        let alone = ranges.iter().filter_map(|reach| reach.hops_over(run_m));
-        let pairs = ranges.iter().flat_map(|reach| ranges.iter().map(move |last| (reach, last)));
-        let mixed = pairs.filter(|(reach, last)| reach != last).filter_map(|(reach, last)| reach.hops_before(last, run_m));
-        let found = alone.chain(mixed).filter(|hops| hops.reach().flies(self, hops));
+        let found = ranges.iter().filter_map(|reach| reach.hops_over(run_m).filter(|hops| reach.flies(self, hops)));
         if self.chain.footprint().is_some() {
             return found.filter_map(|hops| self.hops_that_stand(takeoff, landing, segment, hops)).min_by_key(SegmentHops::hops);
         }

@@ -73,8 +73,6 @@ pub struct SegmentHops {
     hops: u64,
     /// The only split whose contacts the hopper's footprint allows, if it does not allow both.
     only: Option<Split>,
-    /// The range of lengths of the last hop, if that is another one.
-    last: Option<SegmentReach>,
 }
 
 impl SegmentReach {
@@ -232,15 +230,7 @@ impl SegmentReach {
             return if self.near_m > 0.0 { near.hops_over(run_m) } else { None };
         }
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1 and at most 2^53")]
-        (hops <= 9_007_199_254_740_992.0).then_some(SegmentHops { reach: *self, run_m, hops: hops as u64, only: None, last: None })
-    }
-
-    /// The least number of hops over a distance of which all but the last have lengths of this range, and the last one of another.
-    pub(super) fn hops_before(&self, last: &Self, run_m: f64) -> Option<SegmentHops> {
-        let before = ((run_m - last.tolerant_reach_m) / self.tolerant_reach_m).ceil().max(1.0);
-        let fits = before * self.shortest_m + last.shortest_m <= run_m && before < 9_007_199_254_740_992.0;
-        #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at least 1 and below 2^53")]
-        fits.then(|| SegmentHops { reach: *self, run_m, hops: before as u64 + 1, only: None, last: Some(*last) })
+        (hops <= 9_007_199_254_740_992.0).then_some(SegmentHops { reach: *self, run_m, hops: hops as u64, only: None })
     }
 }
 
@@ -260,22 +250,9 @@ impl SegmentHops {
     /// If the hopper's footprint allows the contacts of one split alone, that one is taken. With full reach the last hop covers the
     /// rest. If rounding leaves a rest slightly over the reach (a stretch of exactly
     /// a multiple of the reach), or under the shortest hop, the hops are equal.
-    ///
-    /// A last hop of another range of lengths covers the rest as well; with equal hops the others are as near to the mean as the ranges
-    /// allow.
     #[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
     pub fn lengths_m(&self, split: Split) -> (f64, f64) {
         let (equal, split) = (self.equal_m(), self.only.unwrap_or(split));
-        if let Some(last) = self.last {
-            let before = (self.hops - 1) as f64;
-            let least = self.reach.shortest_m.max((self.run_m - last.stride_m) / before);
-            let most = self.reach.stride_m.min((self.run_m - last.shortest_m) / before);
-            let each = match split {
-                Split::FullReach => most,
-                Split::Equal => equal.max(least).min(most),
-            };
-            return (each, self.run_m - before * each);
-        }
         let stride_m = self.reach.stride_m;
         let rest = self.run_m - (self.hops - 1) as f64 * stride_m;
         match split {
@@ -302,11 +279,6 @@ impl SegmentHops {
             (false, true) => Some(Self { only: Some(Split::Equal), ..self }),
             (false, false) => None,
         }
-    }
-
-    /// Whether a last hop that rounding has changed may have this length, after others of a length.
-    pub fn may_end_m(&self, each_m: f64, last_m: f64) -> bool {
-        self.last.is_some() || (last_m <= each_m && last_m >= self.reach.shortest_m)
     }
 
     /// The arc of a hop of this length along the segment, selected by `choice`.

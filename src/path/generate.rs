@@ -122,7 +122,7 @@ fn full_reach_m(leg: &Leg, along: &SegmentHops, direction: Direction, split: Spl
         landings.push(from_m);
     }
     let last_m = (leg.landing.point.x_m - from_m).abs();
-    along.may_end_m(each_m, last_m).then_some(landings)
+    (last_m <= each_m && last_m >= along.reach().shortest_m()).then_some(landings)
 }
 
 /// The x of all landings but the last for hops of equal length, m.

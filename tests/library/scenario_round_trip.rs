@@ -120,7 +120,8 @@ fn sensible_hopper<'a>(keys: &[(&'a Key, Option<String>)]) -> Vec<(&'a Key, Opti
         "isp_s" | "preparation_energy_j" => mass.is_some(),
         "roughness_max_m" => of("footprint_m").is_some_and(|footprint_m| footprint_m > 0.0),
         "takeoff_speed_step_m_s" => {
-            of("takeoff_speed_step_m_s").zip(of("takeoff_speed_max_m_s")).is_none_or(|(step, most)| step <= most)
+            of("takeoff_speed_levels_m_s").is_none()
+                && of("takeoff_speed_step_m_s").zip(of("takeoff_speed_max_m_s")).is_none_or(|(step, most)| step <= most)
         }
         "propellant_max_kg" => isp.is_some() && mass.zip(of("propellant_max_kg")).is_some_and(|(mass, most)| most < mass),
         "rest_time_s" => !newer,

@@ -9,7 +9,7 @@ use crate::{
 };
 
 /// The ranges of length that a machine's take-off speeds leave of those that all other limits allow, the longest first. Each of them is
-/// a reach of its own; the hops of one run along a segment have lengths of one range, but for the last one.
+/// a reach of its own; the hops of one run along a segment all have lengths of one range.
 ///
 /// At a speed `v` a loft `n` covers `X = 2 v^2 n / (g (1 + (b + n)^2))`. So the lengths change between possible and impossible at those
 /// of the ends of the cones and of the farthest loft, for each speed, or where a limit of the machine or the clearance ends. The first
