@@ -115,7 +115,7 @@ impl Purpose {
 
     /// Whether its hops have commands in the machine's steps.
     const fn flies_commands(self) -> bool {
-        !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { .. })
+        !matches!(self, Self::Hop | Self::Require | Self::Trade | Self::Fan | Self::Map { .. })
     }
 
     /// Whether its answer is no where the path takes more propellant than the machine has.

@@ -38,7 +38,7 @@ pub enum PathError {
 /// The hops of a path, in two dimensions, and in three if the chain lies on a map (P Algorithm 4, Remark 3).
 ///
 /// If the hopper takes its commands in steps, each hop has the nearest command that keeps all limits, takes off where the one before
-/// landed, and states what it was aimed at.
+/// landed, and states what it was aimed at; where hops of full reach along a segment leave no room for that, they are equal.
 ///
 /// # Errors
 /// [`PathError`].
@@ -51,6 +51,18 @@ pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Spli
     if total > TooManyHops::MOST {
         return Err(TooManyHops { hops: total }.into());
     }
+    let hops = match in_steps(test, exact(test, legs, choice, split), choice) {
+        // Hops of full reach leave no room for steps.
+        Err(NoCommand::Refused { .. }) if split == Split::FullReach => {
+            in_steps(test, exact(test, legs, choice, Split::Equal), choice)?
+        }
+        other => other?,
+    };
+    Ok(HopPath::of_hops(hops, test.hopper()))
+}
+
+/// The hops of a path with exact commands.
+fn exact(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Split) -> Vec<Hop> {
     let mut hops = Vec::new();
     for leg in legs {
         match leg.edge {
@@ -58,7 +70,7 @@ pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Spli
             Edge::Along(along) => hops.extend(along_segment(test, leg, &along, choice, split)),
         }
     }
-    Ok(HopPath::of_hops(in_steps(test, hops, choice)?, test.hopper()))
+    hops
 }
 
 impl HopPath {

@@ -28,8 +28,7 @@ pub enum NoCommand {
     /// No command near that of a hop keeps all limits.
     #[error(
         "the path of {hops} hops is for exact commands: of {tried} commands in the machine's steps ({steps}), none flies hop {hop} from where \
-         the hop before lands to near x = {aim_x_m} m within all limits ({limit}); use smaller steps, nodes closer together, or hops of equal \
-         length (search.split = \"equal\")"
+         the hop before lands to near x = {aim_x_m} m within all limits ({limit}); use smaller steps, or nodes closer together"
     )]
     Refused {
         /// The farthest hop that was tried, from 1.

@@ -15,7 +15,7 @@ use crate::{
         proof::{Bounds, ProofVerdict},
     },
     hop::HopTest,
-    path::HopPath,
+    path::{HopPath, NoCommand},
 };
 
 /// The answer of `chta check` for one pair.
@@ -51,6 +51,12 @@ pub struct CheckAnswer {
     /// If the path takes more propellant than the machine has; the verdict is then `no-path-found`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub propellant_shortage: Option<PropellantShortage>,
+    /// If no commands in the machine's steps fly the path; the verdict is then `no-path-found`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub commands_refusal: Option<String>,
+    /// With commands in steps: the greatest distance of a landing from its aim.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub landing_miss_max_m: Option<f64>,
     /// The bounds; absent if no proof was requested.
     #[serde(flatten)]
     pub proof: Option<ProofRecord>,
@@ -152,6 +158,8 @@ impl CheckAnswer {
             endpoint_refusals,
             frontier,
             propellant_shortage: None,
+            commands_refusal: None,
+            landing_miss_max_m: None,
             proof: None,
         }
     }
@@ -170,18 +178,31 @@ impl CheckAnswer {
     #[must_use]
     pub fn with_path(mut self, path: Option<&HopPath>) -> Self {
         self.propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
-        if self.propellant_shortage.is_some() {
-            self.verdict = ProofVerdict::Open.name();
-            if let Some(proof) = &mut self.proof {
-                (proof.upper_bound, proof.proved) = (None, false);
-            }
+        let aims = path.into_iter().flat_map(|path| &path.hops).filter_map(|hop| hop.aim);
+        self.landing_miss_max_m = aims.map(|aim| aim.miss_m.abs()).reduce(f64::max);
+        if self.propellant_shortage.is_some() { self.open() } else { self }
+    }
+
+    /// The answer where no commands in the machine's steps fly the path: no, since another path may have some, which the search for
+    /// exact commands does not know.
+    #[must_use]
+    pub fn without_commands(mut self, problem: &NoCommand) -> Self {
+        self.commands_refusal = Some(problem.to_string());
+        self.open()
+    }
+
+    /// The answer no, which nothing proves.
+    fn open(mut self) -> Self {
+        self.verdict = ProofVerdict::Open.name();
+        if let Some(proof) = &mut self.proof {
+            (proof.upper_bound, proof.proved) = (None, false);
         }
         self
     }
 
     /// Whether there is a path that the machine can fly.
     pub const fn is_traversable(&self) -> bool {
-        self.hops.is_some() && self.propellant_shortage.is_none()
+        self.hops.is_some() && self.propellant_shortage.is_none() && self.commands_refusal.is_none()
     }
 }
 

@@ -49,6 +49,9 @@ pub struct HopRecord {
     pub speed_margin_m_s: f64,
     /// Which limits set the least and the greatest feasible angle, `lower/upper`.
     pub binding: String,
+    /// Delta-v, propellant and mass.
+    #[serde(flatten)]
+    pub stores: StoresRecord,
     /// On a map: direction of flight, clockwise from grid north.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub map: Option<MapRecord>,
@@ -57,9 +60,6 @@ pub struct HopRecord {
     /// For a machine that takes its commands in steps: what the command was aimed at.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub aim: Option<AimRecord>,
-    /// Delta-v, propellant and mass.
-    #[serde(flatten)]
-    pub stores: StoresRecord,
 }
 
 /// The point that a command in steps was aimed at.
@@ -328,7 +328,7 @@ fn columns(known: MapKnowledge, extra: ExtraColumns) -> Vec<String> {
     let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
     let projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
     let aims: &[&str] = if extra.aims { &AIM_COLUMNS } else { &[] };
-    let own = COLUMNS.iter().chain(map).chain(projection).chain(extra.stores).chain(aims).map(|&column| column.to_owned());
+    let own = COLUMNS.iter().chain(extra.stores).chain(map).chain(projection).chain(aims).map(|&column| column.to_owned());
     own.chain(HopMarginsRecord::columns()).collect()
 }
 
@@ -353,6 +353,7 @@ impl HopRecord {
         let mut fields = vec![self.hop.to_string(), self.direction.to_owned()];
         fields.extend(numbers.iter().map(ToString::to_string));
         fields.push(self.binding.clone());
+        fields.extend(self.stores.fields().into_iter().take(extra.stores.len()));
         if known >= MapKnowledge::Metres {
             let numbers = self
                 .map
@@ -368,7 +369,6 @@ impl HopRecord {
             let heading = self.map.and_then(|map| map.heading_true_deg.flatten());
             fields.extend(texts(heading.map(|heading| [heading])));
         }
-        fields.extend(self.stores.fields().into_iter().take(extra.stores.len()));
         if extra.aims {
             fields.extend(texts(self.aim.map(|aim| [aim.aim_x_m, aim.landing_miss_m])));
         }

@@ -260,11 +260,19 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
     if let Some(shortage) = &answer.propellant_shortage {
         sheet.line(format_args!("not with its propellant: {}", shortage.sentence()));
     }
+    if let Some(refusal) = &answer.commands_refusal {
+        sheet.line(format_args!("not with commands in steps: {refusal}"));
+    }
+    if let Some(miss_m) = answer.landing_miss_max_m {
+        sheet.line(format_args!("commands in steps: every landing is within {miss_m:.3} m of its aim"));
+    }
     if let Some(effort) = answer.effort {
         sheet.line(format_args!("{}: {:.4} {}", effort.total, effort.value, effort.unit));
     }
-    if let (Some(lower), true) = (answer.proof.as_ref().and_then(|proof| proof.lower_bound), answer.propellant_shortage.is_some()) {
-        sheet.line(format_args!("no path has fewer than {lower} hop{}, whatever propellant it takes", plural(lower)));
+    if let (Some(lower), true) =
+        (answer.proof.as_ref().and_then(|proof| proof.lower_bound), answer.hops.is_some() && !answer.is_traversable())
+    {
+        sheet.line(format_args!("no path has fewer than {lower} hop{}, whatever it takes from the machine", plural(lower)));
     } else if let Some(proof) = &answer.proof {
         proof_lines(&mut sheet, proof, means);
     }
@@ -366,11 +374,8 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
             row.binding
         ));
     }
-    let misses_m = rows.iter().filter_map(|row| row.aim).map(|aim| aim.landing_miss_m);
-    if let (Some(greatest_m), Some(last_m)) = (misses_m.clone().map(f64::abs).reduce(f64::max), misses_m.last()) {
-        sheet.line(format_args!(
-            "commands in steps: landings miss their aims by {greatest_m:.3} m at most, and the last one misses the goal by {last_m:.3} m"
-        ));
+    if let Some(aim) = rows.last().and_then(|row| row.aim) {
+        sheet.line(format_args!("the last landing misses the goal by {:.3} m", aim.landing_miss_m));
     }
     sheet.line(format_args!(
         "in all: {:.3} m over ground, {:.3} s in flight, {:.4} J/kg, {:.4} m/s at most",

@@ -209,6 +209,10 @@ fn resolved(
     mut warnings: Vec<String>,
 ) -> Result<Prepared, PipelineError> {
     warnings.extend(contradictions(scenario, Some(&geometry)));
+    if scenario.hopper.limits().steps.heading.is_some() && geometry.map_points().is_none() {
+        warnings
+            .push("hopper.heading_step_deg has no effect: the chain lies on no map, so that its hops have no heading".to_owned());
+    }
     let Scenario { hopper, surface, .. } = scenario;
     let gravity = scenario.body.gravity;
     let chain = Arc::new(match dem {

@@ -266,7 +266,7 @@ impl Hopper {
             number("takeoff_speed_step_m_s", steps.takeoff_speed_m_s, positive, POSITIVE),
             (
                 "takeoff_speed_step_m_s",
-                steps.takeoff_speed_m_s.is_none_or(|step| step.is_nan() || step <= 0.0 || step <= takeoff_speed_max_m_s),
+                steps.takeoff_speed_m_s.is_none_or(|step| !positive(step) || step <= takeoff_speed_max_m_s),
                 steps.takeoff_speed_m_s.unwrap_or(0.0),
                 "no more than takeoff_speed_max_m_s",
             ),

@@ -23,7 +23,7 @@ const TELLING: [(&str, &str); 72] = [
     ("hopper.takeoff_speed_min_m_s", "2.4"),
     ("hopper.takeoff_speed_levels_m_s", "[1.1]"),
     ("hopper.takeoff_angle_step_deg", "7"),
-    ("hopper.takeoff_speed_step_m_s", "0.7"),
+    ("hopper.takeoff_speed_step_m_s", "0.8"),
     ("hopper.heading_step_deg", "20"),
     ("hopper.footprint_m", "25"),
     ("hopper.roughness_max_m", "0.01"),

@@ -54,6 +54,11 @@ fn braked_world(dice: &mut Dice) -> RandomWorld {
     world
 }
 
+/// The same hopper without a least speed and without levels.
+fn with_any_speed(hopper: &Hopper) -> Hopper {
+    Hopper::new(HopperLimits { takeoff_speed_min_m_s: None, takeoff_speed_levels: None, ..*hopper.limits() }).unwrap()
+}
+
 fn names(violations: &[chta::path::Violation], limit: ViolatedLimit) -> bool {
     violations.iter().any(|violation| violation.limit == limit)
 }
@@ -231,7 +236,9 @@ fn braked_windows_are_those_of_flown_arcs() {
     let mut dice = Dice::new(90);
     let (mut inside, mut beyond, mut refused) = (0, 0, 0);
     for _ in 0..1500 {
-        let world = braked_world(&mut dice);
+        let mut world = braked_world(&mut dice);
+        // Arcs of any speed are flown.
+        world.hopper = with_any_speed(&world.hopper);
         let Some(chain) = world.chain() else { continue };
         let test = HopTest::new(chain.clone());
         let ends = world.ends(&chain);
@@ -373,7 +380,7 @@ fn braked_maps_agree_with_slices_and_their_paths_hold() {
         flown += fly_paths(world.ground(), 1, 4, TakeoffChoice::LeastSpeed);
     }
     assert!(
-        pairs > 20_000 && feasible > 2000 && gained > 200 && flown > 500,
+        pairs > 20_000 && feasible > 2000 && gained > 200 && flown > 300,
         "{pairs} pairs, {feasible} feasible, {gained}, {flown} flown"
     );
 }

@@ -193,7 +193,7 @@ fn with_slope(hop: &Hop, slope: f64, gravity_m_s2: f64) -> Hop {
 /// Hops of random maps, each with its ground.
 fn some_hops(seed: u64, mut of: impl FnMut(&PostHops, &World, &Hop)) {
     let mut draw = Draw::seeded(seed);
-    for _ in 0..60 {
+    for _ in 0..150 {
         let dem = random_dem(&mut draw, 12);
         let (hopper, gravity) = random_hopper(&mut draw);
         let world = World::new(dem, hopper, random_surface(&mut draw), gravity);

@@ -7,8 +7,8 @@ use chta::{
         Station,
         csv::{StartGoal, read_pairs_csv_file},
     },
-    graph::{Outcome, proof::Bounds},
-    path::{HopPath, PathError, generate},
+    graph::proof::Bounds,
+    path::HopPath,
     report::{
         CheckAnswer, Document, check_text,
         figure::{Caption, ProofFigure, draw_proof},
@@ -105,20 +105,13 @@ fn answers(
     let mut answers = Vec::with_capacity(pairs.len());
     let mut drawn = None;
     for (&ends, searched) in pairs.iter().zip(&searched) {
-        let path = match &searched.found.outcome {
-            Outcome::Path { legs, .. } => match generate(&test, legs, options.takeoff, options.split) {
-                Ok(path) => Some(path),
-                // A long path exists, though its hops are not listed.
-                Err(PathError::TooManyHops(_)) => None,
-                Err(PathError::NoCommand(problem)) => return Err(Failure::of(&problem)),
-            },
-            Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
-        };
+        let (answer, path) = searched.answer_with_path(&test, ends, options);
+        // A path of too many hops to list is one all the same.
+        let path = path.unwrap_or(None);
         if let Some(path) = &path {
             let of_path = constant_gravity_warnings(&loaded.scenario.body, Extremes::of(&path.hops));
             warnings.extend(of_path.into_iter().filter(|warning| !warnings.contains(warning)).collect::<Vec<_>>());
         }
-        let answer = searched.answer(&test, ends, options.effort).with_path(path.as_ref());
         if let (Some(file), Some(bounds)) = (args.plot.as_deref(), searched.bounds()) {
             drawn = Some(picture(loaded, ends, (bounds, path.as_ref()), file)?);
         }

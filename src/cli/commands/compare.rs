@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use chta::{
-    path::{HopPath, generate},
+    path::HopPath,
     report::{
         CompareAnswer, CompareRow, Document, MarginsRecord, TotalsRecord,
         figure::{Caption, CompareFigure, ComparedScenario, Flight, draw_compare},
@@ -93,13 +93,8 @@ impl Compared {
         let test = loaded.hop_test();
         let options = &loaded.scenario.search;
         let searched = Searched::new(&test, ends, &loaded.scenario, Some(args.prove), args.quiet)?;
-        let path = match &searched.found.outcome {
-            chta::graph::Outcome::Path { legs, .. } => {
-                Some(generate(&test, legs, options.takeoff, options.split).map_err(|e| Failure::of(&e))?)
-            }
-            _ => None,
-        };
-        let check = searched.answer(&test, ends, options.effort).with_path(path.as_ref());
+        let (check, path) = searched.answer_with_path(&test, ends, options);
+        let path = path.map_err(|error| Failure::of(&error))?;
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
         let warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
         for warning in &warnings {

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use chta::{
     chain::Station,
-    graph::{self, Outcome},
+    graph,
     hop::HopTest,
-    path::{Execution, HopPath, execute, generate},
+    path::{Execution, HopPath, execute},
     quantity::AngleInterval,
     report::{
         CheckAnswer, Document, HopRecord, ReliablePathRecord, TotalsRecord, check_text,
@@ -69,10 +69,8 @@ impl Planned {
         let ends = loaded.ends()?;
         let options = &loaded.scenario.search;
         let searched = Searched::new(test, ends, &loaded.scenario, prove, quiet)?;
-        let path = match &searched.found.outcome {
-            Outcome::Path { legs, .. } => Some(generate(test, legs, options.takeoff, options.split).map_err(|e| Failure::of(&e))?),
-            Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
-        };
+        let (check, path) = searched.answer_with_path(test, ends, options);
+        let path = path.map_err(|error| Failure::of(&error))?;
         if let Some(path) = path.as_ref().filter(|_| verify) {
             verified(loaded, path, ends)?;
         }
@@ -83,7 +81,7 @@ impl Planned {
         }
         let warnings = loaded.warnings_with(warnings);
         let answer = PlanAnswer {
-            check: searched.answer(test, ends, options.effort).with_path(path.as_ref()),
+            check,
             verified: (verify && path.is_some()).then_some(true),
             path: path.as_ref().map(|path| HopRecord::rows(path, loaded.prepared.projection.as_ref())).unwrap_or_default(),
             totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),

@@ -3,11 +3,12 @@
 use chta::{
     chain::Station,
     graph::{
-        self, ReliablePath,
+        self, Outcome, ReliablePath,
         proof::{Bounds, BoundsOptions, bounds},
         search_most_reliable,
     },
     hop::HopTest,
+    path::{HopPath, PathError, TooManyHops, generate},
     report::CheckAnswer,
     scenario::Scenario,
 };
@@ -77,6 +78,23 @@ impl Searched {
         match &self.proof {
             None => answer,
             Some((bounds, budget)) => answer.with_bounds(bounds, *budget),
+        }
+    }
+
+    /// The answer as plain data together with the path that it found, whose hops may be too many to list. An answer whose path no
+    /// commands of the machine fly has no path.
+    pub(super) fn answer_with_path(
+        &self,
+        test: &HopTest,
+        ends: (Station, Station),
+        options: &graph::SearchOptions,
+    ) -> (CheckAnswer, Result<Option<HopPath>, TooManyHops>) {
+        let answer = self.answer(test, ends, options.effort);
+        let Outcome::Path { legs, .. } = &self.found.outcome else { return (answer, Ok(None)) };
+        match generate(test, legs, options.takeoff, options.split) {
+            Ok(path) => (answer.with_path(Some(&path)), Ok(Some(path))),
+            Err(PathError::TooManyHops(problem)) => (answer, Err(problem)),
+            Err(PathError::NoCommand(problem)) => (answer.without_commands(&problem), Ok(None)),
         }
     }
 }

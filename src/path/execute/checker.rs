@@ -40,6 +40,11 @@ const STEP_ULPS: f64 = 8.0;
 /// Tolerance of a map position, as a fraction of the size of its coordinates.
 const MAP_TOLERANCE: f64 = 1e-12;
 
+/// Relative rounding of the horizontal speed of a hop: near the vertical, the last digit of the angle is a part of its cosine.
+pub(super) fn angle_rounding(hop: &Hop) -> f64 {
+    2.0 * f64::EPSILON * libm::fabs(libm::tan(hop.takeoff_angle.radians()))
+}
+
 /// Checks one hop against its limits and collects the violations.
 pub(super) struct Checker<'a, S: Surface> {
     pub(super) number: usize,
@@ -154,12 +159,7 @@ impl<S: Surface> Checker<'_, S> {
         let v = flight.landing_speed_m_s;
         let of_place = flight.rounding_m * (self.surface.gravity_m_s2() / v) * (flight.landing_climb_m_s.abs() / v);
         // The horizontal speed, and with it the time of the landing, is as exact as the cosine of the angle.
-        of_place + self.surface.gravity_m_s2() * flight.flight_time_s * self.angle_rounding()
-    }
-
-    /// Relative rounding of the horizontal speed: near the vertical, the last digit of the angle is a part of its cosine.
-    fn angle_rounding(&self) -> f64 {
-        2.0 * f64::EPSILON * libm::fabs(libm::tan(self.hop.takeoff_angle.radians()))
+        of_place + self.surface.gravity_m_s2() * flight.flight_time_s * angle_rounding(self.hop)
     }
 
     /// Checks of the landing.
@@ -470,7 +470,7 @@ impl<S: Surface> Checker<'_, S> {
         }
         if let Some(time_s) = self.surface.hopper().limits().flight_time_max_s {
             let within = flight.flight_time_s
-                <= time_s * (1.0 + TIME_TOLERANCE + self.run_rounding() + self.angle_rounding()) + time_rounding_s(flight);
+                <= time_s * (1.0 + TIME_TOLERANCE + self.run_rounding() + angle_rounding(self.hop)) + time_rounding_s(flight);
             if !within {
                 self.note_limit(Limit::FlightTime, flight.flight_time_s, time_s, "s", x_m);
             }
@@ -490,7 +490,7 @@ impl<S: Surface> Checker<'_, S> {
         );
         let speed_tolerance_m_s = flight.landing_speed_m_s * TIME_TOLERANCE + self.landing_speed_rounding_m_s(flight);
         self.stated(StatedValue::LandingSpeed, hop.landing_speed_m_s, flight.landing_speed_m_s, speed_tolerance_m_s, "m/s");
-        let time_tolerance_s = flight.flight_time_s * (TIME_TOLERANCE + self.angle_rounding()) + time_rounding_s(flight);
+        let time_tolerance_s = flight.flight_time_s * (TIME_TOLERANCE + angle_rounding(self.hop)) + time_rounding_s(flight);
         self.stated(StatedValue::FlightTime, hop.flight_time_s, flight.flight_time_s, time_tolerance_s, "s");
         self.stated(StatedValue::Apex, hop.apex_z_m, flight.apex_z_m, flight.place_tolerance_m, "m");
         if let Some(margin_m_s) = self.margin_m_s(flight) {

@@ -1,6 +1,6 @@
 //! The check of what a hop takes from the machine: its delta-v from the flown states, its propellant from the mass that is left.
 
-use super::{Flight, Measure, StatedValue, ViolatedLimit, Violation};
+use super::{Flight, Measure, StatedValue, ViolatedLimit, Violation, checker::angle_rounding};
 use crate::{
     path::Hop,
     world::{HopperLimits, LandingMode},
@@ -45,7 +45,10 @@ impl<'a> Stores<'a> {
             }
         };
         // An error of the position along the flight is one of the time, in which gravity changes the velocity.
-        let of_landing_m_s = flight.map_or(0.0, |flight| flight.rounding_m * self.gravity_m_s2 / flight.landing_speed_m_s);
+        let of_landing_m_s = flight.map_or(0.0, |flight| {
+            let of_place_s = flight.rounding_m / flight.landing_speed_m_s;
+            self.gravity_m_s2 * (of_place_s + flight.flight_time_s * angle_rounding(hop))
+        });
         let rounding_m_s = TOLERANCE * delta_v_m_s.abs() + of_landing_m_s;
         stated(StatedValue::DeltaV, Some(hop.delta_v_m_s), Some(delta_v_m_s), rounding_m_s, "m/s");
         let before_kg = self.mass_kg;

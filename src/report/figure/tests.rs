@@ -146,8 +146,8 @@ fn cases() -> Vec<Case> {
         clearance_m: 0.2,
         flight_time_max_s: Some(60.0),
         steps: CommandSteps {
-            takeoff_angle: Some(Angle::from_degrees(2.5)),
-            takeoff_speed_m_s: Some(0.25),
+            takeoff_angle: Some(Angle::from_degrees(0.25)),
+            takeoff_speed_m_s: Some(0.01),
             heading: Some(Angle::from_degrees(15.0)),
         },
         takeoff_speed_min_m_s: Some(0.5),
