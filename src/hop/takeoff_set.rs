@@ -55,6 +55,7 @@ pub struct SetWindow {
 
 /// The combined result of all limits.
 #[derive(Clone, Debug, PartialEq)]
+#[expect(clippy::large_enum_variant, reason = "one value per explained pair, which is not kept in lists")]
 enum Verdict {
     /// The interval that all limits but the machine's take-off speeds leave, and the windows of it.
     Feasible(SlopeInterval, Vec<SetWindow>),

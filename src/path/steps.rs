@@ -90,7 +90,7 @@ fn headings(hops: &[Hop], steps: CommandSteps) -> Result<(), NoCommand> {
     let Some(step_deg) = steps.heading.map(Angle::degrees) else { return Ok(()) };
     for (i, hop) in hops.iter().enumerate() {
         if hop.takeoff.map().is_some() && !is_multiple(hop.heading_deg, step_deg) {
-            let text = |degrees: f64| format!("{:.6}", degrees).trim_end_matches('0').trim_end_matches('.').to_owned();
+            let text = |degrees: f64| format!("{degrees:.6}").trim_end_matches('0').trim_end_matches('.').to_owned();
             let nearest_deg = nearest_multiple(hop.heading_deg, step_deg).rem_euclid(360.0);
             return Err(NoCommand::Heading { hop: i + 1, heading_deg: text(hop.heading_deg), nearest_deg: text(nearest_deg) });
         }

@@ -318,8 +318,8 @@ struct ExtraColumns {
 }
 
 impl ExtraColumns {
-    fn of<'a>(rows: impl Iterator<Item = &'a HopRecord> + Clone) -> Self {
-        Self { stores: stores_columns(rows.clone()), aims: rows.clone().any(|row| row.aim.is_some()) }
+    fn of<'a>(mut rows: impl Iterator<Item = &'a HopRecord> + Clone) -> Self {
+        Self { stores: stores_columns(rows.clone()), aims: rows.any(|row| row.aim.is_some()) }
     }
 }
 

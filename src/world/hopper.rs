@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::{CommandSteps, Gravity, LandingMode, SpeedLevels, propulsion};
+use super::{CommandSteps, Gravity, LandingMode, SpeedLevels, propulsion, steps};
 use crate::quantity::Angle;
 
 /// Where a hopper keeps its clearance.
@@ -200,7 +200,8 @@ impl Hopper {
             flight_time_max_s,
             takeoff_speed_min_m_s,
             takeoff_speed_levels,
-            steps,
+            // `steps::problems` checks these.
+            steps: _,
             footprint_m,
             roughness_max_m,
             mass_kg,
@@ -262,21 +263,6 @@ impl Hopper {
                 takeoff_speed_levels.map_or(0.0, |levels| levels.lowest_m_s()),
                 "no level below takeoff_speed_min_m_s",
             ),
-            number("takeoff_angle_step_deg", steps.takeoff_angle.map(Angle::degrees), positive, POSITIVE),
-            number("takeoff_speed_step_m_s", steps.takeoff_speed_m_s, positive, POSITIVE),
-            (
-                "takeoff_speed_step_m_s",
-                steps.takeoff_speed_m_s.is_none_or(|step| !positive(step) || step <= takeoff_speed_max_m_s),
-                steps.takeoff_speed_m_s.unwrap_or(0.0),
-                "no more than takeoff_speed_max_m_s",
-            ),
-            (
-                "takeoff_speed_step_m_s",
-                steps.takeoff_speed_m_s.is_none() || takeoff_speed_levels.is_none(),
-                steps.takeoff_speed_m_s.unwrap_or(0.0),
-                "not to stand beside takeoff_speed_levels_m_s, which are all speeds that the machine has",
-            ),
-            number("heading_step_deg", steps.heading.map(Angle::degrees), positive, POSITIVE),
             number("footprint_m", footprint_m, not_negative, NOT_NEGATIVE),
             number("roughness_max_m", roughness_max_m, not_negative, NOT_NEGATIVE),
             (
@@ -292,6 +278,7 @@ impl Hopper {
             .into_iter()
             .filter(|(_, holds, ..)| !holds)
             .map(|(key, _, found, expected)| HopperProblem { key, found, expected })
+            .chain(steps::problems(&limits))
             .chain(propulsion::problems(&limits))
             .collect();
         if problems.is_empty() { Ok(Self { limits }) } else { Err(InvalidHopper(problems)) }

@@ -26,7 +26,7 @@ const PATH_COLUMNS: [&str; 17] = [
     "binding",
     "delta_v_m_s",
 ];
-const MARGIN_COLUMNS: [&str; 15] = [
+const MARGIN_COLUMNS: [&str; 17] = [
     "margin_takeoff_speed_m_s",
     "margin_landing_speed_m_s",
     "margin_takeoff_cone_min_deg",
@@ -41,6 +41,8 @@ const MARGIN_COLUMNS: [&str; 15] = [
     "margin_flight_time_s",
     "margin_takeoff_rest_slope_deg",
     "margin_landing_rest_slope_deg",
+    "margin_takeoff_roughness_m",
+    "margin_landing_roughness_m",
     "margin_terrain_from_takeoff_m",
 ];
 const MAP_COLUMNS: [&str; 5] = ["heading_deg", "takeoff_map_x_m", "takeoff_map_y_m", "landing_map_x_m", "landing_map_y_m"];

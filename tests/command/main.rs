@@ -11,6 +11,7 @@ mod bends;
 mod cli_answers;
 mod cli_bad_input;
 mod cli_options;
+mod command_steps;
 mod effects;
 mod escape;
 mod footprint;

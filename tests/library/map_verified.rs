@@ -212,7 +212,6 @@ fn some_hops(seed: u64, mut of: impl FnMut(&PostHops, &World, &Hop)) {
     }
 }
 
-#[expect(clippy::large_types_passed_by_value, reason = "callers make the hop on the spot")]
 fn alone(hops: &PostHops, hop: Hop) -> Vec<Violation> {
     execute(hops.ground(), &HopPath::of_hops(vec![hop], hops.ground().hopper()), None).violations
 }

@@ -95,7 +95,7 @@ fn no_margin_of_a_planned_hop_is_negative_and_a_flown_arc_has_the_same() {
     let mut dice = Dice::new(60_013);
     let (mut hops, mut tried) = (0, [0_usize; MARGINS.len()]);
     let mut bound = 0;
-    for _ in 0..6000 {
+    for _ in 0..10_000 {
         let mut world = World::random(&mut dice);
         if dice.chance(0.3) {
             let size_m = world.vertices.last().unwrap().x_m - world.vertices[0].x_m;
@@ -165,7 +165,10 @@ fn no_margin_of_a_planned_hop_is_negative_and_a_flown_arc_has_the_same() {
                     key if key.ends_with("_m_s") => 1e-6 * speeds[0].max(speeds[1]),
                     // The highest of 4000 points is lower than the apex by at most g (T / 8000)^2 / 2.
                     "apex_height_m" => 1e-6 * size_m + 0.5 * world.gravity_m_s2 * (time_s / 8000.0).powi(2),
-                    "takeoff_roughness_m" | "landing_roughness_m" => 2e-3 * limits.footprint_m.unwrap_or(0.0),
+                    "takeoff_roughness_m" | "landing_roughness_m" => {
+                        let steepest = chain.geometry().slopes().iter().fold(0.0, |most: f64, slope| most.max(slope.abs()));
+                        2e-3 * limits.footprint_m.unwrap_or(0.0) * (1.0 + steepest)
+                    }
                     _ => 1e-6 * time_s,
                 };
                 match value {

@@ -37,13 +37,11 @@ struct Case<'a> {
 
 impl Case<'_> {
     /// Flies one hop alone over a chain.
-    #[expect(clippy::large_types_passed_by_value, reason = "callers make the hop on the spot")]
     fn flown_over(&self, chain: &ConstrainedChain, hop: Hop) -> Execution {
         let path = HopPath { hops: vec![hop], totals: self.path.totals };
         execute(chain, &path, None)
     }
 
-    #[expect(clippy::large_types_passed_by_value, reason = "callers make the hop on the spot")]
     fn flown(&self, hop: Hop) -> Execution {
         self.flown_over(self.chain, hop)
     }

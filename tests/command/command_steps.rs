@@ -1,0 +1,111 @@
+//! Commands in steps at the command line: the multiples, the misses, the refusals.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
+
+use serde_json::Value;
+
+use crate::desk::Desk;
+
+/// Level ground of 60 m with vertices every 10 m, lunar gravity.
+fn level() -> Desk {
+    let desk = Desk::new();
+    desk.write("level.csv", "x_m,z_m\n0,0\n10,0\n20,0\n30,0\n40,0\n50,0\n60,0\n");
+    desk.write(
+        "level.toml",
+        "[body]\nname = \"moon\"\n[hopper]\ntakeoff_speed_max_m_s = 5\nlanding_speed_max_m_s = 6\n[surface]\nfriction_coefficient = 1.2\n\
+         [terrain]\nchain = \"level.csv\"\nstart_x_m = 0\ngoal_x_m = 60\n",
+    );
+    desk
+}
+
+fn multiple(number: &Value, step: f64) -> bool {
+    let number = number.as_f64().unwrap();
+    ((number / step).round() * step - number).abs() < 1e-9
+}
+
+#[test]
+fn every_command_is_a_multiple_and_every_miss_is_stated() {
+    let desk = level();
+    for (angle, speed) in [(Some(2.5), None), (None, Some(0.25)), (Some(2.5), Some(0.25))] {
+        let mut args = vec!["plan".to_owned(), "level.toml".to_owned(), "--verify".to_owned()];
+        for (key, step) in [("takeoff_angle_step_deg", angle), ("takeoff_speed_step_m_s", speed)] {
+            args.extend(step.map(|step: f64| ["--set".to_owned(), format!("hopper.{key}={step}")]).into_iter().flatten());
+        }
+        let args: Vec<&str> = args.iter().map(String::as_str).collect();
+        let plan = desk.json(&args);
+        let hops = plan["path"].as_array().unwrap();
+        assert!(hops.len() >= 4, "{plan}");
+        let mut greatest_m = 0.0_f64;
+        for pair in hops.windows(2) {
+            assert_eq!(pair[0]["landing_x_m"], pair[1]["takeoff_x_m"], "a hop starts where the one before landed");
+        }
+        for hop in hops {
+            assert!(angle.is_none_or(|step| multiple(&hop["takeoff_angle_deg"], step)), "{hop}");
+            assert!(speed.is_none_or(|step| multiple(&hop["takeoff_speed_m_s"], step)), "{hop}");
+            let miss_m = hop["landing_miss_m"].as_f64().unwrap();
+            let found = hop["landing_x_m"].as_f64().unwrap() - hop["aim_x_m"].as_f64().unwrap();
+            assert!((miss_m - found).abs() < 1e-9, "{hop}");
+            // R = v^2 sin(2 theta) / g over level ground.
+            let (v, theta) = (hop["takeoff_speed_m_s"].as_f64().unwrap(), hop["takeoff_angle_deg"].as_f64().unwrap().to_radians());
+            let range_m = v * v * (2.0 * theta).sin() / plan["scenario"]["body"]["gravity_m_s2"].as_f64().unwrap();
+            assert!(
+                (range_m - (hop["landing_x_m"].as_f64().unwrap() - hop["takeoff_x_m"].as_f64().unwrap())).abs() < 1e-6,
+                "{hop}"
+            );
+            greatest_m = greatest_m.max(miss_m.abs());
+        }
+        let stated_m = plan["landing_miss_max_m"].as_f64().unwrap();
+        assert!((stated_m - greatest_m).abs() < 1e-12);
+        assert_eq!(angle.is_some() && speed.is_some(), greatest_m > 1e-6, "only both steps together miss: {greatest_m}");
+        let text = desk.run(&args).stdout;
+        assert!(text.contains("commands in steps: every landing is within"), "{text}");
+        let csv = desk.run(&[&args[..], &["-o", "-"]].concat()).stdout;
+        assert!(csv.lines().next().unwrap().contains(",aim_x_m,landing_miss_m,margin_"), "{csv}");
+    }
+    let exact = desk.json(&["plan", "level.toml"]);
+    assert!(exact.get("landing_miss_max_m").is_none() && exact["path"][0].get("aim_x_m").is_none(), "{exact}");
+}
+
+#[test]
+fn no_commands_is_an_answer_and_a_bad_step_is_one_sentence() {
+    let desk = level();
+    for command in ["check", "plan"] {
+        let refused = desk.run(&[command, "level.toml", "--set", "hopper.takeoff_angle_step_deg=90", "--format", "json"]);
+        let answer: Value = serde_json::from_str(&refused.stdout).unwrap();
+        assert_eq!((refused.status, answer["verdict"].as_str()), (1, Some("no-path-found")), "{refused:?}");
+        let reason = answer["commands_refusal"].as_str().unwrap();
+        assert!(reason.contains("none flies hop 1") && reason.contains("90 degrees"), "{reason}");
+    }
+    for (set, expected) in [
+        ("hopper.takeoff_angle_step_deg=0", "hopper.takeoff_angle_step_deg is 0, expected a number from"),
+        ("hopper.takeoff_speed_step_m_s=9", "hopper.takeoff_speed_step_m_s is 9, expected no more than takeoff_speed_max_m_s"),
+        ("hopper.heading_step_deg=-5", "hopper.heading_step_deg is -5, expected a number from"),
+    ] {
+        let refused = desk.run(&["plan", "level.toml", "--set", set]);
+        assert!(refused.status == 2 && refused.stderr.contains(expected), "{set}: {refused:?}");
+    }
+    let both = ["--set", "hopper.takeoff_speed_step_m_s=1", "--set", "hopper.takeoff_speed_levels_m_s=[2, 4]"];
+    let refused = desk.run(&[&["plan", "level.toml"][..], &both].concat());
+    assert!(refused.status == 2 && refused.stderr.contains("not to stand beside takeoff_speed_levels_m_s"), "{refused:?}");
+    let without_map = desk.run(&["plan", "level.toml", "--set", "hopper.heading_step_deg=5"]);
+    assert!(without_map.status == 0 && without_map.stderr.contains("hopper.heading_step_deg has no effect"), "{without_map:?}");
+}
+
+#[test]
+fn a_transect_needs_a_heading_of_the_machine() {
+    let desk = Desk::with_dem();
+    let plan =
+        |step: &str| desk.run(&["plan", "map.toml", "--format", "json", "--set", &format!("hopper.heading_step_deg={step}")]);
+    let refused = plan("7");
+    let answer: Value = serde_json::from_str(&refused.stdout).unwrap();
+    assert_eq!((refused.status, answer["verdict"].as_str()), (1, Some("no-path-found")), "{refused:?}");
+    let reason = answer["commands_refusal"].as_str().unwrap();
+    let nearest = reason.split("allows is ").nth(1).unwrap().split(':').next().unwrap().parse::<f64>().unwrap();
+    assert!((nearest / 7.0).fract() == 0.0, "{reason}");
+    let exact = desk.json(&["plan", "map.toml"]);
+    let heading = exact["path"][0]["heading_deg"].as_f64().unwrap();
+    assert!((heading - nearest).abs() <= 3.5, "{heading} and {nearest}");
+    // The heading of the transect itself, or any divisor of it, is one.
+    let whole = plan(&format!("{}", heading / 3.0));
+    assert_eq!(whole.status, 0, "{whole:?}");
+}
