@@ -19,7 +19,7 @@ fn chta(arguments: &[&str]) -> std::process::Output {
 }
 
 /// Scenario, exit status, hops.
-const ANSWERS: [(&str, i32, Option<u64>); 12] = [
+const ANSWERS: [(&str, i32, Option<u64>); 15] = [
     ("mars_crater_field", 0, Some(9)),
     ("lunar_rille", 0, Some(27)),
     ("lunar_rille_too_steep", 1, None),
@@ -32,10 +32,13 @@ const ANSWERS: [(&str, i32, Option<u64>); 12] = [
     ("wall", 1, None),
     ("cliff", 1, None),
     ("vertices", 1, None),
+    ("lunar_hopper", 0, Some(5)),
+    ("mars_frogbot", 0, Some(11)),
+    ("ryugu_hopper", 0, Some(7)),
 ];
 
 /// Scenario, bounds on its fewest hops; all of them are equal.
-const PROVED: [(&str, Option<u64>); 10] = [
+const PROVED: [(&str, Option<u64>); 13] = [
     ("mars_crater_field", Some(8)),
     ("lunar_rille", Some(26)),
     ("lunar_rille_too_steep", None),
@@ -46,6 +49,9 @@ const PROVED: [(&str, Option<u64>); 10] = [
     ("wall", None),
     ("cliff", None),
     ("vertices", None),
+    ("lunar_hopper", Some(5)),
+    ("mars_frogbot", Some(10)),
+    ("ryugu_hopper", Some(7)),
 ];
 
 #[test]
@@ -104,6 +110,24 @@ fn every_shipped_scenario_runs_to_its_answer_and_repeats_from_its_result() {
             let file = file.unwrap().file_name();
             let same = fs::read(first.join(&file)).unwrap() == fs::read(again.join(&file)).unwrap();
             assert!(same, "{name}: {} differs when repeated from the result", file.display());
+        }
+    }
+}
+
+/// The three scenarios after published machines: the warnings that they deserve.
+#[test]
+fn the_scenarios_of_real_machines_warn_of_what_the_model_does_not_know() {
+    for (name, warnings) in [
+        ("lunar_hopper", &["farther than hopper.footprint_m of 0.762 m"][..]),
+        ("mars_frogbot", &[]),
+        ("ryugu_hopper", &["a hop's range", "a hop's highest point", "a hop's speed", "constant gravity is a bad model"]),
+    ] {
+        let output = chta(&["plan", &format!("data/scenarios/{name}.toml"), "--verify"]);
+        assert_eq!(output.status.code(), Some(0), "{name}");
+        let stderr = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(stderr.is_empty(), warnings.is_empty(), "{name}: {stderr}");
+        for warning in warnings {
+            assert!(stderr.contains(warning), "{name} does not warn of {warning:?}: {stderr}");
         }
     }
 }
