@@ -114,7 +114,7 @@ impl Purpose {
     }
 
     /// Whether its hops have commands in the machine's steps.
-    const fn flies_commands(self) -> bool {
+    pub(super) const fn flies_commands(self) -> bool {
         !matches!(self, Self::Hop | Self::Require | Self::Trade | Self::Fan | Self::Map { .. })
     }
 

@@ -62,12 +62,14 @@ impl HopTest {
         let rule = |station, contact| self.chain().check_contact(station, contact, direction).ok();
         let (from, to) = (rule(takeoff, Contact::Takeoff)?, rule(landing, Contact::Landing)?);
         let gravity = self.gravity_m_s2();
+        let highest_m_s = self.hopper().limits().takeoff_speed_levels.map_or(f64::INFINITY, |levels| levels.highest_m_s());
+        let takeoff_m_s = from.speed_max_m_s().min(highest_m_s);
         let at = |lofts: SlopeInterval| {
             let loft = TakeoffChoice::LeastSpeed.loft(sight, lofts);
             ReachAlongSight {
                 sight,
                 loft,
-                by_takeoff_m: takeoff_reach_m(sight, loft, from.speed_max_m_s(), gravity),
+                by_takeoff_m: takeoff_reach_m(sight, loft, takeoff_m_s, gravity),
                 by_landing_m: landing_reach_m(sight, loft, to.speed_max_m_s(), gravity),
             }
         };

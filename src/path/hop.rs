@@ -2,6 +2,7 @@
 
 use crate::{
     ballistics::{Arc, LineOfSight},
+    graph::Effort,
     ground::ContactPoint,
     hop::HopMargins,
     quantity::{Angle, AngleInterval, ChainPoint, MapPoint, VertexId},
@@ -115,6 +116,19 @@ pub struct HopPath {
     pub hops: Vec<Hop>,
     /// The totals of the hops.
     pub totals: Totals,
+}
+
+impl HopPath {
+    /// The effort of its hops, in the unit of the kind of effort.
+    pub fn effort(&self, effort: Effort) -> f64 {
+        let speeds = self.hops.iter().map(|hop| hop.takeoff_speed_m_s);
+        match effort {
+            Effort::TakeoffSpeed => speeds.sum(),
+            Effort::Energy => speeds.map(|speed_m_s| 0.5 * speed_m_s * speed_m_s).sum(),
+            Effort::Time => self.hops.iter().map(|hop| hop.flight_time_s).sum(),
+            Effort::PeakSpeed => speeds.fold(0.0, f64::max),
+        }
+    }
 }
 
 /// The totals of the hops of a path.

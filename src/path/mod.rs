@@ -10,4 +10,5 @@ pub use execute::{Clearance, Execution, Flight, Measure, StatedValue, ViolatedLi
 pub use generate::{PathError, TooManyHops, generate};
 pub use hop::{Aim, Hop, HopPath, Propellant, Totals, heading_deg};
 pub use steps::NoCommand;
+pub(crate) use steps::nearest_command;
 pub use timetable::{Phase, TimedState, Timetable, TimetableError};

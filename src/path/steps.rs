@@ -27,8 +27,10 @@ use crate::{
 pub enum NoCommand {
     /// No command near that of a hop keeps all limits.
     #[error(
-        "the path of {hops} hops is for exact commands: of {tried} commands in the machine's steps ({steps}), none flies hop {hop} from where \
-         the hop before lands to near x = {aim_x_m} m within all limits ({limit}); use smaller steps, or nodes closer together"
+        "the path found ({hops} hop{}) is for exact commands: of {tried} commands in the machine's steps ({steps}), none flies hop {hop} from {} \
+         to near x = {aim_x_m} m within all limits ({limit}); use smaller steps, or nodes closer together",
+        if *hops == 1 { "" } else { "s" },
+        if *hop == 1 { "the start" } else { "where the hop before lands" }
     )]
     Refused {
         /// The farthest hop that was tried, from 1.
@@ -37,7 +39,7 @@ pub enum NoCommand {
         hops: usize,
         /// The x of its planned landing.
         aim_x_m: String,
-        /// The limit that refused the last command tried.
+        /// The limit that refused the nearest command.
         limit: Limit,
         /// How many commands were flown.
         tried: usize,
@@ -60,13 +62,16 @@ pub enum NoCommand {
 }
 
 /// How many multiples of a step are tried around a command, the nearest first.
-const NEAREST: i32 = 12;
+const NEAREST: i32 = 24;
 
 /// Commands flown per hop of a path before it is given up, on average.
-const PER_HOP: usize = 200;
+const PER_HOP: usize = 400;
 
-/// Relative tolerance of a slope against the window of the hop that is flown: that of directions, a nanoradian.
-const TOLERANCE: f64 = 1e-9;
+/// Relative tolerance of a slope against the window of the hop that is flown: rounding, far below the tolerances of the checker.
+const TOLERANCE: f64 = 1e-13;
+
+/// A landing farther from its aim than this share of the planned hop is another hop, not the planned one.
+const MISS_MAX: f64 = 0.25;
 
 /// The hops of a path with the nearest commands of the machine.
 ///
@@ -74,7 +79,7 @@ const TOLERANCE: f64 = 1e-9;
 /// [`NoCommand`].
 ///
 /// # Complexity
-/// One flight and one hop test per command tried: one or a few a hop, at most 200 on average.
+/// One flight and one hop test per command tried: one or a few a hop, at most 400 on average.
 pub(super) fn in_steps(test: &HopTest, planned: Vec<Hop>, choice: TakeoffChoice) -> Result<Vec<Hop>, NoCommand> {
     let steps = test.hopper().limits().steps;
     if steps.is_continuous() {
@@ -83,6 +88,13 @@ pub(super) fn in_steps(test: &HopTest, planned: Vec<Hop>, choice: TakeoffChoice)
     headings(&planned, steps)?;
     let machine = Machine { test, ground: ChainGround::new(test.clone()), steps, choice };
     machine.flown(&planned)
+}
+
+/// The nearest command of a machine that flies from a station to near another under all limits, and where it lands; `None` if there is none.
+pub(crate) fn nearest_command(test: &HopTest, takeoff: &Station, aim: &Station, choice: TakeoffChoice) -> Option<Hop> {
+    let steps = test.hopper().limits().steps;
+    let machine = Machine { test, ground: ChainGround::new(test.clone()), steps, choice };
+    machine.commands(takeoff, aim).ok()?.into_iter().find_map(|command| machine.fly(takeoff, command, aim).ok())
 }
 
 /// A transect fixes the heading of its hops: each has to be a multiple of the step.
@@ -120,7 +132,7 @@ impl Machine<'_> {
     fn flown(&self, planned: &[Hop]) -> Result<Vec<Hop>, NoCommand> {
         let budget = PER_HOP * (planned.len() + 1);
         let (mut trials, mut tried): (Vec<Trial>, usize) = (Vec::with_capacity(planned.len()), 0);
-        let mut farthest = (0, Limit::TakeoffSpeed);
+        let mut farthest = None;
         while trials.len() < planned.len() || trials.last().is_some_and(|trial| trial.flown.is_none()) {
             if trials.last().is_none_or(|trial| trial.flown.is_some()) {
                 let takeoff = match trials.last().and_then(|trial| trial.flown.as_ref()) {
@@ -130,7 +142,7 @@ impl Machine<'_> {
                 let aim = planned[trials.len()].landing.station;
                 let commands = takeoff.zip(aim).ok_or(Limit::Direction).and_then(|(takeoff, aim)| self.commands(&takeoff, &aim));
                 let mut left = commands.unwrap_or_else(|limit| {
-                    farthest = later(farthest, (trials.len(), limit));
+                    farthest = Some(later(farthest, (trials.len(), limit)));
                     Vec::new()
                 });
                 left.reverse();
@@ -155,13 +167,14 @@ impl Machine<'_> {
             tried += 1;
             match self.fly(&takeoff, command, &aim) {
                 Ok(hop) => trials[number].flown = Some(hop),
-                Err(limit) => farthest = later(farthest, (number, limit)),
+                Err(limit) => farthest = Some(later(farthest, (number, limit))),
             }
         }
         Ok(trials.into_iter().filter_map(|trial| trial.flown).collect())
     }
 
-    fn refused(&self, planned: &[Hop], (hop, limit): (usize, Limit), tried: usize) -> NoCommand {
+    fn refused(&self, planned: &[Hop], farthest: Option<(usize, Limit)>, tried: usize) -> NoCommand {
+        let (hop, limit) = farthest.unwrap_or((0, Limit::TakeoffAngleStep));
         let CommandSteps { takeoff_angle, takeoff_speed_m_s, heading: _ } = self.steps;
         let angle = takeoff_angle.map(|step| format!("{} degrees", step.shortest_degrees().unwrap_or_else(|| step.degrees())));
         let speed = takeoff_speed_m_s.map(|step| format!("{step} m/s"));
@@ -183,6 +196,7 @@ impl Machine<'_> {
         let lofts = self.test.lofts(takeoff, aim)?;
         let exact = self.arc(sight, self.test.loft(self.choice, sight, lofts));
         let (angle, speed_m_s) = (exact.takeoff_angle(), exact.takeoff_speed_m_s());
+        let is_too_slow = |speed_m_s: f64| self.is_too_slow(speed_m_s);
         Ok(match (self.steps.takeoff_angle, self.steps.takeoff_speed_m_s) {
             (None, None) => vec![(angle, speed_m_s)],
             (Some(step), speed_step) => {
@@ -194,7 +208,7 @@ impl Machine<'_> {
                     let exact_m_s = self.arc(sight, loft).takeoff_speed_m_s();
                     let mut speeds = match (speed_step, self.test.hopper().limits().takeoff_speed_levels) {
                         (_, Some(levels)) => levels.as_slice().to_vec(),
-                        (Some(step), None) => multiples(exact_m_s, step).collect(),
+                        (Some(step), None) => multiples(exact_m_s, step).filter(|&speed_m_s| !is_too_slow(speed_m_s)).collect(),
                         (None, None) => vec![exact_m_s],
                     };
                     speeds.sort_by(|a, b| (a - exact_m_s).abs().total_cmp(&(b - exact_m_s).abs()));
@@ -231,6 +245,11 @@ impl Machine<'_> {
         let [from, to] = [takeoff, aim].map(|station| ChainPosition::on_chain(*station));
         let flight = self.ground.first_contact(&from, &liftoff, &to);
         let landing = flight.support_facet.map(|_| flight.end.station).ok_or(Limit::Direction)?;
+        let miss_m = direction.sign() * (landing.point.x_m - aim.point.x_m);
+        if miss_m.abs() > MISS_MAX * (aim.point.x_m - takeoff.point.x_m).abs() {
+            let by_speed = self.steps.takeoff_speed_m_s.is_some();
+            return Err(if by_speed { Limit::TakeoffSpeedStep } else { Limit::TakeoffAngleStep });
+        }
         let sight = self.test.line_of_sight(takeoff, &landing).ok_or(Limit::Terrain)?;
         let lofts = self.test.lofts(takeoff, &landing)?;
         let loft = angle.slope() - sight.slope();
@@ -241,8 +260,13 @@ impl Machine<'_> {
         let arc = self.arc(sight, loft);
         let flown = hop(self.test, *takeoff, landing, &arc, lofts, Limit::TakeoffSpeed);
         let aimed = self.test.chain().contact_point(aim);
-        let miss_m = direction.sign() * (landing.point.x_m - aim.point.x_m);
         Ok(Hop { takeoff_angle: angle, takeoff_speed_m_s: speed_m_s, aim: Some(Aim { point: aimed, miss_m }), ..flown })
+    }
+
+    /// Whether a speed is below the machine's least one.
+    fn is_too_slow(&self, speed_m_s: f64) -> bool {
+        let least_m_s = self.test.hopper().limits().takeoff_speed_min_m_s;
+        least_m_s.is_some_and(|least_m_s| speed_m_s < least_m_s * (1.0 - SPEED_TOLERANCE))
     }
 
     /// The limit that a command breaks on the hop that it really flies; `None` if it keeps all.
@@ -256,11 +280,10 @@ impl Machine<'_> {
     ) -> Option<Limit> {
         let slope = sight.slope() + loft;
         let tolerance = TOLERANCE * (1.0 + slope * slope);
-        let limits = self.test.hopper().limits();
         if speed_m_s > tolerant_speed_m_s(self.test.chain().speed_bounds_m_s().0) {
             return Some(Limit::TakeoffSpeed);
         }
-        if limits.takeoff_speed_min_m_s.is_some_and(|least_m_s| speed_m_s < least_m_s * (1.0 - SPEED_TOLERANCE)) {
+        if self.is_too_slow(speed_m_s) {
             return Some(Limit::TakeoffSpeedMin);
         }
         let binding = || self.test.takeoff_set(takeoff, landing).and_then(|set| set.binding());
@@ -271,9 +294,12 @@ impl Machine<'_> {
     }
 }
 
-/// The farther of two hops, with the limit that refused it; of the same hop, the later one.
-const fn later(before: (usize, Limit), now: (usize, Limit)) -> (usize, Limit) {
-    if now.0 >= before.0 { now } else { before }
+/// The farther of two hops, with the limit that refused it; of the same hop, the earlier one, whose command is nearer.
+const fn later(before: Option<(usize, Limit)>, now: (usize, Limit)) -> (usize, Limit) {
+    match before {
+        Some(before) if before.0 >= now.0 => before,
+        _ => now,
+    }
 }
 
 /// The multiples of a step around a value, the nearest first.

@@ -66,6 +66,9 @@ pub struct CheckAnswer {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EffortRecord {
     /// The kind of effort.
+    #[serde(skip)]
+    pub of: Effort,
+    /// Its name.
     pub name: &'static str,
     /// The amount.
     pub value: f64,
@@ -79,7 +82,7 @@ pub struct EffortRecord {
 impl EffortRecord {
     /// An amount of the given effort.
     pub const fn new(effort: Effort, value: f64) -> Self {
-        Self { name: effort.name(), value, unit: effort.unit(), total: effort.total() }
+        Self { of: effort, name: effort.name(), value, unit: effort.unit(), total: effort.total() }
     }
 }
 
@@ -180,6 +183,10 @@ impl CheckAnswer {
         self.propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
         let aims = path.into_iter().flat_map(|path| &path.hops).filter_map(|hop| hop.aim);
         self.landing_miss_max_m = aims.map(|aim| aim.miss_m.abs()).reduce(f64::max);
+        if let (Some(path), Some(_), Some(effort)) = (path, self.landing_miss_max_m, &mut self.effort) {
+            // Not that of the exact commands.
+            effort.value = path.effort(effort.of);
+        }
         if self.propellant_shortage.is_some() { self.open() } else { self }
     }
 
@@ -188,6 +195,7 @@ impl CheckAnswer {
     #[must_use]
     pub fn without_commands(mut self, problem: &NoCommand) -> Self {
         self.commands_refusal = Some(problem.to_string());
+        self.effort = None;
         self.open()
     }
 

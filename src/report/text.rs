@@ -103,13 +103,17 @@ pub fn hop_text(answer: &HopAnswer) -> String {
     for (by, reach) in [("speeds alone", answer.greatest_reach), ("speeds and cones", answer.greatest_reach_within_cones)] {
         let Some(reach) = reach else { continue };
         sheet.line(format_args!(
-            "by {by:<18}{:>12.3} m ({:.3} m horizontally) at {:.3} deg, {} ends it: {:.3} m by take-off speed, {:.3} m by landing speed",
+            "by {by:<18}{:>12.3} m ({:.3} m horizontally) at {:.3} deg, {} ends it: {:.3} m by take-off speed, {}",
             reach.reach_line_of_sight_m,
             reach.reach_horizontal_m,
             reach.takeoff_angle_deg,
             reach.limit,
             reach.by_takeoff_speed_m,
-            reach.by_landing_speed_m
+            if reach.by_landing_speed_m.is_finite() {
+                format!("{:.3} m by landing speed", reach.by_landing_speed_m)
+            } else {
+                "no limit by landing speed, since it brakes".to_owned()
+            }
         ));
     }
     if let Some(along) = answer.segment_hops {
@@ -375,7 +379,10 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
         ));
     }
     if let Some(aim) = rows.last().and_then(|row| row.aim) {
-        sheet.line(format_args!("the last landing misses the goal by {:.3} m", aim.landing_miss_m));
+        let side = if aim.landing_miss_m < 0.0 { "short of" } else { "beyond" };
+        if aim.landing_miss_m.abs() >= 5e-4 {
+            sheet.line(format_args!("the last landing lies {:.3} m {side} the goal", aim.landing_miss_m.abs()));
+        }
     }
     sheet.line(format_args!(
         "in all: {:.3} m over ground, {:.3} s in flight, {:.4} J/kg, {:.4} m/s at most",

@@ -40,6 +40,7 @@ pub(super) fn help(key: &str) -> Option<&'static str> {
         "touchdown_speed_m_s" => "touch down more slowly, or raise landing_speed_max_m_s",
         "isp_s" => "add mass_kg, the mass at the start, or remove isp_s",
         "propellant_max_kg" => "give isp_s and a mass_kg above it, or remove propellant_max_kg",
+        "takeoff_speed_step_m_s" => "give a step of at most the greatest take-off speed, without levels beside it, or leave it out",
         "rest_time_s" => "move its value to settling_time_s",
         "preparation_energy_j" => "add mass_kg, or remove preparation_energy_j",
         _ => return None,

@@ -4,6 +4,7 @@ use super::{Prepared, Scenario, TerrainSource};
 use crate::{
     chain::GroundForm,
     graph::ReliabilityUse,
+    path::HopPath,
     quantity::format_number,
     uncertainty::{Policy, Uncertainty},
     world::FrictionCone,
@@ -42,6 +43,20 @@ impl TrialGround {
 }
 
 impl Scenario {
+    /// A warning where commands in steps land farther from the goal than trials may.
+    pub fn missed_goal(&self, path: &HopPath) -> Option<String> {
+        let tolerance_m = self.uncertainty?.goal_tolerance_m;
+        let miss_m = path.hops.last()?.aim?.miss_m.abs();
+        (miss_m > tolerance_m).then(|| {
+            format!(
+                "the last landing of commands in steps lies {} m from the goal, farther than uncertainty.goal_tolerance_m of {} m: trials count \
+                 it as missed",
+                format_number(miss_m),
+                format_number(tolerance_m)
+            )
+        })
+    }
+
     /// Warnings about trials under these policies: settings that they do not feel, deviations beyond sense, no errors at all.
     pub fn trial_warnings(&self, policies: &[Policy], ground: &TrialGround) -> Vec<String> {
         let keys = self.uncertainty.unwrap_or_default();

@@ -10,7 +10,8 @@ use crate::{
     graph::{Cost, CostToGo, Edge},
     ground::{ChainPosition, DemGround, LiftoffVelocity, MapPosition, Surface, heading_of},
     hop::HopTest,
-    quantity::{Angle, NodeId},
+    path::nearest_command,
+    quantity::{Angle, NodeId, SlopeInterval},
     world::{CommandSteps, Direction, SPEED_TOLERANCE, nearest_multiple, tolerant_speed_m_s},
 };
 
@@ -20,17 +21,16 @@ pub(super) trait Replan<C>: Send + Sync + std::fmt::Debug {
     fn next(&self, believed: &C) -> Option<Command<C>>;
 }
 
-/// The velocity of an arc's take-off along a heading, with the nearest command of a machine that takes its commands in steps.
-fn liftoff(arc: &ballistics::Arc, heading: Vector2<f64>, steps: CommandSteps) -> LiftoffVelocity {
-    if steps.is_continuous() {
-        let across = arc.horizontal_speed_m_s();
-        return LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() };
-    }
-    let nearest = |value: f64, step: Option<f64>| step.map_or(value, |step| nearest_multiple(value, step));
-    let angle = Angle::from_degrees(nearest(arc.takeoff_angle().degrees(), steps.takeoff_angle.map(Angle::degrees)));
-    let speed_m_s = nearest(arc.takeoff_speed_m_s(), steps.takeoff_speed_m_s);
+/// The velocity of an arc's take-off along a heading.
+fn liftoff(arc: &ballistics::Arc, heading: Vector2<f64>) -> LiftoffVelocity {
+    let across = arc.horizontal_speed_m_s();
+    LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() }
+}
+
+/// The velocity of a take-off at an angle and a speed.
+fn at_angle(angle: Angle, speed_m_s: f64, heading: Vector2<f64>) -> LiftoffVelocity {
     let (up, across) = libm::sincos(angle.radians());
-    LiftoffVelocity { heading, horizontal_m_s: speed_m_s * across.max(0.0), vertical_m_s: speed_m_s * up }
+    LiftoffVelocity { heading, horizontal_m_s: speed_m_s * across, vertical_m_s: speed_m_s * up }
 }
 
 /// The nearest heading of a machine that takes headings in steps; on a map, (east, north).
@@ -65,8 +65,12 @@ impl Replan<ChainPosition> for ChainReplan {
                 (along.arc(test, length_m, to_go.options().takeoff), landing)
             }
         };
-        let steps = test.hopper().limits().steps;
-        Some(Command::new(liftoff(&arc, heading_of(direction), steps), ChainPosition::on_chain(landing)))
+        if !test.hopper().limits().steps.is_continuous() {
+            let hop = nearest_command(test, &leg.takeoff, &landing, to_go.options().takeoff)?;
+            let liftoff = at_angle(hop.takeoff_angle, hop.takeoff_speed_m_s, heading_of(direction));
+            return Some(Command::new(liftoff, ChainPosition::on_chain(hop.landing.station?)));
+        }
+        Some(Command::new(liftoff(&arc, heading_of(direction)), ChainPosition::on_chain(landing)))
     }
 }
 
@@ -105,8 +109,31 @@ impl MapReplan {
         if best.is_some_and(|best| cost >= best) {
             return None;
         }
-        let steps = limits.steps;
-        Some((Command::new(liftoff(&arc, nearest_heading(heading, steps), steps), target), cost))
+        if limits.steps.is_continuous() {
+            return Some((Command::new(liftoff(&arc, heading), target), cost));
+        }
+        let (angle, speed_m_s) = self.nearest(&arc, sight, lofts)?;
+        let liftoff = at_angle(angle, speed_m_s, nearest_heading(heading, limits.steps));
+        Some((Command::new(liftoff, target), cost))
+    }
+
+    /// The command in steps that is nearest to an arc: an angle within the feasible ones, and the nearest speed for it.
+    fn nearest(&self, arc: &ballistics::Arc, sight: LineOfSight, lofts: SlopeInterval) -> Option<(Angle, f64)> {
+        let limits = self.ground.hopper().limits();
+        let angle_of = |loft: f64| Angle::from_slope(sight.slope() + loft).degrees();
+        let (low_deg, high_deg) = (angle_of(lofts.lower), angle_of(lofts.upper));
+        let exact_deg = arc.takeoff_angle().degrees();
+        let angle_deg = limits.steps.takeoff_angle.map_or(Some(exact_deg), |step| {
+            let step_deg = step.degrees();
+            let inside = [0.0, 1.0, -1.0].map(|away| nearest_multiple(exact_deg, step_deg) + away * step_deg);
+            let feasible = inside.into_iter().filter(|angle_deg| (low_deg..=high_deg).contains(angle_deg));
+            feasible.min_by(|a, b| (a - exact_deg).abs().total_cmp(&(b - exact_deg).abs()))
+        })?;
+        let angle = Angle::from_degrees(angle_deg);
+        let exact_m_s = ballistics::Arc::new(sight, angle.slope() - sight.slope(), self.ground.gravity_m_s2()).takeoff_speed_m_s();
+        let speed_m_s = limits.steps.takeoff_speed_m_s.map_or(exact_m_s, |step| nearest_multiple(exact_m_s, step));
+        let allowed = limits.takeoff_speed_min_m_s.unwrap_or(0.0)..=tolerant_speed_m_s(limits.takeoff_speed_max_m_s);
+        (speed_m_s > 0.0 && allowed.contains(&speed_m_s)).then_some((angle, speed_m_s))
     }
 
     /// If reliability counts: of the successors of the nearest node, the most reliable that one hop from a position reaches.

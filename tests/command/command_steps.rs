@@ -109,3 +109,47 @@ fn a_transect_needs_a_heading_of_the_machine() {
     let whole = plan(&format!("{}", heading / 3.0));
     assert_eq!(whole.status, 0, "{whole:?}");
 }
+
+#[test]
+fn a_landing_far_from_its_aim_is_another_hop() {
+    let desk = level();
+    let steps = ["--set", "hopper.takeoff_speed_step_m_s=5", "--set", "hopper.takeoff_angle_step_deg=5"];
+    for command in ["check", "plan"] {
+        let refused = desk.run(&[&[command, "level.toml", "--goal", "1"][..], &steps].concat());
+        assert!(refused.status == 1 && refused.stdout.contains("(takeoff-speed-step)"), "{refused:?}");
+    }
+    // The picture and the whole run say no as well.
+    let refused = desk.run(&[&["plan", "level.toml", "--goal", "1", "--plot", "no.svg"][..], &steps].concat());
+    assert!(refused.status == 1 && desk.read("no.svg").contains("no commands in steps found"), "{refused:?}");
+    desk.write(
+        "far.toml",
+        desk.read("level.toml")
+            .replace("goal_x_m = 60", "goal_x_m = 1")
+            .replace("[surface]", "takeoff_speed_step_m_s = 5\ntakeoff_angle_step_deg = 5\n[surface]"),
+    );
+    assert_eq!(desk.run(&["run", "far.toml", "-o", "out"]).status, 1);
+}
+
+#[test]
+fn the_effort_is_that_of_the_commands() {
+    let desk = level();
+    let steps = ["--set", "hopper.takeoff_speed_step_m_s=0.25", "--set", "hopper.takeoff_angle_step_deg=2.5"];
+    for (effort, total) in [("takeoff-speed", None), ("energy", Some("energy_j_kg")), ("time", Some("flight_time_s"))] {
+        let plan = desk.json(&[&["plan", "level.toml", "--effort", effort][..], &steps].concat());
+        let speeds = plan["path"].as_array().unwrap().iter().map(|hop| hop["takeoff_speed_m_s"].as_f64().unwrap());
+        let expected = total.map_or_else(|| speeds.sum::<f64>(), |total| plan["totals"][total].as_f64().unwrap());
+        assert!((plan["effort"]["value"].as_f64().unwrap() - expected).abs() < 1e-9, "{effort}: {plan}");
+    }
+}
+
+#[test]
+fn replanning_flies_commands_in_steps_within_the_limits() {
+    let desk = level();
+    let text = desk.read("level.toml").replace("[surface]", "takeoff_speed_step_m_s = 0.25\ntakeoff_angle_step_deg = 1\n[surface]");
+    desk.write("trials.toml", format!("{text}[uncertainty]\ntakeoff_speed_sigma_m_s = 0.02\ngoal_tolerance_m = 3\ntrials = 200\n"));
+    for policy in ["open-loop", "replan"] {
+        let answer = desk.json(&["simulate", "trials.toml", "--policy", policy]);
+        assert!(answer["success_rate"].as_f64().unwrap() > 0.8, "{policy}: {answer}");
+        assert_eq!(answer["outcomes"]["slid_at_takeoff"].as_u64(), Some(0), "{policy}: {answer}");
+    }
+}

@@ -75,7 +75,8 @@ impl Planned {
             verified(loaded, path, ends)?;
         }
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
-        let warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
+        let mut warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
+        warnings.extend(path.as_ref().and_then(|path| loaded.scenario.missed_goal(path)));
         for warning in &warnings {
             output::warn(quiet, warning);
         }

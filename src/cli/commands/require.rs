@@ -214,7 +214,11 @@ fn opposite_limit(capability: Capability, loaded: &Loaded) -> Option<f64> {
         }
         "hopper.takeoff_speed_max_m_s" => {
             let highest = hopper.limits().takeoff_speed_levels.map(|levels| levels.highest_m_s());
-            return highest.or(hopper.limits().takeoff_speed_min_m_s);
+            let least = [hopper.limits().takeoff_speed_min_m_s, hopper.limits().steps.takeoff_speed_m_s];
+            return highest.or(least.into_iter().flatten().reduce(f64::max));
+        }
+        "hopper.landing_speed_max_m_s" => {
+            return hopper.limits().landing.touchdown_speed_m_s().filter(|speed_m_s| *speed_m_s > 0.0);
         }
         _ => None,
     };

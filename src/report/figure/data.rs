@@ -67,6 +67,8 @@ pub enum Subject {
     },
     /// No path over these nodes.
     Stopped(Box<StoppedFigure>),
+    /// A path of so many hops with exact commands, which no commands in the machine's steps fly.
+    NoCommands(u64),
     /// No hop at all can take off or land at start, goal or both.
     EndpointsRefuse(Vec<EndpointRefusal>),
 }
@@ -170,7 +172,11 @@ impl FigureData {
         let chain = input.test.chain();
         let nodes = NodeSet::new(chain, input.start, input.goal, input.answer.spacing)?;
         let subject = match &input.answer.outcome {
-            Outcome::Path { .. } => path_subject(input, input.path.ok_or(FigureError::NoHops)?),
+            Outcome::Path { .. } => match input.path {
+                Some(path) => path_subject(input, path),
+                None if input.test.hopper().limits().steps.is_continuous() => return Err(FigureError::NoHops),
+                None => Subject::NoCommands(input.answer.hops().unwrap_or(0)),
+            },
             Outcome::EndpointsRefuse(refusals) => Subject::EndpointsRefuse(refusals.clone()),
             Outcome::NoPath(frontier) => Subject::Stopped(Box::new(stopped(frontier, &nodes))),
         };

@@ -121,6 +121,10 @@ fn verdict(answer: &Answer, data: &FigureData) -> String {
         Subject::Stopped(_) => {
             format!("no path over {} nodes, at most {} inside a segment", answer.nodes, answer.points_per_segment)
         }
+        Subject::NoCommands(hops) => {
+            let plural = if *hops == 1 { "" } else { "s" };
+            format!("no commands in steps found for the path of {hops} hop{plural}")
+        }
         Subject::EndpointsRefuse(refusals) => {
             let refusing: Vec<_> = refusals.iter().map(|refusal| end_name(refusal.contact)).collect();
             let verb = if refusing.len() == 1 { "refuses" } else { "refuse" };
@@ -153,6 +157,7 @@ fn remarks(data: &FigureData) -> Vec<String> {
                 .map(|(from, to, why)| format!("Nearest miss, from x = {} m to x = {} m: {why}.", place(from.x_m), place(to.x_m)));
             miss.into_iter().chain(std::iter::once("Denser nodes may still hold a path.".to_owned())).collect()
         }
+        Subject::NoCommands(_) => vec!["Smaller steps, or another path, may have commands.".to_owned()],
         Subject::EndpointsRefuse(refusals) => refusals.iter().map(endpoint).collect(),
     }
 }

@@ -182,7 +182,7 @@ fn laid_out(input: &FigureInput<'_>, data: &FigureData) -> (Sheet, f64) {
     let end = match &data.subject {
         Subject::Path { hops, .. } if !hops.shown.is_empty() => angle_panel::draw(&mut sheet, hops, end),
         Subject::Stopped(stop) => stop_panel::draw(&mut sheet, stop, end),
-        Subject::Path { .. } | Subject::EndpointsRefuse(_) => end,
+        Subject::Path { .. } | Subject::NoCommands(_) | Subject::EndpointsRefuse(_) => end,
     };
     let end = heading::below(&mut sheet, data, end + 1.0);
     (sheet, end + 2.5)

@@ -52,6 +52,7 @@ impl<'a> TerrainPanel<'a> {
         match &self.data.subject {
             Subject::Path { hops, .. } => self.hops(sheet, &hops.shown),
             Subject::Stopped(stop) => self.stop(sheet, stop),
+            Subject::NoCommands(_) => {}
             Subject::EndpointsRefuse(refusals) => {
                 for refusal in refusals {
                     symbols::cross(sheet, self.frame.place(refusal.station.point));
@@ -120,13 +121,14 @@ impl<'a> TerrainPanel<'a> {
                 touchdown::arrow(sheet, frame.place(hop.hop.landing.in_profile()));
             }
         }
-        if let Some((speed_m_s, hop)) = hops.first().and_then(|hop| hop.touchdown_m_s.zip(Some(hop))) {
-            touchdown::speed(sheet, frame.place(hop.hop.landing.in_profile()), speed_m_s);
-        }
         let widest = hops.last().map_or(0.0, |hop| text_width_mm(&hop.number.to_string(), SMALL_MM));
         let every = one_in((widest + 1.2) / lengths.get(lengths.len() / 2).copied().unwrap_or(1.0));
         for hop in hops.iter().step_by(every) {
             self.number(sheet, hop);
+        }
+        // After the numbers, which it would take the place of.
+        if let Some((speed_m_s, hop)) = hops.first().and_then(|hop| hop.touchdown_m_s.zip(Some(hop))) {
+            touchdown::speed(sheet, frame.place(hop.hop.landing.in_profile()), speed_m_s);
         }
     }
 
@@ -267,7 +269,7 @@ fn heights(data: &FigureData, chain: &ConstrainedChain) -> (f64, f64) {
     let ground = stretch(chain, data.view_x_m.0, data.view_x_m.1).into_iter().map(|point| point.z_m);
     let flights = match &data.subject {
         Subject::Path { hops, .. } => hops.shown.as_slice(),
-        Subject::Stopped(_) | Subject::EndpointsRefuse(_) => &[],
+        Subject::Stopped(_) | Subject::NoCommands(_) | Subject::EndpointsRefuse(_) => &[],
     };
     ground
         .chain(flights.iter().map(|hop| hop.hop.apex_z_m))
