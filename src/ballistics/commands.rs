@@ -46,7 +46,7 @@ impl TakeoffWindow {
 }
 
 impl TakeoffSpeeds {
-    /// Those of a hopper. Beside levels a least speed says nothing: no level is below it.
+    /// Those of a hopper. Beside levels a least speed has no effect: no level is below it.
     pub fn of(limits: &HopperLimits) -> Self {
         match (limits.takeoff_speed_levels, limits.takeoff_speed_min_m_s) {
             (Some(levels), _) => Self::Levels(levels),

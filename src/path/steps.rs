@@ -90,7 +90,7 @@ pub(super) fn in_steps(test: &HopTest, planned: Vec<Hop>, choice: TakeoffChoice)
     machine.flown(&planned)
 }
 
-/// The nearest command of a machine that flies from a station to near another under all limits, and where it lands; `None` if there is none.
+/// The nearest command of a machine that flies from a station to near another under all limits, and where it lands; `None` without such a command.
 pub(crate) fn nearest_command(test: &HopTest, takeoff: &Station, aim: &Station, choice: TakeoffChoice) -> Option<Hop> {
     let steps = test.hopper().limits().steps;
     let machine = Machine { test, ground: ChainGround::new(test.clone()), steps, choice };

@@ -131,10 +131,10 @@ impl CompareAnswer {
             vec![numbers, self.line("verdict", |row| row.verdict.to_owned()), self.line("hops", CompareRow::format_hops)];
         for (i, column) in COLUMNS.into_iter().enumerate() {
             // The delta-v of machines without propulsion is the sum of their take-off speeds: no line of its own.
-            let told = |row: &CompareRow| {
+            let is_stated = |row: &CompareRow| {
                 row.numbers()[i].is_some() && (column != DELTA_V || row.totals.is_some_and(|totals| totals.propulsive))
             };
-            if self.compared.iter().any(told) {
+            if self.compared.iter().any(is_stated) {
                 lines.push(self.line(column, |row| row.numbers()[i].map_or("-".to_owned(), |number| format!("{number:.3}"))));
             }
         }

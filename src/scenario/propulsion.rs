@@ -20,7 +20,7 @@ pub(super) fn landing(entries: &mut Entries) -> LandingMode {
             }
             LandingMode::Ballistic
         }
-        // A mode that is none has been reported already.
+        // An unknown mode has been reported already.
         (false, Some(_)) if entries.has_refused("hopper", &["landing"]) => LandingMode::Ballistic,
         (false, Some(speed)) => {
             let message = format!(

@@ -262,7 +262,7 @@ pub(super) fn refuse_degrees(dem: &super::Dem) -> Result<(), TerrainError> {
 pub struct DegreesMend {
     /// The figure of the body that the file states.
     figure: Option<Ellipsoid>,
-    /// Whether the file states a reference system; if not, GDAL has to be told.
+    /// Whether the file states a reference system; if not, GDAL needs one on its command line.
     stated: bool,
     /// The name and the radius, m, of the body that the user gives.
     body: Option<(String, f64)>,

@@ -153,7 +153,7 @@ fn every_key_changes_the_answer_or_is_said_to_have_no_effect() {
         }
     };
     for path in CATALOGUE.iter().map(Key::path).filter(|path| path != "report.title") {
-        assert!(TELLING.iter().any(|(told, _)| *told == path), "{path} needs a value that matters in TELLING");
+        assert!(TELLING.iter().any(|(name, _)| *name == path), "{path} needs a value that matters in TELLING");
     }
     let mut silent = Vec::new();
     for command in &commands {

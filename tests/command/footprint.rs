@@ -64,8 +64,8 @@ fn a_dem_coarser_than_the_footprint_is_warned_of() {
         for (footprint, coarse) in [("hopper.footprint_m=0.5", true), ("hopper.footprint_m=1.5", false)] {
             let ran = desk.run(&[command, &["--set", footprint]].concat());
             assert!(ran.status < 2, "{command:?}: {}", ran.stderr);
-            let told = ran.stderr.contains("the posts of the DEM lie 1 m apart, farther than hopper.footprint_m of 0.5 m");
-            assert_eq!(told, warns && coarse, "{command:?} {footprint}: {}", ran.stderr);
+            let warned = ran.stderr.contains("the posts of the DEM lie 1 m apart, farther than hopper.footprint_m of 0.5 m");
+            assert_eq!(warned, warns && coarse, "{command:?} {footprint}: {}", ran.stderr);
         }
     }
 }

@@ -357,10 +357,10 @@ fn a_start_on_a_kink_names_its_fit_and_the_nearest_point_that_stands() {
     let chain = chain(&[(0.0, 0.0), (50.0, 0.0), (60.0, 8.0), (100.0, 8.0)], &hopper(5.0, 4.0, Some(0.1)), 30.0);
     let start = chain.geometry().station(50.0).unwrap();
     let refused = endpoint_refusal(&chain, &start, Contact::Takeoff, Direction::Forward).unwrap();
-    let told = refused.refusal.to_string();
+    let reason = refused.refusal.to_string();
     // A corner of slope 0.8 under 4 m: the line slopes 0.4 and lies 0.4 m off.
     assert_eq!(
-        told,
+        reason,
         "the ground under its footprint of 4 m lies up to 0.400 m off the fitted plane, more than the roughness of 0.1 m (the plane slopes \
          21.801 deg)"
     );
@@ -369,9 +369,9 @@ fn a_start_on_a_kink_names_its_fit_and_the_nearest_point_that_stands() {
     assert!((48.0..50.0).contains(&nearest.point.x_m) && (nearest.point.x_m - 48.0).abs() < 1.1, "{nearest:?}");
     // At the chain's end half the footprint has no ground.
     let edge = chain.geometry().station(1.0).unwrap();
-    let told = endpoint_refusal(&chain, &edge, Contact::Landing, Direction::Reverse).unwrap();
-    assert_eq!(told.refusal.to_string(), "its footprint of 4 m reaches over the end of the known ground");
-    assert_eq!(told.refusal.limit(Contact::Landing), Limit::FootprintSlope);
+    let goal = endpoint_refusal(&chain, &edge, Contact::Landing, Direction::Reverse).unwrap();
+    assert_eq!(goal.refusal.to_string(), "its footprint of 4 m reaches over the end of the known ground");
+    assert_eq!(goal.refusal.limit(Contact::Landing), Limit::FootprintSlope);
 }
 
 fn ground_of(dem: Dem, hopper: &Hopper, rest_deg: f64) -> DemGround {

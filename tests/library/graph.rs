@@ -415,12 +415,12 @@ fn automatic_spacing_answers_with_the_first_that_finds_a_path() {
         let (start, goal) = (place(draw, &chain), place(draw, &chain));
         let tried = Spacings::default();
         let answer = search(&test, start, goal, &SearchOptions::default(), &tried).unwrap();
-        let told = tried.0.into_inner().unwrap();
+        let reported = tried.0.into_inner().unwrap();
         let single = |k: u32| {
             asked(&test, start, goal, &SearchOptions { spacing: Some(PointSpacing::PerSegment(k)), ..SearchOptions::default() })
         };
         if matches!(answer.outcome, Outcome::EndpointsRefuse(_)) {
-            assert!(told.is_empty() && answer.pairs_tested == 0);
+            assert!(reported.is_empty() && answer.pairs_tested == 0);
             continue;
         }
         let tried: Vec<Answer> = AUTO_POINTS_PER_SEGMENT.into_iter().map(single).collect();
@@ -429,7 +429,7 @@ fn automatic_spacing_answers_with_the_first_that_finds_a_path() {
         assert_eq!(answer.points_per_segment, AUTO_POINTS_PER_SEGMENT[first]);
         assert_eq!((&answer.outcome, answer.nodes), (&tried[first].outcome, tried[first].nodes));
         assert_eq!(answer.pairs_tested, tried[..=first].iter().map(|a| a.pairs_tested).sum::<u64>());
-        assert_eq!(told, AUTO_POINTS_PER_SEGMENT[..=first].iter().map(|&k| PointSpacing::PerSegment(k)).collect::<Vec<_>>());
+        assert_eq!(reported, AUTO_POINTS_PER_SEGMENT[..=first].iter().map(|&k| PointSpacing::PerSegment(k)).collect::<Vec<_>>());
         later += u32::from(first > 0 && answer.hops().is_some());
     }
     assert!(later > 3, "only {later} journeys needed points inside segments");

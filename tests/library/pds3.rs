@@ -368,7 +368,7 @@ fn labels_are_recognised_as_they_are_read() {
         std::fs::write(&path, text).unwrap();
         holds_the_stored_numbers(&read_dem(&path).unwrap_or_else(|error| panic!("{name}: {error}")));
     }
-    // A label that is none is not told to be given in its own place.
+    // A file that is no label gets no hint to give it in its own place.
     let path = folder.path().join("none.lbl");
     std::fs::write(&path, "no label at all").unwrap();
     assert!(!read_dem(&path).unwrap_err().to_string().contains("give none.lbl instead"));

@@ -219,7 +219,7 @@ impl LandingRules {
             let geometry = test.chain().geometry();
             let back = if direction == Direction::Forward { Direction::Reverse } else { Direction::Forward };
             rules.seen_back = stations.iter().map(|station| ground_slope(geometry, station, back, ramp_m)).collect();
-            // Where no hop is as long as two ramps, it is not asked for.
+            // Where no hop is as long as two ramps, no sweep uses it.
             let asked = 2.0 * ramp_m <= test.greatest_reach_m();
             let near = |station| if asked { NearGround::of(test, station, direction) } else { NearGround::NO_VERTEX };
             rules.near = stations.iter().map(near).collect();

@@ -23,7 +23,7 @@ const SHORT: f64 = 1e-8;
 /// What is found under the footprint of a contact.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Footing {
-    /// The hopper has no footprint, or the contact is none of the ground.
+    /// The hopper has no footprint, or the point is no contact of this ground.
     NotAsked,
     /// The ground is not known as far as the footprint reaches.
     Unknown,

@@ -116,8 +116,8 @@ fn use_of(segment: &SegmentConstraints, towards: Direction) -> GroundUse {
             let away = if towards == Direction::Forward { Direction::Reverse } else { Direction::Forward };
             let refusals =
                 [towards, away].into_iter().filter_map(|direction| segment.check_contact(Contact::Takeoff, direction).err());
-            let told = refusals.min_by_key(|refusal| matches!(refusal, GroundRefusal::NoGround));
-            GroundUse::Closed(told.as_ref().map_or(Closure::NoLimits, Closure::of))
+            let refusal = refusals.min_by_key(|refusal| matches!(refusal, GroundRefusal::NoGround));
+            GroundUse::Closed(refusal.as_ref().map_or(Closure::NoLimits, Closure::of))
         }
     }
 }

@@ -275,13 +275,13 @@ fn spans_state_the_use_of_every_point() {
             let station = case.chain.geometry().station(x_m).unwrap();
             let span = data.spans.iter().find(|span| span.from_x_m < x_m && x_m < span.to_x_m).unwrap();
             let usable = [Contact::Takeoff, Contact::Landing].map(|contact| is_usable(&case.chain, &station, contact));
-            let told = match span.allows {
+            let stated = match span.allows {
                 GroundUse::Both => [true, true],
                 GroundUse::TakeoffOnly => [true, false],
                 GroundUse::LandingOnly => [false, true],
                 GroundUse::Closed(_) => [false, false],
             };
-            assert_eq!(told, usable, "{} at {x_m} m", case.name);
+            assert_eq!(stated, usable, "{} at {x_m} m", case.name);
         }
     }
 }

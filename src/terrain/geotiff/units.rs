@@ -309,13 +309,13 @@ mod tests {
             (&[], &[(1026, "WGS 84 / UTM zone 14N + NAVD88 height")], &[]),
         ] {
             let system = keys(&[&UTM[..], numbers].concat(), texts, &[]);
-            told(&system, words, &format!("{numbers:?} {texts:?}"));
+            is_reported(&system, words, &format!("{numbers:?} {texts:?}"));
         }
         // Over degrees as well, and before them: the command that mends degrees drops the unit of the heights.
-        told(&keys(&[(1024, 2), (2048, 4326), (4096, 6360)], &[], &[]), &["elevations in US survey feet"], "degrees");
+        is_reported(&keys(&[(1024, 2), (2048, 4326), (4096, 6360)], &[], &[]), &["elevations in US survey feet"], "degrees");
     }
 
-    fn told(system: &CoordinateSystem, words: &[&str], row: &str) {
+    fn is_reported(system: &CoordinateSystem, words: &[&str], row: &str) {
         match (check(system, Scaling::NONE), words) {
             (Ok(()), []) => {}
             (Ok(()), _) => panic!("{row}: read, expected a refusal with {words:?}"),
@@ -398,7 +398,7 @@ mod tests {
                 &["key 3074"],
             ),
         ] {
-            told(&keys(numbers, texts, doubles), words, &format!("{numbers:?} {texts:?} {doubles:?}"));
+            is_reported(&keys(numbers, texts, doubles), words, &format!("{numbers:?} {texts:?} {doubles:?}"));
         }
     }
 

@@ -73,8 +73,8 @@ pub(super) fn states_a_map(system: &CoordinateSystem) -> bool {
     const UNDEFINED: u16 = 0;
     let by_other_keys = || {
         let coded = short_key(system, key::PROJECTED_CRS).is_some_and(|code| code != UNDEFINED && code != key::USER_DEFINED);
-        let told = stated::pe_string(system).is_some_and(|text| text.starts_with("PROJ"));
-        coded || told || short_key(system, key::METHOD).is_some()
+        let by_text = stated::pe_string(system).is_some_and(|text| text.starts_with("PROJ"));
+        coded || by_text || short_key(system, key::METHOD).is_some()
     };
     match short_key(system, key::MODEL_TYPE) {
         Some(PROJECTED) => true,

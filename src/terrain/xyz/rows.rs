@@ -28,7 +28,7 @@ pub(super) struct Rows {
     /// Whether there are columns beyond the three that no header names.
     pub(super) further: bool,
     /// The numbers of a fourth column, if there are five or more and no header names them: with it, a text that begins with
-    /// the indices of row and column can be told.
+    /// the indices of row and column is recognised.
     pub(super) fourth: Vec<f64>,
     /// Whether the file ends in the middle of a line, as one does that was cut short.
     pub(super) open: bool,

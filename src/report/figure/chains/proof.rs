@@ -297,13 +297,13 @@ fn draw_gap_text(sheet: &mut Sheet, gap: &ProofGap, top_mm: f64) -> f64 {
         short(gap.leads_to_goal_x_m)
     );
     let top_mm = paragraph(sheet, &text, SMALL_MM, false, top_mm) + 1.5;
-    let told: Vec<_> = gap.refusals.iter().filter(|(_, count)| *count > 0).collect();
-    if told.is_empty() {
+    let counted: Vec<_> = gap.refusals.iter().filter(|(_, count)| *count > 0).collect();
+    if counted.is_empty() {
         return paragraph(sheet, "No other cell was within reach of those that may be reached.", SMALL_MM, false, top_mm);
     }
     let width_mm = 0.35 * profile::TEXT_WIDTH_MM;
-    let names: Vec<_> = told.iter().map(|(limit, _)| profile::fitted(limit, SMALL_MM, width_mm)).collect();
-    let mut counts: Vec<(&str, u64)> = names.iter().zip(&told).map(|(name, (_, count))| (name.as_str(), *count)).collect();
+    let names: Vec<_> = counted.iter().map(|(limit, _)| profile::fitted(limit, SMALL_MM, width_mm)).collect();
+    let mut counts: Vec<(&str, u64)> = names.iter().zip(&counted).map(|(name, (_, count))| (name.as_str(), *count)).collect();
     if counts.len() > MOST_LIMITS {
         let rest = counts[MOST_LIMITS..].iter().fold(0u64, |sum, (_, count)| sum.saturating_add(*count));
         counts.truncate(MOST_LIMITS);

@@ -379,9 +379,9 @@ fn sheets_of_hops_are_grids_within_their_aspect_ratio() {
         assert!(slender <= 1.96 && (hops < 36 || slender > 1.0), "{hops} hops: {slender}");
         // rsvg-convert refuses more than 32 767 pixels a side.
         assert!(1400.0 * slender < 32_000.0);
-        let told = texts(&picture);
-        assert_eq!(told.lines().filter(|line| line.contains(&format!(" of {hops}"))).count(), hops);
-        assert_eq!(told.contains("clearance asked for: 0.5 m"), clearance_m > 0.0);
+        let lettering = texts(&picture);
+        assert_eq!(lettering.lines().filter(|line| line.contains(&format!(" of {hops}"))).count(), hops);
+        assert_eq!(lettering.contains("clearance asked for: 0.5 m"), clearance_m > 0.0);
         let labels = labels(&picture);
         for label in &labels {
             let (left, top, right, bottom) = label.bounds_mm();
@@ -394,7 +394,7 @@ fn sheets_of_hops_are_grids_within_their_aspect_ratio() {
         clearance: ClearanceProfile::new(0.5, ClearanceRule::TAPERED),
         hops: (0..4).map(|i| hop_profile(i, 4)).collect(),
     };
-    let told = texts(&check_picture("hop-profiles", || draw_hop_profiles(&figure).unwrap()));
+    let lettering = texts(&check_picture("hop-profiles", || draw_hop_profiles(&figure).unwrap()));
     for words in [
         "(75897.5, 38702.5) m to (75900.0, 38710.0) m",
         "run 4 m in 2.5 s, heading 18.4° grid, 80.6° true",
@@ -404,7 +404,7 @@ fn sheets_of_hops_are_grids_within_their_aspect_ratio() {
         "distance (m); heights at true scale",
         "height (m)",
     ] {
-        assert!(told.lines().any(|line| line == words), "{words:?} is missing in {told}");
+        assert!(lettering.lines().any(|line| line == words), "{words:?} is missing in {lettering}");
     }
     let mut bare = figure.clone();
     bare.hops[2].ground.truncate(1);

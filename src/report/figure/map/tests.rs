@@ -55,10 +55,10 @@ fn drawn(name: &str, posts: MapPosts<'_>, per_hop: f64, most: f64, with_return: 
     let hops = made_up_hops(&posts, middle, per_hop, most);
     let back: Vec<bool> = (0..hops.len()).map(|i| i % posts.size().1 > posts.size().1 / 3).collect();
     let picture = check_picture(name, || draw_hop_map(&hop_map(posts, &hops, with_return.then_some(&back))).unwrap());
-    let told = texts(&picture);
+    let lettering = texts(&picture);
     let is_bar =
         |line: &str| line.strip_suffix(" m").is_some_and(|length| length.parse::<f64>().is_ok_and(|length_m| length_m > 0.0));
-    assert!(told.lines().any(is_bar), "the scale bar's length: {told}");
+    assert!(lettering.lines().any(is_bar), "the scale bar's length: {lettering}");
     // Every post is in exactly one entry of the legend.
     let counts = texts(&picture)
         .lines()
@@ -92,8 +92,8 @@ fn hop_maps_of_real_terrain_are_complete() {
 fn maps_with_a_stride_with_holes_and_with_many_posts_are_complete_and_say_so() {
     let small = made_up(31, 47, 2.5);
     let picture = drawn("hops-stride", MapPosts { dem: &small, stride: 4 }, 3.0, 300.0, false);
-    let told = texts(&picture);
-    assert!(told.contains("no data: ") && told.contains("one post in 4 each way, 10 m apart"), "{told}");
+    let lettering = texts(&picture);
+    assert!(lettering.contains("no data: ") && lettering.contains("one post in 4 each way, 10 m apart"), "{lettering}");
     let large = made_up(2100, 300, 5.0);
     let picture = drawn("hops-large", MapPosts { dem: &large, stride: 1 }, 12.0, 1000.0, false);
     assert!(texts(&picture).contains("Drawn: one post in 2 each way"));
@@ -160,9 +160,9 @@ fn keep_out_posts_are_a_separate_class_and_zero_posts_without_return_path_are_st
     let kept_out: Vec<bool> = (0..240).map(|i| i < 40 || i == 100).collect();
     let figure = HopMapFigure { kept_out: Some(&kept_out), ..hop_map(posts, &hops, Some(&[true; 240])) };
     let picture = check_picture("hops-keep-out", || draw_hop_map(&figure).unwrap());
-    let told = texts(&picture);
+    let lettering = texts(&picture);
     for words in ["keep-out, not reached: 40 posts", "not reached: 20 posts", "no path back to the start: 0 posts"] {
-        assert!(told.lines().any(|line| line.ends_with(words)), "{words:?} is missing in {told}");
+        assert!(lettering.lines().any(|line| line.ends_with(words)), "{words:?} is missing in {lettering}");
     }
     let image = &picture.sheet.images[0].pixels;
     // Each set of stripes covers two of nine pixels, and both cover four of 81: together 32 of 81.
@@ -281,8 +281,11 @@ fn landing_maps_show_the_flown_area_and_count_landings_off_the_map() {
     let far = MapPoint::new(whole.max.x + 500.0, whole.min.y);
     figure.clouds[2].landings[7] = far;
     let picture = check_picture("landings-left", || draw_landing_map(&figure).unwrap());
-    let told = texts(&picture);
-    assert!(told.contains("Landings beyond the DEM, not drawn: 1.") && told.contains("landing (149 of 30000 drawn)"), "{told}");
+    let lettering = texts(&picture);
+    assert!(
+        lettering.contains("Landings beyond the DEM, not drawn: 1.") && lettering.contains("landing (149 of 30000 drawn)"),
+        "{lettering}"
+    );
     let image = &picture.sheet.images[0];
     assert!(image.width_mm / image.height_mm > 1.2, "cut to the path, which runs east: {} by {}", image.width_mm, image.height_mm);
     // No data at all, and a path without landings.

@@ -142,8 +142,8 @@ fn absent_data_is_omitted_from_the_sheet() {
     let mut few = bars("open-loop", 3, 4);
     few.convergence.drain(..39);
     let one_point = SimulationFigure { outcomes: vec![few.clone()], ..no_flights.clone() };
-    let told = texts(&check_picture("simulation_one_point", || draw_simulation(&one_point).unwrap()));
-    assert!(told.contains("is not drawn: it is noted after 10 trials") && !told.contains("95 % band"), "{told}");
+    let lettering = texts(&check_picture("simulation_one_point", || draw_simulation(&one_point).unwrap()));
+    assert!(lettering.contains("is not drawn: it is noted after 10 trials") && !lettering.contains("95 % band"), "{lettering}");
     let alone = check_picture("convergence_one_point", || draw_convergence(&caption(), std::slice::from_ref(&few)).unwrap());
     assert!(texts(&alone).lines().any(|line| line == "4"), "the number of trials on the axis");
     let picture = check_picture("simulation_empty", || draw_simulation(&empty).unwrap());
