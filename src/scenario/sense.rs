@@ -4,7 +4,7 @@ use super::{Prepared, Scenario, TerrainSource};
 use crate::{
     chain::GroundForm,
     graph::ReliabilityUse,
-    path::HopPath,
+    path::{Hop, HopPath},
     quantity::format_number,
     uncertainty::{Policy, Uncertainty},
     world::FrictionCone,
@@ -57,6 +57,24 @@ impl Scenario {
         })
     }
 
+    /// A warning where every hop of a path is too short to keep the whole of a tapered clearance.
+    pub fn unkept_clearance(&self, path: &HopPath) -> Option<String> {
+        let limits = self.hopper.limits();
+        let taper = limits.clearance_rule.taper()?;
+        let longest_m = path.hops.iter().map(Hop::run_m).reduce(f64::max)?;
+        let most_m = 0.5 * taper * longest_m;
+        (most_m < limits.clearance_m).then(|| {
+            format!(
+                "no hop keeps hopper.clearance_m of {} m in full: at a clearance_taper of {} the longest, of {} m, keeps {} m at its middle; \
+                 raise the taper, or lower the clearance",
+                format_number(limits.clearance_m),
+                format_number(taper),
+                format_number(longest_m),
+                format_number(most_m)
+            )
+        })
+    }
+
     /// Warnings about trials under these policies: settings that they do not feel, deviations beyond sense, no errors at all.
     pub fn trial_warnings(&self, policies: &[Policy], ground: &TrialGround) -> Vec<String> {
         let keys = self.uncertainty.unwrap_or_default();
@@ -86,6 +104,13 @@ impl Scenario {
                 "no error that is given has an effect on these trials, so that every trial flies the plan exactly and the rate has no meaning"
                     .to_owned(),
             );
+        }
+        if let Some(propellant_kg) = self.hopper.limits().propellant_max_kg {
+            warnings.push(format!(
+                "trials do not count propellant: hopper.propellant_max_kg of {} kg is held against the plan alone, and a trial that flies more \
+                 or other hops may need more",
+                format_number(propellant_kg)
+            ));
         }
         let limit = keys.hop_limit.filter(|limit| usize::try_from(*limit).is_ok_and(|limit| limit < ground.hops));
         warnings.extend(limit.map(|limit| {

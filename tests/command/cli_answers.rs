@@ -532,3 +532,19 @@ fn texts_name_efforts_as_sums_or_maxima() {
         }
     }
 }
+
+#[test]
+fn a_clearance_that_no_hop_keeps_in_full_is_reported() {
+    let desk = Desk::new();
+    desk.write("flat.csv", "x_m,z_m\n0,0\n60,0\n");
+    let base = ["plan", "flat.csv", "--body", "moon", "--start", "0", "--goal", "60", "--set", "surface.friction_coefficient=1.2"];
+    let speeds = ["--set", "hopper.takeoff_speed_max_m_s=5", "--set", "hopper.landing_speed_max_m_s=6"];
+    // v^2 / g = 15.4 m: no hop is as long as 2 x 4 / 0.5 = 16 m.
+    let high = desk.run(&[&base[..], &speeds, &["--clearance-m", "4"]].concat());
+    assert!(high.status == 0 && high.stderr.contains("no hop keeps hopper.clearance_m of 4 m in full"), "{high:?}");
+    let low = desk.run(&[&base[..], &speeds, &["--clearance-m", "1"]].concat());
+    assert_eq!((low.status, low.stderr.as_str()), (0, ""), "{low:?}");
+    // The mending line: a steeper taper keeps it.
+    let steep = desk.run(&[&base[..], &speeds, &["--clearance-m", "4", "--set", "hopper.clearance_taper=1"]].concat());
+    assert!(!steep.stderr.contains("in full"), "{steep:?}");
+}

@@ -160,3 +160,10 @@ fn keys_that_do_not_fit_are_refused_in_one_sentence() {
         assert_eq!(ran.stderr.matches("error: ").count(), 1, "one problem, with its line: {ran:?}");
     }
 }
+
+#[test]
+fn trials_that_do_not_count_propellant_say_so() {
+    let desk = desk("isp_s = 200\nmass_kg = 50\npropellant_max_kg = 40");
+    let ran = desk.run(&["simulate", "level.toml", "--trials", "5", "--set", "uncertainty.goal_tolerance_m=1"]);
+    assert!(ran.status == 0 && ran.stderr.contains("trials do not count propellant"), "{ran:?}");
+}

@@ -1,6 +1,6 @@
 //! `chta plan`: the path of fewest hops, then least effort.
 
-use std::path::Path;
+use std::{fmt::Write, path::Path};
 
 use chta::{
     chain::Station,
@@ -77,6 +77,7 @@ impl Planned {
         let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
         let mut warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
         warnings.extend(path.as_ref().and_then(|path| loaded.scenario.missed_goal(path)));
+        warnings.extend(path.as_ref().and_then(|path| loaded.scenario.unkept_clearance(path)));
         for warning in &warnings {
             output::warn(quiet, warning);
         }
@@ -110,7 +111,8 @@ impl Planned {
         }
         text.push_str(&reliable_paths_text(&self.answer.reliable_paths));
         if self.answer.verified == Some(true) {
-            text.push_str("verified: every hop was flown again by direct simulation and breaks no limit\n");
+            let of = if self.check().propellant_shortage.is_some() { " of a hop" } else { "" };
+            let _ = writeln!(text, "verified: every hop was flown again by direct simulation and breaks no limit{of}");
         }
         text
     }
