@@ -224,14 +224,20 @@ impl ConstrainedChain {
         }
     }
 
-    /// The inclination of the surface that rules a contact at a station, or of the plane fitted over the footprint, and the greatest on
-    /// which the hopper rests; `None` without a rest slope, and where no ground is known.
-    pub fn rest_slope(&self, station: &Station, contact: Contact, direction: Direction) -> Option<(Angle, Angle)> {
+    /// The inclination of the surface that rules a contact at a station, or of the plane fitted over the footprint there, and the
+    /// greatest on which the hopper rests; `None` without a rest slope, and where no ground is known.
+    pub(crate) fn rest_slope(
+        &self,
+        station: &Station,
+        contact: Contact,
+        direction: Direction,
+        fit: Option<FootprintFit>,
+    ) -> Option<(Angle, Angle)> {
         let segment = station.ruling_segment(contact, direction, self.segments.len())?.index();
         let ground = &self.geometry.grounds()[segment];
         let max = rest_slope(ground, &self.surface)?;
         let tilt = match self.footprint {
-            Some(_) => self.footprint_fit(station)?.tilt_slope,
+            Some(_) => fit?.tilt_slope,
             None => tilt_slope(self.geometry.slopes()[segment], ground.cross_slope().slope()),
         };
         Some((Angle::from_slope(tilt), Angle::from_slope(max)))

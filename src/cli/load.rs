@@ -311,12 +311,10 @@ fn validate_and_prepare(
         scenario.terrain = Some(terrain.clone());
     }
     let file = base.join(terrain.path());
-    let assumed = if purpose.flies_commands() {
-        scenario.clone()
-    } else {
-        Scenario { hopper: scenario.hopper.with_any_command(), ..scenario.clone() }
-    };
-    let mut prepared = prepare(&assumed, &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
+    let exact = || Scenario { hopper: scenario.hopper.with_any_command(), ..scenario.clone() };
+    let assumed = (!purpose.flies_commands()).then(exact);
+    let mut prepared =
+        prepare(assumed.as_ref().unwrap_or(&scenario), &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
     prepared.warnings.extend(purpose.unused(given, &scenario).into_iter().chain(replaced));
     for warning in &prepared.warnings {
         output::warn(quiet, warning);

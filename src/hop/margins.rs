@@ -97,14 +97,16 @@ impl HopMargins {
     pub fn of(test: &HopTest, takeoff: &Station, landing: &Station, arc: &Arc) -> Option<Self> {
         let direction = Direction::between(takeoff.point.x_m, landing.point.x_m)?;
         let rule = |station, contact| test.chain().check_contact(station, contact, direction).ok();
-        let rest_deg = |station, contact| {
-            let rest = test.chain().rest_slope(station, contact, direction);
-            rest.map_or(f64::INFINITY, |(tilt, max)| max.degrees() - tilt.degrees())
+        let stands = |station, contact| {
+            let fit = test.chain().footprint_fit(station);
+            let rest = test.chain().rest_slope(station, contact, direction, fit);
+            let rough = test.hopper().limits().roughness_max_m.zip(fit);
+            (
+                rest.map_or(f64::INFINITY, |(tilt, max)| max.degrees() - tilt.degrees()),
+                rough.map_or(f64::INFINITY, |(max_m, fit)| max_m - fit.residual_m),
+            )
         };
-        let roughness_m = |station| {
-            let fit = test.hopper().limits().roughness_max_m.zip(test.chain().footprint_fit(station));
-            fit.map_or(f64::INFINITY, |(max_m, fit)| max_m - fit.residual_m)
-        };
+        let [from, to] = [stands(takeoff, Contact::Takeoff), stands(landing, Contact::Landing)];
         let terrain = least_height(test.chain().geometry(), takeoff, landing, arc, test.clearance());
         let (height_m, terrain_from_takeoff_m) = terrain.unwrap_or((f64::INFINITY, f64::INFINITY));
         let flown = Flown {
@@ -114,8 +116,8 @@ impl HopMargins {
             hopper: test.hopper().limits(),
             mechanism: test.mechanism_slopes(),
             height_m,
-            rest_deg: [rest_deg(takeoff, Contact::Takeoff), rest_deg(landing, Contact::Landing)],
-            roughness_m: [roughness_m(takeoff), roughness_m(landing)],
+            rest_deg: [from.0, to.0],
+            roughness_m: [from.1, to.1],
         };
         Some(Self { values: MARGINS.map(|row| (row.of)(&flown)), terrain_from_takeoff_m })
     }

@@ -59,9 +59,9 @@ pub struct SegmentReach {
     /// no tolerance, so rounding could refuse the only arc of a hop exactly on the limit.
     stride_m: f64,
     limit: Limit,
-    /// The length of the shortest hop, m; 0 if there is none.
+    /// The length of the shortest hop, m; 0 if hops may be as short as one likes.
     shortest_m: f64,
-    /// Hops up to this length are also possible where the shortest is longer, m; 0 if there are none.
+    /// Hops up to this length are also possible where the shortest is longer, m; 0 if none shorter than it is possible.
     near_m: f64,
 }
 

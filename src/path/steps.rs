@@ -176,7 +176,7 @@ impl Machine<'_> {
     fn refused(&self, planned: &[Hop], farthest: Option<(usize, Limit)>, tried: usize) -> NoCommand {
         let (hop, limit) = farthest.unwrap_or((0, Limit::TakeoffAngleStep));
         let CommandSteps { takeoff_angle, takeoff_speed_m_s, heading: _ } = self.steps;
-        let angle = takeoff_angle.map(|step| format!("{} degrees", step.shortest_degrees().unwrap_or_else(|| step.degrees())));
+        let angle = takeoff_angle.map(|step| format!("{} degrees", step.written_degrees()));
         let speed = takeoff_speed_m_s.map(|step| format!("{step} m/s"));
         NoCommand::Refused {
             hop: hop + 1,

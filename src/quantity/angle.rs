@@ -69,6 +69,11 @@ impl Angle {
             .min_by_key(|degrees| degrees.to_string().len())
     }
 
+    /// The angle in degrees as it is written: a number that reads back as the same angle, for every angle that was given in degrees.
+    pub fn written_degrees(self) -> f64 {
+        self.shortest_degrees().unwrap_or_else(|| self.degrees())
+    }
+
     /// The tangent; plus or minus infinity at and beyond a right angle, so that an angle outside (-90, 90) degrees never has the
     /// finite slope of another direction. NaN gives NaN.
     ///

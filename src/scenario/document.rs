@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 use super::{Scenario, TerrainSource, UncertaintyKeys};
 use crate::{
     graph::{PointSpacing, ReliabilityUse},
-    quantity::{Angle, AngleInterval},
+    quantity::AngleInterval,
     terrain::{MapPlace, NoDataRule},
     world::{ClearanceRule, Grip, RestSlope},
 };
@@ -30,13 +30,8 @@ fn object<const N: usize>(keys: [(&str, Option<Value>); N]) -> Value {
     Value::Object(keys.into_iter().filter_map(|(key, value)| Some((key.to_owned(), value?))).collect())
 }
 
-/// Degrees that read back as the same angle, for every angle that was given in degrees.
-fn degrees(angle: Angle) -> f64 {
-    angle.shortest_degrees().unwrap_or_else(|| angle.degrees())
-}
-
 fn range(angles: AngleInterval) -> Value {
-    json!([degrees(angles.min), degrees(angles.max)])
+    json!([angles.min.written_degrees(), angles.max.written_degrees()])
 }
 
 fn finite(number: f64) -> Option<Value> {
@@ -69,15 +64,15 @@ fn hopper(scenario: &Scenario) -> Value {
                 .filter(|taper| hopper.limits().clearance_m > 0.0 || *taper != ClearanceRule::DEFAULT_TAPER)
                 .map(Value::from),
         ),
-        ("takeoff_angle_min_deg", hopper.limits().takeoff_angle_min.map(|angle| degrees(angle).into())),
-        ("takeoff_angle_max_deg", hopper.limits().takeoff_angle_max.map(|angle| degrees(angle).into())),
+        ("takeoff_angle_min_deg", hopper.limits().takeoff_angle_min.map(|angle| angle.written_degrees().into())),
+        ("takeoff_angle_max_deg", hopper.limits().takeoff_angle_max.map(|angle| angle.written_degrees().into())),
         ("apex_height_max_m", hopper.limits().apex_height_max_m.map(Value::from)),
         ("flight_time_max_s", hopper.limits().flight_time_max_s.map(Value::from)),
         ("takeoff_speed_min_m_s", hopper.limits().takeoff_speed_min_m_s.map(Value::from)),
         ("takeoff_speed_levels_m_s", hopper.limits().takeoff_speed_levels.map(|levels| levels.as_slice().into())),
-        ("takeoff_angle_step_deg", hopper.limits().steps.takeoff_angle.map(|angle| degrees(angle).into())),
+        ("takeoff_angle_step_deg", hopper.limits().steps.takeoff_angle.map(|angle| angle.written_degrees().into())),
         ("takeoff_speed_step_m_s", hopper.limits().steps.takeoff_speed_m_s.map(Value::from)),
-        ("heading_step_deg", hopper.limits().steps.heading.map(|angle| degrees(angle).into())),
+        ("heading_step_deg", hopper.limits().steps.heading.map(|angle| angle.written_degrees().into())),
         ("footprint_m", hopper.limits().footprint_m.map(Value::from)),
         ("roughness_max_m", hopper.limits().roughness_max_m.map(Value::from)),
         ("mass_kg", hopper.limits().mass_kg.map(Value::from)),
@@ -108,7 +103,7 @@ fn surface(scenario: &Scenario, named: &dyn Fn(&std::path::Path) -> String) -> V
             "rest_slope_max_deg",
             match scenario.surface.rest {
                 RestSlope::AsFrictionHolds => None,
-                RestSlope::AtMost(angle) => Some(degrees(angle).into()),
+                RestSlope::AtMost(angle) => Some(angle.written_degrees().into()),
                 RestSlope::Unlimited => Some("inf".into()),
             },
         ),
@@ -190,8 +185,8 @@ fn uncertainty(trials: &UncertaintyKeys) -> Value {
     object([
         ("takeoff_speed_sigma_m_s", Some(errors.takeoff_speed_sigma_m_s.into())),
         ("takeoff_speed_sigma_fraction", Some(errors.takeoff_speed_sigma_fraction.into())),
-        ("takeoff_angle_sigma_deg", Some(degrees(errors.takeoff_angle_sigma).into())),
-        ("heading_sigma_deg", Some(degrees(errors.heading_sigma).into())),
+        ("takeoff_angle_sigma_deg", Some(errors.takeoff_angle_sigma.written_degrees().into())),
+        ("heading_sigma_deg", Some(errors.heading_sigma.written_degrees().into())),
         ("position_sigma_m", Some(errors.position_sigma_m.into())),
         ("drift_along_sigma_m", Some(errors.drift_along_sigma_m.into())),
         ("drift_across_sigma_m", Some(errors.drift_across_sigma_m.into())),

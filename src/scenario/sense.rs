@@ -1,6 +1,6 @@
 //! Settings without effect on the trials that are flown, and deviations beyond sense.
 
-use super::{Prepared, Scenario, TerrainSource};
+use super::{Extremes, Prepared, Scenario, TerrainSource, constant_gravity_warnings};
 use crate::{
     chain::GroundForm,
     graph::ReliabilityUse,
@@ -43,8 +43,14 @@ impl TrialGround {
 }
 
 impl Scenario {
+    /// Warnings about a path that was found: constant gravity, a landing beside the goal, a clearance that no hop keeps.
+    pub fn path_warnings(&self, path: &HopPath) -> Vec<String> {
+        let gravity = constant_gravity_warnings(&self.body, Extremes::of(&path.hops));
+        gravity.into_iter().chain(self.missed_goal(path)).chain(self.unkept_clearance(path)).collect()
+    }
+
     /// A warning where commands in steps land farther from the goal than trials may.
-    pub fn missed_goal(&self, path: &HopPath) -> Option<String> {
+    fn missed_goal(&self, path: &HopPath) -> Option<String> {
         let tolerance_m = self.uncertainty?.goal_tolerance_m;
         let miss_m = path.hops.last()?.aim?.miss_m.abs();
         (miss_m > tolerance_m).then(|| {
@@ -58,7 +64,7 @@ impl Scenario {
     }
 
     /// A warning where every hop of a path is too short to keep the whole of a tapered clearance.
-    pub fn unkept_clearance(&self, path: &HopPath) -> Option<String> {
+    fn unkept_clearance(&self, path: &HopPath) -> Option<String> {
         let limits = self.hopper.limits();
         let taper = limits.clearance_rule.taper()?;
         let longest_m = path.hops.iter().map(Hop::run_m).reduce(f64::max)?;

@@ -157,6 +157,31 @@ pub struct HopperProblem {
 #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
 pub struct InvalidHopper(pub Vec<HopperProblem>);
 
+/// What is expected of a number that may be 0.
+pub(super) const NOT_NEGATIVE: &str = "a finite number of at least 0";
+
+/// What is expected of a number that may not be 0.
+pub(super) const POSITIVE: &str = "a finite number above 0";
+
+pub(super) fn not_negative(number: f64) -> bool {
+    number.is_finite() && number >= 0.0
+}
+
+pub(super) fn positive(number: f64) -> bool {
+    number.is_finite() && number > 0.0
+}
+
+/// The problems found among single values.
+#[derive(Default)]
+pub(super) struct Problems(pub(super) Vec<HopperProblem>);
+
+impl Problems {
+    /// Notes a value that is given and does not hold.
+    pub(super) fn ask(&mut self, key: &'static str, value: Option<f64>, holds: impl Fn(f64) -> bool, expected: &'static str) {
+        self.0.extend(value.filter(|&value| !holds(value)).map(|found| HopperProblem { key, found, expected }));
+    }
+}
+
 impl fmt::Display for HopperProblem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "hopper.{} is {}, expected {}", self.key, self.found, self.expected)
@@ -185,8 +210,6 @@ impl Hopper {
     /// );
     /// ```
     pub fn new(limits: HopperLimits) -> Result<Self, InvalidHopper> {
-        const NOT_NEGATIVE: &str = "a finite number of at least 0";
-        const POSITIVE: &str = "a finite number above 0";
         const ELEVATION: &str = "an angle from -90 to 90 degrees";
         // No destructuring with `..`, so that a new limit cannot be left unchecked.
         let HopperLimits {
@@ -216,8 +239,6 @@ impl Hopper {
             preparation_energy_j: _,
             efficiency: _,
         } = limits;
-        let not_negative = |number: f64| number.is_finite() && number >= 0.0;
-        let positive = |number: f64| number.is_finite() && number > 0.0;
         let speed = |number: f64| number > 0.0;
         // The bound is a right angle in radians: 90 in degrees may be rounded.
         let elevation = |angle: Angle| angle.radians().abs() <= std::f64::consts::FRAC_PI_2;

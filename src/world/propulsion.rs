@@ -1,6 +1,9 @@
 //! How a hopper lands, what a hop takes from its stores, and how long it takes on the ground.
 
-use super::{HopperLimits, HopperProblem};
+use super::{
+    HopperLimits, HopperProblem,
+    hopper::{NOT_NEGATIVE, POSITIVE, Problems, not_negative, positive},
+};
 
 /// How a hopper comes down.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -122,14 +125,8 @@ impl HopperLimits {
 
 /// What is wrong with the limits that this file is about.
 pub(super) fn problems(limits: &HopperLimits) -> Vec<HopperProblem> {
-    const NOT_NEGATIVE: &str = "a finite number of at least 0";
-    const POSITIVE: &str = "a finite number above 0";
-    let mut found = Vec::new();
-    let mut ask = |key, value: Option<f64>, holds: &dyn Fn(f64) -> bool, expected| {
-        found.extend(value.filter(|&value| !holds(value)).map(|found| HopperProblem { key, found, expected }));
-    };
-    let not_negative = |number: f64| number.is_finite() && number >= 0.0;
-    let positive = |number: f64| number.is_finite() && number > 0.0;
+    let mut problems = Problems::default();
+    let mut ask = |key, value, holds: &dyn Fn(f64) -> bool, expected| problems.ask(key, value, holds, expected);
     let touchdown = limits.landing.touchdown_speed_m_s();
     ask("touchdown_speed_m_s", touchdown, &not_negative, NOT_NEGATIVE);
     ask(
@@ -170,7 +167,7 @@ pub(super) fn problems(limits: &HopperLimits) -> Vec<HopperProblem> {
         "a hopper.mass_kg beside it, since energies are stated per unit mass",
     );
     ask("efficiency", limits.efficiency, &|share| share > 0.0 && share <= 1.0, "a share above 0 and at most 1");
-    found
+    problems.0
 }
 
 #[cfg(test)]

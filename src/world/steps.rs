@@ -1,6 +1,9 @@
 //! The steps in which a machine takes its commands.
 
-use super::{HopperLimits, HopperProblem};
+use super::{
+    HopperLimits, HopperProblem,
+    hopper::{POSITIVE, Problems, positive},
+};
 use crate::quantity::Angle;
 
 /// The steps of a machine's commands: every command is a whole multiple of its step. A command without a step takes any value.
@@ -44,13 +47,10 @@ impl CommandSteps {
 /// What is wrong with the steps of a hopper.
 pub(super) fn problems(limits: &HopperLimits) -> Vec<HopperProblem> {
     let CommandSteps { takeoff_angle, takeoff_speed_m_s, heading } = limits.steps;
-    let positive = |number: f64| number.is_finite() && number > 0.0;
-    let mut found = Vec::new();
-    let mut ask = |key, value: Option<f64>, holds: &dyn Fn(f64) -> bool, expected| {
-        found.extend(value.filter(|&value| !holds(value)).map(|found| HopperProblem { key, found, expected }));
-    };
-    ask("takeoff_angle_step_deg", takeoff_angle.map(Angle::degrees), &positive, "a finite number above 0");
-    ask("takeoff_speed_step_m_s", takeoff_speed_m_s, &positive, "a finite number above 0");
+    let mut problems = Problems::default();
+    let mut ask = |key, value, holds: &dyn Fn(f64) -> bool, expected| problems.ask(key, value, holds, expected);
+    ask("takeoff_angle_step_deg", takeoff_angle.map(Angle::degrees), &positive, POSITIVE);
+    ask("takeoff_speed_step_m_s", takeoff_speed_m_s, &positive, POSITIVE);
     let sound_m_s = takeoff_speed_m_s.filter(|&step| positive(step));
     ask("takeoff_speed_step_m_s", sound_m_s, &|step| step <= limits.takeoff_speed_max_m_s, "no more than takeoff_speed_max_m_s");
     ask(
@@ -59,8 +59,8 @@ pub(super) fn problems(limits: &HopperLimits) -> Vec<HopperProblem> {
         &|_| limits.takeoff_speed_levels.is_none(),
         "not to stand beside takeoff_speed_levels_m_s, which are all speeds that the machine has",
     );
-    ask("heading_step_deg", heading.map(Angle::degrees), &positive, "a finite number above 0");
-    found
+    ask("heading_step_deg", heading.map(Angle::degrees), &positive, POSITIVE);
+    problems.0
 }
 
 /// The multiple of a step that is nearest to a value.

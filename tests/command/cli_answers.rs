@@ -155,7 +155,7 @@ fn hop_has_every_key_of_the_contract() {
     assert_keys(&no, &keys);
     assert_eq!((&no["feasible"], &no["takeoff_angle_min_deg"], &no["best"]), (&Value::Bool(false), &Value::Null, &Value::Null));
     assert_keys(&no["binding"], &["conflict", "gap_deg", "sentence"]);
-    // The greatest reach is stated for a hop that is too far as well; its margins are none.
+    // The greatest reach is stated for a hop that is too far as well; it has no margins.
     let reach =
         ["reach_line_of_sight_m", "reach_horizontal_m", "takeoff_angle_deg", "limit", "by_takeoff_speed_m", "by_landing_speed_m"];
     for document in [&yes, &no] {
@@ -542,6 +542,8 @@ fn a_clearance_that_no_hop_keeps_in_full_is_reported() {
     // v^2 / g = 15.4 m: no hop is as long as 2 x 4 / 0.5 = 16 m.
     let high = desk.run(&[&base[..], &speeds, &["--clearance-m", "4"]].concat());
     assert!(high.status == 0 && high.stderr.contains("no hop keeps hopper.clearance_m of 4 m in full"), "{high:?}");
+    let check = desk.run(&[&["check"], &base[1..], &speeds, &["--clearance-m", "4"]].concat());
+    assert!(check.status == 0 && check.stderr.contains("no hop keeps hopper.clearance_m of 4 m in full"), "{check:?}");
     let low = desk.run(&[&base[..], &speeds, &["--clearance-m", "1"]].concat());
     assert_eq!((low.status, low.stderr.as_str()), (0, ""), "{low:?}");
     // The mending line: a steeper taper keeps it.

@@ -13,7 +13,6 @@ use chta::{
         CheckAnswer, Document, check_text,
         figure::{Caption, ProofFigure, draw_proof},
     },
-    scenario::{Extremes, constant_gravity_warnings},
 };
 use serde::Serialize;
 
@@ -109,7 +108,7 @@ fn answers(
         // A path of too many hops to list is one all the same.
         let path = path.unwrap_or(None);
         if let Some(path) = &path {
-            let of_path = constant_gravity_warnings(&loaded.scenario.body, Extremes::of(&path.hops));
+            let of_path = loaded.scenario.path_warnings(path);
             warnings.extend(of_path.into_iter().filter(|warning| !warnings.contains(warning)).collect::<Vec<_>>());
         }
         if let (Some(file), Some(bounds)) = (args.plot.as_deref(), searched.bounds()) {

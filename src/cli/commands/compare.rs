@@ -8,7 +8,6 @@ use chta::{
         CompareAnswer, CompareRow, Document, MarginsRecord, TotalsRecord,
         figure::{Caption, CompareFigure, ComparedScenario, Flight, draw_compare},
     },
-    scenario::{Extremes, constant_gravity_warnings},
 };
 
 use super::search::{Searched, use_threads};
@@ -95,8 +94,7 @@ impl Compared {
         let searched = Searched::new(&test, ends, &loaded.scenario, Some(args.prove), args.quiet)?;
         let (check, path) = searched.answer_with_path(&test, ends, options);
         let path = path.map_err(|error| Failure::of(&error))?;
-        let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
-        let warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
+        let warnings = path.as_ref().map(|path| loaded.scenario.path_warnings(path)).unwrap_or_default();
         for warning in &warnings {
             output::warn(args.quiet, warning);
         }

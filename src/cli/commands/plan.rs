@@ -7,13 +7,13 @@ use chta::{
     graph,
     hop::HopTest,
     path::{Execution, HopPath, execute},
-    quantity::AngleInterval,
+    quantity::{Angle, AngleInterval},
     report::{
         CheckAnswer, Document, HopRecord, ReliablePathRecord, TotalsRecord, check_text,
         figure::{FigureError, FigureInput, FigureTitle, Picture, draw},
         path_geojson, path_text, reliable_paths_text, write_path_csv,
     },
-    scenario::{Extremes, Scenario, constant_gravity_warnings},
+    scenario::Scenario,
     world::{Grip, RestSlope},
 };
 use serde::Serialize;
@@ -74,10 +74,7 @@ impl Planned {
         if let Some(path) = path.as_ref().filter(|_| verify) {
             verified(loaded, path, ends)?;
         }
-        let extremes = path.as_ref().map(|path| Extremes::of(&path.hops)).unwrap_or_default();
-        let mut warnings = constant_gravity_warnings(&loaded.scenario.body, extremes);
-        warnings.extend(path.as_ref().and_then(|path| loaded.scenario.missed_goal(path)));
-        warnings.extend(path.as_ref().and_then(|path| loaded.scenario.unkept_clearance(path)));
+        let warnings = path.as_ref().map(|path| loaded.scenario.path_warnings(path)).unwrap_or_default();
         for warning in &warnings {
             output::warn(quiet, warning);
         }
@@ -174,7 +171,7 @@ pub(super) fn format_ground(scenario: &Scenario) -> String {
         Some(Grip::Friction(cone)) => parts.push(format!("friction coefficient {}", cone.coefficient())),
         Some(Grip::FromSlope { takeoff, landing }) => {
             let range = |angles: AngleInterval| {
-                let [min, max] = [angles.min, angles.max].map(|angle| angle.shortest_degrees().unwrap_or_else(|| angle.degrees()));
+                let [min, max] = [angles.min, angles.max].map(Angle::written_degrees);
                 format!("{min} to {max}")
             };
             parts.push(format!("take-off {} and landing {} deg from the slope", range(takeoff), range(landing)));
@@ -187,7 +184,7 @@ pub(super) fn format_ground(scenario: &Scenario) -> String {
         (RestSlope::AsFrictionHolds, Some(Grip::Friction(_))) => parts.push("rest slope as friction holds".to_owned()),
         (RestSlope::AsFrictionHolds, _) => {}
         (RestSlope::AtMost(slope), _) => {
-            parts.push(format!("rest slope ≤ {} deg", slope.shortest_degrees().unwrap_or_else(|| slope.degrees())));
+            parts.push(format!("rest slope ≤ {} deg", slope.written_degrees()));
         }
         (RestSlope::Unlimited, _) => parts.push("rest slope without limit".to_owned()),
     }

@@ -6,6 +6,7 @@ use chta::{
         proof::{Bounds, BoundsOptions, CapabilityRange, Until, least_capability},
     },
     path::generate,
+    quantity::Angle,
     report::{Document, GapRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord, require_text},
     scenario::{Key, Kind, ask_the_same},
 };
@@ -222,7 +223,7 @@ fn opposite_limit(capability: Capability, loaded: &Loaded) -> Option<f64> {
         }
         _ => None,
     };
-    other.map(|angle| angle.shortest_degrees().unwrap_or_else(|| angle.degrees()))
+    other.map(Angle::written_degrees)
 }
 
 /// The chain with the key set to a value.
