@@ -60,8 +60,10 @@
 //! path         the hops to fly, and `execute`, which flies them again without those equations
 //! uncertainty  how reliably a path is flown: policies, trials, statistics
 //! reach        hop counts from one position of a map: along slices in all directions, and over all posts of a DEM
-//! report       results as plain data; text, JSON, CSV, GeoJSON and the picture are views of it
-//! scenario     TOML, validated; the pipeline from terrain to a chain
+//! report       results as plain data; text, JSON, CSV and GeoJSON are views of it
+//! figure       pictures of answers
+//! scenario     TOML, validated, and back
+//! study        one function per question: from a scenario to its answer
 //! ```
 //!
 //! # Conventions
@@ -77,6 +79,8 @@
 
 pub mod ballistics;
 pub mod chain;
+#[cfg(feature = "plot")]
+pub mod figure;
 mod flight;
 pub mod graph;
 pub mod ground;
@@ -87,6 +91,7 @@ pub mod quantity;
 pub mod reach;
 pub mod report;
 pub mod scenario;
+pub mod study;
 pub mod terrain;
 pub mod uncertainty;
 pub mod world;

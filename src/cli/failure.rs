@@ -11,7 +11,8 @@ use std::{
 use chta::{
     chain::csv::{CsvFileError, CsvProblem},
     progress::Cancelled,
-    scenario::{PipelineError, ScenarioProblem, ScenarioProblems},
+    scenario::{ScenarioProblem, ScenarioProblems},
+    study::PipelineError,
 };
 use miette::{
     Diagnostic, GraphicalReportHandler, GraphicalTheme, LabeledSpan, MietteError, MietteSpanContents, NamedSource, SourceCode,

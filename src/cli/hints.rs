@@ -7,7 +7,8 @@ use chta::{
     quantity::format_number,
     reach::{FanError, map::MapError},
     report::FurtherMeans,
-    scenario::{PipelineError, ProblemKind, ScenarioProblem},
+    scenario::{ProblemKind, ScenarioProblem},
+    study::PipelineError,
     terrain::{LonLat, ScaleMend, TerrainError},
 };
 

@@ -6,7 +6,7 @@ use std::{
     time::Duration,
 };
 
-use chta::report::abandon_unfinished;
+use super::whole_file::abandon_unfinished;
 
 use super::{Failure, inputs};
 

@@ -12,9 +12,9 @@ use chta::{
     hop::HopTest,
     report::InputFile,
     scenario::{
-        Entries, FileKind, JourneyEnd as End, LackingKey, Overlays, PipelineError, Place, Prepared, Scenario, ScenarioProblem,
-        ScenarioProblems, Survey, SweptKey, TerrainSource, Trade, prepare, scenario_document, sha256_of,
+        Entries, FileKind, LackingKey, Place, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, scenario_document,
     },
+    study::{JourneyEnd as End, Overlays, PipelineError, Prepared, Survey, SweptKey, Trade, prepare, sha256_of},
     terrain::sidecar_files,
 };
 

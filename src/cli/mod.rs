@@ -12,6 +12,7 @@ mod interrupt;
 mod load;
 mod output;
 mod progress;
+mod whole_file;
 mod wrong_thing;
 
 use std::process::ExitCode;

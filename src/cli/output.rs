@@ -7,14 +7,11 @@ use std::{
 };
 
 use chta::{
-    report::{
-        WholeFile,
-        figure::{FigureError, Picture, PictureFormat},
-    },
+    figure::{FigureError, Picture, PictureFormat},
     terrain::MapProjection,
 };
 
-use super::{Failure, claims, inputs, interrupt};
+use super::{Failure, claims, inputs, interrupt, whole_file::WholeFile};
 
 /// Writes data to standard output. A closed pipe is not an error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {

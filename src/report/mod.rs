@@ -1,12 +1,10 @@
-//! Results as plain data; text, JSON, CSV, GeoJSON and pictures are views of it.
+//! Results as plain data; text, JSON, CSV and GeoJSON are views of it.
 
 mod check_answer;
 mod compare_answer;
 mod document;
 mod experiment_answer;
 mod fan_answer;
-#[cfg(feature = "plot")]
-pub mod figure;
 mod geojson;
 mod hop_answer;
 mod hop_margins;
@@ -21,7 +19,6 @@ mod simulate_answer;
 mod text;
 mod trade_answer;
 mod trajectory;
-mod whole_file;
 
 pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, verdict_name};
 pub use compare_answer::{CompareAnswer, CompareRow, MarginsRecord};
@@ -42,6 +39,5 @@ pub use reliability_record::{ReliablePathRecord, reliable_paths_text};
 pub use require_answer::{RequireAnswer, RequireTry};
 pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulationRecord};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
-pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow};
+pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::write_trajectory_csv;
-pub use whole_file::{WholeFile, abandon_unfinished, write_whole};

@@ -8,8 +8,6 @@ use std::{
 
 use serde::Serialize;
 
-#[cfg(feature = "plot")]
-use super::figure::{Caption, TradeAxis, TradeCell, TradeFigure};
 use crate::graph::proof::ProofVerdict;
 
 /// The answer of `chta trade`.
@@ -65,43 +63,20 @@ impl TradeRow {
     }
 
     /// Whether it is proved that there is no path.
-    fn is_closed(&self) -> bool {
+    pub fn is_closed(&self) -> bool {
         self.verdict == ProofVerdict::Untraversable.name()
-    }
-
-    #[cfg(feature = "plot")]
-    fn cell(&self) -> TradeCell {
-        match self.hops {
-            Some(hops) => TradeCell::Hops(hops),
-            None if self.is_closed() => TradeCell::Untraversable,
-            None => TradeCell::Open,
-        }
     }
 }
 
 impl TradeAnswer {
-    /// The figure of the cells, with a title and a line below it: the first key along the horizontal axis, the second along the
-    /// vertical.
-    #[cfg(feature = "plot")]
-    pub fn figure(&self, title: impl Into<String>, line: impl Into<String>) -> TradeFigure {
-        let axis = |v: &SweptKeyRecord| TradeAxis { name: with_unit(&v.key), values: v.values.clone() };
-        let mut vary = self.vary.iter().map(axis);
-        TradeFigure {
-            caption: Caption::new(title, format!("{}; {}", line.into(), self.summary())),
-            x: vary.next().unwrap_or_default(),
-            y: vary.next(),
-            cells: self.by_lines().flatten().map(TradeRow::cell).collect(),
-        }
-    }
-
     /// The cells row by row: for each value of the second key, those of all values of the first.
-    fn by_lines(&self) -> impl Iterator<Item = impl Iterator<Item = &TradeRow>> {
+    pub fn by_lines(&self) -> impl Iterator<Item = impl Iterator<Item = &TradeRow>> {
         let down = self.vary.get(1).map_or(1, |second| second.values.len());
         (0..down).map(move |line| self.rows.iter().skip(line).step_by(down))
     }
 
     /// A summary: the number of cells with a path.
-    fn summary(&self) -> String {
+    pub fn summary(&self) -> String {
         let paths = self.rows.iter().filter(|row| row.hops.is_some()).count();
         let closed = self.rows.iter().filter(|row| row.is_closed()).count();
         let proved = if self.proved { format!(", in {closed} it is proved that there is none") } else { String::new() };
@@ -189,8 +164,7 @@ impl TradeAnswer {
 }
 
 /// The axis label of a key, with the unit from the end of its name.
-#[cfg(feature = "plot")]
-fn with_unit(key: &str) -> String {
+pub fn with_unit(key: &str) -> String {
     let units = [("_m_s2", "m/s²"), ("_m_s", "m/s"), ("_deg", "deg"), ("_kg", "kg"), ("_m", "m"), ("_s", "s")];
     match units.into_iter().find(|(ending, _)| key.ends_with(ending)) {
         Some((_, unit)) => format!("{key} ({unit})"),

@@ -378,7 +378,7 @@ fn mistaken_path(path: &str) -> Option<String> {
 ///
 /// A name is near if it differs from a known one, or from its part before an underscore, in at most a third of its letters (one in
 /// short names). An exact name counts in any table; otherwise keys of the given, or nearly given, table come first.
-pub(super) fn nearest_key(table: &str, name: &str) -> String {
+pub(crate) fn nearest_key(table: &str, name: &str) -> String {
     let meant = tables().find(|known| strsim::damerau_levenshtein(table, known) <= 2);
     let near = |key: &&Key| -> Option<(usize, bool)> {
         let letters = name.chars().count();
@@ -503,7 +503,7 @@ fn speeds(value: &toml::Value) -> Option<SpeedLevels> {
 }
 
 /// Whether a value is of a kind.
-pub(super) fn fits(value: &toml::Value, kind: Kind) -> bool {
+pub(crate) fn fits(value: &toml::Value, kind: Kind) -> bool {
     match kind {
         Kind::Number { min, max } => number(value).is_some_and(|n| min <= n && n <= max),
         Kind::AngleOrUnlimited => {

@@ -6,7 +6,7 @@
 use std::{fs, path::Path};
 
 /// The layers of modules, from the top. The last two are the binary's own modules, below all of the library.
-const LADDER: [&str; 16] = [
+const LADDER: [&str; 18] = [
     "progress",
     "quantity",
     "world",
@@ -21,7 +21,9 @@ const LADDER: [&str; 16] = [
     "uncertainty",
     "reach",
     "report",
+    "figure",
     "scenario",
+    "study",
     "cli",
 ];
 

@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use chta::{report::figure, scenario::Scenario, world::Hopper};
+use chta::{figure, scenario::Scenario, world::Hopper};
 
 use super::plan::format_ground;
 

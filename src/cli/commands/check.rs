@@ -7,12 +7,10 @@ use chta::{
         Station,
         csv::{StartGoal, read_pairs_csv_file},
     },
+    figure::{Caption, ProofFigure, draw_proof},
     graph::proof::Bounds,
     path::HopPath,
-    report::{
-        CheckAnswer, Document, check_text,
-        figure::{Caption, ProofFigure, draw_proof},
-    },
+    report::{CheckAnswer, Document, check_text},
 };
 use serde::Serialize;
 

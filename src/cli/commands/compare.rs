@@ -3,11 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use chta::{
+    figure::{Caption, CompareFigure, ComparedScenario, Flight, draw_compare},
     path::HopPath,
-    report::{
-        CompareAnswer, CompareRow, Document, MarginsRecord, TotalsRecord,
-        figure::{Caption, CompareFigure, ComparedScenario, Flight, draw_compare},
-    },
+    report::{CompareAnswer, CompareRow, Document, MarginsRecord, TotalsRecord},
 };
 
 use super::search::{Searched, use_threads};

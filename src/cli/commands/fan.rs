@@ -1,11 +1,12 @@
 //! `chta fan`: slices in all directions from one point.
 
 use chta::{
+    figure::draw_rose,
     graph::PointSpacing,
     quantity::Angle,
     reach::{FanRequest, fan},
-    report::{Document, FanAnswer, figure::draw_rose},
-    scenario::{Extremes, Overlays, coarse_dem_warning, constant_gravity_warnings, dem_on_body},
+    report::{Document, FanAnswer},
+    study::{Extremes, Overlays, coarse_dem_warning, constant_gravity_warnings, dem_on_body},
     terrain::check_scale,
 };
 use nalgebra::Vector2;

@@ -5,7 +5,7 @@ use chta::{
     hop::TakeoffSet,
     path::generate,
     report::{Document, HopAnswer, hop_text},
-    scenario::{Extremes, constant_gravity_warnings},
+    study::{Extremes, constant_gravity_warnings},
 };
 
 use super::trajectory;

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use chta::{
+    figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
     graph::Effort,
     ground::DemGround,
     path::{Execution, HopPath},
@@ -14,13 +15,10 @@ use chta::{
     },
     report::{
         Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, PropellantShortage, SimulationRecord,
-        TotalsRecord,
-        figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
-        paths_geojson, write_paths_csv,
+        TotalsRecord, paths_geojson, write_paths_csv,
     },
-    scenario::{
-        Extremes, Overlays, Scenario, TrialGround, UncertaintyKeys, coarse_dem_warning, constant_gravity_warnings, dem_on_body,
-    },
+    scenario::{Scenario, UncertaintyKeys},
+    study::{Extremes, Overlays, TrialGround, coarse_dem_warning, constant_gravity_warnings, dem_on_body},
     terrain::{Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, result_geotiff_bytes},
     uncertainty::{Mission, Policy, Simulation, SimulationError},
     world::FrictionCone,

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use chta::{
     ballistics::limits::ClearanceProfile,
+    figure::{Caption, HopProfile, HopProfilesFigure, draw_hop_profiles},
     path::execute,
     reach::map::MapHop,
-    report::figure::{Caption, HopProfile, HopProfilesFigure, draw_hop_profiles},
     scenario::Scenario,
     terrain::MapProjection,
 };

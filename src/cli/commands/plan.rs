@@ -4,14 +4,14 @@ use std::{fmt::Write, path::Path};
 
 use chta::{
     chain::Station,
+    figure::{FigureError, FigureInput, FigureTitle, Picture, draw},
     graph,
     hop::HopTest,
     path::{Execution, HopPath, execute},
     quantity::{Angle, AngleInterval},
     report::{
-        CheckAnswer, Document, HopRecord, ReliablePathRecord, TotalsRecord, check_text,
-        figure::{FigureError, FigureInput, FigureTitle, Picture, draw},
-        path_geojson, path_text, reliable_paths_text, write_path_csv,
+        CheckAnswer, Document, HopRecord, ReliablePathRecord, TotalsRecord, check_text, path_geojson, path_text,
+        reliable_paths_text, write_path_csv,
     },
     scenario::Scenario,
     world::{Grip, RestSlope},

@@ -8,7 +8,8 @@ use chta::{
     path::generate,
     quantity::Angle,
     report::{Document, GapRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord, require_text},
-    scenario::{Key, Kind, ask_the_same},
+    scenario::{Key, Kind},
+    study::ask_the_same,
 };
 
 use super::search::{proved, use_threads};

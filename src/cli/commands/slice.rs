@@ -6,7 +6,8 @@ use chta::{
     chain::{PolygonalChain, csv::write_chain_csv},
     quantity::MapPoint,
     report::{CrsRecord, slice_geojson},
-    scenario::{BodyChoice, DemReading, Overlays, Scenario, Transect, friction, on_body, sha256_of},
+    scenario::{BodyChoice, Scenario},
+    study::{DemReading, Overlays, Transect, friction, on_body, sha256_of},
     terrain::{LonLat, MapPlace, Profile, TerrainError, looks_like_mesh},
 };
 

@@ -3,11 +3,9 @@
 use std::path::Path;
 
 use chta::{
-    report::{
-        Document, TradeAnswer,
-        figure::{Picture, draw_trade},
-    },
-    scenario::{SweptKey, Trade, TradeError},
+    figure::{Picture, TradeFigure, draw_trade},
+    report::{Document, TradeAnswer},
+    study::{SweptKey, Trade, TradeError},
 };
 
 use super::{
@@ -86,7 +84,7 @@ fn document(first: &Loaded, answer: &TradeAnswer) -> Result<String, Failure> {
 }
 
 /// The heat map.
-fn picture(answer: &TradeAnswer, first: &Loaded) -> Result<Picture, chta::report::figure::FigureError> {
+fn picture(answer: &TradeAnswer, first: &Loaded) -> Result<Picture, chta::figure::FigureError> {
     let (scenario, prepared) = (&first.scenario, &first.prepared);
     let varied = |key: &str| answer.vary.iter().any(|v| v.key == key);
     let mut line = Vec::new();
@@ -95,5 +93,5 @@ fn picture(answer: &TradeAnswer, first: &Loaded) -> Result<Picture, chta::report
     }
     line.extend(scenario.body.name.clone().filter(|_| !varied("body.gravity_m_s2")));
     line.extend(SpeedLimit::stated(&scenario.hopper).filter(|limit| !varied(limit.key)).map(|limit| limit.to_string()));
-    draw_trade(&answer.figure(title("Fewest hops", scenario), line.join(", ")))
+    draw_trade(&TradeFigure::of(answer, title("Fewest hops", scenario), line.join(", ")))
 }

@@ -2,12 +2,10 @@
 
 use chta::{
     chain::ConstrainedChain,
+    figure::{ConeWidthFigure, LandingErrorFigure, draw_cone_width, draw_landing_errors},
     graph::{self, NodeSet, Outcome, SearchOptions, most_reliable_paths},
     path::{Hop, generate},
-    report::{
-        ConeWidthAnswer, Document, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer,
-        figure::{draw_cone_width, draw_landing_errors},
-    },
+    report::{ConeWidthAnswer, Document, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer},
     uncertainty::{
         Policy,
         experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
@@ -48,12 +46,12 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
             let numbers = DriftExperiment::of_the_paper(reading.unwrap_or_default(), seed);
             let landings = worst_drift(test.chain(), &path.hops, &numbers);
             let answer = WorstDriftAnswer::new(&numbers, &landings);
-            let picture = draw_landing_errors(&answer.figure(&title));
+            let picture = draw_landing_errors(&LandingErrorFigure::of_worst_drift(&answer, &title));
             (written(args, loaded, None, answer.text(), answer)?, Some(picture))
         }
         Experiment::ConeWidth => {
             let answer = cone_widths(args, loaded, &path.hops, seed)?;
-            let picture = draw_cone_width(&answer.figure(&title));
+            let picture = draw_cone_width(&ConeWidthFigure::of(&answer, &title));
             (written(args, loaded, None, answer.text(), answer)?, Some(picture))
         }
         Experiment::RiskTrade => {

@@ -10,7 +10,8 @@ use std::path::Path;
 use chta::{
     hop::HopTest,
     report::{CheckAnswer, Document, SimulationRecord, check_text},
-    scenario::{TrialGround, UncertaintyKeys},
+    scenario::UncertaintyKeys,
+    study::TrialGround,
     uncertainty::{Policy, TrialOptions},
 };
 use serde::Serialize;

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use chta::{
-    quantity::{ChainPoint, MapPoint},
-    report::figure::{
+    figure::{
         Caption, ConvergencePoint, ErrorQuantiles, Flight, FlownFigure, FlownTrial, LandingBoxes, LandingCloud, LandingEllipse,
         LandingMapFigure, OutcomeBars, SimulationFigure, Success, draw_landing_map, draw_simulation,
     },
+    quantity::{ChainPoint, MapPoint},
     uncertainty::{HopRecord, LandingSummary, Summary, TrialOutcome, Uncertainty, Wilson},
 };
 use nalgebra::Vector2;

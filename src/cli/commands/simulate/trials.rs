@@ -7,7 +7,8 @@ use chta::{
     ground::{DemGround, Surface},
     hop::HopTest,
     path::HopPath,
-    scenario::{DemReading, Overlays, TerrainSource},
+    scenario::TerrainSource,
+    study::{DemReading, Overlays},
     terrain::Dem,
     uncertainty::{Mission, Policy, Simulation, Summary, TrialOptions},
 };

@@ -1,11 +1,11 @@
 //! What the body of a scenario says of its other inputs: the escape speed of speed limits, the radius of the size of the terrain, a
 //! known body of gravity and radius.
 
-use super::{BodyChoice, Scenario};
 use crate::{
     chain::{GroundForm, PolygonalChain},
     path::Hop,
     quantity::format_number,
+    scenario::{BodyChoice, Scenario},
     terrain::{MapBounds, MeshBounds},
     world::Body,
 };

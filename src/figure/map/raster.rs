@@ -184,7 +184,7 @@ fn shaded(tone: RGBColor, shade: usize, shades: usize) -> [u8; 3] {
 #[cfg(test)]
 mod tests {
     use super::{super::super::bands::ramp, *};
-    use crate::report::figure::map::hops::NOT_REACHED;
+    use crate::figure::map::hops::NOT_REACHED;
 
     /// CIE L*a*b* of an sRGB colour under D65: lightness 0 to 100, and two colour axes whose norm is the chroma.
     fn lab([r, g, b]: [u8; 3]) -> [f64; 3] {

@@ -3,11 +3,12 @@
 use std::path::Path;
 
 use super::{
-    BodyChoice, DemReading, PipelineError, Scenario, Transect,
+    DemReading, PipelineError, Transect,
     physics::{Extent, body_warnings, check_extent, escape_warnings},
 };
 use crate::{
     chain::{PolygonalChain, csv::ChainFile},
+    scenario::{BodyChoice, Scenario},
     terrain::{Dem, Ellipsoid, TerrainError},
 };
 

@@ -8,8 +8,8 @@ use super::super::{
     sheet::{Anchor, Hang, Label, Place},
 };
 
-const PLAIN: &[u8] = include_bytes!("../../../../data/fonts/DejaVuSans-subset.ttf");
-const BOLD: &[u8] = include_bytes!("../../../../data/fonts/DejaVuSans-Bold-subset.ttf");
+const PLAIN: &[u8] = include_bytes!("../../../data/fonts/DejaVuSans-subset.ttf");
+const BOLD: &[u8] = include_bytes!("../../../data/fonts/DejaVuSans-Bold-subset.ttf");
 /// Line segments for each curve of a glyph: at 300 dots an inch the error is below a tenth of a pixel.
 const PIECES: u8 = 5;
 

@@ -1,7 +1,7 @@
 //! Marks as pixels: position, coverage and colour.
 
 use super::*;
-use crate::report::figure::{
+use crate::figure::{
     palette::BLACK,
     sheet::{Anchor, Hang, Label},
 };

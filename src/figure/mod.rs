@@ -28,6 +28,7 @@ mod heading;
 mod keys;
 mod legend;
 mod map;
+mod of_answers;
 mod palette;
 mod picture;
 mod rose;
@@ -153,7 +154,7 @@ pub enum FigureError {
 ///
 /// # Examples
 /// ```
-/// use chta::{ballistics::*, chain::*, graph::*, hop::*, path::generate, quantity::ChainPoint, report::figure::*, world::*};
+/// use chta::{ballistics::*, chain::*, graph::*, hop::*, path::generate, quantity::ChainPoint, figure::*, world::*};
 /// let hopper = Hopper::with_speeds(10.0, 10.0).unwrap();
 /// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.6)?)), rest: RestSlope::AsFrictionHolds };
 /// let ground = PolygonalChain::bare(vec![ChainPoint::new(0.0, 0.0), ChainPoint::new(30.0, 2.0), ChainPoint::new(60.0, 0.0)])?;

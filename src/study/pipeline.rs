@@ -11,7 +11,6 @@ use std::{
 use sha2::{Digest, Sha256};
 
 use super::{
-    Scenario, TerrainSource,
     footprint::{SlicedDem, coarse_dem_warning},
     on_body::{contradictions, on_body},
     physics::{Extent, TooLarge},
@@ -20,6 +19,7 @@ use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
     ground::DemGround,
     quantity::MapPoint,
+    scenario::{Scenario, TerrainSource},
     terrain::{
         self, CoordinateSystem, Dem, DemOptions, Ellipsoid, FrictionRaster, KeepOut, MapBounds, MapPlace, MapProjection,
         NoDataRule, OverlaidDem, OverlayEffect, Profile, Surroundings, TerrainError, check_scale, read_friction_raster,

@@ -1,11 +1,12 @@
 //! Settings without effect on the trials that are flown, and deviations beyond sense.
 
-use super::{Extremes, Prepared, Scenario, TerrainSource, constant_gravity_warnings};
+use super::{Extremes, Prepared, constant_gravity_warnings};
 use crate::{
     chain::GroundForm,
     graph::ReliabilityUse,
     path::{Hop, HopPath},
     quantity::format_number,
+    scenario::{Scenario, TerrainSource},
     uncertainty::{Policy, Uncertainty},
     world::FrictionCone,
 };

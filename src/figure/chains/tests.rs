@@ -14,10 +14,10 @@ use super::{
 use crate::{
     ballistics::limits::ClearanceProfile,
     chain::PolygonalChain,
+    figure::FigureError,
     ground::{ContactPoint, Frame},
     path::Hop,
     quantity::{Angle, AngleInterval, ChainPoint},
-    report::figure::FigureError,
     world::{ClearanceRule, Direction, Limit},
 };
 

@@ -4,11 +4,7 @@ use std::path::Path;
 
 use rayon::prelude::*;
 
-use super::{
-    Entries, Key, Kind, Prepared, Scenario, ScenarioProblem, Survey, ask_the_same,
-    entries::{fits, nearest_key},
-    physics::escape_warnings,
-};
+use super::{Prepared, Survey, ask_the_same, physics::escape_warnings};
 use crate::{
     chain::Station,
     graph::{
@@ -19,6 +15,7 @@ use crate::{
     hop::HopTest,
     progress::{Cancelled, Detail, Meter, Progress, Stage},
     report::{SweptKeyRecord, TradeAnswer, TradeRow},
+    scenario::{Entries, Key, Kind, Scenario, ScenarioProblem, fits, nearest_key},
 };
 
 /// A swept key of the scenario, and its values.
@@ -139,7 +136,7 @@ impl SweptKey {
     ///
     /// # Examples
     /// ```
-    /// use chta::scenario::SweptKey;
+    /// use chta::study::SweptKey;
     /// let speeds = SweptKey::parse("hopper.takeoff_speed_max_m_s=4:10:7").unwrap();
     /// assert_eq!(speeds.values(), [4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0]);
     /// assert!(SweptKey::parse("hopper.takeof_speed_max_m_s=4:10:7").unwrap_err().to_string().contains("hopper.takeoff_speed_max_m_s"));

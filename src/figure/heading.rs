@@ -44,7 +44,7 @@ pub(super) fn below(sheet: &mut Sheet, data: &FigureData, top_mm: f64) -> f64 {
 ///
 /// # Examples
 /// ```
-/// use chta::{report::figure::conditions, world::Hopper};
+/// use chta::{figure::conditions, world::Hopper};
 /// let words = conditions("Mars", 3.711, &Hopper::with_speeds(6.0, 6.0).unwrap(), (6.0, 6.0), "friction coefficient 0.6");
 /// assert_eq!(words, "Mars, g = 3.711 m/s²; take-off speed ≤ 6 m/s; landing speed ≤ 6 m/s; clearance 0 m; friction coefficient 0.6");
 /// ```

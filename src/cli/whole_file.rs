@@ -17,7 +17,7 @@ static UNFINISHED: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
 /// An existing target that is not a regular file (a device, a pipe) is written to directly, since renaming would replace it; a
 /// symbolic link is followed. If it is dropped before [`keep`](Self::keep), nothing is left behind.
 #[derive(Debug)]
-pub struct WholeFile(Place);
+pub(crate) struct WholeFile(Place);
 
 #[derive(Debug)]
 enum Place {
@@ -43,7 +43,7 @@ fn unfinished() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 /// Removes the temporary files of all unfinished writes, for a program that exits without returning, such as on an interrupt.
 ///
 /// No file can be opened or finished after that: any thread that tries waits for the end of the program.
-pub fn abandon_unfinished() {
+pub(crate) fn abandon_unfinished() {
     let names = unfinished();
     for name in names.iter() {
         // Already renamed or removed: nothing is left behind either way.
@@ -57,7 +57,7 @@ impl WholeFile {
     ///
     /// # Errors
     /// An error of the file system.
-    pub fn begin(path: &Path) -> io::Result<Self> {
+    pub(crate) fn begin(path: &Path) -> io::Result<Self> {
         if fs::metadata(path).is_ok_and(|meta| !meta.is_file()) {
             return Ok(Self(Place::Direct(fs::OpenOptions::new().write(true).open(path)?)));
         }
@@ -78,7 +78,7 @@ impl WholeFile {
     ///
     /// # Errors
     /// An error of the file system.
-    pub fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
+    pub(crate) fn write(&mut self, bytes: &[u8]) -> io::Result<()> {
         match &mut self.0 {
             Place::Direct(file) => file.write_all(bytes),
             Place::Beside { temporary, .. } => {
@@ -95,7 +95,7 @@ impl WholeFile {
     ///
     /// # Errors
     /// An error of the file system.
-    pub fn handle(&self) -> io::Result<fs::File> {
+    pub(crate) fn handle(&self) -> io::Result<fs::File> {
         match &self.0 {
             Place::Direct(file) => file.try_clone(),
             Place::Beside { temporary, .. } => temporary.as_file().try_clone(),
@@ -106,7 +106,7 @@ impl WholeFile {
     ///
     /// # Errors
     /// An error of the file system; an existing file is left unchanged.
-    pub fn keep(self) -> io::Result<()> {
+    pub(crate) fn keep(self) -> io::Result<()> {
         match self.0 {
             Place::Direct(_) => Ok(()),
             Place::Beside { temporary, target, listed } => {
@@ -118,16 +118,6 @@ impl WholeFile {
             }
         }
     }
-}
-
-/// Writes a file completely or not at all, in one call.
-///
-/// # Errors
-/// An error of the file system; then no temporary file is left behind, and an existing file is unchanged.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    let mut file = WholeFile::begin(path)?;
-    file.write(bytes)?;
-    file.keep()
 }
 
 /// A temporary file with the default permissions of a new file; on failure the system's error, without the temporary name.
@@ -145,6 +135,12 @@ fn temporary_in(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+        let mut file = WholeFile::begin(path)?;
+        file.write(bytes)?;
+        file.keep()
+    }
 
     #[test]
     fn an_old_file_is_replaced_and_nothing_is_left_beside_it() {

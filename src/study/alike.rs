@@ -1,7 +1,10 @@
 //! Whether a key's value affects the answer.
 
-use super::{Prepared, Scenario};
-use crate::world::{Hopper, HopperLimits};
+use super::Prepared;
+use crate::{
+    scenario::Scenario,
+    world::{Hopper, HopperLimits},
+};
 
 /// Whether two scenarios put the same limits on every hop between the same ends over the same points: ground, hopper and gravity.
 ///
