@@ -79,6 +79,13 @@ pub struct EffortRecord {
     pub total: &'static str,
 }
 
+/// The answers for many pairs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PairsAnswer {
+    /// One answer for each pair, in the order of the file.
+    pub pairs: Vec<CheckAnswer>,
+}
+
 impl EffortRecord {
     /// An amount of the given effort.
     pub const fn new(effort: Effort, value: f64) -> Self {

@@ -2,10 +2,24 @@
 
 use serde::Serialize;
 
-use super::text::Sheet;
+use super::{CheckAnswer, text::Sheet};
 use crate::uncertainty::{
     ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
 };
+
+/// The answer of a simulation: the check and, with a path, the results of its trials.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SimulateAnswer {
+    /// Whether a path exists.
+    #[serde(flatten)]
+    pub check: CheckAnswer,
+    /// The trials of the policy of the scenario.
+    #[serde(flatten)]
+    pub simulation: Option<SimulationRecord>,
+    /// Both policies on the same draws, if requested.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub compare: Vec<SimulationRecord>,
+}
 
 /// The results of the trials of one policy.
 #[derive(Clone, Debug, PartialEq, Serialize)]

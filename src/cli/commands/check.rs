@@ -10,9 +10,8 @@ use chta::{
     figure::{Caption, ProofFigure, draw_proof},
     graph::proof::Bounds,
     path::HopPath,
-    report::{CheckAnswer, Document, check_text},
+    report::{CheckAnswer, Document, PairsAnswer, check_text},
 };
-use serde::Serialize;
 
 use super::{
     captions::{SpeedLimit, title},
@@ -28,12 +27,6 @@ use crate::cli::{
     output,
     wrong_thing::Role,
 };
-
-/// The answers for many pairs.
-#[derive(Serialize)]
-struct PairsAnswer {
-    pairs: Vec<CheckAnswer>,
-}
 
 /// Checks one pair or many.
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {

@@ -10,13 +10,12 @@ use chta::{
     path::{Execution, HopPath, execute},
     quantity::{Angle, AngleInterval},
     report::{
-        CheckAnswer, Document, HopRecord, ReliablePathRecord, TotalsRecord, check_text, path_geojson, path_text,
+        CheckAnswer, Document, HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, check_text, path_geojson, path_text,
         reliable_paths_text, write_path_csv,
     },
     scenario::Scenario,
     world::{Grip, RestSlope},
 };
-use serde::Serialize;
 
 use super::{
     search::{Searched, use_threads},
@@ -32,21 +31,6 @@ use crate::cli::{
     output::{self, Pending},
     wrong_thing::Role,
 };
-
-/// The answer of a plan: the check, the path, its totals.
-#[derive(Clone, Debug, Serialize)]
-pub(super) struct PlanAnswer {
-    #[serde(flatten)]
-    check: CheckAnswer,
-    /// Whether the path was flown again and passed; absent if not requested.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    verified: Option<bool>,
-    path: Vec<HopRecord>,
-    totals: Option<TotalsRecord>,
-    /// The Pareto front of hops against success probability, where the scenario weighs risk.
-    #[serde(rename = "surest", skip_serializing_if = "Vec::is_empty")]
-    reliable_paths: Vec<ReliablePathRecord>,
-}
 
 /// A plan with everything needed to draw and write it.
 #[derive(Debug)]

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use chta::{
     hop::HopTest,
-    report::{CheckAnswer, Document, SimulationRecord, check_text},
+    report::{Document, SimulateAnswer, SimulationRecord, check_text},
     scenario::UncertaintyKeys,
     study::TrialGround,
     uncertainty::{Policy, TrialOptions},
@@ -30,18 +30,6 @@ use crate::cli::{
 use listen::RowFile;
 use pictures::{landing_map, sheet};
 use trials::Flyer;
-
-/// The answer of a simulation: the check and, with a path, the results of its trials.
-#[derive(Clone, Debug, Serialize)]
-struct SimulateAnswer {
-    #[serde(flatten)]
-    check: CheckAnswer,
-    #[serde(flatten)]
-    simulation: Option<SimulationRecord>,
-    /// Both policies on the same draws, if requested.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    compare: Vec<SimulationRecord>,
-}
 
 /// Simulates.
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
