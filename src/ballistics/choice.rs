@@ -13,11 +13,14 @@ pub enum TakeoffChoice {
     MidRange,
     /// The flattest arc, which has the least flight time.
     LeastTime,
+    /// The angle at which the most draws of the errors survive. What that is depends on the ground and the errors, which the search and
+    /// the policies of trials know; where there are no errors to fly, the middle of the interval.
+    MostReliable,
 }
 
 impl TakeoffChoice {
     /// All choices.
-    pub const ALL: [Self; 3] = [Self::LeastSpeed, Self::MidRange, Self::LeastTime];
+    pub const ALL: [Self; 4] = [Self::LeastSpeed, Self::MidRange, Self::LeastTime, Self::MostReliable];
 
     /// The name in scenarios and results.
     pub const fn name(self) -> &'static str {
@@ -25,6 +28,7 @@ impl TakeoffChoice {
             Self::LeastSpeed => "least-speed",
             Self::MidRange => "mid-range",
             Self::LeastTime => "least-time",
+            Self::MostReliable => "most-reliable",
         }
     }
 
@@ -32,7 +36,7 @@ impl TakeoffChoice {
     ///
     /// ```text
     ///     least speed: n = sqrt(1 + b^2) clamped into the set           (P eq. 20, 22)
-    ///     mid range:   theta = the mean of the set's end angles
+    ///     mid range, most reliable:   theta = the mean of the set's end angles
     ///     least time:  the set's lower end
     /// ```
     ///
@@ -55,7 +59,7 @@ impl TakeoffChoice {
         match self {
             Self::LeastSpeed => sight.secant().clamp(lower, upper),
             Self::LeastTime => lower,
-            Self::MidRange => bisecting_loft(sight, lower, upper),
+            Self::MidRange | Self::MostReliable => bisecting_loft(sight, lower, upper),
         }
     }
 }

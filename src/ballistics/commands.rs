@@ -156,7 +156,7 @@ impl TakeoffSpeeds {
                 let slowest = windows.map(|window| choice.loft(sight, window));
                 first_least(slowest, |loft| speed_squared(*loft))
             }
-            TakeoffChoice::MidRange => match self {
+            TakeoffChoice::MidRange | TakeoffChoice::MostReliable => match self {
                 Self::Any | Self::AtLeast(_) => {
                     let narrowness = |window: &SlopeInterval| angle(window.lower) - angle(window.upper) + std::f64::consts::PI;
                     first_least(windows, narrowness).map(|window| choice.loft(sight, window))

@@ -138,6 +138,36 @@ impl Uncertainty {
         ]
     }
 
+    /// All deviations multiplied by a factor; the correlation length of heights is no deviation and stays.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        // No `..`, so that a new deviation is not left as it was.
+        let Self {
+            takeoff_speed_sigma_m_s,
+            takeoff_speed_sigma_fraction,
+            takeoff_angle_sigma,
+            heading_sigma,
+            position_sigma_m,
+            drift_along_sigma_m,
+            drift_across_sigma_m,
+            friction_sigma,
+            height_sigma_m,
+            height_correlation_m,
+        } = *self;
+        Self {
+            takeoff_speed_sigma_m_s: factor * takeoff_speed_sigma_m_s,
+            takeoff_speed_sigma_fraction: factor * takeoff_speed_sigma_fraction,
+            takeoff_angle_sigma: Angle::from_radians(factor * takeoff_angle_sigma.radians()),
+            heading_sigma: Angle::from_radians(factor * heading_sigma.radians()),
+            position_sigma_m: factor * position_sigma_m,
+            drift_along_sigma_m: factor * drift_along_sigma_m,
+            drift_across_sigma_m: factor * drift_across_sigma_m,
+            friction_sigma: factor * friction_sigma,
+            height_sigma_m: factor * height_sigma_m,
+            height_correlation_m,
+        }
+    }
+
     /// Checks the deviations, for a map or a chain without one.
     ///
     /// # Errors

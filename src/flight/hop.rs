@@ -6,6 +6,7 @@ use super::{
     Uncertainty,
     draws::{HopDraws, TrialDraws, Wanted},
 };
+use crate::ballistics::Arc;
 use crate::ground::{ContactFailure, FirstContact, Flight, HeightField, LiftoffVelocity, Realization, TouchdownState};
 
 /// A command, and its planned landing.
@@ -17,6 +18,12 @@ pub(crate) struct Command<C> {
 }
 
 impl<C> Command<C> {
+    /// The command that flies an arc along a heading.
+    pub(crate) fn of_arc(arc: &Arc, heading: Vector2<f64>, aim: C) -> Self {
+        let across = arc.horizontal_speed_m_s();
+        Self::new(LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() }, aim)
+    }
+
     pub(crate) fn new(liftoff: LiftoffVelocity, aim: C) -> Self {
         Self { liftoff, speed_m_s: libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s), aim }
     }

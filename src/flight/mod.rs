@@ -5,7 +5,10 @@
 mod deviations;
 mod draws;
 mod hop;
+mod hop_trials;
+mod quasi;
 
 pub use deviations::{Uncertainty, UncertaintyProblem};
 pub(crate) use draws::{HopDraws, TrialDraws};
 pub(crate) use hop::{Command, Errors, FlownHop};
+pub(crate) use hop_trials::{HopTrials, JudgedHop, Survival};

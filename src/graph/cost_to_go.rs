@@ -3,15 +3,18 @@
 use std::{cmp::Reverse, collections::BinaryHeap};
 
 use super::{
-    Cost, Effort, HopGraph, Leg, NodeSet, ReliabilityOptions, SearchError, SearchOptions, nodes::around,
+    Cost, Edge, Effort, HopGraph, Leg, NodeSet, ReliabilityOptions, SearchError, SearchOptions, judge::Judge, nodes::around,
     reliability_policy::ReliabilityPolicy,
 };
+use nalgebra::Vector2;
+
 use crate::{
-    ballistics::{Arc, LineOfSight},
+    ballistics::{Arc, LineOfSight, TakeoffChoice},
     chain::Station,
+    ground::MapPosition,
     hop::HopTest,
     progress::{Cancelled, Detail, Meter, Progress, Stage},
-    quantity::NodeId,
+    quantity::{NodeId, SlopeInterval},
     world::{Direction, tolerant_speed_m_s},
 };
 
@@ -140,7 +143,10 @@ impl CostToGo {
     /// (between a node and positions near it the risk changes little, but feasibility may change). Without a policy, and if
     /// no such successor is feasible: the [cheapest leg](Self::cheapest_leg).
     pub fn best_leg(&self, test: &HopTest, from: &Station) -> Option<Leg> {
-        self.reliable_leg(test, from).or_else(|| self.cheapest_leg(test, from).map(|(leg, _)| leg))
+        self.reliable_leg(test, from).or_else(|| {
+            let (leg, _) = self.cheapest_leg(test, from)?;
+            Some(Leg { loft: self.chosen_loft(&leg.takeoff, &leg.landing, leg.edge), ..leg })
+        })
     }
 
     /// The most reliable successor of the nearest node that is feasible from a station; `None` without a policy.
@@ -149,8 +155,31 @@ impl CostToGo {
         let graph = self.graph(test);
         policy.successors(self.nearest_node(from.point.x_m)).iter().find_map(|node| {
             let landing = *self.nodes.station(*node);
-            graph.edge(from, &landing).ok().map(|edge| Leg { takeoff: *from, landing, edge })
+            let edge = graph.edge(from, &landing).ok()?;
+            Some(Leg { takeoff: *from, landing, edge, loft: self.chosen_loft(from, &landing, edge) })
         })
+    }
+
+    /// The loft of the most reliable command of a single hop, if the options choose it and the costs know the errors.
+    fn chosen_loft(&self, from: &Station, landing: &Station, edge: Edge) -> Option<f64> {
+        let Edge::Hop(lofts) = edge else { return None };
+        let judge = self.judge()?;
+        judge.single(from, landing, lofts, judge.takeoff_m2([0.0; 2]), false).loft
+    }
+
+    /// The judge of commands, where the options choose the most reliable one.
+    fn judge(&self) -> Option<&Judge> {
+        self.policy.as_ref().map(ReliabilityPolicy::judge).filter(|_| self.options.takeoff == TakeoffChoice::MostReliable)
+    }
+
+    /// The loft of the most reliable command of a hop over the map, if the options choose it and the costs know the errors.
+    pub(crate) fn loft_on_map(
+        &self,
+        ends: (&MapPosition, &MapPosition),
+        heading: Vector2<f64>,
+        window: (LineOfSight, SlopeInterval),
+    ) -> Option<f64> {
+        self.judge()?.loft_on_map(ends, heading, window)
     }
 
     /// The first leg of the cheapest path from any station of the chain, and the cost of that path.
@@ -185,7 +214,7 @@ impl CostToGo {
             let Ok(edge) = graph.edge(from, landing) else { continue };
             let cost = graph.cost(from, landing, edge) + to_go;
             if !too_dear(cost) {
-                best = Some((Leg { takeoff: *from, landing: *landing, edge }, cost));
+                best = Some((Leg { takeoff: *from, landing: *landing, edge, loft: None }, cost));
             }
         }
         best

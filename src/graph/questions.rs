@@ -164,7 +164,7 @@ fn path(graph: &HopGraph, batched: &BatchedSearch<'_>, (start, goal): &(Station,
         .windows(2)
         .filter_map(|pair| {
             let (takeoff, landing) = (pair[0], pair[1]);
-            graph.edge(&takeoff, &landing).ok().map(|edge| Leg { takeoff, landing, edge })
+            graph.edge(&takeoff, &landing).ok().map(|edge| Leg { takeoff, landing, edge, loft: None })
         })
         .collect();
     Outcome::Path { legs, cost: goal_label.cost }

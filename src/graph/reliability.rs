@@ -2,14 +2,18 @@
 
 use std::collections::BTreeMap;
 
-use super::{Cost, Edge, HopGraph, Leg, NodeSet, Outcome, SearchError, SearchOptions, search};
+use rayon::prelude::*;
+
+use super::{
+    Cost, HopGraph, Leg, NodeSet, Outcome, RiskModel, SearchError, SearchOptions,
+    judge::{Judge, Judged},
+    search,
+};
 use crate::{
-    ballistics::{Arc, TakeoffChoice},
     chain::Station,
-    hop::{HopTest, PlannedHop, RiskModel, SegmentHops, Split},
+    hop::HopTest,
     progress::{Cancelled, Detail, Meter, PairCounter, Progress, Stage},
     quantity::NodeId,
-    world::Direction,
 };
 
 /// How reliability is weighed in the choice of a path.
@@ -39,7 +43,7 @@ impl ReliabilityUse {
 }
 
 /// How reliability is estimated and weighed in the choice of a path.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct ReliabilityOptions {
     /// The source of a hop's estimated probability to fail.
     pub model: RiskModel,
@@ -57,22 +61,32 @@ pub struct ReliablePath {
     pub legs: Vec<Leg>,
     /// The number of hops, and the effort.
     pub cost: Cost,
-    /// The estimated probability that all hops succeed: the product over them.
-    pub success: f64,
+    /// The sum of the weights of its hops: the smaller, the more reliable. It ranks paths and is no probability: errors that last a
+    /// whole trial tie its hops together.
+    pub weight: f64,
+    /// The share of trials of the whole path that reach the goal; `None` until they are flown.
+    pub success: Option<f64>,
 }
 
 /// For the fewest hops, and for each extra hop allowed, the most reliable path, kept only if it beats all shorter ones (the
 /// Pareto front of hops against success probability). Empty if there is no path over the nodes.
 ///
-/// A hop has the weight `-ln(1 - p)`, so the sum of weights is `-ln` of the success probability of the path. Paths of least
-/// weight for each number of hops are found layer by layer (Bellman 1958, restricted to nodes from which the goal is still
-/// within the hop budget). Ties go to the path whose nodes come first.
+/// With k of K flown draws that survive, a hop has the weight
+///
+/// ```text
+///     -ln((k + 1/2) / (K + 1)) + 0.05 (share of the draws that fail when all errors are doubled)
+/// ```
+///
+/// Paths of least weight for each number of hops are found layer by layer (Bellman 1958, restricted to nodes from which the goal is
+/// still within the hop budget); where the errors of landings add up, every layer's hops begin with the scatter of the path before them.
+/// Draws are flown only for edges that may still improve on what is known. Ties go to the path whose nodes come first.
 ///
 /// # Errors
 /// [`SearchError`]: invalid deviations, or cancelled.
 ///
 /// # Complexity
-/// With E edges within reach of the budget: E hop tests and E risk estimates, `E (1 + extra)` additions; 12 bytes for each edge.
+/// With E edges within reach of the budget: E hop tests, at most `E (1 + extra)` risk estimates of 128 flights each; 64 bytes for each
+/// edge.
 pub fn most_reliable_paths(
     test: &HopTest,
     nodes: &NodeSet,
@@ -87,7 +101,8 @@ pub fn most_reliable_paths(
     let graph = HopGraph::new(test, nodes, options.effort, options.takeoff, options.split);
     let extra = u64::from(reliability.extra_hops_max);
     let Some(lattice) = Lattice::within(&graph, extra, &mut counter)? else { return Ok(Vec::new()) };
-    let labels = lattice.labelled(&graph, options, reliability, &mut counter)?;
+    let judge = Judge::new(test, options, &reliability.model, reliability.goal_tolerance_m);
+    let labels = lattice.labelled(&graph, &judge, &mut counter)?;
     let mut least = f64::INFINITY;
     let mut paths = Vec::new();
     for (&hops, layer) in &labels {
@@ -147,6 +162,10 @@ struct Lattice {
 struct Label {
     weight: f64,
     from: Option<(u64, usize)>,
+    /// The loft of its last hop, where the judge chose it.
+    loft: Option<f64>,
+    /// Mean square distance of the next take-off from the node, m^2.
+    takeoff_m2: [f64; 2],
 }
 
 /// Labels by number of hops, then by node: sparse, since for a given number of hops only few nodes have a label.
@@ -190,40 +209,52 @@ impl Lattice {
     }
 
     /// All labels from which the goal is still within the budget.
-    fn labelled(
-        &self,
-        graph: &HopGraph,
-        options: &SearchOptions,
-        reliability: &ReliabilityOptions,
-        counter: &mut PairCounter<'_>,
-    ) -> Result<Labels, Cancelled> {
+    fn labelled(&self, graph: &HopGraph, judge: &Judge, counter: &mut PairCounter<'_>) -> Result<Labels, Cancelled> {
         let nodes = graph.nodes();
-        let start = nodes.start().index();
-        let mut weights: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        let (start, goal) = (nodes.start().index(), nodes.goal().index());
+        let mut known: BTreeMap<(usize, usize), Judged> = BTreeMap::new();
         let mut least = vec![f64::INFINITY; self.steps.len()];
-        let mut labels: Labels = BTreeMap::from([(0, BTreeMap::from([(start, Label { weight: 0.0, from: None })]))]);
+        let first = Label { weight: 0.0, from: None, loft: None, takeoff_m2: [0.0; 2] };
+        let mut labels: Labels = BTreeMap::from([(0, BTreeMap::from([(start, first)]))]);
         let mut hops = 0;
         loop {
-            let layer: Vec<(usize, Label)> = labels[&hops].iter().map(|(&node, &label)| (node, label)).collect();
-            for (node, label) in layer {
-                // The node was reached with fewer hops and at least the same reliability.
-                if label.weight >= least[node] {
-                    continue;
-                }
-                least[node] = label.weight;
-                for step in &self.steps[node] {
-                    let reached = hops + step.hops;
-                    if reached.saturating_add(self.to_goal[step.target]) > self.budget {
-                        continue;
-                    }
+            // A label is of no use where the node, or the goal, was reached with fewer hops and at least the same reliability.
+            let layer: Vec<(usize, Label)> = labels[&hops]
+                .iter()
+                .filter(|&(&node, label)| label.weight < least[node] && label.weight < least[goal])
+                .map(|(&node, &label)| (node, label))
+                .collect();
+            for (node, label) in &layer {
+                least[*node] = label.weight;
+            }
+            let of_use = |label: &Label, step: &Step| {
+                let reached = hops + step.hops;
+                let target = labels.get(&reached).and_then(|layer| layer.get(&step.target));
+                reached.saturating_add(self.to_goal[step.target]) <= self.budget
+                    && label.weight < least[step.target]
+                    && target.is_none_or(|target| label.weight < target.weight)
+            };
+            // Where the take-off does not depend on the hops before, an edge is judged once; the first hop takes off without scatter.
+            let is_kept = hops > 0 && !judge.depends_on_hops_before();
+            let judged = |(node, label): &(usize, Label)| -> Vec<(Step, Judged)> {
+                let edge = |step: &Step| {
+                    let before = known.get(&(*node, step.target)).filter(|_| is_kept).copied();
+                    before.unwrap_or_else(|| judge.edge(graph, (*node, step.target), label.takeoff_m2))
+                };
+                self.steps[*node].iter().filter(|step| of_use(label, step)).map(|step| (*step, edge(step))).collect()
+            };
+            let all: Vec<Vec<(Step, Judged)>> = layer.par_iter().map(judged).collect();
+            for ((node, label), edges) in layer.iter().zip(all) {
+                for (step, edge) in edges {
                     counter.pair()?;
-                    let weight = label.weight
-                        + *weights
-                            .entry((node, step.target))
-                            .or_insert_with(|| edge_weight(graph, (node, step.target), options, reliability));
-                    let layer = labels.entry(reached).or_default();
+                    if is_kept {
+                        known.entry((*node, step.target)).or_insert(edge);
+                    }
+                    let weight = label.weight + edge.weight;
+                    let layer = labels.entry(hops + step.hops).or_default();
                     if layer.get(&step.target).is_none_or(|known| weight < known.weight) {
-                        layer.insert(step.target, Label { weight, from: Some((hops, node)) });
+                        let takeoff_m2 = judge.takeoff_m2(edge.spread_m2);
+                        layer.insert(step.target, Label { weight, from: Some((hops, *node)), loft: edge.loft, takeoff_m2 });
                     }
                 }
             }
@@ -280,77 +311,20 @@ fn hops_to(goal: usize, steps: &[Vec<Step>]) -> Vec<u64> {
     least
 }
 
-/// The weight of an edge: the sum over its hops.
-pub(super) fn edge_weight(
-    graph: &HopGraph,
-    (from, to): (usize, usize),
-    options: &SearchOptions,
-    reliability: &ReliabilityOptions,
-) -> f64 {
-    let (test, nodes) = (graph.test(), graph.nodes());
-    let (takeoff, landing) = (*nodes.station(NodeId(from)), *nodes.station(NodeId(to)));
-    let tolerance_m = reliability.goal_tolerance_m.filter(|_| nodes.goal() == NodeId(to));
-    match graph.edge(&takeoff, &landing) {
-        Ok(Edge::Hop(lofts)) => test.line_of_sight(&takeoff, &landing).map_or(0.0, |sight| {
-            let arc = Arc::new(sight, test.loft(options.takeoff, sight, lofts), test.gravity_m_s2());
-            reliability.model.weight(test, &PlannedHop { takeoff, landing, arc, lofts, tolerance_m })
-        }),
-        Ok(Edge::Along(along)) => {
-            along_weight(test, (takeoff, landing), &along, (options.takeoff, options.split), reliability, tolerance_m)
-        }
-        // The pair was an edge when the lattice was built.
-        Err(_) => f64::INFINITY,
-    }
-}
-
-/// The weight of many hops along one segment. The hops near its ends are evaluated one by one, since their scatter includes
-/// other ground; the hops between have the weight of the last of these.
-#[expect(clippy::cast_precision_loss, reason = "at most 2^53 hops")]
-fn along_weight(
-    test: &HopTest,
-    (takeoff, landing): (Station, Station),
-    along: &SegmentHops,
-    (choice, split): (TakeoffChoice, Split),
-    reliability: &ReliabilityOptions,
-    tolerance_m: Option<f64>,
-) -> f64 {
-    const BESIDE_AN_END: u64 = 16;
-    let Some(direction) = Direction::between(takeoff.point.x_m, landing.point.x_m) else { return 0.0 };
-    let (each_m, last_m) = along.lengths_m(split);
-    let geometry = test.chain().geometry();
-    let place = |i: u64| match i {
-        0 => Some(takeoff),
-        i if i == along.hops() => Some(landing),
-        i => geometry.station(takeoff.point.x_m + direction.sign() * each_m * i as f64).ok(),
-    };
-    let weight = |i: u64| {
-        let (Some(from), Some(to)) = (place(i), place(i + 1)) else { return 0.0 };
-        let length_m = if i + 1 == along.hops() { last_m } else { each_m };
-        let arc = along.arc(test, length_m, choice);
-        let tolerance_m = tolerance_m.filter(|_| i + 1 == along.hops());
-        let hop = PlannedHop { takeoff: from, landing: to, arc, lofts: along.lofts(test, length_m), tolerance_m };
-        reliability.model.weight(test, &hop)
-    };
-    if along.hops() <= 2 * BESIDE_AN_END {
-        return (0..along.hops()).map(weight).sum();
-    }
-    let between = along.hops() - 2 * BESIDE_AN_END;
-    let (first, last) = (0..BESIDE_AN_END, along.hops() - BESIDE_AN_END..along.hops());
-    first.chain(last).map(weight).sum::<f64>() + weight(BESIDE_AN_END) * between as f64
-}
-
 /// The path to the goal that ends with a label.
 fn path_to_goal(graph: &HopGraph, labels: &Labels, hops: u64, weight: f64) -> Option<ReliablePath> {
     let nodes = graph.nodes();
     let mut at = (hops, nodes.goal().index());
     let (mut legs, mut cost) = (Vec::new(), Cost::default());
-    while let Some(from) = labels.get(&at.0)?.get(&at.1)?.from {
+    loop {
+        let label = labels.get(&at.0)?.get(&at.1)?;
+        let Some(from) = label.from else { break };
         let (takeoff, landing) = (*nodes.station(NodeId(from.1)), *nodes.station(NodeId(at.1)));
         let edge = graph.edge(&takeoff, &landing).ok()?;
         cost = cost + graph.cost(&takeoff, &landing, edge);
-        legs.push(Leg { takeoff, landing, edge });
+        legs.push(Leg { takeoff, landing, edge, loft: label.loft });
         at = from;
     }
     legs.reverse();
-    Some(ReliablePath { legs, cost, success: libm::exp(-weight) })
+    Some(ReliablePath { legs, cost, weight, success: None })
 }

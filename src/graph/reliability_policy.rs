@@ -2,10 +2,7 @@
 
 use rayon::prelude::*;
 
-use super::{
-    Cost, HopGraph, ReliabilityOptions, SearchOptions,
-    reliability::{edge_weight, steps_from},
-};
+use super::{Cost, HopGraph, ReliabilityOptions, SearchOptions, judge::Judge, reliability::steps_from};
 use crate::{
     progress::{Cancelled, Detail, Meter, PairCounter, Progress, Stage},
     quantity::NodeId,
@@ -19,6 +16,7 @@ const KEPT: usize = 32;
 /// first.
 #[derive(Clone, Debug)]
 pub(super) struct ReliabilityPolicy {
+    judge: Judge,
     /// For every node, at most [`KEPT`] successors.
     successors: Vec<Vec<NodeId>>,
     /// For every node, the weight of the most reliable path to the goal, `-ln` of its estimated success probability; infinite
@@ -62,6 +60,9 @@ impl ReliabilityPolicy {
         let extra = u64::from(reliability.extra_hops_max);
         let fewest = |node: usize| costs[node].map(Cost::hops);
         let goal = graph.nodes().goal().index();
+        let judge = Judge::new(graph.test(), options, &reliability.model, reliability.goal_tolerance_m);
+        // A robot that replans takes off where it believes to be, whatever came before.
+        let takeoff_m2 = judge.takeoff_m2([0.0; 2]);
         let edges = |counter: &mut PairCounter<'_>, node: usize| -> Result<Vec<Successor>, Cancelled> {
             counter.check()?;
             let Some(own) = fewest(node).filter(|_| node != goal) else { return Ok(Vec::new()) };
@@ -69,7 +70,7 @@ impl ReliabilityPolicy {
             let steps = steps_from(graph, node, counter)?;
             let weighed = |step: super::reliability::Step| {
                 counter.pair()?;
-                let weight = edge_weight(graph, (node, step.target), options, reliability);
+                let weight = judge.edge(graph, (node, step.target), takeoff_m2).weight;
                 Ok(Successor { target: step.target, hops: step.hops, weight })
             };
             steps.into_iter().filter(of_use).map(weighed).collect()
@@ -100,10 +101,16 @@ impl ReliabilityPolicy {
             onward.into_iter().take(KEPT).map(|(.., target)| NodeId(target)).collect()
         };
         Ok(Self {
+            judge,
             successors: (0..costs.len()).map(ranked).collect(),
             #[cfg(test)]
             weights: (0..costs.len()).map(|node| fewest(node).map_or(f64::INFINITY, |own| table.at(node, own + extra))).collect(),
         })
+    }
+
+    /// The judge of its edges.
+    pub(super) const fn judge(&self) -> &Judge {
+        &self.judge
     }
 
     /// The successors of a node, the most reliable first; empty at the goal and if the goal cannot be reached from the node.
@@ -172,8 +179,9 @@ mod tests {
     use super::*;
     use crate::{
         chain::{ConstrainedChain, PolygonalChain},
-        graph::{CostToGo, NodeSet, PointSpacing, most_reliable_paths},
-        hop::{HopDeviations, HopTest, RiskModel},
+        flight::Uncertainty,
+        graph::{CostToGo, NodeSet, PointSpacing, RiskModel, TakeoffScatter, most_reliable_paths},
+        hop::HopTest,
         quantity::{Angle, ChainPoint},
         world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties},
     };
@@ -189,10 +197,13 @@ mod tests {
     }
 
     fn models() -> [RiskModel; 2] {
-        let angle = Angle::from_degrees(0.5);
-        let deviations =
-            HopDeviations { takeoff_speed_fraction: 0.01, takeoff_angle: angle, place_m: 0.05, ..HopDeviations::default() };
-        [RiskModel::Deviations(deviations), RiskModel::Slack]
+        let errors = Uncertainty {
+            takeoff_speed_sigma_fraction: 0.01,
+            takeoff_angle_sigma: Angle::from_degrees(0.5),
+            ..Uncertainty::NONE
+        };
+        // Without an error of position the first hop scatters as every other.
+        [RiskModel::Flown { errors, takeoffs: TakeoffScatter::OfPosition, over: None }, RiskModel::Slack]
     }
 
     /// Compares with the most reliable path from each start, found by forward search.
@@ -208,17 +219,14 @@ mod tests {
                 let nodes = NodeSet::new(&chain, station(start_m), station(34.0), SPACING).unwrap();
                 let mut with_fewer = f64::INFINITY;
                 for extra_hops_max in 0..=3 {
-                    let reliability = ReliabilityOptions { model, extra_hops_max, goal_tolerance_m: Some(0.5) };
+                    let reliability = ReliabilityOptions { model: model.clone(), extra_hops_max, goal_tolerance_m: Some(0.5) };
                     let to_go = CostToGo::of(&test, nodes.clone(), &options, &()).unwrap();
                     let costs: Vec<_> = (0..nodes.stations().len()).map(|node| to_go.of_node(NodeId(node))).collect();
                     let graph = HopGraph::new(&test, &nodes, options.effort, options.takeoff, options.split);
                     let policy = ReliabilityPolicy::of(&graph, &costs, &options, &reliability, &()).unwrap();
                     let path = most_reliable_paths(&test, &nodes, &options, &reliability, &()).unwrap().pop().expect("a path");
                     let weight = policy.weights[nodes.start().index()];
-                    assert!(
-                        (libm::exp(-weight) - path.success).abs() <= 1e-12 * path.success,
-                        "{start_m} m, {extra_hops_max}: {weight}"
-                    );
+                    assert!((weight - path.weight).abs() <= 1e-12 * path.weight, "{start_m} m, {extra_hops_max}: {weight}");
                     bought += u32::from(weight < with_fewer && extra_hops_max > 0);
                     with_fewer = weight;
                     compared += 1;
@@ -236,7 +244,7 @@ mod tests {
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         for model in models() {
             for extra_hops_max in [0, 2] {
-                let reliability = ReliabilityOptions { model, extra_hops_max, goal_tolerance_m: None };
+                let reliability = ReliabilityOptions { model: model.clone(), extra_hops_max, goal_tolerance_m: None };
                 let nodes = NodeSet::new(&chain, station(2.0), station(34.0), SPACING).unwrap();
                 let (count, goal) = (nodes.stations().len(), nodes.goal());
                 let options = SearchOptions { spacing: Some(SPACING), ..SearchOptions::default() };

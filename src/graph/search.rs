@@ -8,7 +8,8 @@ use super::{
 use crate::{
     ballistics::TakeoffChoice,
     chain::Station,
-    hop::{HopTest, InvalidDeviation, Split},
+    flight::UncertaintyProblem,
+    hop::{HopTest, Split},
     progress::{Cancelled, Detail, Meter, Progress, Stage},
 };
 
@@ -38,9 +39,9 @@ pub enum SearchError {
     /// More nodes than fit, or a spacing that is no distance.
     #[error(transparent)]
     Nodes(#[from] NodesError),
-    /// Deviations by which no risk can be estimated.
+    /// Errors by which no risk can be estimated.
     #[error(transparent)]
-    Deviation(#[from] InvalidDeviation),
+    Errors(#[from] UncertaintyProblem),
     /// It was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
@@ -55,6 +56,8 @@ pub struct Leg {
     pub landing: Station,
     /// One hop or several along a segment.
     pub edge: Edge,
+    /// The loft of its single hop, where the search chose it; `None`: the choice of take-off angle decides.
+    pub loft: Option<f64>,
 }
 
 /// The result of the search.

@@ -2,7 +2,7 @@
 
 use std::sync::{Arc, OnceLock};
 
-use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief, risk::FootingSamples, terrain::kinks_loft};
+use super::{SegmentHops, SegmentReach, TakeoffSet, flown_past, reach::Relief, terrain::kinks_loft};
 use crate::{
     ballistics::{FlightEnvelope, LineOfSight, TakeoffChoice, TakeoffSpeeds, TakeoffWindow, limits},
     chain::{ConstrainedChain, ContactRule, Footing, Station, contacts_stand},
@@ -31,8 +31,6 @@ struct Tables {
     relief: OnceLock<Relief>,
     /// The possible hops along each segment, by direction.
     reaches: OnceLock<Vec<[Vec<SegmentReach>; 2]>>,
-    /// Where the hopper's footprint stands, for estimates of risk.
-    footing: OnceLock<Option<FootingSamples>>,
 }
 
 impl HopTest {
@@ -73,11 +71,6 @@ impl HopTest {
     /// Bounds of height and speed over any part of the chain.
     pub(super) fn relief(&self) -> &Relief {
         self.tables.relief.get_or_init(|| Relief::of(&self.chain))
-    }
-
-    /// Samples of the ground under the hopper's footprint, if it has one.
-    pub(super) fn footing_samples(&self) -> Option<&FootingSamples> {
-        self.tables.footing.get_or_init(|| FootingSamples::of(&self.chain)).as_ref()
     }
 
     /// The possible hops along each segment, by direction.

@@ -94,7 +94,8 @@ impl HopPath {
 /// The hop of a leg with one hop.
 fn single(test: &HopTest, leg: &Leg, lofts: SlopeInterval, choice: TakeoffChoice) -> Option<Hop> {
     let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
-    let arc = Arc::new(sight, test.loft(choice, sight, lofts), test.gravity_m_s2());
+    let loft = leg.loft.unwrap_or_else(|| test.loft(choice, sight, lofts));
+    let arc = Arc::new(sight, loft, test.gravity_m_s2());
     Some(hop(test, leg.takeoff, leg.landing, &arc, lofts, Limit::TakeoffSpeed))
 }
 

@@ -22,7 +22,7 @@ pub use ids::{NodeId, SegmentId, VertexId};
 #[cfg(test)]
 pub(crate) use interval::Inwards;
 pub use interval::{Interval, Outwards, Rounding};
-pub use normal::standard_normals;
+pub use normal::{normal_cdf, normal_quantile, standard_normals};
 pub(crate) use number_text::{decimal_comma, number_help};
 pub use points::{ChainPoint, MapPoint};
 pub use quadratic::{MonicQuadratic, Roots};

@@ -195,8 +195,8 @@ fn ray(request: &FanRequest<'_>, number: u32, meter: &Meter<'_>) -> Result<FanRa
     let found = reachable_nodes(&test, start, request.spacing, meter).map_err(|error| match error {
         SearchError::Nodes(problem) => FanError::Nodes { heading_deg, problem },
         // Reachable nodes are found without a risk.
-        SearchError::Deviation(problem) => {
-            FanError::Request { what: problem.what, found: problem.found.to_string(), expected: "a finite number of at least 0" }
+        SearchError::Errors(problem) => {
+            FanError::Request { what: problem.key(), found: problem.found(), expected: "errors that can be flown" }
         }
         SearchError::Cancelled(cancelled) => FanError::Cancelled(cancelled),
     })?;

@@ -10,8 +10,8 @@ use crate::graph::ReliablePath;
 pub struct ReliablePathRecord {
     /// The number of hops.
     pub hops: u64,
-    /// The estimated probability that all of them succeed.
-    pub estimated_success: f64,
+    /// The share of 512 fixed trials that reach the goal; null without errors to fly.
+    pub estimated_success: Option<f64>,
     /// The effort of the path, in the unit of the search's effort.
     pub effort: f64,
 }
@@ -19,10 +19,9 @@ pub struct ReliablePathRecord {
 impl ReliablePathRecord {
     /// A row for each path.
     pub fn rows(paths: &[ReliablePath]) -> Vec<Self> {
-        paths
-            .iter()
-            .map(|path| Self { hops: path.cost.hops(), estimated_success: path.success, effort: path.cost.effort() })
-            .collect()
+        let row =
+            |path: &ReliablePath| Self { hops: path.cost.hops(), estimated_success: path.success, effort: path.cost.effort() };
+        paths.iter().map(row).collect()
     }
 }
 
@@ -36,7 +35,8 @@ pub fn reliable_paths_text(rows: &[ReliablePathRecord]) -> String {
         ));
     }
     for row in rows {
-        sheet.line(format_args!("{:>6}{:>20.4}{:>12.4}", row.hops, row.estimated_success, row.effort));
+        let estimate = row.estimated_success.map_or("-".to_owned(), |share| format!("{share:.4}"));
+        sheet.line(format_args!("{:>6}{estimate:>20}{:>12.4}", row.hops, row.effort));
     }
     sheet.into_text()
 }

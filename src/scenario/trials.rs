@@ -2,11 +2,10 @@
 
 use super::{Entries, ProblemKind, Scenario, TerrainSource};
 use crate::{
-    graph::{ReliabilityOptions, ReliabilityUse},
-    hop::{HopDeviations, RiskModel},
+    graph::{ReliabilityOptions, ReliabilityUse, RiskModel, TakeoffScatter},
+    ground::DemGround,
     quantity::Angle,
     uncertainty::{Policy, TrialOptions, Uncertainty},
-    world::Grip,
 };
 
 /// The keys of `[uncertainty]`, with defaults for absent ones.
@@ -127,33 +126,28 @@ pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, u32) {
 impl Scenario {
     /// How path choice weighs reliability; `None` if it ignores it.
     ///
-    /// The failure probability of a hop is estimated from `[uncertainty]`; without `[uncertainty]` the slack of its angle is used.
-    pub fn reliability(&self) -> Option<ReliabilityOptions> {
+    /// The risk of a hop is the share of fixed draws of `[uncertainty]` that fail, flown over the DEM if there is one, else along the
+    /// chain; without `[uncertainty]` it is the slack of its angle.
+    pub fn reliability(&self, over: Option<&DemGround>) -> Option<ReliabilityOptions> {
         let extra_hops_max = match self.risk {
             ReliabilityUse::Ignored => return None,
             ReliabilityUse::FewestHops => 0,
             ReliabilityUse::Traded => self.risk_extra_hops_max,
         };
-        Some(self.reliability_with(extra_hops_max))
+        Some(self.reliability_with(extra_hops_max, over))
     }
 
     /// The same with a given number of extra hops, in place of the scenario's.
-    pub fn reliability_with(&self, extra_hops_max: u32) -> ReliabilityOptions {
-        let model = self.uncertainty.as_ref().map_or(RiskModel::Slack, |keys| RiskModel::Deviations(self.deviations(&keys.errors)));
+    pub fn reliability_with(&self, extra_hops_max: u32, over: Option<&DemGround>) -> ReliabilityOptions {
+        let model = self.uncertainty.as_ref().map_or(RiskModel::Slack, |keys| RiskModel::Flown {
+            errors: keys.errors,
+            takeoffs: match keys.policy {
+                Policy::Replan => TakeoffScatter::OfPosition,
+                Policy::OpenLoop => TakeoffScatter::OfLandings,
+            },
+            over: over.cloned().map(Box::new),
+        });
         let goal_tolerance_m = self.uncertainty.as_ref().map(|keys| keys.goal_tolerance_m);
         ReliabilityOptions { model, extra_hops_max, goal_tolerance_m }
-    }
-
-    /// The standard deviations that affect a single hop.
-    fn deviations(&self, errors: &Uncertainty) -> HopDeviations {
-        HopDeviations {
-            takeoff_speed_m_s: errors.takeoff_speed_sigma_m_s,
-            takeoff_speed_fraction: errors.takeoff_speed_sigma_fraction,
-            takeoff_angle: errors.takeoff_angle_sigma,
-            place_m: libm::hypot(errors.drift_along_sigma_m, errors.position_sigma_m),
-            // Cones stated as angles do not depend on friction.
-            friction: if matches!(self.surface.grip, Some(Grip::FromSlope { .. })) { 0.0 } else { errors.friction_sigma },
-            height_m: errors.height_sigma_m,
-        }
     }
 }

@@ -1,6 +1,7 @@
 //! One function per question: from a validated scenario to its answer.
 
 mod alike;
+mod dem_ground;
 mod footprint;
 mod on_body;
 mod physics;
@@ -9,6 +10,7 @@ mod sense;
 mod trade;
 
 pub use alike::ask_the_same;
+pub use dem_ground::dem_ground;
 pub use footprint::coarse_dem_warning;
 pub use on_body::{OfBody, dem_on_body, on_body};
 pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};

@@ -355,7 +355,7 @@ impl<'a> Trade<'a> {
         let answer = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter).map_err(|error| match error {
             SearchError::Cancelled(cancelled) => TradeError::Cancelled(cancelled),
             SearchError::Nodes(problem) => self.refused(values, &problem.to_string()),
-            SearchError::Deviation(problem) => self.refused(values, &problem.to_string()),
+            SearchError::Errors(problem) => self.refused(values, &problem.to_string()),
         })?;
         let keys = self.swept.iter().map(|v| v.key.path());
         Ok(TradeRow {

@@ -21,12 +21,6 @@ pub(super) trait Replan<C>: Send + Sync + std::fmt::Debug {
     fn next(&self, believed: &C) -> Option<Command<C>>;
 }
 
-/// The velocity of an arc's take-off along a heading.
-fn liftoff(arc: &ballistics::Arc, heading: Vector2<f64>) -> LiftoffVelocity {
-    let across = arc.horizontal_speed_m_s();
-    LiftoffVelocity { heading, horizontal_m_s: across, vertical_m_s: across * arc.takeoff_slope() }
-}
-
 /// The velocity of a take-off at an angle and a speed.
 fn at_angle(angle: Angle, speed_m_s: f64, heading: Vector2<f64>) -> LiftoffVelocity {
     let (up, across) = libm::sincos(angle.radians());
@@ -55,7 +49,8 @@ impl Replan<ChainPosition> for ChainReplan {
         let (arc, landing) = match leg.edge {
             Edge::Hop(lofts) => {
                 let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
-                (ballistics::Arc::new(sight, test.loft(to_go.options().takeoff, sight, lofts), test.gravity_m_s2()), leg.landing)
+                let loft = leg.loft.unwrap_or_else(|| test.loft(to_go.options().takeoff, sight, lofts));
+                (ballistics::Arc::new(sight, loft, test.gravity_m_s2()), leg.landing)
             }
             Edge::Along(along) => {
                 let (each_m, last_m) = along.lengths_m(to_go.options().split);
@@ -70,7 +65,7 @@ impl Replan<ChainPosition> for ChainReplan {
             let liftoff = at_angle(hop.takeoff_angle, hop.takeoff_speed_m_s, heading_of(direction));
             return Some(Command::new(liftoff, ChainPosition::on_chain(hop.landing.station?)));
         }
-        Some(Command::new(liftoff(&arc, heading_of(direction)), ChainPosition::on_chain(landing)))
+        Some(Command::of_arc(&arc, heading_of(direction), ChainPosition::on_chain(landing)))
     }
 }
 
@@ -110,7 +105,9 @@ impl MapReplan {
             return None;
         }
         if limits.steps.is_continuous() {
-            return Some((Command::new(liftoff(&arc, heading), target), cost));
+            let chosen = to_go.loft_on_map((from, &target), heading, (sight, lofts));
+            let arc = chosen.map_or(arc, |loft| ballistics::Arc::new(sight, loft, g));
+            return Some((Command::of_arc(&arc, heading, target), cost));
         }
         let (angle, speed_m_s) = self.nearest(&arc, sight, lofts)?;
         let liftoff = at_angle(angle, speed_m_s, nearest_heading(heading, limits.steps));

@@ -204,7 +204,7 @@ fn a_touchdown_on_ground_that_does_not_hold_it_is_refused_and_named_by_the_check
         let refused = set.limits().iter().find(|limit| limit.lofts.is_empty()).map(|limit| limit.limit);
         assert_eq!(refused, expected, "{what}: the set, limit by limit");
         let lofts = generous.lofts(&from, &to).unwrap();
-        let leg = Leg { takeoff: from, landing: to, edge: Edge::Hop(lofts) };
+        let leg = Leg { takeoff: from, landing: to, edge: Edge::Hop(lofts), loft: None };
         let path = generate(&generous, &[leg], TakeoffChoice::MidRange, Split::FullReach).unwrap();
         let found: Vec<ViolatedLimit> = execute(test.chain(), &path, None)
             .violations
@@ -250,7 +250,7 @@ fn braked_windows_are_those_of_flown_arcs() {
             let loft = radians.tan() - sight.slope();
             let arc = Arc::new(sight, loft, world.gravity_m_s2);
             let one = chta::quantity::SlopeInterval { lower: loft, upper: loft };
-            let leg = Leg { takeoff: ends.0, landing: ends.1, edge: Edge::Hop(one) };
+            let leg = Leg { takeoff: ends.0, landing: ends.1, edge: Edge::Hop(one), loft: None };
             let path = generate(&test, &[leg], TakeoffChoice::MidRange, Split::FullReach).unwrap();
             let hop = with_arc(&path.hops[0], &arc);
             let path = HopPath::of_hops(

@@ -363,7 +363,7 @@ fn hops_along_a_segment_keep_the_clearance_and_flatter_ones_are_caught() {
             assert!(test.lofts(&from, &landing).is_err(), "{hops} hops are enough, {} given: {limits:?}", along.hops());
         }
         for split in Split::ALL {
-            let leg = Leg { takeoff: from, landing: to, edge: Edge::Along(along) };
+            let leg = Leg { takeoff: from, landing: to, edge: Edge::Along(along), loft: None };
             let path = generate(&test, &[leg], TakeoffChoice::LeastSpeed, split).unwrap();
             for hop in &path.hops {
                 let [a, b] = [hop.takeoff, hop.landing].map(|contact| contact.station.unwrap());

@@ -21,7 +21,7 @@ use chta::{
     world::{Gravity, Grip, Hopper, HopperLimits, Limit, RestSlope, SurfaceProperties},
 };
 
-const CHOICES: [TakeoffChoice; 3] = TakeoffChoice::ALL;
+const CHOICES: [TakeoffChoice; 4] = TakeoffChoice::ALL;
 
 fn map_from(hops: &PostHops, start: Post) -> HopMap {
     search(hops, start, Search::default(), &()).unwrap()

@@ -7,12 +7,12 @@ use std::{fmt::Debug, ops::ControlFlow, path::Path, sync::Mutex};
 use chta::{
     chain::{ConstrainedChain, PolygonalChain, Station},
     graph::{
-        CostToGo, NodeSet, PointSpacing, ReliabilityOptions, SearchError, SearchOptions, most_reliable_paths,
+        CostToGo, NodeSet, PointSpacing, ReliabilityOptions, RiskModel, SearchError, SearchOptions, most_reliable_paths,
         proof::{BoundsOptions, CapabilityRange, ProofVerdict, bounds, least_capability},
         reachable, search, search_most_reliable, search_pairs,
     },
     ground::DemGround,
-    hop::{HopTest, RiskModel, Split},
+    hop::{HopTest, Split},
     path::generate,
     progress::{Cancelled, PAIRS_PER_REPORT, Progress, Stage, Step},
     quantity::{ChainPoint, MapPoint},

@@ -128,7 +128,7 @@ impl Slope {
 /// The hops of one leg along the segment.
 fn flown(slope: &Slope, along: SegmentHops, choice: TakeoffChoice, split: Split) -> Vec<chta::path::Hop> {
     let (takeoff, landing) = slope.ends();
-    generate(&slope.test(), &[Leg { takeoff, landing, edge: Edge::Along(along) }], choice, split).unwrap().hops
+    generate(&slope.test(), &[Leg { takeoff, landing, edge: Edge::Along(along), loft: None }], choice, split).unwrap().hops
 }
 
 #[test]

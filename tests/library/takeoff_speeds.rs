@@ -222,7 +222,7 @@ fn every_hop_of_a_split_passes_the_hop_test_and_the_checker() {
         several += u32::from(test.segment_reaches(takeoff.shared_segment(&landing).unwrap(), Direction::Forward).len() > 1);
         for split in Split::ALL {
             for choice in TakeoffChoice::ALL {
-                let leg = Leg { takeoff, landing, edge: Edge::Along(along) };
+                let leg = Leg { takeoff, landing, edge: Edge::Along(along), loft: None };
                 let path = generate(&test, &[leg], choice, split).unwrap();
                 for hop in &path.hops {
                     let ends = [hop.takeoff, hop.landing].map(|at| at.station.unwrap());

@@ -91,7 +91,7 @@ fn answers(
 ) -> Result<(Vec<CheckAnswer>, Option<Vec<u8>>), Failure> {
     let test = loaded.hop_test();
     let options = &loaded.scenario.search;
-    let searched = Searched::all(&test, pairs, &loaded.scenario, args.prove, args.common.quiet)?;
+    let searched = Searched::all(&test, pairs, &loaded.scenario, &loaded.base, args.prove, args.common.quiet)?;
     let mut answers = Vec::with_capacity(pairs.len());
     let mut drawn = None;
     for (&ends, searched) in pairs.iter().zip(&searched) {

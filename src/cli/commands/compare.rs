@@ -89,7 +89,7 @@ impl Compared {
         let ends = loaded.ends()?;
         let test = loaded.hop_test();
         let options = &loaded.scenario.search;
-        let searched = Searched::new(&test, ends, &loaded.scenario, Some(args.prove), args.quiet)?;
+        let searched = Searched::new(&test, ends, &loaded.scenario, &loaded.base, Some(args.prove), args.quiet)?;
         let (check, path) = searched.answer_with_path(&test, ends, options);
         let path = path.map_err(|error| Failure::of(&error))?;
         let warnings = path.as_ref().map(|path| loaded.scenario.path_warnings(path)).unwrap_or_default();

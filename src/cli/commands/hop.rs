@@ -37,7 +37,7 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
     if let Some(file) = trajectory::begin(&args.trajectory)? {
         let lofts = test.takeoff_set(&takeoff, &landing).as_ref().and_then(TakeoffSet::lofts);
         let search = &loaded.scenario.search;
-        let legs = lofts.map(|lofts| [Leg { takeoff, landing, edge: Edge::Hop(lofts) }]);
+        let legs = lofts.map(|lofts| [Leg { takeoff, landing, edge: Edge::Hop(lofts), loft: None }]);
         let path =
             legs.map(|legs| generate(&test, &legs, search.takeoff, search.split)).transpose().map_err(|e| Failure::of(&e))?;
         output::finish(trajectory::filled(Some(file), &args.trajectory, path.as_ref(), &loaded)?.into_iter().collect())?;

@@ -52,7 +52,7 @@ impl Planned {
     ) -> Result<Self, Failure> {
         let ends = loaded.ends()?;
         let options = &loaded.scenario.search;
-        let searched = Searched::new(test, ends, &loaded.scenario, prove, quiet)?;
+        let searched = Searched::new(test, ends, &loaded.scenario, &loaded.base, prove, quiet)?;
         let (check, path) = searched.answer_with_path(test, ends, options);
         let path = path.map_err(|error| Failure::of(&error))?;
         if let Some(path) = path.as_ref().filter(|_| verify) {

@@ -30,15 +30,16 @@ impl Searched {
         test: &HopTest,
         ends: (Station, Station),
         scenario: &Scenario,
+        base: &std::path::Path,
         prove: Option<ProveArgs>,
         quiet: bool,
     ) -> Result<Self, Failure> {
         match prove.filter(|prove| prove.prove) {
             None => {
-                let (found, reliable_paths) = search(test, ends, scenario, quiet)?;
+                let (found, reliable_paths) = search(test, ends, scenario, base, quiet)?;
                 Ok(Self { found, reliable_paths, proof: None })
             }
-            Some(_) if scenario.reliability().is_some() => Err(Failure::message(format!(
+            Some(_) if scenario.reliability(None).is_some() => Err(Failure::message(format!(
                 "--prove bounds the fewest hops, but search.risk is \"{}\", which selects the most reliable path: omit --prove, or add \
                  --set search.risk=ignored",
                 scenario.risk.name()
@@ -57,13 +58,14 @@ impl Searched {
         test: &HopTest,
         pairs: &[(Station, Station)],
         scenario: &Scenario,
+        base: &std::path::Path,
         prove: ProveArgs,
         quiet: bool,
     ) -> Result<Vec<Self>, Failure> {
         if prove.prove {
-            return pairs.iter().map(|&ends| Self::new(test, ends, scenario, Some(prove), quiet)).collect();
+            return pairs.iter().map(|&ends| Self::new(test, ends, scenario, base, Some(prove), quiet)).collect();
         }
-        let found = search_pairs(test, pairs, scenario, quiet)?;
+        let found = search_pairs(test, pairs, scenario, base, quiet)?;
         Ok(found.into_iter().map(|found| Self { found, reliable_paths: Vec::new(), proof: None }).collect())
     }
 
@@ -116,11 +118,17 @@ pub(super) fn search(
     test: &HopTest,
     (start, goal): (Station, Station),
     scenario: &Scenario,
+    base: &std::path::Path,
     quiet: bool,
 ) -> Result<(graph::Answer, Vec<ReliablePath>), Failure> {
     let options = &scenario.search;
     let progress = Progress::new(quiet);
-    let found = match scenario.reliability() {
+    let ground = if scenario.risk == graph::ReliabilityUse::Ignored {
+        None
+    } else {
+        chta::study::dem_ground(scenario, base).map_err(|error| Failure::of(&error))?
+    };
+    let found = match scenario.reliability(ground.as_ref()) {
         None => graph::search(test, start, goal, options, &progress).map(|answer| (answer, Vec::new())),
         Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &progress),
     };
@@ -132,10 +140,11 @@ fn search_pairs(
     test: &HopTest,
     pairs: &[(Station, Station)],
     scenario: &Scenario,
+    base: &std::path::Path,
     quiet: bool,
 ) -> Result<Vec<graph::Answer>, Failure> {
-    if scenario.reliability().is_some() {
-        return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, quiet)?.0)).collect();
+    if scenario.reliability(None).is_some() {
+        return pairs.iter().map(|&ends| Ok(search(test, ends, scenario, base, quiet)?.0)).collect();
     }
     graph::search_pairs(test, pairs, &scenario.search, &Progress::new(quiet)).map_err(|error| Failure::of(&error))
 }

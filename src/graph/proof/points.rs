@@ -192,7 +192,7 @@ impl Tried {
             let sight = test.line_of_sight(&takeoff, &landing)?;
             let arc = Arc::new(sight, test.loft(options.takeoff, sight, lofts), test.gravity_m_s2());
             cost = cost + options.effort.cost(&arc, 1);
-            legs.push(Leg { takeoff, landing, edge: Edge::Hop(lofts) });
+            legs.push(Leg { takeoff, landing, edge: Edge::Hop(lofts), loft: None });
             here = from;
         }
         legs.reverse();

@@ -39,7 +39,7 @@ fn hop_along(test: &HopTest, choice: TakeoffChoice) -> Option<HopPath> {
     let geometry = test.chain().geometry();
     let (takeoff, landing) = (geometry.vertex_station(VertexId(0)), geometry.vertex_station(VertexId(geometry.segment_count())));
     let lofts = test.lofts(&takeoff, &landing).ok()?;
-    generate(test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts) }], choice, Split::default()).ok()
+    generate(test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts), loft: None }], choice, Split::default()).ok()
 }
 
 /// Joins the hops of a path to one [`HopPath`] over the map, with distances along it from its start.

@@ -260,7 +260,7 @@ fn a_hop_at_escape_speed_breaks_the_speed_limits_of_a_body_of_known_radius() {
         let test = HopTest::new(chain(alone));
         let ends = [0, 2].map(|vertex| test.chain().geometry().vertex_station(VertexId(vertex)));
         let lofts = test.lofts(&ends[0], &ends[1]).unwrap();
-        let leg = chta::graph::Leg { takeoff: ends[0], landing: ends[1], edge: chta::graph::Edge::Hop(lofts) };
+        let leg = chta::graph::Leg { takeoff: ends[0], landing: ends[1], edge: chta::graph::Edge::Hop(lofts), loft: None };
         let path = chta::path::generate(&test, &[leg], TakeoffChoice::default(), chta::hop::Split::FullReach).unwrap();
         assert!(execute(test.chain(), &path, None).passes(), "{points:?}");
         let violations = execute(&chain(bennu), &path, None).violations;

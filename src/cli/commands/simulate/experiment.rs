@@ -136,7 +136,7 @@ fn cone_widths(args: &SimulateArgs, loaded: &Loaded, widest: &[Hop], seed: u64) 
             .map_err(|error| failed(&error))?;
         let width_deg = mean_takeoff_width_deg(&chain);
         let test = chta::hop::HopTest::new(chain);
-        let (found, _) = search(&test, loaded.ends()?, scenario, args.common.quiet)?;
+        let (found, _) = search(&test, loaded.ends()?, scenario, &loaded.base, args.common.quiet)?;
         let Outcome::Path { legs, .. } = &found.outcome else {
             answer.add_none((share, width_deg));
             continue;
@@ -174,9 +174,15 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let (start, goal) = loaded.ends()?;
     let nodes = NodeSet::new(test.chain(), start, goal, planned.found.spacing).map_err(|error| Failure::of(&error))?;
     let progress = Progress::new(args.common.quiet);
-    let reliable_paths =
-        most_reliable_paths(&test, &nodes, &scenario.search, &scenario.reliability_with(scenario.risk_extra_hops_max), &progress)
-            .map_err(|error| Failure::of(&error))?;
+    let ground = chta::study::dem_ground(scenario, &loaded.base).map_err(|error| Failure::of(&error))?;
+    let reliable_paths = most_reliable_paths(
+        &test,
+        &nodes,
+        &scenario.search,
+        &scenario.reliability_with(scenario.risk_extra_hops_max, ground.as_ref()),
+        &progress,
+    )
+    .map_err(|error| Failure::of(&error))?;
     // The path planned without regard to risk, over the same nodes.
     let without_risk = SearchOptions { spacing: Some(planned.found.spacing), ..scenario.search.clone() };
     let found = graph::search(&test, start, goal, &without_risk, &progress).map_err(|error| Failure::of(&error))?;
@@ -191,7 +197,7 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
         let path = generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split)
             .map_err(|error| Failure::of(&error))?;
         let summary = flyer.fly_along(&path, &options)?;
-        rows.push(RiskTradeRow::new("surest", path.hops.len(), Some(candidate.success), &summary));
+        rows.push(RiskTradeRow::new("surest", path.hops.len(), candidate.success, &summary));
     }
     Ok(RiskTradeAnswer { trials: keys.trials, seed: keys.seed, policy: keys.policy.name(), paths: rows })
 }

@@ -8,7 +8,6 @@ use chta::{
     hop::HopTest,
     path::HopPath,
     scenario::TerrainSource,
-    study::{DemReading, Overlays},
     terrain::Dem,
     uncertainty::{Mission, Policy, Simulation, Summary, TrialOptions},
 };
@@ -49,24 +48,14 @@ impl<'a> Flyer<'a> {
         policies: &[Policy],
         quiet: bool,
     ) -> Result<Self, Failure> {
-        let ground = match &loaded.scenario.terrain {
-            Some(TerrainSource::Dem { path, .. }) => {
-                let file = loaded.base.join(path);
-                let dem = DemReading::of(&loaded.scenario).options.read(&file).map_err(|error| Failure::about(&file, &error))?;
-                let coordinates = &dem.georeference().coordinate_system;
-                let overlays = Overlays::read(&loaded.scenario, &loaded.base, Some(coordinates), dem.bounds())
-                    .map_err(|error| Failure::of(&error))?;
-                Some(overlays.ground(dem, &loaded.scenario))
-            }
-            Some(TerrainSource::Mesh { .. } | TerrainSource::Chain { .. }) | None => None,
-        };
+        let ground = chta::study::dem_ground(&loaded.scenario, &loaded.base).map_err(|error| Failure::of(&error))?;
         let to_go = policies.contains(&Policy::Replan).then(|| -> Result<_, Failure> {
             let (start, goal) = loaded.ends()?;
             let nodes = NodeSet::new(test.chain(), start, goal, found.spacing).map_err(|error| Failure::of(&error))?;
             let options = &loaded.scenario.search;
             let progress = Progress::new(quiet);
             progress.say("ranking the successors of every node".to_owned());
-            let to_go = match loaded.scenario.reliability() {
+            let to_go = match loaded.scenario.reliability(ground.as_ref()) {
                 Some(reliability) => CostToGo::with_reliability(test, nodes, options, &reliability, &progress)
                     .map_err(|error| Failure::of(&error))?,
                 None => CostToGo::of(test, nodes, options, &progress)?,
