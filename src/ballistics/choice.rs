@@ -1,7 +1,7 @@
 //! Which of the feasible arcs is flown.
 
 use super::LineOfSight;
-use crate::quantity::SlopeInterval;
+use crate::quantity::{Angle, SlopeInterval};
 
 /// How to choose the take-off angle from its feasible set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
@@ -62,6 +62,25 @@ impl TakeoffChoice {
             Self::MidRange | Self::MostReliable => bisecting_loft(sight, lower, upper),
         }
     }
+}
+
+/// The loft whose angle lies at a share of the way between the angles of a set's ends: 0 at the lower, 1/2 in the middle, 1 at the upper.
+///
+/// # Returns
+/// A member of the set, positive, for shares from 0 to 1.
+///
+/// # Examples
+/// ```
+/// use chta::{ballistics::{LineOfSight, loft_at_share}, quantity::{Angle, SlopeInterval}};
+/// let slope = |degrees| Angle::from_degrees(degrees).slope();
+/// let set = SlopeInterval { lower: slope(30.0), upper: slope(60.0) };
+/// assert!((loft_at_share(LineOfSight::new(10.0, 0.0), set, 0.1) - slope(33.0)).abs() < 1e-12);
+/// ```
+pub fn loft_at_share(sight: LineOfSight, set: SlopeInterval, share: f64) -> f64 {
+    let lower = set.lower.max(f64::MIN_POSITIVE);
+    let upper = set.upper.max(lower);
+    let [low, high] = [lower, upper].map(|loft| Angle::from_slope(sight.slope() + loft).radians());
+    (Angle::from_radians(low + share * (high - low)).slope() - sight.slope()).clamp(lower, upper)
 }
 
 /// The loft whose take-off direction bisects the angle between those of two lofts.

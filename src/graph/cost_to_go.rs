@@ -74,6 +74,14 @@ impl CostToGo {
         Ok(Self { policy: Some(policy), ..costs })
     }
 
+    /// The same with this many hops allowed beyond the fewest, at most those of its reliability policy; without a policy, unchanged.
+    #[must_use]
+    pub fn with_fewer_extra_hops(&self, extra: u64) -> Self {
+        let goal = self.nodes.goal().index();
+        let policy = self.policy.as_ref().map(|policy| policy.with_fewer_extra_hops(&self.costs, goal, extra));
+        Self { policy, ..self.clone() }
+    }
+
     /// Whether there is a reliability policy.
     #[inline]
     pub const fn weighs_reliability(&self) -> bool {

@@ -35,7 +35,9 @@ pub use judge::{RiskModel, TakeoffScatter};
 pub use nodes::{NodeSet, NodesError, PointSpacing};
 pub use reachable::{Reachable, reachable};
 pub use refusals::RefusalCounts;
-pub use reliability::{ReliabilityOptions, ReliabilityUse, ReliablePath, most_reliable_paths, search_most_reliable};
+pub use reliability::{
+    ReliabilityOptions, ReliabilityUse, ReliablePath, most_reliable_paths, preferred_path, search_most_reliable,
+};
 pub use search::{AUTO_POINTS_PER_SEGMENT, Answer, Leg, Outcome, SearchError, SearchOptions, search, search_pairs};
 pub use usable::{EndpointRefusal, endpoint_refusal, is_usable};
 pub(crate) use {reachable::reachable_nodes, search::search_one};

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::{
-    Cost, HopGraph, Leg, NodeSet, Outcome, RiskModel, SearchError, SearchOptions,
+    Cost, HopGraph, Leg, NodeSet, Outcome, PointSpacing, RiskModel, SearchError, SearchOptions,
     judge::{Judge, Judged},
     search,
 };
@@ -48,10 +48,17 @@ pub struct ReliabilityOptions {
     /// The source of a hop's estimated probability to fail.
     pub model: RiskModel,
     /// How many hops more than the fewest a more reliable path may take; 0: the most reliable of the paths with the fewest
-    /// hops.
-    pub extra_hops_max: u32,
+    /// hops; `None`: ten, or half the fewest if that is more.
+    pub extra_hops_max: Option<u32>,
     /// Allowed distance of the last landing from the goal, m.
     pub goal_tolerance_m: Option<f64>,
+}
+
+impl ReliabilityOptions {
+    /// How many hops more than the fewest a path may take.
+    pub fn extra_hops(&self, fewest: u64) -> u64 {
+        self.extra_hops_max.map_or_else(|| (fewest / 2).max(10), u64::from)
+    }
 }
 
 /// The most reliable path with its number of hops, more reliable than every path with fewer hops.
@@ -99,8 +106,8 @@ pub fn most_reliable_paths(
     meter.report(Detail::None)?;
     let mut counter = meter.counter();
     let graph = HopGraph::new(test, nodes, options.effort, options.takeoff, options.split);
-    let extra = u64::from(reliability.extra_hops_max);
-    let Some(lattice) = Lattice::within(&graph, extra, &mut counter)? else { return Ok(Vec::new()) };
+    let extra = |fewest: u64| reliability.extra_hops(fewest);
+    let Some(lattice) = Lattice::within(&graph, &extra, &mut counter)? else { return Ok(Vec::new()) };
     let judge = Judge::new(test, options, &reliability.model, reliability.goal_tolerance_m);
     let labels = lattice.labelled(&graph, &judge, &mut counter)?;
     let mut least = f64::INFINITY;
@@ -113,7 +120,11 @@ pub fn most_reliable_paths(
     Ok(paths)
 }
 
-/// Finds a path as [`search`] does, then replaces it by the most reliable path over the same nodes within the hop budget.
+/// Finds a path as [`search`] does, then the most reliable paths over the same nodes within the hop budget, of which the answer has the
+/// most reliable one.
+///
+/// Where the spacing is left to the search and errors are flown, one hop over level ground spans ten nodes: where a hop may end decides
+/// how surely it is flown, and vertices alone leave little choice. If no path leads over these nodes, the nodes are those of [`search`].
 ///
 /// # Errors
 /// [`SearchError`].
@@ -126,19 +137,56 @@ pub fn search_most_reliable(
     progress: &dyn Progress,
 ) -> Result<(super::Answer, Vec<ReliablePath>), SearchError> {
     reliability.model.check()?;
-    let mut answer = search(test, start, goal, options, progress)?;
+    let spread = options.spacing.is_none() && matches!(reliability.model, RiskModel::Flown { .. });
+    let over_level_ground = spread
+        .then(|| ten_nodes_a_hop(test))
+        .flatten()
+        .map(|spacing| search(test, start, goal, &SearchOptions { spacing: Some(spacing), ..options.clone() }, progress));
+    let mut answer = match over_level_ground {
+        Some(Ok(answer)) if answer.hops().is_some() => answer,
+        Some(Err(SearchError::Cancelled(cancelled))) => return Err(cancelled.into()),
+        // Too many nodes, or no path over them.
+        _ => search(test, start, goal, options, progress)?,
+    };
     let mut paths = Vec::new();
-    if let Outcome::Path { legs, cost } = &mut answer.outcome
+    if let Outcome::Path { legs, .. } = &answer.outcome
         && !legs.is_empty()
     {
         let nodes = NodeSet::new(test.chain(), start, goal, answer.spacing)?;
         paths = most_reliable_paths(test, &nodes, options, reliability, progress)?;
         if let Some(best) = paths.last() {
-            legs.clone_from(&best.legs);
-            *cost = best.cost;
+            answer.follow(best);
         }
     }
     Ok((answer, paths))
+}
+
+/// The spacing with which the longest hop over level ground spans ten nodes.
+fn ten_nodes_a_hop(test: &HopTest) -> Option<PointSpacing> {
+    let (takeoff_m_s, landing_m_s) = test.chain().speed_bounds_m_s();
+    let speed_m_s = takeoff_m_s.min(landing_m_s);
+    let spacing_m = speed_m_s * speed_m_s / test.gravity_m_s2() / 10.0;
+    (spacing_m.is_finite() && spacing_m > 0.0).then_some(PointSpacing::AtMostM(spacing_m))
+}
+
+/// Of a front, the path to fly: the fewest hops whose success is at least 0.98 of the best; where trials are not flown, the most
+/// reliable one.
+///
+/// # Returns
+/// An index; `None` of an empty front.
+///
+/// # Examples
+/// ```
+/// use chta::graph::{ReliablePath, preferred_path};
+/// let path = |success| ReliablePath { legs: Vec::new(), cost: Default::default(), weight: 1.0, success };
+/// assert_eq!(preferred_path(&[path(Some(0.4)), path(Some(0.95)), path(Some(0.96))]), Some(1));
+/// assert_eq!(preferred_path(&[path(None), path(None)]), Some(1));
+/// ```
+pub fn preferred_path(front: &[ReliablePath]) -> Option<usize> {
+    const ENOUGH: f64 = 0.98;
+    let last = front.len().checked_sub(1)?;
+    let best = front.iter().map(|path| path.success).try_fold(0.0, |best: f64, success| Some(best.max(success?)));
+    Some(best.and_then(|best| front.iter().position(|path| path.success >= Some(ENOUGH * best))).unwrap_or(last))
 }
 
 /// An edge to a node, with its number of hops.
@@ -173,7 +221,7 @@ type Labels = BTreeMap<u64, BTreeMap<usize, Label>>;
 
 impl Lattice {
     /// The edges out of every node within the budget, breadth first by hops; `None` if the goal is not reached.
-    fn within(graph: &HopGraph, extra: u64, counter: &mut PairCounter<'_>) -> Result<Option<Self>, Cancelled> {
+    fn within(graph: &HopGraph, extra: &dyn Fn(u64) -> u64, counter: &mut PairCounter<'_>) -> Result<Option<Self>, Cancelled> {
         let nodes = graph.nodes();
         let count = nodes.stations().len();
         let (start, goal) = (nodes.start().index(), nodes.goal().index());
@@ -201,7 +249,7 @@ impl Lattice {
                     }
                 }
                 if from_start[goal] != u64::MAX {
-                    budget = from_start[goal].saturating_add(extra);
+                    budget = from_start[goal].saturating_add(extra(from_start[goal]));
                 }
             }
         }

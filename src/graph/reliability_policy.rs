@@ -1,5 +1,7 @@
 //! A reliability policy: the successors of every node, the most reliable first.
 
+use std::sync::Arc;
+
 use rayon::prelude::*;
 
 use super::{Cost, HopGraph, ReliabilityOptions, SearchOptions, judge::Judge, reliability::steps_from};
@@ -17,6 +19,8 @@ const KEPT: usize = 32;
 #[derive(Clone, Debug)]
 pub(super) struct ReliabilityPolicy {
     judge: Judge,
+    /// The edges out of every node within the hop budget that they were judged for.
+    edges: Arc<Vec<Vec<Successor>>>,
     /// For every node, at most [`KEPT`] successors.
     successors: Vec<Vec<NodeId>>,
     /// For every node, the weight of the most reliable path to the goal, `-ln` of its estimated success probability; infinite
@@ -26,7 +30,7 @@ pub(super) struct ReliabilityPolicy {
 }
 
 /// An edge on some path within the hop budget: its target, its hops, its weight.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug)]
 struct Successor {
     target: usize,
     hops: u64,
@@ -57,8 +61,8 @@ impl ReliabilityPolicy {
     ) -> Result<Self, Cancelled> {
         let meter = Meter::new(progress, Stage::Reliability);
         meter.report(Detail::None)?;
-        let extra = u64::from(reliability.extra_hops_max);
         let fewest = |node: usize| costs[node].map(Cost::hops);
+        let extra = reliability.extra_hops(fewest(graph.nodes().start().index()).unwrap_or(0));
         let goal = graph.nodes().goal().index();
         let judge = Judge::new(graph.test(), options, &reliability.model, reliability.goal_tolerance_m);
         // A robot that replans takes off where it believes to be, whatever came before.
@@ -77,7 +81,16 @@ impl ReliabilityPolicy {
         };
         let edges = (0..costs.len()).into_par_iter().map_init(|| meter.counter(), edges).collect::<Result<Vec<_>, _>>();
         meter.check()?;
-        let edges = edges?;
+        Ok(Self::ranked(judge, Arc::new(edges?), (costs, goal), extra))
+    }
+
+    /// The same with fewer hops allowed beyond the fewest.
+    pub(super) fn with_fewer_extra_hops(&self, costs: &[Option<Cost>], goal: usize, extra: u64) -> Self {
+        Self::ranked(self.judge.clone(), Arc::clone(&self.edges), (costs, goal), extra)
+    }
+
+    fn ranked(judge: Judge, edges: Arc<Vec<Vec<Successor>>>, (costs, goal): (&[Option<Cost>], usize), extra: u64) -> Self {
+        let fewest = |node: usize| costs[node].map(Cost::hops);
         let mut table = Table::new(costs, extra);
         for allowed in 0..=table.most_hops {
             for node in (0..costs.len()).filter(|&node| node != goal) {
@@ -100,12 +113,13 @@ impl ReliabilityPolicy {
             onward.sort_by(|a, b| a.0.total_cmp(&b.0).then((a.1, a.2).cmp(&(b.1, b.2))));
             onward.into_iter().take(KEPT).map(|(.., target)| NodeId(target)).collect()
         };
-        Ok(Self {
-            judge,
+        Self {
             successors: (0..costs.len()).map(ranked).collect(),
             #[cfg(test)]
             weights: (0..costs.len()).map(|node| fewest(node).map_or(f64::INFINITY, |own| table.at(node, own + extra))).collect(),
-        })
+            judge,
+            edges,
+        }
     }
 
     /// The judge of its edges.
@@ -197,11 +211,8 @@ mod tests {
     }
 
     fn models() -> [RiskModel; 2] {
-        let errors = Uncertainty {
-            takeoff_speed_sigma_fraction: 0.01,
-            takeoff_angle_sigma: Angle::from_degrees(0.5),
-            ..Uncertainty::NONE
-        };
+        let errors =
+            Uncertainty { takeoff_speed_sigma_fraction: 0.01, takeoff_angle_sigma: Angle::from_degrees(0.5), ..Uncertainty::NONE };
         // Without an error of position the first hop scatters as every other.
         [RiskModel::Flown { errors, takeoffs: TakeoffScatter::OfPosition, over: None }, RiskModel::Slack]
     }
@@ -218,7 +229,7 @@ mod tests {
                 let options = SearchOptions { spacing: Some(SPACING), ..SearchOptions::default() };
                 let nodes = NodeSet::new(&chain, station(start_m), station(34.0), SPACING).unwrap();
                 let mut with_fewer = f64::INFINITY;
-                for extra_hops_max in 0..=3 {
+                for extra_hops_max in (0..=3).map(Some) {
                     let reliability = ReliabilityOptions { model: model.clone(), extra_hops_max, goal_tolerance_m: Some(0.5) };
                     let to_go = CostToGo::of(&test, nodes.clone(), &options, &()).unwrap();
                     let costs: Vec<_> = (0..nodes.stations().len()).map(|node| to_go.of_node(NodeId(node))).collect();
@@ -226,8 +237,8 @@ mod tests {
                     let policy = ReliabilityPolicy::of(&graph, &costs, &options, &reliability, &()).unwrap();
                     let path = most_reliable_paths(&test, &nodes, &options, &reliability, &()).unwrap().pop().expect("a path");
                     let weight = policy.weights[nodes.start().index()];
-                    assert!((weight - path.weight).abs() <= 1e-12 * path.weight, "{start_m} m, {extra_hops_max}: {weight}");
-                    bought += u32::from(weight < with_fewer && extra_hops_max > 0);
+                    assert!((weight - path.weight).abs() <= 1e-12 * path.weight, "{start_m} m, {extra_hops_max:?}: {weight}");
+                    bought += u32::from(weight < with_fewer && extra_hops_max > Some(0));
                     with_fewer = weight;
                     compared += 1;
                 }
@@ -243,7 +254,7 @@ mod tests {
         let test = HopTest::new(chain.clone());
         let station = |x_m| chain.geometry().station(x_m).unwrap();
         for model in models() {
-            for extra_hops_max in [0, 2] {
+            for extra_hops_max in [Some(0), Some(2)] {
                 let reliability = ReliabilityOptions { model: model.clone(), extra_hops_max, goal_tolerance_m: None };
                 let nodes = NodeSet::new(&chain, station(2.0), station(34.0), SPACING).unwrap();
                 let (count, goal) = (nodes.stations().len(), nodes.goal());

@@ -1,7 +1,7 @@
 //! The search for the path of fewest hops, then least effort.
 
 use super::{
-    Cost, Edge, Effort, EndpointRefusal, Frontier, NodeSet, NodesError, PointSpacing, RefusalCounts,
+    Cost, Edge, Effort, EndpointRefusal, Frontier, NodeSet, NodesError, PointSpacing, RefusalCounts, ReliablePath,
     local_reach::LocalReach,
     questions::{Questions, Round},
 };
@@ -94,6 +94,14 @@ pub struct Answer {
 }
 
 impl Answer {
+    /// Takes another path over the same nodes, where this answer is a path.
+    pub fn follow(&mut self, path: &ReliablePath) {
+        if let Outcome::Path { legs, cost } = &mut self.outcome {
+            legs.clone_from(&path.legs);
+            *cost = path.cost;
+        }
+    }
+
     /// The number of hops; `None` without a path.
     pub fn hops(&self) -> Option<u64> {
         match &self.outcome {

@@ -135,7 +135,8 @@ const ELEVATION_ANGLE: Kind = Kind::Number { min: -90.0, max: 90.0 };
 const MOST: u64 = i64::MAX as u64;
 
 const EFFORTS: [&str; 4] = [Effort::ALL[0].name(), Effort::ALL[1].name(), Effort::ALL[2].name(), Effort::ALL[3].name()];
-const CHOICES: [&str; 3] = [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].name(), TakeoffChoice::ALL[2].name()];
+const CHOICES: [&str; 4] =
+    [TakeoffChoice::ALL[0].name(), TakeoffChoice::ALL[1].name(), TakeoffChoice::ALL[2].name(), TakeoffChoice::ALL[3].name()];
 const RELIABILITY_USES: [&str; 3] = [ReliabilityUse::ALL[0].name(), ReliabilityUse::ALL[1].name(), ReliabilityUse::ALL[2].name()];
 const POLICIES: [&str; 2] = [Policy::ALL[0].name(), Policy::ALL[1].name()];
 const SPLITS: [&str; 2] = [Split::ALL[0].name(), Split::ALL[1].name()];
@@ -275,7 +276,12 @@ pub const CATALOGUE: [Key; 73] = [
     ),
     key("search", "node_spacing_max_m", LENGTH, "instead: greatest spacing of neighbouring points along the ground, m"),
     key("search", "effort", Kind::Word(&EFFORTS), "second criterion after hops; absent: takeoff-speed"),
-    key("search", "takeoff_angle", Kind::Word(&CHOICES), "which feasible take-off angle to fly; absent: least-speed"),
+    key(
+        "search",
+        "takeoff_angle",
+        Kind::Word(&CHOICES),
+        "which feasible take-off angle to fly; absent: most-reliable where [uncertainty] is given, else least-speed",
+    ),
     key("search", "split", Kind::Word(&SPLITS), "how to divide many hops on a segment; absent: full-reach"),
     key(
         "search",

@@ -176,7 +176,10 @@ fn search(scenario: &Scenario) -> Value {
         ("takeoff_angle", Some(search.takeoff.name().into())),
         ("split", Some(search.split.name().into())),
         ("risk", Some(scenario.risk.name().into())),
-        ("risk_extra_hops_max", (scenario.risk == ReliabilityUse::Traded).then(|| scenario.risk_extra_hops_max.into())),
+        (
+            "risk_extra_hops_max",
+            (scenario.risk == ReliabilityUse::Traded).then_some(scenario.risk_extra_hops_max).flatten().map(Value::from),
+        ),
     ])
 }
 

@@ -117,7 +117,7 @@ pub struct Scenario {
     /// How path choice weighs reliability.
     pub risk: ReliabilityUse,
     /// Hops beyond the fewest that a more reliable path may take, if hops are traded for reliability.
-    pub risk_extra_hops_max: u32,
+    pub risk_extra_hops_max: Option<u32>,
     /// The errors of the trials, if the scenario has `[uncertainty]`.
     pub uncertainty: Option<UncertaintyKeys>,
     /// Title of the picture.
@@ -557,10 +557,12 @@ fn search(entries: &mut Entries) -> SearchOptions {
     }
     let count = points.as_ref().and_then(toml::Value::as_integer).and_then(|k| u32::try_from(k).ok());
     let word = |name| entries.text("search", name);
+    // With errors to fly, the command that survives most of them.
+    let absent = if entries.has_table("uncertainty") { TakeoffChoice::MostReliable } else { TakeoffChoice::default() };
     SearchOptions {
         spacing: spacing_m.map(PointSpacing::AtMostM).or(count.map(PointSpacing::PerSegment)),
         effort: named(&Effort::ALL, Effort::name, word("effort")),
-        takeoff: named(&TakeoffChoice::ALL, TakeoffChoice::name, word("takeoff_angle")),
+        takeoff: word("takeoff_angle").map_or(absent, |word| named(&TakeoffChoice::ALL, TakeoffChoice::name, Some(word))),
         split: named(&Split::ALL, Split::name, word("split")),
     }
 }

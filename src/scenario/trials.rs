@@ -26,16 +26,9 @@ pub struct UncertaintyKeys {
 }
 
 impl Default for UncertaintyKeys {
-    /// No errors, no tolerance, 10 000 open-loop trials of seed 0.
+    /// No errors, no tolerance, 10 000 replanned trials of seed 0.
     fn default() -> Self {
-        Self {
-            errors: Uncertainty::NONE,
-            goal_tolerance_m: 0.0,
-            hop_limit: None,
-            policy: Policy::default(),
-            trials: 10_000,
-            seed: 0,
-        }
+        Self { errors: Uncertainty::NONE, goal_tolerance_m: 0.0, hop_limit: None, policy: Policy::Replan, trials: 10_000, seed: 0 }
     }
 }
 
@@ -93,7 +86,9 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
         },
         goal_tolerance_m: number("goal_tolerance_m"),
         hop_limit: entries.count("uncertainty", "hop_limit").and_then(|limit| u32::try_from(limit).ok()),
-        policy: super::read::named(&Policy::ALL, Policy::name, entries.text("uncertainty", "policy")),
+        policy: entries
+            .text("uncertainty", "policy")
+            .map_or(absent.policy, |word| super::read::named(&Policy::ALL, Policy::name, Some(word))),
         trials: entries.count("uncertainty", "trials").unwrap_or(absent.trials),
         seed: entries.count("uncertainty", "seed").unwrap_or(absent.seed),
     };
@@ -106,10 +101,12 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
 }
 
 /// How risk weighs, and how many extra hops it may cost.
-pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, u32) {
-    /// Default of the extra hops: the first few give most of the gain in reliability.
-    const EXTRA_HOPS: u32 = 3;
-    let risk = super::read::named(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
+///
+/// With errors to fly, hops are traded for reliability unless the scenario says otherwise.
+pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, Option<u32>) {
+    let absent = if entries.has_table("uncertainty") { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
+    let word = entries.text("search", "risk");
+    let risk = word.map_or(absent, |word| super::read::named(&ReliabilityUse::ALL, ReliabilityUse::name, Some(word)));
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
     if extra.is_some() && risk != ReliabilityUse::Traded {
         let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which allows no extra hops", risk.name());
@@ -120,7 +117,7 @@ pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, u32) {
             "set risk = \"traded\", or remove risk_extra_hops_max",
         );
     }
-    (risk, extra.unwrap_or(EXTRA_HOPS))
+    (risk, extra)
 }
 
 impl Scenario {
@@ -131,14 +128,14 @@ impl Scenario {
     pub fn reliability(&self, over: Option<&DemGround>) -> Option<ReliabilityOptions> {
         let extra_hops_max = match self.risk {
             ReliabilityUse::Ignored => return None,
-            ReliabilityUse::FewestHops => 0,
+            ReliabilityUse::FewestHops => Some(0),
             ReliabilityUse::Traded => self.risk_extra_hops_max,
         };
         Some(self.reliability_with(extra_hops_max, over))
     }
 
     /// The same with a given number of extra hops, in place of the scenario's.
-    pub fn reliability_with(&self, extra_hops_max: u32, over: Option<&DemGround>) -> ReliabilityOptions {
+    pub fn reliability_with(&self, extra_hops_max: Option<u32>, over: Option<&DemGround>) -> ReliabilityOptions {
         let model = self.uncertainty.as_ref().map_or(RiskModel::Slack, |keys| RiskModel::Flown {
             errors: keys.errors,
             takeoffs: match keys.policy {

@@ -3,6 +3,7 @@
 mod alike;
 mod dem_ground;
 mod footprint;
+mod front;
 mod on_body;
 mod physics;
 mod pipeline;
@@ -12,6 +13,7 @@ mod trade;
 pub use alike::ask_the_same;
 pub use dem_ground::dem_ground;
 pub use footprint::coarse_dem_warning;
+pub use front::{FrontError, Journey};
 pub use on_body::{OfBody, dem_on_body, on_body};
 pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};
 pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};

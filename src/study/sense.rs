@@ -235,7 +235,7 @@ impl Scenario {
         if self.accept_map_scale && !matches!(self.terrain, Some(TerrainSource::Dem { .. }) | None) {
             warnings.push("terrain.accept_map_scale has no effect: only a dem has a map whose scale can be off".to_owned());
         }
-        if self.risk != ReliabilityUse::Ignored && self.reliability_with(0, None).model.distinguishes_no_hops() {
+        if self.risk != ReliabilityUse::Ignored && self.reliability_with(Some(0), None).model.distinguishes_no_hops() {
             warnings.push(format!(
                 "search.risk = \"{}\" has no effect: [uncertainty] has no error that the estimate of a hop's risk uses; give it one, such as \
                  takeoff_speed_sigma_fraction = 0.01, or leave [uncertainty] out to weigh the slack of angles",

@@ -91,6 +91,21 @@ impl Simulation {
         }
     }
 
+    /// The share of fixed trials that reach the goal, under the policy, tolerance and hop limit of the options.
+    ///
+    /// The same for every question, so that two paths differ by their own reliability and not by chance: 512 trials, whose share is
+    /// within 0.044 of the success probability in 95 of 100 cases.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn estimated_success(&self, options: &TrialOptions, progress: &dyn Progress) -> Result<f64, SimulationError> {
+        const TRIALS: u64 = 512;
+        /// Apart from the seeds that users give.
+        const SEED: u64 = 0x6368_7461;
+        let fixed = TrialOptions { trials: TRIALS, seed: SEED, until_half_width: None, trajectories: 0, ..*options };
+        Ok(self.run(&fixed, &mut (), progress)?.success.rate)
+    }
+
     /// Flies the trials under both policies, open loop first, on the same draws.
     ///
     /// # Errors

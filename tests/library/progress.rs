@@ -179,7 +179,7 @@ fn costs_to_go_and_reliability() {
     let (start, goal) = ends(&test);
     let spacing = PointSpacing::PerSegment(3);
     let options = SearchOptions { spacing: Some(spacing), ..SearchOptions::default() };
-    let reliability = ReliabilityOptions { model: RiskModel::Slack, extra_hops_max: 1, goal_tolerance_m: Some(0.5) };
+    let reliability = ReliabilityOptions { model: RiskModel::Slack, extra_hops_max: Some(1), goal_tolerance_m: Some(0.5) };
     let nodes = NodeSet::new(test.chain(), start, goal, spacing).unwrap();
     holds(&[Stage::CostToGo], 5, |progress| CostToGo::of(&test, nodes.clone(), &options, progress));
     holds(&[Stage::CostToGo, Stage::Reliability], 10, |progress| {

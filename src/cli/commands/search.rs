@@ -132,7 +132,10 @@ pub(super) fn search(
         None => graph::search(test, start, goal, options, &progress).map(|answer| (answer, Vec::new())),
         Some(reliability) => search_most_reliable(test, start, goal, options, &reliability, &progress),
     };
-    found.map_err(|error| Failure::of(&error))
+    let (mut found, mut front) = found.map_err(|error| Failure::of(&error))?;
+    let journey = chta::study::Journey { scenario, test, ends: (start, goal), ground: ground.as_ref() };
+    journey.estimate(&mut found, &mut front, &progress).map_err(|error| Failure::of(&error))?;
+    Ok((found, front))
 }
 
 /// Searches for many pairs, once from each start; pair by pair where the most reliable paths are requested.

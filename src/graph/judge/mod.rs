@@ -4,7 +4,7 @@ use nalgebra::{Point2, Vector2};
 
 use super::{Edge, HopGraph, SearchOptions};
 use crate::{
-    ballistics::{Arc, LineOfSight, TakeoffChoice},
+    ballistics::{Arc, LineOfSight, TakeoffChoice, loft_at_share},
     chain::Station,
     flight::{Command, HopTrials, JudgedHop, Survival, Uncertainty, UncertaintyProblem},
     ground::{ChainGround, ChainPosition, DemGround, MapPosition, Surface, heading_of},
@@ -98,7 +98,7 @@ pub(super) struct Judge {
 enum Trials {
     Slack,
     Chain(HopTrials<ChainGround>),
-    Map(HopTrials<DemGround>, Box<DemGround>),
+    Map(Box<(HopTrials<DemGround>, DemGround)>),
 }
 
 /// A hop along a chain, as the judge sees it.
@@ -124,7 +124,7 @@ impl Judge {
                         let ground = ChainGround::new(test.clone());
                         Trials::Chain(HopTrials::new(&ground, &errors, test.chain().geometry().vertices().len()))
                     }
-                    Some(ground) => Trials::Map(HopTrials::new(ground.as_ref(), errors, 1), ground.clone()),
+                    Some(ground) => Trials::Map(Box::new((HopTrials::new(ground.as_ref(), errors, 1), (**ground).clone()))),
                 };
                 (trials, *takeoffs, errors.position_sigma_m)
             }
@@ -176,18 +176,18 @@ impl Judge {
         Judged { loft: Some(loft), ..self.weighed(&planned, loft) }
     }
 
-    /// The loft of the most reliable command of a hop over the map from where the robot believes to be.
+    /// The loft of the most reliable command of a hop over the map from where the robot believes to be; `None` for a chain.
     pub(super) fn loft_on_map(
         &self,
         (from, to): (&MapPosition, &MapPosition),
         heading: Vector2<f64>,
         (sight, lofts): (LineOfSight, SlopeInterval),
     ) -> Option<f64> {
-        let Trials::Map(trials, _) = &self.trials else { return None };
+        let Trials::Map(over) = &self.trials else { return None };
         Some(self.most_reliable(sight, lofts, |loft, enough| {
             let command = Command::of_arc(&Arc::new(sight, loft, self.test.gravity_m_s2()), heading, *to);
             let takeoff_sigma_m = [self.position_sigma_m; 2];
-            trials.survival(&JudgedHop { from: *from, command, takeoff_sigma_m, goal: None }, enough)
+            over.0.survival(&JudgedHop { from: *from, command, takeoff_sigma_m, goal: None }, enough)
         }))
     }
 
@@ -198,10 +198,8 @@ impl Judge {
         if matches!(self.trials, Trials::Slack) {
             return middle;
         }
-        let [low, high] =
-            [lofts.lower.max(f64::MIN_POSITIVE), lofts.upper].map(|loft| Angle::from_slope(sight.slope() + loft).radians());
         let windows: Vec<SlopeInterval> = self.test.windows(sight, lofts).map(|window| window.lofts).collect();
-        let spread = SHARES.map(|share| Angle::from_radians(low + share * (high - low)).slope() - sight.slope());
+        let spread = SHARES.map(|share| loft_at_share(sight, lofts, share));
         let allowed = spread.into_iter().filter(|loft| windows.iter().any(|window| window.contains(*loft)));
         // A machine of few speeds has few angles.
         let single = windows.iter().filter(|window| window.lower == window.upper).map(|window| window.lower);
@@ -235,8 +233,8 @@ impl Judge {
             Trials::Chain(trials) => {
                 self.on_chain(planned, loft).map_or_else(Survival::default, |hop| trials.survival(&hop, enough))
             }
-            Trials::Map(trials, ground) => {
-                self.on_map(ground, planned, loft).map_or_else(Survival::default, |hop| trials.survival(&hop, enough))
+            Trials::Map(over) => {
+                self.on_map(&over.1, planned, loft).map_or_else(Survival::default, |hop| over.0.survival(&hop, enough))
             }
         }
     }
@@ -245,9 +243,7 @@ impl Judge {
         match &self.trials {
             Trials::Slack => 0.0,
             Trials::Chain(trials) => self.on_chain(planned, loft).map_or(0.0, |hop| trials.failing_share_of_doubled(&hop)),
-            Trials::Map(trials, ground) => {
-                self.on_map(ground, planned, loft).map_or(0.0, |hop| trials.failing_share_of_doubled(&hop))
-            }
+            Trials::Map(over) => self.on_map(&over.1, planned, loft).map_or(0.0, |hop| over.0.failing_share_of_doubled(&hop)),
         }
     }
 
