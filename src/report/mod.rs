@@ -34,12 +34,14 @@ pub use hop_answer::{
 pub use hop_margins::HopMarginsRecord;
 pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord};
 pub use path_record::{AimRecord, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv};
-pub use plan_answer::PlanAnswer;
+pub use plan_answer::{PlanAnswer, plan_text};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, reliable_paths_text};
 pub use require_answer::{RequireAnswer, RequireTry};
-pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord};
+pub use simulate_answer::{
+    EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, simulate_text,
+};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::write_trajectory_csv;

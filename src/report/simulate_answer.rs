@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::{CheckAnswer, text::Sheet};
+use super::{CheckAnswer, FurtherMeans, check_text, text::Sheet};
 use crate::uncertainty::{
     ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
 };
@@ -19,6 +19,20 @@ pub struct SimulateAnswer {
     /// Both policies on the same draws, if requested.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub compare: Vec<SimulationRecord>,
+}
+
+/// The text of `chta simulate`.
+pub fn simulate_text(answer: &SimulateAnswer, means: FurtherMeans<'_>) -> String {
+    let mut text = check_text(&answer.check, means);
+    if answer.simulation.is_none() && answer.compare.is_empty() {
+        text.push_str("nothing to simulate: there is no nominal path\n");
+    }
+    let own = answer.simulation.iter().filter(|_| answer.compare.is_empty());
+    for record in own.chain(&answer.compare) {
+        text.push('\n');
+        text.push_str(&record.text());
+    }
+    text
 }
 
 /// The results of the trials of one policy.

@@ -138,6 +138,9 @@ pub trait Observer {
         false
     }
 
+    /// The trials of a policy begin.
+    fn begin(&mut self, _policy: Policy) {}
+
     /// A hop was flown.
     fn hop(&mut self, _hop: &HopRecord) {}
 

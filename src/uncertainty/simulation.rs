@@ -85,6 +85,7 @@ impl Simulation {
         progress: &dyn Progress,
     ) -> Result<Summary, SimulationError> {
         self.check(options)?;
+        observer.begin(options.policy);
         match &self.ground_and_plan {
             GroundAndPlan::Chain(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
             GroundAndPlan::Map(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
