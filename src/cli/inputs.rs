@@ -15,7 +15,9 @@ use chta::scenario::FileKind;
 use tempfile::TempDir;
 
 use super::{
-    Failure, interrupt,
+    Failure,
+    args::CommonArgs,
+    interrupt,
     wrong_thing::{Role, refusal},
 };
 
@@ -126,6 +128,31 @@ pub(crate) fn look_at(max_gib: f64, files: &[(Option<&Path>, Role)]) -> Result<(
         check_readable(path).map_err(|reason| unreadable(path, &reason, role))?;
     }
     given().try_for_each(|(path, role)| open(path, role).map(drop))
+}
+
+/// Looks at the files of a command that analyses a chain, with the scenario of the options beside it.
+pub(crate) fn look_at_chain(chain: &Path, common: &CommonArgs) -> Result<(), Failure> {
+    look_at(common.input_max_gib, &[(Some(chain), Role::Chain), (common.scenario.as_deref(), Role::ScenarioOption)])
+}
+
+/// The same with a file of pairs.
+pub(crate) fn look_at_pairs(chain: &Path, common: &CommonArgs, pairs: Option<&Path>) -> Result<(), Failure> {
+    let files = [(Some(chain), Role::Chain), (common.scenario.as_deref(), Role::ScenarioOption), (pairs, Role::Pairs)];
+    look_at(common.input_max_gib, &files)
+}
+
+/// Looks at several scenarios, of which no two may be the same pipe: the second reading would find nothing.
+pub(crate) fn look_at_scenarios(max_gib: f64, scenarios: &[PathBuf]) -> Result<(), Failure> {
+    for (i, file) in scenarios.iter().enumerate() {
+        if is_stream(file) && scenarios[..i].iter().any(|other| same_stream(other, file)) {
+            return Err(Failure::message(format!(
+                "{}: found twice as SCENARIO, but what comes through a pipe is read only once: give one of the two as a file",
+                file.display()
+            )));
+        }
+    }
+    let files: Vec<_> = scenarios.iter().map(|file| (Some(file.as_path()), Role::Scenario)).collect();
+    look_at(max_gib, &files)
 }
 
 /// Looks at a file for a position: what it is, and whether the position takes that.

@@ -4,23 +4,24 @@ use std::{
     fs,
     io::Read,
     path::{Component, Path, PathBuf},
-    sync::Arc,
 };
 
 use chta::{
     chain::{Station, csv::read_chain_csv_file},
-    hop::HopTest,
-    report::InputFile,
+    report::{Document, InputFile},
     scenario::{
         Entries, FileKind, LackingKey, Place, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, scenario_document,
     },
-    study::{JourneyEnd as End, Overlays, PipelineError, Prepared, Survey, SweptKey, Trade, prepare, sha256_of},
-    terrain::sidecar_files,
+    study::{
+        self, Case, CaseError, CaseRecord, Commands, Compared, Comparison, JourneyEnd as End, PipelineError, Variation, checksums,
+        scenario_files,
+    },
 };
+use serde::Serialize;
 
 use super::{
     Failure,
-    args::{CommonArgs, SearchArgs},
+    args::{CommonArgs, JourneyArgs, SearchArgs},
     claims,
     effects::Purpose,
     hints,
@@ -29,19 +30,13 @@ use super::{
     wrong_thing::Role,
 };
 
-/// A scenario with its chain, and the records of both for a result.
+/// A case, and what a result says of it.
 #[derive(Debug)]
 pub(crate) struct Loaded {
-    /// The scenario as used.
-    pub(crate) scenario: Scenario,
-    /// The chain, with start and goal where they are known.
-    pub(crate) prepared: Prepared,
-    /// The scenario for a result.
-    pub(crate) document: serde_json::Value,
-    /// The files that were read.
-    pub(crate) inputs: Vec<InputFile>,
-    /// The folder that the scenario's paths start from.
-    pub(crate) base: PathBuf,
+    /// The scenario over its terrain, with all warnings about the input.
+    pub(crate) case: Case,
+    /// The head of its documents.
+    pub(crate) record: CaseRecord,
     /// How the command line gives start and goal.
     ends: EndOptions,
 }
@@ -91,27 +86,27 @@ impl EndOptions {
 }
 
 impl Loaded {
-    /// The hop test over the chain.
-    pub(crate) fn hop_test(&self) -> HopTest {
-        HopTest::new(Arc::clone(&self.prepared.chain))
-    }
-
     /// Start and goal, or a failure that names the missing one.
     pub(crate) fn ends(&self) -> Result<(Station, Station), Failure> {
-        let start = self.prepared.start.ok_or_else(|| self.ends.missing(End::Start))?;
-        let goal = self.prepared.goal.ok_or_else(|| self.ends.missing(End::Goal))?;
-        Ok((start, goal))
+        self.case.ends().map_err(|error| match error {
+            CaseError::MissingEnd { which } => self.ends.missing(which),
+            other => other.into(),
+        })
     }
 
-    /// The warnings about the input and an answer, without repetition.
-    pub(crate) fn warnings_with(&self, more: impl IntoIterator<Item = String>) -> Vec<String> {
-        let mut warnings = self.prepared.warnings.clone();
-        for warning in more {
-            if !warnings.contains(&warning) {
-                warnings.push(warning);
-            }
+    /// An answer as one document, with its warnings.
+    pub(crate) fn document<T: Serialize>(&self, kind: &str, warnings: &[String], answer: T) -> Result<String, Failure> {
+        Ok(self.record.document(kind, warnings, answer).to_json()?)
+    }
+
+    /// Refuses an option that needs a chain on a map.
+    pub(crate) fn check_on_map(&self, option: &str) -> Result<(), Failure> {
+        match self.case.prepared.chain.geometry().map_points() {
+            Some(_) => Ok(()),
+            None => Err(Failure::message(format!(
+                "{option}: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"
+            ))),
         }
-        warnings
     }
 }
 
@@ -148,28 +143,30 @@ pub(crate) fn load_scenario(target: &Path, common: &CommonArgs, purpose: Purpose
     let target = Target { input: inputs::open(target, Role::Scenario)?, is_scenario: true };
     let source = typed(&target, common, None, EndOptions::NONE)?;
     let given = source.entries.clone();
-    validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut prepare)
+    validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut purpose.preparation())
 }
 
-/// Loads a chain, scenario or result with the options beside it.
+/// Loads the chain, scenario or result of a journey with the options beside it.
+pub(crate) fn load_journey(
+    JourneyArgs { chain, start, goal }: &JourneyArgs,
+    common: &CommonArgs,
+    search: &SearchArgs,
+    purpose: Purpose,
+) -> Result<Loaded, Failure> {
+    load(chain, common, Some(search), EndOptions::of_path(*start, *goal), purpose, &[])
+}
+
+/// A key that a command's own option sets: option, table, key and value.
+pub(crate) type OwnKey<'a> = (&'a str, &'a str, &'a str, toml::Value);
+
+/// Loads a chain, scenario or result with the options beside it, and with keys that a command's own options set.
 pub(crate) fn load(
     target: &Path,
     common: &CommonArgs,
     search: Option<&SearchArgs>,
     ends: EndOptions,
     purpose: Purpose,
-) -> Result<Loaded, Failure> {
-    load_with(target, common, search, ends, purpose, &[])
-}
-
-/// Loads the same with keys that a command's own options set: option, table, key and value.
-pub(crate) fn load_with(
-    target: &Path,
-    common: &CommonArgs,
-    search: Option<&SearchArgs>,
-    ends: EndOptions,
-    purpose: Purpose,
-    own: &[(&str, &str, &str, toml::Value)],
+    own: &[OwnKey<'_>],
 ) -> Result<Loaded, Failure> {
     let target = Target::chain(target)?;
     let mut source = typed(&target, common, search, ends)?;
@@ -177,41 +174,55 @@ pub(crate) fn load_with(
         source.entries.set_by_option(option, table, key, value.clone());
     }
     let given = source.entries.clone();
-    validate_and_prepare(&target, source, common.quiet, (ends, purpose, &given), &mut prepare)
+    validate_and_prepare(&target, source, common.quiet, (ends, purpose, &given), &mut purpose.preparation())
 }
 
-/// A scenario of which keys are varied: the first cell, loaded, and the source of all other cells.
+/// A scenario of which keys are varied: the first case, loaded, and the source of all others.
 #[derive(Debug)]
 pub(crate) struct ToVary {
-    /// With the first value of every key.
+    /// The first case.
     pub(crate) first: Loaded,
-    /// The terrain.
-    pub(crate) survey: Survey,
-    /// The keys as typed, with the options.
-    pub(crate) entries: Entries,
-    /// The folder that the scenario's paths start from.
-    pub(crate) base: PathBuf,
+    /// The keys as typed, and the terrain.
+    pub(crate) variation: Variation,
+    purpose: Purpose,
+    name: String,
+    text: String,
 }
 
-/// Loads the same for keys that are varied, the terrain read once.
+/// Loads the same for keys that are varied, the terrain read once. `first`: the keys of the first case, from those as typed.
 pub(crate) fn load_to_vary(
-    target: &Path,
+    JourneyArgs { chain, start, goal }: &JourneyArgs,
     common: &CommonArgs,
     search: &SearchArgs,
-    ends: EndOptions,
-    swept: &[SweptKey],
+    purpose: Purpose,
+    first: &dyn Fn(&Entries) -> Result<Entries, Failure>,
 ) -> Result<ToVary, Failure> {
-    let target = Target::chain(target)?;
+    let ends = EndOptions::of_path(*start, *goal);
+    let target = Target::chain(chain)?;
     let mut source = typed(&target, common, Some(search), ends)?;
-    let (entries, base) = (source.entries.clone(), source.base.clone());
-    source.entries = Trade::first_cell(&entries, swept, "--vary").map_err(|error| Failure::message(format!("--vary: {error}")))?;
+    let entries = source.entries.clone();
+    source.entries = first(&entries)?;
+    let (name, text) = (source.name.clone(), source.text.clone());
     let mut kept = None;
-    let first =
-        validate_and_prepare(&target, source, common.quiet, (ends, Purpose::Trade, &entries), &mut |scenario, terrain, base| {
-            kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
-        })?;
-    let survey = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.input.given.display())))?;
-    Ok(ToVary { first, survey, entries, base })
+    let first = validate_and_prepare(&target, source, common.quiet, (ends, purpose, &entries), &mut |scenario, base| {
+        Ok(kept.insert(Variation::new(entries.clone(), scenario, base)?).first.clone())
+    })?;
+    let variation = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.input.given.display())))?;
+    Ok(ToVary { first, variation, purpose, name, text })
+}
+
+impl ToVary {
+    /// The failure for problems of a varied scenario.
+    pub(crate) fn refused(&self, problems: Vec<ScenarioProblem>) -> Failure {
+        refused(problems, &self.name, &self.text)
+    }
+
+    /// A varied case, as if it had been loaded; its warnings are not shown.
+    pub(crate) fn loaded(&self, mut case: Case, entries: &Entries) -> Result<Loaded, Failure> {
+        case.prepared.warnings.extend(self.purpose.unused(&self.variation.entries, &case.scenario));
+        case.prepared.warnings.extend(Purpose::replaced(entries));
+        Ok(Loaded { record: recorded(&case)?, case, ends: self.first.ends })
+    }
 }
 
 /// The keys of a chain, scenario or result with the options beside it.
@@ -280,10 +291,24 @@ fn look_at_keys(source: &mut Source, chain_is_a_key: bool) -> Result<(), Failure
     Err(refused(problems, &source.name, &source.text))
 }
 
-/// Prepares a chain from a scenario and its terrain, whose paths start from the given folder.
-type Prepare<'a> = &'a mut dyn FnMut(&Scenario, &TerrainSource, &Path) -> Result<Prepared, PipelineError>;
+/// Prepares the case of a scenario, whose paths start from the given folder.
+type Prepare<'a> = &'a mut dyn FnMut(Scenario, &Path) -> Result<Case, CaseError>;
 
-/// Validates keys and prepares their chain. `given`: the keys of file and options, without those that a command varies.
+impl Purpose {
+    /// How its cases are prepared.
+    fn preparation(self) -> impl FnMut(Scenario, &Path) -> Result<Case, CaseError> {
+        let commands = if self.flies_commands() { Commands::OfTheMachine } else { Commands::Exact };
+        move |scenario, base| Case::new(scenario, base, commands)
+    }
+}
+
+/// What a result says of a case.
+fn recorded(case: &Case) -> Result<CaseRecord, Failure> {
+    scenario_files(&case.scenario, &case.base).iter().for_each(|file| claims::reads(file));
+    Ok(case.record(&relative_name)?)
+}
+
+/// Validates keys and prepares their case. `given`: the keys of file and options, without those that a command varies.
 fn validate_and_prepare(
     target: &Target,
     source: Source,
@@ -311,23 +336,27 @@ fn validate_and_prepare(
         scenario.terrain = Some(terrain.clone());
     }
     let file = base.join(terrain.path());
-    let exact = || Scenario { hopper: scenario.hopper.with_any_command(), ..scenario.clone() };
-    let assumed = (!purpose.flies_commands()).then(exact);
-    let mut prepared =
-        prepare(assumed.as_ref().unwrap_or(&scenario), &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
-    prepared.warnings.extend(purpose.unused(given, &scenario).into_iter().chain(replaced));
-    for warning in &prepared.warnings {
-        output::warn(quiet, warning);
+    let mut case = prepare(scenario, &base).map_err(|error| match error {
+        CaseError::Prepare(error) => unprepared(error, &file, ends),
+        other => other.into(),
+    })?;
+    case.prepared.warnings.extend(purpose.unused(given, &case.scenario).into_iter().chain(replaced));
+    output::warn_all(quiet, &case.prepared.warnings);
+    Ok(Loaded { record: recorded(&case)?, case, ends })
+}
+
+/// Several scenarios side by side as one document, with all of them as used.
+pub(crate) fn comparison_document(loaded: &[Loaded], comparison: &Comparison) -> Result<String, Failure> {
+    let scenarios = loaded.iter().map(|one| one.record.scenario.clone()).collect();
+    let mut inputs: Vec<InputFile> = Vec::new();
+    for input in loaded.iter().flat_map(|one| &one.record.inputs) {
+        if !inputs.contains(input) {
+            inputs.push(input.clone());
+        }
     }
-    let mut inputs = match terrain {
-        TerrainSource::Dem { .. } => raster_files(&file)?,
-        TerrainSource::Mesh { .. } | TerrainSource::Chain { .. } => vec![input_file(&file)?],
-    };
-    for overlay in Overlays::files(&scenario) {
-        inputs.extend(raster_files(&base.join(overlay))?);
-    }
-    let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
-    Ok(Loaded { scenario, prepared, document, inputs, base, ends })
+    let warnings = comparison.compared.iter().flat_map(Compared::warnings).collect();
+    let document = Document::new("compare", serde_json::Value::Array(scenarios), inputs, warnings, &comparison.answer);
+    Ok(document.to_json()?)
 }
 
 /// The failure for a terrain without a usable chain, with the file or option at fault.
@@ -391,15 +420,11 @@ fn lacking_on_a_dem(keys: &[LackingKey]) -> String {
     )
 }
 
-/// A file that was read, for a result.
-pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
-    claims::reads(path);
-    Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
-}
-
 /// A raster and the files beside it that were read, for a result.
 pub(crate) fn raster_files(path: &Path) -> Result<Vec<InputFile>, Failure> {
-    [path.to_path_buf()].into_iter().chain(sidecar_files(path)).map(|file| input_file(&file)).collect()
+    let files = study::raster_files(path);
+    files.iter().for_each(|file| claims::reads(file));
+    Ok(checksums(&files, &relative_name)?)
 }
 
 /// Reads a scenario with the folder of its paths but without its terrain, for commands that have their own.

@@ -9,9 +9,15 @@ mod help;
 mod hints;
 mod inputs;
 mod interrupt;
+mod landings;
 mod load;
 mod output;
 mod progress;
+mod run_folder;
+mod threads;
+mod trajectory;
+mod unanswered;
+mod views;
 mod whole_file;
 mod wrong_thing;
 
@@ -27,6 +33,13 @@ pub(crate) enum Answer {
     Yes,
     /// Done, and the answer is no.
     No,
+}
+
+impl Answer {
+    /// Yes or no.
+    pub(crate) const fn of(is_yes: bool) -> Self {
+        if is_yes { Self::Yes } else { Self::No }
+    }
 }
 
 /// Runs the command line.

@@ -9,10 +9,13 @@ use std::{
         mpsc::{self, RecvTimeoutError, Sender},
     },
     thread::{self, JoinHandle},
-    time::Duration,
+    time::{Duration, Instant},
 };
 
-use chta::progress::{Detail, Stage, Step};
+use chta::{
+    progress::{Detail, Stage, Step},
+    uncertainty::Policy,
+};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use super::interrupt;
@@ -23,6 +26,8 @@ pub(crate) struct Progress {
     doing: Arc<Mutex<String>>,
     shown: Option<(Sender<()>, JoinHandle<()>)>,
     stopped: AtomicBool,
+    /// The policy of the trials under way, and when they began.
+    trials: Mutex<Option<(Policy, Instant)>>,
 }
 
 impl Progress {
@@ -50,11 +55,18 @@ impl Progress {
             });
             (done, thread)
         });
-        Self { doing, shown, stopped: AtomicBool::new(false) }
+        Self { doing, shown, stopped: AtomicBool::new(false), trials: Mutex::new(None) }
+    }
+
+    /// The trials of a policy begin.
+    pub(crate) fn begin_trials(&self, policy: Policy) {
+        if let Ok(mut trials) = self.trials.lock() {
+            *trials = Some((policy, Instant::now()));
+        }
     }
 
     /// Sets the current stage.
-    pub(crate) fn say(&self, doing: String) {
+    fn say(&self, doing: String) {
         if let Ok(mut said) = self.doing.lock() {
             *said = doing;
         }
@@ -73,6 +85,13 @@ impl Progress {
 
 impl chta::progress::Progress for Progress {
     fn report(&self, step: &Step) -> ControlFlow<()> {
+        let line = |step: &Step| match (step.detail, step.of) {
+            (Detail::Trials { reached_goal }, Some(of)) => {
+                let (policy, begun) = (*self.trials.lock().ok()?)?;
+                Some(trials_line(policy, (step.done, of), reached_goal, begun.elapsed().as_secs_f64()))
+            }
+            _ => line(step),
+        };
         self.with_lines(line).report(step)
     }
 }
@@ -106,9 +125,22 @@ fn line(step: &Step) -> Option<String> {
         (Stage::Proof, Detail::ProofRound { cells, round }) => format!("proving with {cells} cells, round {round}"),
         (Stage::Trade, _) => format!("{} of {} fields", step.done, step.of?),
         (Stage::Fan, _) => format!("{} of {} headings", step.done, step.of?),
+        (Stage::CostToGo, _) => "ranking the successors of every node".to_owned(),
         (Stage::Reliability, _) => format!("estimating the reliability of hops: {} pairs", step.pairs),
         _ => return None,
     })
+}
+
+/// The line of trials: trials done, trials per second and time left.
+#[expect(clippy::cast_precision_loss, reason = "for reading")]
+fn trials_line(policy: Policy, (done, of): (u64, u64), reached_goal: u64, elapsed_s: f64) -> String {
+    let rate = done as f64 / elapsed_s.max(1e-9);
+    let left_s = (of - done.min(of)) as f64 / rate.max(1e-9);
+    format!(
+        "{}: {done} of {of} trials, {rate:.0} a second, {left_s:.0} s left at most, {:.4} reach the goal",
+        policy.name(),
+        reached_goal as f64 / done.max(1) as f64
+    )
 }
 
 impl Drop for Progress {
@@ -118,5 +150,18 @@ impl Drop for Progress {
             // A thread that failed to draw has nothing more to say.
             let _ = thread.join();
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_line_of_trials_has_rate_and_time_left() {
+        assert_eq!(
+            trials_line(Policy::Replan, (3000, 9000), 1500, 2.0),
+            "replan: 3000 of 9000 trials, 1500 a second, 4 s left at most, 0.5000 reach the goal"
+        );
     }
 }

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use chta::{
     graph::proof::DEFAULT_BUDGET_CELLS,
     quantity::MapPoint,
+    study::Proof,
     terrain::{LonLat, NoDataRule},
 };
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
@@ -90,6 +91,15 @@ pub(crate) struct CommonArgs {
     pub(crate) quiet: bool,
 }
 
+impl CommonArgs {
+    /// The same for a command that takes whole scenarios and few of these options.
+    pub(crate) fn of_scenarios(set: &[String], accept_map_scale: bool, input_max_gib: f64, quiet: bool) -> Self {
+        let set = set.to_vec();
+        let (body, gravity_m_s2, clearance_m, no_data) = (None, None, None, None);
+        Self { scenario: None, set, body, gravity_m_s2, clearance_m, accept_map_scale, no_data, input_max_gib, quiet }
+    }
+}
+
 /// Options of commands that search.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct SearchArgs {
@@ -113,6 +123,13 @@ pub(crate) struct ProveArgs {
     /// Greatest number of cells that the chain is divided into for the proof
     #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS, value_parser = cell_count, requires = "prove", allow_negative_numbers = true)]
     pub(crate) budget: usize,
+}
+
+impl ProveArgs {
+    /// The proof, if it is wanted.
+    pub(crate) fn proof(self) -> Option<Proof> {
+        self.prove.then_some(Proof { budget_cells: self.budget })
+    }
 }
 
 /// A chain, and where the journey over it begins and ends.

@@ -6,12 +6,12 @@ use chta::{
     quantity::Angle,
     reach::{FanRequest, fan},
     report::{Document, FanAnswer},
-    study::{Extremes, Overlays, coarse_dem_warning, constant_gravity_warnings, dem_on_body},
+    study::{Extremes, Overlays, coarse_dem_warning, conditions, constant_gravity_warnings, dem_on_body},
     terrain::check_scale,
 };
 use nalgebra::Vector2;
 
-use super::{captions::conditions, search::use_threads, slice::place};
+use super::slice::place;
 use crate::cli::{
     Answer, Failure,
     args::{AnswerArgs, FanArgs, Format},
@@ -20,6 +20,7 @@ use crate::cli::{
     load::{Bare, load_bare, raster_files},
     output,
     progress::Progress,
+    threads::use_threads,
     wrong_thing::Role,
 };
 
@@ -52,7 +53,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     let overlays =
         Overlays::read(&scenario, &base, Some(&dem.georeference().coordinate_system), dem.bounds()).map_err(|e| failed(&e))?;
     // Opened before the computation, which may take long.
-    let picture = plot.as_deref().map(|path| output::begin_picture("--plot", path)).transpose()?;
+    let picture = output::begin_picture("--plot", plot.as_deref())?;
     let spacing = scenario.search.spacing.unwrap_or(POINTS_PER_SEGMENT);
     let ground = overlays.ground(dem, &scenario);
     let dem = ground.terrain().dem();

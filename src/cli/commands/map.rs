@@ -18,13 +18,13 @@ use chta::{
         TotalsRecord, paths_geojson, write_paths_csv,
     },
     scenario::{Scenario, UncertaintyKeys},
-    study::{Extremes, Overlays, TrialGround, coarse_dem_warning, constant_gravity_warnings, dem_on_body},
+    study::{Defect, Extremes, Overlays, TrialGround, coarse_dem_warning, conditions, constant_gravity_warnings, dem_on_body},
     terrain::{Band, Dem, KeepOut, MapPlace, MapProjection, NoProjection, ResultBands, check_map_scale, result_geotiff_bytes},
     uncertainty::{Mission, Policy, Simulation, SimulationError},
     world::FrictionCone,
 };
 
-use super::{captions::conditions, map_profiles, plan::passed, search::use_threads, slice::place};
+use super::{map_profiles, slice::place};
 use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs, SearchArgs},
@@ -33,6 +33,7 @@ use crate::cli::{
     load::{Bare, load_bare, raster_files},
     output::{self, Pending},
     progress::Progress,
+    threads::use_threads,
     wrong_thing::Role,
 };
 
@@ -260,7 +261,7 @@ fn mapped(args: &MapArgs, inputs: &PreparedMap, start: Spot, goals: &[Spot]) -> 
     });
     let (maps, checks) = maps.map_err(|error| failed(&error))?;
     for check in checks.iter().flatten() {
-        passed(check)?;
+        Defect::unless_passed(check).map_err(|error| Failure::of(&error))?;
     }
     Ok(maps)
 }

@@ -8,10 +8,10 @@ use chta::{
     path::execute,
     reach::map::MapHop,
     scenario::Scenario,
+    study::conditions,
     terrain::MapProjection,
 };
 
-use super::captions::conditions;
 use crate::cli::{Failure, output};
 
 /// The sheet of all hops to all goals, in the format of the file's extension.

@@ -1,7 +1,6 @@
 //! One file per command.
 
 pub(super) mod bodies;
-mod captions;
 pub(super) mod check;
 pub(super) mod compare;
 pub(super) mod fan;
@@ -11,9 +10,7 @@ mod map_profiles;
 pub(super) mod plan;
 pub(super) mod require;
 pub(super) mod run;
-mod search;
 pub(super) mod simulate;
 pub(super) mod slice;
 pub(super) mod synth;
 pub(super) mod trade;
-mod trajectory;
