@@ -25,7 +25,7 @@ use super::{
     effects::Purpose,
     hints,
     inputs::{self, Input, KeyProblem},
-    output,
+    output, verbose,
     wrong_thing::Role,
 };
 
@@ -327,6 +327,9 @@ fn validate_and_prepare(
         inputs.extend(raster_files(&base.join(overlay))?);
     }
     let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
+    let (from_m, to_m) = prepared.chain.geometry().extent_m();
+    verbose::say(|| format!("the chain has {} segments, x from {from_m} to {to_m} m", prepared.chain.geometry().segment_count()));
+    verbose::settings(&document, &scenario.search);
     Ok(Loaded { scenario, prepared, document, inputs, base, ends })
 }
 
@@ -370,6 +373,7 @@ pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, pu
         return Err(Failure::message(name + &lacking_on_a_dem(&lacking)));
     }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
+    verbose::settings(&document, &scenario.search);
     // Hops over a map have exact commands, which the warnings say.
     let scenario = Scenario { hopper: scenario.hopper.with_any_command(), ..scenario };
     Ok(Bare { dem, scenario, base: source.base, document, warnings })
@@ -394,6 +398,7 @@ fn lacking_on_a_dem(keys: &[LackingKey]) -> String {
 /// A file that was read, for a result.
 pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
     claims::reads(path);
+    verbose::read(path);
     Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
 }
 

@@ -13,7 +13,7 @@ use chta::{
     scenario::Scenario,
 };
 
-use crate::cli::{Failure, args::ProveArgs, progress::Progress};
+use crate::cli::{Failure, args::ProveArgs, progress::Progress, threads};
 
 /// The result of a search, with bounds if a proof was requested.
 #[derive(Debug)]
@@ -99,16 +99,9 @@ impl Searched {
     }
 }
 
-/// Sets the number of threads; 0: one for each core.
+/// Sets the number of threads; 0: the default.
 pub(super) fn use_threads(threads: usize) -> Result<(), Failure> {
-    if threads == 0 {
-        // This is the default, and small searches never start the threads.
-        return Ok(());
-    }
-    rayon::ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .build_global()
-        .map_err(|error| Failure::message(format!("the threads cannot be started ({error}): ask for fewer with --threads")))
+    threads::start(threads)
 }
 
 /// Searches for one pair, for the most reliable path if the scenario requests it, and shows progress on the terminal.
