@@ -14,7 +14,9 @@ mod cli_options;
 mod command_steps;
 mod effects;
 mod escape;
+mod exit_status;
 mod footprint;
+mod gis;
 #[cfg(unix)]
 mod interrupt;
 mod map_command;

@@ -26,7 +26,7 @@ pub(crate) use terrains::{DepthLawArg, FanArgs, MapArgs, SliceArgs, SynthArgs};
 
 /// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?
 ///
-/// Exit status: 0 done, and the answer is yes; 1 done, and the answer is no; 2 bad input or failure.
+/// Exit status: 0 done, and the answer is yes; 1 done, and the answer is no; 2 bad input or failure; 130 interrupted.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 110)]
 pub(crate) struct Args {
