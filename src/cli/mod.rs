@@ -71,7 +71,7 @@ fn answer_of(command: Command) -> Result<Answer, Failure> {
         Command::Compare(args) => commands::compare::run(&args),
         Command::Synth(args) => commands::synth::run(&args),
         Command::Bodies => commands::bodies::run(),
-        Command::Completions(args) => commands::completions::run(&args),
+        Command::Completions(args) => commands::completions::run(args),
         Command::Man(args) => commands::man::run(&args),
     }
 }

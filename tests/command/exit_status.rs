@@ -1,4 +1,4 @@
-//! The exit status of every command, as docs/command_line.md has it.
+//! The exit status of every command, as `docs/command_line.md` has it.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 

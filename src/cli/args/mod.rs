@@ -142,7 +142,7 @@ pub(crate) struct JourneyArgs {
 /// How an answer is computed and written.
 #[derive(Clone, Copy, Debug, ClapArgs)]
 pub(crate) struct AnswerArgs {
-    /// Threads to work with; the answer does not depend on it [default: the environment variable CHTA_THREADS, else one for each core]
+    /// Threads to work with; the answer does not depend on it [default: the environment variable `CHTA_THREADS`, else one for each core]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = thread_count)]
     pub(crate) threads: usize,
     /// How the answer is written to standard output

@@ -109,7 +109,7 @@ fn a_picture_has_the_same_bytes_on_every_machine() {
     let drawn = pixels(&sheet, 20.0, 15.0).unwrap();
     assert_eq!((drawn.width, drawn.height), (236, 177));
     assert!(bytes == drawn.bytes, "the decoded pixels are those that were drawn");
-    let hex = |bytes: &[u8]| Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+    let hex = |bytes: &[u8]| format!("{:x}", Sha256::digest(bytes));
     assert_eq!(hex(&drawn.bytes), "a2cbbbba3e2c9ea669b86cae6145aa798cf26f282cdc7f1f902fa7a451ce4743", "pixels");
     assert_eq!(hex(&png), "28e89aa2fd55da170f94a2a9d7cc224003fc228ee3b9ee330d7792aa52b420e0", "file of {} bytes", png.len());
 }
