@@ -17,7 +17,7 @@ use tempfile::TempDir;
 use super::{
     Failure,
     args::CommonArgs,
-    interrupt,
+    interrupt, verbose,
     wrong_thing::{Role, refusal},
 };
 
@@ -174,6 +174,7 @@ pub(crate) fn open(path: &Path, role: Role) -> Result<Input, Failure> {
     if is_read_whole(&kind) && length > max_bytes() {
         return Err(too_large(path, &format!("{:.1} GiB", gib(length))));
     }
+    verbose::read(path);
     Ok(Input { given: path.to_path_buf(), file: path.to_path_buf(), kind })
 }
 
@@ -307,6 +308,7 @@ fn of_stream(path: &Path, role: Role) -> Result<Input, Failure> {
     copy_bounded(beginning, &mut source, &mut copy, path, &Bounds::of(&kind, role))?;
     let input = Input { given: path.to_path_buf(), file, kind };
     lock(&STREAMS).push(Stream { input: input.clone(), role });
+    verbose::read(&input.file);
     Ok(input)
 }
 

@@ -26,7 +26,7 @@ use super::{
     effects::Purpose,
     hints,
     inputs::{self, Input, KeyProblem},
-    output,
+    output, verbose,
     wrong_thing::Role,
 };
 
@@ -304,8 +304,16 @@ impl Purpose {
 
 /// What a result says of a case.
 fn recorded(case: &Case) -> Result<CaseRecord, Failure> {
-    scenario_files(&case.scenario, &case.base).iter().for_each(|file| claims::reads(file));
-    Ok(case.record(&relative_name)?)
+    for file in scenario_files(&case.scenario, &case.base) {
+        claims::reads(&file);
+        verbose::read(&file);
+    }
+    let record = case.record(&relative_name)?;
+    let geometry = case.prepared.chain.geometry();
+    let (from_m, to_m) = geometry.extent_m();
+    verbose::say(|| format!("the chain has {} segments, x from {from_m} to {to_m} m", geometry.segment_count()));
+    verbose::settings(&record.scenario, &case.scenario.search);
+    Ok(record)
 }
 
 /// Validates keys and prepares their case. `given`: the keys of file and options, without those that a command varies.
@@ -399,6 +407,7 @@ pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, pu
         return Err(Failure::message(name + &lacking_on_a_dem(&lacking)));
     }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
+    verbose::settings(&document, &scenario.search);
     // Hops over a map have exact commands, which the warnings say.
     let scenario = Scenario { hopper: scenario.hopper.with_any_command(), ..scenario };
     Ok(Bare { dem, scenario, base: source.base, document, warnings })
@@ -423,7 +432,10 @@ fn lacking_on_a_dem(keys: &[LackingKey]) -> String {
 /// A raster and the files beside it that were read, for a result.
 pub(crate) fn raster_files(path: &Path) -> Result<Vec<InputFile>, Failure> {
     let files = study::raster_files(path);
-    files.iter().for_each(|file| claims::reads(file));
+    for file in &files {
+        claims::reads(file);
+        verbose::read(file);
+    }
     Ok(checksums(&files, &relative_name)?)
 }
 

@@ -12,7 +12,7 @@ use chta::{
     terrain::MapProjection,
 };
 
-use super::{Failure, claims, inputs, interrupt, whole_file::WholeFile};
+use super::{Failure, claims, inputs, interrupt, verbose, whole_file::WholeFile};
 
 /// Writes data to standard output. A closed pipe is not an error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
@@ -55,7 +55,9 @@ impl<'a> Pending<'a> {
     /// Renames the streamed file to its final path.
     pub(crate) fn keep(self) -> Result<(), Failure> {
         interrupt::check()?;
-        self.file.keep().map_err(|error| unwritable(&self.path, &error))
+        self.file.keep().map_err(|error| unwritable(&self.path, &error))?;
+        verbose::say(|| format!("wrote {}", self.path.display()));
+        Ok(())
     }
 }
 
@@ -111,6 +113,7 @@ pub(crate) fn finish(mut files: Vec<(Pending<'_>, Vec<u8>)>) -> Result<(), Failu
     }
     for (Pending { path, file }, _) in files {
         file.keep().map_err(|error| unwritable(&path, &error))?;
+        verbose::say(|| format!("wrote {}", path.display()));
     }
     Ok(())
 }

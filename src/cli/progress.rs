@@ -18,7 +18,7 @@ use chta::{
 };
 use indicatif::{ProgressBar, ProgressStyle};
 
-use super::interrupt;
+use super::{interrupt, verbose};
 
 /// Shows the current stage from the first second on, until it is dropped; cancels the stage after an interrupt.
 #[derive(Debug)]
@@ -108,6 +108,7 @@ impl<F: Fn(&Step) -> Option<String> + Sync> chta::progress::Progress for Lines<'
         if interrupt::is_requested() || self.progress.stopped.load(Ordering::Relaxed) {
             return ControlFlow::Break(());
         }
+        verbose::step(step, || detail(step));
         if self.progress.shown.is_some()
             && let Some(line) = (self.line)(step)
         {
@@ -117,12 +118,20 @@ impl<F: Fn(&Step) -> Option<String> + Sync> chta::progress::Progress for Lines<'
     }
 }
 
-/// The line of a step.
-fn line(step: &Step) -> Option<String> {
+/// The line of a step that says what is tried.
+fn detail(step: &Step) -> Option<String> {
     Some(match (step.stage, step.detail) {
         (Stage::Search, Detail::PointsPerSegment(points)) => format!("searching with {points} points inside each segment"),
         (Stage::Search, Detail::NodeSpacingM(spacing_m)) => format!("searching with nodes at most {spacing_m} m apart"),
         (Stage::Proof, Detail::ProofRound { cells, round }) => format!("proving with {cells} cells, round {round}"),
+        _ => return None,
+    })
+}
+
+/// The line of a step.
+fn line(step: &Step) -> Option<String> {
+    Some(match (step.stage, step.detail) {
+        (Stage::Search | Stage::Proof, _) => return detail(step),
         (Stage::Trade, _) => format!("{} of {} fields", step.done, step.of?),
         (Stage::Fan, _) => format!("{} of {} headings", step.done, step.of?),
         (Stage::CostToGo, _) => "ranking the successors of every node".to_owned(),
@@ -145,6 +154,7 @@ fn trials_line(policy: Policy, (done, of): (u64, u64), reached_goal: u64, elapse
 
 impl Drop for Progress {
     fn drop(&mut self) {
+        verbose::stage_is_over();
         if let Some((done, thread)) = self.shown.take() {
             drop(done);
             // A thread that failed to draw has nothing more to say.

@@ -10,8 +10,22 @@ use std::{
 
 use crate::desk::{CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 12] =
-    ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "simulate", "synth", "bodies"];
+const COMMANDS: [&str; 14] = [
+    "run",
+    "slice",
+    "map",
+    "hop",
+    "check",
+    "plan",
+    "require",
+    "trade",
+    "compare",
+    "simulate",
+    "synth",
+    "bodies",
+    "completions",
+    "man",
+];
 
 /// Options that need a projected map, tested in `maps_command.rs`.
 const ON_A_PROJECTED_MAP: [&str; 6] =
@@ -19,6 +33,9 @@ const ON_A_PROJECTED_MAP: [&str; 6] =
 
 /// Options that change only the run time, tested below and in `trade_compare.rs`.
 const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
+
+/// The option of every command, tested in `verbose.rs`.
+const OF_EVERY_COMMAND: &str = "--verbose";
 
 /// The bound of inputs, tested in `pipes.rs`.
 const ON_LARGE_INPUTS: [&str; 1] = ["--input-max-gib"];
@@ -340,6 +357,8 @@ const PLAN: [Trial; 20] = [
     ),
     ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
+
+const MAN: [Trial; 1] = [("--output", &["man", "-o", "pages"], &["man", "-o", "elsewhere"])];
 
 /// A base case for several options.
 const REQUIRED: [&str; 10] =
@@ -885,8 +904,8 @@ fn seen(args: &[&str]) -> (Ran, BTreeMap<String, (u64, Vec<u8>)>) {
 fn options(command: &str) -> BTreeSet<String> {
     let help = desk().run(&[command, "--help"]).stdout;
     let long = |line: &str| {
-        let option = line.trim_start().trim_start_matches("-o, ").split([' ', ',']).next()?.to_owned();
-        (line.starts_with(' ') && option.starts_with("--")).then_some(option)
+        let option = line.trim_start().trim_start_matches("-o, ").trim_start_matches("-v, ").split([' ', ',']).next()?.to_owned();
+        (line.starts_with(' ') && option.starts_with("--") && option != OF_EVERY_COMMAND).then_some(option)
     };
     help.lines().filter_map(long).collect()
 }
@@ -904,6 +923,8 @@ fn every_option_changes_the_output() {
         ("trade", &TRADE),
         ("compare", &COMPARE),
         ("simulate", &SIMULATE),
+        ("completions", &[]),
+        ("man", &MAN),
     ];
     for (command, trials) in all {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
@@ -994,7 +1015,8 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 _ => blocks.push(paragraph.to_owned()),
             }
         }
-        assert!(command == "bodies" || blocks.len() > 3, "{command}: {blocks:?}");
+        let is_small = ["bodies", "completions", "man"].contains(&command);
+        assert!(is_small || blocks.len() > 3, "{command}: {blocks:?}");
         for block in blocks {
             let one_line = block.split_whitespace().collect::<Vec<_>>().join(" ");
             let name = one_line.trim_start_matches("-o, ").split([' ', ',']).next().unwrap().to_owned();

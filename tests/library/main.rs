@@ -16,6 +16,7 @@ mod bends;
 mod braked;
 mod chain_csv_problems;
 mod chain_csv_round_trip;
+mod citation;
 mod clearance;
 mod command_steps;
 mod docs_commands;

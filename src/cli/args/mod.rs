@@ -1,6 +1,7 @@
 //! The command line as typed: the commands, the options that several of them share, and the parsers of positions and counts.
 
 mod journeys;
+mod setup;
 mod terrains;
 
 use std::path::PathBuf;
@@ -13,21 +14,28 @@ use chta::{
 };
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
-use super::inputs::{DEFAULT_MAX_GIB, max_gib};
+use super::{
+    inputs::{DEFAULT_MAX_GIB, max_gib},
+    threads::thread_count,
+};
 
 pub(crate) use journeys::{
     CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
+pub(crate) use setup::{CompletionsArgs, ManArgs};
 pub(crate) use terrains::{DepthLawArg, FanArgs, MapArgs, SliceArgs, SynthArgs};
 
 /// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?
 ///
-/// Exit status: 0 done, and the answer is yes; 1 done, and the answer is no; 2 bad input or failure.
+/// Exit status: 0 done, and the answer is yes; 1 done, and the answer is no; 2 bad input or failure; 130 interrupted.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 110)]
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// Say on standard error what is read, with which settings, and how long each stage takes; the answer stays as it is
+    #[arg(short, long, global = true)]
+    pub(crate) verbose: bool,
 }
 
 /// The commands.
@@ -48,6 +56,8 @@ pub(crate) enum Command {
     /// List the known bodies with gravity, radius and their source
     #[command(after_help = "Example:\n  chta bodies")]
     Bodies,
+    Completions(CompletionsArgs),
+    Man(ManArgs),
 }
 
 /// How a result is written to standard output.
@@ -149,22 +159,12 @@ pub(crate) struct JourneyArgs {
 /// How an answer is computed and written.
 #[derive(Clone, Copy, Debug, ClapArgs)]
 pub(crate) struct AnswerArgs {
-    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    /// Threads to work with; the answer does not depend on it [default: the environment variable `CHTA_THREADS`, else one for each core]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = thread_count)]
     pub(crate) threads: usize,
     /// How the answer is written to standard output
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
-}
-
-/// Reads a number of threads; 0: one for each core.
-fn thread_count(text: &str) -> Result<usize, String> {
-    /// More than any machine this runs on has cores; thousands of threads take longer to start than most answers.
-    const MOST_THREADS: usize = 512;
-    match text.parse() {
-        Ok(threads) if threads <= MOST_THREADS => Ok(threads),
-        _ => Err(format!("expected a whole number from 0 (one for each core) to {MOST_THREADS}")),
-    }
 }
 
 /// Reads a number of cells.

@@ -15,7 +15,7 @@ use crate::cli::{
     load::{Loaded, load_journey},
     output,
     progress::Progress,
-    threads::use_threads,
+    threads,
     views::{Files, show},
     wrong_thing::Role,
 };
@@ -24,7 +24,7 @@ use crate::cli::{
 pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     inputs::look_at_pairs(&args.journey.chain, &args.common, args.pairs.as_deref())?;
     // Set before the terrain is read, since reading starts the threads.
-    use_threads(args.answer.threads)?;
+    threads::start(args.answer.threads)?;
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Check)?;
     let (proof, progress) = (args.prove.proof(), Progress::new(args.common.quiet));
     let (mut warnings, mut pairs) = (Vec::new(), Vec::new());

@@ -12,7 +12,7 @@ use crate::cli::{
     load::{Loaded, comparison_document, load_scenario, relative_name},
     output,
     progress::Progress,
-    threads::use_threads,
+    threads,
     views::{Files, Table, Views},
 };
 
@@ -22,7 +22,7 @@ pub(crate) fn run(args: &CompareArgs) -> Result<Answer, Failure> {
     // Outputs are opened before the computation, which may take long.
     let mut table = Table::by_extension(args.output.as_deref())?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
-    use_threads(args.answer.threads)?;
+    threads::start(args.answer.threads)?;
     let compared: Vec<_> = args.scenarios.iter().map(|file| compared(file, args)).collect::<Result<_, _>>()?;
     let (loaded, compared): (Vec<_>, Vec<_>) = compared.into_iter().unzip();
     let comparison = Comparison::of(compared);

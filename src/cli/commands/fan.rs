@@ -20,7 +20,7 @@ use crate::cli::{
     load::{Bare, load_bare, raster_files},
     output,
     progress::Progress,
-    threads::use_threads,
+    threads,
     wrong_thing::Role,
 };
 
@@ -42,7 +42,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         common,
     } = args;
     inputs::look_at(common.input_max_gib, &[(Some(dem_file), Role::Dem), (common.scenario.as_deref(), Role::ScenarioOption)])?;
-    use_threads(*threads)?;
+    threads::start(*threads)?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
     let Bare { dem: dem_file, scenario, base, document, mut warnings } = load_bare(dem_file, common, search, Purpose::Fan)?;
     let dem_file = dem_file.as_path();

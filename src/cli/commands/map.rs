@@ -33,7 +33,7 @@ use crate::cli::{
     load::{Bare, load_bare, raster_files},
     output::{self, Pending},
     progress::Progress,
-    threads::use_threads,
+    threads,
     wrong_thing::Role,
 };
 
@@ -80,7 +80,7 @@ struct Maps {
 pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let MapArgs { dem, common, .. } = args;
     inputs::look_at(common.input_max_gib, &[(Some(dem), Role::Dem), (common.scenario.as_deref(), Role::ScenarioOption)])?;
-    use_threads(args.answer.threads)?;
+    threads::start(args.answer.threads)?;
     let (inputs, start, goals) = prepared(args)?;
     check_extensions(args)?;
     let opened_files = outputs(args).map(Pending::begin).collect::<Result<_, _>>()?;

@@ -3,8 +3,10 @@
 pub(super) mod bodies;
 pub(super) mod check;
 pub(super) mod compare;
+pub(super) mod completions;
 pub(super) mod fan;
 pub(super) mod hop;
+pub(super) mod man;
 pub(super) mod map;
 mod map_profiles;
 pub(super) mod plan;

@@ -14,7 +14,7 @@ use crate::cli::{
     load::load_journey,
     output::{self, TableFormat},
     progress::Progress,
-    threads::use_threads,
+    threads,
     trajectory::TrajectoryFile,
     views::{Files, GeoJsonFile, Table, Views},
 };
@@ -22,7 +22,7 @@ use crate::cli::{
 /// Plans a path.
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
-    use_threads(args.answer.threads)?;
+    threads::start(args.answer.threads)?;
     let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Plan)?;
     loaded.ends()?;
     if args.geojson.is_some() {

@@ -12,7 +12,7 @@ use crate::cli::{
     inputs,
     load::load_to_vary,
     progress::Progress,
-    threads::use_threads,
+    threads,
     views::show,
 };
 
@@ -20,7 +20,7 @@ use crate::cli::{
 pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
     let requirement = Requirement::new(&args.vary, [args.from, args.to], args.resolution, args.budget, "--set")?;
-    use_threads(args.answer.threads)?;
+    threads::start(args.answer.threads)?;
     let common = without_option_of(&args.vary, &args.common);
     let to_vary =
         load_to_vary(&args.journey, &common, &args.search, Purpose::Require, &|entries| Ok(requirement.strongest(entries)))?;

@@ -18,7 +18,7 @@ use crate::cli::{
     output,
     progress::Progress,
     run_folder::RunFolder,
-    threads::use_threads,
+    threads,
     trajectory::TrajectoryFile,
     views::show,
     wrong_thing::Role,
@@ -27,7 +27,7 @@ use crate::cli::{
 /// Runs a scenario and writes its results into a folder.
 pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     inputs::look_at(args.input_max_gib, &[(Some(&args.scenario), Role::Scenario)])?;
-    use_threads(args.answer.threads)?;
+    threads::start(args.answer.threads)?;
     let common = CommonArgs::of_scenarios(&args.set, args.accept_map_scale, args.input_max_gib, args.quiet);
     let loaded = load_scenario(&args.scenario, &common, Purpose::Run)?;
     loaded.ends()?;

@@ -10,14 +10,14 @@ use crate::cli::{
     load::load_to_vary,
     output,
     progress::Progress,
-    threads::use_threads,
+    threads,
     views::{Files, Table, Views},
 };
 
 /// Answers every cell.
 pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
-    use_threads(args.answer.threads)?;
+    threads::start(args.answer.threads)?;
     let swept: Vec<_> = args.vary.iter().map(|text| SweptKey::parse(text)).collect::<Result<_, _>>()?;
     // Outputs are opened before the computation, which may take long.
     let mut table = Table::by_extension(args.output.as_deref())?;

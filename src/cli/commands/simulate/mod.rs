@@ -19,7 +19,7 @@ use crate::cli::{
     load::{EndOptions, load},
     output,
     progress::Progress,
-    threads::use_threads,
+    threads,
     trajectory::TrajectoryFile,
     views::{Files, show},
 };
@@ -28,7 +28,7 @@ use crate::cli::{
 pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
     // Set before the terrain is read, since reading starts the threads.
-    use_threads(args.answer.threads)?;
+    threads::start(args.answer.threads)?;
     let ends = EndOptions::of_path(args.journey.start, args.journey.goal);
     let loaded = load(&args.journey.chain, &args.common, Some(&args.search), ends, Purpose::Simulate, &args.own_keys())?;
     if let Some(name) = &args.experiment {
