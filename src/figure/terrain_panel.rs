@@ -104,7 +104,7 @@ impl<'a> TerrainPanel<'a> {
         lengths.sort_by(f64::total_cmp);
         let length_mm = (0.3 * lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)).clamp(1.6, 7.5);
         if self.data.clearance.has_kinks() {
-            for hop in hops {
+            for hop in hops.iter().filter(|hop| !hop.hop.is_beside_line()) {
                 self.clearance(sheet, hop);
             }
         }

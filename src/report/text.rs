@@ -379,9 +379,25 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
         ));
     }
     if let Some(aim) = rows.last().and_then(|row| row.aim) {
+        /// Less than half of the last digit shown.
+        const UNSEEN_M: f64 = 5e-4;
         let side = if aim.landing_miss_m < 0.0 { "short of" } else { "beyond" };
-        if aim.landing_miss_m.abs() >= 5e-4 {
-            sheet.line(format_args!("the last landing lies {:.3} m {side} the goal", aim.landing_miss_m.abs()));
+        match aim.beside.map(|beside| beside.landing_miss_across_m) {
+            Some(across_m) => {
+                let across = if across_m < 0.0 { "right" } else { "left" };
+                sheet.line(format_args!(
+                    "the last landing lies {:.3} m {side} the goal along the line and {:.3} m to its {across}",
+                    aim.landing_miss_m.abs(),
+                    across_m.abs()
+                ));
+                sheet.line(format_args!(
+                    "the hops fly beside the line, in the headings that the machine has: take-off and landing above are projections on it"
+                ));
+            }
+            None if aim.landing_miss_m.abs() >= UNSEEN_M => {
+                sheet.line(format_args!("the last landing lies {:.3} m {side} the goal", aim.landing_miss_m.abs()));
+            }
+            None => {}
         }
     }
     sheet.line(format_args!(

@@ -53,7 +53,7 @@ impl Scenario {
     /// A warning where commands in steps land farther from the goal than trials may.
     fn missed_goal(&self, path: &HopPath) -> Option<String> {
         let tolerance_m = self.uncertainty?.goal_tolerance_m;
-        let miss_m = path.hops.last()?.aim?.miss_m.abs();
+        let miss_m = path.hops.last()?.aim?.distance_m();
         (miss_m > tolerance_m).then(|| {
             format!(
                 "the last landing of commands in steps lies {} m from the goal, farther than uncertainty.goal_tolerance_m of {} m: trials count \
@@ -111,13 +111,6 @@ impl Scenario {
                 "no error that is given has an effect on these trials, so that every trial flies the plan exactly and the rate has no meaning"
                     .to_owned(),
             );
-        }
-        if let Some(propellant_kg) = self.hopper.limits().propellant_max_kg {
-            warnings.push(format!(
-                "trials do not count propellant: hopper.propellant_max_kg of {} kg is held against the plan alone, and a trial that flies more \
-                 or other hops may need more",
-                format_number(propellant_kg)
-            ));
         }
         let limit = keys.hop_limit.filter(|limit| usize::try_from(*limit).is_ok_and(|limit| limit < ground.hops));
         warnings.extend(limit.map(|limit| {

@@ -95,7 +95,7 @@ fn answers(
     let mut answers = Vec::with_capacity(pairs.len());
     let mut drawn = None;
     for (&ends, searched) in pairs.iter().zip(&searched) {
-        let (answer, path) = searched.answer_with_path(&test, ends, options);
+        let (answer, path) = searched.answer_with_path(&test, ends, (&loaded.prepared, options));
         // A path of too many hops to list is one all the same.
         let path = path.unwrap_or(None);
         if let Some(path) = &path {

@@ -90,7 +90,7 @@ impl Compared {
         let test = loaded.hop_test();
         let options = &loaded.scenario.search;
         let searched = Searched::new(&test, ends, &loaded.scenario, Some(args.prove), args.quiet)?;
-        let (check, path) = searched.answer_with_path(&test, ends, options);
+        let (check, path) = searched.answer_with_path(&test, ends, (&loaded.prepared, options));
         let path = path.map_err(|error| Failure::of(&error))?;
         let warnings = path.as_ref().map(|path| loaded.scenario.path_warnings(path)).unwrap_or_default();
         for warning in &warnings {

@@ -3,7 +3,6 @@
 use chta::{
     graph::{Edge, Leg},
     hop::TakeoffSet,
-    path::generate,
     report::{Document, HopAnswer, hop_text},
     study::{Extremes, constant_gravity_warnings},
 };
@@ -39,7 +38,7 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
         let search = &loaded.scenario.search;
         let legs = lofts.map(|lofts| [Leg { takeoff, landing, edge: Edge::Hop(lofts) }]);
         let path =
-            legs.map(|legs| generate(&test, &legs, search.takeoff, search.split)).transpose().map_err(|e| Failure::of(&e))?;
+            legs.map(|legs| loaded.prepared.path(&test, &legs, search)).transpose().map_err(|e| Failure::of(&e))?;
         output::finish(trajectory::filled(Some(file), &args.trajectory, path.as_ref(), &loaded)?.into_iter().collect())?;
     }
     let extremes = answer.best.map_or_else(Extremes::default, |best| Extremes {

@@ -7,7 +7,7 @@ use chta::{
     figure::{FigureError, FigureInput, FigureTitle, Picture, draw},
     graph,
     hop::HopTest,
-    path::{Execution, HopPath, execute},
+    path::{Execution, HopPath},
     quantity::{Angle, AngleInterval},
     report::{
         CheckAnswer, Document, HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, check_text, path_geojson, path_text,
@@ -53,7 +53,7 @@ impl Planned {
         let ends = loaded.ends()?;
         let options = &loaded.scenario.search;
         let searched = Searched::new(test, ends, &loaded.scenario, prove, quiet)?;
-        let (check, path) = searched.answer_with_path(test, ends, options);
+        let (check, path) = searched.answer_with_path(test, ends, (&loaded.prepared, options));
         let path = path.map_err(|error| Failure::of(&error))?;
         if let Some(path) = path.as_ref().filter(|_| verify) {
             verified(loaded, path, ends)?;
@@ -176,11 +176,9 @@ pub(super) fn format_ground(scenario: &Scenario) -> String {
     parts.join("; ")
 }
 
-/// Flies a path along its chain again.
-fn verified(loaded: &Loaded, path: &HopPath, (start, goal): (Station, Station)) -> Result<(), Failure> {
-    // Commands in steps land near the goal; the answer says by how much they miss it.
-    let landing = path.hops.last().filter(|hop| hop.aim.is_some()).and_then(|hop| hop.landing.station);
-    passed(&execute(loaded.prepared.chain.as_ref(), path, Some((start, landing.unwrap_or(goal)))))
+/// Flies a path again.
+fn verified(loaded: &Loaded, path: &HopPath, ends: (Station, Station)) -> Result<(), Failure> {
+    passed(&loaded.prepared.execute(path, ends))
 }
 
 /// Reports a path that breaks a limit when it is flown again as a defect of the program.

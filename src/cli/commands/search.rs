@@ -8,9 +8,10 @@ use chta::{
         search_most_reliable,
     },
     hop::HopTest,
-    path::{HopPath, PathError, TooManyHops, generate},
+    path::{HopPath, PathError, TooManyHops},
     report::CheckAnswer,
     scenario::Scenario,
+    study::Prepared,
 };
 
 use crate::cli::{Failure, args::ProveArgs, progress::Progress};
@@ -87,11 +88,11 @@ impl Searched {
         &self,
         test: &HopTest,
         ends: (Station, Station),
-        options: &graph::SearchOptions,
+        (prepared, options): (&Prepared, &graph::SearchOptions),
     ) -> (CheckAnswer, Result<Option<HopPath>, TooManyHops>) {
         let answer = self.answer(test, ends, options.effort);
         let Outcome::Path { legs, .. } = &self.found.outcome else { return (answer, Ok(None)) };
-        match generate(test, legs, options.takeoff, options.split) {
+        match prepared.path(test, legs, options) {
             Ok(path) => (answer.with_path(Some(&path)), Ok(Some(path))),
             Err(PathError::TooManyHops(problem)) => (answer, Err(problem)),
             Err(PathError::NoCommand(problem)) => (answer.without_commands(&problem), Ok(None)),

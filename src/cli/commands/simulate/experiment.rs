@@ -183,12 +183,12 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let Outcome::Path { legs, .. } = &found.outcome else {
         return Err(Failure::message("there is no nominal path to compare with"));
     };
-    let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| Failure::of(&error))?;
+    let plain = loaded.prepared.path(&test, legs, &scenario.search).map_err(|error| Failure::of(&error))?;
     let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy), args.common.quiet)?;
     let options = keys.options();
     let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
     for candidate in &reliable_paths {
-        let path = generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split)
+        let path = loaded.prepared.path(&test, &candidate.legs, &scenario.search)
             .map_err(|error| Failure::of(&error))?;
         let summary = flyer.fly_along(&path, &options)?;
         rows.push(RiskTradeRow::new("surest", path.hops.len(), Some(candidate.success), &summary));

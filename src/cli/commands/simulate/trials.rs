@@ -50,6 +50,8 @@ impl<'a> Flyer<'a> {
         quiet: bool,
     ) -> Result<Self, Failure> {
         let ground = match &loaded.scenario.terrain {
+            // Read for hops beside the line.
+            Some(_) if loaded.prepared.beside_line.is_some() => loaded.prepared.beside_line.as_deref().cloned(),
             Some(TerrainSource::Dem { path, .. }) => {
                 let file = loaded.base.join(path);
                 let dem = DemReading::of(&loaded.scenario).options.read(&file).map_err(|error| Failure::about(&file, &error))?;
