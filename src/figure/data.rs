@@ -69,8 +69,8 @@ pub enum Subject {
     },
     /// No path over these nodes.
     Stopped(Box<StoppedFigure>),
-    /// A path of so many hops with exact commands, which no commands in the machine's steps fly.
-    NoCommands(u64),
+    /// A path of so many hops with exact commands, which no commands in the machine's steps fly, and why not.
+    NoCommands(u64, Option<String>),
     /// No hop at all can take off or land at start, goal or both.
     EndpointsRefuse(Vec<EndpointRefusal>),
 }
@@ -182,7 +182,7 @@ impl FigureData {
             Outcome::Path { .. } => match input.path {
                 Some(path) => path_subject(input, path),
                 None if input.test.hopper().limits().steps.is_continuous() => return Err(FigureError::NoHops),
-                None => Subject::NoCommands(input.answer.hops().unwrap_or(0)),
+                None => Subject::NoCommands(input.answer.hops().unwrap_or(0), input.title.refusal.clone()),
             },
             Outcome::EndpointsRefuse(refusals) => Subject::EndpointsRefuse(refusals.clone()),
             Outcome::NoPath(frontier) => Subject::Stopped(Box::new(stopped(frontier, &nodes))),
@@ -221,9 +221,8 @@ fn path_subject(input: &FigureInput<'_>, path: &HopPath) -> Subject {
 fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
     let test = input.test;
     let stations = hop.takeoff.station.zip(hop.landing.station);
-    let sight = stations
-        .and_then(|(takeoff, landing)| test.line_of_sight(&takeoff, &landing))
-        .unwrap_or_else(|| hop.line_of_sight());
+    let sight =
+        stations.and_then(|(takeoff, landing)| test.line_of_sight(&takeoff, &landing)).unwrap_or_else(|| hop.line_of_sight());
     let windows = windows(test, hop, stations);
     let gravity_m_s2 = test.gravity_m_s2();
     let cone = |station: Option<Station>, contact| {

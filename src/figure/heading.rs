@@ -121,7 +121,7 @@ fn verdict(answer: &Answer, data: &FigureData) -> String {
         Subject::Stopped(_) => {
             format!("no path over {} nodes, at most {} inside a segment", answer.nodes, answer.points_per_segment)
         }
-        Subject::NoCommands(hops) => {
+        Subject::NoCommands(hops, _) => {
             let plural = if *hops == 1 { "" } else { "s" };
             format!("no commands in steps found for the path of {hops} hop{plural}")
         }
@@ -158,7 +158,10 @@ fn remarks(data: &FigureData) -> Vec<String> {
                 .map(|(from, to, why)| format!("Nearest miss, from x = {} m to x = {} m: {why}.", place(from.x_m), place(to.x_m)));
             miss.into_iter().chain(std::iter::once("Denser nodes may still hold a path.".to_owned())).collect()
         }
-        Subject::NoCommands(_) => vec!["Smaller steps, or another path, may have commands.".to_owned()],
+        Subject::NoCommands(_, refusal) => {
+            let refusal = refusal.as_ref().map(|refusal| format!("Refused: {refusal}."));
+            refusal.into_iter().chain(std::iter::once("Smaller steps, or another path, may have commands.".to_owned())).collect()
+        }
         Subject::EndpointsRefuse(refusals) => refusals.iter().map(endpoint).collect(),
     }
 }

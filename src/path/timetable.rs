@@ -3,11 +3,7 @@
 use nalgebra::Vector2;
 
 use super::{Hop, HopPath};
-use crate::{
-    ballistics::Arc,
-    quantity::MapPoint,
-    world::HopperLimits,
-};
+use crate::{ballistics::Arc, quantity::MapPoint, world::HopperLimits};
 
 /// What the hopper does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -75,6 +75,7 @@ pub struct AimRecord {
 }
 
 /// The aim of a hop beside the line, and its miss to the side.
+#[expect(clippy::struct_field_names, reason = "names of columns, which end in the unit")]
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct AimBesideRecord {
     /// By how much the landing lies to the left of the line through the aim.
@@ -361,7 +362,8 @@ fn columns(known: MapKnowledge, extra: ExtraColumns) -> Vec<String> {
     let projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
     let aims: &[&str] = if extra.aims { &AIM_COLUMNS } else { &[] };
     let beside: &[&str] = if extra.beside { &BESIDE_COLUMNS } else { &[] };
-    let own = COLUMNS.iter().chain(extra.stores).chain(map).chain(projection).chain(aims).chain(beside).map(|&column| column.to_owned());
+    let own =
+        COLUMNS.iter().chain(extra.stores).chain(map).chain(projection).chain(aims).chain(beside).map(|&column| column.to_owned());
     own.chain(HopMarginsRecord::columns()).collect()
 }
 

@@ -163,6 +163,15 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     let (from, to) = (format_number(answer.from), with_unit(answer.to));
     sheet.line(format_args!("{vary}: from x = {} m to x = {} m", place(answer.start_x_m), place(answer.goal_x_m)));
     match answer.reachable_at {
+        Some(value) if answer.never_binds => {
+            let hops = answer.hops.unwrap_or(0);
+            sheet.line(format_args!(
+                "does not bind at any value: reachable in {hops} hop{} of which none is long enough for its taper to reach {}, so that any \
+                 greater value asks for the same",
+                plural(hops),
+                with_unit(value)
+            ));
+        }
         Some(value) => {
             let hops = answer.hops.unwrap_or(0);
             sheet.line(format_args!("reachable at {}, in {hops} hop{}", with_unit(value), plural(hops)));
@@ -171,6 +180,7 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     }
     match answer.unreachable_at {
         Some(value) => sheet.line(format_args!("proved unreachable at {}", with_unit(value))),
+        None if answer.never_binds => {}
         None => sheet.line(format_args!("proved unreachable at no value from {from} to {to}")),
     }
     if !answer.resolution_met {

@@ -63,17 +63,14 @@ impl Prepared {
     /// Commands in steps land near the goal, and their last landing stands for it.
     pub fn execute(&self, path: &HopPath, (start, goal): (Station, Station)) -> Execution {
         let landing = path.hops.last().filter(|hop| hop.aim.is_some()).map(|hop| hop.landing);
-        match (&self.beside_line, landing.filter(|_| path.hops.iter().any(Hop::is_beside_line))) {
-            (Some(dem), Some(landing)) => {
-                let start = dem.contact_at(&self.chain.contact_point(&start));
-                let landing = MapPosition { at: landing.point_m.xy(), z_m: landing.point_m.z };
-                execute(dem.as_ref(), path, start.map(|start| (start, landing)))
-            }
-            _ => {
-                let goal = landing.and_then(|landing| landing.station).unwrap_or(goal);
-                execute(self.chain.as_ref(), path, Some((start, goal)))
-            }
+        let beside = landing.filter(|_| path.hops.iter().any(Hop::is_beside_line));
+        if let (Some(dem), Some(landing)) = (&self.beside_line, beside) {
+            let start = dem.contact_at(&self.chain.contact_point(&start));
+            let landing = MapPosition { at: landing.point_m.xy(), z_m: landing.point_m.z };
+            return execute(dem.as_ref(), path, start.map(|start| (start, landing)));
         }
+        let goal = landing.and_then(|landing| landing.station).unwrap_or(goal);
+        execute(self.chain.as_ref(), path, Some((start, goal)))
     }
 }
 
@@ -184,11 +181,13 @@ impl Survey {
         let body = &scenario.body;
         let (transect, of_extent) = match source {
             TerrainSource::Dem { path, start, goal } => {
-                on_body(body, Transect::of_dem(&base.join(path), [start, goal], &scenario.via, DemReading::of(scenario)))?
+                let read = Transect::of_dem(&base.join(path), [start, goal], &scenario.via, DemReading::of(scenario));
+                on_body(body, read.map_err(|error| error.of_journey(start.metres(), goal.metres())))?
             }
             TerrainSource::Mesh { path, scale, start, goal } => {
                 let via: Vec<MapPoint> = scenario.via.iter().filter_map(MapPlace::metres).collect();
-                on_body(body, Transect::of_mesh(&base.join(path), (*scale, scenario.no_data), [*start, *goal], &via))?
+                let read = Transect::of_mesh(&base.join(path), (*scale, scenario.no_data), [*start, *goal], &via);
+                on_body(body, read.map_err(|error| error.of_journey(Some(*start), Some(*goal))))?
             }
             TerrainSource::Chain { path } => {
                 let (file, _) = on_body(body, Ok(csv::read_chain_csv_file_with(base.join(path), scenario.no_data)?))?;

@@ -64,12 +64,24 @@ impl Scenario {
         })
     }
 
+    /// Whether every hop of a path is too short to keep the whole of a tapered clearance: whatever the clearance, above this one the path
+    /// has to keep no more.
+    pub fn keeps_no_clearance_in_full(&self, path: &HopPath) -> bool {
+        self.most_clearance_m(path).is_some_and(|(_, _, most_m)| most_m < self.hopper.limits().clearance_m)
+    }
+
+    /// The taper, the longest hop of a path, m, and the most of a tapered clearance that it can be asked to keep, m; `None` without a taper
+    /// or without hops.
+    fn most_clearance_m(&self, path: &HopPath) -> Option<(f64, f64, f64)> {
+        let taper = self.hopper.limits().clearance_rule.taper()?;
+        let longest_m = path.hops.iter().map(Hop::run_m).reduce(f64::max)?;
+        Some((taper, longest_m, 0.5 * taper * longest_m))
+    }
+
     /// A warning where every hop of a path is too short to keep the whole of a tapered clearance.
     fn unkept_clearance(&self, path: &HopPath) -> Option<String> {
         let limits = self.hopper.limits();
-        let taper = limits.clearance_rule.taper()?;
-        let longest_m = path.hops.iter().map(Hop::run_m).reduce(f64::max)?;
-        let most_m = 0.5 * taper * longest_m;
+        let (taper, longest_m, most_m) = self.most_clearance_m(path)?;
         (most_m < limits.clearance_m).then(|| {
             format!(
                 "no hop keeps hopper.clearance_m of {} m in full: at a clearance_taper of {} the longest, of {} m, keeps {} m at its middle; \

@@ -159,8 +159,7 @@ impl MapReplan {
         let away2 = |node: &MapPosition| (node.at - from.at).norm_squared();
         let nearest = (0..self.nodes.len()).min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
         let mut successors = self.to_go.reliable_successors(NodeId(nearest)).iter();
-        let commands =
-            if self.ground.hopper().limits().steps.is_continuous() { Commands::Exact } else { Commands::InSteps };
+        let commands = if self.ground.hopper().limits().steps.is_continuous() { Commands::Exact } else { Commands::InSteps };
         successors.find_map(|node| self.hop_to(from, node.index(), None, commands)).map(|(command, _)| command)
     }
 }

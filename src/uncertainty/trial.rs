@@ -185,9 +185,10 @@ impl<G: FirstContact> Journey<'_, G> {
             return 0.0;
         }
         let limits = self.ground.hopper().limits();
-        let braking = limits.landing.touchdown_speed_m_s().filter(|_| flown.landed).map_or(0.0, |touchdown_m_s| {
-            libm::hypot(flown.touchdown.horizontal_m_s, flown.touchdown.vertical_m_s + touchdown_m_s)
-        });
+        let braking =
+            limits.landing.touchdown_speed_m_s().filter(|_| flown.landed).map_or(0.0, |touchdown_m_s| {
+                libm::hypot(flown.touchdown.horizontal_m_s, flown.touchdown.vertical_m_s + touchdown_m_s)
+            });
         libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s) + braking + limits.hop_delta_v_overhead_m_s.unwrap_or(0.0)
     }
 

@@ -126,7 +126,10 @@ fn without_the_dem_the_line_alone_is_known() {
     let limits = HopperLimits { steps: steps(None, None, Some(5.0)), ..HopperLimits::with_speeds(5.0, 5.0) };
     let journey = journey(|_| 0.0, limits, [away(0.0, 0.0), away(7.0, 12.0)]);
     let error = generate(&journey.test, &journey.legs().unwrap(), TakeoffChoice::LeastSpeed, Split::Equal).unwrap_err();
-    assert!(matches!(&error, PathError::NoCommand(NoCommand::Heading { hop: 1, nearest_deg, .. }) if nearest_deg == "5"), "{error}");
+    assert!(
+        matches!(&error, PathError::NoCommand(NoCommand::Heading { hop: 1, nearest_deg, .. }) if nearest_deg == "5"),
+        "{error}"
+    );
 }
 
 /// A path spoiled in one number, and what the checker has to name.
@@ -134,16 +137,27 @@ type Spoiled = (&'static str, fn(&mut Hop), fn(&ViolatedLimit) -> bool);
 
 const SPOILED: [Spoiled; 5] = [
     ("heading", |hop| hop.heading_deg += 0.01, |limit| *limit == ViolatedLimit::Limit(Limit::HeadingStep)),
-    ("speed", |hop| hop.takeoff_speed_m_s *= 1.01, |limit| {
-        matches!(limit, ViolatedLimit::LandingPoint | ViolatedLimit::Limit(Limit::TakeoffSpeedStep | Limit::TakeoffSpeed))
-    }),
-    ("landing", |hop| hop.landing.point_m.x += 0.01, |limit| {
-        matches!(limit, ViolatedLimit::StatedValue(StatedValue::Heading | StatedValue::LandingStation) | ViolatedLimit::LandingPoint)
-    }),
+    (
+        "speed",
+        |hop| hop.takeoff_speed_m_s *= 1.01,
+        |limit| matches!(limit, ViolatedLimit::LandingPoint | ViolatedLimit::Limit(Limit::TakeoffSpeedStep | Limit::TakeoffSpeed)),
+    ),
+    (
+        "landing",
+        |hop| hop.landing.point_m.x += 0.01,
+        |limit| {
+            matches!(
+                limit,
+                ViolatedLimit::StatedValue(StatedValue::Heading | StatedValue::LandingStation) | ViolatedLimit::LandingPoint
+            )
+        },
+    ),
     ("take-off", |hop| hop.takeoff.point_m.y += 0.01, |limit| *limit == ViolatedLimit::Continuity),
-    ("next heading", |hop| hop.heading_deg = (hop.heading_deg + 30.0) % 360.0, |limit| {
-        *limit == ViolatedLimit::StatedValue(StatedValue::Heading)
-    }),
+    (
+        "next heading",
+        |hop| hop.heading_deg = (hop.heading_deg + 30.0) % 360.0,
+        |limit| *limit == ViolatedLimit::StatedValue(StatedValue::Heading),
+    ),
 ];
 
 #[test]
@@ -203,23 +217,26 @@ fn any_command(journey: &Journey, angle_deg: f64, speed_m_s: f64, heading_deg: f
     let max_m_s = journey.ground.hopper().limits().takeoff_speed_max_m_s;
     let count = |most: f64, step: f64| (0..).map(f64::from).map(move |i| i * step).take_while(move |value| *value < most);
     let commands = count(360.0, heading_deg).flat_map(|heading| {
-        count(90.0, angle_deg).flat_map(move |angle| count(max_m_s + speed_m_s, speed_m_s).map(move |speed| (heading, angle, speed)))
+        count(90.0, angle_deg)
+            .flat_map(move |angle| count(max_m_s + speed_m_s, speed_m_s).map(move |speed| (heading, angle, speed)))
     });
-    commands.into_iter().filter(|(_, _, speed)| *speed > 0.0 && *speed <= tolerant_speed_m_s(max_m_s)).any(|(heading, angle, speed)| {
-        let (east, north) = heading.to_radians().sin_cos();
-        let (up, across) = angle.to_radians().sin_cos();
-        let liftoff =
-            LiftoffVelocity { heading: Vector2::new(east, north), horizontal_m_s: speed * across, vertical_m_s: speed * up };
-        let flight = journey.ground.first_contact(&start, &liftoff, &goal);
-        let Some(landing) = flight.support_facet.and_then(|_| journey.ground.position(flight.end.at)) else { return false };
-        if (landing.at - goal.at).norm() > 0.25 * run_m {
-            return false;
-        }
-        let Some(windows) = journey.ground.windows(&start, &landing) else { return false };
-        let loft = angle.to_radians().tan() - windows.sight.slope();
-        // The arc of this angle through the landing has the speed of the command, since it lands there.
-        windows.lofts.iter().any(|lofts| lofts.lower <= loft && loft <= lofts.upper)
-    })
+    commands.into_iter().filter(|(_, _, speed)| *speed > 0.0 && *speed <= tolerant_speed_m_s(max_m_s)).any(
+        |(heading, angle, speed)| {
+            let (east, north) = heading.to_radians().sin_cos();
+            let (up, across) = angle.to_radians().sin_cos();
+            let liftoff =
+                LiftoffVelocity { heading: Vector2::new(east, north), horizontal_m_s: speed * across, vertical_m_s: speed * up };
+            let flight = journey.ground.first_contact(&start, &liftoff, &goal);
+            let Some(landing) = flight.support_facet.and_then(|_| journey.ground.position(flight.end.at)) else { return false };
+            if (landing.at - goal.at).norm() > 0.25 * run_m {
+                return false;
+            }
+            let Some(windows) = journey.ground.windows(&start, &landing) else { return false };
+            let loft = angle.to_radians().tan() - windows.sight.slope();
+            // The arc of this angle through the landing has the speed of the command, since it lands there.
+            windows.lofts.iter().any(|lofts| lofts.lower <= loft && loft <= lofts.upper)
+        },
+    )
 }
 
 #[test]
@@ -266,21 +283,22 @@ fn trials_without_errors_fly_the_commands_of_the_plan() {
     let to_go = Arc::new(CostToGo::of(&journey.test, nodes, &options, &()).unwrap());
     let last = path.hops.last().unwrap();
     let miss_m = last.aim.unwrap().distance_m();
-    let mission =
-        Mission::over_dem(journey.ground.clone(), path.clone(), chain.contact_point(&start), chain.contact_point(&goal))
-            .with_replanning(journey.test.clone(), to_go);
+    let mission = Mission::over_dem(journey.ground.clone(), path.clone(), chain.contact_point(&start), chain.contact_point(&goal))
+        .with_replanning(journey.test.clone(), to_go);
     let simulation = Simulation::new(&mission, Uncertainty::NONE).unwrap();
     for (policy, tolerance_m, expected) in
         [(Policy::OpenLoop, miss_m + 1e-9, 5), (Policy::OpenLoop, miss_m - 1e-6, 0), (Policy::Replan, 1.5, 5)]
     {
-        let options =
-            TrialOptions { trials: 5, goal_tolerance_m: tolerance_m, policy, trajectories: 1, ..TrialOptions::default() };
+        let options = TrialOptions { trials: 5, goal_tolerance_m: tolerance_m, policy, trajectories: 1, ..TrialOptions::default() };
         let summary = simulation.run(&options, &mut (), &()).unwrap();
         assert_eq!(summary.outcomes.of(TrialOutcome::Reached), expected, "{policy:?} {tolerance_m}: {:?}", summary.outcomes);
         for hop in &summary.trajectories[0].hops {
             let heading_deg = hop.heading.x.atan2(hop.heading.y).to_degrees();
             assert!(is_multiple(heading_deg, 15.0) || (heading_deg / 15.0).fract().abs() < 1e-9, "{policy:?}: {heading_deg}");
-            assert!(is_multiple(hop.takeoff_angle().degrees(), 2.0) && is_multiple(hop.takeoff_speed_m_s(), 0.1), "{policy:?}: {hop:?}");
+            assert!(
+                is_multiple(hop.takeoff_angle().degrees(), 2.0) && is_multiple(hop.takeoff_speed_m_s(), 0.1),
+                "{policy:?}: {hop:?}"
+            );
         }
     }
 }

@@ -37,8 +37,7 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
         let lofts = test.takeoff_set(&takeoff, &landing).as_ref().and_then(TakeoffSet::lofts);
         let search = &loaded.scenario.search;
         let legs = lofts.map(|lofts| [Leg { takeoff, landing, edge: Edge::Hop(lofts) }]);
-        let path =
-            legs.map(|legs| loaded.prepared.path(&test, &legs, search)).transpose().map_err(|e| Failure::of(&e))?;
+        let path = legs.map(|legs| loaded.prepared.path(&test, &legs, search)).transpose().map_err(|e| Failure::of(&e))?;
         output::finish(trajectory::filled(Some(file), &args.trajectory, path.as_ref(), &loaded)?.into_iter().collect())?;
     }
     let extremes = answer.best.map_or_else(Extremes::default, |best| Extremes {

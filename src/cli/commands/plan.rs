@@ -142,6 +142,7 @@ impl Planned {
                 name: scenario.title.clone().unwrap_or_default(),
                 body: scenario.body.name.clone().unwrap_or_default(),
                 ground: format_ground(scenario),
+                refusal: self.check().commands_refusal.clone(),
             },
         })
     }

@@ -38,11 +38,14 @@ const fn capability(path: &'static str, more_is_more: bool, from: f64, to: f64) 
     Capability { path, more_is_more, from, to }
 }
 
+/// The key of the height to keep over the ground.
+const CLEARANCE: &str = "hopper.clearance_m";
+
 /// All keys for which a more capable value never removes a feasible hop.
 const CAPABILITIES: [Capability; 12] = [
     capability("hopper.takeoff_speed_max_m_s", true, 0.01, 100.0),
     capability("hopper.landing_speed_max_m_s", true, 0.01, 100.0),
-    capability("hopper.clearance_m", false, 0.0, 100.0),
+    capability(CLEARANCE, false, 0.0, 100.0),
     capability("hopper.takeoff_angle_min_deg", false, -90.0, 90.0),
     capability("hopper.takeoff_angle_max_deg", true, -90.0, 90.0),
     capability("hopper.apex_height_max_m", true, 0.001, 1000.0),
@@ -125,6 +128,7 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
         to,
         resolution: args.resolution,
         resolution_met: range.is_met(&threshold),
+        never_binds: false,
         tries: tries.iter().map(Tried::record).collect(),
         hops: None,
         path: Vec::new(),
@@ -166,6 +170,7 @@ impl Tried {
             let test = self.loaded.hop_test();
             answer.hops = self.bounds.upper();
             if let Ok(path) = generate(&test, legs, options.takeoff, options.split) {
+                answer.never_binds = answer.vary == CLEARANCE && self.loaded.scenario.keeps_no_clearance_in_full(&path);
                 answer.path = HopRecord::rows(&path, self.loaded.prepared.projection.as_ref());
                 answer.totals = Some(TotalsRecord::from(&path.totals));
             }
@@ -233,7 +238,7 @@ fn with_value(args: &RequireArgs, value: f64, quiet: bool) -> Result<Loaded, Fai
     // A named option would override the value.
     match args.vary.as_str() {
         "body.gravity_m_s2" => common.gravity_m_s2 = None,
-        "hopper.clearance_m" => common.clearance_m = None,
+        CLEARANCE => common.clearance_m = None,
         _ => {}
     }
     common.set.push(format!("{}={value:?}", args.vary));

@@ -50,6 +50,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let loaded = load_scenario(scenario, &common, Purpose::Run)?;
     let ends = loaded.ends()?;
     output::check_folder(folder)?;
+    if in_time.trajectory.as_deref().is_some_and(|file| file.parent() == Some(folder.as_path())) {
+        made(folder)?;
+    }
     let trajectory_file = trajectory::begin(in_time)?;
     let test = loaded.hop_test();
     let planned = Planned::new(&loaded, &test, None, true, *quiet)?;
@@ -72,9 +75,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     }
     let simulate::RunTrials { text: trials_text, files: of_trials } = simulate::of_run(&loaded, &test, &planned, *quiet)?;
     files.extend(of_trials);
-    fs::create_dir_all(folder).map_err(|error| {
-        Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
-    })?;
+    made(folder)?;
     claims::repeats(&folder.join(RESULT));
     let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
     let paths: Vec<_> = names.iter().map(|name| folder.join(name)).collect();
@@ -97,4 +98,11 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     };
     output::to_stdout(text.as_bytes())?;
     Ok(planned.verdict())
+}
+
+/// Makes the folder of the files, if there is none yet.
+fn made(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder).map_err(|error| {
+        Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
+    })
 }

@@ -114,7 +114,8 @@ impl SteppedGround for ChainGround {
 
     fn targets(&self, takeoff: &ChainPosition, aim: &ChainPosition, _: CommandSteps) -> Vec<Target<ChainPosition>> {
         let direction = Direction::between(takeoff.station.point.x_m, aim.station.point.x_m);
-        let target = direction.map(|direction| Target { at: *aim, heading: Heading { along: heading_of(direction), degrees: None } });
+        let target =
+            direction.map(|direction| Target { at: *aim, heading: Heading { along: heading_of(direction), degrees: None } });
         target.into_iter().collect()
     }
 }

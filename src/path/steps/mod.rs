@@ -58,8 +58,8 @@ pub enum NoCommand {
     #[error(
         "hop {hop} flies along the transect at a heading of {heading_deg} degrees from grid north, and the nearest that \
          hopper.heading_step_deg allows is {nearest_deg}: a hop at this heading leaves the line, and the ground is known on the line alone; \
-         choose start and goal so that the transect has this heading, give the DEM that the line was cut from (terrain.dem), or leave the \
-         key out"
+         choose start and goal so that the transect has this heading, such as {goal}, give the DEM that the line was cut from (terrain.dem), \
+         or leave the key out"
     )]
     Heading {
         /// The hop, from 1.
@@ -68,6 +68,8 @@ pub enum NoCommand {
         heading_deg: String,
         /// The nearest multiple of the step.
         nearest_deg: String,
+        /// The ends of a line with this heading, from where the hop takes off as far as where the path ends.
+        goal: String,
     },
 }
 
@@ -141,7 +143,17 @@ fn headings(hops: &[Hop], steps: CommandSteps) -> Result<(), NoCommand> {
         if hop.takeoff.map().is_some() && !steps.has_heading(hop.heading_deg) {
             let nearest_deg = headings_near(hop.heading_deg, step_deg).first().copied().unwrap_or(0.0);
             let text = |degrees: f64| format!("{degrees:.6}").trim_end_matches('0').trim_end_matches('.').to_owned();
-            return Err(NoCommand::Heading { hop: i + 1, heading_deg: text(hop.heading_deg), nearest_deg: text(nearest_deg) });
+            let from = hop.takeoff.point_m.xy();
+            let length_m = hops.last().map_or(0.0, |last| (last.landing.point_m.xy() - from).norm());
+            let (east, north) = libm::sincos(nearest_deg.to_radians());
+            let to = (from.x + length_m * east, from.y + length_m * north);
+            let goal = format!("({:.3}, {:.3}) m to ({:.3}, {:.3}) m", from.x, from.y, to.0, to.1);
+            return Err(NoCommand::Heading {
+                hop: i + 1,
+                heading_deg: text(hop.heading_deg),
+                nearest_deg: text(nearest_deg),
+                goal,
+            });
         }
     }
     Ok(())
@@ -270,8 +282,7 @@ impl<G: SteppedGround> Machine<'_, G> {
         let CommandSteps { takeoff_angle, takeoff_speed_m_s, heading } = self.steps;
         let angle = takeoff_angle.map(|step| format!("{} degrees", step.written_degrees()));
         let speed = takeoff_speed_m_s.map(|step| format!("{step} m/s"));
-        let heading =
-            heading.filter(|_| G::LEAVES_THE_LINE).map(|step| format!("{} degrees of heading", step.written_degrees()));
+        let heading = heading.filter(|_| G::LEAVES_THE_LINE).map(|step| format!("{} degrees of heading", step.written_degrees()));
         NoCommand::Refused {
             hop: hop + 1,
             hops: planned.len(),

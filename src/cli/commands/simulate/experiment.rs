@@ -188,8 +188,7 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let options = keys.options();
     let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
     for candidate in &reliable_paths {
-        let path = loaded.prepared.path(&test, &candidate.legs, &scenario.search)
-            .map_err(|error| Failure::of(&error))?;
+        let path = loaded.prepared.path(&test, &candidate.legs, &scenario.search).map_err(|error| Failure::of(&error))?;
         let summary = flyer.fly_along(&path, &options)?;
         rows.push(RiskTradeRow::new("surest", path.hops.len(), Some(candidate.success), &summary));
     }
