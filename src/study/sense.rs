@@ -56,8 +56,8 @@ impl Scenario {
         let miss_m = path.hops.last()?.aim?.distance_m();
         (miss_m > tolerance_m).then(|| {
             format!(
-                "the last landing of commands in steps lies {} m from the goal, farther than uncertainty.goal_tolerance_m of {} m: trials count \
-                 it as missed",
+                "the last landing of commands in steps lies {} m from the goal, farther than uncertainty.goal_tolerance_m of {} m: a \
+                 trial that flies this plan exactly counts as missed; raise the tolerance, or take smaller steps",
                 format_number(miss_m),
                 format_number(tolerance_m)
             )

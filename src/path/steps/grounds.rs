@@ -74,6 +74,9 @@ pub(crate) trait SteppedGround: FirstContact {
     /// Whether hops may leave the line of the planned path.
     const LEAVES_THE_LINE: bool;
 
+    /// How many commands are flown at most for one hop of a replanned trial.
+    const TRIED_ANEW: usize;
+
     /// The hop test from one contact to another.
     ///
     /// # Errors
@@ -95,6 +98,7 @@ pub(crate) trait SteppedGround: FirstContact {
 
 impl SteppedGround for ChainGround {
     const LEAVES_THE_LINE: bool = false;
+    const TRIED_ANEW: usize = usize::MAX;
 
     fn pair(&self, takeoff: &ChainPosition, landing: &ChainPosition) -> Result<Pair, Limit> {
         Ok(Pair { test: self.test().clone(), takeoff: takeoff.station, landing: landing.station })
@@ -122,6 +126,8 @@ impl SteppedGround for ChainGround {
 
 impl SteppedGround for DemGround {
     const LEAVES_THE_LINE: bool = true;
+    /// Each of them cuts a slice, and a hopper without commands asks for those to every node within its reach.
+    const TRIED_ANEW: usize = 24;
 
     /// The hop test of the slice between the two positions.
     fn pair(&self, takeoff: &MapPosition, landing: &MapPosition) -> Result<Pair, Limit> {

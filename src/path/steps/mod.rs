@@ -128,9 +128,13 @@ pub(crate) fn nearest_command<G: SteppedGround>(
 ) -> Option<NearestCommand<G::Contact>> {
     let steps = ground.hopper().limits().steps;
     let machine = Machine { ground, steps, choice };
-    ground.targets(takeoff, aim, steps).into_iter().find_map(|target| {
-        let commands = machine.commands(takeoff, &target).ok()?;
-        let flown = commands.into_iter().find_map(|command| machine.fly(takeoff, command, &target, aim).ok())?;
+    let targets = ground.targets(takeoff, aim, steps).into_iter();
+    let commands = targets.flat_map(|target| {
+        let commands = machine.commands(takeoff, &target).unwrap_or_default();
+        commands.into_iter().map(move |command| (target, command))
+    });
+    commands.take(G::TRIED_ANEW).find_map(|(target, command)| {
+        let flown = machine.fly(takeoff, command, &target, aim).ok()?;
         let liftoff = liftoff(flown.command, target.heading);
         Some(NearestCommand { liftoff, speed_m_s: flown.command.1, landing: flown.landing })
     })
