@@ -38,10 +38,23 @@ pub(crate) struct RunFolder<'a> {
     in_time: Option<(Pending<'a>, Vec<u8>)>,
 }
 
+/// Makes the folder of the files, if there is none yet.
+fn made(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder).map_err(|error| {
+        Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
+    })
+}
+
 impl<'a> RunFolder<'a> {
-    /// A folder without files.
-    pub(crate) const fn new(folder: &'a Path) -> Self {
-        Self { folder, files: Vec::new(), in_time: None }
+    /// A folder without files; `in_time`: a file beside them that is opened at once, so that its folder has to be there.
+    ///
+    /// # Errors
+    /// A folder that cannot be made.
+    pub(crate) fn new(folder: &'a Path, in_time: Option<&Path>) -> Result<Self, Failure> {
+        if in_time.is_some_and(|file| file.parent() == Some(folder)) {
+            made(folder)?;
+        }
+        Ok(Self { folder, files: Vec::new(), in_time: None })
     }
 
     /// Adds the path in time, which has a place of its own.
@@ -86,9 +99,7 @@ impl<'a> RunFolder<'a> {
     /// Writes all files or none, and removes those of an earlier run that this one does not have. Returns what was written, in words.
     pub(crate) fn write(self) -> Result<String, Failure> {
         let Self { folder, files, in_time } = self;
-        fs::create_dir_all(folder).map_err(|error| {
-            Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
-        })?;
+        made(folder)?;
         claims::repeats(&folder.join(RESULT));
         let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
         let pending: Result<Vec<_>, Failure> =

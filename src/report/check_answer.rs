@@ -189,7 +189,7 @@ impl CheckAnswer {
     pub fn with_path(mut self, path: Option<&HopPath>) -> Self {
         self.propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
         let aims = path.into_iter().flat_map(|path| &path.hops).filter_map(|hop| hop.aim);
-        self.landing_miss_max_m = aims.map(|aim| aim.miss_m.abs()).reduce(f64::max);
+        self.landing_miss_max_m = aims.map(|aim| aim.distance_m()).reduce(f64::max);
         if let (Some(path), Some(_), Some(effort)) = (path, self.landing_miss_max_m, &mut self.effort) {
             // Not that of the exact commands.
             effort.value = path.effort(effort.of);

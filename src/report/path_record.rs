@@ -9,7 +9,7 @@ use super::{
     propellant_record::{StoresRecord, stores_columns},
 };
 use crate::{
-    path::{Hop, HopPath, Totals},
+    path::{Aim, Hop, HopPath, Totals},
     quantity::MapPoint,
     terrain::MapProjection,
 };
@@ -69,6 +69,32 @@ pub struct AimRecord {
     pub aim_x_m: f64,
     /// By how much the landing lies beyond it along the profile; negative short of it.
     pub landing_miss_m: f64,
+    /// Of a hop beside the line.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub beside: Option<AimBesideRecord>,
+}
+
+/// The aim of a hop beside the line, and its miss to the side.
+#[expect(clippy::struct_field_names, reason = "names of columns, which end in the unit")]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct AimBesideRecord {
+    /// By how much the landing lies to the left of the line through the aim.
+    pub landing_miss_across_m: f64,
+    /// The planned landing, easting.
+    pub aim_map_x_m: f64,
+    /// The planned landing, northing.
+    pub aim_map_y_m: f64,
+}
+
+impl From<&Aim> for AimRecord {
+    fn from(aim: &Aim) -> Self {
+        let beside = aim.across_m.zip(aim.point.map()).map(|(across_m, at)| AimBesideRecord {
+            landing_miss_across_m: unsigned_zero(across_m),
+            aim_map_x_m: at.x,
+            aim_map_y_m: at.y,
+        });
+        Self { aim_x_m: aim.point.along_m, landing_miss_m: unsigned_zero(aim.miss_m), beside }
+    }
 }
 
 /// The columns of a hop on a map.
@@ -202,7 +228,7 @@ impl HopRecord {
             }),
             margins: HopMarginsRecord(hop.margins),
             stores: hop.into(),
-            aim: hop.aim.map(|aim| AimRecord { aim_x_m: aim.point.along_m, landing_miss_m: unsigned_zero(aim.miss_m) }),
+            aim: hop.aim.as_ref().map(AimRecord::from),
         }
     }
 }
@@ -308,6 +334,9 @@ pub fn write_paths_csv<'a>(
 /// The additional columns of commands in steps.
 const AIM_COLUMNS: [&str; 2] = ["aim_x_m", "landing_miss_m"];
 
+/// The additional columns of hops beside the line.
+const BESIDE_COLUMNS: [&str; 3] = ["landing_miss_across_m", "aim_map_x_m", "aim_map_y_m"];
+
 /// The columns that only some paths have.
 #[derive(Clone, Copy)]
 struct ExtraColumns {
@@ -315,11 +344,15 @@ struct ExtraColumns {
     stores: &'static [&'static str],
     /// Of commands in steps, if some hop has one.
     aims: bool,
+    /// Of hops beside the line, if some hop is one.
+    beside: bool,
 }
 
 impl ExtraColumns {
     fn of<'a>(mut rows: impl Iterator<Item = &'a HopRecord> + Clone) -> Self {
-        Self { stores: stores_columns(rows.clone()), aims: rows.any(|row| row.aim.is_some()) }
+        let stores = stores_columns(rows.clone());
+        let aims = rows.clone().any(|row| row.aim.is_some());
+        Self { stores, aims, beside: rows.any(|row| row.aim.is_some_and(|aim| aim.beside.is_some())) }
     }
 }
 
@@ -328,7 +361,9 @@ fn columns(known: MapKnowledge, extra: ExtraColumns) -> Vec<String> {
     let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
     let projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
     let aims: &[&str] = if extra.aims { &AIM_COLUMNS } else { &[] };
-    let own = COLUMNS.iter().chain(extra.stores).chain(map).chain(projection).chain(aims).map(|&column| column.to_owned());
+    let beside: &[&str] = if extra.beside { &BESIDE_COLUMNS } else { &[] };
+    let own =
+        COLUMNS.iter().chain(extra.stores).chain(map).chain(projection).chain(aims).chain(beside).map(|&column| column.to_owned());
     own.chain(HopMarginsRecord::columns()).collect()
 }
 
@@ -371,6 +406,10 @@ impl HopRecord {
         }
         if extra.aims {
             fields.extend(texts(self.aim.map(|aim| [aim.aim_x_m, aim.landing_miss_m])));
+        }
+        if extra.beside {
+            let beside = self.aim.and_then(|aim| aim.beside);
+            fields.extend(texts(beside.map(|aim| [aim.landing_miss_across_m, aim.aim_map_x_m, aim.aim_map_y_m])));
         }
         fields.extend(self.margins.fields());
         fields

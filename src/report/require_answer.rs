@@ -25,6 +25,10 @@ pub struct RequireAnswer {
     pub resolution: f64,
     /// Whether they did, or the whole range is decided; false where the values between stayed open within the budget.
     pub resolution_met: bool,
+    /// Whether the path found holds at every value of the key, however demanding: a clearance whose taper ends below `reachable_at` on every
+    /// hop of it. Absent if not.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub never_binds: bool,
     /// Every value tried, in the order of the trials.
     pub tries: Vec<RequireTry>,
     /// The number of hops of the path at `reachable_at`.

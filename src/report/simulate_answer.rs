@@ -77,6 +77,8 @@ pub struct OutcomeRecord {
     pub stuck: u64,
     /// It flew the greatest number of hops allowed.
     pub hop_limit: u64,
+    /// Its next hop took more propellant than it had left.
+    pub out_of_propellant: u64,
 }
 
 /// The landings of one hop number.
@@ -236,10 +238,11 @@ impl OutcomeRecord {
             lost: counts.of(TrialOutcome::Lost),
             stuck: counts.of(TrialOutcome::Stuck),
             hop_limit: counts.of(TrialOutcome::HopLimit),
+            out_of_propellant: counts.of(TrialOutcome::OutOfPropellant),
         }
     }
 
-    /// Every outcome by its name, in order.
+    /// Every outcome by its name, in order; those out of propellant only where some are.
     pub fn each(&self) -> impl Iterator<Item = (&'static str, u64)> {
         let counts = [
             self.reached,
@@ -250,8 +253,11 @@ impl OutcomeRecord {
             self.lost,
             self.stuck,
             self.hop_limit,
+            self.out_of_propellant,
         ];
-        TrialOutcome::ALL.into_iter().map(TrialOutcome::name).zip(counts)
+        let all = TrialOutcome::ALL.into_iter().zip(counts);
+        all.filter(|(outcome, count)| *outcome != TrialOutcome::OutOfPropellant || *count > 0)
+            .map(|(outcome, count)| (outcome.name(), count))
     }
 }
 

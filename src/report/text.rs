@@ -163,6 +163,15 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     let (from, to) = (format_number(answer.from), with_unit(answer.to));
     sheet.line(format_args!("{vary}: from x = {} m to x = {} m", place(answer.start_x_m), place(answer.goal_x_m)));
     match answer.reachable_at {
+        Some(value) if answer.never_binds => {
+            let hops = answer.hops.unwrap_or(0);
+            sheet.line(format_args!(
+                "does not bind at any value: reachable in {hops} hop{} of which none is long enough for its taper to reach {}, so that any \
+                 greater value asks for the same",
+                plural(hops),
+                with_unit(value)
+            ));
+        }
         Some(value) => {
             let hops = answer.hops.unwrap_or(0);
             sheet.line(format_args!("reachable at {}, in {hops} hop{}", with_unit(value), plural(hops)));
@@ -171,6 +180,7 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     }
     match answer.unreachable_at {
         Some(value) => sheet.line(format_args!("proved unreachable at {}", with_unit(value))),
+        None if answer.never_binds => {}
         None => sheet.line(format_args!("proved unreachable at no value from {from} to {to}")),
     }
     if !answer.resolution_met {
@@ -379,9 +389,25 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
         ));
     }
     if let Some(aim) = rows.last().and_then(|row| row.aim) {
+        /// Less than half of the last digit shown.
+        const UNSEEN_M: f64 = 5e-4;
         let side = if aim.landing_miss_m < 0.0 { "short of" } else { "beyond" };
-        if aim.landing_miss_m.abs() >= 5e-4 {
-            sheet.line(format_args!("the last landing lies {:.3} m {side} the goal", aim.landing_miss_m.abs()));
+        match aim.beside.map(|beside| beside.landing_miss_across_m) {
+            Some(across_m) => {
+                let across = if across_m < 0.0 { "right" } else { "left" };
+                sheet.line(format_args!(
+                    "the last landing lies {:.3} m {side} the goal along the line and {:.3} m to its {across}",
+                    aim.landing_miss_m.abs(),
+                    across_m.abs()
+                ));
+                sheet.line(format_args!(
+                    "the hops fly beside the line, in the headings that the machine has: take-off and landing above are projections on it"
+                ));
+            }
+            None if aim.landing_miss_m.abs() >= UNSEEN_M => {
+                sheet.line(format_args!("the last landing lies {:.3} m {side} the goal", aim.landing_miss_m.abs()));
+            }
+            None => {}
         }
     }
     sheet.line(format_args!(

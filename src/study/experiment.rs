@@ -201,12 +201,12 @@ fn risk_trade(planned: &Planned, progress: &dyn Progress) -> Result<RiskTradeAns
     let without_risk = SearchOptions { spacing: Some(found.spacing), ..scenario.search.clone() };
     let plain = graph::search(test, *start, *goal, &without_risk, progress)?;
     let Outcome::Path { legs, .. } = &plain.outcome else { return Err(ExperimentError::NoPath) };
-    let path = generate(test, legs, scenario.search.takeoff, scenario.search.split)?;
+    let path = case.prepared.path(test, legs, &scenario.search)?;
     let flyer = Flyer::new(planned, &plain, &[keys.policy], progress)?;
     let options = keys.options();
     let mut rows = vec![RiskTradeRow::new("least effort", path.hops.len(), None, &flyer.fly(&path, &options, progress)?)];
     for candidate in &reliable_paths {
-        let path = generate(test, &candidate.legs, scenario.search.takeoff, scenario.search.split)?;
+        let path = case.prepared.path(test, &candidate.legs, &scenario.search)?;
         let summary = flyer.fly(&path, &options, progress)?;
         rows.push(RiskTradeRow::new("surest", path.hops.len(), Some(candidate.success), &summary));
     }

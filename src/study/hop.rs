@@ -5,7 +5,7 @@ use crate::{
     chain::Station,
     graph::{Edge, Leg},
     hop::{HopTest, TakeoffSet},
-    path::{HopPath, PathError, generate},
+    path::{HopPath, PathError},
     report::HopAnswer,
 };
 
@@ -67,6 +67,6 @@ impl Hopped {
         let search = &self.case.scenario.search;
         let set = self.test.takeoff_set(&takeoff, &landing);
         let Some(lofts) = set.as_ref().and_then(TakeoffSet::lofts) else { return Ok(None) };
-        generate(&self.test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts) }], search.takeoff, search.split).map(Some)
+        self.case.prepared.path(&self.test, &[Leg { takeoff, landing, edge: Edge::Hop(lofts) }], search).map(Some)
     }
 }

@@ -1,6 +1,6 @@
 //! The search for a journey, and the proof where one is requested: what check, plan, compare and require share.
 
-use super::CaseError;
+use super::{CaseError, Prepared};
 use crate::{
     chain::Station,
     graph::{
@@ -9,7 +9,7 @@ use crate::{
         search_most_reliable,
     },
     hop::HopTest,
-    path::{HopPath, PathError, TooManyHops, generate},
+    path::{HopPath, PathError, TooManyHops},
     progress::Progress,
     report::CheckAnswer,
     scenario::Scenario,
@@ -101,7 +101,7 @@ impl Searched {
         &self,
         test: &HopTest,
         (start, goal): (Station, Station),
-        options: &graph::SearchOptions,
+        (prepared, options): (&Prepared, &graph::SearchOptions),
     ) -> (CheckAnswer, Result<Option<HopPath>, TooManyHops>) {
         let answer = CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &self.found, options.effort);
         let answer = match &self.proof {
@@ -109,7 +109,7 @@ impl Searched {
             Some((bounds, budget)) => answer.with_bounds(bounds, *budget),
         };
         let Outcome::Path { legs, .. } = &self.found.outcome else { return (answer, Ok(None)) };
-        match generate(test, legs, options.takeoff, options.split) {
+        match prepared.path(test, legs, options) {
             Ok(path) => (answer.with_path(Some(&path)), Ok(Some(path))),
             Err(PathError::TooManyHops(problem)) => (answer, Err(problem)),
             Err(PathError::NoCommand(problem)) => (answer.without_commands(&problem), Ok(None)),

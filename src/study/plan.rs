@@ -9,7 +9,7 @@ use crate::{
     chain::Station,
     graph,
     hop::HopTest,
-    path::{Execution, HopPath, TooManyHops, Violation, execute},
+    path::{Execution, HopPath, TooManyHops, Violation},
     progress::Progress,
     report::{HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, path_geojson, write_path_csv},
 };
@@ -97,12 +97,10 @@ pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Resul
     let case = case.with_commands(Commands::OfTheMachine)?;
     let (test, ends) = (case.hop_test(), case.ends()?);
     let searched = Searched::new(&test, ends, &case.scenario, options.proof, progress)?;
-    let (check, path) = searched.answer_with_path(&test, ends, &case.scenario.search);
+    let (check, path) = searched.answer_with_path(&test, ends, (&case.prepared, &case.scenario.search));
     let path = path?;
     if let Some(path) = path.as_ref().filter(|_| options.verify) {
-        // Commands in steps land near the goal; the answer says by how much they miss it.
-        let landing = path.hops.last().filter(|hop| hop.aim.is_some()).and_then(|hop| hop.landing.station);
-        Defect::unless_passed(&execute(case.prepared.chain.as_ref(), path, Some((ends.0, landing.unwrap_or(ends.1)))))?;
+        Defect::unless_passed(&case.prepared.execute(path, ends))?;
     }
     let warnings = path.as_ref().map(|path| case.scenario.path_warnings(path)).unwrap_or_default();
     let answer = PlanAnswer {
@@ -152,6 +150,7 @@ impl Planned {
                 name: scenario.title.clone().unwrap_or_default(),
                 body: scenario.body.name.clone().unwrap_or_default(),
                 ground: super::captions::format_ground(scenario),
+                refusal: self.answer.check.commands_refusal.clone(),
             },
         })
     }

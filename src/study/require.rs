@@ -14,6 +14,9 @@ use crate::{
     scenario::{Entries, Key, Kind, Scenario, ScenarioProblem},
 };
 
+/// The key of the height to keep over the ground.
+const CLEARANCE: &str = "hopper.clearance_m";
+
 /// A scenario key that makes a hopper more or less capable, with its default range of values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Capability {
@@ -32,7 +35,7 @@ const fn capability(path: &'static str, more_is_more: bool, from: f64, to: f64) 
 const CAPABILITIES: [Capability; 12] = [
     capability("hopper.takeoff_speed_max_m_s", true, 0.01, 100.0),
     capability("hopper.landing_speed_max_m_s", true, 0.01, 100.0),
-    capability("hopper.clearance_m", false, 0.0, 100.0),
+    capability(CLEARANCE, false, 0.0, 100.0),
     capability("hopper.takeoff_angle_min_deg", false, -90.0, 90.0),
     capability("hopper.takeoff_angle_max_deg", true, -90.0, 90.0),
     capability("hopper.apex_height_max_m", true, 0.001, 1000.0),
@@ -286,6 +289,7 @@ pub fn require(variation: &Variation, requirement: &Requirement, progress: &dyn 
         to,
         resolution: *resolution,
         resolution_met: range.is_met(&threshold),
+        never_binds: false,
         tries: tries.iter().map(Tried::record).collect(),
         hops: None,
         path: Vec::new(),
@@ -347,6 +351,7 @@ impl Tried {
         if let Outcome::Path { legs, .. } = &self.bounds.answer.outcome {
             answer.hops = self.bounds.upper();
             if let Ok(path) = generate(&self.case.hop_test(), legs, options.takeoff, options.split) {
+                answer.never_binds = answer.vary == CLEARANCE && self.case.scenario.keeps_no_clearance_in_full(&path);
                 answer.path = HopRecord::rows(&path, self.case.prepared.projection.as_ref());
                 answer.totals = Some(TotalsRecord::from(&path.totals));
             }

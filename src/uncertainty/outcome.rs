@@ -45,11 +45,13 @@ pub enum TrialOutcome {
     Stuck,
     /// It flew the greatest number of hops without ending otherwise.
     HopLimit,
+    /// Its next hop took more propellant than it had left, so that it stayed where it was.
+    OutOfPropellant,
 }
 
 impl TrialOutcome {
     /// All outcomes, in the order of results.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Reached,
         Self::Missed,
         Self::SlidAtTakeoff,
@@ -58,6 +60,7 @@ impl TrialOutcome {
         Self::Lost,
         Self::Stuck,
         Self::HopLimit,
+        Self::OutOfPropellant,
     ];
 
     /// The name in results.
@@ -71,13 +74,14 @@ impl TrialOutcome {
             Self::Lost => "lost",
             Self::Stuck => "stuck",
             Self::HopLimit => "hop_limit",
+            Self::OutOfPropellant => "out_of_propellant",
         }
     }
 }
 
 /// How many trials ended in each way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct OutcomeCounts([u64; 8]);
+pub struct OutcomeCounts([u64; 9]);
 
 impl OutcomeCounts {
     /// Counts one trial with this outcome.
@@ -90,9 +94,11 @@ impl OutcomeCounts {
         self.0[outcome as usize]
     }
 
-    /// Every outcome with its count, zero counts included, in the order of [`TrialOutcome::ALL`].
+    /// Every outcome with its count, zero counts included, in the order of [`TrialOutcome::ALL`];
+    /// [`OutOfPropellant`](TrialOutcome::OutOfPropellant), which few machines can meet, only where it occurs.
     pub fn each(&self) -> impl Iterator<Item = (TrialOutcome, u64)> + '_ {
-        TrialOutcome::ALL.into_iter().map(|outcome| (outcome, self.of(outcome)))
+        let all = TrialOutcome::ALL.into_iter().map(|outcome| (outcome, self.of(outcome)));
+        all.filter(|(outcome, count)| *outcome != TrialOutcome::OutOfPropellant || *count > 0)
     }
 
     /// The number of trials counted.

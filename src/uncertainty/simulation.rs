@@ -10,7 +10,7 @@ use super::{
     mission::{MissionGround, Replanning},
     replan::{ChainReplan, MapReplan},
     tally::Tally,
-    trial::{Flown, Plan, PlannedHop, Rules, fly},
+    trial::{Flown, Plan, PlannedHop, Rules, Tank, fly},
 };
 use crate::{
     flight::{Command, Errors, TrialDraws, Uncertainty},
@@ -161,6 +161,7 @@ impl Simulation {
             policy: options.policy,
             hop_limit: options.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(plan.hops.len())),
             goal_tolerance_m: options.goal_tolerance_m,
+            tank: Tank::of(ground.hopper().limits()),
         };
         let keep_records = observer.wants_records();
         let mut tally = Tally::default();

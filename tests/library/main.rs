@@ -27,6 +27,7 @@ mod formats_table;
 #[cfg(feature = "gdal")]
 mod gdal_feature;
 mod graph;
+mod heading_steps;
 mod layers;
 mod map_equality;
 mod map_projection;

@@ -32,11 +32,11 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let loaded = load_scenario(&args.scenario, &common, Purpose::Run)?;
     loaded.ends()?;
     output::check_folder(&args.output)?;
+    let mut folder = RunFolder::new(&args.output, args.trajectory.trajectory.as_deref())?;
     let in_time = TrajectoryFile::begin(&args.trajectory)?;
     let options = PlanOptions { verify: true, ..PlanOptions::default() };
     let planned = Arc::new(plan(&loaded.case, options, &Progress::new(args.quiet))?);
     output::warn_all(args.quiet, &planned.warnings);
-    let mut folder = RunFolder::new(&args.output);
     folder.trajectory(in_time, &planned)?;
     folder.plan(&planned, &loaded)?;
     let mut trials_text = String::new();

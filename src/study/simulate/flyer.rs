@@ -70,6 +70,10 @@ impl<'a> Flyer<'a> {
 
 /// The whole raster of a case with its overlays; `None` if its terrain is no raster.
 fn dem_ground(case: &Case) -> Result<Option<DemGround>, SimulateError> {
+    // Read for hops beside the line.
+    if let Some(ground) = &case.prepared.beside_line {
+        return Ok(Some(ground.as_ref().clone()));
+    }
     let Some(TerrainSource::Dem { path, .. }) = &case.scenario.terrain else { return Ok(None) };
     let file = case.base.join(path);
     let read = DemReading::of(&case.scenario).options.read(&file);
