@@ -10,6 +10,8 @@ mod hints;
 mod inputs;
 mod interrupt;
 mod load;
+mod map_input;
+mod map_outputs;
 mod output;
 mod progress;
 mod whole_file;

@@ -8,10 +8,11 @@ use std::{
 
 use chta::{
     figure::{FigureError, Picture, PictureFormat},
+    report::{Document, SizeAnswer},
     terrain::MapProjection,
 };
 
-use super::{Failure, claims, inputs, interrupt, whole_file::WholeFile};
+use super::{Answer, Failure, args::Format, claims, inputs, interrupt, whole_file::WholeFile};
 
 /// Writes data to standard output. A closed pipe is not an error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
@@ -154,6 +155,16 @@ pub(crate) fn to_geojson_file(path: &Path, geojson: &str, projection: Option<&Ma
         files.push((Pending::begin(&beside)?, text));
     }
     finish(files)
+}
+
+/// Prints the answer to a question of size.
+pub(crate) fn sized(document: &Document<SizeAnswer>, format: Format) -> Result<Answer, Failure> {
+    let text = match format {
+        Format::Text => document.answer.text(),
+        Format::Json => document.to_json()?,
+    };
+    to_stdout(text.as_bytes())?;
+    Ok(Answer::Yes)
 }
 
 /// Prints a warning on standard error.

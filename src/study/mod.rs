@@ -2,6 +2,7 @@
 
 mod alike;
 mod footprint;
+pub mod map;
 mod on_body;
 mod physics;
 mod pipeline;

@@ -8,7 +8,7 @@ use chta::{
 };
 use clap::{Args as ClapArgs, ValueEnum};
 
-use super::{AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, SearchArgs, lon_lat, map_point, max_gib, no_data_rule};
+use super::{DEFAULT_MAX_GIB, lon_lat, map_point, max_gib, no_data_rule};
 
 /// Cut terrain along a vertical plane into a polygonal chain (CSV)
 #[derive(Debug, ClapArgs)]
@@ -59,109 +59,6 @@ pub(crate) struct SliceArgs {
     /// No warnings on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
-}
-
-/// Slices in all directions from one point: how far and in how few hops one gets in each
-#[derive(Debug, ClapArgs)]
-#[command(
-    after_help = "Example:\n  chta fan data/terrain/mars_crater_field.tif --from 100,80 --headings 36 --length 80 \\\n    --scenario data/scenarios/mars_crater_field.toml --plot rose.svg"
-)]
-pub(crate) struct FanArgs {
-    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; -: standard input
-    #[arg(value_name = "DEM")]
-    pub(crate) dem: PathBuf,
-    /// Where all slices begin, map coordinates in m
-    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, required_unless_present = "from_lonlat")]
-    pub(crate) from: Option<MapPoint>,
-    /// Instead: longitude and planetocentric latitude, degrees, east positive
-    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "from")]
-    pub(crate) from_lonlat: Option<LonLat>,
-    /// Number of slices, equally spaced clockwise from grid north
-    #[arg(long, value_name = "N", default_value_t = 36)]
-    pub(crate) headings: u32,
-    /// Length of each slice, m; the map's border and no-data shorten it
-    #[arg(long, value_name = "L", allow_negative_numbers = true)]
-    pub(crate) length: f64,
-    /// Table (CSV) to write; -: to standard output, in place of the answer
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
-    /// Rose picture (SVG or PNG) to write
-    #[arg(long, value_name = "FILE")]
-    pub(crate) plot: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) answer: AnswerArgs,
-    #[command(flatten)]
-    pub(crate) search: SearchArgs,
-    #[command(flatten)]
-    pub(crate) common: CommonArgs,
-}
-
-/// Fewest hops from one post of a DEM to every other, in any direction
-///
-/// Every edge is one hop on the exact slice between two posts, as `chta slice` and `chta hop` find it. The terrain keys of
-/// --scenario (dem, mesh or chain, start, goal, intermediate points) are ignored: DEM, --start and --goal replace them.
-#[derive(Debug, ClapArgs)]
-#[command(
-    after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
-)]
-pub(crate) struct MapArgs {
-    /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; -: standard input
-    #[arg(value_name = "DEM")]
-    pub(crate) dem: PathBuf,
-    /// Start of all paths, map coordinates in m; the nearest post is used
-    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, required_unless_present = "start_lonlat")]
-    pub(crate) start: Option<MapPoint>,
-    /// Instead: longitude and planetocentric latitude, degrees, east positive
-    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "start")]
-    pub(crate) start_lonlat: Option<LonLat>,
-    /// Goal, map coordinates in m; the nearest post is used; may be repeated [default: none]
-    #[arg(long, value_name = "X,Y", value_parser = map_point, allow_hyphen_values = true, group = "goals")]
-    pub(crate) goal: Vec<MapPoint>,
-    /// Instead: longitude and planetocentric latitude, degrees, east positive; may be repeated [default: none]
-    #[arg(long, value_name = "LON,LAT", value_parser = lon_lat, allow_hyphen_values = true, conflicts_with = "goal", group = "goals")]
-    pub(crate) goal_lonlat: Vec<LonLat>,
-    /// Land only on every N-th post; hops are always tested against the full DEM
-    #[arg(long, value_name = "N", default_value_t = 1, allow_negative_numbers = true)]
-    pub(crate) stride: u32,
-    /// Also least effort among paths of fewest hops: takeoff-speed, energy, time, peak-speed [default: none; alone: the scenario's]
-    #[arg(long, value_name = "EFFORT", num_args = 0..=1)]
-    #[expect(clippy::option_option, reason = "absent, given alone, or with a value")]
-    pub(crate) effort: Option<Option<String>>,
-    /// Also find the posts from which the start can be reached again
-    #[arg(long = "return")]
-    pub(crate) back: bool,
-    /// Hops (GeoTIFF) to write: int16, -1 unreachable, -32768 no-data
-    #[arg(short, long, value_name = "FILE")]
-    pub(crate) output: Option<PathBuf>,
-    /// Least effort (GeoTIFF) to write: float32, NaN where there is no path
-    #[arg(long, value_name = "FILE", requires = "effort")]
-    pub(crate) effort_output: Option<PathBuf>,
-    /// Hops back to the start (GeoTIFF) to write
-    #[arg(long, value_name = "FILE", requires = "back")]
-    pub(crate) return_output: Option<PathBuf>,
-    /// Mobility (GeoTIFF) to write: the share of the posts within v^2/g of a post, v the smaller speed limit, that one hop from it
-    /// reaches, and in how many of 16 directions
-    #[arg(long, value_name = "FILE")]
-    pub(crate) mobility: Option<PathBuf>,
-    /// Also fly the path to every goal many times under the errors of `[uncertainty]`, in three dimensions, open loop
-    #[arg(long, requires = "goals")]
-    pub(crate) simulate: bool,
-    /// Hops to every goal (CSV) to write
-    #[arg(long, value_name = "FILE", requires = "goals")]
-    pub(crate) paths: Option<PathBuf>,
-    /// The same in three dimensions (GeoJSON)
-    #[arg(long, value_name = "FILE", requires = "goals")]
-    pub(crate) geojson: Option<PathBuf>,
-    /// Profile of every hop to every goal, all on one sheet (SVG or PNG), to write
-    #[arg(long, value_name = "FILE", requires = "goals")]
-    pub(crate) profiles: Option<PathBuf>,
-    /// Map picture (SVG or PNG) to write
-    #[arg(long, value_name = "FILE")]
-    pub(crate) plot: Option<PathBuf>,
-    #[command(flatten)]
-    pub(crate) answer: AnswerArgs,
-    #[command(flatten)]
-    pub(crate) common: CommonArgs,
 }
 
 /// Generate terrain from a seed: fractal ground, craters, a rille, boulders

@@ -39,11 +39,12 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         answer: AnswerArgs { threads, format },
         search,
         common,
+        size: _,
     } = args;
     inputs::look_at(common.input_max_gib, &[(Some(dem_file), Role::Dem), (common.scenario.as_deref(), Role::ScenarioOption)])?;
     use_threads(*threads)?;
     let failed = |error: &(dyn std::error::Error + 'static)| Failure::of(error);
-    let Bare { dem: dem_file, scenario, base, document, mut warnings } = load_bare(dem_file, common, search, Purpose::Fan)?;
+    let Bare { dem: dem_file, scenario, base, document, mut warnings, .. } = load_bare(dem_file, common, search, Purpose::Fan)?;
     let dem_file = dem_file.as_path();
     let (dem, of_dem) = dem_on_body(&scenario, dem_file).map_err(|e| Failure::about(dem_file, &e))?;
     warnings.extend(of_dem);

@@ -2,12 +2,12 @@
 
 pub(super) mod bodies;
 mod captions;
+pub(super) use captions::conditions;
 pub(super) mod check;
 pub(super) mod compare;
 pub(super) mod fan;
 pub(super) mod hop;
 pub(super) mod map;
-mod map_profiles;
 pub(super) mod plan;
 pub(super) mod require;
 pub(super) mod run;
