@@ -8,7 +8,7 @@ use chta::{
     reach::{FanError, map::MapError},
     report::FurtherMeans,
     scenario::{ProblemKind, ScenarioProblem},
-    study::{PipelineError, map::MapStudyError},
+    study::{PipelineError, fan::FanStudyError, map::MapStudyError, slice::SliceStudyError},
     terrain::{LonLat, ScaleMend, TerrainError},
 };
 
@@ -17,6 +17,23 @@ use super::{help::takes, inputs};
 /// The message of an error, with the options that mend it.
 pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
     let error = of_study(error);
+    match error.downcast_ref() {
+        Some(SliceStudyError::LonLatOnMesh) => {
+            return "--from-lonlat, --to-lonlat, --via-lonlat: a mesh has no projection; give --from X,Y, --to X,Y and --via X,Y"
+                .to_owned();
+        }
+        Some(SliceStudyError::ScaleOfRaster { file, scale }) => {
+            let name = file.display();
+            return format!("--mesh-scale {scale}: {name} is an elevation raster, expected a mesh; omit the option");
+        }
+        _ => {}
+    }
+    if let Some(FanStudyError::TooMuchMemory { needed_bytes, .. }) = error.downcast_ref() {
+        let enough = needed_bytes.div_ceil(1 << 20);
+        return format!(
+            "--memory-max-mib: {error}; the options for that: --length, --node-spacing-max-m, --threads, or --memory-max-mib {enough}"
+        );
+    }
     if let Some(sentence) = error.downcast_ref().and_then(of_map_study) {
         return sentence;
     }
@@ -35,6 +52,9 @@ pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
 /// Whether the error's message already names this file.
 pub(crate) fn names(error: &(dyn Error + 'static), file: &Path) -> bool {
     let error = of_study(error);
+    if let Some(SliceStudyError::LonLatOnMesh | SliceStudyError::ScaleOfRaster { .. }) = error.downcast_ref() {
+        return true;
+    }
     let same = |path: &Path| path.file_name() == file.file_name();
     match (of_terrain(error), error.downcast_ref()) {
         (Some(TerrainError::InFile { path, .. } | TerrainError::Overlay { path, .. }), _)
@@ -70,7 +90,17 @@ fn of_study<'a>(error: &'a (dyn Error + 'static)) -> &'a (dyn Error + 'static) {
         Some(MapStudyError::Terrain(error)) => error,
         Some(MapStudyError::Map(error)) => error,
         Some(MapStudyError::Simulation(error)) => error,
-        _ => error,
+        _ => match error.downcast_ref() {
+            Some(FanStudyError::Dem(error)) => error,
+            Some(FanStudyError::Place(error) | FanStudyError::Scale(error)) => error,
+            Some(FanStudyError::Fan(error)) => error,
+            _ => match error.downcast_ref() {
+                Some(SliceStudyError::Pipeline(error)) => error,
+                Some(SliceStudyError::Overlay(error)) => error,
+                Some(SliceStudyError::Chain(error)) => error,
+                _ => error,
+            },
+        },
     }
 }
 

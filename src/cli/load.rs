@@ -492,6 +492,15 @@ pub(crate) fn raster_files(path: &Path) -> Result<Vec<InputFile>, Failure> {
     [path.to_path_buf()].into_iter().chain(sidecar_files(path)).map(|file| input_file(&file)).collect()
 }
 
+/// The DEM and the overlays of a scenario over it, for a result.
+pub(crate) fn raster_files_of(bare: &Bare) -> Result<Vec<InputFile>, Failure> {
+    let mut files = raster_files(&bare.dem)?;
+    for overlay in Overlays::files(&bare.scenario) {
+        files.extend(raster_files(&bare.base.join(overlay))?);
+    }
+    Ok(files)
+}
+
 /// Reads a scenario with the folder of its paths but without its terrain, for commands that have their own.
 pub(crate) fn scenario_alone(path: &Path) -> Result<(Scenario, PathBuf), Failure> {
     let mut source = option_source(Some(path))?;

@@ -5,11 +5,7 @@ use std::path::Path;
 use chta::{
     chain::csv::read_positions_csv_file,
     quantity::MapPoint,
-    report::InputFile,
-    study::{
-        Overlays,
-        map::{MapQuestion, MapStudyError, NamedPlace},
-    },
+    study::map::{MapQuestion, MapStudyError, NamedPlace},
     terrain::{LonLat, MapPlace},
 };
 
@@ -19,7 +15,7 @@ use super::{
     claims,
     effects::Purpose,
     inputs,
-    load::{Bare, ScenarioEnds, load_map, raster_files},
+    load::{Bare, ScenarioEnds, load_map},
     output,
     wrong_thing::Role,
 };
@@ -99,22 +95,9 @@ impl MapInput {
         Failure::about(&self.bare.dem, error)
     }
 
-    /// The files that were read, for a result.
-    pub(crate) fn files(&self) -> Result<Vec<InputFile>, Failure> {
-        let mut files = raster_files(&self.bare.dem)?;
-        for overlay in Overlays::files(&self.bare.scenario) {
-            files.extend(raster_files(&self.bare.base.join(overlay))?);
-        }
-        Ok(files)
-    }
-
     /// All warnings, those of the study last, printed on standard error.
     pub(crate) fn told(&self, of_study: &[String], quiet: bool) -> Vec<String> {
-        let warnings: Vec<String> = self.bare.warnings.iter().chain(&self.warnings).chain(of_study).cloned().collect();
-        for warning in &warnings {
-            output::warn(quiet, warning);
-        }
-        warnings
+        output::told(quiet, &[&self.bare.warnings, &self.warnings, of_study])
     }
 
     /// The name of the map in titles: that of the scenario's report, else of the DEM.

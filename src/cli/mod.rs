@@ -5,6 +5,7 @@ mod claims;
 mod commands;
 mod effects;
 mod failure;
+mod fan_outputs;
 mod help;
 mod hints;
 mod inputs;

@@ -167,6 +167,15 @@ pub(crate) fn sized(document: &Document<SizeAnswer>, format: Format) -> Result<A
     Ok(Answer::Yes)
 }
 
+/// Prints all warnings on standard error, and returns them.
+pub(crate) fn told(quiet: bool, parts: &[&[String]]) -> Vec<String> {
+    let warnings = parts.concat();
+    for warning in &warnings {
+        warn(quiet, warning);
+    }
+    warnings
+}
+
 /// Prints a warning on standard error.
 pub(crate) fn warn(quiet: bool, warning: &str) {
     if !quiet {

@@ -1,12 +1,14 @@
 //! One function per question: from a validated scenario to its answer.
 
 mod alike;
+pub mod fan;
 mod footprint;
 pub mod map;
 mod on_body;
 mod physics;
 mod pipeline;
 mod sense;
+pub mod slice;
 mod trade;
 
 pub use alike::ask_the_same;

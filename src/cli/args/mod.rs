@@ -3,6 +3,7 @@
 mod journeys;
 mod maps;
 mod position;
+mod synth;
 mod terrains;
 
 use std::path::PathBuf;
@@ -16,8 +17,10 @@ pub(crate) use journeys::{
     CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
 pub(crate) use maps::{FanArgs, MapArgs};
+pub(crate) use position::place;
 use position::{along_chain, lon_lat, map_point};
-pub(crate) use terrains::{DepthLawArg, SliceArgs, SynthArgs};
+pub(crate) use synth::SynthArgs;
+pub(crate) use terrains::SliceArgs;
 
 /// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?
 ///

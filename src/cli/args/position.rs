@@ -1,6 +1,11 @@
 //! Positions as typed: X along a chain, X,Y on a map, X,Y,Z on a mesh. One sentence where the count of numbers is wrong.
 
-use chta::{quantity::MapPoint, terrain::LonLat};
+use chta::{
+    quantity::MapPoint,
+    terrain::{LonLat, MapPlace},
+};
+
+use crate::cli::Failure;
 
 /// What each terrain takes, for the end of the sentence about a wrong count.
 const COUNTS: &str = "a position is X along a chain, X,Y on a map and X,Y,Z on a mesh";
@@ -41,6 +46,12 @@ pub(super) fn lon_lat(text: &str) -> Result<LonLat, String> {
     let (lon, lat) = text.split_once(',').ok_or_else(wanted)?;
     let (lon_deg, lat_deg) = (number(lon, -180.0..=360.0).ok_or_else(wanted)?, number(lat, -90.0..=90.0).ok_or_else(wanted)?);
     Ok(LonLat { lon_deg, lat_deg })
+}
+
+/// A position given in one of the two forms; the command line requires one.
+pub(crate) fn place(which: &str, point: Option<MapPoint>, place: Option<LonLat>) -> Result<MapPlace, Failure> {
+    let missing = || Failure::message(format!("found no --{which}, expected --{which} X,Y or --{which}-lonlat LON,LAT"));
+    point.map(MapPlace::Metres).or(place.map(MapPlace::LonLat)).ok_or_else(missing)
 }
 
 #[cfg(test)]

@@ -7,6 +7,7 @@ use crate::cli::{
     Answer, Failure,
     args::{Format, MapArgs},
     inputs,
+    load::raster_files_of,
     map_input::MapInput,
     map_outputs::MapOutputs,
     output,
@@ -24,7 +25,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let input = MapInput::of(args)?;
     let question = input.question(args);
     let prepared = PreparedMap::new(&question).map_err(|error| input.failure(&error))?;
-    let (document, files) = (input.bare.document.clone(), input.files()?);
+    let (document, files) = (input.bare.document.clone(), raster_files_of(&input.bare)?);
     if args.size.dry_run {
         let warnings = input.told(&prepared.warnings, common.quiet);
         return output::sized(&Document::new("size", document, files, warnings, prepared.memory.answer()), format);
