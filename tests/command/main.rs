@@ -18,6 +18,7 @@ mod footprint;
 #[cfg(unix)]
 mod interrupt;
 mod map_command;
+mod map_starts;
 mod maps_command;
 mod mesh_command;
 mod missing_data;

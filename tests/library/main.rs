@@ -29,6 +29,7 @@ mod graph;
 mod layers;
 mod map_equality;
 mod map_projection;
+mod map_sources;
 mod map_verified;
 mod map_world;
 mod margins;

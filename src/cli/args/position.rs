@@ -31,7 +31,7 @@ fn numbers<const N: usize>(text: &str, expected: &str) -> Result<[f64; N], Strin
     let count = found.len();
     found.try_into().map_err(|_| {
         let s = if count == 1 { "" } else { "s" };
-        format!("found `{text}`, which is {count} number{s}, expected {expected}: {COUNTS}")
+        format!("found `{text}` ({count} number{s}), expected {expected}: {COUNTS}")
     })
 }
 
@@ -62,12 +62,12 @@ mod tests {
     fn a_wrong_count_of_numbers_is_told_with_what_each_terrain_takes() {
         for (text, count) in [("1", "1 number"), ("1,2,3", "3 numbers"), ("1, 2,3,-4", "4 numbers")] {
             let sentence = map_point(text).unwrap_err();
-            assert!(sentence.contains(&format!("found `{text}`, which is {count}, expected two")), "{sentence}");
+            assert!(sentence.contains(&format!("found `{text}` ({count}), expected two")), "{sentence}");
             assert!(sentence.ends_with(COUNTS), "{sentence}");
         }
         for (text, count) in [("1,2", "2 numbers"), ("1,2,3", "3 numbers")] {
             let sentence = along_chain(text).unwrap_err();
-            assert!(sentence.contains(&format!("which is {count}, expected one")) && sentence.ends_with(COUNTS), "{sentence}");
+            assert!(sentence.contains(&format!("({count}), expected one")) && sentence.ends_with(COUNTS), "{sentence}");
         }
         for text in ["", "a", "1,b", "1,", "nan,1", "1,inf"] {
             let sentence = map_point(text).unwrap_err();
