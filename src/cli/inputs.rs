@@ -165,7 +165,7 @@ pub(crate) fn open(path: &Path, role: Role) -> Result<Input, Failure> {
     let kind = FileKind::of(path).map_err(read)?;
     check_kind(&kind, role, path)?;
     let length = fs::metadata(path).map_err(read)?.len();
-    let is_read_blindly = matches!(role, Role::Chain | Role::ChainKey | Role::Pairs | Role::MeshKey);
+    let is_read_blindly = matches!(role, Role::Chain | Role::ChainKey | Role::Pairs | Role::Starts | Role::MeshKey);
     if matches!(kind, FileKind::Text | FileKind::Binary) && is_read_blindly && length > LARGEST_UNKNOWN {
         let mut beginning = Vec::new();
         File::open(path).and_then(|file| file.take(24).read_to_end(&mut beginning)).map_err(read)?;
@@ -356,7 +356,11 @@ impl Bounds {
         };
         let longest_line = match kind {
             FileKind::Raster("ESRI ASCII grid") => Some(LONGEST_GRID_LINE),
-            FileKind::Raster("XYZ grid") | FileKind::Mesh(_, true) | FileKind::ChainCsv | FileKind::PairsCsv => Some(LONGEST_LINE),
+            FileKind::Raster("XYZ grid")
+            | FileKind::Mesh(_, true)
+            | FileKind::ChainCsv
+            | FileKind::PairsCsv
+            | FileKind::PositionsCsv => Some(LONGEST_LINE),
             _ => None,
         };
         Self { most: own.min(option), reason, longest_line }
@@ -413,7 +417,14 @@ fn detached_image(kind: &FileKind, beginning: &[u8]) -> Option<String> {
 
 /// Whether a file of this kind is read whole into memory.
 fn is_read_whole(kind: &FileKind) -> bool {
-    matches!(kind, FileKind::ChainCsv | FileKind::PairsCsv | FileKind::Mesh(..) | FileKind::Raster("ESRI ASCII grid" | "XYZ grid"))
+    matches!(
+        kind,
+        FileKind::ChainCsv
+            | FileKind::PairsCsv
+            | FileKind::PositionsCsv
+            | FileKind::Mesh(..)
+            | FileKind::Raster("ESRI ASCII grid" | "XYZ grid")
+    )
 }
 
 fn max_bytes() -> u64 {

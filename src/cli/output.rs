@@ -9,10 +9,11 @@ use std::{
 
 use chta::{
     figure::{FigureError, Picture, PictureFormat},
+    report::{Document, SizeAnswer},
     terrain::MapProjection,
 };
 
-use super::{Failure, claims, inputs, interrupt, verbose, whole_file::WholeFile};
+use super::{Answer, Failure, args::Format, claims, inputs, interrupt, verbose, whole_file::WholeFile};
 
 /// Writes data to standard output. A closed pipe is not an error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
@@ -162,9 +163,26 @@ pub(crate) fn to_geojson_file(path: &Path, geojson: &str, projection: Option<&Ma
     finish(files)
 }
 
+/// Prints the answer to a question of size.
+pub(crate) fn sized(document: &Document<SizeAnswer>, format: Format) -> Result<Answer, Failure> {
+    let text = match format {
+        Format::Text => document.answer.text(),
+        Format::Json => document.to_json()?,
+    };
+    to_stdout(text.as_bytes())?;
+    Ok(Answer::Yes)
+}
+
 /// Prints warnings on standard error.
 pub(crate) fn warn_all(quiet: bool, warnings: &[String]) {
     warnings.iter().for_each(|warning| warn(quiet, warning));
+}
+
+/// Prints the warnings of all parts on standard error, and returns them.
+pub(crate) fn warned(quiet: bool, parts: &[&[String]]) -> Vec<String> {
+    let warnings = parts.concat();
+    warn_all(quiet, &warnings);
+    warnings
 }
 
 /// Prints a warning on standard error.

@@ -54,8 +54,8 @@ pub use chains::{
 pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
 pub use heading::conditions;
 pub use map::{
-    GoalMark, HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure, MapPosts,
-    ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
+    GoalMark, HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure,
+    MapPosts, RasterStyle, ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
 };
 pub use picture::{Caption, Picture, PictureFormat};
 pub use rose::draw_rose;

@@ -17,6 +17,7 @@ mod propellant_record;
 mod reliability_record;
 mod require_answer;
 mod simulate_answer;
+mod size_answer;
 mod text;
 mod trade_answer;
 mod trajectory;
@@ -32,7 +33,7 @@ pub use hop_answer::{
     WindowRecord,
 };
 pub use hop_margins::HopMarginsRecord;
-pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord};
+pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord, StartRecord};
 pub use path_record::{AimRecord, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv};
 pub use plan_answer::{PlanAnswer, plan_text};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
@@ -42,6 +43,7 @@ pub use require_answer::{RequireAnswer, RequireTry};
 pub use simulate_answer::{
     EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, simulate_text,
 };
+pub use size_answer::{SizeAnswer, SizeRecord};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
 pub use trajectory::write_trajectory_csv;

@@ -37,8 +37,8 @@ const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
 /// The option of every command, tested in `verbose.rs`.
 const OF_EVERY_COMMAND: &str = "--verbose";
 
-/// The bound of inputs, tested in `pipes.rs`.
-const ON_LARGE_INPUTS: [&str; 1] = ["--input-max-gib"];
+/// The bounds of inputs and of memory, tested in `pipes.rs` and `map_starts.rs`.
+const ON_LARGE_INPUTS: [&str; 2] = ["--input-max-gib", "--memory-max-mib"];
 
 /// The mark of missing data, tested in `missing_data.rs`.
 const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
@@ -98,7 +98,33 @@ const SLICE: [Trial; 8] = [
     ),
 ];
 
-const MAP: [Trial; 21] = [
+const MAP: [Trial; 27] = [
+    (
+        "--nearest-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--nearest-output", "n.tif"],
+    ),
+    (
+        "--predecessor-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--predecessor-output", "p.tif"],
+    ),
+    (
+        "--qml",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "-o", "hops.tif"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "-o", "hops.tif", "--qml"],
+    ),
+    (
+        "--hops-max",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--hops-max", "1"],
+    ),
+    (
+        "--dry-run",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--dry-run"],
+    ),
+    ("--starts", &["map", "map.toml"], &["map", "map.toml", "--starts", "starts.csv"]),
     (
         "--simulate",
         &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
@@ -881,6 +907,7 @@ const SYNTH_OPTIONS: [(&str, &str); 26] = [
 
 fn desk() -> Desk {
     let desk = Desk::with_dem();
+    desk.write("starts.csv", "x_m,y_m\n3,4\n15,16\n");
     desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
     desk.write("forward.csv", FORWARD_ONLY);
     desk.write("errors.toml", desk.read("scenario.toml") + ERRORS);
@@ -1024,9 +1051,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
             if let Some((_, unit)) = units.into_iter().find(|(suffix, _)| name.ends_with(suffix)) {
                 assert!(format!("{one_line} ").contains(unit), "{command} {name} does not name its unit: {one_line}");
             }
-            let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat", "--start-lonlat"]
-                .contains(&name.as_str())
-                || (command == "map" && name == "--start");
+            let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat"].contains(&name.as_str());
             let takes_value =
                 one_line.contains('<') && !["--scenario", "--set", "--body", "--gravity-m-s2"].contains(&name.as_str());
             let writes = [
@@ -1034,6 +1059,9 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--plot",
                 "--plot-map",
                 "--pairs",
+                "--starts",
+                "--nearest-output",
+                "--predecessor-output",
                 "--effort-output",
                 "--return-output",
                 "--mobility",

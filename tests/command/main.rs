@@ -20,6 +20,7 @@ mod gis;
 #[cfg(unix)]
 mod interrupt;
 mod map_command;
+mod map_starts;
 mod maps_command;
 mod mesh_command;
 mod missing_data;

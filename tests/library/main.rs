@@ -31,6 +31,7 @@ mod heading_steps;
 mod layers;
 mod map_equality;
 mod map_projection;
+mod map_sources;
 mod map_verified;
 mod map_world;
 mod margins;

@@ -11,7 +11,7 @@ use clap::Args as ClapArgs;
 
 use super::{
     super::{Failure, load::OwnKey},
-    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, cell_count, max_gib,
+    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, along_chain, cell_count, max_gib,
 };
 
 /// Options of commands that fly a path.
@@ -61,10 +61,10 @@ pub(crate) struct HopArgs {
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Where the hop takes off, along the chain, m [default: the scenario's start]
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
     pub(crate) from: Option<f64>,
     /// Where it lands, along the chain, m [default: the scenario's goal]
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,

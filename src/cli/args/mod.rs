@@ -1,17 +1,15 @@
 //! The command line as typed: the commands, the options that several of them share, and the parsers of positions and counts.
 
 mod journeys;
+mod maps;
+mod position;
 mod setup;
+mod synth;
 mod terrains;
 
 use std::path::PathBuf;
 
-use chta::{
-    graph::proof::DEFAULT_BUDGET_CELLS,
-    quantity::MapPoint,
-    study::Proof,
-    terrain::{LonLat, NoDataRule},
-};
+use chta::{graph::proof::DEFAULT_BUDGET_CELLS, study::Proof, terrain::NoDataRule};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
 use super::{
@@ -22,8 +20,12 @@ use super::{
 pub(crate) use journeys::{
     CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
+pub(crate) use maps::{FanArgs, MapArgs};
+pub(crate) use position::place;
+use position::{along_chain, lon_lat, map_point};
 pub(crate) use setup::{CompletionsArgs, ManArgs};
-pub(crate) use terrains::{DepthLawArg, FanArgs, MapArgs, SliceArgs, SynthArgs};
+pub(crate) use synth::SynthArgs;
+pub(crate) use terrains::SliceArgs;
 
 /// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?
 ///
@@ -149,10 +151,10 @@ pub(crate) struct JourneyArgs {
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Start along the chain, m [default: the scenario's]
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
     pub(crate) start: Option<f64>,
     /// Goal along the chain, m [default: the scenario's]
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
     pub(crate) goal: Option<f64>,
 }
 
@@ -175,31 +177,10 @@ fn cell_count(text: &str) -> Result<usize, String> {
         .ok_or_else(|| format!("found `{text}`, expected a whole number of cells from 1 to {MOST}, such as {DEFAULT_BUDGET_CELLS}"))
 }
 
-/// Reads `X,Y`.
-fn map_point(text: &str) -> Result<MapPoint, String> {
-    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|n| n.is_finite());
-    let wanted = || format!("found `{text}`, expected two finite numbers in metres, X,Y, such as 12.5,-30");
-    let (x, y) = text.split_once(',').ok_or_else(wanted)?;
-    Ok(MapPoint::new(number(x).ok_or_else(wanted)?, number(y).ok_or_else(wanted)?))
-}
-
 /// Reads `VALUE` or `none`.
 fn no_data_rule(text: &str) -> Result<NoDataRule, String> {
     if text.eq_ignore_ascii_case("none") {
         return Ok(NoDataRule::Nothing);
     }
     text.parse().map(NoDataRule::Value).map_err(|_| format!("found `{text}`, expected a number, or none"))
-}
-
-/// Reads `LON,LAT`.
-fn lon_lat(text: &str) -> Result<LonLat, String> {
-    let number = |part: &str, range: std::ops::RangeInclusive<f64>| part.trim().parse::<f64>().ok().filter(|n| range.contains(n));
-    let wanted = || {
-        format!(
-            "found `{text}`, expected longitude (-180 to 360, east positive) and latitude (-90 to 90) in degrees, such as 62.8,-87.18"
-        )
-    };
-    let (lon, lat) = text.split_once(',').ok_or_else(wanted)?;
-    let (lon_deg, lat_deg) = (number(lon, -180.0..=360.0).ok_or_else(wanted)?, number(lat, -90.0..=90.0).ok_or_else(wanted)?);
-    Ok(LonLat { lon_deg, lat_deg })
 }

@@ -8,7 +8,6 @@ pub(super) mod fan;
 pub(super) mod hop;
 pub(super) mod man;
 pub(super) mod map;
-mod map_profiles;
 pub(super) mod plan;
 pub(super) mod require;
 pub(super) mod run;
