@@ -38,6 +38,9 @@ pub enum SliceEnd {
 }
 
 impl SliceEnd {
+    /// All reasons.
+    pub const ALL: [Self; 2] = [Self::Border, Self::NoData];
+
     /// The name in results.
     pub const fn name(self) -> &'static str {
         match self {
@@ -46,6 +49,8 @@ impl SliceEnd {
         }
     }
 }
+
+crate::quantity::by_name!(SliceEnd, SliceEnd::ALL);
 
 /// A part of a slice whose nodes all need the same number of hops.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -23,6 +23,8 @@ impl Policy {
     }
 }
 
+crate::quantity::by_name!(Policy, Policy::ALL);
+
 /// How a trial ended. Every trial ends in exactly one of these ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum TrialOutcome {
@@ -74,6 +76,8 @@ impl TrialOutcome {
         }
     }
 }
+
+crate::quantity::by_name!(TrialOutcome, TrialOutcome::ALL);
 
 /// How many trials ended in each way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

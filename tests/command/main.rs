@@ -12,6 +12,7 @@ mod cli_answers;
 mod cli_bad_input;
 mod cli_options;
 mod command_steps;
+mod documents;
 mod effects;
 mod escape;
 mod footprint;

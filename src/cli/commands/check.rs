@@ -10,7 +10,7 @@ use chta::{
     figure::{Caption, ProofFigure, draw_proof},
     graph::proof::Bounds,
     path::HopPath,
-    report::{CheckAnswer, Document, PairsAnswer, check_text},
+    report::{CheckAnswer, Document, DocumentKind, PairsAnswer, check_text},
 };
 
 use super::{
@@ -135,10 +135,14 @@ fn written(args: &CheckArgs, loaded: Loaded, mut answers: Vec<CheckAnswer>, warn
     let Loaded { document, inputs, prepared, .. } = loaded;
     let projection = prepared.projection.as_ref();
     Ok(match (&args.pairs, answers.pop()) {
-        (None, Some(answer)) => Document::new("check", document, inputs, warnings, answer).on_map(projection).to_json()?,
+        (None, Some(answer)) => {
+            Document::new(DocumentKind::Check, document, inputs, warnings, answer).on_map(projection).to_json()?
+        }
         (_, last) => {
             answers.extend(last);
-            Document::new("check-pairs", document, inputs, warnings, PairsAnswer { pairs: answers }).on_map(projection).to_json()?
+            Document::new(DocumentKind::CheckPairs, document, inputs, warnings, PairsAnswer { pairs: answers })
+                .on_map(projection)
+                .to_json()?
         }
     })
 }

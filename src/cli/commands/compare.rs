@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use chta::{
     figure::{Caption, CompareFigure, ComparedScenario, Flight, draw_compare},
     path::HopPath,
-    report::{CompareAnswer, CompareRow, Document, MarginsRecord, TotalsRecord},
+    report::{CompareAnswer, CompareRow, Document, DocumentKind, MarginsRecord, TotalsRecord},
 };
 
 use super::search::{Searched, use_threads};
@@ -119,7 +119,7 @@ impl Compared {
         let point = |x_m: f64| geometry.station(x_m).map(|station| station.point).ok();
         ComparedScenario {
             name: self.row.name.clone(),
-            verdict: self.row.verdict.to_owned(),
+            verdict: self.row.verdict.to_string(),
             hops: self.row.hops,
             ground: geometry.vertices().to_vec(),
             start: point(self.row.start_x_m).unwrap_or(geometry.vertices()[0]),
@@ -160,5 +160,5 @@ fn document(compared: &[Compared], answer: &CompareAnswer) -> Result<String, Fai
         }
         warnings.extend(one.warnings.iter().map(|warning| format!("{}: {warning}", one.row.file)));
     }
-    Ok(Document::new("compare", serde_json::Value::Array(scenarios), inputs, warnings, answer.clone()).to_json()?)
+    Ok(Document::new(DocumentKind::Compare, serde_json::Value::Array(scenarios), inputs, warnings, answer.clone()).to_json()?)
 }

@@ -5,7 +5,7 @@ use chta::{
     graph::PointSpacing,
     quantity::Angle,
     reach::{FanRequest, fan},
-    report::{Document, FanAnswer},
+    report::{Document, DocumentKind, FanAnswer},
     study::{Extremes, Overlays, coarse_dem_warning, constant_gravity_warnings, dem_on_body},
     terrain::check_scale,
 };
@@ -105,7 +105,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
             for overlay in Overlays::files(&scenario) {
                 inputs.extend(raster_files(&base.join(overlay))?);
             }
-            Document::new("fan", document, inputs, warnings, answer).on_map(projection.as_ref().ok()).to_json()?
+            Document::new(DocumentKind::Fan, document, inputs, warnings, answer).on_map(projection.as_ref().ok()).to_json()?
         }
     };
     output::to_stdout(text.as_bytes())?;

@@ -4,7 +4,7 @@ use chta::{
     graph::{Edge, Leg},
     hop::TakeoffSet,
     path::generate,
-    report::{Document, HopAnswer, hop_text},
+    report::{Document, DocumentKind, HopAnswer, hop_text},
     study::{Extremes, constant_gravity_warnings},
 };
 
@@ -56,7 +56,9 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
     let verdict = if answer.feasible { Answer::Yes } else { Answer::No };
     let text = match args.format {
         Format::Text => hop_text(&answer),
-        Format::Json => Document::new("hop", loaded.document, loaded.inputs, warnings, answer).on_map(projection).to_json()?,
+        Format::Json => {
+            Document::new(DocumentKind::Hop, loaded.document, loaded.inputs, warnings, answer).on_map(projection).to_json()?
+        }
     };
     output::to_stdout(text.as_bytes())?;
     Ok(verdict)

@@ -14,8 +14,8 @@ use chta::{
         search, verify,
     },
     report::{
-        Document, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, PropellantShortage, SimulationRecord,
-        TotalsRecord, paths_geojson, write_paths_csv,
+        Document, DocumentKind, GoalRecord, HopRecord, InputFile, MapAnswer, MapKnowledge, MapSummary, PropellantShortage,
+        SimulationRecord, TotalsRecord, paths_geojson, write_paths_csv,
     },
     scenario::{Scenario, UncertaintyKeys},
     study::{Extremes, Overlays, TrialGround, coarse_dem_warning, constant_gravity_warnings, dem_on_body},
@@ -120,7 +120,8 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let text = match args.answer.format {
         Format::Text => answer.text(),
         Format::Json => {
-            let document = Document::new("map", inputs.document.clone(), inputs.input_files.clone(), warnings, answer.clone());
+            let document =
+                Document::new(DocumentKind::Map, inputs.document.clone(), inputs.input_files.clone(), warnings, answer.clone());
             document.on_map(inputs.projection.as_ref().ok()).to_json()?
         }
     };

@@ -10,8 +10,8 @@ use chta::{
     path::{Execution, HopPath, execute},
     quantity::{Angle, AngleInterval},
     report::{
-        CheckAnswer, Document, HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, check_text, path_geojson, path_text,
-        reliable_paths_text, write_path_csv,
+        CheckAnswer, Document, DocumentKind, HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, check_text, path_geojson,
+        path_text, reliable_paths_text, write_path_csv,
     },
     scenario::Scenario,
     world::{Grip, RestSlope},
@@ -113,7 +113,7 @@ impl Planned {
     }
 
     /// The result as one JSON document of the given kind.
-    pub(super) fn document(&self, kind: &str, loaded: &Loaded) -> Result<String, Failure> {
+    pub(super) fn document(&self, kind: DocumentKind, loaded: &Loaded) -> Result<String, Failure> {
         let document = loaded.document.clone();
         let document = Document::new(kind, document, loaded.inputs.clone(), self.warnings.clone(), self.answer.clone());
         Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
@@ -242,7 +242,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     let text = match args.answer.format {
         _ if csv_to_stdout => planned.csv(&loaded)?,
         Format::Text => planned.text().into_bytes(),
-        Format::Json => planned.document("plan", &loaded)?.into_bytes(),
+        Format::Json => planned.document(DocumentKind::Plan, &loaded)?.into_bytes(),
     };
     output::to_stdout(&text)?;
     Ok(planned.verdict())

@@ -7,7 +7,7 @@ use chta::{
     },
     path::generate,
     quantity::Angle,
-    report::{Document, GapRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord, require_text},
+    report::{Document, DocumentKind, GapRecord, HopRecord, RequireAnswer, RequireTry, TotalsRecord, require_text},
     scenario::{Key, Kind},
     study::ask_the_same,
 };
@@ -145,7 +145,7 @@ impl Tried {
     fn record(&self) -> RequireTry {
         RequireTry {
             value: self.value,
-            verdict: self.bounds.verdict().name(),
+            verdict: self.bounds.verdict(),
             lower_bound: self.bounds.lower,
             upper_bound: self.bounds.upper(),
         }
@@ -255,6 +255,6 @@ fn written(args: &RequireArgs, (loaded, strongest): (&Loaded, &Loaded), answer: 
         return Ok(require_text(answer));
     }
     let warnings = loaded.warnings_with(strongest.prepared.warnings.iter().cloned());
-    let document = Document::new("require", loaded.document.clone(), loaded.inputs.clone(), warnings, answer.clone());
+    let document = Document::new(DocumentKind::Require, loaded.document.clone(), loaded.inputs.clone(), warnings, answer.clone());
     Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
 }

@@ -2,7 +2,10 @@
 
 use std::{fs, path::Path};
 
-use chta::{chain::csv::write_chain_csv, report::CrsRecord};
+use chta::{
+    chain::csv::write_chain_csv,
+    report::{CrsRecord, DocumentKind},
+};
 
 use super::{plan::Planned, search::use_threads, simulate, trajectory};
 use crate::cli::{
@@ -63,7 +66,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     let mut files = vec![
         ("chain.csv", chain_csv),
         ("path.csv", planned.csv(&loaded)?),
-        (RESULT, planned.document("run", &loaded)?.into_bytes()),
+        (RESULT, planned.document(DocumentKind::Run, &loaded)?.into_bytes()),
         (PICTURE, planned.picture(&loaded, &test, ends, Path::new(PICTURE))?),
     ];
     if let Some(geojson) = planned.geojson(&loaded) {
@@ -93,7 +96,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
         Format::Text => {
             format!("{}{trials_text}\nwritten to {}: {}\n", planned.text(), folder.display(), names.join(", "))
         }
-        Format::Json => planned.document("run", &loaded)?,
+        Format::Json => planned.document(DocumentKind::Run, &loaded)?,
     };
     output::to_stdout(text.as_bytes())?;
     Ok(planned.verdict())

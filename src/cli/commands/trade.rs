@@ -4,7 +4,7 @@ use std::path::Path;
 
 use chta::{
     figure::{Picture, TradeFigure, draw_trade},
-    report::{Document, TradeAnswer},
+    report::{Document, DocumentKind, TradeAnswer},
     study::{SweptKey, Trade, TradeError},
 };
 
@@ -79,7 +79,7 @@ fn csv(answer: &TradeAnswer) -> Result<Vec<u8>, Failure> {
 /// The answer as one JSON document; its scenario is that of the first row.
 fn document(first: &Loaded, answer: &TradeAnswer) -> Result<String, Failure> {
     let warnings = first.warnings_with(answer.warnings());
-    let document = Document::new("trade", first.document.clone(), first.inputs.clone(), warnings, answer.clone());
+    let document = Document::new(DocumentKind::Trade, first.document.clone(), first.inputs.clone(), warnings, answer.clone());
     Ok(document.on_map(first.prepared.projection.as_ref()).to_json()?)
 }
 

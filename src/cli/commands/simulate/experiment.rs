@@ -5,7 +5,7 @@ use chta::{
     figure::{ConeWidthFigure, LandingErrorFigure, draw_cone_width, draw_landing_errors},
     graph::{self, NodeSet, Outcome, SearchOptions, most_reliable_paths},
     path::{Hop, generate},
-    report::{ConeWidthAnswer, Document, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer},
+    report::{ConeWidthAnswer, Document, DocumentKind, RiskTradeAnswer, RiskTradeRow, TradedPath, WorstDriftAnswer},
     uncertainty::{
         Policy,
         experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
@@ -110,7 +110,7 @@ fn written<T: Serialize>(
         Format::Text => Ok(text),
         Format::Json => {
             let document = Document::new(
-                "simulate-experiment",
+                DocumentKind::SimulateExperiment,
                 loaded.document.clone(),
                 loaded.inputs.clone(),
                 loaded.warnings_with(warning),
@@ -186,12 +186,12 @@ fn risk_trade(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result
     let plain = generate(&test, legs, scenario.search.takeoff, scenario.search.split).map_err(|error| Failure::of(&error))?;
     let flyer = Flyer::new(loaded, &test, &plain, &found, std::slice::from_ref(&keys.policy), args.common.quiet)?;
     let options = keys.options();
-    let mut rows = vec![RiskTradeRow::new("least effort", plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
+    let mut rows = vec![RiskTradeRow::new(TradedPath::LeastEffort, plain.hops.len(), None, &flyer.fly_along(&plain, &options)?)];
     for candidate in &reliable_paths {
         let path = generate(&test, &candidate.legs, scenario.search.takeoff, scenario.search.split)
             .map_err(|error| Failure::of(&error))?;
         let summary = flyer.fly_along(&path, &options)?;
-        rows.push(RiskTradeRow::new("surest", path.hops.len(), Some(candidate.success), &summary));
+        rows.push(RiskTradeRow::new(TradedPath::MostReliable, path.hops.len(), Some(candidate.success), &summary));
     }
-    Ok(RiskTradeAnswer { trials: keys.trials, seed: keys.seed, policy: keys.policy.name(), paths: rows })
+    Ok(RiskTradeAnswer { trials: keys.trials, seed: keys.seed, policy: keys.policy, paths: rows })
 }

@@ -9,7 +9,7 @@ use std::path::Path;
 
 use chta::{
     hop::HopTest,
-    report::{Document, SimulateAnswer, SimulationRecord, check_text},
+    report::{Document, DocumentKind, SimulateAnswer, SimulationRecord, check_text},
     scenario::UncertaintyKeys,
     study::TrialGround,
     uncertainty::{Policy, TrialOptions},
@@ -101,7 +101,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
         return Ok(planned.verdict());
     }
     let records: Vec<_> = flown.iter().map(|flown| SimulationRecord::new(&flown.summary, path.hops.len())).collect();
-    let asked = records.iter().find(|record| record.policy == keys.policy.name()).cloned();
+    let asked = records.iter().find(|record| record.policy == keys.policy).cloned();
     let text = match args.answer.format {
         Format::Text => {
             let mut text = check_text(planned.check(), further_means());
@@ -175,7 +175,7 @@ fn no_path(args: &SimulateArgs, loaded: &Loaded, planned: &Planned) -> Result<An
 
 fn document<T: Serialize>(loaded: &Loaded, warnings: Vec<String>, answer: T) -> Result<String, Failure> {
     let document = loaded.document.clone();
-    let document = Document::new("simulate", document, loaded.inputs.clone(), loaded.warnings_with(warnings), answer);
+    let document = Document::new(DocumentKind::Simulate, document, loaded.inputs.clone(), loaded.warnings_with(warnings), answer);
     Ok(document.on_map(loaded.prepared.projection.as_ref()).to_json()?)
 }
 
