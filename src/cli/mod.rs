@@ -46,6 +46,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Compare(args) => commands::compare::run(&args),
         Command::Synth(args) => commands::synth::run(&args),
         Command::Bodies => commands::bodies::run(),
+        Command::Schema(args) => commands::schema::run(&args),
     };
     let status = match answer {
         Ok(Answer::Yes) => ExitCode::SUCCESS,

@@ -53,4 +53,4 @@ pub use require_answer::{RequireAnswer, RequireTry};
 pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
-pub use trajectory::write_trajectory_csv;
+pub use trajectory::{trajectory_columns, write_trajectory_csv};

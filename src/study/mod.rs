@@ -5,6 +5,7 @@ mod footprint;
 mod on_body;
 mod physics;
 mod pipeline;
+mod schema;
 mod sense;
 mod trade;
 
@@ -13,5 +14,6 @@ pub use footprint::coarse_dem_warning;
 pub use on_body::{OfBody, dem_on_body, on_body};
 pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};
 pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};
+pub use schema::SchemaKind;
 pub use sense::TrialGround;
 pub use trade::{SweptKey, Trade, TradeError, Varied, verdict};

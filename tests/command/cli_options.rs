@@ -10,8 +10,8 @@ use std::{
 
 use crate::desk::{CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 12] =
-    ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "simulate", "synth", "bodies"];
+const COMMANDS: [&str; 13] =
+    ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "simulate", "synth", "bodies", "schema"];
 
 /// Options that need a projected map, tested in `maps_command.rs`.
 const ON_A_PROJECTED_MAP: [&str; 6] =
@@ -919,7 +919,7 @@ fn every_option_changes_the_output() {
             assert!(before != after, "{command} {option} changes nothing: {:?}", after.0);
         }
     }
-    assert!(options("bodies").is_empty());
+    assert!(options("bodies").is_empty() && options("schema").is_empty());
 }
 
 #[test]
@@ -994,7 +994,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 _ => blocks.push(paragraph.to_owned()),
             }
         }
-        assert!(command == "bodies" || blocks.len() > 3, "{command}: {blocks:?}");
+        assert!(["bodies", "schema"].contains(&command) || blocks.len() > 3, "{command}: {blocks:?}");
         for block in blocks {
             let one_line = block.split_whitespace().collect::<Vec<_>>().join(" ");
             let name = one_line.trim_start_matches("-o, ").split([' ', ',']).next().unwrap().to_owned();

@@ -8,6 +8,7 @@ use chta::report::{
     CheckAnswer, CompareAnswer, Document, DocumentKind, DocumentProblem, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer,
     PairsAnswer, PlanAnswer, RequireAnswer, SimulateAnswer, TradeAnswer,
 };
+use chta::scenario::{Scenario, scenario_document};
 use serde::{Serialize, de::DeserializeOwned};
 
 use crate::desk::chta;
@@ -166,5 +167,19 @@ fn what_is_no_answer_is_refused_with_its_key() {
         assert_ne!(text, of(kind), "{found} is not in the document");
         let problem = rewritten(kind, &text).map(|_| ()).expect_err(planted).to_string();
         assert!(problem.contains(sentence), "{planted}: {problem}");
+    }
+}
+
+#[test]
+fn the_scenario_inside_an_answer_reads_back_as_it_was() {
+    for (command, text) in documents() {
+        let document: serde_json::Value = serde_json::from_str(text).unwrap();
+        let alone = std::slice::from_ref(&document["scenario"]);
+        for written in document["scenario"].as_array().map_or(alone, Vec::as_slice) {
+            let scenario = Scenario::from_document(written).unwrap_or_else(|problems| panic!("{command}: {problems:?}"));
+            let again = scenario_document(&scenario, &|path| path.to_str().unwrap().to_owned());
+            assert_eq!(again, *written, "{command}");
+            assert_eq!(Scenario::from_document(&again), Ok(scenario), "{command}");
+        }
     }
 }

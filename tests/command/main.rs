@@ -28,6 +28,7 @@ mod pipes;
 mod propulsion;
 mod real_terrain;
 mod same_answers;
+mod schemas;
 mod sentences;
 mod shipped_scenarios;
 mod simulate_command;

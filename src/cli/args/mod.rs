@@ -47,6 +47,16 @@ pub(crate) enum Command {
     /// List the known bodies with gravity, radius and their source
     #[command(after_help = "Example:\n  chta bodies")]
     Bodies,
+    Schema(SchemaArgs),
+}
+
+/// Print the JSON schema of a scenario or of an answer, or list their kinds
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta schema plan")]
+pub(crate) struct SchemaArgs {
+    /// scenario, or the kind of an answer; absent: list them
+    #[arg(value_name = "KIND")]
+    pub(crate) kind: Option<String>,
 }
 
 /// How a result is written to standard output.

@@ -11,6 +11,7 @@ mod map_profiles;
 pub(super) mod plan;
 pub(super) mod require;
 pub(super) mod run;
+pub(super) mod schema;
 mod search;
 pub(super) mod simulate;
 pub(super) mod slice;
