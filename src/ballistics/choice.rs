@@ -60,6 +60,8 @@ impl TakeoffChoice {
     }
 }
 
+crate::quantity::by_name!(TakeoffChoice, TakeoffChoice::ALL);
+
 /// The loft whose take-off direction bisects the angle between those of two lofts.
 ///
 /// The sum of the unit vectors along both directions points along the bisector. Its loft is therefore the mean of both lofts,

@@ -8,7 +8,7 @@ use std::{
 
 use chta::{
     chain::{Station, csv::read_chain_csv_file},
-    report::{Document, InputFile},
+    report::{Document, DocumentKind, InputFile},
     scenario::{
         Entries, FileKind, LackingKey, Place, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, scenario_document,
     },
@@ -96,7 +96,7 @@ impl Loaded {
     }
 
     /// An answer as one document, with its warnings.
-    pub(crate) fn document<T: Serialize>(&self, kind: &str, warnings: &[String], answer: T) -> Result<String, Failure> {
+    pub(crate) fn document<T: Serialize>(&self, kind: DocumentKind, warnings: &[String], answer: T) -> Result<String, Failure> {
         Ok(self.record.document(kind, warnings, answer).to_json()?)
     }
 
@@ -358,7 +358,7 @@ pub(crate) fn comparison_document(loaded: &[Loaded], comparison: &Comparison) ->
         }
     }
     let warnings = comparison.compared.iter().flat_map(Compared::warnings).collect();
-    let document = Document::new("compare", serde_json::Value::Array(scenarios), inputs, warnings, &comparison.answer);
+    let document = Document::new(DocumentKind::Compare, serde_json::Value::Array(scenarios), inputs, warnings, &comparison.answer);
     Ok(document.to_json()?)
 }
 

@@ -88,5 +88,6 @@ fn answer_of(command: Command) -> Result<Answer, Failure> {
         Command::Bodies => commands::bodies::run(),
         Command::Completions(args) => commands::completions::run(args),
         Command::Man(args) => commands::man::run(&args),
+        Command::Schema(args) => commands::schema::run(&args),
     }
 }

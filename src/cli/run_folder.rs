@@ -7,7 +7,7 @@ use std::{
 
 use chta::{
     chain::csv::write_chain_csv,
-    report::CrsRecord,
+    report::{CrsRecord, DocumentKind},
     study::{Planned, Simulated},
 };
 
@@ -74,7 +74,7 @@ impl<'a> RunFolder<'a> {
         write_chain_csv(prepared.chain.geometry(), &mut chain_csv, &comments).map_err(|e| Failure::of(&e))?;
         let mut path_csv = Vec::new();
         planned.write_csv(&mut path_csv).map_err(|error| Failure::message(format!("path.csv: {error}")))?;
-        let result = loaded.document("run", &planned.warnings, &planned.answer)?;
+        let result = loaded.document(DocumentKind::Run, &planned.warnings, &planned.answer)?;
         self.files.extend([("chain.csv", chain_csv), ("path.csv", path_csv), (RESULT, result.into_bytes())]);
         self.files.push((PICTURE, output::encoded(planned.picture(), Path::new(PICTURE))?));
         if let Some(geojson) = planned.geojson() {
@@ -86,7 +86,7 @@ impl<'a> RunFolder<'a> {
 
     /// Adds the answer of the trials and its pictures.
     pub(crate) fn trials(&mut self, simulated: &Simulated, loaded: &Loaded) -> Result<(), Failure> {
-        let document = loaded.document("simulate", &simulated.warnings, &simulated.answer)?;
+        let document = loaded.document(DocumentKind::Simulate, &simulated.warnings, &simulated.answer)?;
         self.files.push(("simulation.json", document.into_bytes()));
         for (name, picture) in TRIAL_PICTURES.into_iter().zip([simulated.picture(), simulated.landing_map()]) {
             if let Some(drawn) = picture {

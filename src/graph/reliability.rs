@@ -38,6 +38,8 @@ impl ReliabilityUse {
     }
 }
 
+crate::quantity::by_name!(ReliabilityUse, ReliabilityUse::ALL);
+
 /// How reliability is estimated and weighed in the choice of a path.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ReliabilityOptions {

@@ -39,6 +39,9 @@ pub enum SliceEnd {
 }
 
 impl SliceEnd {
+    /// All reasons.
+    pub const ALL: [Self; 2] = [Self::Border, Self::NoData];
+
     /// The name in results.
     pub const fn name(self) -> &'static str {
         match self {
@@ -47,6 +50,8 @@ impl SliceEnd {
         }
     }
 }
+
+crate::quantity::by_name!(SliceEnd, SliceEnd::ALL);
 
 /// A part of a slice whose nodes all need the same number of hops.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,18 +2,19 @@
 
 use std::fmt::Write as _;
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::{HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines};
+use super::{HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines, stated::stated};
 use crate::{
-    graph::Effort,
+    graph::{Effort, EffortUnit},
     quantity::MapPoint,
     reach::map::{HopMap, Mobility, NO_GROUND, NOT_SEARCHED, NodeLattice, Post, SECTORS},
     terrain::Dem,
 };
 
 /// The answer of `chta map`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MapAnswer {
     /// Every `stride`-th post of the DEM is a post of the map.
     pub stride: usize,
@@ -60,7 +61,7 @@ pub struct MapAnswer {
 }
 
 /// A start.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StartRecord {
     /// The post nearest to the requested start, easting.
     pub x_m: f64,
@@ -73,21 +74,18 @@ pub struct StartRecord {
 }
 
 /// The least effort among paths of fewest hops.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MapEffortRecord {
     /// The kind of effort.
-    pub kind: &'static str,
+    pub kind: Effort,
     /// Its unit.
-    pub unit: &'static str,
-    /// A description for the reader.
-    #[serde(skip)]
-    pub total: &'static str,
+    pub unit: EffortUnit,
     /// The greatest effort of any reachable post.
     pub greatest: f64,
 }
 
 /// Paths back to the nearest start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ReturnRecord {
     /// Posts from which a start can be reached, the starts included.
     pub return_posts: usize,
@@ -98,7 +96,7 @@ pub struct ReturnRecord {
 }
 
 /// Single hops from every post.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MobilityRecord {
     /// The radius of the disc to which the shares refer.
     pub disc_radius_m: f64,
@@ -115,7 +113,7 @@ pub struct MobilityRecord {
 }
 
 /// A goal.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GoalRecord {
     /// The post nearest to the requested goal, easting.
     pub x_m: f64,
@@ -130,7 +128,7 @@ pub struct GoalRecord {
     /// False if the search ended at its bound of hops before the goal, so that it is not known whether it can be reached.
     pub searched: bool,
     /// Fewest hops back; absent if not requested, null: no path.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "stated", skip_serializing_if = "Option::is_none")]
     pub return_hops: Option<Option<i16>>,
     /// The hops of one path of fewest hops (and of least effort, if an effort was requested), x along the path.
     pub path: Vec<HopRecord>,
@@ -208,9 +206,8 @@ impl MapAnswer {
             farthest_hops: out.hops.iter().copied().fold(0, i16::max),
             hops_histogram,
             effort: summary.effort.map(|effort| MapEffortRecord {
-                kind: effort.name(),
+                kind: effort,
                 unit: effort.unit(),
-                total: effort.total(),
                 greatest: out.effort.iter().copied().fold(0.0, f64::max),
             }),
             back: summary.back.map(|back| ReturnRecord {
@@ -268,8 +265,8 @@ impl MapAnswer {
         if let (Some(most), Some(posts)) = (self.hops_max, self.not_searched_posts) {
             let _ = writeln!(text, "{}", not_searched(most, posts));
         }
-        if let Some(MapEffortRecord { total, unit, greatest, .. }) = &self.effort {
-            let _ = writeln!(text, "{total}: at most {greatest:.4} {unit}");
+        if let Some(MapEffortRecord { kind, unit, greatest }) = &self.effort {
+            let _ = writeln!(text, "{}: at most {greatest:.4} {unit}", kind.total());
         }
         if let Some(back) = &self.back {
             let _ = writeln!(

@@ -1,11 +1,12 @@
 //! The answer of a plan, as plain data.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{CheckAnswer, FurtherMeans, HopRecord, ReliablePathRecord, TotalsRecord, check_text, path_text, reliable_paths_text};
 
 /// The answer of a plan: the check, the path, its totals.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlanAnswer {
     /// Whether a path exists.
     #[serde(flatten)]
@@ -18,7 +19,7 @@ pub struct PlanAnswer {
     /// The sums over the path; null without one.
     pub totals: Option<TotalsRecord>,
     /// The Pareto front of hops against success probability, where the scenario weighs risk.
-    #[serde(rename = "surest", skip_serializing_if = "Vec::is_empty")]
+    #[serde(rename = "surest", default, skip_serializing_if = "Vec::is_empty")]
     pub reliable_paths: Vec<ReliablePathRecord>,
 }
 

@@ -1,11 +1,13 @@
 //! The least capability with which a goal can be reached, as plain data.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{GapRecord, HopRecord, TotalsRecord};
+use crate::graph::proof::ProofVerdict;
 
 /// The answer of `chta require`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RequireAnswer {
     /// Start, m.
     pub start_x_m: f64,
@@ -42,12 +44,12 @@ pub struct RequireAnswer {
 }
 
 /// One value tried.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RequireTry {
     /// The value, in the key's unit.
     pub value: f64,
     /// `traversable`, `untraversable` (proved) or `no-path-found`.
-    pub verdict: &'static str,
+    pub verdict: ProofVerdict,
     /// No path has fewer hops; null if no path exists.
     pub lower_bound: Option<u64>,
     /// The hops of the best known path.

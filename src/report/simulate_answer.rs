@@ -1,6 +1,7 @@
 //! The results of trials, as plain data and as text.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{CheckAnswer, FurtherMeans, check_text, text::Sheet};
 use crate::uncertainty::{
@@ -8,7 +9,7 @@ use crate::uncertainty::{
 };
 
 /// The answer of a simulation: the check and, with a path, the results of its trials.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulateAnswer {
     /// Whether a path exists.
     #[serde(flatten)]
@@ -17,7 +18,7 @@ pub struct SimulateAnswer {
     #[serde(flatten)]
     pub simulation: Option<SimulationRecord>,
     /// Both policies on the same draws, if requested.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub compare: Vec<SimulationRecord>,
 }
 
@@ -36,14 +37,14 @@ pub fn simulate_text(answer: &SimulateAnswer, means: FurtherMeans<'_>) -> String
 }
 
 /// The results of the trials of one policy.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulationRecord {
     /// The number of trials flown.
     pub trials: u64,
     /// The seed of all draws.
     pub seed: u64,
     /// The policy.
-    pub policy: &'static str,
+    pub policy: Policy,
     /// The share that reached the goal.
     pub success_rate: f64,
     /// Its 95 % interval (Wilson).
@@ -59,7 +60,7 @@ pub struct SimulationRecord {
 }
 
 /// Trials by outcome.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct OutcomeRecord {
     /// It stopped within the goal tolerance.
     pub reached: u64,
@@ -82,7 +83,7 @@ pub struct OutcomeRecord {
 }
 
 /// The landings of one hop number.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LandingRecord {
     /// The hop's number, from 1.
     pub hop: u32,
@@ -98,7 +99,7 @@ pub struct LandingRecord {
 }
 
 /// A distribution of distances.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ErrorRecord {
     /// Mean.
     pub mean_m: Option<f64>,
@@ -117,7 +118,7 @@ pub struct ErrorRecord {
 }
 
 /// An ellipse on the map.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EllipseRecord {
     /// Its centre, easting.
     pub centre_map_x_m: f64,
@@ -132,7 +133,7 @@ pub struct EllipseRecord {
 }
 
 /// The success rate after some number of trials.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RateRecord {
     /// The number of trials.
     pub trials: u64,
@@ -158,7 +159,7 @@ impl SimulationRecord {
         Self {
             trials: summary.trials,
             seed: summary.seed,
-            policy: summary.policy.name(),
+            policy: summary.policy,
             success_rate: summary.success.rate,
             success_rate_ci95: [summary.success.low, summary.success.high],
             outcomes: OutcomeRecord::new(&summary.outcomes),
@@ -170,7 +171,7 @@ impl SimulationRecord {
 
     /// Whether every hop was replanned from the end of the previous one.
     fn is_replanned(&self) -> bool {
-        self.policy == Policy::Replan.name()
+        self.policy == Policy::Replan
     }
 
     /// The meaning of the landing distances.

@@ -2,10 +2,11 @@
 
 use std::fmt::Write as _;
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 /// Upper bounds on what an answer takes, without the answer.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SizeAnswer {
     /// Always true: nothing was computed.
     pub dry_run: bool,
@@ -22,10 +23,10 @@ pub struct SizeAnswer {
 }
 
 /// The bytes of one part.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct SizeRecord {
     /// What they are for.
-    pub part: &'static str,
+    pub part: String,
     /// At most.
     pub bytes_max: u64,
 }

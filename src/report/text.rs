@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::{
     BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, TotalsRecord, WindowRecord,
+    limit_counts::LimitCounts,
     propellant_record::{delta_v_field, stores_lines},
 };
 use crate::quantity::{format_number, unit_of};
@@ -58,7 +59,7 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         sheet.line(format_args!("{}", binding_line(&answer.binding)));
     }
     // The longest name of a limit on the machine's speeds is longer than the column of the others.
-    let wide = answer.limits.iter().map(|limit| limit.name.len() + 1).fold(18, usize::max);
+    let wide = answer.limits.iter().map(|limit| limit.name.name().len() + 1).fold(18, usize::max);
     sheet.line(format_args!("\n{:<wide$}{:>14}{:>14}", "limit", "min (deg)", "max (deg)"));
     for limit in &answer.limits {
         let ends = match (limit.min_deg, limit.max_deg) {
@@ -109,11 +110,10 @@ pub fn hop_text(answer: &HopAnswer) -> String {
             reach.takeoff_angle_deg,
             reach.limit,
             reach.by_takeoff_speed_m,
-            if reach.by_landing_speed_m.is_finite() {
-                format!("{:.3} m by landing speed", reach.by_landing_speed_m)
-            } else {
-                "no limit by landing speed, since it brakes".to_owned()
-            }
+            reach.by_landing_speed_m.map_or_else(
+                || "no limit by landing speed, since it brakes".to_owned(),
+                |reach_m| format!("{reach_m:.3} m by landing speed")
+            )
         ));
     }
     if let Some(along) = answer.segment_hops {
@@ -281,7 +281,7 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         sheet.line(format_args!("commands in steps: every landing is within {miss_m:.3} m of its aim"));
     }
     if let Some(effort) = answer.effort {
-        sheet.line(format_args!("{}: {:.4} {}", effort.total, effort.value, effort.unit));
+        sheet.line(format_args!("{}: {:.4} {}", effort.name.total(), effort.value, effort.unit));
     }
     if let (Some(lower), true) =
         (answer.proof.as_ref().and_then(|proof| proof.lower_bound), answer.hops.is_some() && !answer.is_traversable())
@@ -339,10 +339,8 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
 }
 
 /// Counts by name, in descending order.
-fn ranked(counts: &std::collections::BTreeMap<&'static str, u64>) -> String {
-    let mut ranked: Vec<_> = counts.iter().collect();
-    ranked.sort_by_key(|(name, count)| (std::cmp::Reverse(**count), **name));
-    ranked.iter().map(|(name, count)| format!("{name} {count}")).collect::<Vec<_>>().join(", ")
+fn ranked(counts: &LimitCounts) -> String {
+    counts.ranked().iter().map(|(name, count)| format!("{name} {count}")).collect::<Vec<_>>().join(", ")
 }
 
 /// The two headings of a hop on a map of a known projection.

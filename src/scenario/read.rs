@@ -125,6 +125,15 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// The scenario of a document that [`scenario_document`](super::scenario_document) made: equal to the one that it was made from, with
+    /// the paths that the document names.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_document(document: &serde_json::Value) -> Result<Self, Vec<ScenarioProblem>> {
+        Self::new(Entries::from_json(document))
+    }
+
     /// Validates raw keys.
     ///
     /// # Errors

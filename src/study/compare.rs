@@ -94,7 +94,7 @@ impl Compared {
         let (start, goal) = self.planned.ends;
         ComparedScenario {
             name: self.row.name.clone(),
-            verdict: self.row.verdict.to_owned(),
+            verdict: self.row.verdict.to_string(),
             hops: self.row.hops,
             ground: self.planned.case.prepared.chain.geometry().vertices().to_vec(),
             start: start.point,

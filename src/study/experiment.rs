@@ -11,7 +11,7 @@ use crate::{
     hop::HopTest,
     path::{Hop, PathError, generate},
     progress::Progress,
-    report::{ConeWidthAnswer, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer},
+    report::{ConeWidthAnswer, RiskTradeAnswer, RiskTradeRow, TradedPath, WorstDriftAnswer},
     uncertainty::{
         Policy,
         experiments::{CONE_SHARES, DriftExperiment, DriftLaw, DriftReading, Experiment, cone_width, narrowed, worst_drift},
@@ -204,11 +204,11 @@ fn risk_trade(planned: &Planned, progress: &dyn Progress) -> Result<RiskTradeAns
     let path = case.prepared.path(test, legs, &scenario.search)?;
     let flyer = Flyer::new(planned, &plain, &[keys.policy], progress)?;
     let options = keys.options();
-    let mut rows = vec![RiskTradeRow::new("least effort", path.hops.len(), None, &flyer.fly(&path, &options, progress)?)];
+    let mut rows = vec![RiskTradeRow::new(TradedPath::LeastEffort, path.hops.len(), None, &flyer.fly(&path, &options, progress)?)];
     for candidate in &reliable_paths {
         let path = case.prepared.path(test, &candidate.legs, &scenario.search)?;
         let summary = flyer.fly(&path, &options, progress)?;
-        rows.push(RiskTradeRow::new("surest", path.hops.len(), Some(candidate.success), &summary));
+        rows.push(RiskTradeRow::new(TradedPath::MostReliable, path.hops.len(), Some(candidate.success), &summary));
     }
-    Ok(RiskTradeAnswer { trials: keys.trials, seed: keys.seed, policy: keys.policy.name(), paths: rows })
+    Ok(RiskTradeAnswer { trials: keys.trials, seed: keys.seed, policy: keys.policy, paths: rows })
 }

@@ -128,7 +128,7 @@ impl PreparedFan {
         let dem = self.ground.terrain().dem();
         let posts = (dem.rows() * dem.cols()) as u64;
         let FanSize { nodes, pairs_max, elevations_bytes, slices_bytes } = size;
-        let part = |part, bytes_max| SizeRecord { part, bytes_max };
+        let part = |part: &str, bytes_max| SizeRecord { part: part.to_owned(), bytes_max };
         let memory = vec![part("elevations", elevations_bytes), part("slices and their search, one for each thread", slices_bytes)];
         Ok(SizeAnswer::new([posts, nodes, pairs_max], memory))
     }

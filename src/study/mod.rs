@@ -32,6 +32,7 @@ mod pipeline;
 mod plan;
 mod record;
 mod require;
+mod schema;
 mod sense;
 mod simulate;
 pub mod slice;
@@ -56,6 +57,7 @@ pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Su
 pub use plan::{Defect, PlanError, PlanOptions, Planned, plan};
 pub use record::{CaseRecord, checksums, raster_files, scenario_files};
 pub use require::{RangeProblem, RequireError, Required, Requirement, require};
+pub use schema::SchemaKind;
 pub use sense::TrialGround;
 pub use simulate::{SimulateError, SimulateOptions, Simulated, Trials, simulate};
 pub use trade::{SweptKey, Trade, TradeError, Varied, verdict};

@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::{Overlays, PipelineError, sha256_of};
 use crate::{
-    report::{CrsRecord, Document, InputFile},
+    report::{CrsRecord, Document, DocumentKind, InputFile},
     scenario::{Scenario, TerrainSource},
     terrain::sidecar_files,
 };
@@ -26,9 +26,7 @@ pub struct CaseRecord {
 
 impl CaseRecord {
     /// The document of an answer, with the warnings about the input and then those about the answer, without repetition.
-    ///
-    /// `kind`: such as `plan`.
-    pub fn document<T: Serialize>(&self, kind: &str, warnings: &[String], answer: T) -> Document<T> {
+    pub fn document<T: Serialize>(&self, kind: DocumentKind, warnings: &[String], answer: T) -> Document<T> {
         let mut all = self.warnings.clone();
         for warning in warnings {
             if !all.contains(warning) {

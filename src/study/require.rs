@@ -333,7 +333,7 @@ impl Tried {
     fn record(&self) -> RequireTry {
         RequireTry {
             value: self.value,
-            verdict: self.bounds.verdict().name(),
+            verdict: self.bounds.verdict(),
             lower_bound: self.bounds.lower,
             upper_bound: self.bounds.upper(),
         }

@@ -1,5 +1,7 @@
 //! How a trial ends, and the policies of the robot.
 
+use serde::{Deserialize, Serialize};
+
 /// How the robot chooses its commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Policy {
@@ -22,6 +24,8 @@ impl Policy {
         }
     }
 }
+
+crate::quantity::by_name!(Policy, Policy::ALL);
 
 /// How a trial ended. Every trial ends in exactly one of these ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -79,8 +83,10 @@ impl TrialOutcome {
     }
 }
 
+crate::quantity::by_name!(TrialOutcome, TrialOutcome::ALL);
+
 /// How many trials ended in each way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct OutcomeCounts([u64; 9]);
 
 impl OutcomeCounts {
@@ -103,14 +109,14 @@ impl OutcomeCounts {
 
     /// The number of trials counted.
     pub fn total(&self) -> u64 {
-        self.0.iter().sum()
+        self.0.iter().fold(0, |sum, count| sum.saturating_add(*count))
     }
 }
 
 impl std::ops::AddAssign for OutcomeCounts {
     fn add_assign(&mut self, other: Self) {
         for (mine, theirs) in self.0.iter_mut().zip(other.0) {
-            *mine += theirs;
+            *mine = mine.saturating_add(theirs);
         }
     }
 }

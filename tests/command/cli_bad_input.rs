@@ -273,8 +273,9 @@ fn outputs_that_cannot_be_written_are_refused_and_leave_nothing() {
 }
 
 /// Every command that writes to standard output.
-const WRITING: [&[&str]; 7] = [
+const WRITING: [&[&str]; 8] = [
     &["bodies"],
+    &["schema", "plan"],
     &["hop", "scenario.toml", "--to", "10"],
     &["check", "scenario.toml"],
     &["plan", "scenario.toml"],

@@ -10,7 +10,7 @@ use std::{
 
 use crate::desk::{CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 14] = [
+const COMMANDS: [&str; 15] = [
     "run",
     "slice",
     "map",
@@ -25,6 +25,7 @@ const COMMANDS: [&str; 14] = [
     "bodies",
     "completions",
     "man",
+    "schema",
 ];
 
 /// Options that need a projected map, tested in `maps_command.rs`.
@@ -967,7 +968,7 @@ fn every_option_changes_the_output() {
             assert!(before != after, "{command} {option} changes nothing: {:?}", after.0);
         }
     }
-    assert!(options("bodies").is_empty());
+    assert!(options("bodies").is_empty() && options("schema").is_empty());
 }
 
 #[test]
@@ -1042,7 +1043,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 _ => blocks.push(paragraph.to_owned()),
             }
         }
-        let is_small = ["bodies", "completions", "man"].contains(&command);
+        let is_small = ["bodies", "completions", "man", "schema"].contains(&command);
         assert!(is_small || blocks.len() > 3, "{command}: {blocks:?}");
         for block in blocks {
             let one_line = block.split_whitespace().collect::<Vec<_>>().join(" ");

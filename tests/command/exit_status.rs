@@ -9,7 +9,7 @@ use crate::desk::Desk;
 /// A command that ends with 0, and one that ends with 1.
 type Case = (&'static str, &'static [&'static str], Option<&'static [&'static str]>);
 
-const CASES: [Case; 15] = [
+const CASES: [Case; 16] = [
     ("run", &["run", "scenario.toml", "-o", "out"], Some(&["run", "slippery.toml", "-o", "out"])),
     ("slice", &["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], None),
     ("fan", &["fan", "ground.tif", "--from", "9,9", "--headings", "4", "--length", "5", "--scenario", "map.toml"], None),
@@ -33,6 +33,7 @@ const CASES: [Case; 15] = [
     ("bodies", &["bodies"], None),
     ("completions", &["completions", "zsh"], None),
     ("man", &["man", "-o", "pages"], None),
+    ("schema", &["schema", "plan"], None),
 ];
 
 #[test]

@@ -23,7 +23,7 @@ pub(crate) use journeys::{
 pub(crate) use maps::{FanArgs, MapArgs};
 pub(crate) use position::place;
 use position::{along_chain, lon_lat, map_point};
-pub(crate) use setup::{CompletionsArgs, ManArgs};
+pub(crate) use setup::{CompletionsArgs, ManArgs, SchemaArgs};
 pub(crate) use synth::SynthArgs;
 pub(crate) use terrains::SliceArgs;
 
@@ -60,6 +60,7 @@ pub(crate) enum Command {
     Bodies,
     Completions(CompletionsArgs),
     Man(ManArgs),
+    Schema(SchemaArgs),
 }
 
 /// How a result is written to standard output.

@@ -22,3 +22,12 @@ pub(crate) struct ManArgs {
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: PathBuf,
 }
+
+/// Print the JSON schema of a scenario or of an answer, or list their kinds
+#[derive(Debug, ClapArgs)]
+#[command(after_help = "Example:\n  chta schema plan")]
+pub(crate) struct SchemaArgs {
+    /// scenario, or the kind of an answer; absent: list them
+    #[arg(value_name = "KIND")]
+    pub(crate) kind: Option<String>,
+}

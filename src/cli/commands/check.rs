@@ -2,7 +2,7 @@
 
 use chta::{
     chain::csv::read_pairs_csv_file,
-    report::{CheckAnswer, PairsAnswer, check_text},
+    report::{CheckAnswer, DocumentKind, PairsAnswer, check_text},
     study::{Checked, check, check_pairs, stations},
 };
 
@@ -59,7 +59,7 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
 fn document(args: &CheckArgs, loaded: &Loaded, checked: &Checked, warnings: &[String]) -> Result<String, Failure> {
     let pairs: Vec<CheckAnswer> = checked.answers().cloned().collect();
     match (&args.pairs, pairs.first()) {
-        (None, Some(answer)) => loaded.document("check", warnings, answer),
-        _ => loaded.document("check-pairs", warnings, PairsAnswer { pairs }),
+        (None, Some(answer)) => loaded.document(DocumentKind::Check, warnings, answer),
+        _ => loaded.document(DocumentKind::CheckPairs, warnings, PairsAnswer { pairs }),
     }
 }

@@ -1,7 +1,7 @@
 //! `chta fan`: slices in all directions from one point.
 
 use chta::{
-    report::Document,
+    report::{Document, DocumentKind},
     study::fan::{FanQuestion, FanStudyError, PreparedFan},
 };
 
@@ -41,7 +41,10 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
     if args.size.dry_run {
         let size = prepared.size(&question, &Progress::new(common.quiet)).map_err(failed)?;
         let warnings = output::warned(common.quiet, &[&bare.warnings, &prepared.warnings]);
-        return output::sized(&Document::new("size", bare.document.clone(), raster_files_of(&bare)?, warnings, size), format);
+        return output::sized(
+            &Document::new(DocumentKind::Size, bare.document.clone(), raster_files_of(&bare)?, warnings, size),
+            format,
+        );
     }
     // Opened before the computation, which may take long.
     let picture = output::begin_picture("--plot", args.plot.as_deref())?;
@@ -54,7 +57,7 @@ pub(crate) fn run(args: &FanArgs) -> Result<Answer, Failure> {
         output::to_stdout(study.answer.text().as_bytes())?;
         return Ok(Answer::Yes);
     }
-    let document = Document::new("fan", bare.document.clone(), raster_files_of(&bare)?, warnings, study.answer);
+    let document = Document::new(DocumentKind::Fan, bare.document.clone(), raster_files_of(&bare)?, warnings, study.answer);
     output::to_stdout(document.on_map(prepared.projection.as_ref().ok()).to_json()?.as_bytes())?;
     Ok(Answer::Yes)
 }

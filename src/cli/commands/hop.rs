@@ -1,7 +1,7 @@
 //! `chta hop`: one pair, limit by limit.
 
 use chta::{
-    report::hop_text,
+    report::{DocumentKind, hop_text},
     study::{Hopped, hop},
 };
 
@@ -31,6 +31,6 @@ pub(crate) fn run(args: &HopArgs) -> Result<Answer, Failure> {
     }
     let Hopped { answer, warnings, .. } = &hopped;
     output::warn_all(args.common.quiet, warnings);
-    show(args.format, || hop_text(answer), || loaded.document("hop", warnings, answer))?;
+    show(args.format, || hop_text(answer), || loaded.document(DocumentKind::Hop, warnings, answer))?;
     Ok(Answer::of(answer.feasible))
 }

@@ -1,6 +1,9 @@
 //! `chta map`: fewest hops from one or several posts of a DEM to every other.
 
-use chta::{report::Document, study::map::PreparedMap};
+use chta::{
+    report::{Document, DocumentKind},
+    study::map::PreparedMap,
+};
 
 use crate::cli::{
     Answer, Failure,
@@ -28,7 +31,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let (document, files) = (input.bare.document.clone(), raster_files_of(&input.bare)?);
     if args.size.dry_run {
         let warnings = input.warned(&prepared.warnings, common.quiet);
-        return output::sized(&Document::new("size", document, files, warnings, prepared.memory.answer()), format);
+        return output::sized(&Document::new(DocumentKind::Size, document, files, warnings, prepared.memory.answer()), format);
     }
     let outputs = MapOutputs::begin(args)?;
     let study = prepared.answered(&question, &Progress::new(common.quiet)).map_err(|error| input.failure(&error))?;
@@ -37,7 +40,7 @@ pub(crate) fn run(args: &MapArgs) -> Result<Answer, Failure> {
     let text = match format {
         Format::Text => study.answer.text(),
         Format::Json => {
-            let document = Document::new("map", document, files, warnings, study.answer.clone());
+            let document = Document::new(DocumentKind::Map, document, files, warnings, study.answer.clone());
             document.on_map(prepared.projection.as_ref().ok()).to_json()?
         }
     };

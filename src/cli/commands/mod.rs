@@ -11,6 +11,7 @@ pub(super) mod map;
 pub(super) mod plan;
 pub(super) mod require;
 pub(super) mod run;
+pub(super) mod schema;
 pub(super) mod simulate;
 pub(super) mod slice;
 pub(super) mod synth;

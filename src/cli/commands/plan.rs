@@ -1,7 +1,7 @@
 //! `chta plan`: the path of fewest hops, then least effort.
 
 use chta::{
-    report::plan_text,
+    report::{DocumentKind, plan_text},
     study::{PlanOptions, plan},
 };
 
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     output::warn_all(args.common.quiet, &planned.warnings);
     let views = Views {
         text: &|| plan_text(&planned.answer, further_means()),
-        json: &|| loaded.document("plan", &planned.warnings, &planned.answer),
+        json: &|| loaded.document(DocumentKind::Plan, &planned.warnings, &planned.answer),
         csv: &|out| planned.write_csv(out),
     };
     let mut files = Files::default();

@@ -1,7 +1,7 @@
 //! `chta require`: the least capability with which the goal can be reached.
 
 use chta::{
-    report::require_text,
+    report::{DocumentKind, require_text},
     study::{RequireError, Required, Requirement, require},
 };
 
@@ -32,7 +32,7 @@ pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     })?;
     // The warnings are those of the shown value and of the strongest one: a speed limit beyond escape is only in the latter.
     let strongest = &to_vary.first.case.prepared.warnings;
-    let json = || to_vary.loaded(shown, &shown_entries)?.document("require", strongest, &answer);
+    let json = || to_vary.loaded(shown, &shown_entries)?.document(DocumentKind::Require, strongest, &answer);
     show(args.answer.format, || require_text(&answer), json)?;
     Ok(Answer::of(answer.reachable_at.is_some()))
 }

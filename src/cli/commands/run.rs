@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use chta::{
-    report::plan_text,
+    report::{DocumentKind, plan_text},
     study::{PlanOptions, SimulateOptions, Trials, plan},
 };
 
@@ -49,6 +49,6 @@ pub(crate) fn run(args: &RunArgs) -> Result<Answer, Failure> {
     }
     let written = folder.write()?;
     let text = || format!("{}{trials_text}\n{written}\n", plan_text(&planned.answer, further_means()));
-    show(args.answer.format, text, || loaded.document("run", &planned.warnings, &planned.answer))?;
+    show(args.answer.format, text, || loaded.document(DocumentKind::Run, &planned.warnings, &planned.answer))?;
     Ok(Answer::of(planned.is_traversable()))
 }

@@ -1,6 +1,9 @@
 //! `chta trade`: one or two keys of the scenario varied.
 
-use chta::study::{SweptKey, Trade, trade};
+use chta::{
+    report::DocumentKind,
+    study::{SweptKey, Trade, trade},
+};
 
 use crate::cli::{
     Answer, Failure,
@@ -31,7 +34,7 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     let views = Views {
         text: &|| traded.answer.text(),
         // Its scenario is that of the first row.
-        json: &|| to_vary.first.document("trade", &traded.warnings, &traded.answer),
+        json: &|| to_vary.first.document(DocumentKind::Trade, &traded.warnings, &traded.answer),
         csv: &|out| traded.answer.write_csv(out),
     };
     let mut files = Files::default();

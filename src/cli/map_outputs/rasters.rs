@@ -48,8 +48,8 @@ pub(super) fn encoded(
         let samples: Vec<f32> = out.effort.iter().map(|&effort| effort as f32).collect();
         let effort = input.bare.scenario.search.effort;
         let name = effort_name(effort);
-        let band = Band { name: &name, unit: effort.unit(), samples: &samples };
-        add(&args.effort_output, &ResultBands::Float32(vec![band]), RasterStyle::values(&samples, effort.unit()))?;
+        let band = Band { name: &name, unit: effort.unit().name(), samples: &samples };
+        add(&args.effort_output, &ResultBands::Float32(vec![band]), RasterStyle::values(&samples, effort.unit().name()))?;
     }
     if let Some(mobility) = mobility {
         let share = Band { name: "share of the reach disc that one hop reaches", unit: "1", samples: &mobility.share };

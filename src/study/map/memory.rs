@@ -79,7 +79,7 @@ impl MapMemory {
 
     /// As plain data.
     pub fn answer(&self) -> SizeAnswer {
-        let part = |part, bytes_max| SizeRecord { part, bytes_max };
+        let part = |part: &str, bytes_max| SizeRecord { part: part.to_owned(), bytes_max };
         let memory = vec![
             part("elevations", self.elevations_bytes),
             part("tables of the hops", self.tables_bytes),

@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use chta::{
-    report::simulate_text,
+    report::{DocumentKind, simulate_text},
     study::{PlanOptions, SimulateOptions, experiment, plan, simulate},
 };
 
@@ -31,7 +31,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
         // Without a path nothing is flown, and the answer says so.
         let simulated = simulate(&planned, &SimulateOptions::default(), &mut (), &())?;
         let text = || simulate_text(&simulated.answer, further_means());
-        show(args.answer.format, text, || loaded.document("simulate", &[], &simulated.answer))?;
+        show(args.answer.format, text, || loaded.document(DocumentKind::Simulate, &[], &simulated.answer))?;
         return Ok(Answer::No);
     };
     output::warn_all(args.common.quiet, &experimented.warnings);
@@ -39,7 +39,7 @@ pub(super) fn run(args: &SimulateArgs, loaded: &Loaded, name: &str) -> Result<An
     let mut files = Files::default();
     files.picture(plot, || answer.picture(&title))?;
     files.finish()?;
-    let json = || loaded.document("simulate-experiment", &experimented.warnings, answer);
+    let json = || loaded.document(DocumentKind::SimulateExperiment, &experimented.warnings, answer);
     show(args.answer.format, || answer.text(), json)?;
     Ok(Answer::Yes)
 }

@@ -5,7 +5,7 @@ mod experiment;
 use std::sync::Arc;
 
 use chta::{
-    report::simulate_text,
+    report::{DocumentKind, simulate_text},
     study::{PlanOptions, SimulateOptions, Trials, plan},
 };
 
@@ -57,7 +57,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     files.finish()?;
     if !args.lands_on_stdout() {
         let text = || simulate_text(&simulated.answer, further_means());
-        show(args.answer.format, text, || loaded.document("simulate", &simulated.warnings, &simulated.answer))?;
+        show(args.answer.format, text, || loaded.document(DocumentKind::Simulate, &simulated.warnings, &simulated.answer))?;
     }
     Ok(Answer::of(planned.is_traversable()))
 }
