@@ -9,7 +9,7 @@ use chta::{
     },
     figure::{Caption, ProofFigure, draw_proof},
     graph::proof::Bounds,
-    path::HopPath,
+    path::{Hop, HopPath},
     report::{CheckAnswer, Document, PairsAnswer, check_text},
 };
 
@@ -121,6 +121,8 @@ fn picture(
     let mut line = vec![format!("from x = {:.3} m to x = {:.3} m", ends.0.point.x_m, ends.1.point.x_m)];
     line.extend(scenario.body.name.clone());
     line.extend(SpeedLimit::stated(&scenario.hopper).map(|limit| limit.to_string()));
+    let beside = path.is_some_and(|path| path.hops.iter().any(Hop::is_beside_line));
+    line.extend(beside.then(|| "path beside the line, drawn projected on it".to_owned()));
     let caption = Caption::new(title("What is proved", scenario), line.join(", "));
     let figure = ProofFigure::of(caption, loaded.prepared.chain.geometry(), ends, bounds, path);
     output::encoded(draw_proof(&figure), file)

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use chta::{
     figure::{Caption, CompareFigure, ComparedScenario, Flight, draw_compare},
-    path::HopPath,
+    path::{Hop, HopPath},
     report::{CompareAnswer, CompareRow, Document, MarginsRecord, TotalsRecord},
 };
 
@@ -133,7 +133,9 @@ impl Compared {
 fn figure(compared: &[Compared]) -> CompareFigure {
     let words = |one: &Compared| {
         let hops = one.row.hops.map(|hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" })).unwrap_or_default();
-        format!("{}: {}{hops}", one.row.name, one.row.verdict)
+        let beside = one.path.iter().flat_map(|path| &path.hops).any(Hop::is_beside_line);
+        let drawn = if beside { " beside the line, drawn projected on it" } else { "" };
+        format!("{}: {}{hops}{drawn}", one.row.name, one.row.verdict)
     };
     let line = compared.iter().map(words).collect::<Vec<_>>().join("; ");
     let names: Vec<_> = compared.iter().map(|one| one.row.name.as_str()).collect();
