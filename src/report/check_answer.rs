@@ -12,7 +12,7 @@ use crate::{
         proof::{Bounds, ProofVerdict},
     },
     hop::HopTest,
-    path::{HopPath, NoCommand},
+    path::{Hop, HopPath, NoCommand},
     world::{Contact, Limit},
 };
 
@@ -55,6 +55,9 @@ pub struct CheckAnswer {
     /// With commands in steps: the greatest distance of a landing from its aim.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub landing_miss_max_m: Option<f64>,
+    /// Whether hops of the path fly beside the line, in the headings that the machine has; a proof is about hops on the line. Absent if not.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub beside_line: bool,
     /// The bounds; absent if no proof was requested.
     #[serde(flatten)]
     pub proof: Option<ProofRecord>,
@@ -196,6 +199,7 @@ impl CheckAnswer {
             propellant_shortage: None,
             commands_refusal: None,
             landing_miss_max_m: None,
+            beside_line: false,
             proof: None,
         }
     }
@@ -216,6 +220,7 @@ impl CheckAnswer {
         self.propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
         let aims = path.into_iter().flat_map(|path| &path.hops).filter_map(|hop| hop.aim);
         self.landing_miss_max_m = aims.map(|aim| aim.distance_m()).reduce(f64::max);
+        self.beside_line = path.is_some_and(|path| path.hops.iter().any(Hop::is_beside_line));
         if let (Some(path), Some(_), Some(effort)) = (path, self.landing_miss_max_m, &mut self.effort) {
             // Not that of the exact commands.
             effort.value = path.effort(effort.name);

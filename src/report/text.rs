@@ -289,6 +289,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         sheet.line(format_args!("no path has fewer than {lower} hop{}, whatever it takes from the machine", plural(lower)));
     } else if let Some(proof) = &answer.proof {
         proof_lines(&mut sheet, proof, means);
+        if answer.beside_line {
+            sheet.line(format_args!("the proof is about hops on the line, and this path flies beside it"));
+        }
     }
     sheet.line(format_args!(
         "{} nodes (up to {} inside a segment) on a chain of {} vertices, pairs of them tested: {}",

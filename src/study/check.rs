@@ -144,6 +144,8 @@ impl Checked {
         let mut line = vec![format!("from x = {:.3} m to x = {:.3} m", ends.0.point.x_m, ends.1.point.x_m)];
         line.extend(scenario.body.name.clone());
         line.extend(SpeedLimit::stated(&scenario.hopper).map(|limit| limit.to_string()));
+        let beside = path.as_ref().is_some_and(|path| path.hops.iter().any(crate::path::Hop::is_beside_line));
+        line.extend(beside.then(|| "path beside the line, drawn projected on it".to_owned()));
         let caption = Caption::new(title("What is proved", scenario), line.join(", "));
         Some(draw_proof(&ProofFigure::of(caption, self.case.prepared.chain.geometry(), *ends, bounds, path.as_ref())))
     }

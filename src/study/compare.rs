@@ -78,7 +78,9 @@ impl Comparison {
     pub fn picture(&self) -> Result<Picture, FigureError> {
         let words = |one: &Compared| {
             let hops = one.row.hops.map(|hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" })).unwrap_or_default();
-            format!("{}: {}{hops}", one.row.name, one.row.verdict)
+            let beside = one.planned.path.iter().flat_map(|path| &path.hops).any(crate::path::Hop::is_beside_line);
+            let drawn = if beside { " beside the line, drawn projected on it" } else { "" };
+            format!("{}: {}{hops}{drawn}", one.row.name, one.row.verdict)
         };
         let line = self.compared.iter().map(words).collect::<Vec<_>>().join("; ");
         let names: Vec<_> = self.compared.iter().map(|one| one.row.name.as_str()).collect();

@@ -119,6 +119,9 @@ fn a_transect_of_a_dem_is_flown_beside_its_line() {
             greatest_m = greatest_m.max(away.0.hypot(away.1));
         }
         assert!((plan["landing_miss_max_m"].as_f64().unwrap() - greatest_m).abs() < 1e-9 && greatest_m > 1e-3);
+        let proved = desk.run(&["check", "map.toml", "--prove", "--set", &set, "--plot", "proof.svg"]);
+        assert!(proved.stdout.contains("the proof is about hops on the line, and this path flies beside it"), "{proved:?}");
+        assert!(desk.read("proof.svg").contains("drawn projected on it") && plan["beside_line"] == true);
         let text = desk.run(&args).stdout;
         assert!(text.contains("the hops fly beside the line") && text.contains("the goal along the line and"), "{text}");
         let csv = desk.run(&[&args[..], &["-o", "-"]].concat()).stdout;
@@ -148,7 +151,12 @@ fn a_transect_of_a_dem_is_flown_beside_its_line() {
     }
     // A heading of the machine, here a divisor of the transect's own, is flown along the line.
     let whole = desk.json(&["plan", "map.toml", "--set", &format!("hopper.heading_step_deg={}", line_deg / 3.0)]);
-    assert!(whole["path"][0].get("landing_miss_across_m").is_none() && whole["path"][0].get("aim_x_m").is_some(), "{whole}");
+    assert!(
+        whole.get("beside_line").is_none()
+            && whole["path"][0].get("landing_miss_across_m").is_none()
+            && whole["path"][0].get("aim_x_m").is_some(),
+        "{whole}"
+    );
 }
 
 /// Of a chain and of a mesh the ground is known on the line alone: the answer says so, with the heading and an end that has it.
