@@ -161,7 +161,9 @@ pub(crate) fn to_geojson_file(path: &Path, geojson: &str, projection: Option<&Ma
 
 /// Prints warnings on standard error.
 pub(crate) fn warn_all(quiet: bool, warnings: &[String]) {
-    warnings.iter().for_each(|warning| warn(quiet, warning));
+    for warning in warnings {
+        warn(quiet, warning);
+    }
 }
 
 /// Prints a warning on standard error.

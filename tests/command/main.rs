@@ -31,6 +31,7 @@ mod sentences;
 mod shipped_scenarios;
 mod simulate_command;
 mod stated_maps;
+mod studies;
 mod takeoff_speeds;
 mod trade_compare;
 mod trajectory;
