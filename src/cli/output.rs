@@ -175,7 +175,9 @@ pub(crate) fn sized(document: &Document<SizeAnswer>, format: Format) -> Result<A
 
 /// Prints warnings on standard error.
 pub(crate) fn warn_all(quiet: bool, warnings: &[String]) {
-    warnings.iter().for_each(|warning| warn(quiet, warning));
+    for warning in warnings {
+        warn(quiet, warning);
+    }
 }
 
 /// Prints the warnings of all parts on standard error, and returns them.

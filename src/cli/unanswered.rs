@@ -1,5 +1,7 @@
 //! Why a study gives no answer, with the options that mend it: the studies name keys and facts.
 
+use std::path::Path;
+
 use chta::study::{
     CaseError, CheckError, ExperimentError, HopError, JourneyError, PlanError, RequireError, SimulateError, TradeError,
 };
@@ -35,6 +37,14 @@ impl From<CheckError> for Failure {
             CheckError::Journey(error) => error.into(),
             other => Self::of(&other),
         }
+    }
+}
+
+/// The failure for pairs of a file, which it names if a pair is at fault.
+pub(crate) fn about(file: &Path) -> impl Fn(CheckError) -> Failure + '_ {
+    move |error| match error {
+        CheckError::OffChain { .. } => Failure::about(file, &error),
+        other => other.into(),
     }
 }
 

@@ -8,7 +8,7 @@ use crate::{
     graph::{SearchError, proof::Bounds},
     path::HopPath,
     progress::Progress,
-    report::CheckAnswer,
+    report::{CheckAnswer, PairsAnswer},
 };
 
 /// Why there is no answer. That there is no path is one.
@@ -86,7 +86,7 @@ pub fn check_pairs(case: &Case, pairs: &[StartGoal], proof: Option<Proof>, progr
 ///
 /// # Errors
 /// [`CheckError::OffChain`] for the first that lies off the chain.
-pub fn stations(case: &Case, pairs: &[StartGoal]) -> Result<Vec<(Station, Station)>, CheckError> {
+fn stations(case: &Case, pairs: &[StartGoal]) -> Result<Vec<(Station, Station)>, CheckError> {
     let station = |pair, which, x_m| {
         case.prepared.chain.geometry().station(x_m).map_err(|problem| CheckError::OffChain { pair, which, problem })
     };
@@ -129,6 +129,11 @@ impl Checked {
     /// The answers as plain data.
     pub fn answers(&self) -> impl Iterator<Item = &CheckAnswer> {
         self.pairs.iter().map(|pair| &pair.answer)
+    }
+
+    /// The answers for many pairs as plain data.
+    pub fn pairs_answer(&self) -> PairsAnswer {
+        PairsAnswer { pairs: self.answers().cloned().collect() }
     }
 
     /// The picture of what is proved along the chain, for the first pair; `None` without a proof.

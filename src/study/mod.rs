@@ -45,7 +45,7 @@ pub use alike::ask_the_same;
 #[cfg(feature = "plot")]
 pub use captions::conditions;
 pub use case::{Case, CaseError, Commands};
-pub use check::{CheckError, Checked, CheckedPair, check, check_pairs, stations};
+pub use check::{CheckError, Checked, CheckedPair, check, check_pairs};
 pub use compare::{Compared, Comparison, compare};
 pub use experiment::{ConeProblem, ExperimentAnswer, ExperimentError, Experimented, experiment};
 pub use footprint::coarse_dem_warning;

@@ -37,6 +37,7 @@ mod setup;
 mod shipped_scenarios;
 mod simulate_command;
 mod stated_maps;
+mod studies;
 mod takeoff_speeds;
 mod trade_compare;
 mod trajectory;

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use chta::{
     graph::proof::DEFAULT_BUDGET_CELLS,
-    study::Case,
+    study::{Case, SimulateOptions},
     uncertainty::experiments::{DriftReading, Experiment},
 };
 use clap::Args as ClapArgs;
@@ -268,6 +268,11 @@ impl SimulateArgs {
         let seed = self.seed.map(|seed| ("--seed", "uncertainty", "seed", seed.into()));
         let policy = self.policy.clone().map(|policy| ("--policy", "uncertainty", "policy", policy.into()));
         [trials, seed, policy].into_iter().flatten().collect()
+    }
+
+    /// What is wanted beyond the keys of the scenario.
+    pub(crate) const fn options(&self) -> SimulateOptions {
+        SimulateOptions { compare: self.compare, until_half_width: self.until_half_width }
     }
 
     /// Whether the landings go to standard output, in place of the answer.

@@ -1,9 +1,11 @@
 //! `chta check`: does a path exist.
 
+use std::path::Path;
+
 use chta::{
-    chain::csv::read_pairs_csv_file,
-    report::{CheckAnswer, DocumentKind, PairsAnswer, check_text},
-    study::{Checked, check, check_pairs, stations},
+    chain::csv::{PairsFile, read_pairs_csv_file},
+    report::{DocumentKind, check_text},
+    study::{check, check_pairs},
 };
 
 use crate::cli::{
@@ -12,10 +14,10 @@ use crate::cli::{
     effects::Purpose,
     hints::further_means,
     inputs,
-    load::{Loaded, load_journey},
+    load::load_journey,
     output,
     progress::Progress,
-    threads,
+    threads, unanswered,
     views::{Files, show},
     wrong_thing::Role,
 };
@@ -25,41 +27,33 @@ pub(crate) fn run(args: &CheckArgs) -> Result<Answer, Failure> {
     inputs::look_at_pairs(&args.journey.chain, &args.common, args.pairs.as_deref())?;
     // Set before the terrain is read, since reading starts the threads.
     threads::start(args.answer.threads)?;
-    let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Check)?;
-    let (proof, progress) = (args.prove.proof(), Progress::new(args.common.quiet));
-    let (mut warnings, mut pairs) = (Vec::new(), Vec::new());
-    match &args.pairs {
-        None => drop(loaded.ends()?),
-        Some(path) => {
-            let path = &inputs::open(path, Role::Pairs)?.file;
-            let file = read_pairs_csv_file(path)?;
-            warnings.extend(file.warnings.iter().map(|warning| format!("{}: {warning}", path.display())));
-            stations(&loaded.case, &file.pairs).map_err(|error| Failure::about(path, &error))?;
-            pairs = file.pairs;
-        }
-    }
+    let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Check, &[])?;
+    let pairs = args.pairs.as_deref().map(read_pairs).transpose()?;
+    pairs.is_none().then(|| loaded.ends()).transpose()?;
     // Outputs are opened before the computation, which may take long.
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
-    let checked = match &args.pairs {
-        None => check(&loaded.case, proof, &progress)?,
-        Some(_) => check_pairs(&loaded.case, &pairs, proof, &progress)?,
+    let (proof, progress) = (args.prove.proof(), Progress::new(args.common.quiet));
+    let checked = match (&pairs, &args.pairs) {
+        (Some(pairs), Some(file)) => check_pairs(&loaded.case, &pairs.pairs, proof, &progress).map_err(unanswered::about(file))?,
+        _ => check(&loaded.case, proof, &progress)?,
     };
     drop(progress);
     let mut files = Files::default();
     files.picture(plot, || checked.picture())?;
     files.finish()?;
-    warnings.extend(checked.warnings.iter().cloned());
+    let warnings: Vec<_> = pairs.iter().flat_map(|pairs| &pairs.warnings).chain(&checked.warnings).cloned().collect();
     output::warn_all(args.common.quiet, &warnings);
     let text = || checked.answers().map(|answer| check_text(answer, further_means())).collect::<Vec<_>>().join("\n");
-    show(args.answer.format, text, || document(args, &loaded, &checked, &warnings))?;
+    show(args.answer.format, text, || match (&pairs, checked.answers().next()) {
+        (None, Some(answer)) => loaded.document(DocumentKind::Check, &warnings, answer),
+        _ => loaded.document(DocumentKind::CheckPairs, &warnings, checked.pairs_answer()),
+    })?;
     Ok(Answer::of(checked.is_traversable()))
 }
 
-/// The answers as one document.
-fn document(args: &CheckArgs, loaded: &Loaded, checked: &Checked, warnings: &[String]) -> Result<String, Failure> {
-    let pairs: Vec<CheckAnswer> = checked.answers().cloned().collect();
-    match (&args.pairs, pairs.first()) {
-        (None, Some(answer)) => loaded.document(DocumentKind::Check, warnings, answer),
-        _ => loaded.document(DocumentKind::CheckPairs, warnings, PairsAnswer { pairs }),
-    }
+/// The pairs of a file; its warnings begin with its name.
+fn read_pairs(path: &Path) -> Result<PairsFile, Failure> {
+    let path = &inputs::open(path, Role::Pairs)?.file;
+    let PairsFile { pairs, warnings } = read_pairs_csv_file(path)?;
+    Ok(PairsFile { pairs, warnings: warnings.iter().map(|warning| format!("{}: {warning}", path.display())).collect() })
 }

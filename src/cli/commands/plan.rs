@@ -23,7 +23,7 @@ use crate::cli::{
 pub(crate) fn run(args: &PlanArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
     threads::start(args.answer.threads)?;
-    let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Plan)?;
+    let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Plan, &[])?;
     loaded.ends()?;
     if args.geojson.is_some() {
         loaded.check_on_map("--geojson")?;

@@ -4,7 +4,7 @@ mod flyer;
 #[cfg(feature = "plot")]
 mod pictures;
 
-use std::{path::PathBuf, sync::Arc};
+use std::{ops::Range, path::PathBuf, sync::Arc};
 
 pub(super) use flyer::Flyer;
 
@@ -15,7 +15,7 @@ use crate::{
     progress::{Cancelled, Progress},
     report::{SimulateAnswer, SimulationRecord},
     terrain::{Dem, TerrainError},
-    uncertainty::{Observer, Policy, SimulationError, Summary, TrialOptions},
+    uncertainty::{Observer, Policy, SimulationError, Summary, Tally, TrialOptions},
 };
 
 /// How many trials are kept with all their hops, for the pictures.
@@ -116,6 +116,36 @@ impl Trials {
     /// The warnings about them.
     pub fn warnings(&self) -> &[String] {
         &self.warnings
+    }
+
+    /// Flies those of a range of numbers under the scenario's policy, as a tally that merges with those of other ranges: the trials of a
+    /// campaign can be flown in parts, by several processes, and together give the answer of the whole to the byte.
+    ///
+    /// # Returns
+    /// `None` without a path to fly.
+    ///
+    /// # Errors
+    /// [`SimulateError`].
+    pub fn tally(&self, numbers: Range<u64>, progress: &dyn Progress) -> Result<Option<Tally>, SimulateError> {
+        let Some(path) = &self.planned.path else { return Ok(None) };
+        let policy = self.planned.case.scenario.uncertainty.unwrap_or_default().policy;
+        let simulation = Flyer::new(&self.planned, &self.planned.found, &[policy], progress)?.simulation(path)?;
+        let options = TrialOptions {
+            policy,
+            first_trial: numbers.start,
+            trials: numbers.end.saturating_sub(numbers.start),
+            until_half_width: None,
+            trajectories: 0,
+            ..self.options
+        };
+        Ok(Some(simulation.tally(&options, &mut (), progress)?))
+    }
+
+    /// The answer of trials that were flown in parts and merged.
+    pub fn answer_of(&self, tally: &Tally) -> SimulateAnswer {
+        let hops = self.planned.path.as_ref().map_or(0, |path| path.hops.len());
+        let simulation = Some(SimulationRecord::new(&tally.summary(), hops));
+        SimulateAnswer { check: self.planned.answer.check.clone(), simulation, compare: Vec::new() }
     }
 
     /// Flies them, policy by policy on the same draws.

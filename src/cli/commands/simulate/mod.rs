@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use chta::{
     report::{DocumentKind, simulate_text},
-    study::{PlanOptions, SimulateOptions, Trials, plan},
+    study::{PlanOptions, Trials, plan},
 };
 
 use crate::cli::{
@@ -16,7 +16,7 @@ use crate::cli::{
     hints::further_means,
     inputs,
     landings::{Listener, RowFile},
-    load::{EndOptions, load},
+    load::load_journey,
     output,
     progress::Progress,
     threads,
@@ -29,8 +29,7 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
     // Set before the terrain is read, since reading starts the threads.
     threads::start(args.answer.threads)?;
-    let ends = EndOptions::of_path(args.journey.start, args.journey.goal);
-    let loaded = load(&args.journey.chain, &args.common, Some(&args.search), ends, Purpose::Simulate, &args.own_keys())?;
+    let loaded = load_journey(&args.journey, &args.common, &args.search, Purpose::Simulate, &args.own_keys())?;
     if let Some(name) = &args.experiment {
         return experiment::run(args, &loaded, name);
     }
@@ -46,12 +45,10 @@ pub(crate) fn run(args: &SimulateArgs) -> Result<Answer, Failure> {
     output::warn_all(quiet, &planned.warnings);
     let mut files = Files::default();
     files.trajectory(in_time, planned.path.as_ref(), &planned.case)?;
-    let options = SimulateOptions { compare: args.compare, until_half_width: args.until_half_width };
-    let trials = Trials::new(&planned, &options);
+    let trials = Trials::new(&planned, &args.options());
     output::warn_all(quiet, trials.warnings());
     // Without a path the file of landings is not written.
-    let rows = rows.filter(|_| planned.path.is_some());
-    let simulated = Listener::fly(trials, rows, &Progress::new(quiet))?;
+    let simulated = Listener::fly(trials, rows.filter(|_| planned.path.is_some()), &Progress::new(quiet))?;
     files.picture(plot, || simulated.picture())?;
     files.picture(plot_map, || simulated.landing_map())?;
     files.finish()?;

@@ -1,9 +1,13 @@
 //! From the command line to a scenario and its chain.
 
+mod ends;
+mod names;
+mod vary;
+
 use std::{
     fs,
     io::Read,
-    path::{Component, Path, PathBuf},
+    path::{Path, PathBuf},
 };
 
 use chta::{
@@ -13,12 +17,16 @@ use chta::{
         Entries, FileKind, LackingKey, Place, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, scenario_document,
     },
     study::{
-        self, Case, CaseError, CaseRecord, Commands, Compared, Comparison, JourneyEnd as End, Overlays, PipelineError, Variation,
-        checksums, scenario_files,
+        self, Case, CaseError, CaseRecord, Commands, Compared, Comparison, JourneyEnd as End, Overlays, PipelineError, checksums,
+        scenario_files,
     },
     terrain::MapPlace,
 };
 use serde::Serialize;
+
+pub(crate) use ends::EndOptions;
+pub(crate) use names::relative_name;
+pub(crate) use vary::load_to_vary;
 
 use super::{
     Failure,
@@ -40,50 +48,6 @@ pub(crate) struct Loaded {
     pub(crate) record: CaseRecord,
     /// How the command line gives start and goal.
     ends: EndOptions,
-}
-
-/// The options for start and goal. Commands name them differently; some have none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct EndOptions {
-    names: Option<[&'static str; 2]>,
-    x_m: [Option<f64>; 2],
-}
-
-impl EndOptions {
-    /// A command without such options.
-    pub(crate) const NONE: Self = Self { names: None, x_m: [None, None] };
-
-    /// The ends of one hop.
-    pub(crate) const fn of_hop(from: Option<f64>, to: Option<f64>) -> Self {
-        Self { names: Some(["--from", "--to"]), x_m: [from, to] }
-    }
-
-    /// The ends of a path.
-    pub(crate) const fn of_path(start: Option<f64>, goal: Option<f64>) -> Self {
-        Self { names: Some(["--start", "--goal"]), x_m: [start, goal] }
-    }
-
-    /// The source of an end's value.
-    fn place(&self, end: End) -> String {
-        match (self.names, self.x_m[end as usize]) {
-            (Some(names), Some(_)) => names[end as usize].to_owned(),
-            _ => format!("terrain.{}_x_m", end.name()),
-        }
-    }
-
-    /// The failure for an end that is given nowhere.
-    fn missing(&self, end: End) -> Failure {
-        let name = end.name();
-        Failure::message(match self.names {
-            Some(names) => format!(
-                "found no {name}: give {} X along the chain, or [terrain] {name}_x_m (for a dem or mesh {name}_m) in the scenario",
-                names[end as usize]
-            ),
-            None => {
-                format!("found no {name}: add {name}_x_m = X (for a dem or mesh {name}_m = [x, y]) to the scenario's [terrain]")
-            }
-        })
-    }
 }
 
 impl Loaded {
@@ -147,14 +111,15 @@ pub(crate) fn load_scenario(target: &Path, common: &CommonArgs, purpose: Purpose
     validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut purpose.preparation())
 }
 
-/// Loads the chain, scenario or result of a journey with the options beside it.
+/// Loads the chain, scenario or result of a journey with the options beside it, and with keys that a command's own options set.
 pub(crate) fn load_journey(
     JourneyArgs { chain, start, goal }: &JourneyArgs,
     common: &CommonArgs,
     search: &SearchArgs,
     purpose: Purpose,
+    own: &[OwnKey<'_>],
 ) -> Result<Loaded, Failure> {
-    load(chain, common, Some(search), EndOptions::of_path(*start, *goal), purpose, &[])
+    load(chain, common, Some(search), EndOptions::of_path(*start, *goal), purpose, own)
 }
 
 /// A key that a command's own option sets: option, table, key and value.
@@ -176,54 +141,6 @@ pub(crate) fn load(
     }
     let given = source.entries.clone();
     validate_and_prepare(&target, source, common.quiet, (ends, purpose, &given), &mut purpose.preparation())
-}
-
-/// A scenario of which keys are varied: the first case, loaded, and the source of all others.
-#[derive(Debug)]
-pub(crate) struct ToVary {
-    /// The first case.
-    pub(crate) first: Loaded,
-    /// The keys as typed, and the terrain.
-    pub(crate) variation: Variation,
-    purpose: Purpose,
-    name: String,
-    text: String,
-}
-
-/// Loads the same for keys that are varied, the terrain read once. `first`: the keys of the first case, from those as typed.
-pub(crate) fn load_to_vary(
-    JourneyArgs { chain, start, goal }: &JourneyArgs,
-    common: &CommonArgs,
-    search: &SearchArgs,
-    purpose: Purpose,
-    first: &dyn Fn(&Entries) -> Result<Entries, Failure>,
-) -> Result<ToVary, Failure> {
-    let ends = EndOptions::of_path(*start, *goal);
-    let target = Target::chain(chain)?;
-    let mut source = typed(&target, common, Some(search), ends)?;
-    let entries = source.entries.clone();
-    source.entries = first(&entries)?;
-    let (name, text) = (source.name.clone(), source.text.clone());
-    let mut kept = None;
-    let first = validate_and_prepare(&target, source, common.quiet, (ends, purpose, &entries), &mut |scenario, base| {
-        Ok(kept.insert(Variation::new(entries.clone(), scenario, base)?).first.clone())
-    })?;
-    let variation = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.input.given.display())))?;
-    Ok(ToVary { first, variation, purpose, name, text })
-}
-
-impl ToVary {
-    /// The failure for problems of a varied scenario.
-    pub(crate) fn refused(&self, problems: Vec<ScenarioProblem>) -> Failure {
-        refused(problems, &self.name, &self.text)
-    }
-
-    /// A varied case, as if it had been loaded; its warnings are not shown.
-    pub(crate) fn loaded(&self, mut case: Case, entries: &Entries) -> Result<Loaded, Failure> {
-        case.prepared.warnings.extend(self.purpose.unused(&self.variation.entries, &case.scenario));
-        case.prepared.warnings.extend(Purpose::replaced(entries));
-        Ok(Loaded { record: recorded(&case)?, case, ends: self.first.ends })
-    }
 }
 
 /// The keys of a chain, scenario or result with the options beside it.
@@ -674,36 +591,4 @@ fn refused(mut problems: Vec<ScenarioProblem>, name: &str, text: &str) -> Failur
     let in_file = problems.iter().any(|problem| !matches!(problem.place, Place::Option(_)));
     let (name, source) = if in_file { (name.to_owned(), text.to_owned()) } else { (String::new(), String::new()) };
     Failure::Scenario(ScenarioProblems { name, source, problems })
-}
-
-/// A file's path relative to the working folder, normalised and with `/`, so that results are the same on every platform.
-///
-/// What came through a pipe keeps the name it was given under, such as `-`.
-pub(crate) fn relative_name(path: &Path) -> String {
-    if let Some(given) = inputs::given_name(path) {
-        return given.to_string_lossy().into_owned();
-    }
-    let here = std::env::current_dir().unwrap_or_default();
-    let absolute = normal(&here.join(path));
-    let here = normal(&here);
-    let shared = absolute.iter().zip(&here).take_while(|(a, b)| a == b).count();
-    let up = std::iter::repeat_n("..".to_owned(), here.len() - shared);
-    up.chain(absolute[shared..].iter().cloned()).collect::<Vec<_>>().join("/")
-}
-
-/// The parts of a path, with `.` and `..` resolved as text.
-fn normal(path: &Path) -> Vec<String> {
-    let mut parts = Vec::new();
-    for component in path.components() {
-        match component {
-            Component::CurDir => {}
-            Component::ParentDir => {
-                parts.pop();
-            }
-            Component::Prefix(_) | Component::RootDir | Component::Normal(_) => {
-                parts.push(component.as_os_str().to_string_lossy().into_owned());
-            }
-        }
-    }
-    parts
 }
