@@ -60,6 +60,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Map => derived::<MapAnswer>(),
     };
     close(&mut schema, false);
+    open_parts(&mut schema);
     schema["title"] = format!("chta {}", kind.name()).into();
     schema["properties"]["schema"]["const"] = kind.schema().into();
     let mut scenario = scenario_schema();
@@ -80,6 +81,21 @@ fn answer_schema(kind: DocumentKind) -> Value {
 /// The schema of a document that is written, from its types.
 fn derived<T: JsonSchema>() -> Value {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<Document<T>>().to_value()
+}
+
+/// The definitions of which the document itself is composed do not know its other keys: the document is closed, they are not.
+fn open_parts(document: &mut Value) {
+    let parts: Vec<String> = ["anyOf", "oneOf", "allOf"]
+        .into_iter()
+        .filter_map(|group| document[group].as_array())
+        .flatten()
+        .filter_map(|part| part["$ref"].as_str()?.strip_prefix("#/$defs/").map(str::to_owned))
+        .collect();
+    for part in parts {
+        if let Some(keys) = document["$defs"][&part].as_object_mut() {
+            keys.remove("unevaluatedProperties");
+        }
+    }
 }
 
 /// Lets every object have its stated keys alone. The parts of a composed object do not know each other's keys: only the whole is closed.
