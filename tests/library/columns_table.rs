@@ -257,7 +257,13 @@ fn document() -> String {
     for (name, schema) in &answers {
         writeln!(text, "\n### `{name}`\n").unwrap();
         let keys: Vec<_> = keys_of(schema).into_iter().filter(|(name, ..)| !is_envelope(name)).collect();
-        table(&mut text, &keys, name);
+        // An answer of one of several forms.
+        match schema["anyOf"].as_array() {
+            Some(forms) if keys.is_empty() => {
+                writeln!(text, "One of {}.", forms.iter().map(kind_of).collect::<Vec<_>>().join(", ")).unwrap();
+            }
+            _ => table(&mut text, &keys, name),
+        }
     }
     text.push_str("\n## Records\n");
     for (name, schema) in &records.by_name {
