@@ -1,5 +1,4 @@
 //! Compresses the JSON schemas of docs/schema for the command `chta schema`: deriving them in the program takes ten times the bytes.
-#![expect(clippy::print_stdout, reason = "the way to tell cargo which files matter")]
 
 use std::{env, error::Error, fmt::Write as _, fs, io::Write as _, path::Path};
 

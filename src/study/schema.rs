@@ -103,7 +103,9 @@ fn close(schema: &mut Value, is_part: bool) {
     let has_properties = schema.get("properties").is_some();
     let Some(keys) = schema.as_object_mut() else {
         if let Some(items) = schema.as_array_mut() {
-            items.iter_mut().for_each(|item| close(item, is_part));
+            for item in items {
+                close(item, is_part);
+            }
         }
         return;
     };

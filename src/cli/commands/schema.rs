@@ -13,7 +13,7 @@ const SCHEMAS: &[(&str, &[u8])] = include!(concat!(env!("OUT_DIR"), "/schemas.rs
 /// Lists the kinds of schemas, or writes one.
 pub(crate) fn run(args: &SchemaArgs) -> Result<Answer, Failure> {
     let text = match &args.kind {
-        None => SchemaKind::all().map(|kind| format!("{}\n", kind.name())).collect(),
+        None => SchemaKind::all().map(SchemaKind::name).collect::<Vec<_>>().join("\n") + "\n",
         Some(name) => {
             let (_, compressed) = SCHEMAS.iter().find(|(known, _)| known == name).ok_or_else(|| unknown(name))?;
             let mut text = String::new();
