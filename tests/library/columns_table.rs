@@ -241,7 +241,9 @@ fn document() -> String {
     let mut records = Records { by_name: BTreeMap::new() };
     let answers: Vec<_> =
         SchemaKind::all().filter(|kind| *kind != SchemaKind::Scenario).map(|kind| (kind.name(), kind.schema())).collect();
-    answers.iter().for_each(|(_, schema)| records.add(schema));
+    for (_, schema) in &answers {
+        records.add(schema);
+    }
     let envelope = ["schema", "chta_version", "scenario", "inputs", "warnings", "crs"];
     let is_envelope = |name: &str| envelope.contains(&name);
     text.push_str("\n## Documents\n\n### All\n\n");
