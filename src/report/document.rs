@@ -209,15 +209,14 @@ impl<T: Serialize + DeserializeOwned> Document<T> {
 fn first_difference(a: &Value, b: &Value) -> Option<String> {
     match (a, b) {
         (Value::Object(a), Value::Object(b)) => {
-            let keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
-            keys.filter_map(|key| {
+            let mut keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
+            keys.find_map(|key| {
                 let inner = match (a.get(key), b.get(key)) {
                     (Some(a), Some(b)) => first_difference(a, b)?,
                     _ => String::new(),
                 };
                 Some(format!("/{key}{inner}"))
             })
-            .next()
         }
         (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
             let mut pairs = a.iter().zip(b).enumerate();

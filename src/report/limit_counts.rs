@@ -80,8 +80,12 @@ impl JsonSchema for LimitCounts {
 
     fn json_schema(generator: &mut SchemaGenerator) -> Schema {
         let count = generator.subschema_for::<u64>();
-        let properties: serde_json::Map<String, serde_json::Value> =
-            Limit::ALL.iter().map(|limit| (limit.name().to_owned(), count.clone().to_value())).collect();
+        let property = |limit: Limit| {
+            let mut count = count.clone();
+            count.insert("description".to_owned(), format!("Refusals by the limit {limit}; absent if it refuses nothing.").into());
+            (limit.name().to_owned(), count.to_value())
+        };
+        let properties: serde_json::Map<String, serde_json::Value> = Limit::ALL.into_iter().map(property).collect();
         json_schema!({ "type": "object", "properties": properties, "additionalProperties": false })
     }
 }

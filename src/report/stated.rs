@@ -6,6 +6,7 @@ use serde::{Deserialize, Deserializer};
 ///
 /// # Errors
 /// A value of another type.
+#[expect(clippy::option_option, reason = "absent, null and a value are three answers")]
 pub(super) fn stated<'de, D: Deserializer<'de>, T: Deserialize<'de>>(deserializer: D) -> Result<Option<Option<T>>, D::Error> {
     Option::deserialize(deserializer).map(Some)
 }

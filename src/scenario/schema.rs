@@ -38,9 +38,9 @@ fn of_kind(kind: Kind) -> Value {
     match kind {
         Kind::Number { min, max } => number(min, max),
         Kind::AngleOrUnlimited => json!({ "anyOf": [number(0.0, 90.0), { "const": "inf" }] }),
-        Kind::AngleRange => pair([number(-360.0, 360.0), number(-360.0, 360.0)]),
-        Kind::MapPoint => pair([number(-1e12, 1e12), number(-1e12, 1e12)]),
-        Kind::LonLat => pair([number(-180.0, 360.0), number(-90.0, 90.0)]),
+        Kind::AngleRange => pair(&[number(-360.0, 360.0), number(-360.0, 360.0)]),
+        Kind::MapPoint => pair(&[number(-1e12, 1e12), number(-1e12, 1e12)]),
+        Kind::LonLat => pair(&[number(-180.0, 360.0), number(-90.0, 90.0)]),
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::MapPoints => list(of_kind(Kind::MapPoint), 0),
         Kind::LonLats => list(of_kind(Kind::LonLat), 0),
@@ -60,6 +60,6 @@ fn of_kind(kind: Kind) -> Value {
 }
 
 /// Two numbers.
-fn pair(numbers: [Value; 2]) -> Value {
+fn pair(numbers: &[Value; 2]) -> Value {
     json!({ "type": "array", "prefixItems": numbers, "minItems": 2, "maxItems": 2 })
 }

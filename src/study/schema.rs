@@ -61,6 +61,7 @@ fn answer_schema(kind: DocumentKind) -> Value {
         DocumentKind::Size => derived::<SizeAnswer>(),
     };
     close(&mut schema, false);
+    open_parts(&mut schema);
     schema["title"] = format!("chta {}", kind.name()).into();
     schema["properties"]["schema"]["const"] = kind.schema().into();
     let mut scenario = scenario_schema();
@@ -83,12 +84,29 @@ fn derived<T: JsonSchema>() -> Value {
     SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<Document<T>>().to_value()
 }
 
+/// The definitions of which the document itself is composed do not know its other keys: the document is closed, they are not.
+fn open_parts(document: &mut Value) {
+    let parts: Vec<String> = ["anyOf", "oneOf", "allOf"]
+        .into_iter()
+        .filter_map(|group| document[group].as_array())
+        .flatten()
+        .filter_map(|part| part["$ref"].as_str()?.strip_prefix("#/$defs/").map(str::to_owned))
+        .collect();
+    for part in parts {
+        if let Some(keys) = document["$defs"][&part].as_object_mut() {
+            keys.remove("unevaluatedProperties");
+        }
+    }
+}
+
 /// Lets every object have its stated keys alone. The parts of a composed object do not know each other's keys: only the whole is closed.
 fn close(schema: &mut Value, is_part: bool) {
     let has_properties = schema.get("properties").is_some();
     let Some(keys) = schema.as_object_mut() else {
         if let Some(items) = schema.as_array_mut() {
-            items.iter_mut().for_each(|item| close(item, is_part));
+            for item in items {
+                close(item, is_part);
+            }
         }
         return;
     };

@@ -109,7 +109,9 @@ mod tests {
 
     fn sum(terms: &[f64]) -> ExactSum {
         let mut sum = ExactSum::default();
-        terms.iter().for_each(|term| sum.add(*term));
+        for term in terms {
+            sum.add(*term);
+        }
         sum
     }
 
@@ -119,7 +121,7 @@ mod tests {
         for _ in 0..300 {
             let scale = draw.uniform(-40.0, 40.0);
             let mut terms: Vec<f64> =
-                (0..1 + draw.below(40)).map(|_| draw.uniform(-1.0, 1.0) * libm::exp2(draw.uniform(scale - 60.0, scale))).collect();
+                (0..=draw.below(40)).map(|_| draw.uniform(-1.0, 1.0) * libm::exp2(draw.uniform(scale - 60.0, scale))).collect();
             if draw.below(3) == 0 {
                 // Nearly all cancel.
                 let opposite: Vec<f64> = terms.iter().skip(1).map(|term| -term).collect();

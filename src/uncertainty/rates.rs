@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn the_record_of_the_rate_is_thinned_keeps_its_end_and_merges() {
         for (end, doublings) in [(999_500, 0), (1_000_500, 1), (2_001_001, 2)] {
-            let reached = |trial: u64| trial % 3 != 0;
+            let reached = |trial: u64| !trial.is_multiple_of(3);
             let whole = rates(0..end, reached);
             let points = whole.points(end);
             assert!(points.len() as u64 <= MOST_POINTS + EARLY.len() as u64 + 1);

@@ -21,7 +21,7 @@ use super::{
 ///
 /// # Examples
 /// ```
-/// use chta::uncertainty::{Simulation, SimulationError, Tally, TrialOptions};
+/// use chta::uncertainty::{Simulation, Tally, TrialOptions};
 /// /// Two halves, one of them by way of a text.
 /// fn in_halves(simulation: &Simulation, trials: u64) -> Result<Tally, Box<dyn std::error::Error>> {
 ///     let half = TrialOptions { trials: trials / 2, ..TrialOptions::default() };

@@ -39,7 +39,7 @@ fn every_answer_is_as_its_schema_states() {
 #[test]
 fn schemas_are_listed_and_printed_and_an_unknown_one_is_refused() {
     let desk = Desk::new();
-    let names: String = SchemaKind::all().map(|kind| format!("{}\n", kind.name())).collect();
+    let names = SchemaKind::all().map(SchemaKind::name).collect::<Vec<_>>().join("\n") + "\n";
     assert_eq!(desk.run(&["schema"]).stdout, names);
     for kind in SchemaKind::all() {
         let ran = desk.run(&["schema", kind.name()]);

@@ -241,7 +241,9 @@ fn document() -> String {
     let mut records = Records { by_name: BTreeMap::new() };
     let answers: Vec<_> =
         SchemaKind::all().filter(|kind| *kind != SchemaKind::Scenario).map(|kind| (kind.name(), kind.schema())).collect();
-    answers.iter().for_each(|(_, schema)| records.add(schema));
+    for (_, schema) in &answers {
+        records.add(schema);
+    }
     let envelope = ["schema", "chta_version", "scenario", "inputs", "warnings", "crs"];
     let is_envelope = |name: &str| envelope.contains(&name);
     text.push_str("\n## Documents\n\n### All\n\n");
@@ -257,7 +259,13 @@ fn document() -> String {
     for (name, schema) in &answers {
         writeln!(text, "\n### `{name}`\n").unwrap();
         let keys: Vec<_> = keys_of(schema).into_iter().filter(|(name, ..)| !is_envelope(name)).collect();
-        table(&mut text, &keys, name);
+        // An answer of one of several forms.
+        match schema["anyOf"].as_array() {
+            Some(forms) if keys.is_empty() => {
+                writeln!(text, "One of {}.", forms.iter().map(kind_of).collect::<Vec<_>>().join(", ")).unwrap();
+            }
+            _ => table(&mut text, &keys, name),
+        }
     }
     text.push_str("\n## Records\n");
     for (name, schema) in &records.by_name {

@@ -49,7 +49,7 @@ fn parts_merged_in_any_order_give_the_whole_to_the_byte() {
             assert!(ways >= 2 && whole.landings.iter().all(|landing| landing.error.mean_m > 0.0), "{:?}", whole.outcomes);
             assert_eq!(whole.landings.iter().any(|landing| landing.ellipse.is_some()), scene.dem.is_some());
             for round in 0..3 {
-                let mut cuts: Vec<u64> = (0..1 + round * 2).map(|_| 1 + draw.below(trials as usize - 1) as u64).collect();
+                let mut cuts: Vec<u64> = (0..=round * 2).map(|_| 1 + draw.below(trials as usize - 1) as u64).collect();
                 cuts.extend([0, trials]);
                 cuts.sort_unstable();
                 cuts.dedup();
