@@ -8,6 +8,7 @@ use assert_cmd::Command;
 use chta::{
     chain::csv::StartGoal,
     graph::proof::DEFAULT_BUDGET_CELLS,
+    report::DocumentKind,
     scenario::{Entries, Scenario},
     study::{
         Case, CaseError, CheckError, Commands, ExperimentError, HopError, JourneyEnd, JourneyError, PlanOptions, Proof,
@@ -65,6 +66,7 @@ fn of_study<T: Serialize>(case: &Case, kind: &str, warnings: &[String], answer: 
         });
         parts.join("/")
     };
+    let kind = DocumentKind::ALL.into_iter().find(|known| known.name() == kind).unwrap();
     let json = case.record(&relative).unwrap().document(kind, warnings, answer).to_json().unwrap();
     serde_json::from_str(&json).unwrap()
 }
