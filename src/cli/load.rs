@@ -428,7 +428,7 @@ fn of_source(
             let own = own.ok_or_else(|| {
                 let name = &source.name;
                 Failure::message(format!(
-                    "{name}: found no terrain.dem, expected one for a map: add it, or give the DEM, and --scenario {name}"
+                    "{name}: found no terrain.dem, expected one for a map: add it, or give the DEM, and the scenario with --scenario {name}"
                 ))
             })?;
             (ends, source.base.join(own))

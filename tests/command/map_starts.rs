@@ -3,17 +3,16 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot prepare its files should stop")]
 #![allow(clippy::print_stderr, reason = "a test that is skipped says why")]
 
-use chta::terrain::read_geotiff_bytes;
 use serde_json::{Value, json};
 
 use crate::{
-    desk::{Desk, shell},
+    desk::{self, Desk, shell},
     installed::has_gdal,
 };
 
 /// The numbers of a raster, row after row; `None` for no-data.
 fn raster(desk: &Desk, name: &str) -> Vec<Option<f64>> {
-    read_geotiff_bytes(std::fs::read(desk.path().join(name)).unwrap()).unwrap().elevations().collect()
+    desk::raster(&desk.path().join(name)).elevations().collect()
 }
 
 /// Slow hopping over `ground.tif` of 20 x 20 posts.
@@ -187,7 +186,7 @@ fn positions_that_cannot_be_used_are_told_with_what_mends_them() {
         (on_map(&["--start", "1"]), vec!["`1` (1 number)", "two finite numbers in metres, X,Y", counts]),
         (on_map(&["--start", "1,2,3"]), vec!["`1,2,3` (3 numbers)", counts]),
         (on_map(&["--start", "1,2", "--goal", "4"]), vec!["--goal", "`4` (1 number)", counts]),
-        (vec!["plan", "scenario.toml", "--start", "1,2"], vec!["`1,2` (2 numbers)", "one finite number in metres, X", counts]),
+        (vec!["plan", "scenario.toml", "--start", "1,2"], vec!["`1,2` (2 numbers)", "one number in metres, X", counts]),
         (vec!["hop", "scenario.toml", "--to", "1,2,3"], vec!["`1,2,3` (3 numbers)", counts]),
         (vec!["slice", "ground.tif", "--from", "1", "--to", "2,3"], vec!["`1` (1 number)", counts]),
         (on_map(&["--starts", "bad.csv"]), vec!["bad.csv: line 3", "(y_m): found `far`, expected a finite number"]),
@@ -246,7 +245,7 @@ fn rasters_have_descriptions_and_units_and_a_style_beside_each() {
     let rasters = [
         ("-o", "hops.tif", "fewest hops from the nearest start; -1 unreachable", "hops"),
         ("--return-output", "back.tif", "fewest hops back to the nearest start; -1 no way", "hops"),
-        ("--effort-output", "effort.tif", "least total flight time among fewest hops, s", "s"),
+        ("--effort-output", "effort.tif", "least flight time in all among fewest hops, s", "s"),
         ("--nearest-output", "nearest.tif", "number of the nearest start, from 1; -1 unreachable", "start"),
         ("--predecessor-output", "previous.tif", "post that the last hop comes from, as row * columns + column", "post"),
         ("--mobility", "mobility.tif", "share of the reach disc that one hop reaches", "1"),
