@@ -266,7 +266,7 @@ mod tests {
             bytes.extend([0_u8; 50]);
             bytes
         };
-        let cases: [(&[u8], &str, FileKind, &str); 44] = [
+        let cases: [(&[u8], &str, FileKind, &str); 45] = [
             (b"", "a.tif", FileKind::Empty, "an empty file"),
             (b"II*\0rest", "a.csv", FileKind::Raster("GeoTIFF"), "a GeoTIFF"),
             (b"ncols 2\nnrows 2\n", "a.toml", FileKind::Raster("ESRI ASCII grid"), "an ESRI ASCII grid"),
