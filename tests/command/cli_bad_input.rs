@@ -219,7 +219,7 @@ fn synth_and_slice_refuse_invalid_terrain() {
     desk.refused(&["synth", "-o", "new.tif", "--south-west-m", "1;2"], &["found `1;2`, expected two finite numbers in metres"]);
     desk.refused(
         &["slice", "ground.tif", "--from", "1", "--to", "2,2"],
-        &["--from", "found `1`, expected two finite numbers in metres, X,Y"],
+        &["--from", "found `1` (1 number), expected two finite numbers in metres, X,Y"],
     );
     desk.refused(&["slice", "ground.tif", "--from", "1,nan", "--to", "2,2"], &["found `1,nan`"]);
     desk.refused(

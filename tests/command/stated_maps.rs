@@ -7,7 +7,7 @@ use std::path::Path;
 use chta::quantity::MapPoint;
 use chta::terrain::{CoordinateSystem, Dem, GeoReference, MapProjection, geotiff_bytes, read_dem};
 
-use crate::desk::{chta, shell};
+use crate::desk::{chta, raster, shell};
 use crate::installed::has_gdal;
 
 const MOON_M: f64 = 1_737_400.0;
@@ -400,7 +400,7 @@ fn the_rasters_of_a_map_name_the_code_of_the_iau() {
     let (status, _, message) =
         chta(folder.path(), &["map", "in.tif", "--start", "75010,39960", "--scenario", "s.toml", "-o", "hops.tif"]);
     assert_eq!((status, message.as_str()), (0, ""));
-    let hops = read_dem(&folder.path().join("hops.tif")).unwrap();
+    let hops = raster(&folder.path().join("hops.tif"));
     let projection = hops.georeference().projection().unwrap();
     assert_eq!((projection.code(), projection.name()), (Some("IAU_2015:30135"), "IAU_2015:30135"));
     if has_gdal() {

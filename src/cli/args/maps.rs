@@ -84,7 +84,6 @@ pub(crate) struct FanArgs {
 #[command(
     after_help = "Example:\n  chta map data/terrain/lunar_rille.tif --start 60,60 --scenario data/scenarios/lunar_rille.toml"
 )]
-#[expect(clippy::struct_excessive_bools, reason = "each is a switch of the command line")]
 pub(crate) struct MapArgs {
     /// Elevation raster: GeoTIFF or ESRI ASCII grid, map in metres; or a scenario (TOML) with terrain.dem; -: standard input
     #[arg(value_name = "DEM|SCENARIO")]

@@ -12,19 +12,20 @@ const COUNTS: &str = "a position is X along a chain, X,Y on a map and X,Y,Z on a
 
 /// Reads `X`, a position along a chain.
 pub(super) fn along_chain(text: &str) -> Result<f64, String> {
-    let [x_m] = numbers(text, "one finite number in metres, X, such as 12.5")?;
+    // Whether it is finite and on the chain is said with the chain's extent.
+    let [x_m] = numbers(text, "one number in metres, X, such as 12.5", |_| true)?;
     Ok(x_m)
 }
 
 /// Reads `X,Y`, a position on a map.
 pub(super) fn map_point(text: &str) -> Result<MapPoint, String> {
-    let [x_m, y_m] = numbers(text, "two finite numbers in metres, X,Y, such as 12.5,-30")?;
+    let [x_m, y_m] = numbers(text, "two finite numbers in metres, X,Y, such as 12.5,-30", f64::is_finite)?;
     Ok(MapPoint::new(x_m, y_m))
 }
 
-/// Reads so many finite numbers.
-fn numbers<const N: usize>(text: &str, expected: &str) -> Result<[f64; N], String> {
-    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+/// Reads so many numbers that are taken.
+fn numbers<const N: usize>(text: &str, expected: &str, takes: impl Fn(f64) -> bool) -> Result<[f64; N], String> {
+    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|number| takes(*number));
     let Some(found) = text.split(',').map(number).collect::<Option<Vec<f64>>>() else {
         return Err(format!("found `{text}`, expected {expected}"));
     };

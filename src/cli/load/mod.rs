@@ -374,20 +374,19 @@ fn of_source(
 ) -> Result<Bare, Failure> {
     apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
     let given = source.entries.clone();
-    let (ends, dem) = match dem {
-        Some(dem) => (own_ends(&source, purpose.scenario_ends())?, dem),
-        None => {
-            look_at_keys(&mut source, false)?;
-            let ends = own_ends(&source, purpose.scenario_ends())?;
-            let own = source.entries.files().into_iter().find(|(key, _)| key.path() == "terrain.dem").map(|(_, file)| file);
-            let own = own.ok_or_else(|| {
-                let name = &source.name;
-                Failure::message(format!(
-                    "{name}: found no terrain.dem, expected one for a map: add it, or give the DEM, and --scenario {name}"
-                ))
-            })?;
-            (ends, source.base.join(own))
-        }
+    let (ends, dem) = if let Some(dem) = dem {
+        (own_ends(&source, purpose.scenario_ends())?, dem)
+    } else {
+        look_at_keys(&mut source, false)?;
+        let ends = own_ends(&source, purpose.scenario_ends())?;
+        let own = source.entries.files().into_iter().find(|(key, _)| key.path() == "terrain.dem").map(|(_, file)| file);
+        let own = own.ok_or_else(|| {
+            let name = &source.name;
+            Failure::message(format!(
+                "{name}: found no terrain.dem, expected one for a map: add it, or give the DEM, and the scenario with --scenario {name}"
+            ))
+        })?;
+        (ends, source.base.join(own))
     };
     let title = given.given().any(|(key, place)| key.path() == "report.title" && *place != Place::Nowhere);
     let title = given.title().filter(|_| title).map(str::to_owned);

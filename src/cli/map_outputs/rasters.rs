@@ -1,4 +1,4 @@
-//! The rasters of a map as GeoTIFFs, and their styles for QGIS.
+//! The rasters of a map as `GeoTIFF`s, and their styles for QGIS.
 
 use std::path::PathBuf;
 

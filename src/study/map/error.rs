@@ -113,6 +113,6 @@ impl MapStudyError {
         if check.passes() {
             return Ok(());
         }
-        Err(Self::Refuted { count: check.violations.len(), first: check.violations.iter().take(10).cloned().collect() })
+        Err(Self::Refuted { count: check.violations.len(), first: check.violations.iter().take(10).copied().collect() })
     }
 }

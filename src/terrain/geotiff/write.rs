@@ -63,7 +63,7 @@ pub enum ResultBands<'a> {
 /// use chta::quantity::MapPoint;
 /// use chta::terrain::{Band, GeoReference, ResultBands, read_geotiff_bytes, result_geotiff_bytes};
 /// let map = GeoReference::local(MapPoint::new(5.0, 9.0), 2.0, 2.0)?;
-/// let hops = ResultBands::Int16(vec![Band { name: "hops", unit: "hops", samples: &[0, 1, -1, -32768] }], -32768);
+/// let hops = ResultBands::Int16(vec![Band { name: "hops", unit: "", samples: &[0, 1, -1, -32768] }], -32768);
 /// let read = read_geotiff_bytes(result_geotiff_bytes(2, 2, &map, &hops)?)?;
 /// assert_eq!(read.elevations().collect::<Vec<_>>(), [Some(0.0), Some(1.0), Some(-1.0), None]);
 /// # Ok::<(), chta::terrain::TerrainError>(())
