@@ -56,7 +56,7 @@ pub struct CheckAnswer {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub landing_miss_max_m: Option<f64>,
     /// Whether hops of the path fly beside the line, in the headings that the machine has; a proof is about hops on the line. Absent if not.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub beside_line: bool,
     /// The bounds; absent if no proof was requested.
     #[serde(flatten)]

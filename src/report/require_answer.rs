@@ -29,7 +29,7 @@ pub struct RequireAnswer {
     pub resolution_met: bool,
     /// Whether the path found holds at every value of the key, however demanding: a clearance whose taper ends below `reachable_at` on every
     /// hop of it. Absent if not.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub never_binds: bool,
     /// Every value tried, in the order of the trials.
     pub tries: Vec<RequireTry>,

@@ -5,11 +5,10 @@
 
 use std::{fs, path::Path};
 
-use chta::terrain::read_dem;
 use serde_json::Value;
 
 use crate::{
-    desk::{Desk, shell},
+    desk::{Desk, raster, shell},
     installed::has_gdal,
 };
 
@@ -127,7 +126,7 @@ fn the_recipes_of_the_documents_give_what_they_say() {
             "degrees.geojson" | "arcs.kml" => (features(&desk, file), in_degrees, 2e-6),
             "landings.kml" => (features(&desk, file), landings, 2e-6),
             "hops_cog.tif" => {
-                let [before, after] = ["hops.tif", file].map(|name| read_dem(&desk.path().join(name)).unwrap());
+                let [before, after] = ["hops.tif", file].map(|name| raster(&desk.path().join(name)));
                 assert!(before.elevations().eq(after.elevations()), "{file}: other values");
                 assert_eq!(before.georeference().projection(), after.georeference().projection(), "{file}");
                 assert!(shell(desk.path(), &format!("gdalinfo {file}")).contains("LAYOUT=COG"));
