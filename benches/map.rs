@@ -98,7 +98,7 @@ fn against_plain() {
         timed(|| plain_map::plain_map(&scene.dem, (start.row, start.col), &scene.hopper, &scene.surface, MOON_M_S2));
     let (quick_s, quick) = timed(|| {
         let hops = PostHops::new(scene.ground(), 1).expect("a sound request");
-        search(&hops, start, Search::default(), &()).expect("a sound request")
+        search(&hops, &[start.into()], Search::default(), &()).expect("a sound request")
     });
     assert_eq!(plain, quick.hops, "both ways find the same hops");
     println!("72 x 72 posts, one thread: plain {plain_s:.3} s, ours {quick_s:.4} s, ratio {:.0}", plain_s / quick_s);
@@ -108,7 +108,7 @@ fn pull_against_push() {
     let scene = Scene::new(512);
     let start = Post { row: 256, col: 256 };
     let hops = PostHops::new(scene.ground(), 1).expect("a sound request");
-    let (pull_s, pulled) = timed(|| search(&hops, start, Search::default(), &()).expect("a sound request"));
+    let (pull_s, pulled) = timed(|| search(&hops, &[start.into()], Search::default(), &()).expect("a sound request"));
     let (push_s, (pushed, tested)) = timed(|| pushed(&hops, start));
     assert_eq!(pulled.hops, pushed, "both ways find the same hops");
     println!(
@@ -126,10 +126,10 @@ fn sizes() {
         let scene = Scene::new(side);
         let start = Post { row: side / 2, col: side / 2 };
         let (prepare_s, hops) = timed(|| PostHops::new(scene.ground(), 1).expect("a sound request"));
-        let asked = |effort| Search { journey: Journey::Outbound, effort };
-        let (hops_s, _) = timed(|| search(&hops, start, asked(None), &()).expect("a sound request"));
+        let asked = |effort| Search { journey: Journey::Outbound, effort, hops_max: None };
+        let (hops_s, _) = timed(|| search(&hops, &[start.into()], asked(None), &()).expect("a sound request"));
         let least = Some((Effort::TakeoffSpeed, TakeoffChoice::LeastSpeed));
-        let (effort_s, _) = timed(|| search(&hops, start, asked(least), &()).expect("a sound request"));
+        let (effort_s, _) = timed(|| search(&hops, &[start.into()], asked(least), &()).expect("a sound request"));
         let (mobility_s, _) = timed(|| mobility(&hops, &()).expect("a sound request"));
         #[expect(clippy::cast_precision_loss, reason = "a few million posts")]
         let each_ns = 1e9 * hops_s / (side * side) as f64;

@@ -63,6 +63,8 @@ pub enum Stage {
     Requirement,
     /// The layers of a hop map; counted in posts reached.
     MapLayers,
+    /// The layers of a map of return journeys; counted in posts reached.
+    ReturnLayers,
     /// The mobility of every post; counted in blocks of posts.
     Mobility,
     /// Slices in all directions; counted in headings.
@@ -78,7 +80,7 @@ const PAIRS: &str = "pairs";
 
 impl Stage {
     /// All of them.
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 12] = [
         Self::Search,
         Self::Reachability,
         Self::CostToGo,
@@ -86,6 +88,7 @@ impl Stage {
         Self::Proof,
         Self::Requirement,
         Self::MapLayers,
+        Self::ReturnLayers,
         Self::Mobility,
         Self::Fan,
         Self::Trials,
@@ -102,6 +105,7 @@ impl Stage {
             Self::Proof => "proof",
             Self::Requirement => "search for the least capability",
             Self::MapLayers => "hop map",
+            Self::ReturnLayers => "return hop map",
             Self::Mobility => "mobility map",
             Self::Fan => "fan",
             Self::Trials => "simulation",
@@ -114,7 +118,7 @@ impl Stage {
         match self {
             Self::Search | Self::Reachability | Self::CostToGo | Self::Reliability | Self::Proof => PAIRS,
             Self::Requirement => "values",
-            Self::MapLayers => "posts",
+            Self::MapLayers | Self::ReturnLayers => "posts",
             Self::Mobility => "blocks",
             Self::Fan => "headings",
             Self::Trials => "trials",

@@ -64,6 +64,8 @@ impl TakeoffChoice {
     }
 }
 
+crate::quantity::by_name!(TakeoffChoice, TakeoffChoice::ALL);
+
 /// The loft whose angle lies at a share of the way between the angles of a set's ends: 0 at the lower, 1/2 in the middle, 1 at the upper.
 ///
 /// # Returns

@@ -5,7 +5,7 @@ use chta::{
     scenario::{Entries, Key, Place, Scenario},
 };
 
-use super::load::gives_way_to_a_dem;
+use super::load::{ScenarioEnds, gives_way_to_a_dem};
 
 /// What a command computes from a scenario.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,6 +36,8 @@ pub(crate) enum Purpose {
         effort: bool,
         /// With trials along these paths.
         trials: bool,
+        /// Whether the scenario's own start and goal count.
+        ends: ScenarioEnds,
     },
 }
 
@@ -63,7 +65,7 @@ impl Purpose {
         Self::Trade,
         Self::Compare,
         Self::Fan,
-        Self::Map { goals: true, effort: true, trials: true },
+        Self::Map { goals: true, effort: true, trials: true, ends: ScenarioEnds::Ignored },
     ];
 
     /// The command's name.
@@ -79,6 +81,14 @@ impl Purpose {
             Self::Compare => "compare",
             Self::Fan => "fan",
             Self::Map { .. } => "map",
+        }
+    }
+
+    /// Whether the scenario's own start and goal count beside, or in place of, those of the command line.
+    pub(crate) const fn scenario_ends(self) -> ScenarioEnds {
+        match self {
+            Self::Map { ends, .. } => ends,
+            _ => ScenarioEnds::Ignored,
         }
     }
 
@@ -102,6 +112,11 @@ impl Purpose {
             ) => totals,
             ("hopper", "propellant_max_kg") => self.counts_propellant(),
             ("hopper", "takeoff_angle_step_deg" | "heading_step_deg") => self.flies_commands(),
+            ("terrain", "dem" | "start_m" | "start_lonlat_deg" | "goal_m" | "goal_lonlat_deg")
+                if self.scenario_ends() != ScenarioEnds::Ignored =>
+            {
+                true
+            }
             ("terrain", name) => !(on_a_dem && gives_way_to_a_dem(name)),
             ("search", "points_per_segment" | "node_spacing_max_m") => !matches!(self, Self::Hop | Self::Map { .. }),
             ("search", "effort") => !matches!(self, Self::Hop | Self::Trade | Self::Fan | Self::Map { effort: false, .. }),

@@ -7,9 +7,9 @@ use chta::{
     scenario::CATALOGUE,
     terrain::{FORMATS, MESH_FORMATS},
 };
-use clap::{CommandFactory, FromArgMatches};
+use clap::{Command, CommandFactory, FromArgMatches};
 
-use super::args::Args;
+use super::{Failure, args::Args, threads};
 
 /// The name of the command that was called.
 static CALLED: OnceLock<String> = OnceLock::new();
@@ -25,8 +25,26 @@ pub(super) fn takes(option: &str) -> bool {
     CALLED.get().is_none_or(|command| offers(command, option))
 }
 
-/// The command line, parsed with these lists in its long help.
-pub(super) fn parsed() -> Args {
+/// The command line, parsed.
+///
+/// # Errors
+/// A bad value in the environment, or options that contradict each other. What clap refuses ends the program.
+pub(super) fn parsed() -> Result<Args, Failure> {
+    let matches = command().get_matches();
+    if let Some((name, of_command)) = matches.subcommand() {
+        // Parsed once, so it is not set before.
+        let _ = CALLED.set(name.to_owned());
+        threads::take_default(of_command)?;
+        // clap would miss one that stands before the command.
+        if matches.get_flag("verbose") && of_command.try_get_one::<bool>("quiet").is_ok_and(|quiet| quiet == Some(&true)) {
+            return Err(Failure::message("found both --verbose and --quiet, expected at most one of them: omit the other"));
+        }
+    }
+    Ok(Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit()))
+}
+
+/// The command line's definition, with these lists in its long help.
+pub(super) fn command() -> Command {
     let mut command = Args::command();
     let lists = [
         ("run", scenario_keys()),
@@ -42,19 +60,13 @@ pub(super) fn parsed() -> Args {
         });
     }
     // A fan has no path to refine for and no second criterion.
-    command = command.mut_subcommand("fan", |fan| {
+    command.mut_subcommand("fan", |fan| {
         fan.mut_arg("points_per_segment", |points| {
             points
                 .help("Points inside each segment; auto is the same as 1, since there is no single path to refine for [default: 1]")
         })
         .mut_arg("effort", |effort| effort.hide(true))
-    });
-    let matches = command.get_matches();
-    if let Some(name) = matches.subcommand_name() {
-        // Parsed once, so it is not set before.
-        let _ = CALLED.set(name.to_owned());
-    }
-    Args::from_arg_matches(&matches).unwrap_or_else(|error| error.exit())
+    })
 }
 
 /// Every key of a scenario.

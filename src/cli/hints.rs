@@ -8,7 +8,7 @@ use chta::{
     reach::{FanError, map::MapError},
     report::FurtherMeans,
     scenario::{ProblemKind, ScenarioProblem},
-    study::PipelineError,
+    study::{PipelineError, fan::FanStudyError, map::MapStudyError, slice::SliceStudyError},
     terrain::{LonLat, ScaleMend, TerrainError},
 };
 
@@ -16,6 +16,27 @@ use super::{help::takes, inputs};
 
 /// The message of an error, with the options that mend it.
 pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
+    let error = of_study(error);
+    match error.downcast_ref() {
+        Some(SliceStudyError::LonLatOnMesh) => {
+            return "--from-lonlat, --to-lonlat, --via-lonlat: a mesh has no projection; give --from X,Y, --to X,Y and --via X,Y"
+                .to_owned();
+        }
+        Some(SliceStudyError::ScaleOfRaster { file, scale }) => {
+            let name = file.display();
+            return format!("--mesh-scale {scale}: {name} is an elevation raster, expected a mesh; omit the option");
+        }
+        _ => {}
+    }
+    if let Some(FanStudyError::TooMuchMemory { needed_bytes, .. }) = error.downcast_ref() {
+        let enough = needed_bytes.div_ceil(1 << 20);
+        return format!(
+            "--memory-max-mib: {error}; the options for that: --length, --node-spacing-max-m, --threads, or --memory-max-mib {enough}"
+        );
+    }
+    if let Some(sentence) = error.downcast_ref().and_then(of_map_study) {
+        return sentence;
+    }
     match of_terrain(error) {
         Some(TerrainError::MapScale { found, mend }) => map_scale(found, mend),
         Some(TerrainError::UnknownScale { reason, mend }) => {
@@ -30,6 +51,10 @@ pub(crate) fn sentence(error: &(dyn Error + 'static)) -> String {
 
 /// Whether the error's message already names this file.
 pub(crate) fn names(error: &(dyn Error + 'static), file: &Path) -> bool {
+    let error = of_study(error);
+    if let Some(SliceStudyError::LonLatOnMesh | SliceStudyError::ScaleOfRaster { .. }) = error.downcast_ref() {
+        return true;
+    }
     let same = |path: &Path| path.file_name() == file.file_name();
     match (of_terrain(error), error.downcast_ref()) {
         (Some(TerrainError::InFile { path, .. } | TerrainError::Overlay { path, .. }), _)
@@ -56,6 +81,49 @@ pub(crate) fn of_problem(problem: &ScenarioProblem) -> &'static str {
 /// How to get a stronger answer, by the options of the command that was called or else of another one.
 pub(crate) fn further_means() -> FurtherMeans<'static> {
     FurtherMeans { budget: "--budget", proof: if takes("prove") { "--prove" } else { "chta check --prove" } }
+}
+
+/// The error that the error of a study wraps.
+fn of_study<'a>(error: &'a (dyn Error + 'static)) -> &'a (dyn Error + 'static) {
+    match error.downcast_ref() {
+        Some(MapStudyError::Pipeline(error)) => error,
+        Some(MapStudyError::Terrain(error)) => error,
+        Some(MapStudyError::Map(error)) => error,
+        Some(MapStudyError::Simulation(error)) => error,
+        _ => match error.downcast_ref() {
+            Some(FanStudyError::Dem(error)) => error,
+            Some(FanStudyError::Place(error) | FanStudyError::Scale(error)) => error,
+            Some(FanStudyError::Fan(error)) => error,
+            _ => match error.downcast_ref() {
+                Some(SliceStudyError::Pipeline(error)) => error,
+                Some(SliceStudyError::Overlay(error)) => error,
+                Some(SliceStudyError::Chain(error)) => error,
+                _ => error,
+            },
+        },
+    }
+}
+
+/// The sentence of a map's error that options mend.
+fn of_map_study(error: &MapStudyError) -> Option<String> {
+    match error {
+        MapStudyError::SamePost { stride, asked: [first, second], post } => Some(format!(
+            "with --stride {stride}, ({:.3}, {:.3}) m and ({:.3}, {:.3}) m have the same nearest post, ({:.3}, {:.3}) m: give a smaller \
+             --stride",
+            first.x, first.y, second.x, second.y, post.x, post.y
+        )),
+        MapStudyError::Replanning => Some(
+            "--simulate: uncertainty.policy is \"replan\", expected \"open-loop\": replanning needs the nodes of a transect search; set \
+             uncertainty.policy = \"open-loop\", or use `chta simulate` on a transect"
+                .to_owned(),
+        ),
+        MapStudyError::TooMuchMemory { needed_bytes, .. } => Some(format!(
+            "--memory-max-mib: {error}; the options for that: --stride N, fewer of --effort, --return, --mobility and \
+             --predecessor-output, or --memory-max-mib {}",
+            needed_bytes.div_ceil(1 << 20)
+        )),
+        _ => None,
+    }
 }
 
 /// The terrain error that an error is or wraps.

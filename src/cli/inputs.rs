@@ -15,7 +15,9 @@ use chta::scenario::FileKind;
 use tempfile::TempDir;
 
 use super::{
-    Failure, interrupt,
+    Failure,
+    args::CommonArgs,
+    interrupt, verbose,
     wrong_thing::{Role, refusal},
 };
 
@@ -128,6 +130,31 @@ pub(crate) fn look_at(max_gib: f64, files: &[(Option<&Path>, Role)]) -> Result<(
     given().try_for_each(|(path, role)| open(path, role).map(drop))
 }
 
+/// Looks at the files of a command that analyses a chain, with the scenario of the options beside it.
+pub(crate) fn look_at_chain(chain: &Path, common: &CommonArgs) -> Result<(), Failure> {
+    look_at(common.input_max_gib, &[(Some(chain), Role::Chain), (common.scenario.as_deref(), Role::ScenarioOption)])
+}
+
+/// The same with a file of pairs.
+pub(crate) fn look_at_pairs(chain: &Path, common: &CommonArgs, pairs: Option<&Path>) -> Result<(), Failure> {
+    let files = [(Some(chain), Role::Chain), (common.scenario.as_deref(), Role::ScenarioOption), (pairs, Role::Pairs)];
+    look_at(common.input_max_gib, &files)
+}
+
+/// Looks at several scenarios, of which no two may be the same pipe: the second reading would find nothing.
+pub(crate) fn look_at_scenarios(max_gib: f64, scenarios: &[PathBuf]) -> Result<(), Failure> {
+    for (i, file) in scenarios.iter().enumerate() {
+        if is_stream(file) && scenarios[..i].iter().any(|other| same_stream(other, file)) {
+            return Err(Failure::message(format!(
+                "{}: found twice as SCENARIO, but what comes through a pipe is read only once: give one of the two as a file",
+                file.display()
+            )));
+        }
+    }
+    let files: Vec<_> = scenarios.iter().map(|file| (Some(file.as_path()), Role::Scenario)).collect();
+    look_at(max_gib, &files)
+}
+
 /// Looks at a file for a position: what it is, and whether the position takes that.
 pub(crate) fn open(path: &Path, role: Role) -> Result<Input, Failure> {
     check_readable(path).map_err(|reason| unreadable(path, &reason, role))?;
@@ -138,7 +165,7 @@ pub(crate) fn open(path: &Path, role: Role) -> Result<Input, Failure> {
     let kind = FileKind::of(path).map_err(read)?;
     check_kind(&kind, role, path)?;
     let length = fs::metadata(path).map_err(read)?.len();
-    let is_read_blindly = matches!(role, Role::Chain | Role::ChainKey | Role::Pairs | Role::MeshKey);
+    let is_read_blindly = matches!(role, Role::Chain | Role::ChainKey | Role::Pairs | Role::Starts | Role::MeshKey);
     if matches!(kind, FileKind::Text | FileKind::Binary) && is_read_blindly && length > LARGEST_UNKNOWN {
         let mut beginning = Vec::new();
         File::open(path).and_then(|file| file.take(24).read_to_end(&mut beginning)).map_err(read)?;
@@ -147,6 +174,7 @@ pub(crate) fn open(path: &Path, role: Role) -> Result<Input, Failure> {
     if is_read_whole(&kind) && length > max_bytes() {
         return Err(too_large(path, &format!("{:.1} GiB", gib(length))));
     }
+    verbose::read(path);
     Ok(Input { given: path.to_path_buf(), file: path.to_path_buf(), kind })
 }
 
@@ -280,6 +308,7 @@ fn of_stream(path: &Path, role: Role) -> Result<Input, Failure> {
     copy_bounded(beginning, &mut source, &mut copy, path, &Bounds::of(&kind, role))?;
     let input = Input { given: path.to_path_buf(), file, kind };
     lock(&STREAMS).push(Stream { input: input.clone(), role });
+    verbose::read(&input.file);
     Ok(input)
 }
 
@@ -327,7 +356,11 @@ impl Bounds {
         };
         let longest_line = match kind {
             FileKind::Raster("ESRI ASCII grid") => Some(LONGEST_GRID_LINE),
-            FileKind::Raster("XYZ grid") | FileKind::Mesh(_, true) | FileKind::ChainCsv | FileKind::PairsCsv => Some(LONGEST_LINE),
+            FileKind::Raster("XYZ grid")
+            | FileKind::Mesh(_, true)
+            | FileKind::ChainCsv
+            | FileKind::PairsCsv
+            | FileKind::PositionsCsv => Some(LONGEST_LINE),
             _ => None,
         };
         Self { most: own.min(option), reason, longest_line }
@@ -384,7 +417,14 @@ fn detached_image(kind: &FileKind, beginning: &[u8]) -> Option<String> {
 
 /// Whether a file of this kind is read whole into memory.
 fn is_read_whole(kind: &FileKind) -> bool {
-    matches!(kind, FileKind::ChainCsv | FileKind::PairsCsv | FileKind::Mesh(..) | FileKind::Raster("ESRI ASCII grid" | "XYZ grid"))
+    matches!(
+        kind,
+        FileKind::ChainCsv
+            | FileKind::PairsCsv
+            | FileKind::PositionsCsv
+            | FileKind::Mesh(..)
+            | FileKind::Raster("ESRI ASCII grid" | "XYZ grid")
+    )
 }
 
 fn max_bytes() -> u64 {

@@ -5,13 +5,23 @@ mod claims;
 mod commands;
 mod effects;
 mod failure;
+mod fan_outputs;
 mod help;
 mod hints;
 mod inputs;
 mod interrupt;
+mod landings;
 mod load;
+mod map_input;
+mod map_outputs;
 mod output;
 mod progress;
+mod run_folder;
+mod threads;
+mod trajectory;
+mod unanswered;
+mod verbose;
+mod views;
 mod whole_file;
 mod wrong_thing;
 
@@ -29,10 +39,40 @@ pub(crate) enum Answer {
     No,
 }
 
+impl Answer {
+    /// Yes or no.
+    pub(crate) const fn of(is_yes: bool) -> Self {
+        if is_yes { Self::Yes } else { Self::No }
+    }
+}
+
 /// Runs the command line.
 pub(crate) fn run() -> ExitCode {
     interrupt::handle();
-    let answer = match help::parsed().command {
+    let answer = help::parsed().and_then(|args| {
+        if args.verbose {
+            verbose::begin();
+        }
+        answer_of(args.command)
+    });
+    verbose::end();
+    let status = match answer {
+        Ok(Answer::Yes) => ExitCode::SUCCESS,
+        Ok(Answer::No) => ExitCode::from(1),
+        // Its files under way are gone with what held them.
+        Err(_) if interrupt::is_requested() => ExitCode::from(interrupt::STATUS),
+        Err(failure) => {
+            failure.tell();
+            ExitCode::from(2)
+        }
+    };
+    inputs::forget();
+    status
+}
+
+/// Runs a command.
+fn answer_of(command: Command) -> Result<Answer, Failure> {
+    match command {
         Command::Run(args) => commands::run::run(&args),
         Command::Slice(args) => commands::slice::run(&args),
         Command::Fan(args) => commands::fan::run(&args),
@@ -46,17 +86,8 @@ pub(crate) fn run() -> ExitCode {
         Command::Compare(args) => commands::compare::run(&args),
         Command::Synth(args) => commands::synth::run(&args),
         Command::Bodies => commands::bodies::run(),
-    };
-    let status = match answer {
-        Ok(Answer::Yes) => ExitCode::SUCCESS,
-        Ok(Answer::No) => ExitCode::from(1),
-        // Its files under way are gone with what held them.
-        Err(_) if interrupt::is_requested() => ExitCode::from(interrupt::STATUS),
-        Err(failure) => {
-            failure.tell();
-            ExitCode::from(2)
-        }
-    };
-    inputs::forget();
-    status
+        Command::Completions(args) => commands::completions::run(args),
+        Command::Man(args) => commands::man::run(&args),
+        Command::Schema(args) => commands::schema::run(&args),
+    }
 }

@@ -1,6 +1,7 @@
 //! Data goes to standard output or to files, messages to standard error.
 
 use std::{
+    borrow::Cow,
     fs::File,
     io::{self, ErrorKind, Write},
     path::Path,
@@ -8,10 +9,11 @@ use std::{
 
 use chta::{
     figure::{FigureError, Picture, PictureFormat},
+    report::{Document, SizeAnswer},
     terrain::MapProjection,
 };
 
-use super::{Failure, claims, inputs, interrupt, whole_file::WholeFile};
+use super::{Answer, Failure, args::Format, claims, inputs, interrupt, verbose, whole_file::WholeFile};
 
 /// Writes data to standard output. A closed pipe is not an error.
 pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
@@ -28,39 +30,43 @@ pub(crate) fn to_stdout(data: &[u8]) -> Result<(), Failure> {
 /// A file to be written at the end, opened before the computation begins.
 #[derive(Debug)]
 pub(crate) struct Pending<'a> {
-    path: &'a Path,
+    path: Cow<'a, Path>,
     file: WholeFile,
 }
 
 impl<'a> Pending<'a> {
     /// Opens it.
-    pub(crate) fn begin(path: &'a Path) -> Result<Self, Failure> {
-        let file = WholeFile::begin(path).map_err(|error| unwritable(path, &error))?;
-        claims::writes(path)?;
+    pub(crate) fn begin(path: impl Into<Cow<'a, Path>>) -> Result<Self, Failure> {
+        let path = path.into();
+        let file = WholeFile::begin(&path).map_err(|error| unwritable(&path, &error))?;
+        claims::writes(&path)?;
         Ok(Self { path, file })
     }
 
     /// Its final path.
-    pub(crate) const fn path(&self) -> &'a Path {
-        self.path
+    pub(crate) fn path(&self) -> &Path {
+        &self.path
     }
 
     /// A handle for a streaming writer.
     pub(crate) fn handle(&self) -> Result<File, Failure> {
-        self.file.handle().map_err(|error| unwritable(self.path, &error))
+        self.file.handle().map_err(|error| unwritable(&self.path, &error))
     }
 
     /// Renames the streamed file to its final path.
     pub(crate) fn keep(self) -> Result<(), Failure> {
         interrupt::check()?;
-        self.file.keep().map_err(|error| unwritable(self.path, &error))
+        self.file.keep().map_err(|error| unwritable(&self.path, &error))?;
+        verbose::say(|| format!("wrote {}", self.path.display()));
+        Ok(())
     }
 }
 
-/// Opens the picture file of an option before the computation begins, after checking its extension.
-pub(crate) fn begin_picture<'a>(option: &str, path: &'a Path) -> Result<Pending<'a>, Failure> {
+/// Opens the picture file of an option, if it is given, before the computation begins, after checking its extension.
+pub(crate) fn begin_picture<'a>(option: &str, path: Option<&'a Path>) -> Result<Option<Pending<'a>>, Failure> {
+    let Some(path) = path else { return Ok(None) };
     check_picture(option, path)?;
-    Pending::begin(path)
+    Pending::begin(path).map(Some)
 }
 
 /// Checks that a picture file has the extension of a format; a device or pipe needs none and gets SVG.
@@ -104,10 +110,11 @@ impl TableFormat {
 pub(crate) fn finish(mut files: Vec<(Pending<'_>, Vec<u8>)>) -> Result<(), Failure> {
     interrupt::check()?;
     for (pending, bytes) in &mut files {
-        pending.file.write(bytes).map_err(|error| unwritable(pending.path, &error))?;
+        pending.file.write(bytes).map_err(|error| unwritable(&pending.path, &error))?;
     }
     for (Pending { path, file }, _) in files {
-        file.keep().map_err(|error| unwritable(path, &error))?;
+        file.keep().map_err(|error| unwritable(&path, &error))?;
+        verbose::say(|| format!("wrote {}", path.display()));
     }
     Ok(())
 }
@@ -151,9 +158,33 @@ pub(crate) fn to_geojson_file(path: &Path, geojson: &str, projection: Option<&Ma
     let beside = path.with_extension("prj");
     let mut files = vec![(Pending::begin(path)?, geojson.as_bytes().to_vec())];
     if let Some(text) = prj(projection) {
-        files.push((Pending::begin(&beside)?, text));
+        files.push((Pending::begin(beside)?, text));
     }
     finish(files)
+}
+
+/// Prints the answer to a question of size.
+pub(crate) fn sized(document: &Document<SizeAnswer>, format: Format) -> Result<Answer, Failure> {
+    let text = match format {
+        Format::Text => document.answer.text(),
+        Format::Json => document.to_json()?,
+    };
+    to_stdout(text.as_bytes())?;
+    Ok(Answer::Yes)
+}
+
+/// Prints warnings on standard error.
+pub(crate) fn warn_all(quiet: bool, warnings: &[String]) {
+    for warning in warnings {
+        warn(quiet, warning);
+    }
+}
+
+/// Prints the warnings of all parts on standard error, and returns them.
+pub(crate) fn warned(quiet: bool, parts: &[&[String]]) -> Vec<String> {
+    let warnings = parts.concat();
+    warn_all(quiet, &warnings);
+    warnings
 }
 
 /// Prints a warning on standard error.

@@ -24,6 +24,10 @@ pub(crate) enum Role {
     Terrain,
     /// `--pairs`.
     Pairs,
+    /// DEM|SCENARIO of `map`.
+    MapTarget,
+    /// `--starts`.
+    Starts,
     /// `[terrain] dem`.
     DemKey,
     /// `[terrain] mesh`.
@@ -58,6 +62,8 @@ impl Role {
             Self::Dem => "DEM",
             Self::Terrain => "DEM|MESH",
             Self::Pairs => "--pairs",
+            Self::MapTarget => "DEM|SCENARIO",
+            Self::Starts => "--starts",
             Self::DemKey => "terrain.dem",
             Self::MeshKey => "terrain.mesh",
             Self::ChainKey => "terrain.chain",
@@ -74,6 +80,10 @@ impl Role {
             Self::Dem | Self::DemKey => "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid)",
             Self::Terrain => "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid) or a mesh (OBJ, STL, PLY)",
             Self::Pairs => "a CSV file of pairs with the header start_x_m,goal_x_m",
+            Self::MapTarget => {
+                "an elevation raster (GeoTIFF, ESRI ASCII grid, PDS3 image, XYZ grid), or a scenario (TOML) or result (JSON) with terrain.dem"
+            }
+            Self::Starts => "a CSV file of positions with the header x_m,y_m",
             Self::MeshKey => "a mesh (OBJ, STL, PLY)",
             Self::ChainKey => "a chain CSV",
             Self::KeepOut => "zones as GeoJSON, or a mask raster (GeoTIFF, ESRI ASCII grid)",
@@ -109,9 +119,11 @@ impl Role {
                 Self::Chain => *kind == Kind::ChainCsv || of_scenario,
                 Self::Scenario | Self::ScenarioOption => of_scenario,
                 Self::Dem | Self::DemKey => of_dem || of_points,
+                Self::MapTarget => of_dem || of_points || of_scenario,
                 Self::Terrain => of_dem || of_mesh || of_points,
                 Self::MeshKey => of_mesh || of_points,
                 Self::ChainKey => *kind == Kind::ChainCsv,
+                Self::Starts => *kind == Kind::PositionsCsv,
                 Self::Pairs => *kind == Kind::PairsCsv,
                 Self::Friction => of_raster,
                 // The zones' reader knows the terrain's map, to which they have to be converted.
@@ -145,7 +157,7 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::ForeignMesh(_), Role::Terrain | Role::MeshKey) => {
             "export it as OBJ, STL or PLY, z up, and give that file".to_owned()
         }
-        (FileKind::Picture(_), Role::Dem | Role::DemKey | Role::Terrain) => {
+        (FileKind::Picture(_), Role::Dem | Role::MapTarget | Role::DemKey | Role::Terrain) => {
             "a picture holds colours or brightness: give the raster of elevations that it was drawn from".to_owned()
         }
         // The terrain keys of a scenario.
@@ -194,10 +206,10 @@ fn mend(kind: &FileKind, role: Role, path: &Path) -> String {
         (FileKind::Mesh(..), Role::Chain | Role::Pairs | Role::Scenario | Role::ScenarioOption) => {
             from_terrain("mesh", &name, &toml)
         }
-        (FileKind::Mesh(..), Role::Dem) => {
+        (FileKind::Mesh(..), Role::Dem | Role::MapTarget) => {
             format!("a mesh can be cut, not mapped: `chta slice {name} --from X,Y --to X,Y -o chain.csv`")
         }
-        (FileKind::ChainCsv, Role::Dem | Role::Terrain) => format!(
+        (FileKind::ChainCsv, Role::Dem | Role::MapTarget | Role::Terrain) => format!(
             "a chain is cut already: give it to `chta plan {name} --start X --goal X --scenario SCENARIO`, and here the terrain it came from"
         ),
         (FileKind::ChainCsv, Role::Scenario | Role::ScenarioOption) => format!(

@@ -42,6 +42,8 @@ pub struct FigureData {
     pub goal: ChainPoint,
     /// The result.
     pub subject: Subject,
+    /// Whether the hopper prepares its hops, so that times of missions have preparations in them.
+    pub prepares: bool,
 }
 
 /// A sequence thinned to every n-th item.
@@ -67,8 +69,8 @@ pub enum Subject {
     },
     /// No path over these nodes.
     Stopped(Box<StoppedFigure>),
-    /// A path of so many hops with exact commands, which no commands in the machine's steps fly.
-    NoCommands(u64),
+    /// A path of so many hops with exact commands, which no commands in the machine's steps fly, and why not.
+    NoCommands(u64, Option<String>),
     /// No hop at all can take off or land at start, goal or both.
     EndpointsRefuse(Vec<EndpointRefusal>),
 }
@@ -134,7 +136,12 @@ impl HopFigure {
     pub fn point_at(&self, share: f64) -> ChainPoint {
         let distance_m = self.arc.line_of_sight().run_m() * share;
         let from = self.hop.takeoff.in_profile();
-        ChainPoint::new(from.x_m + self.hop.direction.sign() * distance_m, from.z_m + self.arc.height_at_m(distance_m))
+        let z_m = from.z_m + self.arc.height_at_m(distance_m);
+        if self.hop.is_beside_line() {
+            // Projected on the plane of the picture.
+            return ChainPoint::new(from.x_m + (self.hop.landing.along_m - from.x_m) * share, z_m);
+        }
+        ChainPoint::new(from.x_m + self.hop.direction.sign() * distance_m, z_m)
     }
 }
 
@@ -175,7 +182,7 @@ impl FigureData {
             Outcome::Path { .. } => match input.path {
                 Some(path) => path_subject(input, path),
                 None if input.test.hopper().limits().steps.is_continuous() => return Err(FigureError::NoHops),
-                None => Subject::NoCommands(input.answer.hops().unwrap_or(0)),
+                None => Subject::NoCommands(input.answer.hops().unwrap_or(0), input.title.refusal.clone()),
             },
             Outcome::EndpointsRefuse(refusals) => Subject::EndpointsRefuse(refusals.clone()),
             Outcome::NoPath(frontier) => Subject::Stopped(Box::new(stopped(frontier, &nodes))),
@@ -194,6 +201,7 @@ impl FigureData {
             start: input.start.point,
             goal: input.goal.point,
             subject,
+            prepares: input.test.hopper().limits().preparation_time_s.is_some(),
         })
     }
 
@@ -212,12 +220,9 @@ fn path_subject(input: &FigureInput<'_>, path: &HopPath) -> Subject {
 /// One hop with its flight and its two cones.
 fn hop_figure(input: &FigureInput<'_>, number: usize, hop: &Hop) -> HopFigure {
     let test = input.test;
-    let from = hop.takeoff.in_profile();
-    let to = hop.landing.in_profile();
     let stations = hop.takeoff.station.zip(hop.landing.station);
-    let sight = stations
-        .and_then(|(takeoff, landing)| test.line_of_sight(&takeoff, &landing))
-        .unwrap_or_else(|| crate::ballistics::LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m));
+    let sight =
+        stations.and_then(|(takeoff, landing)| test.line_of_sight(&takeoff, &landing)).unwrap_or_else(|| hop.line_of_sight());
     let windows = windows(test, hop, stations);
     let gravity_m_s2 = test.gravity_m_s2();
     let cone = |station: Option<Station>, contact| {

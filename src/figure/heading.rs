@@ -2,7 +2,7 @@
 
 use super::{
     FigureInput, angle_panel,
-    data::{FigureData, Subject},
+    data::{FigureData, HopFigure, Subject, Thinned},
     palette::{TEXT_MM, TITLE_MM},
     picture::paragraph,
     sheet::Sheet,
@@ -121,7 +121,7 @@ fn verdict(answer: &Answer, data: &FigureData) -> String {
         Subject::Stopped(_) => {
             format!("no path over {} nodes, at most {} inside a segment", answer.nodes, answer.points_per_segment)
         }
-        Subject::NoCommands(hops) => {
+        Subject::NoCommands(hops, _) => {
             let plural = if *hops == 1 { "" } else { "s" };
             format!("no commands in steps found for the path of {hops} hop{plural}")
         }
@@ -144,7 +144,8 @@ const fn end_name(contact: Contact) -> &'static str {
 fn remarks(data: &FigureData) -> Vec<String> {
     match &data.subject {
         Subject::Path { hops, totals } => {
-            let mut all = vec![total(totals)];
+            let mut all = vec![total(totals, data.prepares)];
+            all.extend(beside_line(hops));
             if !hops.shown.is_empty() {
                 all.extend(angle_panel::caption(hops));
             }
@@ -157,13 +158,26 @@ fn remarks(data: &FigureData) -> Vec<String> {
                 .map(|(from, to, why)| format!("Nearest miss, from x = {} m to x = {} m: {why}.", place(from.x_m), place(to.x_m)));
             miss.into_iter().chain(std::iter::once("Denser nodes may still hold a path.".to_owned())).collect()
         }
-        Subject::NoCommands(_) => vec!["Smaller steps, or another path, may have commands.".to_owned()],
+        Subject::NoCommands(_, refusal) => {
+            let refusal = refusal.as_ref().map(|refusal| format!("Refused: {refusal}."));
+            refusal.into_iter().chain(std::iter::once("Smaller steps, or another path, may have commands.".to_owned())).collect()
+        }
         Subject::EndpointsRefuse(refusals) => refusals.iter().map(endpoint).collect(),
     }
 }
 
-/// The totals of the hops.
-fn total(totals: &Totals) -> String {
+/// Where hops fly beside the line of the picture: how they are drawn.
+fn beside_line(hops: &Thinned<HopFigure>) -> Option<String> {
+    let across_m = hops.shown.iter().filter_map(|hop| hop.hop.aim?.across_m).map(f64::abs).reduce(f64::max)?;
+    Some(format!(
+        "The hops fly in the headings that the machine has, up to {} m beside the line, and are drawn projected on its plane: each takes off \
+         and lands on the ground under it, not on the ground drawn.",
+        short(across_m)
+    ))
+}
+
+/// The totals of the hops. `prepares`: whether the mission time has preparations in it.
+fn total(totals: &Totals, prepares: bool) -> String {
     let mut parts = vec![
         format!("distance {} m", short(totals.ground_distance_m)),
         format!("flight time {} s", short(totals.flight_time_s)),
@@ -171,7 +185,8 @@ fn total(totals: &Totals) -> String {
         format!("energy {} J/kg", short(totals.energy_j_kg)),
     ];
     parts.extend(totals.energy_j.map(|energy| format!("{} J in all", short(energy))));
-    parts.extend(totals.mission_time_s.map(|time| format!("{} s with rests", short(time))));
+    let waits = if prepares { "preparations and rests" } else { "rests" };
+    parts.extend(totals.mission_time_s.map(|time| format!("{} s with {waits}", short(time))));
     if totals.propulsive {
         parts.push(format!("delta-v {} m/s", short(totals.delta_v_m_s)));
     }

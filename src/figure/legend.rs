@@ -45,12 +45,17 @@ pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
             if !hops.shown.is_empty() {
                 found.push((Key::Contact(Contact::Takeoff), "take-off".to_owned()));
                 found.push((Key::Contact(Contact::Landing), "landing".to_owned()));
-                found.push((Key::Cone(Contact::Takeoff), "take-off cone".to_owned()));
+                // Of hops beside the line, neither cones nor clearance are drawn: they belong to other ground.
+                let on_line = hops.shown.iter().any(|hop| !hop.hop.is_beside_line());
+                if on_line {
+                    found.push((Key::Cone(Contact::Takeoff), "take-off cone".to_owned()));
+                }
                 match hops.shown.iter().find_map(|hop| hop.touchdown_m_s) {
-                    None => found.push((Key::Cone(Contact::Landing), "landing cone".to_owned())),
+                    None if on_line => found.push((Key::Cone(Contact::Landing), "landing cone".to_owned())),
+                    None => {}
                     Some(speed_m_s) => found.push((Key::Touchdown, touchdown::words(speed_m_s))),
                 }
-                if data.clearance.has_kinks() {
+                if data.clearance.has_kinks() && on_line {
                     found.push((Key::Clearance, "clearance".to_owned()));
                 }
             }
@@ -62,7 +67,7 @@ pub(super) fn entries(data: &FigureData) -> Vec<(Key, String)> {
                 found.push((Key::NearestMiss, "nearest miss".to_owned()));
             }
         }
-        Subject::NoCommands(_) => {}
+        Subject::NoCommands(..) => {}
         Subject::EndpointsRefuse(refusals) => {
             found.push((Key::Refusing, "refuses whatever the hop".to_owned()));
             if refusals.iter().any(|refusal| refusal.nearest.is_some()) {

@@ -54,8 +54,8 @@ pub use chains::{
 pub use data::{Cone, FigureData, HopFigure, MOST_HOPS_DRAWN, StoppedFigure, Subject, Thinned};
 pub use heading::conditions;
 pub use map::{
-    GoalMark, HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure, MapPosts,
-    ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
+    GoalMark, HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure,
+    MapPosts, RasterStyle, ValueMapFigure, draw_hop_map, draw_landing_map, draw_value_map,
 };
 pub use picture::{Caption, Picture, PictureFormat};
 pub use rose::draw_rose;
@@ -101,6 +101,8 @@ pub struct FigureTitle {
     pub body: String,
     /// The ground's grip, such as `friction coefficient 0.6`.
     pub ground: String,
+    /// Why no commands in the machine's steps fly the path, with its hop and limit; `None` if some do.
+    pub refusal: Option<String>,
 }
 
 /// The reasons why a figure cannot be drawn.
@@ -183,7 +185,7 @@ fn laid_out(input: &FigureInput<'_>, data: &FigureData) -> (Sheet, f64) {
     let end = match &data.subject {
         Subject::Path { hops, .. } if !hops.shown.is_empty() => angle_panel::draw(&mut sheet, hops, end),
         Subject::Stopped(stop) => stop_panel::draw(&mut sheet, stop, end),
-        Subject::Path { .. } | Subject::NoCommands(_) | Subject::EndpointsRefuse(_) => end,
+        Subject::Path { .. } | Subject::NoCommands(..) | Subject::EndpointsRefuse(_) => end,
     };
     let end = heading::below(&mut sheet, data, end + 1.0);
     (sheet, end + 2.5)

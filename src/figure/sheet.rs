@@ -3,6 +3,7 @@
 //! plotters rounds every coordinate of an SVG to a whole unit, so the sheet counts in hundredths of a millimetre and the root
 //! element gets its size in millimetres afterwards: curves then move in steps of 0.01 mm.
 
+use base64::{Engine as _, engine::general_purpose::STANDARD};
 use plotters::{
     drawing::DrawingAreaErrorKind,
     prelude::{
@@ -14,10 +15,7 @@ use plotters::{
     },
 };
 
-use super::{
-    FigureError,
-    bitmap::{Pixels, base64},
-};
+use super::{FigureError, bitmap::Pixels};
 
 /// A position on the sheet, mm from the left and from the top.
 pub(super) type Place = (f64, f64);
@@ -251,7 +249,7 @@ impl Sheet {
                 out.extend([" ", name, "=\"", &units(mm).to_string(), "\""]);
             }
             out.push_str(" preserveAspectRatio=\"none\" image-rendering=\"optimizeSpeed\" style=\"image-rendering:pixelated\"");
-            out.extend([" xlink:href=\"data:image/png;base64,", &base64(&image.pixels.to_png(None)?), "\"/>"]);
+            out.extend([" xlink:href=\"data:image/png;base64,", &STANDARD.encode(image.pixels.to_png(None)?), "\"/>"]);
         }
         out.push_str(&svg[page_end..]);
         Ok(out)

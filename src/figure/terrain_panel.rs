@@ -52,7 +52,7 @@ impl<'a> TerrainPanel<'a> {
         match &self.data.subject {
             Subject::Path { hops, .. } => self.hops(sheet, &hops.shown),
             Subject::Stopped(stop) => self.stop(sheet, stop),
-            Subject::NoCommands(_) => {}
+            Subject::NoCommands(..) => {}
             Subject::EndpointsRefuse(refusals) => {
                 for refusal in refusals {
                     symbols::cross(sheet, self.frame.place(refusal.station.point));
@@ -104,7 +104,7 @@ impl<'a> TerrainPanel<'a> {
         lengths.sort_by(f64::total_cmp);
         let length_mm = (0.3 * lengths.get(lengths.len() / 2).copied().unwrap_or(0.0)).clamp(1.6, 7.5);
         if self.data.clearance.has_kinks() {
-            for hop in hops {
+            for hop in hops.iter().filter(|hop| !hop.hop.is_beside_line()) {
                 self.clearance(sheet, hop);
             }
         }
@@ -269,7 +269,7 @@ fn heights(data: &FigureData, chain: &ConstrainedChain) -> (f64, f64) {
     let ground = stretch(chain, data.view_x_m.0, data.view_x_m.1).into_iter().map(|point| point.z_m);
     let flights = match &data.subject {
         Subject::Path { hops, .. } => hops.shown.as_slice(),
-        Subject::Stopped(_) | Subject::NoCommands(_) | Subject::EndpointsRefuse(_) => &[],
+        Subject::Stopped(_) | Subject::NoCommands(..) | Subject::EndpointsRefuse(_) => &[],
     };
     ground
         .chain(flights.iter().map(|hop| hop.hop.apex_z_m))

@@ -44,7 +44,8 @@ impl Case {
             Outcome::Path { legs, .. } => Some(generate(&test, legs, self.options.takeoff, Split::FullReach).unwrap()),
             Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
         };
-        let title = FigureTitle { name: self.name.to_owned(), body: "Mars".to_owned(), ground: self.ground.to_owned() };
+        let (name, body, ground) = (self.name.to_owned(), "Mars".to_owned(), self.ground.to_owned());
+        let title = FigureTitle { name, body, ground, ..FigureTitle::default() };
         look(&FigureInput { test: &test, answer: &answer, path: path.as_ref(), start, goal, title })
     }
 }

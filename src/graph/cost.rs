@@ -33,11 +33,11 @@ impl Effort {
     }
 
     /// The unit of the effort.
-    pub const fn unit(self) -> &'static str {
+    pub const fn unit(self) -> EffortUnit {
         match self {
-            Self::TakeoffSpeed | Self::PeakSpeed => "m/s",
-            Self::Energy => "J/kg",
-            Self::Time => "s",
+            Self::TakeoffSpeed | Self::PeakSpeed => EffortUnit::MetresPerSecond,
+            Self::Energy => EffortUnit::JoulesPerKilogram,
+            Self::Time => EffortUnit::Seconds,
         }
     }
 
@@ -73,6 +73,35 @@ impl Effort {
         }
     }
 }
+
+crate::quantity::by_name!(Effort, Effort::ALL);
+
+/// The unit of an effort.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EffortUnit {
+    /// m/s.
+    MetresPerSecond,
+    /// J/kg.
+    JoulesPerKilogram,
+    /// s.
+    Seconds,
+}
+
+impl EffortUnit {
+    /// All units.
+    pub const ALL: [Self; 3] = [Self::MetresPerSecond, Self::JoulesPerKilogram, Self::Seconds];
+
+    /// The symbol.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::MetresPerSecond => "m/s",
+            Self::JoulesPerKilogram => "J/kg",
+            Self::Seconds => "s",
+        }
+    }
+}
+
+crate::quantity::by_name!(EffortUnit, EffortUnit::ALL);
 
 /// Number of hops, then effort: totally ordered, never negative, never NaN.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]

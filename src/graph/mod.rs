@@ -27,7 +27,7 @@ mod reliability_policy;
 mod search;
 mod usable;
 
-pub use cost::{Cost, Effort};
+pub use cost::{Cost, Effort, EffortUnit};
 pub use cost_to_go::CostToGo;
 pub use edges::{Edge, EdgeReference, HopGraph};
 pub use frontier::{Frontier, NearestMiss};

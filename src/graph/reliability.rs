@@ -42,6 +42,8 @@ impl ReliabilityUse {
     }
 }
 
+crate::quantity::by_name!(ReliabilityUse, ReliabilityUse::ALL);
+
 /// How reliability is estimated and weighed in the choice of a path.
 #[derive(Clone, Debug)]
 pub struct ReliabilityOptions {

@@ -25,7 +25,7 @@ pub use dem::{DemGround, MapPosition, SliceProblem};
 pub use first_contact::{ContactFailure, FirstContact, Flight, LiftoffVelocity, Realization, TouchdownState};
 pub use height_field::HeightField;
 pub(crate) use posts::Offset;
-pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostRefusal};
+pub use posts::{Lofts, MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
 #[cfg(test)]
 pub(crate) use posts::{OffsetTable, Spacing};
 pub use surface::{Around, ContactPoint, Element, ElementVertex, Facet, Frame, Hold, Side, Surface, TakeoffWindows, Windows};

@@ -122,6 +122,14 @@ impl HopMargins {
         Some(Self { values: MARGINS.map(|row| (row.of)(&flown)), terrain_from_takeoff_m })
     }
 
+    /// The margins with these values; a margin without a value belongs to a limit that the hop does not have.
+    pub fn from_rows(mut value: impl FnMut(&MarginRow) -> Option<f64>, terrain_from_takeoff_m: Option<f64>) -> Self {
+        Self {
+            values: std::array::from_fn(|i| value(&MARGINS[i]).unwrap_or(f64::INFINITY)),
+            terrain_from_takeoff_m: terrain_from_takeoff_m.unwrap_or(f64::INFINITY),
+        }
+    }
+
     /// The margins with their rows; `None` where there is no such limit.
     pub fn rows(&self) -> impl Iterator<Item = (&'static MarginRow, Option<f64>)> + '_ {
         MARGINS.iter().zip(self.values.iter().map(|&value| Some(value).filter(|value| value.is_finite())))

@@ -33,6 +33,8 @@ impl Split {
     }
 }
 
+crate::quantity::by_name!(Split, Split::ALL);
+
 /// The reach of one hop along a segment in one direction, and the arc that attains it.
 ///
 /// On one segment the slope `b` is the same for every hop, so the cones allow each of them the same lofts (P eq. 23-25), and

@@ -5,7 +5,7 @@ use crate::{
     ballistics::{Arc, TakeoffChoice, delta_v_m_s, propellant_kg},
     chain::Station,
     graph::{Edge, Leg},
-    ground::Surface,
+    ground::{DemGround, Surface},
     hop::{HopMargins, HopTest, SegmentHops, Split},
     quantity::{Angle, AngleInterval, SlopeInterval},
     world::{Contact, Direction, Hopper, Limit},
@@ -43,6 +43,30 @@ pub enum PathError {
 /// # Errors
 /// [`PathError`].
 pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Split) -> Result<HopPath, PathError> {
+    generate_over(test, None, legs, choice, split)
+}
+
+/// The same where the chain was cut from a DEM: a machine without a heading along the chain flies its nearest headings over the DEM,
+/// beside the line.
+///
+/// ```text
+///              o-----------------o----------------o     planned, along the chain
+///               `.
+///   takeoff      `x---------------x . . .               flown: each hop from where the one before landed
+/// ```
+///
+/// Take-offs and landings of such hops have no station and lie on the map; their distance along the journey is that of their projection
+/// on the line. Of a machine that has all headings of the path, and of one without steps, the hops are those of [`generate`].
+///
+/// # Errors
+/// [`PathError`].
+pub fn generate_over(
+    test: &HopTest,
+    dem: Option<&DemGround>,
+    legs: &[Leg],
+    choice: TakeoffChoice,
+    split: Split,
+) -> Result<HopPath, PathError> {
     let count = |leg: &Leg| match leg.edge {
         Edge::Hop(_) => 1,
         Edge::Along(along) => along.hops(),
@@ -51,10 +75,10 @@ pub fn generate(test: &HopTest, legs: &[Leg], choice: TakeoffChoice, split: Spli
     if total > TooManyHops::MOST {
         return Err(TooManyHops { hops: total }.into());
     }
-    let hops = match in_steps(test, exact(test, legs, choice, split), choice) {
+    let hops = match in_steps(test, dem, exact(test, legs, choice, split), choice) {
         // Hops of full reach leave no room for steps.
         Err(NoCommand::Refused { .. }) if split == Split::FullReach => {
-            in_steps(test, exact(test, legs, choice, Split::Equal), choice)?
+            in_steps(test, dem, exact(test, legs, choice, Split::Equal), choice)?
         }
         other => other?,
     };

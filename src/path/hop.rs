@@ -61,6 +61,15 @@ pub struct Aim {
     pub point: ContactPoint,
     /// By how much the landing lies beyond it along the profile, m; negative short of it.
     pub miss_m: f64,
+    /// By how much the landing lies to the left of it, as seen along the planned hop, m; `None` for a hop that stays on its chain.
+    pub across_m: Option<f64>,
+}
+
+impl Aim {
+    /// Horizontal distance from the aim to the landing, m.
+    pub fn distance_m(&self) -> f64 {
+        self.across_m.map_or(self.miss_m.abs(), |across_m| libm::hypot(self.miss_m, across_m))
+    }
 }
 
 impl Hop {
@@ -69,9 +78,22 @@ impl Hop {
         self.takeoff.map().zip(self.landing.map())
     }
 
-    /// Horizontal distance from take-off to landing along the profile, m.
+    /// Whether it flies beside the line of its path, on which its distances along the journey are projections.
+    pub fn is_beside_line(&self) -> bool {
+        self.aim.is_some_and(|aim| aim.across_m.is_some())
+    }
+
+    /// Horizontal distance from take-off to landing, m.
     pub fn run_m(&self) -> f64 {
+        if self.is_beside_line() {
+            return (self.landing.point_m - self.takeoff.point_m).xy().norm();
+        }
         (self.landing.along_m - self.takeoff.along_m).abs()
+    }
+
+    /// Its line of sight.
+    pub fn line_of_sight(&self) -> LineOfSight {
+        LineOfSight::new(self.run_m(), self.landing.point_m.z - self.takeoff.point_m.z)
     }
 
     /// Horizontal speed, constant over the flight, m/s: `v cos(theta) = v / sqrt(1 + m^2)`.
@@ -83,7 +105,7 @@ impl Hop {
     /// point)`.
     pub fn flight_points(&self, gravity_m_s2: f64, count: u32) -> Vec<(f64, ChainPoint)> {
         let (from, to) = (self.takeoff.in_profile(), self.landing.in_profile());
-        let sight = LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m);
+        let sight = self.line_of_sight();
         let arc = Arc::new(sight, self.takeoff_angle.slope() - sight.slope(), gravity_m_s2);
         let last = count.max(2) - 1;
         (0..=last)

@@ -3,11 +3,7 @@
 use nalgebra::Vector2;
 
 use super::{Hop, HopPath};
-use crate::{
-    ballistics::{Arc, LineOfSight},
-    quantity::MapPoint,
-    world::HopperLimits,
-};
+use crate::{ballistics::Arc, quantity::MapPoint, world::HopperLimits};
 
 /// What the hopper does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,13 +57,13 @@ pub struct TimedState {
     pub hop: usize,
     /// What the hopper does.
     pub phase: Phase,
-    /// Position along the path, m.
+    /// Position along the path, m: of a hop beside its line, the projection.
     pub x_m: f64,
     /// Height, m.
     pub z_m: f64,
     /// Position on the map, if the ground is on one.
     pub map: Option<MapPoint>,
-    /// Velocity along x, m/s; negative in reverse.
+    /// Velocity along x, m/s; negative in reverse. Of a hop beside its line, the projection.
     pub vx_m_s: f64,
     /// Velocity upwards, m/s.
     pub vz_m_s: f64,
@@ -221,9 +217,16 @@ struct Span<'a> {
 impl Span<'_> {
     /// The arc of its hop.
     fn arc(&self, gravity_m_s2: f64) -> Arc {
-        let (from, to) = (self.hop.takeoff.in_profile(), self.hop.landing.in_profile());
-        let sight = LineOfSight::new((to.x_m - from.x_m).abs(), to.z_m - from.z_m);
+        let sight = self.hop.line_of_sight();
         Arc::new(sight, self.hop.takeoff_angle.slope() - sight.slope(), gravity_m_s2)
+    }
+
+    /// How much of the horizontal speed is along the path: all of it, but for a hop beside its line.
+    fn projected(&self) -> f64 {
+        if self.hop.is_beside_line() {
+            return (self.hop.landing.along_m - self.hop.takeoff.along_m).abs() / self.hop.run_m();
+        }
+        1.0
     }
 
     /// The state at a time of the phase.
@@ -249,7 +252,7 @@ impl Span<'_> {
             x_m: on_ground(from.x_m + (to.x_m - from.x_m) * share, to.x_m),
             z_m: on_ground(from.z_m + arc.height_at_m(run_m * share), to.z_m),
             map: map.map(|(takeoff, landing)| if share == 1.0 { landing } else { takeoff + (landing - takeoff) * share }),
-            vx_m_s: if flies { sign * across_m_s } else { 0.0 },
+            vx_m_s: if flies { sign * across_m_s * self.projected() } else { 0.0 },
             // The slope falls from m to 2 b - m in equal steps over the run.
             vz_m_s: if flies { across_m_s * (arc.takeoff_slope() - 2.0 * arc.loft() * share) } else { 0.0 },
             map_velocity_m_s: map.map(|(takeoff, landing)| (landing - takeoff).try_normalize(0.0).unwrap_or_default() * across_m_s),

@@ -41,7 +41,17 @@ pub fn format_number(number: f64) -> String {
 /// ```
 pub fn unit_of(name: &str) -> &'static str {
     // `_m_s` ends in `_s` too: longer endings first.
-    let units = [("_m_s2", "m/s^2"), ("_m_s", "m/s"), ("_deg", "deg"), ("_kg", "kg"), ("_m", "m"), ("_s", "s")];
+    let units = [
+        ("_m_s2", "m/s^2"),
+        ("_m_s", "m/s"),
+        ("_m2", "m^2"),
+        ("_deg", "deg"),
+        ("_j_kg", "J/kg"),
+        ("_kg", "kg"),
+        ("_j", "J"),
+        ("_m", "m"),
+        ("_s", "s"),
+    ];
     units.into_iter().find(|(ending, _)| name.ends_with(ending)).map_or("", |(_, unit)| unit)
 }
 

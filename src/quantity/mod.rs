@@ -8,6 +8,7 @@ mod angle;
 mod format;
 mod ids;
 mod interval;
+mod names;
 mod normal;
 mod number_text;
 mod points;
@@ -22,6 +23,7 @@ pub use ids::{NodeId, SegmentId, VertexId};
 #[cfg(test)]
 pub(crate) use interval::Inwards;
 pub use interval::{Interval, Outwards, Rounding};
+pub(crate) use names::{by_name, variant_by_name};
 pub use normal::{normal_cdf, normal_quantile, standard_normals};
 pub(crate) use number_text::{decimal_comma, number_help};
 pub use points::{ChainPoint, MapPoint};

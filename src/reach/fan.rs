@@ -4,12 +4,13 @@ use nalgebra::Vector2;
 use rayon::prelude::*;
 
 use crate::{
-    graph::{NodesError, PointSpacing, SearchError, reachable_nodes},
+    chain::ConstrainedChain,
+    graph::{NodeSet, NodesError, PointSpacing, SearchError, reachable_nodes},
     ground::{DemGround, SliceProblem},
     hop::HopTest,
     progress::{Cancelled, Detail, Meter, Progress, Stage},
     quantity::MapPoint,
-    terrain::{Profile, TerrainError, slice},
+    terrain::{Profile, Samples, TerrainError, slice},
     world::Limit,
 };
 
@@ -38,6 +39,9 @@ pub enum SliceEnd {
 }
 
 impl SliceEnd {
+    /// All reasons.
+    pub const ALL: [Self; 2] = [Self::Border, Self::NoData];
+
     /// The name in results.
     pub const fn name(self) -> &'static str {
         match self {
@@ -46,6 +50,8 @@ impl SliceEnd {
         }
     }
 }
+
+crate::quantity::by_name!(SliceEnd, SliceEnd::ALL);
 
 /// A part of a slice whose nodes all need the same number of hops.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -127,6 +133,72 @@ pub enum FanError {
 /// # Errors
 /// [`FanError`]; of several, the one of the least heading.
 pub fn fan(request: &FanRequest<'_>, progress: &dyn Progress) -> Result<Vec<FanRay>, FanError> {
+    let rays: Vec<FanRay> = each(request, progress, ray)?;
+    // No direction has ground, so the start has none.
+    if rays.iter().all(|ray| ray.length_m == 0.0 && ray.end == Some(SliceEnd::NoData)) {
+        return Err(TerrainError::NoData { at: request.from, distance_m: 0.0 }.into());
+    }
+    Ok(rays)
+}
+
+/// What the slices of a fan need: upper bounds, known before any hop is tested.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FanSize {
+    /// The nodes of all slices.
+    pub nodes: u64,
+    /// The pairs of nodes on the same slice, in both directions.
+    pub pairs_max: u64,
+    /// The bytes of the elevations.
+    pub elevations_bytes: u64,
+    /// The bytes of the largest slice with its search, for each thread, and of all answers.
+    pub slices_bytes: u64,
+}
+
+/// The size of a fan: cuts every slice and counts its nodes.
+///
+/// # Errors
+/// As [`fan`].
+pub fn fan_size(request: &FanRequest<'_>, progress: &dyn Progress) -> Result<FanSize, FanError> {
+    let mut size = FanSize { nodes: 0, pairs_max: 0, elevations_bytes: 0, slices_bytes: 0 };
+    let (mut largest, mut answers) = (0, 0);
+    let counts = each(request, progress, |request, number, _| {
+        let (chain, _) = slice_chain(request, number)?;
+        let Some(chain) = chain else { return Ok((0, 0)) };
+        let heading_deg = 360.0 * f64::from(number) / f64::from(request.headings);
+        let start = chain.geometry().vertex_station(crate::quantity::VertexId(0));
+        let set =
+            NodeSet::new(&chain, start, start, request.spacing).map_err(|problem| FanError::Nodes { heading_deg, problem })?;
+        Ok((set.stations().len() as u64, chain.geometry().segment_count() as u64))
+    })?;
+    for (nodes, segments) in counts {
+        size.nodes += nodes;
+        size.pairs_max = size.pairs_max.saturating_add(nodes.saturating_mul(nodes.saturating_sub(1)));
+        largest = largest.max(nodes * NODE_BYTES + segments * SEGMENT_BYTES);
+        answers += nodes * size_of::<HopBand>() as u64 * 2 + size_of::<FanRay>() as u64 * 3;
+    }
+    let dem = request.ground.terrain().dem();
+    let of_post = match dem.samples() {
+        Samples::Single(_) => size_of::<f32>(),
+        Samples::Double(_) => size_of::<f64>(),
+    };
+    size.elevations_bytes = (dem.rows() * dem.cols() * of_post) as u64;
+    size.slices_bytes = largest.saturating_mul(rayon::current_num_threads() as u64).saturating_add(answers);
+    Ok(size)
+}
+
+/// Bytes of a node on a slice, at most: its station twice, its landings in both directions under a tapered clearance, its labels and its
+/// place in the queues of the search.
+const NODE_BYTES: u64 = 768;
+
+/// Bytes of a segment of a slice, at most: its profile, its chain and its limits in both directions.
+const SEGMENT_BYTES: u64 = 1536;
+
+/// Something for each heading, in parallel.
+fn each<T: Send>(
+    request: &FanRequest<'_>,
+    progress: &dyn Progress,
+    of: impl Fn(&FanRequest<'_>, u32, &Meter<'_>) -> Result<T, FanError> + Sync,
+) -> Result<Vec<T>, FanError> {
     let FanRequest { headings, length_m, .. } = *request;
     let refused = |what, found: String, expected| Err(FanError::Request { what, found, expected });
     if headings == 0 || headings > 36_000 {
@@ -145,20 +217,15 @@ pub fn fan(request: &FanRequest<'_>, progress: &dyn Progress) -> Result<Vec<FanR
     }
     let meter = Meter::with_total(progress, Stage::Fan, u64::from(headings));
     meter.report(Detail::None)?;
-    let one = |number| -> Result<FanRay, FanError> {
+    let one = |number| -> Result<T, FanError> {
         meter.check()?;
-        let found = ray(request, number, &meter)?;
+        let found = of(request, number, &meter)?;
         meter.complete_one()?;
         Ok(found)
     };
-    let rays: Vec<Result<FanRay, FanError>> = (0..headings).into_par_iter().map(one).collect();
+    let found: Vec<Result<T, FanError>> = (0..headings).into_par_iter().map(one).collect();
     meter.check()?;
-    let rays: Vec<FanRay> = rays.into_iter().collect::<Result<_, _>>()?;
-    // No direction has ground, so the start has none.
-    if rays.iter().all(|ray| ray.length_m == 0.0 && ray.end == Some(SliceEnd::NoData)) {
-        return Err(TerrainError::NoData { at: request.from, distance_m: 0.0 }.into());
-    }
-    Ok(rays)
+    found.into_iter().collect()
 }
 
 /// The direction on the map (east, north) of a heading `360 number / of` degrees, exact along the axes.
@@ -175,8 +242,8 @@ pub fn heading_vector(number: u32, of: u32) -> Vector2<f64> {
 /// One direction.
 fn ray(request: &FanRequest<'_>, number: u32, meter: &Meter<'_>) -> Result<FanRay, FanError> {
     let heading_deg = 360.0 * f64::from(number) / f64::from(request.headings);
-    let (profile, end) = slice_ray(request, heading_vector(number, request.headings))?;
-    let Some(profile) = profile else {
+    let (chain, end) = slice_chain(request, number)?;
+    let Some(chain) = chain else {
         let bands = Vec::new();
         return Ok(FanRay {
             heading_deg,
@@ -189,7 +256,6 @@ fn ray(request: &FanRequest<'_>, number: u32, meter: &Meter<'_>) -> Result<FanRa
             bands,
         });
     };
-    let chain = request.ground.chain_of(profile).map_err(|reason| FanError::Ground { heading_deg, reason: Box::new(reason) })?;
     let test = HopTest::new(chain);
     let start = test.chain().geometry().vertex_station(crate::quantity::VertexId(0));
     let found = reachable_nodes(&test, start, request.spacing, meter).map_err(|error| match error {
@@ -213,6 +279,15 @@ fn ray(request: &FanRequest<'_>, number: u32, meter: &Meter<'_>) -> Result<FanRa
         refusing: found.refusing_ahead,
         bands: bands(&nodes),
     })
+}
+
+/// The slice of a heading as a chain, `None` without ground, and why it is short.
+fn slice_chain(request: &FanRequest<'_>, number: u32) -> Result<(Option<ConstrainedChain>, Option<SliceEnd>), FanError> {
+    let heading_deg = 360.0 * f64::from(number) / f64::from(request.headings);
+    let (profile, end) = slice_ray(request, heading_vector(number, request.headings))?;
+    let chain = profile.map(|profile| request.ground.chain_of(profile)).transpose();
+    let chain = chain.map_err(|reason| FanError::Ground { heading_deg, reason: Box::new(reason) })?;
+    Ok((chain, end))
 }
 
 /// Combines neighbouring nodes with the same number of hops into bands.

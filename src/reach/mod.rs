@@ -3,4 +3,4 @@
 mod fan;
 pub mod map;
 
-pub use fan::{FanError, FanRay, FanRequest, HopBand, SliceEnd, fan, heading_vector};
+pub use fan::{FanError, FanRay, FanRequest, FanSize, HopBand, SliceEnd, fan, fan_size, heading_vector};

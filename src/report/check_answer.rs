@@ -1,32 +1,30 @@
 //! The answer whether a path exists, as plain data.
 
-use std::collections::BTreeMap;
-
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{
-    hop_answer::{BindingRecord, end_name},
-    proof_record::ProofRecord,
-    propellant_record::PropellantShortage,
+    hop_answer::BindingRecord, limit_counts::LimitCounts, proof_record::ProofRecord, propellant_record::PropellantShortage,
 };
 use crate::{
     graph::{
-        Answer, Effort, EndpointRefusal, Frontier, Outcome, PointSpacing, RefusalCounts,
+        Answer, Effort, EffortUnit, EndpointRefusal, Frontier, Outcome, PointSpacing,
         proof::{Bounds, ProofVerdict},
     },
     hop::HopTest,
-    path::{HopPath, NoCommand},
+    path::{Hop, HopPath, NoCommand},
+    world::{Contact, Limit},
 };
 
 /// The answer of `chta check` for one pair.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CheckAnswer {
     /// Start, m.
     pub start_x_m: f64,
     /// Goal, m.
     pub goal_x_m: f64,
     /// `traversable`, `no-path-found`, or `untraversable` if that is proved.
-    pub verdict: &'static str,
+    pub verdict: ProofVerdict,
     /// The fewest hops over these nodes.
     pub hops: Option<u64>,
     /// The effort of that path, in the unit of the chosen effort.
@@ -43,7 +41,7 @@ pub struct CheckAnswer {
     /// The number of pairs tested, over all spacings tried.
     pub pairs_tested: u64,
     /// The number of pairs refused by each limit.
-    pub refusals: BTreeMap<&'static str, u64>,
+    pub refusals: LimitCounts,
     /// Start or goal, if no hop can take off or land there, with the reason.
     pub endpoint_refusals: Vec<EndpointRecord>,
     /// Without a path: how far one gets over these nodes, and which limits refuse to go on.
@@ -57,30 +55,27 @@ pub struct CheckAnswer {
     /// With commands in steps: the greatest distance of a landing from its aim.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub landing_miss_max_m: Option<f64>,
+    /// Whether hops of the path fly beside the line, in the headings that the machine has; a proof is about hops on the line. Absent if not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub beside_line: bool,
     /// The bounds; absent if no proof was requested.
     #[serde(flatten)]
     pub proof: Option<ProofRecord>,
 }
 
 /// An amount of effort.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EffortRecord {
     /// The kind of effort.
-    #[serde(skip)]
-    pub of: Effort,
-    /// Its name.
-    pub name: &'static str,
-    /// The amount.
+    pub name: Effort,
+    /// The amount, in `unit`.
     pub value: f64,
     /// Its unit.
-    pub unit: &'static str,
-    /// A description for the reader.
-    #[serde(skip)]
-    pub total: &'static str,
+    pub unit: EffortUnit,
 }
 
 /// The answers for many pairs.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PairsAnswer {
     /// One answer for each pair, in the order of the file.
     pub pairs: Vec<CheckAnswer>,
@@ -89,19 +84,53 @@ pub struct PairsAnswer {
 impl EffortRecord {
     /// An amount of the given effort.
     pub const fn new(effort: Effort, value: f64) -> Self {
-        Self { of: effort, name: effort.name(), value, unit: effort.unit(), total: effort.total() }
+        Self { name: effort, value, unit: effort.unit() }
+    }
+}
+
+/// An end of a journey.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum JourneyEnd {
+    /// The start.
+    Start,
+    /// The goal.
+    Goal,
+}
+
+impl JourneyEnd {
+    /// Both ends.
+    pub const ALL: [Self; 2] = [Self::Start, Self::Goal];
+
+    /// The name in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Goal => "goal",
+        }
+    }
+}
+
+crate::quantity::by_name!(JourneyEnd, JourneyEnd::ALL);
+
+impl From<Contact> for JourneyEnd {
+    /// Hops take off from the start and land at the goal.
+    fn from(contact: Contact) -> Self {
+        match contact {
+            Contact::Takeoff => Self::Start,
+            Contact::Landing => Self::Goal,
+        }
     }
 }
 
 /// A start or goal at which no hop at all can take off or land.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EndpointRecord {
     /// `start` or `goal`.
-    pub endpoint: &'static str,
+    pub endpoint: JourneyEnd,
     /// Where, m.
     pub x_m: f64,
     /// The limit that refuses.
-    pub limit: &'static str,
+    pub limit: Limit,
     /// By how many degrees, if it is a limit on an angle.
     pub excess_deg: Option<f64>,
     /// The reason as a sentence.
@@ -111,7 +140,7 @@ pub struct EndpointRecord {
 }
 
 /// How far one gets from either end.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FrontierRecord {
     /// The reached node nearest to the goal, m.
     pub reached_x_m: f64,
@@ -122,13 +151,13 @@ pub struct FrontierRecord {
     /// The number of nodes from which the goal can be reached, itself included.
     pub leads_to_goal_nodes: usize,
     /// The refusals of hops out of the reached nodes, by limit.
-    pub refusals: BTreeMap<&'static str, u64>,
+    pub refusals: LimitCounts,
     /// Of the hops refused by two conflicting limits, the one with the smallest gap in degrees.
     pub nearest_miss: Option<MissRecord>,
 }
 
 /// A refused hop.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MissRecord {
     /// The take-off, m.
     pub from_x_m: f64,
@@ -153,7 +182,7 @@ impl CheckAnswer {
         Self {
             start_x_m,
             goal_x_m,
-            verdict: verdict_name(answer),
+            verdict: verdict_of(answer),
             hops: answer.hops(),
             effort,
             points_per_segment: answer.points_per_segment,
@@ -164,12 +193,13 @@ impl CheckAnswer {
             vertices: test.chain().geometry().vertices().len(),
             nodes: answer.nodes,
             pairs_tested: answer.pairs_tested,
-            refusals: counts(&answer.refusals),
+            refusals: (&answer.refusals).into(),
             endpoint_refusals,
             frontier,
             propellant_shortage: None,
             commands_refusal: None,
             landing_miss_max_m: None,
+            beside_line: false,
             proof: None,
         }
     }
@@ -189,10 +219,11 @@ impl CheckAnswer {
     pub fn with_path(mut self, path: Option<&HopPath>) -> Self {
         self.propellant_shortage = path.and_then(|path| PropellantShortage::of(&path.totals));
         let aims = path.into_iter().flat_map(|path| &path.hops).filter_map(|hop| hop.aim);
-        self.landing_miss_max_m = aims.map(|aim| aim.miss_m.abs()).reduce(f64::max);
+        self.landing_miss_max_m = aims.map(|aim| aim.distance_m()).reduce(f64::max);
+        self.beside_line = path.is_some_and(|path| path.hops.iter().any(Hop::is_beside_line));
         if let (Some(path), Some(_), Some(effort)) = (path, self.landing_miss_max_m, &mut self.effort) {
             // Not that of the exact commands.
-            effort.value = path.effort(effort.of);
+            effort.value = path.effort(effort.name);
         }
         if self.propellant_shortage.is_some() { self.open() } else { self }
     }
@@ -208,7 +239,7 @@ impl CheckAnswer {
 
     /// The answer no, which nothing proves.
     fn open(mut self) -> Self {
-        self.verdict = ProofVerdict::Open.name();
+        self.verdict = ProofVerdict::Open;
         if let Some(proof) = &mut self.proof {
             (proof.upper_bound, proof.proved) = (None, false);
         }
@@ -222,21 +253,16 @@ impl CheckAnswer {
 }
 
 /// The verdict of a search alone. A search cannot prove that there is no path, so the verdict is never "untraversable".
-pub fn verdict_name(answer: &Answer) -> &'static str {
-    if answer.hops().is_some() { "traversable" } else { "no-path-found" }
-}
-
-/// Refusals by name.
-pub(super) fn counts(refusals: &RefusalCounts) -> BTreeMap<&'static str, u64> {
-    refusals.ranked().into_iter().map(|(limit, count)| (limit.name(), count)).collect()
+pub fn verdict_of(answer: &Answer) -> ProofVerdict {
+    if answer.hops().is_some() { ProofVerdict::Traversable } else { ProofVerdict::Open }
 }
 
 impl EndpointRecord {
     fn new(refusal: &EndpointRefusal) -> Self {
         Self {
-            endpoint: end_name(refusal.contact),
+            endpoint: refusal.contact.into(),
             x_m: refusal.station.point.x_m,
-            limit: refusal.refusal.limit(refusal.contact).name(),
+            limit: refusal.refusal.limit(refusal.contact),
             excess_deg: refusal.refusal.excess_deg(),
             reason: refusal.refusal.to_string(),
             nearest_usable_x_m: refusal.nearest.map(|station| station.point.x_m),
@@ -251,7 +277,7 @@ impl FrontierRecord {
             reached_nodes: frontier.reached.len(),
             leads_to_goal_from_x_m: frontier.nearest_to_start.point.x_m,
             leads_to_goal_nodes: frontier.leads_to_goal.len(),
-            refusals: counts(&frontier.refusals),
+            refusals: (&frontier.refusals).into(),
             nearest_miss: frontier.nearest_miss.map(|miss| MissRecord {
                 from_x_m: miss.takeoff.point.x_m,
                 to_x_m: miss.landing.point.x_m,

@@ -5,20 +5,21 @@ use std::{
     io::{self, Write},
 };
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::TotalsRecord;
-use crate::path::HopPath;
+use super::{TotalsRecord, stated::stated};
+use crate::{graph::proof::ProofVerdict, path::HopPath};
 
 /// The answer of `chta compare`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CompareAnswer {
     /// One row for each scenario, in the order given.
     pub compared: Vec<CompareRow>,
 }
 
 /// One scenario.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct CompareRow {
     /// The file.
     pub file: String,
@@ -29,11 +30,11 @@ pub struct CompareRow {
     /// Goal, m.
     pub goal_x_m: f64,
     /// `traversable`, `no-path-found`, or `untraversable` if that is proved.
-    pub verdict: &'static str,
+    pub verdict: ProofVerdict,
     /// The fewest hops found.
     pub hops: Option<u64>,
     /// With a proof: no path has fewer hops; null if there is no path at all.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "stated", skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<Option<u64>>,
     /// The totals of the hops.
     pub totals: Option<TotalsRecord>,
@@ -42,7 +43,7 @@ pub struct CompareRow {
 }
 
 /// The least margins of a path's hops to their limits.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MarginsRecord {
     /// The least margin to a speed limit, at take-off or landing.
     pub speed_margin_least_m_s: f64,
@@ -128,7 +129,7 @@ impl CompareAnswer {
         }
         text.push('\n');
         let mut lines: Vec<Vec<String>> =
-            vec![numbers, self.line("verdict", |row| row.verdict.to_owned()), self.line("hops", CompareRow::format_hops)];
+            vec![numbers, self.line("verdict", |row| row.verdict.to_string()), self.line("hops", CompareRow::format_hops)];
         for (i, column) in COLUMNS.into_iter().enumerate() {
             // The delta-v of machines without propulsion is the sum of their take-off speeds: no line of its own.
             let is_stated = |row: &CompareRow| {
@@ -169,7 +170,7 @@ impl CompareAnswer {
         let count = |hops: Option<u64>| hops.map(|hops| hops.to_string()).unwrap_or_default();
         for row in &self.compared {
             let mut fields = vec![row.file.clone(), row.name.clone(), row.start_x_m.to_string(), row.goal_x_m.to_string()];
-            fields.extend([row.verdict.to_owned(), count(row.hops)]);
+            fields.extend([row.verdict.to_string(), count(row.hops)]);
             fields.extend(row.lower_bound.map(count));
             fields.extend(row.numbers().map(|number| number.map(|n| n.to_string()).unwrap_or_default()));
             writer.write_record(fields)?;

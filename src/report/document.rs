@@ -1,20 +1,101 @@
 //! The envelope of every JSON result.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize, de::DeserializeOwned};
+use serde_json::Value;
 
 use crate::terrain::MapProjection;
+
+/// The kinds of documents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DocumentKind {
+    /// One hop: [`HopAnswer`](super::HopAnswer).
+    Hop,
+    /// Whether a path exists: [`CheckAnswer`](super::CheckAnswer).
+    Check,
+    /// The same for several pairs of ends: [`PairsAnswer`](super::PairsAnswer).
+    CheckPairs,
+    /// A path: [`PlanAnswer`](super::PlanAnswer).
+    Plan,
+    /// A path, beside the other files of a run: [`PlanAnswer`](super::PlanAnswer).
+    Run,
+    /// Trials along a path: [`SimulateAnswer`](super::SimulateAnswer).
+    Simulate,
+    /// An experiment with trials: [`ExperimentAnswer`](super::ExperimentAnswer).
+    SimulateExperiment,
+    /// The least capability: [`RequireAnswer`](super::RequireAnswer).
+    Require,
+    /// Hops by one or two varied keys: [`TradeAnswer`](super::TradeAnswer).
+    Trade,
+    /// Several scenarios side by side: [`CompareAnswer`](super::CompareAnswer).
+    Compare,
+    /// Slices in all directions: [`FanAnswer`](super::FanAnswer).
+    Fan,
+    /// Hops to all posts of a map: [`MapAnswer`](super::MapAnswer).
+    Map,
+    /// What an answer takes before it is computed: [`SizeAnswer`](super::SizeAnswer).
+    Size,
+}
+
+impl DocumentKind {
+    /// All kinds.
+    pub const ALL: [Self; 13] = [
+        Self::Hop,
+        Self::Check,
+        Self::CheckPairs,
+        Self::Plan,
+        Self::Run,
+        Self::Simulate,
+        Self::SimulateExperiment,
+        Self::Require,
+        Self::Trade,
+        Self::Compare,
+        Self::Fan,
+        Self::Map,
+        Self::Size,
+    ];
+
+    /// The name, as in `schema`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Hop => "hop",
+            Self::Check => "check",
+            Self::CheckPairs => "check-pairs",
+            Self::Plan => "plan",
+            Self::Run => "run",
+            Self::Simulate => "simulate",
+            Self::SimulateExperiment => "simulate-experiment",
+            Self::Require => "require",
+            Self::Trade => "trade",
+            Self::Compare => "compare",
+            Self::Fan => "fan",
+            Self::Map => "map",
+            Self::Size => "size",
+        }
+    }
+
+    /// The value of `schema` in a document of this kind, which ends in its version.
+    pub fn schema(self) -> String {
+        format!("chta/{}/1", self.name())
+    }
+
+    /// The kind with this `schema`; `None` if it is unknown.
+    pub fn of_schema(schema: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.schema() == schema)
+    }
+}
 
 /// A result as one JSON document: its kind, the program's version, the inputs and the answer.
 ///
 /// It holds no time and no absolute path, so that the same run gives the same bytes.
-#[derive(Clone, Debug, Serialize)]
-pub struct Document<T: Serialize> {
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct Document<T> {
     /// Kind and version of the document, such as `chta/plan/1`.
     pub schema: String,
     /// The program's version.
-    pub chta_version: &'static str,
+    pub chta_version: String,
     /// The scenario as used, in SI units and degrees.
-    pub scenario: serde_json::Value,
+    pub scenario: Value,
     /// The input files.
     pub inputs: Vec<InputFile>,
     /// Warnings for the analyst.
@@ -28,7 +109,7 @@ pub struct Document<T: Serialize> {
 }
 
 /// The reference system of a map.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct CrsRecord {
     /// Its name, for the reader.
     pub name: String,
@@ -54,7 +135,7 @@ impl CrsRecord {
 }
 
 /// An input file of a result.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct InputFile {
     /// Its name, relative to the working folder.
     pub name: String,
@@ -63,11 +144,11 @@ pub struct InputFile {
 }
 
 impl<T: Serialize> Document<T> {
-    /// A document of the given kind (`hop`, `check`, `plan`, `run`).
-    pub fn new(kind: &str, scenario: serde_json::Value, inputs: Vec<InputFile>, warnings: Vec<String>, answer: T) -> Self {
+    /// A document of the given kind.
+    pub fn new(kind: DocumentKind, scenario: Value, inputs: Vec<InputFile>, warnings: Vec<String>, answer: T) -> Self {
         Self {
-            schema: format!("chta/{kind}/1"),
-            chta_version: env!("CARGO_PKG_VERSION"),
+            schema: kind.schema(),
+            chta_version: env!("CARGO_PKG_VERSION").to_owned(),
             scenario,
             inputs,
             warnings,
@@ -89,5 +170,59 @@ impl<T: Serialize> Document<T> {
     /// An error of the serialiser; plain data causes none.
     pub fn to_json(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self).map(|json| json + "\n")
+    }
+}
+
+/// Why a text is no document of a kind of answer.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum DocumentProblem {
+    /// No JSON, or a key is missing or has a value of another type.
+    #[error("this is no such document: {0}: give the JSON that chta wrote, of this kind of answer")]
+    Json(#[from] serde_json::Error),
+    /// A key that such a document does not have, or a value that it cannot have beside the others.
+    #[error(
+        "{pointer} is not as documents of this kind have it: give the JSON as chta wrote it, or read it with the version that wrote it"
+    )]
+    Unexpected {
+        /// The key, as a JSON pointer.
+        pointer: String,
+    },
+}
+
+impl<T: Serialize + DeserializeOwned> Document<T> {
+    /// The document that [`to_json`](Self::to_json) wrote. No key is ignored: what is read says the same as the text.
+    ///
+    /// # Errors
+    /// [`DocumentProblem`]: no such document.
+    pub fn from_json(text: &str) -> Result<Self, DocumentProblem> {
+        let read: Value = serde_json::from_str(text)?;
+        let document: Self = serde_json::from_str(text)?;
+        match first_difference(&read, &serde_json::to_value(&document)?) {
+            Some(pointer) => Err(DocumentProblem::Unexpected { pointer }),
+            None => Ok(document),
+        }
+    }
+}
+
+/// The JSON pointer of the first difference between two values; a whole number equals the same floating-point number.
+fn first_difference(a: &Value, b: &Value) -> Option<String> {
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) => {
+            let mut keys = a.keys().chain(b.keys().filter(|key| !a.contains_key(*key)));
+            keys.find_map(|key| {
+                let inner = match (a.get(key), b.get(key)) {
+                    (Some(a), Some(b)) => first_difference(a, b)?,
+                    _ => String::new(),
+                };
+                Some(format!("/{key}{inner}"))
+            })
+        }
+        (Value::Array(a), Value::Array(b)) if a.len() == b.len() => {
+            let mut pairs = a.iter().zip(b).enumerate();
+            pairs.find_map(|(i, (a, b))| Some(format!("/{i}{}", first_difference(a, b)?)))
+        }
+        (Value::Number(a), Value::Number(b)) if a.as_f64() == b.as_f64() => None,
+        _ => (a != b).then(String::new),
     }
 }

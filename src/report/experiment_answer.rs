@@ -1,23 +1,36 @@
 //! The results of the experiments, as plain data and as text.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{ErrorRecord, text::Sheet};
 use crate::{
     path::Hop,
     uncertainty::{
-        Summary,
-        experiments::{DriftExperiment, DriftLanding},
+        Policy, Summary,
+        experiments::{DriftExperiment, DriftLanding, DriftReading, Experiment},
     },
 };
 
+/// The answer of an experiment.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(untagged)]
+pub enum ExperimentAnswer {
+    /// Of `worst-drift`.
+    WorstDrift(WorstDriftAnswer),
+    /// Of `cone-width`.
+    ConeWidth(ConeWidthAnswer),
+    /// Of `risk-trade`.
+    RiskTrade(RiskTradeAnswer),
+}
+
 /// The answer of `worst-drift`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WorstDriftAnswer {
     /// The experiment's name.
-    pub experiment: &'static str,
+    pub experiment: Experiment,
     /// The interpretation of the paper.
-    pub reading: &'static str,
+    pub reading: DriftReading,
     /// The seed of all draws.
     pub seed: u64,
     /// Flights from each landing.
@@ -31,7 +44,7 @@ pub struct WorstDriftAnswer {
 }
 
 /// The landings of one hop of the experiment.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct DriftRecord {
     /// The hop's number, from 1.
     pub hop: usize,
@@ -78,8 +91,8 @@ impl WorstDriftAnswer {
     /// From the landings of an experiment.
     pub fn new(numbers: &DriftExperiment, landings: &[DriftLanding]) -> Self {
         Self {
-            experiment: "worst-drift",
-            reading: numbers.reading.name(),
+            experiment: Experiment::WorstDrift,
+            reading: numbers.reading,
             seed: numbers.seed,
             flights: numbers.flights,
             noise_variance_m2: numbers.noise_variance_m2,
@@ -101,10 +114,10 @@ impl WorstDriftAnswer {
 }
 
 /// The answer of `cone-width`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ConeWidthAnswer {
     /// The experiment's name.
-    pub experiment: &'static str,
+    pub experiment: Experiment,
     /// The seed of all draws.
     pub seed: u64,
     /// Flights from each landing.
@@ -116,7 +129,7 @@ pub struct ConeWidthAnswer {
 }
 
 /// One width of the cones.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ConeWidthRecord {
     /// Cone width as a fraction of the original distance from the vertical.
     pub cone_share: f64,
@@ -146,7 +159,7 @@ impl ConeWidthAnswer {
     /// No width tried yet.
     pub fn new(numbers: &DriftExperiment, reference_horizontal_speed_m_s: f64) -> Self {
         Self {
-            experiment: "cone-width",
+            experiment: Experiment::ConeWidth,
             seed: numbers.seed,
             flights: numbers.flights,
             reference_horizontal_speed_m_s,
@@ -248,23 +261,47 @@ impl ConeWidthAnswer {
 }
 
 /// The answer of `risk-trade`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RiskTradeAnswer {
     /// Trials flown along each path.
     pub trials: u64,
     /// The seed of all draws, the same for each path.
     pub seed: u64,
     /// The policy flown.
-    pub policy: &'static str,
+    pub policy: Policy,
     /// The path planned without regard to risk, then the most reliable path for each hop count that improves on all smaller ones.
     pub paths: Vec<RiskTradeRow>,
 }
 
+/// How a path of the trade was planned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TradedPath {
+    /// Without regard to risk.
+    LeastEffort,
+    /// The most reliable path of its number of hops.
+    MostReliable,
+}
+
+impl TradedPath {
+    /// Both.
+    pub const ALL: [Self; 2] = [Self::LeastEffort, Self::MostReliable];
+
+    /// The name in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::LeastEffort => "least effort",
+            Self::MostReliable => "surest",
+        }
+    }
+}
+
+crate::quantity::by_name!(TradedPath, TradedPath::ALL);
+
 /// One path of the trade.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RiskTradeRow {
     /// `least effort` or `surest`.
-    pub path: &'static str,
+    pub path: TradedPath,
     /// Its hops.
     pub hops: usize,
     /// The estimated probability that all hops succeed.
@@ -277,7 +314,7 @@ pub struct RiskTradeRow {
 
 impl RiskTradeRow {
     /// A path with the results of its trials.
-    pub fn new(path: &'static str, hops: usize, estimated_success: Option<f64>, summary: &Summary) -> Self {
+    pub fn new(path: TradedPath, hops: usize, estimated_success: Option<f64>, summary: &Summary) -> Self {
         let success = &summary.success;
         Self { path, hops, estimated_success, success_rate: success.rate, success_rate_ci95: [success.low, success.high] }
     }

@@ -5,17 +5,19 @@ use std::{
     io::{self, Write},
 };
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::path_record::heading_true_deg;
+use super::{path_record::heading_true_deg, stated::stated};
 use crate::{
     quantity::MapPoint,
-    reach::{FanRay, HopBand},
+    reach::{FanRay, HopBand, SliceEnd},
     terrain::MapProjection,
+    world::Limit,
 };
 
 /// The answer of `chta fan`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FanAnswer {
     /// The common start of all slices on the map, m.
     pub from_m: [f64; 2],
@@ -37,17 +39,17 @@ pub struct FanAnswer {
 }
 
 /// One direction of a fan.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct FanRecord {
     /// Clockwise from grid north.
     pub heading_deg: f64,
     /// On a map of a known projection: the same from true north; null at a pole.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "stated", skip_serializing_if = "Option::is_none")]
     pub heading_true_deg: Option<Option<f64>>,
     /// The length of the slice.
     pub length_m: f64,
     /// Why it ends before the requested length: `border`, `no-data` or nothing.
-    pub cut: Option<&'static str>,
+    pub cut: Option<SliceEnd>,
     /// The farthest node that can be reached.
     pub farthest_m: f64,
     /// The fewest hops to it.
@@ -55,13 +57,13 @@ pub struct FanRecord {
     /// The fewest hops to the slice's far end.
     pub hops_to_end: Option<u64>,
     /// The limit that refuses the hop from the farthest node to the next one.
-    pub first_refusing_limit: Option<&'static str>,
+    pub first_refusing_limit: Option<Limit>,
     /// Hops by distance: `from_m`, `to_m`, `hops`.
     pub bands: Vec<BandRecord>,
 }
 
 /// A part of a slice whose nodes all have the same fewest hops.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BandRecord {
     /// Where it begins.
     pub from_m: f64,
@@ -128,8 +130,8 @@ impl FanAnswer {
                 ray.farthest_m,
                 ray.hops_to_farthest,
                 ray.hops_to_end.map_or("-".to_owned(), |hops| hops.to_string()),
-                ray.first_refusing_limit.unwrap_or("-"),
-                ray.cut.unwrap_or("-")
+                ray.first_refusing_limit.map_or("-", Limit::name),
+                ray.cut.map_or("-", SliceEnd::name)
             );
         }
         text
@@ -149,11 +151,11 @@ impl FanAnswer {
             let fields = [
                 ray.heading_deg.to_string(),
                 ray.length_m.to_string(),
-                ray.cut.unwrap_or_default().to_owned(),
+                ray.cut.map_or("", SliceEnd::name).to_owned(),
                 ray.farthest_m.to_string(),
                 ray.hops_to_farthest.to_string(),
                 ray.hops_to_end.map(|hops| hops.to_string()).unwrap_or_default(),
-                ray.first_refusing_limit.unwrap_or_default().to_owned(),
+                ray.first_refusing_limit.map_or("", Limit::name).to_owned(),
             ];
             writer.write_record(fields.into_iter().chain(heading))?;
         }
@@ -167,11 +169,11 @@ impl FanRecord {
             heading_deg: ray.heading_deg,
             heading_true_deg: None,
             length_m: ray.length_m,
-            cut: ray.end.map(crate::reach::SliceEnd::name),
+            cut: ray.end,
             farthest_m: ray.farthest_m,
             hops_to_farthest: ray.hops_to_farthest,
             hops_to_end: ray.hops_to_end,
-            first_refusing_limit: ray.refusing.map(crate::world::Limit::name),
+            first_refusing_limit: ray.refusing,
             bands: ray.bands.iter().map(|&HopBand { from_m, to_m, hops }| BandRecord { from_m, to_m, hops }).collect(),
         }
     }

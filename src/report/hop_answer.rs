@@ -1,6 +1,7 @@
 //! The answer for one pair, as plain data.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{hop_margins::HopMarginsRecord, path_record::unsigned_zero};
 use crate::{
@@ -8,18 +9,18 @@ use crate::{
     chain::Station,
     hop::{Binding, Conflict, HopMargins, HopTest, LimitInterval, ReachAlongSight, SetWindow, Shortfall, TakeoffSet},
     quantity::{Angle, VertexId},
-    world::{Contact, HopperLimits},
+    world::{Direction, HopperLimits, Limit},
 };
 
 /// The answer of `chta hop`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HopAnswer {
     /// The take-off, m.
     pub from_x_m: f64,
     /// The landing, m.
     pub to_x_m: f64,
     /// Direction of travel.
-    pub direction: &'static str,
+    pub direction: Direction,
     /// Whether a single hop is feasible.
     pub feasible: bool,
     /// The least take-off angle of the window with the hop to fly.
@@ -51,7 +52,7 @@ pub struct HopAnswer {
 }
 
 /// One window of feasible take-off angles.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WindowRecord {
     /// Its least take-off angle.
     pub takeoff_angle_min_deg: f64,
@@ -64,10 +65,10 @@ pub struct WindowRecord {
 }
 
 /// The limit that sets one end of a window.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct WindowEndRecord {
     /// Its name.
-    pub limit: &'static str,
+    pub limit: Limit,
     /// For the terrain: the vertex that sets the end.
     pub vertex: Option<VertexRecord>,
     /// For the terrain: where between vertices the clearance sets the end, if it does, m along the chain.
@@ -76,10 +77,10 @@ pub struct WindowEndRecord {
 }
 
 /// The take-off angles that one limit allows.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LimitRecord {
     /// Its name.
-    pub name: &'static str,
+    pub name: Limit,
     /// The least take-off angle it allows; null if it refuses every arc.
     pub min_deg: Option<f64>,
     /// The greatest take-off angle it allows; null if it refuses every arc.
@@ -99,7 +100,7 @@ pub struct LimitRecord {
 }
 
 /// A vertex of the chain.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct VertexRecord {
     /// Its number, from 1.
     pub number: usize,
@@ -110,15 +111,15 @@ pub struct VertexRecord {
 }
 
 /// The limits that set the ends of a feasible set, or the reason why it is empty.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(untagged)]
 pub enum BindingRecord {
     /// Feasible: the limit at either end.
     Ends {
         /// The limit that sets the least take-off angle.
-        lower: &'static str,
+        lower: Limit,
         /// The limit that sets the greatest take-off angle.
-        upper: &'static str,
+        upper: Limit,
         /// For the terrain: the vertex that sets the limit.
         #[serde(skip_serializing_if = "Option::is_none")]
         vertex: Option<VertexRecord>,
@@ -129,7 +130,7 @@ pub enum BindingRecord {
     /// Empty: one limit that refuses every arc, or two that conflict.
     Conflict {
         /// Their names.
-        conflict: Vec<&'static str>,
+        conflict: Vec<Limit>,
         /// By how many degrees, if the limits are on angles.
         gap_deg: Option<f64>,
         /// By how many m/s a speed falls short, if the limit is on a speed.
@@ -147,10 +148,10 @@ pub enum BindingRecord {
 }
 
 /// The hop to fly.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct BestRecord {
     /// The choice of take-off angle.
-    pub choice: &'static str,
+    pub choice: TakeoffChoice,
     /// Take-off angle.
     pub takeoff_angle_deg: f64,
     /// Take-off speed.
@@ -168,7 +169,7 @@ pub struct BestRecord {
 }
 
 /// The greatest reach of one hop along the line of sight at a take-off angle, by the two greatest speeds.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GreatestReachRecord {
     /// Along the line of sight.
     pub reach_line_of_sight_m: f64,
@@ -177,15 +178,15 @@ pub struct GreatestReachRecord {
     /// Take-off angle of that hop.
     pub takeoff_angle_deg: f64,
     /// The speed limit that bounds it.
-    pub limit: &'static str,
+    pub limit: Limit,
     /// Along the line of sight, by the take-off speed.
     pub by_takeoff_speed_m: f64,
-    /// Along the line of sight, by the landing speed.
-    pub by_landing_speed_m: f64,
+    /// Along the line of sight, by the landing speed; null if the hopper brakes, so that its landing speed limits no hop.
+    pub by_landing_speed_m: Option<f64>,
 }
 
 /// Hops along one segment.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SegmentHopsRecord {
     /// The least number of hops.
     pub hops: u64,
@@ -198,7 +199,7 @@ pub struct SegmentHopsRecord {
     /// The same, over the slope of the ground.
     pub takeoff_over_slope_deg: f64,
     /// The limit that bounds the range.
-    pub limit: &'static str,
+    pub limit: Limit,
 }
 
 impl HopAnswer {
@@ -212,7 +213,7 @@ impl HopAnswer {
         Some(Self {
             from_x_m: takeoff.point.x_m,
             to_x_m: landing.point.x_m,
-            direction: set.direction().name(),
+            direction: set.direction(),
             feasible: angles.is_some(),
             takeoff_angle_min_deg: angles.map(|a| a.min.degrees()),
             takeoff_angle_max_deg: angles.map(|a| a.max.degrees()),
@@ -238,7 +239,7 @@ impl LimitRecord {
     fn new(test: &HopTest, set: &TakeoffSet, limit: &LimitInterval) -> Self {
         let angles = set.angles_of(limit.lofts);
         Self {
-            name: limit.limit.name(),
+            name: limit.limit,
             min_deg: angles.map(|a| a.min.degrees()),
             max_deg: angles.map(|a| a.max.degrees()),
             refused_deg: limit.gap.and_then(|gap| set.angles_of(gap)).map(|a| [a.min.degrees(), a.max.degrees()]),
@@ -253,7 +254,7 @@ impl WindowRecord {
     fn new(test: &HopTest, set: &TakeoffSet, window: &SetWindow) -> Option<Self> {
         let angles = set.angles_of(window.lofts)?;
         let end = |limit: &LimitInterval| WindowEndRecord {
-            limit: limit.limit.name(),
+            limit: limit.limit,
             vertex: limit.vertex.map(|vertex| VertexRecord::new(test, vertex)),
             clearance_x_m: limit.kink_x_m,
         };
@@ -277,8 +278,8 @@ impl BindingRecord {
     fn new(test: &HopTest, set: &TakeoffSet, binding: Option<Binding>) -> Self {
         if let Some(binding) = binding {
             return Self::Ends {
-                lower: binding.lower.limit.name(),
-                upper: binding.upper.limit.name(),
+                lower: binding.lower.limit,
+                upper: binding.upper.limit,
                 vertex: binding.lower.vertex.map(|vertex| VertexRecord::new(test, vertex)),
                 clearance_x_m: binding.lower.kink_x_m,
             };
@@ -307,17 +308,10 @@ impl BindingRecord {
                     Some(Shortfall::Height { .. } | Shortfall::Bend { .. }) | None => (None, None),
                 };
                 let vertex = alone.vertex.map(|vertex| VertexRecord::new(test, vertex));
-                Self::Conflict {
-                    conflict: vec![alone.limit.name()],
-                    gap_deg,
-                    gap_m_s,
-                    vertex,
-                    clearance_x_m: alone.kink_x_m,
-                    sentence,
-                }
+                Self::Conflict { conflict: vec![alone.limit], gap_deg, gap_m_s, vertex, clearance_x_m: alone.kink_x_m, sentence }
             }
             Conflict::Pair { lower, upper, gap_deg } => Self::Conflict {
-                conflict: vec![lower.limit.name(), upper.limit.name()],
+                conflict: vec![lower.limit, upper.limit],
                 gap_deg: Some(*gap_deg),
                 gap_m_s: None,
                 vertex: lower.vertex.map(|vertex| VertexRecord::new(test, vertex)),
@@ -325,7 +319,7 @@ impl BindingRecord {
                 sentence,
             },
             Conflict::Commands { limit, other, left_m_s: [least, greatest], nearest_m_s } => Self::Conflict {
-                conflict: vec![limit.name(), other.limit.name()],
+                conflict: vec![*limit, other.limit],
                 gap_deg: None,
                 gap_m_s: Some((least - nearest_m_s).max(nearest_m_s - greatest)),
                 vertex: other.vertex.map(|vertex| VertexRecord::new(test, vertex)),
@@ -339,7 +333,7 @@ impl BindingRecord {
 impl BestRecord {
     fn new(arc: &Arc, choice: TakeoffChoice, limits: &HopperLimits) -> Self {
         Self {
-            choice: choice.name(),
+            choice,
             takeoff_angle_deg: arc.takeoff_angle().degrees(),
             takeoff_speed_m_s: arc.takeoff_speed_m_s(),
             landing_angle_deg: arc.landing_angle().degrees(),
@@ -357,9 +351,9 @@ impl From<ReachAlongSight> for GreatestReachRecord {
             reach_line_of_sight_m: reach.reach_m(),
             reach_horizontal_m: reach.reach_horizontal_m(),
             takeoff_angle_deg: reach.takeoff_angle().degrees(),
-            limit: reach.limit().name(),
+            limit: reach.limit(),
             by_takeoff_speed_m: reach.by_takeoff_speed_m(),
-            by_landing_speed_m: reach.by_landing_speed_m(),
+            by_landing_speed_m: Some(reach.by_landing_speed_m()).filter(|reach_m| reach_m.is_finite()),
         }
     }
 }
@@ -375,15 +369,7 @@ impl SegmentHopsRecord {
             reach_horizontal_m: reach.reach_m(),
             takeoff_angle_deg,
             takeoff_over_slope_deg: takeoff_angle_deg - Angle::from_slope(reach.sight_slope()).degrees(),
-            limit: reach.limit().name(),
+            limit: reach.limit(),
         })
-    }
-}
-
-/// The name of an end of a hop.
-pub(super) const fn end_name(contact: Contact) -> &'static str {
-    match contact {
-        Contact::Takeoff => "start",
-        Contact::Landing => "goal",
     }
 }

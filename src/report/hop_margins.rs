@@ -1,6 +1,10 @@
 //! The margins of one hop as plain data: one set of names for JSON, CSV and text.
 
-use serde::{Serialize, Serializer, ser::SerializeMap};
+use std::collections::BTreeMap;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
+use serde_json::json;
 
 use crate::{
     hop::{HopMargins, MARGINS},
@@ -47,12 +51,48 @@ impl HopMarginsRecord {
 
 impl Serialize for HopMarginsRecord {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(None)?;
-        for (key, value) in self.each() {
-            if let Some(value) = value {
-                map.serialize_entry(key, &value)?;
-            }
+        serializer.collect_map(self.each().filter_map(|(key, value)| Some((key, value?))))
+    }
+}
+
+impl<'de> Deserialize<'de> for HopMarginsRecord {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let mut values = BTreeMap::<String, f64>::deserialize(deserializer)?;
+        let terrain_from_takeoff_m = values.remove(TERRAIN_AT);
+        let margins = HopMargins::from_rows(|row| values.remove(row.key), terrain_from_takeoff_m);
+        match values.keys().next() {
+            Some(key) => Err(D::Error::custom(format!("\"{key}\" is no margin of a hop"))),
+            None => Ok(Self(margins)),
         }
-        map.end()
+    }
+}
+
+impl JsonSchema for HopMarginsRecord {
+    fn schema_name() -> std::borrow::Cow<'static, str> {
+        "HopMarginsRecord".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        let property = |(key, meaning): (&str, String)| (key.to_owned(), json!({ "type": "number", "description": meaning }));
+        let rows = MARGINS.iter().map(|row| {
+            let side = if row.key.contains("_min_") {
+                " its least value"
+            } else if row.key.contains("_max_") {
+                " its greatest value"
+            } else {
+                ""
+            };
+            let to = if side.is_empty() { String::new() } else { format!(" to{side}") };
+            (row.key, format!("Margin{to} of the limit {}; absent without such a limit.", row.limit))
+        });
+        let place =
+            "Where the margin of the terrain is least, horizontally from the take-off; absent if the terrain sets no limit.";
+        let properties: serde_json::Map<_, _> = rows.chain([(TERRAIN_AT, place.to_owned())]).map(property).collect();
+        json_schema!({
+            "description": "The margins of a hop to its limits, one number for every limit that the hop has.",
+            "type": "object",
+            "properties": properties,
+            "additionalProperties": false,
+        })
     }
 }

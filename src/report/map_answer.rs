@@ -2,18 +2,19 @@
 
 use std::fmt::Write as _;
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::{HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines};
+use super::{HopRecord, PropellantShortage, SimulationRecord, TotalsRecord, propellant_record::stores_lines, stated::stated};
 use crate::{
-    graph::Effort,
+    graph::{Effort, EffortUnit},
     quantity::MapPoint,
-    reach::map::{HopMap, Mobility, NO_GROUND, NodeLattice, Post, SECTORS},
+    reach::map::{HopMap, Mobility, NO_GROUND, NOT_SEARCHED, NodeLattice, Post, SECTORS},
     terrain::Dem,
 };
 
 /// The answer of `chta map`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MapAnswer {
     /// Every `stride`-th post of the DEM is a post of the map.
     pub stride: usize,
@@ -21,11 +22,14 @@ pub struct MapAnswer {
     pub posts: usize,
     /// Of these, posts without elevation.
     pub no_data_posts: usize,
-    /// The post from which all paths start.
+    /// The post of the first start.
     pub start_m: [f64; 2],
     /// Its distance from the requested position.
     pub start_offset_m: f64,
-    /// Posts with a path from the start, itself included.
+    /// All starts, in the order given. Each post is reached from the nearest of them: by the fewest hops, then, if requested, by the
+    /// least effort, then from the first of them.
+    pub starts: Vec<StartRecord>,
+    /// Posts with a path from a start, the starts included.
     pub reachable_posts: usize,
     /// Their area, counting one cell for each post.
     pub reachable_area_m2: f64,
@@ -33,6 +37,12 @@ pub struct MapAnswer {
     pub reachable_posts_at_border: usize,
     /// Reachable posts next to one without elevation.
     pub reachable_posts_at_no_data: usize,
+    /// The hops after which the search ended, if it was bounded.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub hops_max: Option<i16>,
+    /// If the search was bounded: posts that may need more hops, or have no path, which was not looked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub not_searched_posts: Option<usize>,
     /// Hops to the farthest post.
     pub farthest_hops: i16,
     /// Posts by hops, from 0 on.
@@ -50,33 +60,43 @@ pub struct MapAnswer {
     pub goals: Vec<GoalRecord>,
 }
 
+/// A start.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct StartRecord {
+    /// The post nearest to the requested start, easting.
+    pub x_m: f64,
+    /// And northing.
+    pub y_m: f64,
+    /// Its distance from the requested position.
+    pub offset_m: f64,
+    /// Posts that are reached from it, itself included, and not from a nearer start.
+    pub nearest_posts: usize,
+}
+
 /// The least effort among paths of fewest hops.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MapEffortRecord {
     /// The kind of effort.
-    pub kind: &'static str,
+    pub kind: Effort,
     /// Its unit.
-    pub unit: &'static str,
-    /// A description for the reader.
-    #[serde(skip)]
-    pub total: &'static str,
+    pub unit: EffortUnit,
     /// The greatest effort of any reachable post.
     pub greatest: f64,
 }
 
-/// Paths back to the start.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+/// Paths back to the nearest start.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ReturnRecord {
-    /// Posts from which the start can be reached, itself included.
+    /// Posts from which a start can be reached, the starts included.
     pub return_posts: usize,
-    /// Of these, posts that are also reachable from the start.
+    /// Of these, posts that are also reachable from a start.
     pub round_trip_posts: usize,
     /// The most hops that a path back takes.
     pub farthest_hops: i16,
 }
 
 /// Single hops from every post.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MobilityRecord {
     /// The radius of the disc to which the shares refer.
     pub disc_radius_m: f64,
@@ -93,7 +113,7 @@ pub struct MobilityRecord {
 }
 
 /// A goal.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GoalRecord {
     /// The post nearest to the requested goal, easting.
     pub x_m: f64,
@@ -101,10 +121,14 @@ pub struct GoalRecord {
     pub y_m: f64,
     /// Its distance from the requested position.
     pub offset_m: f64,
+    /// The number of the start, from 1, that the path begins at; null: not reachable.
+    pub start: Option<usize>,
     /// Fewest hops; null: not reachable.
     pub hops: Option<i16>,
+    /// False if the search ended at its bound of hops before the goal, so that it is not known whether it can be reached.
+    pub searched: bool,
     /// Fewest hops back; absent if not requested, null: no path.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "stated", skip_serializing_if = "Option::is_none")]
     pub return_hops: Option<Option<i16>>,
     /// The hops of one path of fewest hops (and of least effort, if an effort was requested), x along the path.
     pub path: Vec<HopRecord>,
@@ -121,30 +145,33 @@ pub struct GoalRecord {
 }
 
 /// The inputs of a map's summary.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct MapSummary<'a> {
     /// The terrain.
     pub dem: &'a Dem,
     /// The nodes.
     pub lattice: NodeLattice,
-    /// The requested start, and its node.
-    pub start: (MapPoint, Post),
-    /// The search from the start.
+    /// The requested starts, at least one, and their nodes.
+    pub starts: Vec<(MapPoint, Post)>,
+    /// The search from the starts.
     pub out: &'a HopMap,
-    /// The search of return paths to the start.
+    /// The search of return paths to the starts.
     pub back: Option<&'a HopMap>,
     /// Single hops.
     pub mobility: Option<&'a Mobility>,
     /// The effort that the search minimised.
     pub effort: Option<Effort>,
+    /// The hops after which it ended, if it was bounded.
+    pub hops_max: Option<i16>,
 }
 
 impl MapAnswer {
     /// The summary of the maps; the caller adds the goals.
     pub fn new(summary: &MapSummary<'_>) -> Self {
-        let MapSummary { dem, lattice, start: (asked, start), out, .. } = *summary;
+        let MapSummary { dem, lattice, out, .. } = *summary;
         let map = dem.georeference().every(lattice.stride);
-        let at = map.post(start.row, start.col);
+        let starts = start_records(summary, &map);
+        let first = starts.first().copied();
         let reachable = |index: usize| out.hops[index] >= 0;
         let mut hops_histogram = Vec::new();
         for &hops in &out.hops {
@@ -165,20 +192,22 @@ impl MapAnswer {
             stride: lattice.stride,
             posts: lattice.count(),
             no_data_posts: out.hops.iter().filter(|&&hops| hops == NO_GROUND).count(),
-            start_m: [at.x, at.y],
-            start_offset_m: (at - asked).norm(),
+            start_m: first.map_or([0.0; 2], |start| [start.x_m, start.y_m]),
+            start_offset_m: first.map_or(0.0, |start| start.offset_m),
+            starts,
             reachable_posts,
             reachable_area_m2,
             reachable_posts_at_border: count(&|post| {
                 post.row == 0 || post.col == 0 || post.row + 1 == lattice.rows || post.col + 1 == lattice.cols
             }),
             reachable_posts_at_no_data: count(&|post| neighbours(lattice, post).any(no_ground)),
+            hops_max: summary.hops_max,
+            not_searched_posts: summary.hops_max.map(|_| out.hops.iter().filter(|&&hops| hops == NOT_SEARCHED).count()),
             farthest_hops: out.hops.iter().copied().fold(0, i16::max),
             hops_histogram,
             effort: summary.effort.map(|effort| MapEffortRecord {
-                kind: effort.name(),
+                kind: effort,
                 unit: effort.unit(),
-                total: effort.total(),
                 greatest: out.effort.iter().copied().fold(0.0, f64::max),
             }),
             back: summary.back.map(|back| ReturnRecord {
@@ -191,6 +220,14 @@ impl MapAnswer {
         }
     }
 
+    /// The starts, in words.
+    pub fn from(&self) -> String {
+        match self.starts.len() {
+            0 | 1 => format!("({:.3}, {:.3}) m", self.start_m[0], self.start_m[1]),
+            many => format!("the nearest of {many} starts"),
+        }
+    }
+
     /// Whether every goal is reachable by a path that the machine can fly.
     pub fn reaches_all_goals(&self) -> bool {
         self.goals.iter().all(|goal| goal.hops.is_some() && goal.propellant_shortage.is_none())
@@ -199,30 +236,43 @@ impl MapAnswer {
     /// The answer as text.
     pub fn text(&self) -> String {
         let mut text = format!(
-            "{} of {} posts reachable from ({:.3}, {:.3}) m, {:.6} km2, in at most {}\n",
+            "{} of {} posts reachable from {}, {:.6} km2, in at most {}\n",
             self.reachable_posts,
             self.posts,
-            self.start_m[0],
-            self.start_m[1],
+            self.from(),
             self.reachable_area_m2 * 1.0e-6,
             format_hops(self.farthest_hops)
         );
-        // Writing to a String cannot fail.
-        let _ = writeln!(
-            text,
-            "start: {:.3} m from the place asked for; {} reachable post{} on the map's border, {} beside no-data",
-            self.start_offset_m,
+        let beside = format!(
+            "{} reachable post{} on the map's border, {} beside no-data",
             self.reachable_posts_at_border,
             if self.reachable_posts_at_border == 1 { "" } else { "s" },
             self.reachable_posts_at_no_data
         );
-        if let Some(MapEffortRecord { total, unit, greatest, .. }) = &self.effort {
-            let _ = writeln!(text, "{total}: at most {greatest:.4} {unit}");
+        // Writing to a String cannot fail.
+        if let [start] = &self.starts[..] {
+            let _ = writeln!(text, "start: {:.3} m from the place asked for; {beside}", start.offset_m);
+        } else {
+            for (number, StartRecord { x_m, y_m, offset_m, nearest_posts }) in (1..).zip(&self.starts) {
+                let _ = writeln!(
+                    text,
+                    "start {number} ({x_m:.3}, {y_m:.3}) m, {offset_m:.3} m from the place asked for: nearest to {nearest_posts} post{}",
+                    if *nearest_posts == 1 { "" } else { "s" }
+                );
+            }
+            let _ = writeln!(text, "{beside}");
+        }
+        if let (Some(most), Some(posts)) = (self.hops_max, self.not_searched_posts) {
+            let _ = writeln!(text, "{}", not_searched(most, posts));
+        }
+        if let Some(MapEffortRecord { kind, unit, greatest }) = &self.effort {
+            let _ = writeln!(text, "{}: at most {greatest:.4} {unit}", kind.total());
         }
         if let Some(back) = &self.back {
             let _ = writeln!(
                 text,
-                "return: the start can be reached again from {} posts, {} of them reachable, in at most {}",
+                "return: {} can be reached again from {} posts, {} of them reachable, in at most {}",
+                if self.starts.len() > 1 { "a start" } else { "the start" },
                 back.return_posts,
                 back.round_trip_posts,
                 format_hops(back.farthest_hops)
@@ -242,7 +292,12 @@ impl MapAnswer {
             );
         }
         for goal in &self.goals {
-            let hops = goal.hops.map_or("not reachable over these posts".to_owned(), format_hops);
+            let unreached = match self.hops_max {
+                Some(most) if !goal.searched => format!("not within {}, and not searched beyond", format_hops(most)),
+                _ => "not reachable over these posts".to_owned(),
+            };
+            let from = goal.start.filter(|_| self.starts.len() > 1).map_or(String::new(), |number| format!(" from start {number}"));
+            let hops = goal.hops.map_or(unreached, |hops| format_hops(hops) + &from);
             let back = match goal.return_hops {
                 Some(Some(hops)) => format!(", {} back", format_hops(hops)),
                 Some(None) => ", no path back".to_owned(),
@@ -274,6 +329,31 @@ impl MapAnswer {
         }
         text
     }
+}
+
+/// What a bounded search has left open.
+fn not_searched(most: i16, posts: usize) -> String {
+    if posts == 0 {
+        return format!("searched up to {}; no post is farther", format_hops(most));
+    }
+    let s = if posts == 1 { "" } else { "s" };
+    format!("searched up to {}: {posts} other post{s} may be farther, or unreachable, and were not searched", format_hops(most))
+}
+
+/// The starts, with the posts that are nearest to each.
+fn start_records(summary: &MapSummary<'_>, map: &crate::terrain::GeoReference) -> Vec<StartRecord> {
+    let MapSummary { lattice, out, .. } = *summary;
+    let mut nearest_posts = vec![0; summary.starts.len()];
+    for node in (0..lattice.count()).map(|index| lattice.node(index)) {
+        if let Some(count) = out.source(lattice, node).and_then(|number| nearest_posts.get_mut(number)) {
+            *count += 1;
+        }
+    }
+    let of = |(&(asked, post), nearest_posts): (&(MapPoint, Post), usize)| {
+        let at = map.post(post.row, post.col);
+        StartRecord { x_m: at.x, y_m: at.y, offset_m: (at - asked).norm(), nearest_posts }
+    };
+    summary.starts.iter().zip(nearest_posts).map(of).collect()
 }
 
 /// The rows of a histogram for reading: first and last count of hops, and the posts. At most [`MOST_ROWS`]: a longer histogram has

@@ -9,6 +9,8 @@ mod geojson;
 mod hop_answer;
 mod hop_margins;
 pub mod landings;
+mod limit_counts;
+mod limit_pair;
 mod map_answer;
 mod path_record;
 mod plan_answer;
@@ -17,14 +19,20 @@ mod propellant_record;
 mod reliability_record;
 mod require_answer;
 mod simulate_answer;
+mod size_answer;
+mod stated;
 mod text;
 mod trade_answer;
 mod trajectory;
 
-pub use check_answer::{CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, MissRecord, PairsAnswer, verdict_name};
+pub use check_answer::{
+    CheckAnswer, EffortRecord, EndpointRecord, FrontierRecord, JourneyEnd, MissRecord, PairsAnswer, verdict_of,
+};
 pub use compare_answer::{CompareAnswer, CompareRow, MarginsRecord};
-pub use document::{CrsRecord, Document, InputFile};
-pub use experiment_answer::{ConeWidthAnswer, ConeWidthRecord, DriftRecord, RiskTradeAnswer, RiskTradeRow, WorstDriftAnswer};
+pub use document::{CrsRecord, Document, DocumentKind, DocumentProblem, InputFile};
+pub use experiment_answer::{
+    ConeWidthAnswer, ConeWidthRecord, DriftRecord, ExperimentAnswer, RiskTradeAnswer, RiskTradeRow, TradedPath, WorstDriftAnswer,
+};
 pub use fan_answer::{BandRecord, FanAnswer, FanRecord};
 pub use geojson::{path_geojson, paths_geojson, slice_geojson};
 pub use hop_answer::{
@@ -32,14 +40,21 @@ pub use hop_answer::{
     WindowRecord,
 };
 pub use hop_margins::HopMarginsRecord;
-pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord};
-pub use path_record::{AimRecord, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv};
-pub use plan_answer::PlanAnswer;
+pub use limit_counts::LimitCounts;
+pub use limit_pair::LimitPair;
+pub use map_answer::{GoalRecord, MapAnswer, MapEffortRecord, MapSummary, MobilityRecord, ReturnRecord, StartRecord};
+pub use path_record::{
+    AimRecord, EnergyBasis, HopRecord, LonLatRecord, MapKnowledge, MapRecord, TotalsRecord, write_path_csv, write_paths_csv,
+};
+pub use plan_answer::{PlanAnswer, plan_text};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, reliable_paths_text};
 pub use require_answer::{RequireAnswer, RequireTry};
-pub use simulate_answer::{EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord};
+pub use simulate_answer::{
+    EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, simulate_text,
+};
+pub use size_answer::{SizeAnswer, SizeRecord};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};
 pub use trade_answer::{SweptKeyRecord, TradeAnswer, TradeRow, with_unit};
-pub use trajectory::write_trajectory_csv;
+pub use trajectory::{trajectory_columns, write_trajectory_csv};

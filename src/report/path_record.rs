@@ -2,25 +2,29 @@
 
 use std::io::{self, Write};
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{
     hop_margins::HopMarginsRecord,
+    limit_pair::LimitPair,
     propellant_record::{StoresRecord, stores_columns},
+    stated::stated,
 };
 use crate::{
-    path::{Hop, HopPath, Totals},
+    path::{Aim, Hop, HopPath, Totals},
     quantity::MapPoint,
     terrain::MapProjection,
+    world::Direction,
 };
 
 /// One hop of a path, as plain data. The columns of path.csv and the keys of `path` in JSON.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct HopRecord {
     /// Number, from 1.
     pub hop: usize,
     /// Direction of travel.
-    pub direction: &'static str,
+    pub direction: Direction,
     /// Take-off, x along the chain.
     pub takeoff_x_m: f64,
     /// Its height.
@@ -48,7 +52,7 @@ pub struct HopRecord {
     /// The smaller of the margins of take-off and landing speed.
     pub speed_margin_m_s: f64,
     /// Which limits set the least and the greatest feasible angle, `lower/upper`.
-    pub binding: String,
+    pub binding: LimitPair,
     /// Delta-v, propellant and mass.
     #[serde(flatten)]
     pub stores: StoresRecord,
@@ -63,16 +67,42 @@ pub struct HopRecord {
 }
 
 /// The point that a command in steps was aimed at.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct AimRecord {
     /// The planned landing, x along the chain.
     pub aim_x_m: f64,
     /// By how much the landing lies beyond it along the profile; negative short of it.
     pub landing_miss_m: f64,
+    /// Of a hop beside the line.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub beside: Option<AimBesideRecord>,
+}
+
+/// The aim of a hop beside the line, and its miss to the side.
+#[expect(clippy::struct_field_names, reason = "names of columns, which end in the unit")]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct AimBesideRecord {
+    /// By how much the landing lies to the left of the line through the aim.
+    pub landing_miss_across_m: f64,
+    /// The planned landing, easting.
+    pub aim_map_x_m: f64,
+    /// The planned landing, northing.
+    pub aim_map_y_m: f64,
+}
+
+impl From<&Aim> for AimRecord {
+    fn from(aim: &Aim) -> Self {
+        let beside = aim.across_m.zip(aim.point.map()).map(|(across_m, at)| AimBesideRecord {
+            landing_miss_across_m: unsigned_zero(across_m),
+            aim_map_x_m: at.x,
+            aim_map_y_m: at.y,
+        });
+        Self { aim_x_m: aim.point.along_m, landing_miss_m: unsigned_zero(aim.miss_m), beside }
+    }
 }
 
 /// The columns of a hop on a map.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct MapRecord {
     /// Direction of flight, clockwise from grid north.
     pub heading_deg: f64,
@@ -88,12 +118,12 @@ pub struct MapRecord {
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub lon_lat: Option<LonLatRecord>,
     /// On a map of a known projection: direction of flight, clockwise from true north at the take-off; null at a pole.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "stated", skip_serializing_if = "Option::is_none")]
     pub heading_true_deg: Option<Option<f64>>,
 }
 
 /// The columns of a hop on a map whose projection is known; planetocentric, east positive.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LonLatRecord {
     /// Take-off, longitude.
     pub takeoff_lon_deg: f64,
@@ -131,8 +161,29 @@ pub(super) fn heading_true_deg(projection: &MapProjection, takeoff: MapPoint, he
     Some(libm::rint(degrees * DIGITS) / DIGITS % 360.0)
 }
 
+/// What the energies of [`TotalsRecord`] are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum EnergyBasis {
+    /// Taken from the store: of motion over the efficiency, and of the preparations.
+    Store,
+}
+
+impl EnergyBasis {
+    /// All of them.
+    pub const ALL: [Self; 1] = [Self::Store];
+
+    /// The name in results.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Store => "store",
+        }
+    }
+}
+
+crate::quantity::by_name!(EnergyBasis, EnergyBasis::ALL);
+
 /// The totals of a path's hops.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TotalsRecord {
     /// Time in flight.
     pub flight_time_s: f64,
@@ -150,7 +201,7 @@ pub struct TotalsRecord {
     pub mission_time_s: Option<f64>,
     /// `store` where the energies are more than those of motion: with an efficiency or a preparation energy.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub energy_basis: Option<&'static str>,
+    pub energy_basis: Option<EnergyBasis>,
     /// Delta-v.
     pub delta_v_m_s: f64,
     /// Propellant, if the specific impulse is given.
@@ -162,7 +213,8 @@ pub struct TotalsRecord {
     /// Propellant beyond what the machine has, if the path takes too much.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub propellant_short_kg: Option<f64>,
-    /// Whether the machine has a key of propulsion, so that text states the delta-v.
+    /// Whether the machine has a key of propulsion, so that text states the delta-v. The scenario says so, JSON does not: false after
+    /// reading.
     #[serde(skip)]
     pub propulsive: bool,
 }
@@ -176,7 +228,7 @@ impl HopRecord {
     fn new(number: usize, hop: &Hop, projection: Option<&MapProjection>) -> Self {
         Self {
             hop: number,
-            direction: hop.direction.name(),
+            direction: hop.direction,
             takeoff_x_m: hop.takeoff.along_m,
             takeoff_z_m: hop.takeoff.point_m.z,
             landing_x_m: hop.landing.along_m,
@@ -190,7 +242,7 @@ impl HopRecord {
             takeoff_angle_min_deg: hop.takeoff_angles.min.degrees(),
             takeoff_angle_max_deg: hop.takeoff_angles.max.degrees(),
             speed_margin_m_s: hop.speed_margin_m_s,
-            binding: format!("{}/{}", hop.lower_limit, hop.upper_limit),
+            binding: LimitPair { lower: hop.lower_limit, upper: hop.upper_limit },
             map: hop.map_ends().map(|ends @ (takeoff, landing)| MapRecord {
                 heading_deg: hop.heading_deg,
                 takeoff_map_x_m: takeoff.x,
@@ -202,7 +254,7 @@ impl HopRecord {
             }),
             margins: HopMarginsRecord(hop.margins),
             stores: hop.into(),
-            aim: hop.aim.map(|aim| AimRecord { aim_x_m: aim.point.along_m, landing_miss_m: unsigned_zero(aim.miss_m) }),
+            aim: hop.aim.as_ref().map(AimRecord::from),
         }
     }
 }
@@ -216,7 +268,7 @@ impl From<&Totals> for TotalsRecord {
             ground_distance_m: unsigned_zero(totals.ground_distance_m),
             energy_j: totals.energy_j.map(unsigned_zero),
             mission_time_s: totals.mission_time_s.map(unsigned_zero),
-            energy_basis: totals.of_store.then_some("store"),
+            energy_basis: totals.of_store.then_some(EnergyBasis::Store),
             delta_v_m_s: unsigned_zero(totals.delta_v_m_s),
             propellant_kg: totals.propellant.map(|propellant| unsigned_zero(propellant.used_kg)),
             mass_end_kg: totals.propellant.map(|propellant| propellant.mass_end_kg),
@@ -308,6 +360,9 @@ pub fn write_paths_csv<'a>(
 /// The additional columns of commands in steps.
 const AIM_COLUMNS: [&str; 2] = ["aim_x_m", "landing_miss_m"];
 
+/// The additional columns of hops beside the line.
+const BESIDE_COLUMNS: [&str; 3] = ["landing_miss_across_m", "aim_map_x_m", "aim_map_y_m"];
+
 /// The columns that only some paths have.
 #[derive(Clone, Copy)]
 struct ExtraColumns {
@@ -315,11 +370,15 @@ struct ExtraColumns {
     stores: &'static [&'static str],
     /// Of commands in steps, if some hop has one.
     aims: bool,
+    /// Of hops beside the line, if some hop is one.
+    beside: bool,
 }
 
 impl ExtraColumns {
     fn of<'a>(mut rows: impl Iterator<Item = &'a HopRecord> + Clone) -> Self {
-        Self { stores: stores_columns(rows.clone()), aims: rows.any(|row| row.aim.is_some()) }
+        let stores = stores_columns(rows.clone());
+        let aims = rows.clone().any(|row| row.aim.is_some());
+        Self { stores, aims, beside: rows.any(|row| row.aim.is_some_and(|aim| aim.beside.is_some())) }
     }
 }
 
@@ -328,7 +387,9 @@ fn columns(known: MapKnowledge, extra: ExtraColumns) -> Vec<String> {
     let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
     let projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
     let aims: &[&str] = if extra.aims { &AIM_COLUMNS } else { &[] };
-    let own = COLUMNS.iter().chain(extra.stores).chain(map).chain(projection).chain(aims).map(|&column| column.to_owned());
+    let beside: &[&str] = if extra.beside { &BESIDE_COLUMNS } else { &[] };
+    let own =
+        COLUMNS.iter().chain(extra.stores).chain(map).chain(projection).chain(aims).chain(beside).map(|&column| column.to_owned());
     own.chain(HopMarginsRecord::columns()).collect()
 }
 
@@ -350,9 +411,9 @@ impl HopRecord {
             self.takeoff_angle_max_deg,
             self.speed_margin_m_s,
         ];
-        let mut fields = vec![self.hop.to_string(), self.direction.to_owned()];
+        let mut fields = vec![self.hop.to_string(), self.direction.to_string()];
         fields.extend(numbers.iter().map(ToString::to_string));
-        fields.push(self.binding.clone());
+        fields.push(self.binding.to_string());
         fields.extend(self.stores.fields().into_iter().take(extra.stores.len()));
         if known >= MapKnowledge::Metres {
             let numbers = self
@@ -371,6 +432,10 @@ impl HopRecord {
         }
         if extra.aims {
             fields.extend(texts(self.aim.map(|aim| [aim.aim_x_m, aim.landing_miss_m])));
+        }
+        if extra.beside {
+            let beside = self.aim.and_then(|aim| aim.beside);
+            fields.extend(texts(beside.map(|aim| [aim.landing_miss_across_m, aim.aim_map_x_m, aim.aim_map_y_m])));
         }
         fields.extend(self.margins.fields());
         fields

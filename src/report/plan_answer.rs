@@ -1,11 +1,12 @@
 //! The answer of a plan, as plain data.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::{CheckAnswer, HopRecord, ReliablePathRecord, TotalsRecord};
+use super::{CheckAnswer, FurtherMeans, HopRecord, ReliablePathRecord, TotalsRecord, check_text, path_text, reliable_paths_text};
 
 /// The answer of a plan: the check, the path, its totals.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PlanAnswer {
     /// Whether a path exists.
     #[serde(flatten)]
@@ -18,6 +19,23 @@ pub struct PlanAnswer {
     /// The sums over the path; null without one.
     pub totals: Option<TotalsRecord>,
     /// The Pareto front of hops against success probability, where the scenario weighs risk.
-    #[serde(rename = "surest", skip_serializing_if = "Vec::is_empty")]
+    #[serde(rename = "surest", default, skip_serializing_if = "Vec::is_empty")]
     pub reliable_paths: Vec<ReliablePathRecord>,
+}
+
+/// The text of `chta plan`.
+pub fn plan_text(answer: &PlanAnswer, means: FurtherMeans<'_>) -> String {
+    let mut text = check_text(&answer.check, means);
+    if let Some(totals) = &answer.totals {
+        text.push('\n');
+        text.push_str(&path_text(&answer.path, totals));
+    }
+    text.push_str(&reliable_paths_text(&answer.reliable_paths));
+    if answer.verified == Some(true) {
+        let of = if answer.check.propellant_shortage.is_some() { " of a hop" } else { "" };
+        text.push_str("verified: every hop was flown again by direct simulation and breaks no limit");
+        text.push_str(of);
+        text.push('\n');
+    }
+    text
 }

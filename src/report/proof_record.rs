@@ -1,14 +1,13 @@
 //! The result of a proof, as plain data.
 
-use std::collections::BTreeMap;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use serde::Serialize;
-
-use super::check_answer::counts;
-use crate::graph::proof::{Bounds, Gap, ProofVerdict, Stretch};
+use super::limit_counts::LimitCounts;
+use crate::graph::proof::{Bounds, Gap, ProofVerdict, Stretch, StretchClass};
 
 /// The bounds on the fewest hops, and the work done for them.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ProofRecord {
     /// No path has fewer hops, at any resolution; null if it is proved that there is no path at all.
     pub lower_bound: Option<u64>,
@@ -25,7 +24,7 @@ pub struct ProofRecord {
 }
 
 /// The work done for a proof.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct ProofSummaryRecord {
     /// Cells that the chain was divided into.
     pub cells: usize,
@@ -40,32 +39,32 @@ pub struct ProofSummaryRecord {
     /// Whether the best path uses points of the cells instead of the nodes of the search.
     pub path_over_cells: bool,
     /// Whether the hopper has a footprint, which the proof uses at vertices alone; absent if it has none.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub footprint_at_vertices_alone: bool,
 }
 
 /// A stretch of the chain.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StretchRecord {
     /// Its left end, m.
     pub from_x_m: f64,
     /// Its right end, m.
     pub to_x_m: f64,
     /// `reachable` (a path to points of it was found), `unreachable` (proved) or `open`.
-    pub class: &'static str,
+    pub class: StretchClass,
     /// Whether the goal may be reachable from it; `false` is proved.
     pub may_lead_to_goal: bool,
 }
 
 /// The gap that makes a journey impossible.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct GapRecord {
     /// No path from the start comes nearer to the goal, m.
     pub reached_x_m: f64,
     /// The goal cannot be reached from any point nearer to the start, m.
     pub leads_to_goal_from_x_m: f64,
     /// Pairs of cells within reach, from a possibly reachable cell to an unreachable one, by the limit that refuses all hops.
-    pub refusals: BTreeMap<&'static str, u64>,
+    pub refusals: LimitCounts,
 }
 
 impl ProofRecord {
@@ -91,11 +90,11 @@ impl ProofRecord {
     }
 
     /// The verdict from the bounds: `untraversable` only if it is proved.
-    pub const fn verdict(&self) -> &'static str {
+    pub const fn verdict(&self) -> ProofVerdict {
         match (self.upper_bound, self.lower_bound) {
-            (Some(_), _) => ProofVerdict::Traversable.name(),
-            (None, None) => ProofVerdict::Untraversable.name(),
-            (None, Some(_)) => ProofVerdict::Open.name(),
+            (Some(_), _) => ProofVerdict::Traversable,
+            (None, None) => ProofVerdict::Untraversable,
+            (None, Some(_)) => ProofVerdict::Open,
         }
     }
 }
@@ -103,7 +102,7 @@ impl ProofRecord {
 impl GapRecord {
     /// The record of a gap.
     pub fn of(gap: &Gap) -> Self {
-        Self { reached_x_m: gap.reached_x_m, leads_to_goal_from_x_m: gap.leads_to_goal_x_m, refusals: counts(&gap.refusals) }
+        Self { reached_x_m: gap.reached_x_m, leads_to_goal_from_x_m: gap.leads_to_goal_x_m, refusals: (&gap.refusals).into() }
     }
 }
 
@@ -113,8 +112,8 @@ fn merged(stretches: &[Stretch]) -> Vec<StretchRecord> {
     for stretch in stretches {
         let Stretch { from_x_m, to_x_m, class, may_lead_to_goal } = *stretch;
         match merged.last_mut() {
-            Some(last) if (last.class, last.may_lead_to_goal) == (class.name(), may_lead_to_goal) => last.to_x_m = to_x_m,
-            _ => merged.push(StretchRecord { from_x_m, to_x_m, class: class.name(), may_lead_to_goal }),
+            Some(last) if (last.class, last.may_lead_to_goal) == (class, may_lead_to_goal) => last.to_x_m = to_x_m,
+            _ => merged.push(StretchRecord { from_x_m, to_x_m, class, may_lead_to_goal }),
         }
     }
     merged

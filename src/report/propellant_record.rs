@@ -1,6 +1,7 @@
 //! What a path takes from the machine's stores, as plain data and as sentences.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{HopRecord, TotalsRecord};
 use crate::{
@@ -9,7 +10,7 @@ use crate::{
 };
 
 /// The delta-v of a hop, its propellant and the mass after it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct StoresRecord {
     /// Delta-v: of the take-off, of the brakes and the overhead.
     pub delta_v_m_s: f64,
@@ -47,7 +48,7 @@ impl StoresRecord {
 }
 
 /// The propellant of a path that takes more than the machine has.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct PropellantShortage {
     /// What the path takes, kg.
     pub needed_kg: f64,

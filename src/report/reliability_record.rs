@@ -1,12 +1,13 @@
 //! The Pareto front of hops against success probability, as rows.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::text::Sheet;
 use crate::graph::ReliablePath;
 
 /// The most reliable path of one hop count.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ReliablePathRecord {
     /// The number of hops.
     pub hops: u64,

@@ -1,11 +1,13 @@
 //! The least capability with which a goal can be reached, as plain data.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
 use super::{GapRecord, HopRecord, TotalsRecord};
+use crate::graph::proof::ProofVerdict;
 
 /// The answer of `chta require`.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RequireAnswer {
     /// Start, m.
     pub start_x_m: f64,
@@ -25,6 +27,10 @@ pub struct RequireAnswer {
     pub resolution: f64,
     /// Whether they did, or the whole range is decided; false where the values between stayed open within the budget.
     pub resolution_met: bool,
+    /// Whether the path found holds at every value of the key, however demanding: a clearance whose taper ends below `reachable_at` on every
+    /// hop of it. Absent if not.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub never_binds: bool,
     /// Every value tried, in the order of the trials.
     pub tries: Vec<RequireTry>,
     /// The number of hops of the path at `reachable_at`.
@@ -38,12 +44,12 @@ pub struct RequireAnswer {
 }
 
 /// One value tried.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RequireTry {
     /// The value, in the key's unit.
     pub value: f64,
     /// `traversable`, `untraversable` (proved) or `no-path-found`.
-    pub verdict: &'static str,
+    pub verdict: ProofVerdict,
     /// No path has fewer hops; null if no path exists.
     pub lower_bound: Option<u64>,
     /// The hops of the best known path.

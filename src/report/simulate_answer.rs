@@ -1,14 +1,15 @@
 //! The results of trials, as plain data and as text.
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
-use super::{CheckAnswer, text::Sheet};
+use super::{CheckAnswer, FurtherMeans, check_text, text::Sheet};
 use crate::uncertainty::{
     ErrorSummary, LandingEllipse, LandingSummary, OutcomeCounts, Policy, RatePoint, Summary, TrialOutcome, Wilson,
 };
 
 /// The answer of a simulation: the check and, with a path, the results of its trials.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulateAnswer {
     /// Whether a path exists.
     #[serde(flatten)]
@@ -17,19 +18,33 @@ pub struct SimulateAnswer {
     #[serde(flatten)]
     pub simulation: Option<SimulationRecord>,
     /// Both policies on the same draws, if requested.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub compare: Vec<SimulationRecord>,
 }
 
+/// The text of `chta simulate`.
+pub fn simulate_text(answer: &SimulateAnswer, means: FurtherMeans<'_>) -> String {
+    let mut text = check_text(&answer.check, means);
+    if answer.simulation.is_none() && answer.compare.is_empty() {
+        text.push_str("nothing to simulate: there is no nominal path\n");
+    }
+    let own = answer.simulation.iter().filter(|_| answer.compare.is_empty());
+    for record in own.chain(&answer.compare) {
+        text.push('\n');
+        text.push_str(&record.text());
+    }
+    text
+}
+
 /// The results of the trials of one policy.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulationRecord {
     /// The number of trials flown.
     pub trials: u64,
     /// The seed of all draws.
     pub seed: u64,
     /// The policy.
-    pub policy: &'static str,
+    pub policy: Policy,
     /// The share that reached the goal.
     pub success_rate: f64,
     /// Its 95 % interval (Wilson).
@@ -45,7 +60,7 @@ pub struct SimulationRecord {
 }
 
 /// Trials by outcome.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub struct OutcomeRecord {
     /// It stopped within the goal tolerance.
     pub reached: u64,
@@ -63,10 +78,12 @@ pub struct OutcomeRecord {
     pub stuck: u64,
     /// It flew the greatest number of hops allowed.
     pub hop_limit: u64,
+    /// Its next hop took more propellant than it had left.
+    pub out_of_propellant: u64,
 }
 
 /// The landings of one hop number.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct LandingRecord {
     /// The hop's number, from 1.
     pub hop: u32,
@@ -82,7 +99,7 @@ pub struct LandingRecord {
 }
 
 /// A distribution of distances.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct ErrorRecord {
     /// Mean.
     pub mean_m: Option<f64>,
@@ -101,7 +118,7 @@ pub struct ErrorRecord {
 }
 
 /// An ellipse on the map.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct EllipseRecord {
     /// Its centre, easting.
     pub centre_map_x_m: f64,
@@ -116,7 +133,7 @@ pub struct EllipseRecord {
 }
 
 /// The success rate after some number of trials.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct RateRecord {
     /// The number of trials.
     pub trials: u64,
@@ -142,7 +159,7 @@ impl SimulationRecord {
         Self {
             trials: summary.trials,
             seed: summary.seed,
-            policy: summary.policy.name(),
+            policy: summary.policy,
             success_rate: summary.success.rate,
             success_rate_ci95: [summary.success.low, summary.success.high],
             outcomes: OutcomeRecord::new(&summary.outcomes),
@@ -154,7 +171,7 @@ impl SimulationRecord {
 
     /// Whether every hop was replanned from the end of the previous one.
     fn is_replanned(&self) -> bool {
-        self.policy == Policy::Replan.name()
+        self.policy == Policy::Replan
     }
 
     /// The meaning of the landing distances.
@@ -222,10 +239,11 @@ impl OutcomeRecord {
             lost: counts.of(TrialOutcome::Lost),
             stuck: counts.of(TrialOutcome::Stuck),
             hop_limit: counts.of(TrialOutcome::HopLimit),
+            out_of_propellant: counts.of(TrialOutcome::OutOfPropellant),
         }
     }
 
-    /// Every outcome by its name, in order.
+    /// Every outcome by its name, in order; those out of propellant only where some are.
     pub fn each(&self) -> impl Iterator<Item = (&'static str, u64)> {
         let counts = [
             self.reached,
@@ -236,8 +254,11 @@ impl OutcomeRecord {
             self.lost,
             self.stuck,
             self.hop_limit,
+            self.out_of_propellant,
         ];
-        TrialOutcome::ALL.into_iter().map(TrialOutcome::name).zip(counts)
+        let all = TrialOutcome::ALL.into_iter().zip(counts);
+        all.filter(|(outcome, count)| *outcome != TrialOutcome::OutOfPropellant || *count > 0)
+            .map(|(outcome, count)| (outcome.name(), count))
     }
 }
 

@@ -4,6 +4,7 @@ use std::fmt::Write;
 
 use super::{
     BindingRecord, CheckAnswer, GapRecord, HopAnswer, HopRecord, MapRecord, ProofRecord, RequireAnswer, TotalsRecord, WindowRecord,
+    limit_counts::LimitCounts,
     propellant_record::{delta_v_field, stores_lines},
 };
 use crate::quantity::{format_number, unit_of};
@@ -58,7 +59,7 @@ pub fn hop_text(answer: &HopAnswer) -> String {
         sheet.line(format_args!("{}", binding_line(&answer.binding)));
     }
     // The longest name of a limit on the machine's speeds is longer than the column of the others.
-    let wide = answer.limits.iter().map(|limit| limit.name.len() + 1).fold(18, usize::max);
+    let wide = answer.limits.iter().map(|limit| limit.name.name().len() + 1).fold(18, usize::max);
     sheet.line(format_args!("\n{:<wide$}{:>14}{:>14}", "limit", "min (deg)", "max (deg)"));
     for limit in &answer.limits {
         let ends = match (limit.min_deg, limit.max_deg) {
@@ -109,11 +110,10 @@ pub fn hop_text(answer: &HopAnswer) -> String {
             reach.takeoff_angle_deg,
             reach.limit,
             reach.by_takeoff_speed_m,
-            if reach.by_landing_speed_m.is_finite() {
-                format!("{:.3} m by landing speed", reach.by_landing_speed_m)
-            } else {
-                "no limit by landing speed, since it brakes".to_owned()
-            }
+            reach.by_landing_speed_m.map_or_else(
+                || "no limit by landing speed, since it brakes".to_owned(),
+                |reach_m| format!("{reach_m:.3} m by landing speed")
+            )
         ));
     }
     if let Some(along) = answer.segment_hops {
@@ -163,6 +163,15 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     let (from, to) = (format_number(answer.from), with_unit(answer.to));
     sheet.line(format_args!("{vary}: from x = {} m to x = {} m", place(answer.start_x_m), place(answer.goal_x_m)));
     match answer.reachable_at {
+        Some(value) if answer.never_binds => {
+            let hops = answer.hops.unwrap_or(0);
+            sheet.line(format_args!(
+                "does not bind at any value: reachable in {hops} hop{} of which none is long enough for its taper to reach {}, so that any \
+                 greater value asks for the same",
+                plural(hops),
+                with_unit(value)
+            ));
+        }
         Some(value) => {
             let hops = answer.hops.unwrap_or(0);
             sheet.line(format_args!("reachable at {}, in {hops} hop{}", with_unit(value), plural(hops)));
@@ -171,6 +180,7 @@ pub fn require_text(answer: &RequireAnswer) -> String {
     }
     match answer.unreachable_at {
         Some(value) => sheet.line(format_args!("proved unreachable at {}", with_unit(value))),
+        None if answer.never_binds => {}
         None => sheet.line(format_args!("proved unreachable at no value from {from} to {to}")),
     }
     if !answer.resolution_met {
@@ -271,7 +281,7 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         sheet.line(format_args!("commands in steps: every landing is within {miss_m:.3} m of its aim"));
     }
     if let Some(effort) = answer.effort {
-        sheet.line(format_args!("{}: {:.4} {}", effort.total, effort.value, effort.unit));
+        sheet.line(format_args!("{}: {:.4} {}", effort.name.total(), effort.value, effort.unit));
     }
     if let (Some(lower), true) =
         (answer.proof.as_ref().and_then(|proof| proof.lower_bound), answer.hops.is_some() && !answer.is_traversable())
@@ -279,6 +289,9 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
         sheet.line(format_args!("no path has fewer than {lower} hop{}, whatever it takes from the machine", plural(lower)));
     } else if let Some(proof) = &answer.proof {
         proof_lines(&mut sheet, proof, means);
+        if answer.beside_line {
+            sheet.line(format_args!("the proof is about hops on the line, and this path flies beside it"));
+        }
     }
     sheet.line(format_args!(
         "{} nodes (up to {} inside a segment) on a chain of {} vertices, pairs of them tested: {}",
@@ -329,10 +342,8 @@ pub fn check_text(answer: &CheckAnswer, means: FurtherMeans<'_>) -> String {
 }
 
 /// Counts by name, in descending order.
-fn ranked(counts: &std::collections::BTreeMap<&'static str, u64>) -> String {
-    let mut ranked: Vec<_> = counts.iter().collect();
-    ranked.sort_by_key(|(name, count)| (std::cmp::Reverse(**count), **name));
-    ranked.iter().map(|(name, count)| format!("{name} {count}")).collect::<Vec<_>>().join(", ")
+fn ranked(counts: &LimitCounts) -> String {
+    counts.ranked().iter().map(|(name, count)| format!("{name} {count}")).collect::<Vec<_>>().join(", ")
 }
 
 /// The two headings of a hop on a map of a known projection.
@@ -379,9 +390,25 @@ pub fn path_text(rows: &[HopRecord], totals: &TotalsRecord) -> String {
         ));
     }
     if let Some(aim) = rows.last().and_then(|row| row.aim) {
+        /// Less than half of the last digit shown.
+        const UNSEEN_M: f64 = 5e-4;
         let side = if aim.landing_miss_m < 0.0 { "short of" } else { "beyond" };
-        if aim.landing_miss_m.abs() >= 5e-4 {
-            sheet.line(format_args!("the last landing lies {:.3} m {side} the goal", aim.landing_miss_m.abs()));
+        match aim.beside.map(|beside| beside.landing_miss_across_m) {
+            Some(across_m) => {
+                let across = if across_m < 0.0 { "right" } else { "left" };
+                sheet.line(format_args!(
+                    "the last landing lies {:.3} m {side} the goal along the line and {:.3} m to its {across}",
+                    aim.landing_miss_m.abs(),
+                    across_m.abs()
+                ));
+                sheet.line(format_args!(
+                    "the hops fly beside the line, in the headings that the machine has: take-off and landing above are projections on it"
+                ));
+            }
+            None if aim.landing_miss_m.abs() >= UNSEEN_M => {
+                sheet.line(format_args!("the last landing lies {:.3} m {side} the goal", aim.landing_miss_m.abs()));
+            }
+            None => {}
         }
     }
     sheet.line(format_args!(

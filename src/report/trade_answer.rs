@@ -6,24 +6,23 @@ use std::{
     io::{self, Write},
 };
 
-use serde::Serialize;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
 
+use super::stated::stated;
 use crate::graph::proof::ProofVerdict;
 
 /// The answer of `chta trade`.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TradeAnswer {
     /// The varied keys: one or two.
     pub vary: Vec<SweptKeyRecord>,
-    /// Whether a proof was requested.
-    #[serde(skip)]
-    pub proved: bool,
     /// One row for each cell; the last key changes fastest.
     pub rows: Vec<TradeRow>,
 }
 
 /// A varied key.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SweptKeyRecord {
     /// The scenario's key, `table.name`.
     pub key: String,
@@ -32,23 +31,23 @@ pub struct SweptKeyRecord {
 }
 
 /// One cell.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct TradeRow {
     /// The value of each key.
     #[serde(flatten)]
     pub values: BTreeMap<String, f64>,
     /// `traversable`, `no-path-found`, or `untraversable` if that is proved.
-    pub verdict: &'static str,
+    pub verdict: ProofVerdict,
     /// The fewest hops found.
     pub hops: Option<u64>,
     /// With a proof: no path has fewer hops; null if there is no path at all.
-    #[serde(skip_serializing_if = "Option::is_none")]
+    #[serde(default, deserialize_with = "stated", skip_serializing_if = "Option::is_none")]
     pub lower_bound: Option<Option<u64>>,
     /// Whether a speed limit of this cell reaches the escape speed, so that the answer is that of a limit just below it.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub above_escape: bool,
     /// Whether some hop is longer than a hundredth of the body's radius, so that constant gravity is a bad model.
-    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub far_on_body: bool,
 }
 
@@ -64,7 +63,7 @@ impl TradeRow {
 
     /// Whether it is proved that there is no path.
     pub fn is_closed(&self) -> bool {
-        self.verdict == ProofVerdict::Untraversable.name()
+        self.verdict == ProofVerdict::Untraversable
     }
 }
 
@@ -75,11 +74,16 @@ impl TradeAnswer {
         (0..down).map(move |line| self.rows.iter().skip(line).step_by(down))
     }
 
+    /// Whether a proof was requested.
+    pub fn is_with_proof(&self) -> bool {
+        self.rows.iter().any(|row| row.lower_bound.is_some())
+    }
+
     /// A summary: the number of cells with a path.
     pub fn summary(&self) -> String {
         let paths = self.rows.iter().filter(|row| row.hops.is_some()).count();
         let closed = self.rows.iter().filter(|row| row.is_closed()).count();
-        let proved = if self.proved { format!(", in {closed} it is proved that there is none") } else { String::new() };
+        let proved = if self.is_with_proof() { format!(", in {closed} it is proved that there is none") } else { String::new() };
         format!("{paths} of {} cells have a path{proved}", self.rows.len())
     }
 
@@ -151,13 +155,13 @@ impl TradeAnswer {
     pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
         let keys: Vec<&str> = self.vary.iter().map(|v| v.key.as_str()).collect();
         let mut writer = csv::Writer::from_writer(out);
-        let bound: &[&str] = if self.proved { &["lower_bound"] } else { &[] };
+        let bound: &[&str] = if self.is_with_proof() { &["lower_bound"] } else { &[] };
         writer.write_record([&keys[..], &["verdict", "hops"], bound].concat())?;
         let count = |hops: Option<u64>| hops.map(|hops| hops.to_string()).unwrap_or_default();
         for row in &self.rows {
             let values = keys.iter().map(|key| row.values.get(*key).map(f64::to_string).unwrap_or_default());
             let bound = row.lower_bound.map(count);
-            writer.write_record(values.chain([row.verdict.to_owned(), count(row.hops)]).chain(bound))?;
+            writer.write_record(values.chain([row.verdict.to_string(), count(row.hops)]).chain(bound))?;
         }
         writer.flush()
     }

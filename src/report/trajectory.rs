@@ -18,6 +18,13 @@ const MAP_COLUMNS: [&str; 4] = ["map_x_m", "map_y_m", "v_map_x_m_s", "v_map_y_m_
 /// The additional columns on a map of a known projection; velocities to true east and north.
 const PROJECTION_COLUMNS: [&str; 4] = ["lon_deg", "lat_deg", "v_east_m_s", "v_north_m_s"];
 
+/// The columns of a path in time.
+pub fn trajectory_columns(known: MapKnowledge) -> Vec<&'static str> {
+    let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
+    let of_projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
+    COLUMNS.iter().chain(map).chain(of_projection).copied().collect()
+}
+
 /// Writes a path in time as CSV, with a header even without hops.
 ///
 /// # Errors
@@ -29,9 +36,7 @@ pub fn write_trajectory_csv(
     out: impl Write,
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(out);
-    let map: &[&str] = if known >= MapKnowledge::Metres { &MAP_COLUMNS } else { &[] };
-    let of_projection: &[&str] = if known >= MapKnowledge::Projection { &PROJECTION_COLUMNS } else { &[] };
-    writer.write_record(COLUMNS.iter().chain(map).chain(of_projection))?;
+    writer.write_record(trajectory_columns(known))?;
     for state in table.states() {
         let hop = state.hop.to_string();
         let numbers = [state.x_m, state.z_m, state.vx_m_s, state.vz_m_s].map(|number| number.to_string());

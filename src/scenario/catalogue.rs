@@ -132,7 +132,7 @@ const SIGMA_ANGLE: Kind = Kind::Number { min: 0.0, max: 180.0 };
 const ELEVATION_ANGLE: Kind = Kind::Number { min: -90.0, max: 90.0 };
 
 /// The greatest whole number that TOML has.
-const MOST: u64 = i64::MAX as u64;
+pub(super) const MOST: u64 = i64::MAX as u64;
 
 const EFFORTS: [&str; 4] = [Effort::ALL[0].name(), Effort::ALL[1].name(), Effort::ALL[2].name(), Effort::ALL[3].name()];
 const CHOICES: [&str; 4] =
@@ -280,7 +280,7 @@ pub const CATALOGUE: [Key; 73] = [
         "search",
         "takeoff_angle",
         Kind::Word(&CHOICES),
-        "which feasible take-off angle to fly; absent: most-reliable where [uncertainty] is given, else least-speed",
+        "which feasible take-off angle to fly; most-reliable: where most draws of [uncertainty] survive; absent: least-speed",
     ),
     key("search", "split", Kind::Word(&SPLITS), "how to divide many hops on a segment; absent: full-reach"),
     key(

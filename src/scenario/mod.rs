@@ -8,6 +8,7 @@ mod file_kind;
 mod problem;
 mod propulsion;
 mod read;
+mod schema;
 mod trials;
 
 pub use catalogue::{CATALOGUE, Key, Kind};
@@ -17,4 +18,5 @@ pub(crate) use entries::{fits, nearest_key};
 pub use file_kind::FileKind;
 pub use problem::{KeyPath, ProblemKind, ScenarioProblem, ScenarioProblems};
 pub use read::{BodyChoice, LackingKey, Scenario, TerrainSource};
+pub use schema::scenario_schema;
 pub use trials::UncertaintyKeys;

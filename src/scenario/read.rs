@@ -125,6 +125,15 @@ pub struct Scenario {
 }
 
 impl Scenario {
+    /// The scenario of a document that [`scenario_document`](super::scenario_document) made: equal to the one that it was made from, with
+    /// the paths that the document names.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn from_document(document: &serde_json::Value) -> Result<Self, Vec<ScenarioProblem>> {
+        Self::new(Entries::from_json(document))
+    }
+
     /// Validates raw keys.
     ///
     /// # Errors
@@ -557,12 +566,10 @@ fn search(entries: &mut Entries) -> SearchOptions {
     }
     let count = points.as_ref().and_then(toml::Value::as_integer).and_then(|k| u32::try_from(k).ok());
     let word = |name| entries.text("search", name);
-    // With errors to fly, the command that survives most of them.
-    let absent = if entries.has_table("uncertainty") { TakeoffChoice::MostReliable } else { TakeoffChoice::default() };
     SearchOptions {
         spacing: spacing_m.map(PointSpacing::AtMostM).or(count.map(PointSpacing::PerSegment)),
         effort: named(&Effort::ALL, Effort::name, word("effort")),
-        takeoff: word("takeoff_angle").map_or(absent, |word| named(&TakeoffChoice::ALL, TakeoffChoice::name, Some(word))),
+        takeoff: named(&TakeoffChoice::ALL, TakeoffChoice::name, word("takeoff_angle")),
         split: named(&Split::ALL, Split::name, word("split")),
     }
 }

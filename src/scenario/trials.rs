@@ -26,7 +26,7 @@ pub struct UncertaintyKeys {
 }
 
 impl Default for UncertaintyKeys {
-    /// No errors, no tolerance, 10 000 replanned trials of seed 0.
+    /// No errors, no tolerance, 10 000 open-loop trials of seed 0.
     fn default() -> Self {
         Self { errors: Uncertainty::NONE, goal_tolerance_m: 0.0, hop_limit: None, policy: Policy::Replan, trials: 10_000, seed: 0 }
     }
@@ -86,9 +86,7 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
         },
         goal_tolerance_m: number("goal_tolerance_m"),
         hop_limit: entries.count("uncertainty", "hop_limit").and_then(|limit| u32::try_from(limit).ok()),
-        policy: entries
-            .text("uncertainty", "policy")
-            .map_or(absent.policy, |word| super::read::named(&Policy::ALL, Policy::name, Some(word))),
+        policy: super::read::named(&Policy::ALL, Policy::name, entries.text("uncertainty", "policy")),
         trials: entries.count("uncertainty", "trials").unwrap_or(absent.trials),
         seed: entries.count("uncertainty", "seed").unwrap_or(absent.seed),
     };
@@ -101,12 +99,8 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
 }
 
 /// How risk weighs, and how many extra hops it may cost.
-///
-/// With errors to fly, hops are traded for reliability unless the scenario says otherwise.
 pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, Option<u32>) {
-    let absent = if entries.has_table("uncertainty") { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
-    let word = entries.text("search", "risk");
-    let risk = word.map_or(absent, |word| super::read::named(&ReliabilityUse::ALL, ReliabilityUse::name, Some(word)));
+    let risk = super::read::named(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
     if extra.is_some() && risk != ReliabilityUse::Traded {
         let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which allows no extra hops", risk.name());

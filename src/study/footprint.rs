@@ -1,10 +1,13 @@
-//! The footprint of a scenario's hopper on the terrain that it is sliced from.
+//! What is read of a DEM beside its slice: the ground under a scenario's footprint, and that of hops beside the line.
 
 use std::{path::PathBuf, sync::Arc};
 
-use super::{DemReading, PipelineError};
+use super::{DemReading, Overlays, PipelineError};
 use crate::{
+    ground::DemGround,
+    path::heading_deg,
     quantity::format_number,
+    scenario::Scenario,
     terrain::{GeoReference, Profile, Surroundings},
     world::Hopper,
 };
@@ -43,6 +46,25 @@ impl SlicedDem {
         let mut sliced = Self { file, reading, read: None };
         sliced.read = footprint_m(hopper).zip(sliced.around(legs, hopper)?);
         Ok(sliced)
+    }
+
+    /// The whole ground, where the hopper takes its headings in steps and has not those of the slice, so that it leaves its line; else
+    /// `None`.
+    pub(super) fn beside_line(
+        &self,
+        legs: &[Profile],
+        overlays: &Overlays,
+        scenario: &Scenario,
+    ) -> Result<Option<Arc<DemGround>>, PipelineError> {
+        let steps = scenario.hopper.limits().steps;
+        let has = |leg: &Profile| {
+            let [Some(from), Some(to)] = [leg.points.first(), leg.points.last()] else { return true };
+            [(from, to), (to, from)].into_iter().all(|(from, to)| steps.has_heading(heading_deg(from.map, to.map)))
+        };
+        if steps.heading.is_none() || legs.iter().all(has) {
+            return Ok(None);
+        }
+        Ok(Some(Arc::new(overlays.ground(self.reading.options.read(&self.file)?, scenario))))
     }
 
     /// The posts around the slice for a hopper; `None` if it has no footprint.

@@ -2,48 +2,34 @@
 
 use std::sync::Arc;
 
+use super::SimulateError;
 use crate::{
     chain::Station,
-    graph::{self, CostToGo, NodeSet, NodesError, Outcome, ReliablePath, SearchError, preferred_path},
+    graph::{self, CostToGo, NodeSet, Outcome, ReliablePath, RiskModel, TakeoffScatter, preferred_path},
     ground::{DemGround, Surface},
     hop::HopTest,
     path::{HopPath, PathError, generate},
     progress::Progress,
     scenario::Scenario,
-    uncertainty::{Mission, Policy, Simulation, SimulationError},
+    uncertainty::{Mission, Policy, Simulation},
 };
-
-/// Why the success of a path is not estimated.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum FrontError {
-    /// The costs-to-go of its nodes.
-    #[error(transparent)]
-    Search(#[from] SearchError),
-    /// The nodes.
-    #[error(transparent)]
-    Nodes(#[from] NodesError),
-    /// The trials.
-    #[error(transparent)]
-    Simulation(#[from] SimulationError),
-}
 
 /// A journey whose paths are flown in trials.
 #[derive(Clone, Copy, Debug)]
-pub struct Journey<'a> {
+pub(super) struct FlownJourney<'a> {
     /// The scenario, with its errors.
-    pub scenario: &'a Scenario,
+    pub(super) scenario: &'a Scenario,
     /// The hop test over its chain.
-    pub test: &'a HopTest,
+    pub(super) test: &'a HopTest,
     /// Start and goal.
-    pub ends: (Station, Station),
+    pub(super) ends: (Station, Station),
     /// The whole DEM, if the chain was sliced from one.
-    pub ground: Option<&'a DemGround>,
+    pub(super) ground: Option<&'a DemGround>,
 }
 
-impl Journey<'_> {
-    /// The mission along a path; replanned by these costs, if there are any.
-    pub fn mission(&self, path: &HopPath, to_go: Option<&Arc<CostToGo>>) -> Mission {
+impl FlownJourney<'_> {
+    /// The trials along a path; replanned by these costs, if there are any.
+    pub(super) fn simulation(&self, path: &HopPath, to_go: Option<&Arc<CostToGo>>) -> Result<Simulation, SimulateError> {
         let (start, goal) = self.ends;
         let mission = match self.ground {
             None => Mission::along_chain(self.test.clone(), path.clone(), start, goal),
@@ -52,51 +38,57 @@ impl Journey<'_> {
                 Mission::over_dem(ground.clone(), path.clone(), chain.contact_point(&start), chain.contact_point(&goal))
             }
         };
-        match to_go {
+        let mission = match to_go {
             Some(to_go) => mission.with_replanning(self.test.clone(), Arc::clone(to_go)),
             None => mission,
-        }
+        };
+        Ok(Simulation::new(&mission, self.scenario.uncertainty.unwrap_or_default().errors)?)
     }
 
-    /// The costs by which its trials replan over the nodes of an answer; `None` if they fly open loop.
-    ///
-    /// # Errors
-    /// [`FrontError`].
-    pub fn costs_to_go(&self, found: &graph::Answer, progress: &dyn Progress) -> Result<Option<Arc<CostToGo>>, FrontError> {
-        if self.scenario.uncertainty.unwrap_or_default().policy != Policy::Replan {
-            return Ok(None);
-        }
-        let (start, goal) = self.ends;
-        let nodes = NodeSet::new(self.test.chain(), start, goal, found.spacing)?;
+    /// The costs by which trials replan over the nodes of an answer, with as many hops more than the fewest as its path has.
+    pub(super) fn costs_to_go(&self, found: &graph::Answer, progress: &dyn Progress) -> Result<CostToGo, SimulateError> {
+        let to_go = self.costs_with_all_hops(found, progress)?;
+        let fewest = to_go.of_node(to_go.nodes().start()).map(graph::Cost::hops);
+        Ok(match found.hops().zip(fewest) {
+            Some((hops, fewest)) => to_go.with_fewer_extra_hops(hops.saturating_sub(fewest)),
+            None => to_go,
+        })
+    }
+
+    /// The same with as many hops as the scenario allows.
+    fn costs_with_all_hops(&self, found: &graph::Answer, progress: &dyn Progress) -> Result<CostToGo, SimulateError> {
+        let nodes = NodeSet::new(self.test.chain(), self.ends.0, self.ends.1, found.spacing)?;
         let options = &self.scenario.search;
-        let to_go = match self.scenario.reliability(self.ground) {
-            Some(reliability) => CostToGo::with_reliability(self.test, nodes, options, &reliability, progress)?,
-            None => CostToGo::of(self.test, nodes, options, progress).map_err(SearchError::from)?,
+        let Some(mut reliability) = self.scenario.reliability(self.ground) else {
+            return Ok(CostToGo::of(self.test, nodes, options, progress)?);
         };
-        Ok(Some(Arc::new(to_go)))
+        if let RiskModel::Flown { takeoffs, .. } = &mut reliability.model {
+            *takeoffs = TakeoffScatter::OfPosition;
+        }
+        Ok(CostToGo::with_reliability(self.test, nodes, options, &reliability, progress)?)
     }
 
     /// Estimates the success of the paths of a front, and takes the one to fly: [`preferred_path`].
     ///
-    /// Under replanning a robot that may take more hops is another robot: every path is estimated with the hops that it has.
-    ///
-    /// # Errors
-    /// [`FrontError`].
-    pub fn estimate(
+    /// A robot that replans and may take more hops is another robot: every path is estimated with the hops that it has.
+    pub(super) fn estimate(
         &self,
         found: &mut graph::Answer,
         front: &mut [ReliablePath],
         progress: &dyn Progress,
-    ) -> Result<(), FrontError> {
-        let Some(keys) = self.scenario.uncertainty.filter(|_| matches!(found.outcome, Outcome::Path { .. })) else { return Ok(()) };
-        let to_go = self.costs_to_go(found, progress)?;
-        let Some(fewest) = front.first().map(|path| path.cost.hops()) else { return Ok(()) };
+    ) -> Result<(), SimulateError> {
+        let is_path = matches!(found.outcome, Outcome::Path { .. });
+        let Some((keys, fewest)) = self.scenario.uncertainty.filter(|_| is_path).zip(front.first().map(|path| path.cost.hops()))
+        else {
+            return Ok(());
+        };
+        let replans = keys.policy == Policy::Replan;
+        let to_go = replans.then(|| self.costs_with_all_hops(found, progress)).transpose()?;
         for path in front.iter_mut() {
             // A path of too many hops to list, or without commands of the machine, is not flown.
             let Ok(hops) = self.generated(path) else { continue };
             let to_go = to_go.as_ref().map(|to_go| Arc::new(to_go.with_fewer_extra_hops(path.cost.hops() - fewest)));
-            let simulation = Simulation::new(&self.mission(&hops, to_go.as_ref()), keys.errors)?;
-            path.success = Some(simulation.estimated_success(&keys.options(), progress)?);
+            path.success = Some(self.simulation(&hops, to_go.as_ref())?.estimated_success(&keys.options(), progress)?);
         }
         if let Some(path) = preferred_path(front).and_then(|preferred| front.get(preferred)) {
             found.follow(path);

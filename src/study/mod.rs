@@ -1,21 +1,68 @@
 //! One function per question: from a validated scenario to its answer.
+//!
+//! A question along a chain is asked of a [`Case`]: a [`Scenario`](crate::scenario::Scenario) over its terrain. Its answer holds the
+//! record that is written ([`report`](crate::report)), the warnings, and what its pictures and tables need. Nothing here prints or
+//! writes files. What a result says of its question comes from [`Case::record`].
+//!
+//! ```text
+//! hop          one hop, limit by limit
+//! check        whether a path exists; check_pairs for many pairs
+//! plan         the path of fewest hops, with a proof and flown again if that is wanted
+//! simulate     how reliably a plan is flown; experiment for the experiments
+//! require      the least capability with which the goal can be reached
+//! trade        a verdict for every value of one or two keys
+//! compare      several scenarios side by side
+//! ```
 
 mod alike;
+#[cfg(feature = "plot")]
+mod captions;
+mod case;
+mod check;
+mod compare;
 mod dem_ground;
+mod experiment;
+pub mod fan;
 mod footprint;
 mod front;
+mod hop;
+mod journey;
+pub mod map;
 mod on_body;
 mod physics;
 mod pipeline;
+mod plan;
+mod record;
+mod require;
+mod schema;
 mod sense;
+mod simulate;
+pub mod slice;
 mod trade;
+mod traded;
+mod trajectory;
+mod variation;
 
 pub use alike::ask_the_same;
-pub use dem_ground::dem_ground;
+#[cfg(feature = "plot")]
+pub use captions::conditions;
+pub use case::{Case, CaseError, Commands};
+pub use check::{CheckError, Checked, CheckedPair, check, check_pairs};
+pub use compare::{Compared, Comparison, compare};
+pub use experiment::{ConeProblem, ExperimentAnswer, ExperimentError, Experimented, experiment};
 pub use footprint::coarse_dem_warning;
-pub use front::{FrontError, Journey};
+pub use hop::{HopError, Hopped, hop};
+pub use journey::{JourneyError, Proof};
 pub use on_body::{OfBody, dem_on_body, on_body};
 pub use physics::{Extent, Extremes, TooLarge, constant_gravity_warnings};
 pub use pipeline::{DemReading, JourneyEnd, Overlays, PipelineError, Prepared, Survey, Transect, friction, prepare, sha256_of};
+pub use plan::{Defect, PlanError, PlanOptions, Planned, plan};
+pub use record::{CaseRecord, checksums, raster_files, scenario_files};
+pub use require::{RangeProblem, RequireError, Required, Requirement, require};
+pub use schema::SchemaKind;
 pub use sense::TrialGround;
+pub use simulate::{SimulateError, SimulateOptions, Simulated, Trials, simulate};
 pub use trade::{SweptKey, Trade, TradeError, Varied, verdict};
+pub use traded::{Traded, trade};
+pub use trajectory::TrajectoryError;
+pub use variation::Variation;

@@ -17,7 +17,10 @@ use super::{
 };
 use crate::{
     chain::{ConstrainedChain, ConstraintProblems, InvalidChain, OffChain, PolygonalChain, Station, csv},
-    ground::DemGround,
+    graph::{Leg, SearchOptions},
+    ground::{DemGround, MapPosition, Surface},
+    hop::HopTest,
+    path::{Execution, Hop, HopPath, PathError, execute, generate_over},
     quantity::MapPoint,
     scenario::{Scenario, TerrainSource},
     terrain::{
@@ -39,8 +42,36 @@ pub struct Prepared {
     pub goal: Option<Station>,
     /// The projection of the chain's map, if it lies on a map of a known projection.
     pub projection: Option<MapProjection>,
+    /// The DEM that the chain was cut from, where the hopper takes its headings in steps and has not those of the chain: it flies over
+    /// the ground beside the line.
+    pub beside_line: Option<Arc<DemGround>>,
     /// The warnings of the terrain reader.
     pub warnings: Vec<String>,
+}
+
+impl Prepared {
+    /// The hops of a path that was found, with the commands that the hopper has.
+    ///
+    /// # Errors
+    /// [`PathError`].
+    pub fn path(&self, test: &HopTest, legs: &[Leg], options: &SearchOptions) -> Result<HopPath, PathError> {
+        generate_over(test, self.beside_line.as_deref(), legs, options.takeoff, options.split)
+    }
+
+    /// A path between two stations flown again by the independent checker, over the ground that it was planned for.
+    ///
+    /// Commands in steps land near the goal, and their last landing stands for it.
+    pub fn execute(&self, path: &HopPath, (start, goal): (Station, Station)) -> Execution {
+        let landing = path.hops.last().filter(|hop| hop.aim.is_some()).map(|hop| hop.landing);
+        let beside = landing.filter(|_| path.hops.iter().any(Hop::is_beside_line));
+        if let (Some(dem), Some(landing)) = (&self.beside_line, beside) {
+            let start = dem.contact_at(&self.chain.contact_point(&start));
+            let landing = MapPosition { at: landing.point_m.xy(), z_m: landing.point_m.z };
+            return execute(dem.as_ref(), path, start.map(|start| (start, landing)));
+        }
+        let goal = landing.and_then(|landing| landing.station).unwrap_or(goal);
+        execute(self.chain.as_ref(), path, Some((start, goal)))
+    }
 }
 
 /// One end of a journey.
@@ -108,16 +139,18 @@ pub enum PipelineError {
 /// [`PipelineError`].
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
     let Survey { ground, projection, mut warnings } = Survey::of(scenario, source, base)?;
+    let mut beside_line = None;
     let (geometry, dem, ends) = match ground {
         Surveyed::Slice { legs, overlays, dem } => {
-            let around = dem.map(|dem| dem.around(&legs, &scenario.hopper)).transpose()?.flatten();
+            let around = dem.as_ref().map(|dem| dem.around(&legs, &scenario.hopper)).transpose()?.flatten();
+            beside_line = dem.map(|dem| dem.beside_line(&legs, &overlays, scenario)).transpose()?.flatten();
             let (chain, without_effect) = overlays.laid(legs, friction(scenario))?;
             warnings.extend(without_effect);
             whole(chain, around)
         }
         Surveyed::Chain(chain) => (chain, None, (None, None)),
     };
-    resolved(scenario, (geometry, dem), ends, projection, warnings)
+    Ok(Prepared { beside_line, ..resolved(scenario, (geometry, dem), ends, projection, warnings)? })
 }
 
 /// The terrain of a scenario, read and sliced once. Chains for any hopper, grip and search are prepared from it.
@@ -148,11 +181,13 @@ impl Survey {
         let body = &scenario.body;
         let (transect, of_extent) = match source {
             TerrainSource::Dem { path, start, goal } => {
-                on_body(body, Transect::of_dem(&base.join(path), [start, goal], &scenario.via, DemReading::of(scenario)))?
+                let read = Transect::of_dem(&base.join(path), [start, goal], &scenario.via, DemReading::of(scenario));
+                on_body(body, read.map_err(|error| error.of_journey(start.metres(), goal.metres())))?
             }
             TerrainSource::Mesh { path, scale, start, goal } => {
                 let via: Vec<MapPoint> = scenario.via.iter().filter_map(MapPlace::metres).collect();
-                on_body(body, Transect::of_mesh(&base.join(path), (*scale, scenario.no_data), [*start, *goal], &via))?
+                let read = Transect::of_mesh(&base.join(path), (*scale, scenario.no_data), [*start, *goal], &via);
+                on_body(body, read.map_err(|error| error.of_journey(Some(*start), Some(*goal))))?
             }
             TerrainSource::Chain { path } => {
                 let (file, _) = on_body(body, Ok(csv::read_chain_csv_file_with(base.join(path), scenario.no_data)?))?;
@@ -172,7 +207,8 @@ impl Survey {
         Ok(Self { ground, projection: transect.projection, warnings })
     }
 
-    /// The chain under another scenario's hopper, grip, rest slope and ends. That scenario's terrain keys and files are ignored.
+    /// The chain under another scenario's hopper, grip, rest slope and ends. That scenario's terrain keys and files are ignored, and the
+    /// ground beside the line is not read: what varies a key answers for exact commands.
     ///
     /// # Errors
     /// [`PipelineError`], if segments are left without constraints or an end lies off the chain.
@@ -227,7 +263,7 @@ fn resolved(
     };
     let start = station(JourneyEnd::Start, scenario.start_x_m.or(ends.0))?;
     let goal = station(JourneyEnd::Goal, scenario.goal_x_m.or(ends.1))?;
-    let mut prepared = Prepared { chain, start, goal, projection, warnings };
+    let mut prepared = Prepared { chain, start, goal, projection, beside_line: None, warnings };
     prepared.warnings.extend(scenario.replaced_keys(&prepared));
     Ok(prepared)
 }

@@ -53,23 +53,35 @@ impl Scenario {
     /// A warning where commands in steps land farther from the goal than trials may.
     fn missed_goal(&self, path: &HopPath) -> Option<String> {
         let tolerance_m = self.uncertainty?.goal_tolerance_m;
-        let miss_m = path.hops.last()?.aim?.miss_m.abs();
+        let miss_m = path.hops.last()?.aim?.distance_m();
         (miss_m > tolerance_m).then(|| {
             format!(
-                "the last landing of commands in steps lies {} m from the goal, farther than uncertainty.goal_tolerance_m of {} m: trials count \
-                 it as missed",
+                "the last landing of commands in steps lies {} m from the goal, farther than uncertainty.goal_tolerance_m of {} m: a \
+                 trial that flies this plan exactly counts as missed; raise the tolerance, or take smaller steps",
                 format_number(miss_m),
                 format_number(tolerance_m)
             )
         })
     }
 
+    /// Whether every hop of a path is too short to keep the whole of a tapered clearance: whatever the clearance, above this one the path
+    /// has to keep no more.
+    pub fn keeps_no_clearance_in_full(&self, path: &HopPath) -> bool {
+        self.most_clearance_m(path).is_some_and(|(_, _, most_m)| most_m < self.hopper.limits().clearance_m)
+    }
+
+    /// The taper, the longest hop of a path, m, and the most of a tapered clearance that it can be asked to keep, m; `None` without a taper
+    /// or without hops.
+    fn most_clearance_m(&self, path: &HopPath) -> Option<(f64, f64, f64)> {
+        let taper = self.hopper.limits().clearance_rule.taper()?;
+        let longest_m = path.hops.iter().map(Hop::run_m).reduce(f64::max)?;
+        Some((taper, longest_m, 0.5 * taper * longest_m))
+    }
+
     /// A warning where every hop of a path is too short to keep the whole of a tapered clearance.
     fn unkept_clearance(&self, path: &HopPath) -> Option<String> {
         let limits = self.hopper.limits();
-        let taper = limits.clearance_rule.taper()?;
-        let longest_m = path.hops.iter().map(Hop::run_m).reduce(f64::max)?;
-        let most_m = 0.5 * taper * longest_m;
+        let (taper, longest_m, most_m) = self.most_clearance_m(path)?;
         (most_m < limits.clearance_m).then(|| {
             format!(
                 "no hop keeps hopper.clearance_m of {} m in full: at a clearance_taper of {} the longest, of {} m, keeps {} m at its middle; \
@@ -111,13 +123,6 @@ impl Scenario {
                 "no error that is given has an effect on these trials, so that every trial flies the plan exactly and the rate has no meaning"
                     .to_owned(),
             );
-        }
-        if let Some(propellant_kg) = self.hopper.limits().propellant_max_kg {
-            warnings.push(format!(
-                "trials do not count propellant: hopper.propellant_max_kg of {} kg is held against the plan alone, and a trial that flies more \
-                 or other hops may need more",
-                format_number(propellant_kg)
-            ));
         }
         let limit = keys.hop_limit.filter(|limit| usize::try_from(*limit).is_ok_and(|limit| limit < ground.hops));
         warnings.extend(limit.map(|limit| {

@@ -310,7 +310,7 @@ impl<'a> Trade<'a> {
         let rows: Vec<_> = (0..self.cells()).into_par_iter().map(row).collect();
         meter.check()?;
         let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key.path(), values: v.values.clone() }).collect();
-        Ok(TradeAnswer { vary, proved: proof_budget_cells.is_some(), rows: rows.into_iter().collect::<Result<_, _>>()? })
+        Ok(TradeAnswer { vary, rows: rows.into_iter().collect::<Result<_, _>>()? })
     }
 
     /// The values of a cell, from its number.
@@ -360,7 +360,7 @@ impl<'a> Trade<'a> {
         let keys = self.swept.iter().map(|v| v.key.path());
         Ok(TradeRow {
             values: keys.zip(values.iter().copied()).collect(),
-            verdict: answer.verdict.name(),
+            verdict: answer.verdict,
             hops: answer.hops,
             lower_bound: answer.lower_bound,
             above_escape,

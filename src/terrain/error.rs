@@ -259,6 +259,30 @@ impl TerrainError {
         }
     }
 
+    /// The same with the names that the ends of a journey have, instead of those of a slice: an end at neither of the two is an
+    /// intermediate point.
+    #[must_use]
+    pub(crate) fn of_journey(self, start: Option<MapPoint>, goal: Option<MapPoint>) -> Self {
+        let renamed = |which| match which {
+            "from" => "start",
+            "to" => "goal",
+            other => other,
+        };
+        match self {
+            Self::InFile { path, problem } => Self::InFile { path, problem: Box::new(problem.of_journey(start, goal)) },
+            Self::OffTheMap { at, bounds, .. } => {
+                let ends = [("start", start), ("goal", goal)];
+                let which = ends.into_iter().find(|(_, end)| *end == Some(at)).map_or("via", |(which, _)| which);
+                Self::OffTheMap { which, at, bounds }
+            }
+            Self::NoProjection { which, reason } => Self::NoProjection { which: renamed(which), reason },
+            Self::LonLatOffTheMap { which, place, at, bounds } => {
+                Self::LonLatOffTheMap { which: renamed(which), place, at, bounds }
+            }
+            other => other,
+        }
+    }
+
     pub(super) fn reading(reason: std::io::Error) -> Self {
         Self::Io { action: "read", reason }
     }

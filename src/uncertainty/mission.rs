@@ -1,6 +1,11 @@
 //! A planned journey and the ground under it.
 
-use std::sync::Arc;
+use std::{
+    fmt::{self, Write as _},
+    sync::Arc,
+};
+
+use sha2::{Digest, Sha256};
 
 use crate::{
     chain::Station,
@@ -8,6 +13,7 @@ use crate::{
     ground::{ChainGround, ContactPoint, DemGround, Surface},
     hop::HopTest,
     path::HopPath,
+    terrain::{FrictionRaster, KeepOut},
 };
 
 /// A planned journey and the ground under it. It owns or shares all its data.
@@ -48,9 +54,47 @@ impl Mission {
         Self { ground: MissionGround::Map(ground), path, start, goal, replanning: None }
     }
 
+    /// SHA-256 of all that trials depend on, besides errors and options, in hexadecimal: equal for the same mission and the same version
+    /// of this crate. It reads every post of a DEM.
+    pub(super) fn digest(&self) -> String {
+        let mut digest = Sink(Sha256::new());
+        // Writing to a digest cannot fail. The text of a double is that of no other one.
+        let _ = write!(digest, "{}{:?}{:?}{:?}", env!("CARGO_PKG_VERSION"), self.path, self.start, self.goal);
+        let _ = match &self.ground {
+            MissionGround::Chain(ground) => chain_text(&mut digest, ground.test()),
+            MissionGround::Map(ground) => {
+                let overlays = ground.terrain().overlays();
+                let friction = overlays.friction().map(FrictionRaster::content);
+                let keep_out = overlays.keep_out().map(KeepOut::content);
+                write!(digest, "{:?}{:?}{friction:?}{keep_out:?}{:?}", ground.envelope(), ground.surface(), ground.terrain().dem())
+            }
+        };
+        if let Some(Replanning { test, to_go }) = &self.replanning {
+            let _ = chain_text(&mut digest, test);
+            let _ = write!(digest, "{to_go:?}");
+        }
+        digest.0.finalize().iter().fold(String::new(), |text, byte| text + &format!("{byte:02x}"))
+    }
+
     /// The same mission, whose trials may also be replanned over nodes of this chain.
     #[must_use]
     pub fn with_replanning(self, test: HopTest, to_go: Arc<CostToGo>) -> Self {
         Self { replanning: Some(Replanning { test, to_go }), ..self }
     }
+}
+
+/// A digest as a writer of text.
+struct Sink(Sha256);
+
+impl fmt::Write for Sink {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.update(text.as_bytes());
+        Ok(())
+    }
+}
+
+/// All of a hop test that its answers depend on.
+fn chain_text(out: &mut Sink, test: &HopTest) -> fmt::Result {
+    let chain = test.chain();
+    write!(out, "{:?}{:?}{:?}{:?}{:?}", chain.geometry(), chain.segments(), chain.hopper(), chain.gravity(), chain.surface())
 }

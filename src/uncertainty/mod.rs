@@ -42,11 +42,14 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod exact_sum;
 pub mod experiments;
+mod landing_tally;
 mod mission;
 mod options;
 mod outcome;
 mod quantiles;
+mod rates;
 mod record;
 mod replan;
 mod simulation;
@@ -66,4 +69,5 @@ pub use quantiles::QuantileSketch;
 pub use record::{HopRecord, Trajectory, TrialRecord};
 pub use simulation::{FlightEnd, Simulation};
 pub use summary::{ErrorSummary, LandingEllipse, LandingSummary, RatePoint, Summary};
+pub use tally::{MergeProblem, Tally};
 pub use wilson::Wilson;

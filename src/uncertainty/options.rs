@@ -8,6 +8,8 @@ use crate::progress::Cancelled;
 /// The number of trials, and how they are flown and checked.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TrialOptions {
+    /// The number of the first trial: 0, but for a later part of a run.
+    pub first_trial: u64,
     /// The most trials; at least 1.
     pub trials: u64,
     /// The seed. The draws of a trial depend on it and on the trial's number only.
@@ -18,9 +20,9 @@ pub struct TrialOptions {
     pub hop_limit: Option<u32>,
     /// A trial has reached the goal within this horizontal distance from it, m.
     pub goal_tolerance_m: f64,
-    /// Stop once half the width of the success rate's 95 % interval is at most this; checked after every 1 000 trials.
+    /// Stop once half the width of the success rate's 95 % interval is at most this; checked after every 1 000 trials of this part.
     pub until_half_width: Option<f64>,
-    /// The first trials, as many as this, are kept with all their hops.
+    /// Trials with a number below this are kept with all their hops.
     pub trajectories: u64,
 }
 
@@ -28,6 +30,7 @@ impl Default for TrialOptions {
     /// 10 000 open-loop trials of seed 1, to be within 1 m of the goal.
     fn default() -> Self {
         Self {
+            first_trial: 0,
             trials: 10_000,
             seed: 1,
             policy: Policy::OpenLoop,
@@ -80,6 +83,14 @@ pub enum SimulationError {
     /// Zero trials.
     #[error("trials is 0, expected at least 1")]
     NoTrials,
+    /// Trials whose numbers exceed the greatest.
+    #[error("first_trial is {first_trial} with {trials} trials, expected their sum to be below 2^64: begin with a smaller one")]
+    Range {
+        /// The first one.
+        first_trial: u64,
+        /// How many.
+        trials: u64,
+    },
     /// A hop limit below 1.
     #[error("hop_limit is 0, expected at least 1: leave it out for twice the planned hops and ten more")]
     NoHops,
@@ -137,6 +148,9 @@ pub trait Observer {
     fn wants_records(&self) -> bool {
         false
     }
+
+    /// The trials of a policy begin.
+    fn begin(&mut self, _policy: Policy) {}
 
     /// A hop was flown.
     fn hop(&mut self, _hop: &HopRecord) {}

@@ -1,5 +1,7 @@
 //! How a trial ends, and the policies of the robot.
 
+use serde::{Deserialize, Serialize};
+
 /// How the robot chooses its commands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Policy {
@@ -23,6 +25,8 @@ impl Policy {
     }
 }
 
+crate::quantity::by_name!(Policy, Policy::ALL);
+
 /// How a trial ended. Every trial ends in exactly one of these ways.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum TrialOutcome {
@@ -45,11 +49,13 @@ pub enum TrialOutcome {
     Stuck,
     /// It flew the greatest number of hops without ending otherwise.
     HopLimit,
+    /// Its next hop took more propellant than it had left, so that it stayed where it was.
+    OutOfPropellant,
 }
 
 impl TrialOutcome {
     /// All outcomes, in the order of results.
-    pub const ALL: [Self; 8] = [
+    pub const ALL: [Self; 9] = [
         Self::Reached,
         Self::Missed,
         Self::SlidAtTakeoff,
@@ -58,6 +64,7 @@ impl TrialOutcome {
         Self::Lost,
         Self::Stuck,
         Self::HopLimit,
+        Self::OutOfPropellant,
     ];
 
     /// The name in results.
@@ -71,13 +78,16 @@ impl TrialOutcome {
             Self::Lost => "lost",
             Self::Stuck => "stuck",
             Self::HopLimit => "hop_limit",
+            Self::OutOfPropellant => "out_of_propellant",
         }
     }
 }
 
+crate::quantity::by_name!(TrialOutcome, TrialOutcome::ALL);
+
 /// How many trials ended in each way.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct OutcomeCounts([u64; 8]);
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct OutcomeCounts([u64; 9]);
 
 impl OutcomeCounts {
     /// Counts one trial with this outcome.
@@ -90,21 +100,23 @@ impl OutcomeCounts {
         self.0[outcome as usize]
     }
 
-    /// Every outcome with its count, zero counts included, in the order of [`TrialOutcome::ALL`].
+    /// Every outcome with its count, zero counts included, in the order of [`TrialOutcome::ALL`];
+    /// [`OutOfPropellant`](TrialOutcome::OutOfPropellant), which few machines can meet, only where it occurs.
     pub fn each(&self) -> impl Iterator<Item = (TrialOutcome, u64)> + '_ {
-        TrialOutcome::ALL.into_iter().map(|outcome| (outcome, self.of(outcome)))
+        let all = TrialOutcome::ALL.into_iter().map(|outcome| (outcome, self.of(outcome)));
+        all.filter(|(outcome, count)| *outcome != TrialOutcome::OutOfPropellant || *count > 0)
     }
 
     /// The number of trials counted.
     pub fn total(&self) -> u64 {
-        self.0.iter().sum()
+        self.0.iter().fold(0, |sum, count| sum.saturating_add(*count))
     }
 }
 
 impl std::ops::AddAssign for OutcomeCounts {
     fn add_assign(&mut self, other: Self) {
         for (mine, theirs) in self.0.iter_mut().zip(other.0) {
-            *mine += theirs;
+            *mine = mine.saturating_add(theirs);
         }
     }
 }

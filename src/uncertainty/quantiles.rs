@@ -1,5 +1,7 @@
 //! Quantiles of distances in bounded memory.
 
+use serde::{Deserialize, Deserializer, Serialize, de::Error};
+
 /// Bits of the significand that a bin keeps: 256 bins for each factor of two, each 0.4 % wide.
 const KEPT_BITS: u32 = 8;
 const DROPPED_BITS: u32 = f64::MANTISSA_DIGITS - 1 - KEPT_BITS;
@@ -22,13 +24,23 @@ const LEAST_M: f64 = 1e-9;
 /// assert!((sketch.quantile(0.5).unwrap() / 501.0 - 1.0).abs() < 1.0 / 512.0);
 /// assert_eq!(QuantileSketch::default().quantile(0.5), None);
 /// ```
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct QuantileSketch {
     count: u64,
     zeros: u64,
     /// The number of the first bin.
+    #[serde(deserialize_with = "bin")]
     first: u64,
     bins: Vec<u64>,
+}
+
+/// The number of a bin: no number of a finite double is greater.
+fn bin<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+    let found = u64::deserialize(deserializer)?;
+    if found > f64::MAX.to_bits() >> DROPPED_BITS {
+        return Err(D::Error::custom(format!("found the first bin {found}, expected that of a finite distance")));
+    }
+    Ok(found)
 }
 
 impl QuantileSketch {
@@ -64,13 +76,13 @@ impl QuantileSketch {
 
     /// Adds another sketch's counts.
     pub fn merge(&mut self, other: &Self) {
-        self.count += other.count;
-        self.zeros += other.zeros;
+        self.count = self.count.saturating_add(other.count);
+        self.zeros = self.zeros.saturating_add(other.zeros);
         if let Some(last) = (other.bins.len() as u64).checked_sub(1) {
             let (begin, _) = (self.place(other.first), self.place(other.first + last));
             let begin = if self.first < other.first { begin } else { 0 };
             for (mine, theirs) in self.bins[begin..].iter_mut().zip(&other.bins) {
-                *mine += theirs;
+                *mine = mine.saturating_add(*theirs);
             }
         }
     }

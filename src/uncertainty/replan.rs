@@ -2,17 +2,15 @@
 
 use std::sync::Arc;
 
-use nalgebra::Vector2;
-
 use crate::{
-    ballistics::{self, LineOfSight},
+    ballistics::{self, LineOfSight, TakeoffChoice},
     flight::Command,
     graph::{Cost, CostToGo, Edge},
-    ground::{ChainPosition, DemGround, LiftoffVelocity, MapPosition, Surface, heading_of},
+    ground::{ChainGround, ChainPosition, DemGround, MapPosition, Surface, heading_of},
     hop::HopTest,
-    path::nearest_command,
-    quantity::{Angle, NodeId, SlopeInterval},
-    world::{CommandSteps, Direction, SPEED_TOLERANCE, nearest_multiple, tolerant_speed_m_s},
+    path::{SteppedGround, nearest_command},
+    quantity::NodeId,
+    world::{Direction, SPEED_TOLERANCE, tolerant_speed_m_s},
 };
 
 /// Chooses the next hop from a position of the nominal ground.
@@ -21,17 +19,15 @@ pub(super) trait Replan<C>: Send + Sync + std::fmt::Debug {
     fn next(&self, believed: &C) -> Option<Command<C>>;
 }
 
-/// The velocity of a take-off at an angle and a speed.
-fn at_angle(angle: Angle, speed_m_s: f64, heading: Vector2<f64>) -> LiftoffVelocity {
-    let (up, across) = libm::sincos(angle.radians());
-    LiftoffVelocity { heading, horizontal_m_s: speed_m_s * across, vertical_m_s: speed_m_s * up }
-}
-
-/// The nearest heading of a machine that takes headings in steps; on a map, (east, north).
-fn nearest_heading(heading: Vector2<f64>, steps: CommandSteps) -> Vector2<f64> {
-    let Some(step) = steps.heading else { return heading };
-    let (east, north) = libm::sincos(nearest_multiple(libm::atan2(heading.x, heading.y), step.radians()));
-    Vector2::new(east, north)
+/// The command of a machine in steps that is nearest to an exact one, aimed at where it lands.
+fn in_steps<G: SteppedGround>(
+    ground: &G,
+    takeoff: &G::Contact,
+    aim: &G::Contact,
+    choice: TakeoffChoice,
+) -> Option<Command<G::Contact>> {
+    let nearest = nearest_command(ground, takeoff, aim, choice)?;
+    Some(Command { liftoff: nearest.liftoff, speed_m_s: nearest.speed_m_s, aim: nearest.landing })
 }
 
 /// Replanning along a chain, by the costs-to-go of its nodes.
@@ -46,27 +42,41 @@ impl Replan<ChainPosition> for ChainReplan {
         let Self { test, to_go } = self;
         let leg = to_go.best_leg(test, &believed.station)?;
         let direction = Direction::between(leg.takeoff.point.x_m, leg.landing.point.x_m)?;
-        let (arc, landing) = match leg.edge {
-            Edge::Hop(lofts) => {
-                let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
-                let loft = leg.loft.unwrap_or_else(|| test.loft(to_go.options().takeoff, sight, lofts));
-                (ballistics::Arc::new(sight, loft, test.gravity_m_s2()), leg.landing)
-            }
+        let choice = to_go.options().takeoff;
+        let along = match leg.edge {
+            Edge::Hop(_) => None,
             Edge::Along(along) => {
                 let (each_m, last_m) = along.lengths_m(to_go.options().split);
-                let length_m = if along.hops() > 1 { each_m } else { last_m };
-                let x_m = leg.takeoff.point.x_m + direction.sign() * length_m;
-                let landing = test.chain().geometry().station(x_m).unwrap_or(leg.landing);
-                (along.arc(test, length_m, to_go.options().takeoff), landing)
+                Some((along, if along.hops() > 1 { each_m } else { last_m }))
             }
         };
+        let landing = along.as_ref().map_or(leg.landing, |(_, length_m)| {
+            let x_m = leg.takeoff.point.x_m + direction.sign() * length_m;
+            test.chain().geometry().station(x_m).unwrap_or(leg.landing)
+        });
         if !test.hopper().limits().steps.is_continuous() {
-            let hop = nearest_command(test, &leg.takeoff, &landing, to_go.options().takeoff)?;
-            let liftoff = at_angle(hop.takeoff_angle, hop.takeoff_speed_m_s, heading_of(direction));
-            return Some(Command::new(liftoff, ChainPosition::on_chain(hop.landing.station?)));
+            let [takeoff, aim] = [leg.takeoff, landing].map(ChainPosition::on_chain);
+            return in_steps(&ChainGround::new(test.clone()), &takeoff, &aim, choice);
         }
+        let arc = match (leg.edge, along) {
+            (Edge::Hop(lofts), _) => {
+                let sight = test.line_of_sight(&leg.takeoff, &leg.landing)?;
+                let loft = leg.loft.unwrap_or_else(|| test.loft(choice, sight, lofts));
+                ballistics::Arc::new(sight, loft, test.gravity_m_s2())
+            }
+            (Edge::Along(along), length) => along.arc(test, length?.1, choice),
+        };
         Some(Command::of_arc(&arc, heading_of(direction), ChainPosition::on_chain(landing)))
     }
+}
+
+/// Which commands of a hop are looked for.
+#[derive(Clone, Copy)]
+enum Commands {
+    /// Those that lead to the node exactly.
+    Exact,
+    /// Those that the machine has.
+    InSteps,
 }
 
 /// Replanning over a DEM, by hops to the nodes of a transect.
@@ -79,8 +89,31 @@ pub(super) struct MapReplan {
 }
 
 impl MapReplan {
+    /// The best hop to any node.
+    fn best(&self, from: &MapPosition, commands: Commands) -> Option<Command<MapPosition>> {
+        let mut best: Option<(Command<MapPosition>, Cost)> = None;
+        for node in self.to_go.in_order() {
+            let known = best.as_ref().map(|(_, cost)| *cost);
+            let rest = self.to_go.of_node(*node)?;
+            if known.is_some_and(|known| Cost::of_hops(1) + rest >= known) {
+                // The nodes are sorted by cost-to-go, so no later node is better.
+                break;
+            }
+            if let Some(better) = self.hop_to(from, node.index(), known, commands) {
+                best = Some(better);
+            }
+        }
+        best.map(|(command, _)| command)
+    }
+
     /// The best hop to a node and the cost of the journey over it, if that may be lower than `best`.
-    fn hop_to(&self, from: &MapPosition, node: usize, best: Option<Cost>) -> Option<(Command<MapPosition>, Cost)> {
+    fn hop_to(
+        &self,
+        from: &MapPosition,
+        node: usize,
+        best: Option<Cost>,
+        commands: Commands,
+    ) -> Option<(Command<MapPosition>, Cost)> {
         let Self { ground, to_go, nodes } = self;
         let target = nodes[node];
         let rest = to_go.of_node(NodeId(node))?;
@@ -104,33 +137,15 @@ impl MapReplan {
         if best.is_some_and(|best| cost >= best) {
             return None;
         }
-        if limits.steps.is_continuous() {
-            let chosen = to_go.loft_on_map((from, &target), heading, (sight, lofts));
-            let arc = chosen.map_or(arc, |loft| ballistics::Arc::new(sight, loft, g));
-            return Some((Command::of_arc(&arc, heading, target), cost));
-        }
-        let (angle, speed_m_s) = self.nearest(&arc, sight, lofts)?;
-        let liftoff = at_angle(angle, speed_m_s, nearest_heading(heading, limits.steps));
-        Some((Command::new(liftoff, target), cost))
-    }
-
-    /// The command in steps that is nearest to an arc: an angle within the feasible ones, and the nearest speed for it.
-    fn nearest(&self, arc: &ballistics::Arc, sight: LineOfSight, lofts: SlopeInterval) -> Option<(Angle, f64)> {
-        let limits = self.ground.hopper().limits();
-        let angle_of = |loft: f64| Angle::from_slope(sight.slope() + loft).degrees();
-        let (low_deg, high_deg) = (angle_of(lofts.lower), angle_of(lofts.upper));
-        let exact_deg = arc.takeoff_angle().degrees();
-        let angle_deg = limits.steps.takeoff_angle.map_or(Some(exact_deg), |step| {
-            let step_deg = step.degrees();
-            let inside = [0.0, 1.0, -1.0].map(|away| nearest_multiple(exact_deg, step_deg) + away * step_deg);
-            let feasible = inside.into_iter().filter(|angle_deg| (low_deg..=high_deg).contains(angle_deg));
-            feasible.min_by(|a, b| (a - exact_deg).abs().total_cmp(&(b - exact_deg).abs()))
-        })?;
-        let angle = Angle::from_degrees(angle_deg);
-        let exact_m_s = ballistics::Arc::new(sight, angle.slope() - sight.slope(), self.ground.gravity_m_s2()).takeoff_speed_m_s();
-        let speed_m_s = limits.steps.takeoff_speed_m_s.map_or(exact_m_s, |step| nearest_multiple(exact_m_s, step));
-        let allowed = limits.takeoff_speed_min_m_s.unwrap_or(0.0)..=tolerant_speed_m_s(limits.takeoff_speed_max_m_s);
-        (speed_m_s > 0.0 && allowed.contains(&speed_m_s)).then_some((angle, speed_m_s))
+        let command = match commands {
+            Commands::Exact => {
+                let chosen = to_go.loft_on_map((from, &target), heading, (sight, lofts));
+                let arc = chosen.map_or(arc, |loft| ballistics::Arc::new(sight, loft, g));
+                Command::of_arc(&arc, heading, target)
+            }
+            Commands::InSteps => in_steps(ground, from, &target, to_go.options().takeoff)?,
+        };
+        Some((command, cost))
     }
 
     /// If reliability counts: of the successors of the nearest node, the most reliable that one hop from a position reaches.
@@ -141,7 +156,8 @@ impl MapReplan {
         let away2 = |node: &MapPosition| (node.at - from.at).norm_squared();
         let nearest = (0..self.nodes.len()).min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
         let mut successors = self.to_go.reliable_successors(NodeId(nearest)).iter();
-        successors.find_map(|node| self.hop_to(from, node.index(), None)).map(|(command, _)| command)
+        let commands = if self.ground.hopper().limits().steps.is_continuous() { Commands::Exact } else { Commands::InSteps };
+        successors.find_map(|node| self.hop_to(from, node.index(), None, commands)).map(|(command, _)| command)
     }
 }
 
@@ -150,18 +166,12 @@ impl Replan<MapPosition> for MapReplan {
         if let Some(reliable) = self.reliable_successor(believed) {
             return Some(reliable);
         }
-        let mut best: Option<(Command<MapPosition>, Cost)> = None;
-        for node in self.to_go.in_order() {
-            let known = best.as_ref().map(|(_, cost)| *cost);
-            let rest = self.to_go.of_node(*node)?;
-            if known.is_some_and(|known| Cost::of_hops(1) + rest >= known) {
-                // The nodes are sorted by cost-to-go, so no later node is better.
-                break;
-            }
-            if let Some(better) = self.hop_to(believed, node.index(), known) {
-                best = Some(better);
-            }
+        let exact = self.best(believed, Commands::Exact)?;
+        if self.ground.hopper().limits().steps.is_continuous() {
+            return Some(exact);
         }
-        best.map(|(command, _)| command)
+        // The best hop mostly has a command in steps; to look for one of every hop on the way to it would take many times as long.
+        let nearest = in_steps(&self.ground, believed, &exact.aim, self.to_go.options().takeoff);
+        nearest.or_else(|| self.best(believed, Commands::InSteps))
     }
 }

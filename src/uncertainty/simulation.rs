@@ -9,8 +9,8 @@ use super::{
     Mission, MissionPoint, Observer, Policy, SimulationError, Summary, Trajectory, TrialOptions,
     mission::{MissionGround, Replanning},
     replan::{ChainReplan, MapReplan},
-    tally::Tally,
-    trial::{Flown, Plan, PlannedHop, Rules, fly},
+    tally::{Flights, PlannedPlaces, Statistics, Tally},
+    trial::{Flown, Plan, PlannedHop, Rules, Tank, fly},
 };
 use crate::{
     flight::{Command, Errors, TrialDraws, Uncertainty},
@@ -30,6 +30,7 @@ const STRETCH: u64 = 50;
 /// A mission prepared for repeated flights.
 #[derive(Debug)]
 pub struct Simulation {
+    mission: Mission,
     uncertainty: Uncertainty,
     ground_and_plan: GroundAndPlan,
 }
@@ -68,7 +69,7 @@ impl Simulation {
                 GroundAndPlan::Map(ground.clone(), map_plan(mission, ground)?)
             }
         };
-        Ok(Self { uncertainty, ground_and_plan })
+        Ok(Self { mission: mission.clone(), uncertainty, ground_and_plan })
     }
 
     /// Flies the trials.
@@ -84,11 +85,49 @@ impl Simulation {
         observer: &mut dyn Observer,
         progress: &dyn Progress,
     ) -> Result<Summary, SimulationError> {
+        let (statistics, trajectories) = self.flown(options, observer, progress)?;
+        Ok(Summary { trajectories, ..statistics.summary(options.policy, options.seed) })
+    }
+
+    /// Flies the trials as [`run`](Self::run) does, and returns their statistics in a form that merges with that of other trials:
+    /// those before [`first_trial`](TrialOptions::first_trial), and those after.
+    ///
+    /// # Errors
+    /// As [`run`](Self::run).
+    pub fn tally(
+        &self,
+        options: &TrialOptions,
+        observer: &mut dyn Observer,
+        progress: &dyn Progress,
+    ) -> Result<Tally, SimulationError> {
+        let (statistics, _) = self.flown(options, observer, progress)?;
+        let of = Flights {
+            mission: self.mission.digest(),
+            errors: format!("{:?}", self.uncertainty),
+            seed: options.seed,
+            policy: options.policy,
+            hop_limit: self.hop_limit(options),
+            goal_tolerance_m: options.goal_tolerance_m,
+        };
+        Ok(Tally { of, statistics })
+    }
+
+    fn flown(
+        &self,
+        options: &TrialOptions,
+        observer: &mut dyn Observer,
+        progress: &dyn Progress,
+    ) -> Result<(Statistics, Vec<Trajectory>), SimulationError> {
         self.check(options)?;
+        observer.begin(options.policy);
         match &self.ground_and_plan {
             GroundAndPlan::Chain(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
             GroundAndPlan::Map(ground, plan) => self.fly_all(ground, plan, options, observer, progress),
         }
+    }
+
+    fn hop_limit(&self, options: &TrialOptions) -> u32 {
+        options.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(self.mission.path.hops.len()))
     }
 
     /// The share of fixed trials that reach the goal, under the policy, tolerance and hop limit of the options.
@@ -102,7 +141,8 @@ impl Simulation {
         const TRIALS: u64 = 512;
         /// Apart from the seeds that users give.
         const SEED: u64 = 0x6368_7461;
-        let fixed = TrialOptions { trials: TRIALS, seed: SEED, until_half_width: None, trajectories: 0, ..*options };
+        let fixed =
+            TrialOptions { trials: TRIALS, seed: SEED, first_trial: 0, until_half_width: None, trajectories: 0, ..*options };
         Ok(self.run(&fixed, &mut (), progress)?.success.rate)
     }
 
@@ -137,9 +177,12 @@ impl Simulation {
 
     /// Checks the options.
     fn check(&self, options: &TrialOptions) -> Result<(), SimulationError> {
-        let TrialOptions { trials, policy, hop_limit, goal_tolerance_m: found, until_half_width, .. } = *options;
+        let TrialOptions { first_trial, trials, policy, hop_limit, goal_tolerance_m: found, until_half_width, .. } = *options;
         if trials == 0 {
             return Err(SimulationError::NoTrials);
+        }
+        if first_trial.checked_add(trials).is_none() {
+            return Err(SimulationError::Range { first_trial, trials });
         }
         if hop_limit == Some(0) {
             return Err(SimulationError::NoHops);
@@ -167,21 +210,31 @@ impl Simulation {
         options: &TrialOptions,
         observer: &mut dyn Observer,
         progress: &dyn Progress,
-    ) -> Result<Summary, SimulationError> {
+    ) -> Result<(Statistics, Vec<Trajectory>), SimulationError> {
         let meter = Meter::with_total(progress, Stage::Trials, options.trials);
         meter.report(Detail::None)?;
         let rules = Rules {
             errors: Errors::new(self.uncertainty, options.policy == Policy::Replan),
             policy: options.policy,
-            hop_limit: options.hop_limit.unwrap_or_else(|| TrialOptions::default_hop_limit(plan.hops.len())),
+            hop_limit: self.hop_limit(options),
             goal_tolerance_m: options.goal_tolerance_m,
+            tank: Tank::of(ground.hopper().limits()),
         };
         let keep_records = observer.wants_records();
-        let mut tally = Tally::default();
+        let place = |contact: &G::Contact| {
+            let point = ground.point(contact);
+            [point.x, point.y]
+        };
+        let mut tally = Statistics::new(PlannedPlaces {
+            landings: plan.hops.iter().map(|hop| place(&hop.command.aim)).collect(),
+            goal: [plan.goal.x, plan.goal.y],
+            on_a_map: matches!(self.ground_and_plan, GroundAndPlan::Map(..)),
+        });
         let mut trajectories = Vec::new();
-        let mut done = 0;
-        while done < options.trials {
-            let end = options.trials.min(done + BATCH);
+        let last = options.first_trial + options.trials;
+        let mut done = options.first_trial;
+        while done < last {
+            let end = last.min(done.saturating_add(BATCH));
             let starts: Vec<u64> = (done..end).step_by(usize::try_from(STRETCH).unwrap_or(usize::MAX)).collect();
             let stretch = |first: u64| {
                 let mut ground = ground.clone();
@@ -201,31 +254,20 @@ impl Simulation {
                 }
             }
             done = end;
-            tally.end_batch();
-            meter.set_done(done, options.trials);
+            meter.set_done(done - options.first_trial, options.trials);
             meter.report(Detail::Trials { reached_goal: tally.reached_goal() })?;
             if options.until_half_width.is_some_and(|width| tally.success().half_width() <= width) {
                 break;
             }
         }
-        Ok(Summary {
-            policy: options.policy,
-            seed: options.seed,
-            trials: done,
-            outcomes: tally.outcomes,
-            success: tally.success(),
-            hops_flown: tally.hops_flown,
-            landings: tally.landings(matches!(self.ground_and_plan, GroundAndPlan::Map(..))),
-            convergence: tally.convergence(),
-            trajectories,
-        })
+        Ok((tally, trajectories))
     }
 }
 
 /// Adds the results of some trials, in their order.
-fn add(flown: &Flown, tally: &mut Tally, trajectories: &mut Vec<Trajectory>, wanted: u64) {
+fn add(flown: &Flown, tally: &mut Statistics, trajectories: &mut Vec<Trajectory>, wanted: u64) {
     for trial in &flown.trials {
-        tally.trial(trial.outcome, trial.hops);
+        tally.trial(trial.trial, trial.outcome, trial.hops);
         if trial.trial < wanted {
             let hops = flown.hops.iter().filter(|hop| hop.trial == trial.trial).copied().collect();
             trajectories.push(Trajectory { trial: *trial, hops });

@@ -4,8 +4,10 @@ use nalgebra::{Point2, Point3};
 
 use super::{HopRecord, Policy, TrialOutcome, TrialRecord, replan::Replan};
 use crate::{
+    ballistics::propellant_kg,
     flight::{Command, Errors, FlownHop, HopDraws, TrialDraws},
     ground::{ContactFailure, FirstContact, LiftoffVelocity},
+    world::HopperLimits,
 };
 
 /// The planned journey over one kind of ground.
@@ -17,6 +19,9 @@ pub(super) struct Plan<C> {
     /// For [`Policy::Replan`].
     pub(super) replan: Option<Box<dyn Replan<C>>>,
 }
+
+/// Propellant beyond the greatest by less than this share is within it: the tolerance of speeds.
+const PROPELLANT_ROUNDING: f64 = 1e-9;
 
 /// A planned hop.
 #[derive(Clone, Copy, Debug)]
@@ -32,6 +37,32 @@ pub(super) struct Rules {
     pub(super) policy: Policy,
     pub(super) hop_limit: u32,
     pub(super) goal_tolerance_m: f64,
+    /// The propellant of the machine, if its use is known and its amount limited.
+    pub(super) tank: Option<Tank>,
+}
+
+/// The propellant of a machine.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tank {
+    /// Mass at the start, with all propellant, kg.
+    mass_kg: f64,
+    /// Specific impulse, s.
+    isp_s: f64,
+    /// Propellant at the start, kg.
+    max_kg: f64,
+}
+
+impl Tank {
+    /// That of a hopper; `None` unless mass, specific impulse and amount are given.
+    pub(super) fn of(limits: &HopperLimits) -> Option<Self> {
+        Some(Self { mass_kg: limits.mass_kg?, isp_s: limits.isp_s?, max_kg: limits.propellant_max_kg? })
+    }
+
+    /// The propellant used after a delta-v more, m/s, of what was used before, kg; `None` if there is not so much.
+    fn used_kg(&self, before_kg: f64, delta_v_m_s: f64) -> Option<f64> {
+        let used_kg = before_kg + propellant_kg(self.mass_kg - before_kg, delta_v_m_s, self.isp_s);
+        (used_kg <= self.max_kg * (1.0 + PROPELLANT_ROUNDING)).then_some(used_kg)
+    }
 }
 
 /// A landing for the statistics.
@@ -66,7 +97,7 @@ pub(super) fn fly<G: FirstContact>(
         ground.realize(realization);
     }
     draws.begin(trial);
-    let mut journey = Journey { ground, plan, rules, position: ground.realized(plan.start), hops: 0 };
+    let mut journey = Journey { ground, plan, rules, position: ground.realized(plan.start), hops: 0, used_kg: 0.0 };
     let outcome = loop {
         let drawn = rules.errors.draw(draws);
         let command = match journey.decide(&drawn) {
@@ -80,7 +111,14 @@ pub(super) fn fly<G: FirstContact>(
         if !liftoff.stays() && !journey.ground.holds_takeoff(&journey.position, &liftoff) {
             break TrialOutcome::SlidAtTakeoff;
         }
-        let ended = journey.hop(&liftoff, &command.aim, &drawn, |landing, hop| {
+        let hop = rules.errors.fly(journey.ground, &journey.position, &liftoff, &command.aim, &drawn);
+        if let Some(tank) = &rules.tank {
+            let Some(used_kg) = tank.used_kg(journey.used_kg, journey.delta_v_m_s(&liftoff, &hop)) else {
+                break TrialOutcome::OutOfPropellant;
+            };
+            journey.used_kg = used_kg;
+        }
+        let ended = journey.land(&liftoff, &command.aim, hop, |landing, hop| {
             flown.landings.extend(landing);
             if keep_hops {
                 flown.hops.push(HopRecord { trial, ..hop() });
@@ -106,6 +144,8 @@ struct Journey<'t, G: FirstContact> {
     rules: &'t Rules,
     position: G::Contact,
     hops: u32,
+    /// Propellant used, kg; counted for a machine with a [`Tank`].
+    used_kg: f64,
 }
 
 impl<G: FirstContact> Journey<'_, G> {
@@ -138,17 +178,30 @@ impl<G: FirstContact> Journey<'_, G> {
         if self.is_at_goal(&self.position) { TrialOutcome::Reached } else { TrialOutcome::Missed }
     }
 
-    /// Flies a hop and its bounce-and-roll displacement, and reports it; returns the outcome if the trial ends with it.
-    fn hop(
+    /// The delta-v of a hop as flown, m/s: of the take-off as drawn, of the brakes from the velocity at which its arc meets the ground, and
+    /// the overhead. A flight that leaves the known ground does not brake.
+    fn delta_v_m_s(&self, liftoff: &LiftoffVelocity, flown: &FlownHop<G::Contact>) -> f64 {
+        if liftoff.stays() {
+            return 0.0;
+        }
+        let limits = self.ground.hopper().limits();
+        let braking =
+            limits.landing.touchdown_speed_m_s().filter(|_| flown.landed).map_or(0.0, |touchdown_m_s| {
+                libm::hypot(flown.touchdown.horizontal_m_s, flown.touchdown.vertical_m_s + touchdown_m_s)
+            });
+        libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s) + braking + limits.hop_delta_v_overhead_m_s.unwrap_or(0.0)
+    }
+
+    /// Ends a flown hop, with its bounce-and-roll displacement, and reports it; returns the outcome if the trial ends with it.
+    fn land(
         &mut self,
         liftoff: &LiftoffVelocity,
         aim: &G::Contact,
-        drawn: &HopDraws,
+        flown: FlownHop<G::Contact>,
         mut report: impl FnMut(Option<Landing>, &dyn Fn() -> HopRecord),
     ) -> Option<TrialOutcome> {
         let ground = self.ground;
         let from = self.position;
-        let flown = self.rules.errors.fly(ground, &from, liftoff, aim, drawn);
         let FlownHop { rest, landed, .. } = flown;
         let outcome = flown.failure.map(outcome_of);
         let (aim_m, rest_m) = (ground.point(aim), ground.point(&rest));

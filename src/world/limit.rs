@@ -1,7 +1,5 @@
 //! The names of all limits, and the program's only tolerance.
 
-use std::fmt;
-
 /// A limit that can restrict or refuse a hop. All results use its [`name`](Self::name).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Limit {
@@ -109,11 +107,7 @@ impl Limit {
     }
 }
 
-impl fmt::Display for Limit {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.name())
-    }
-}
+crate::quantity::by_name!(Limit, Limit::ALL);
 
 /// The program's only tolerance: a speed limit `v` is applied as `v (1 + SPEED_TOLERANCE)` (model section 1).
 ///

@@ -19,5 +19,6 @@ pub use limit::{Limit, SPEED_TOLERANCE, tolerant_speed_m_s};
 pub use propulsion::LandingMode;
 pub use speed_levels::{InvalidLevels, SpeedLevels};
 pub use steps::{CommandSteps, is_multiple, nearest_multiple};
+pub(crate) use steps::{headings_near, multiples};
 pub use surface::{Grip, InvalidSurface, RestSlope, SurfaceProperties};
 pub use travel::{Contact, Direction};

@@ -41,6 +41,8 @@ impl Direction {
     }
 }
 
+crate::quantity::by_name!(Direction, Direction::BOTH);
+
 /// One of the two ends of a hop.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Contact {

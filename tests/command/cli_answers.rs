@@ -91,8 +91,10 @@ fn the_exit_status_is_the_answer() {
     let desk = Desk::with_dem();
     desk.write("pairs.csv", "start_x_m,goal_x_m\n0,40\n40,0\n");
     desk.write("some.csv", "start_x_m,goal_x_m\n0,0\n0,40\n");
-    let cases: [(&[&str], i32); 14] = [
+    let cases: [(&[&str], i32); 16] = [
         (&["bodies"], 0),
+        (&["schema"], 0),
+        (&["schema", "plan"], 0),
         (&["--help"], 0),
         (&["synth", "--rows", "5", "--cols", "5", "-o", "small.asc"], 0),
         (&["slice", "ground.tif", "--from", "1,1", "--to", "9,9"], 0),

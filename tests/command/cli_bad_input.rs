@@ -219,7 +219,7 @@ fn synth_and_slice_refuse_invalid_terrain() {
     desk.refused(&["synth", "-o", "new.tif", "--south-west-m", "1;2"], &["found `1;2`, expected two finite numbers in metres"]);
     desk.refused(
         &["slice", "ground.tif", "--from", "1", "--to", "2,2"],
-        &["--from", "found `1`, expected two finite numbers in metres, X,Y"],
+        &["--from", "found `1` (1 number), expected two finite numbers in metres, X,Y"],
     );
     desk.refused(&["slice", "ground.tif", "--from", "1,nan", "--to", "2,2"], &["found `1,nan`"]);
     desk.refused(
@@ -273,8 +273,9 @@ fn outputs_that_cannot_be_written_are_refused_and_leave_nothing() {
 }
 
 /// Every command that writes to standard output.
-const WRITING: [&[&str]; 7] = [
+const WRITING: [&[&str]; 8] = [
     &["bodies"],
+    &["schema", "plan"],
     &["hop", "scenario.toml", "--to", "10"],
     &["check", "scenario.toml"],
     &["plan", "scenario.toml"],
@@ -444,4 +445,21 @@ fn numbers_in_sentences_are_short() {
     assert!(text.contains("values tried, from 1 to 12 m/s"), "{text}");
     let bodies = desk.run(&["bodies"]).stdout;
     assert!(bodies.contains(" 1.624 ") && bodies.contains(" 3.711 ") && !bodies.contains("e0"), "{bodies}");
+}
+
+/// The ends of a journey off the map have the names of their keys; those of a slice the names of its options.
+#[test]
+fn an_end_off_the_map_has_its_own_name() {
+    let desk = Desk::with_dem();
+    #[rustfmt::skip]
+    let cases: [(&[&str], &str); 5] = [
+        (&["plan", "map.toml", "--set", "terrain.start_m=[-3, 2]"], "the start point (-3 m, 2 m) is off the map"),
+        (&["plan", "map.toml", "--set", "terrain.goal_m=[15, 99]"], "the goal point (15 m, 99 m) is off the map"),
+        (&["plan", "map.toml", "--set", "terrain.via_m=[[5, 50]]"], "the via point (5 m, 50 m) is off the map"),
+        (&["slice", "ground.tif", "--from", "1,1", "--to", "-5,5"], "the to point (-5 m, 5 m) is off the map"),
+        (&["slice", "ground.tif", "--from=-5,1", "--to", "5,5"], "the from point (-5 m, 1 m) is off the map"),
+    ];
+    for (args, sentence) in cases {
+        desk.refused(args, &[sentence]);
+    }
 }

@@ -10,8 +10,23 @@ use std::{
 
 use crate::desk::{CHAIN, Desk, FORWARD_ONLY, Ran};
 
-const COMMANDS: [&str; 12] =
-    ["run", "slice", "map", "hop", "check", "plan", "require", "trade", "compare", "simulate", "synth", "bodies"];
+const COMMANDS: [&str; 15] = [
+    "run",
+    "slice",
+    "map",
+    "hop",
+    "check",
+    "plan",
+    "require",
+    "trade",
+    "compare",
+    "simulate",
+    "synth",
+    "bodies",
+    "completions",
+    "man",
+    "schema",
+];
 
 /// Options that need a projected map, tested in `maps_command.rs`.
 const ON_A_PROJECTED_MAP: [&str; 6] =
@@ -20,8 +35,11 @@ const ON_A_PROJECTED_MAP: [&str; 6] =
 /// Options that change only the run time, tested below and in `trade_compare.rs`.
 const ON_THE_TIME_ALONE: [&str; 1] = ["--threads"];
 
-/// The bound of inputs, tested in `pipes.rs`.
-const ON_LARGE_INPUTS: [&str; 1] = ["--input-max-gib"];
+/// The option of every command, tested in `verbose.rs`.
+const OF_EVERY_COMMAND: &str = "--verbose";
+
+/// The bounds of inputs and of memory, tested in `pipes.rs` and `map_starts.rs`.
+const ON_LARGE_INPUTS: [&str; 2] = ["--input-max-gib", "--memory-max-mib"];
 
 /// The mark of missing data, tested in `missing_data.rs`.
 const ON_MISSING_DATA: [&str; 1] = ["--no-data"];
@@ -81,7 +99,33 @@ const SLICE: [Trial; 8] = [
     ),
 ];
 
-const MAP: [Trial; 21] = [
+const MAP: [Trial; 27] = [
+    (
+        "--nearest-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--nearest-output", "n.tif"],
+    ),
+    (
+        "--predecessor-output",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--predecessor-output", "p.tif"],
+    ),
+    (
+        "--qml",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "-o", "hops.tif"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "-o", "hops.tif", "--qml"],
+    ),
+    (
+        "--hops-max",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--hops-max", "1"],
+    ),
+    (
+        "--dry-run",
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml"],
+        &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--dry-run"],
+    ),
+    ("--starts", &["map", "map.toml"], &["map", "map.toml", "--starts", "starts.csv"]),
     (
         "--simulate",
         &["map", "ground.tif", "--start", "5,5", "--scenario", "map.toml", "--goal", "9,9"],
@@ -340,6 +384,8 @@ const PLAN: [Trial; 20] = [
     ),
     ("--quiet", &["plan", "scenario.toml", "--body", "bennu"], &["plan", "scenario.toml", "--body", "bennu", "--quiet"]),
 ];
+
+const MAN: [Trial; 1] = [("--output", &["man", "-o", "pages"], &["man", "-o", "elsewhere"])];
 
 /// A base case for several options.
 const REQUIRED: [&str; 10] =
@@ -862,6 +908,7 @@ const SYNTH_OPTIONS: [(&str, &str); 26] = [
 
 fn desk() -> Desk {
     let desk = Desk::with_dem();
+    desk.write("starts.csv", "x_m,y_m\n3,4\n15,16\n");
     desk.write("pairs.csv", "start_x_m,goal_x_m\n10,40\n40,0\n");
     desk.write("forward.csv", FORWARD_ONLY);
     desk.write("errors.toml", desk.read("scenario.toml") + ERRORS);
@@ -885,8 +932,8 @@ fn seen(args: &[&str]) -> (Ran, BTreeMap<String, (u64, Vec<u8>)>) {
 fn options(command: &str) -> BTreeSet<String> {
     let help = desk().run(&[command, "--help"]).stdout;
     let long = |line: &str| {
-        let option = line.trim_start().trim_start_matches("-o, ").split([' ', ',']).next()?.to_owned();
-        (line.starts_with(' ') && option.starts_with("--")).then_some(option)
+        let option = line.trim_start().trim_start_matches("-o, ").trim_start_matches("-v, ").split([' ', ',']).next()?.to_owned();
+        (line.starts_with(' ') && option.starts_with("--") && option != OF_EVERY_COMMAND).then_some(option)
     };
     help.lines().filter_map(long).collect()
 }
@@ -904,6 +951,8 @@ fn every_option_changes_the_output() {
         ("trade", &TRADE),
         ("compare", &COMPARE),
         ("simulate", &SIMULATE),
+        ("completions", &[]),
+        ("man", &MAN),
     ];
     for (command, trials) in all {
         let tried: BTreeSet<_> = trials.iter().map(|trial| trial.0.to_owned()).collect();
@@ -919,7 +968,7 @@ fn every_option_changes_the_output() {
             assert!(before != after, "{command} {option} changes nothing: {:?}", after.0);
         }
     }
-    assert!(options("bodies").is_empty());
+    assert!(options("bodies").is_empty() && options("schema").is_empty());
 }
 
 #[test]
@@ -994,7 +1043,8 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 _ => blocks.push(paragraph.to_owned()),
             }
         }
-        assert!(command == "bodies" || blocks.len() > 3, "{command}: {blocks:?}");
+        let is_small = ["bodies", "completions", "man", "schema"].contains(&command);
+        assert!(is_small || blocks.len() > 3, "{command}: {blocks:?}");
         for block in blocks {
             let one_line = block.split_whitespace().collect::<Vec<_>>().join(" ");
             let name = one_line.trim_start_matches("-o, ").split([' ', ',']).next().unwrap().to_owned();
@@ -1002,9 +1052,7 @@ fn every_help_text_shows_units_defaults_and_an_example() {
             if let Some((_, unit)) = units.into_iter().find(|(suffix, _)| name.ends_with(suffix)) {
                 assert!(format!("{one_line} ").contains(unit), "{command} {name} does not name its unit: {one_line}");
             }
-            let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat", "--start-lonlat"]
-                .contains(&name.as_str())
-                || (command == "map" && name == "--start");
+            let required = ["--from", "--to", "--vary", "--output", "--from-lonlat", "--to-lonlat"].contains(&name.as_str());
             let takes_value =
                 one_line.contains('<') && !["--scenario", "--set", "--body", "--gravity-m-s2"].contains(&name.as_str());
             let writes = [
@@ -1012,6 +1060,9 @@ fn every_help_text_shows_units_defaults_and_an_example() {
                 "--plot",
                 "--plot-map",
                 "--pairs",
+                "--starts",
+                "--nearest-output",
+                "--predecessor-output",
                 "--effort-output",
                 "--return-output",
                 "--mobility",

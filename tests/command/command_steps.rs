@@ -91,23 +91,97 @@ fn no_commands_is_an_answer_and_a_bad_step_is_one_sentence() {
     assert!(without_map.status == 0 && without_map.stderr.contains("hopper.heading_step_deg has no effect"), "{without_map:?}");
 }
 
+/// Transects of a DEM are flown beside their line, in the headings of the machine.
 #[test]
-fn a_transect_needs_a_heading_of_the_machine() {
+fn a_transect_of_a_dem_is_flown_beside_its_line() {
     let desk = Desk::with_dem();
-    let plan =
-        |step: &str| desk.run(&["plan", "map.toml", "--format", "json", "--set", &format!("hopper.heading_step_deg={step}")]);
-    let refused = plan("7");
-    let answer: Value = serde_json::from_str(&refused.stdout).unwrap();
-    assert_eq!((refused.status, answer["verdict"].as_str()), (1, Some("no-path-found")), "{refused:?}");
-    let reason = answer["commands_refusal"].as_str().unwrap();
-    let nearest = reason.split("allows is ").nth(1).unwrap().split(':').next().unwrap().parse::<f64>().unwrap();
-    assert!((nearest / 7.0).fract() == 0.0, "{reason}");
     let exact = desk.json(&["plan", "map.toml"]);
-    let heading = exact["path"][0]["heading_deg"].as_f64().unwrap();
-    assert!((heading - nearest).abs() <= 3.5, "{heading} and {nearest}");
-    // The heading of the transect itself, or any divisor of it, is one.
-    let whole = plan(&format!("{}", heading / 3.0));
-    assert_eq!(whole.status, 0, "{whole:?}");
+    let line_deg = exact["path"][0]["heading_deg"].as_f64().unwrap();
+    for (step, more) in [(7.0, &[][..]), (10.0, &["--set", "hopper.takeoff_speed_step_m_s=0.1"][..])] {
+        let set = format!("hopper.heading_step_deg={step}");
+        let args = [&["plan", "map.toml", "--verify", "--set", &set][..], more].concat();
+        let plan = desk.json(&args);
+        assert_eq!((plan["verdict"].as_str(), plan["verified"].as_bool()), (Some("traversable"), Some(true)), "{plan}");
+        let mut greatest_m = 0.0_f64;
+        let hops = plan["path"].as_array().unwrap();
+        for hop in hops {
+            let number = |key: &str| hop[key].as_f64().unwrap_or_else(|| panic!("{key} in {hop}"));
+            assert!(multiple(&hop["heading_deg"], step), "{hop}");
+            // Along and across, against the positions on the map.
+            let along = line_deg.to_radians().sin_cos();
+            let away = (number("landing_map_x_m") - number("aim_map_x_m"), number("landing_map_y_m") - number("aim_map_y_m"));
+            let (beyond_m, left_m) = (away.0 * along.0 + away.1 * along.1, along.0 * away.1 - along.1 * away.0);
+            assert!(
+                (number("landing_miss_m") - beyond_m).abs() < 1e-6 && (number("landing_miss_across_m") - left_m).abs() < 1e-6,
+                "{hop}"
+            );
+            assert!((number("landing_x_m") - number("aim_x_m") - beyond_m).abs() < 1e-6, "a projection on the line: {hop}");
+            greatest_m = greatest_m.max(away.0.hypot(away.1));
+        }
+        assert!((plan["landing_miss_max_m"].as_f64().unwrap() - greatest_m).abs() < 1e-9 && greatest_m > 1e-3);
+        let proved = desk.run(&["check", "map.toml", "--prove", "--set", &set, "--plot", "proof.svg"]);
+        assert!(proved.stdout.contains("the proof is about hops on the line, and this path flies beside it"), "{proved:?}");
+        assert!(desk.read("proof.svg").contains("drawn projected on it") && plan["beside_line"] == true);
+        let text = desk.run(&args).stdout;
+        assert!(text.contains("the hops fly beside the line") && text.contains("the goal along the line and"), "{text}");
+        let csv = desk.run(&[&args[..], &["-o", "-"]].concat()).stdout;
+        assert!(csv.contains(",aim_x_m,landing_miss_m,landing_miss_across_m,aim_map_x_m,aim_map_y_m,margin_"), "{csv}");
+        let files = ["--plot", "beside.svg", "--geojson", "beside.geojson", "--trajectory", "beside.csv"];
+        assert_eq!(desk.run(&[&args[..], &files].concat()).status, 0);
+        let picture = desk.read("beside.svg");
+        assert!(picture.contains("drawn projected") && !picture.contains("take-off cone"), "{picture}");
+        // The flight in time ends on the map where the path does.
+        let rows = desk.read("beside.csv");
+        let header: Vec<&str> = rows.lines().next().unwrap().split(',').collect();
+        let last: Vec<f64> = rows.lines().last().unwrap().split(',').map(|field| field.parse().unwrap_or(f64::NAN)).collect();
+        for (column, key) in [("map_x_m", "landing_map_x_m"), ("x_m", "landing_x_m"), ("z_m", "landing_z_m")] {
+            let at = header.iter().position(|name| *name == column).unwrap();
+            assert_eq!(Some(last[at]), hops[hops.len() - 1][key].as_f64(), "{column}");
+        }
+        desk.write(
+            "trials.toml",
+            desk.read("map.toml").replace("[surface]", &format!("heading_step_deg = {step}\n[surface]"))
+                + "[uncertainty]\ngoal_tolerance_m = 2\ntrials = 20\n",
+        );
+        for policy in ["open-loop", "replan"] {
+            let trials = desk.json(&[&["simulate", "trials.toml", "--policy", policy][..], more].concat());
+            assert_eq!(trials["outcomes"]["reached"].as_u64(), Some(20), "{policy}: {trials}");
+        }
+        assert_eq!(desk.run(&[&["run", "trials.toml", "-o", "out"][..], more].concat()).status, 0);
+    }
+    // A heading of the machine, here a divisor of the transect's own, is flown along the line.
+    let whole = desk.json(&["plan", "map.toml", "--set", &format!("hopper.heading_step_deg={}", line_deg / 3.0)]);
+    assert!(
+        whole.get("beside_line").is_none()
+            && whole["path"][0].get("landing_miss_across_m").is_none()
+            && whole["path"][0].get("aim_x_m").is_some(),
+        "{whole}"
+    );
+}
+
+/// Of a chain and of a mesh the ground is known on the line alone: the answer says so, with the heading and an end that has it.
+#[test]
+fn a_line_without_ground_beside_it_needs_a_heading_of_the_machine() {
+    let desk = Desk::with_dem();
+    assert_eq!(desk.run(&["slice", "ground.tif", "--from", "1,2", "--to", "15,12", "-o", "cut.csv"]).status, 0);
+    let on_map = desk.read("map.toml");
+    let terrain = |keys: &str| on_map.replace("dem = \"ground.tif\"\nstart_m = [1, 2]\ngoal_m = [15, 12]", keys);
+    desk.write("cut.toml", terrain("chain = \"cut.csv\"\nstart_x_m = 0\ngoal_x_m = 17"));
+    desk.write("mesh.toml", terrain("mesh = \"plate.obj\"\nstart_m = [1, 1]\ngoal_m = [8, 5]"));
+    for (scenario, line_deg) in [("cut.toml", 14f64.atan2(10.0).to_degrees()), ("mesh.toml", 7f64.atan2(4.0).to_degrees())] {
+        for command in ["plan", "check"] {
+            let refused = desk.run(&[command, scenario, "--format", "json", "--set", "hopper.heading_step_deg=7"]);
+            let answer: Value = serde_json::from_str(&refused.stdout).unwrap();
+            assert_eq!((refused.status, answer["verdict"].as_str()), (1, Some("no-path-found")), "{refused:?}");
+            let reason = answer["commands_refusal"].as_str().unwrap();
+            let nearest = (line_deg / 7.0).round() * 7.0;
+            for words in [&format!("allows is {nearest}:"), "the ground is known on the line alone", "such as (", "terrain.dem"] {
+                assert!(reason.contains(words), "{words}: {reason}");
+            }
+        }
+        let whole = desk.run(&["plan", scenario, "--set", &format!("hopper.heading_step_deg={}", line_deg / 3.0)]);
+        assert_eq!(whole.status, 0, "{whole:?}");
+    }
 }
 
 #[test]
@@ -121,6 +195,7 @@ fn a_landing_far_from_its_aim_is_another_hop() {
     // The picture and the whole run say no as well.
     let refused = desk.run(&[&["plan", "level.toml", "--goal", "1", "--plot", "no.svg"][..], &steps].concat());
     assert!(refused.status == 1 && desk.read("no.svg").contains("no commands in steps found"), "{refused:?}");
+    assert!(desk.read("no.svg").contains("none flies hop 1"), "the picture names the hop");
     desk.write(
         "far.toml",
         desk.read("level.toml")

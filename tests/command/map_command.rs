@@ -5,8 +5,8 @@
 
 use std::{fs, path::Path, process::Command};
 
-use crate::desk::Desk;
-use chta::terrain::{Dem, read_dem};
+use crate::desk::{self, Desk};
+use chta::terrain::Dem;
 use serde_json::Value;
 
 use crate::installed::installed;
@@ -51,7 +51,7 @@ fn the_document_and_the_raster_agree() {
     assert_eq!((document["posts"].as_u64(), document["no_data_posts"].as_u64()), (Some(600), Some(15)));
     assert_eq!(document["start_m"], serde_json::json!([102.0, 205.0]));
     assert_eq!(document["start_offset_m"], 0.0);
-    let raster = read_dem(&desk.path().join("hops.tif")).unwrap();
+    let raster = desk::raster(&desk.path().join("hops.tif"));
     let counted: Vec<Option<f64>> = raster.elevations().collect();
     let count = |which: &dyn Fn(f64) -> bool| counted.iter().flatten().filter(|&&hops| which(hops)).count() as u64;
     assert_eq!(counted.iter().filter(|hops| hops.is_none()).count(), 15);
@@ -72,7 +72,7 @@ fn the_document_and_the_raster_agree() {
     assert_eq!(behind["hops"], behind["return_hops"], "level ground is the same both ways");
     assert_eq!((&wall["hops"], &wall["path"]), (&Value::Null, &serde_json::json!([])));
     assert_eq!(hops_at(&raster, 114.0, 205.0), Some(-1.0));
-    let back = read_dem(&desk.path().join("back.tif")).unwrap();
+    let back = desk::raster(&desk.path().join("back.tif"));
     assert!(back.elevations().eq(raster.elevations()));
     assert_eq!(document["return"]["round_trip_posts"], document["reachable_posts"]);
     // 20 x 30 posts: the reachable posts of the border are those outside wall and hole.
@@ -209,7 +209,10 @@ fn missing_keys_of_a_map_are_named() {
     let given = desk.run(&["map", "walled.asc", "--start", "102,205", "--scenario", "grip.toml"]).stderr;
     assert!(!given.contains("surface"), "{given}");
     // A scenario in place of the DEM, with any content.
-    desk.refused(&["map", "grip.toml", "--start", "1,1"], &["grip.toml: this is a scenario (TOML)", "--scenario grip.toml"]);
+    desk.refused(
+        &["map", "grip.toml", "--start", "1,1"],
+        &["grip.toml: found no terrain.dem, expected one for a map", "with --scenario grip.toml"],
+    );
     desk.refused(&["fan", "grip.toml", "--from", "1,1", "--length", "3"], &["grip.toml: this is a scenario (TOML)"]);
 }
 
@@ -336,7 +339,7 @@ fn a_stride_lands_on_fewer_posts_over_the_same_terrain() {
     let document = desk.json(&[&MAP[..], &["--stride", "3", "-o", "hops.tif", "--mobility", "m.tif"]].concat());
     assert_eq!((document["posts"].as_u64(), document["stride"].as_u64()), (Some(70), Some(3)));
     // The nodes are at rows 0, 3, .. from the north: the nearest to (102, 205) is (103, 204) or nearer.
-    let raster = read_dem(&desk.path().join("hops.tif")).unwrap();
+    let raster = desk::raster(&desk.path().join("hops.tif"));
     assert_eq!((raster.rows(), raster.cols()), (7, 10));
     let map = raster.georeference();
     assert_eq!((map.dx_m(), map.dy_m(), map.north_west().x, map.north_west().y), (3.0, 3.0, 100.0, 219.0));

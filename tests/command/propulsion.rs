@@ -161,9 +161,74 @@ fn keys_that_do_not_fit_are_refused_in_one_sentence() {
     }
 }
 
+/// Without errors every trial flies the hops that the propellant lasts for: the greatest k with m (1 - exp(-k dv / c)) within it.
 #[test]
-fn trials_that_do_not_count_propellant_say_so() {
-    let desk = desk("isp_s = 200\nmass_kg = 50\npropellant_max_kg = 40");
-    let ran = desk.run(&["simulate", "level.toml", "--trials", "5", "--set", "uncertainty.goal_tolerance_m=1"]);
-    assert!(ran.status == 0 && ran.stderr.contains("trials do not count propellant"), "{ran:?}");
+fn trials_end_when_the_propellant_does() {
+    let braked = 10.0 + (50.0 + (50f64.sqrt() - 1.0).powi(2)).sqrt();
+    for (keys, delta_v) in
+        [("", 10.0), ("hop_delta_v_overhead_m_s = 3", 13.0), ("landing = \"braked\"\ntouchdown_speed_m_s = 1", braked)]
+    {
+        let last = |hops: f64| 50.0 * (1.0 - (-hops * delta_v / (200.0 * 9.80665)).exp());
+        // Two hops of 50 m: enough for both exactly, for one and a half, for a half.
+        for (enough_for, flown) in [(2.0, 2), (1.5, 1), (0.5, 0)] {
+            let max_kg = last(enough_for);
+            let desk = desk(&format!("isp_s = 200\nmass_kg = 50\npropellant_max_kg = {max_kg:?}\n{keys}"));
+            for policy in ["open-loop", "replan"] {
+                let args =
+                    ["simulate", "level.toml", "--trials", "20", "--policy", policy, "--set", "uncertainty.goal_tolerance_m=1"];
+                let ran = desk.run(&args);
+                assert!(ran.status == i32::from(flown < 2) && !ran.stderr.contains("propellant"), "{ran:?}");
+                assert_eq!(ran.stdout.contains("out_of_propellant"), flown < 2, "{ran:?}");
+                let answer = desk.json(&args);
+                let outcomes = answer["outcomes"].as_object().unwrap();
+                assert_eq!(
+                    outcomes["out_of_propellant"].as_u64(),
+                    Some(if flown < 2 { 20 } else { 0 }),
+                    "{keys} {policy}: {answer}"
+                );
+                assert_eq!(outcomes.values().filter_map(Value::as_u64).sum::<u64>(), 20);
+                assert_eq!(answer["hops_flown"].as_u64(), Some(20 * flown), "{keys} {policy}: {answer}");
+            }
+        }
+    }
+    // Without the amount, none is counted.
+    let desk = desk("isp_s = 200\nmass_kg = 50");
+    let answer = desk.json(&["simulate", "level.toml", "--trials", "20", "--set", "uncertainty.goal_tolerance_m=1"]);
+    assert_eq!((answer["outcomes"]["out_of_propellant"].as_u64(), answer["hops_flown"].as_u64()), (Some(0), Some(40)), "{answer}");
+}
+
+/// The speeds that are flown are those drawn: what a trial has used is known from its landings.
+#[test]
+fn trials_burn_what_they_fly() {
+    let desk = desk("isp_s = 200\nmass_kg = 50\npropellant_max_kg = 0.46");
+    // Two hops of 40 m at 8.944 m/s take 0.454 kg.
+    let errors = ["--goal", "80", "--set", "hopper.landing_speed_max_m_s=20", "--set", "uncertainty.takeoff_speed_sigma_m_s=0.5"];
+    let args = [
+        &["simulate", "level.toml", "--trials", "400", "--policy", "open-loop", "--set", "uncertainty.goal_tolerance_m=200"][..],
+        &errors,
+    ]
+    .concat();
+    let answer = desk.json(&args);
+    let out = answer["outcomes"]["out_of_propellant"].as_u64().unwrap();
+    assert!(out > 50 && out < 350, "{answer}");
+    desk.run(&[&args[..], &["-o", "hops.csv"]].concat());
+    let text = desk.read("hops.csv");
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let header: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let column = |name: &str| header.iter().position(|known| *known == name).unwrap_or_else(|| panic!("{name} in {header:?}"));
+    let [trial, speed, outcome] = ["trial", "takeoff_speed_m_s", "outcome"].map(column);
+    let mut flown = std::collections::BTreeMap::<String, (f64, String)>::new();
+    for line in lines {
+        let fields: Vec<&str> = line.split(',').collect();
+        let entry = flown.entry(fields[trial].to_owned()).or_default();
+        entry.0 += fields[speed].parse::<f64>().unwrap();
+        entry.1 = fields[outcome].to_owned();
+    }
+    let used_kg = |delta_v: f64| 50.0 * (1.0 - (-delta_v / (200.0 * 9.80665)).exp());
+    for (trial, (delta_v, _)) in &flown {
+        assert!(used_kg(*delta_v) <= 0.46 * (1.0 + 1e-9), "{trial}: {delta_v}");
+    }
+    // Those without a hop are in no row; all others end with their outcome.
+    let ended = flown.values().filter(|(_, outcome)| outcome == "out_of_propellant").count();
+    assert_eq!(u64::try_from(ended + 400 - flown.len()).unwrap(), out);
 }

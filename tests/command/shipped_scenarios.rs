@@ -54,6 +54,17 @@ const PROVED: [(&str, Option<u64>); 13] = [
     ("ryugu_hopper", Some(7)),
 ];
 
+/// Editors look the schema up beside the file; to the reader of scenarios the line is a comment.
+#[test]
+fn every_shipped_scenario_names_its_schema() {
+    for (name, ..) in ANSWERS {
+        let text = fs::read_to_string(root().join(format!("data/scenarios/{name}.toml"))).unwrap();
+        let schema = text.lines().next().unwrap().strip_prefix("#:schema ").unwrap_or_else(|| panic!("{name} names no schema"));
+        assert_eq!(schema, "../../docs/schema/scenario.json", "{name}");
+    }
+    assert_eq!(ANSWERS.len(), fs::read_dir(root().join("data/scenarios")).unwrap().count(), "a scenario is not listed");
+}
+
 #[test]
 fn every_shipped_scenario_is_proved() {
     for (name, hops) in PROVED {

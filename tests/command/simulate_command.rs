@@ -41,7 +41,17 @@ fn the_document_has_what_interface_md_promises() {
         assert_eq!((document["trials"].as_u64(), document["seed"].as_u64()), (Some(1500), Some(4)));
         assert_eq!(document["policy"], "open-loop");
         let outcomes = document["outcomes"].as_object().unwrap();
-        let names = ["reached", "missed", "slid_at_takeoff", "slid_at_landing", "damaged", "lost", "stuck", "hop_limit"];
+        let names = [
+            "reached",
+            "missed",
+            "slid_at_takeoff",
+            "slid_at_landing",
+            "damaged",
+            "lost",
+            "stuck",
+            "hop_limit",
+            "out_of_propellant",
+        ];
         assert_eq!(outcomes.keys().map(String::as_str).collect::<Vec<_>>().len(), names.len());
         assert_eq!(names.iter().map(|name| outcomes[*name].as_u64().unwrap()).sum::<u64>(), 1500, "{scenario}");
         let [low, high] = [0, 1].map(|i| number(&document["success_rate_ci95"][i]));

@@ -7,7 +7,7 @@ use std::path::Path;
 use chta::quantity::MapPoint;
 use chta::terrain::{CoordinateSystem, Dem, GeoReference, MapProjection, geotiff_bytes, read_dem};
 
-use crate::desk::{chta, shell};
+use crate::desk::{chta, raster, shell};
 use crate::installed::has_gdal;
 
 const MOON_M: f64 = 1_737_400.0;
@@ -347,6 +347,44 @@ fn zones_in_degrees_are_brought_onto_the_map_by_the_command_of_the_message() {
     assert!(status == 0 && message.contains("IAU_2015:30135") && message.contains("was not checked"), "{message}");
 }
 
+/// GDAL shows the same reference system for the rasters of a map as for its DEM, but for a code of the IAU in the name.
+#[test]
+fn the_rasters_of_a_map_show_the_reference_system_of_their_dem() {
+    if !has_gdal() {
+        return;
+    }
+    for (code, body, start) in [
+        ("EPSG:32633", "earth", "500020,40"),
+        ("EPSG:25832", "earth", "500020,40"),
+        ("EPSG:32756", "earth", "500020,40"),
+        ("EPSG:32633+5773", "earth", "500020,40"),
+        ("IAU_2015:30135", "moon", "20,40"),
+        ("IAU_2015:49930", "mars", "20,40"),
+        ("IAU_2015:30110", "moon", "20,40"),
+    ] {
+        let folder = tempfile::tempdir().unwrap();
+        let (x, y) =
+            start.split_once(',').map(|(x, y)| (x.parse::<f64>().unwrap() - 20.0, y.parse::<f64>().unwrap() + 20.0)).unwrap();
+        plane(folder.path(), MapPoint::new(x, y), 2.0, 0.1, CoordinateSystem::default());
+        shell(folder.path(), &format!("gdal_translate -q -a_srs {code} in.tif dem.tif"));
+        scenario(folder.path(), &format!("name = \"{body}\""), "");
+        let outputs = ["-o", "hops.tif", "--mobility", "mobility.tif"];
+        let map = [&["map", "dem.tif", "--start", start, "--scenario", "s.toml"][..], &outputs].concat();
+        let (status, _, message) = chta(folder.path(), &map);
+        assert_eq!(status, 0, "{code}: {message}");
+        let system = |name: &str| {
+            let text = shell(folder.path(), &format!("gdalinfo {name}"));
+            text.split("Coordinate System is:").nth(1).unwrap().split("Data axis").next().unwrap().to_owned()
+        };
+        let of_dem = system("dem.tif");
+        for name in ["hops.tif", "mobility.tif"] {
+            assert_eq!(system(name).replace(&format!(" ({code})"), ""), of_dem, "{code}: {name}");
+            let number = code.split([':', '+']).nth(1).unwrap();
+            assert!(system(name).contains(number), "{code}: {name} does not show it: {}", system(name));
+        }
+    }
+}
+
 /// The rasters of a map with a code of the IAU show it in GDAL, and are read back as the same map.
 #[test]
 fn the_rasters_of_a_map_name_the_code_of_the_iau() {
@@ -362,7 +400,7 @@ fn the_rasters_of_a_map_name_the_code_of_the_iau() {
     let (status, _, message) =
         chta(folder.path(), &["map", "in.tif", "--start", "75010,39960", "--scenario", "s.toml", "-o", "hops.tif"]);
     assert_eq!((status, message.as_str()), (0, ""));
-    let hops = read_dem(&folder.path().join("hops.tif")).unwrap();
+    let hops = raster(&folder.path().join("hops.tif"));
     let projection = hops.georeference().projection().unwrap();
     assert_eq!((projection.code(), projection.name()), (Some("IAU_2015:30135"), "IAU_2015:30135"));
     if has_gdal() {

@@ -228,3 +228,17 @@ fn compared_scenarios_agree_with_plan() {
     let chain = desk.run(&["compare", "scenario.toml", "chain.csv"]);
     assert!(chain.status == 2 && chain.stderr.contains("chain.csv: this is a chain CSV; expected a scenario"), "{chain:?}");
 }
+
+/// A tapered clearance that no hop of the path is long enough to keep asks for the same at every greater value: there is no bound to find.
+#[test]
+fn a_clearance_that_its_taper_keeps_from_binding_has_no_bound() {
+    let desk = Desk::new();
+    for (set, never_binds) in [("hopper.clearance_rule=\"tapered\"", true), ("hopper.clearance_rule=\"vertex\"", false)] {
+        let args = ["require", "scenario.toml", "--vary", "hopper.clearance_m", "--set", set];
+        let answer = desk.json(&args);
+        assert_eq!(answer["never_binds"].as_bool(), never_binds.then_some(true), "{set}: {answer}");
+        let text = desk.run(&args).stdout;
+        assert_eq!(text.contains("does not bind at any value"), never_binds, "{text}");
+        assert_eq!(text.contains("unreachable"), !never_binds, "{text}");
+    }
+}

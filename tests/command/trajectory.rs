@@ -90,6 +90,16 @@ fn every_command_with_a_path_writes_it_in_time() {
 }
 
 #[test]
+fn a_trajectory_in_the_folder_of_a_run_makes_the_folder() {
+    let desk = Desk::with_dem();
+    for (folder, file) in [("new", "new/t.csv"), ("one/two", "one/two/t.csv")] {
+        let ran = desk.run(&["run", "scenario.toml", "-o", folder, "--trajectory", file]);
+        assert_eq!((ran.status, ran.stderr.as_str()), (0, ""), "{ran:?}");
+        assert!(desk.read(file).lines().count() > 10 && desk.path().join(folder).join("path.csv").exists());
+    }
+}
+
+#[test]
 fn without_a_path_the_table_is_its_header() {
     let desk = Desk::with_dem();
     for words in [

@@ -79,7 +79,7 @@ const THINGS: [(&str, &str); 20] = [
 
 /// A position: its name, a command line with `THING` in it, and the things that it takes or whose reader says best what is wrong.
 /// Nothing else is given, no gravity and no start: the file comes first.
-const POSITIONS: [(&str, &[&str], &[&str]); 13] = [
+const POSITIONS: [(&str, &[&str], &[&str]); 14] = [
     ("CHAIN", &["hop", "THING"], CHAINS),
     ("CHAIN", &["check", "THING"], CHAINS),
     ("CHAIN", &["plan", "THING"], CHAINS),
@@ -89,7 +89,8 @@ const POSITIONS: [(&str, &[&str], &[&str]); 13] = [
     ("SCENARIO", &["run", "THING", "-o", "out"], SCENARIOS),
     ("SCENARIO", &["compare", "scenario.toml", "THING"], SCENARIOS),
     ("--scenario", &["check", "chain.csv", "--scenario", "THING"], SCENARIOS),
-    ("DEM", &["map", "THING", "--start", "1,1", "--stride", "0"], RASTERS),
+    ("DEM|SCENARIO", &["map", "THING", "--start", "1,1", "--stride", "0"], MAPS),
+    ("--starts", &["map", "ground.tif", "--starts", "THING"], &[]),
     ("DEM", &["fan", "THING", "--from", "1,1", "--length", "3"], RASTERS),
     ("DEM|MESH", &["slice", "THING", "--from", "1,1", "--to", "2,2"], TERRAINS),
     ("--pairs", &["check", "chain.csv", "--pairs", "THING"], &["pairs.csv", "empty.tif"]),
@@ -98,6 +99,7 @@ const POSITIONS: [(&str, &[&str], &[&str]); 13] = [
 const CHAINS: &[&str] = &["chain.csv", "scenario.toml", "result.json", "empty.tif"];
 const SCENARIOS: &[&str] = &["scenario.toml", "result.json"];
 const RASTERS: &[&str] = &["ground.tif", "ground.asc", "ground.xyz", "label.lbl"];
+const MAPS: &[&str] = &["ground.tif", "ground.asc", "ground.xyz", "label.lbl", "scenario.toml", "result.json"];
 const TERRAINS: &[&str] = &["ground.tif", "ground.asc", "ground.xyz", "label.lbl", "plate.obj", "plate.ply", "plate.stl"];
 
 /// A key of a scenario that names a file, its lines with `THING` in them, and the things that it takes.

@@ -391,7 +391,7 @@ fn fly_paths(ground: DemGround, stride: usize, step: usize, choice: TakeoffChoic
     let lattice = hops.lattice();
     let middle = lattice.node(lattice.count() / 2);
     let Some(start) = hops.nearest_usable(middle) else { return 0 };
-    let map = search_map(&hops, start, Search::default(), &()).unwrap();
+    let map = search_map(&hops, &[start.into()], Search::default(), &()).unwrap();
     let mut flown = 0;
     for goal in (0..lattice.count()).step_by(step).map(|index| lattice.node(index)) {
         let Some(nodes) = map.path(&hops, goal) else { continue };

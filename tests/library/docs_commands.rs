@@ -36,7 +36,9 @@ fn every_test_that_the_documents_name_is_there() {
         "CONTRIBUTING.md",
         "README.md",
         "data/README.md",
+        "docs/command_line.md",
         "docs/formats.md",
+        "docs/gis.md",
         "docs/performance.md",
         "docs/proof.md",
         "docs/validation.md",
@@ -61,4 +63,31 @@ fn the_manifest_and_the_readme_agree_on_the_rust_version() {
     let manifest = read("Cargo.toml");
     let version = manifest.lines().find_map(|line| line.strip_prefix("rust-version = \"")).unwrap().trim_end_matches('"');
     assert!(read("README.md").contains(&format!("Rust {version} or newer")), "README speaks of another Rust than {version}");
+}
+
+/// The documents about the subject; the glossary is of use for these words alone.
+const DOCUMENTS: [&str; 9] = [
+    "README.md",
+    "docs/clearance.md",
+    "docs/footprint.md",
+    "docs/formats.md",
+    "docs/performance.md",
+    "docs/proof.md",
+    "docs/propulsion.md",
+    "docs/takeoff_speeds.md",
+    "docs/validation.md",
+];
+
+#[test]
+fn the_glossary_has_the_words_that_the_documents_use() {
+    let one_line = |text: String| text.split_whitespace().collect::<Vec<_>>().join(" ").to_lowercase();
+    let used = one_line(DOCUMENTS.map(read).concat());
+    let glossary = read("docs/glossary.md");
+    let terms: Vec<&str> = glossary.lines().filter_map(|line| line.strip_prefix("| ")?.split(" | ").next()).skip(1).collect();
+    assert!(terms.len() > 30, "{terms:?}");
+    for term in &terms {
+        assert!(used.contains(&term.to_lowercase()), "the glossary explains \"{term}\", which no document uses");
+    }
+    assert!(terms.is_sorted_by_key(|term| term.to_lowercase()), "the glossary is not in alphabetical order: {terms:?}");
+    assert!(read("README.md").contains("docs/glossary.md"), "README.md does not name the glossary");
 }

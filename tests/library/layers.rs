@@ -185,3 +185,45 @@ fn the_limits_name_no_trigonometric_function() {
     }
     assert!(read >= 5, "only {read} limits found");
 }
+
+/// The most lines of a file of a command, with all that it does beside parsing, asking a study and writing.
+const COMMAND_LINES: usize = 60;
+
+/// Commands that are longer: the file, the most lines that it may have, and why.
+const LONGER_COMMANDS: [(&str, usize, &str); 1] = [("fan.rs", 66, "two answers: the size before the computation, and the rays")];
+
+/// A file of a command that has more lines than it may, or fewer than its exception grants by far.
+fn misfit(name: &str, lines: usize) -> Option<String> {
+    let longer = LONGER_COMMANDS.iter().find(|(file, ..)| *file == name);
+    let most = longer.map_or(COMMAND_LINES, |(_, most, _)| *most);
+    if lines > most {
+        return Some(format!(
+            "{name} has {lines} lines, at most {most} are allowed: what it does beside parsing and writing is a study"
+        ));
+    }
+    longer.filter(|_| lines <= COMMAND_LINES).map(|_| format!("{name} has {lines} lines and needs no exception"))
+}
+
+#[test]
+fn commands_parse_ask_a_study_and_write() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/cli/commands");
+    let mut files = Vec::new();
+    sources(&folder, &mut files);
+    assert!(files.len() > 10, "only {} commands found", files.len());
+    let name = |file: &Path| file.strip_prefix(&folder).unwrap().to_string_lossy().replace('\\', "/");
+    let found: Vec<_> =
+        files.iter().filter_map(|file| misfit(&name(file), fs::read_to_string(file).unwrap().lines().count())).collect();
+    assert!(found.is_empty(), "{}", found.join("\n"));
+    for (file, ..) in LONGER_COMMANDS {
+        assert!(folder.join(file).exists(), "{file} has an exception and does not exist");
+    }
+}
+
+#[test]
+fn a_command_that_is_too_long_is_found() {
+    assert_eq!(misfit("plan.rs", COMMAND_LINES), None);
+    assert!(misfit("plan.rs", COMMAND_LINES + 1).is_some());
+    let (file, most, _) = LONGER_COMMANDS[0];
+    assert_eq!(misfit(file, most), None);
+    assert!(misfit(file, most + 1).is_some() && misfit(file, COMMAND_LINES).is_some());
+}

@@ -68,7 +68,7 @@ fn compare_maps(world: &World, start: Post, stride: usize, journeys: &[Journey],
             let found = pool.install(|| {
                 let hops = PostHops::new(world.ground(), stride).unwrap();
                 let start = Post { row: start.row / stride, col: start.col / stride };
-                search(&hops, start, Search { journey, effort: None }, &()).unwrap()
+                search(&hops, &[start.into()], Search { journey, ..Search::default() }, &()).unwrap()
             });
             assert_eq!(found.hops, expected, "{what}, {journey:?}, {threads} threads");
         }
@@ -111,7 +111,7 @@ fn compare_cut_outs(file: &str, hopper: Hopper, surface: SurfaceProperties, grav
             continue;
         }
         let hops = PostHops::new(world.ground(), 1).unwrap();
-        let map = search(&hops, start, Search::default(), &()).unwrap();
+        let map = search(&hops, &[start.into()], Search::default(), &()).unwrap();
         let reached = map.hops.iter().filter(|&&hops| hops > 0).count();
         if !(SIDE * SIDE / 4..=SIDE * SIDE * 4 / 5).contains(&reached) {
             continue;
@@ -259,7 +259,7 @@ fn efforts_are_the_least_of_all_paths_of_fewest_hops() {
             }
         }
         let post_hops = PostHops::new(world.ground(), 1).unwrap();
-        let map = search(&post_hops, start, Search { journey: Journey::Outbound, effort: Some((effort, choice)) }, &()).unwrap();
+        let map = search(&post_hops, &[start.into()], Search { effort: Some((effort, choice)), ..Search::default() }, &()).unwrap();
         assert_eq!(map.hops, hops);
         for (index, (&found, &expected)) in map.effort.iter().zip(&expected).enumerate() {
             assert_eq!(found.is_nan(), expected.is_nan());
@@ -301,7 +301,7 @@ fn a_higher_speed_limit_never_makes_a_post_unreachable_or_farther() {
             let hopper = Hopper::new(HopperLimits { clearance_m: 0.05, ..HopperLimits::with_speeds(speed, speed) }).unwrap();
             let world = World::new(dem.clone(), hopper, friction(0.9), 1.62);
             let hops = PostHops::new(world.ground(), 1).unwrap();
-            let map = search(&hops, start, Search::default(), &()).unwrap();
+            let map = search(&hops, &[start.into()], Search::default(), &()).unwrap();
             for (&faster, &slower) in map.hops.iter().zip(before.iter().flatten()) {
                 assert!(slower < 0 || (0..=slower).contains(&faster), "{slower} hops became {faster} at {speed} m/s");
             }
@@ -325,7 +325,7 @@ fn planes_have_the_analytic_shape() {
         let surface = SurfaceProperties { rest: RestSlope::Unlimited, ..friction(mu) };
         let world = World::new(plane(slope), Hopper::with_speeds(speed, speed).unwrap(), surface, gravity);
         let hops = PostHops::new(world.ground(), 1).unwrap();
-        search(&hops, Post { row: 20, col: 20 }, Search::default(), &()).unwrap().hops
+        search(&hops, &[Post { row: 20, col: 20 }.into()], Search::default(), &()).unwrap().hops
     };
     // The cone allows hops at atan(1 / mu) or steeper.
     let least = libm::atan(1.0 / mu);
@@ -386,7 +386,7 @@ fn a_cone_too_steep_to_rest_on_is_an_island() {
     let dem = Dem::new(side, side, heights, GeoReference::local(MapPoint::new(0.0, 0.0), 1.0, 1.0).unwrap()).unwrap();
     let world = World::new(dem, Hopper::with_speeds(3.0, 3.0).unwrap(), friction(0.6), 1.62);
     let hops = PostHops::new(world.ground(), 1).unwrap();
-    let map = search(&hops, Post { row: 1, col: 1 }, Search::default(), &()).unwrap();
+    let map = search(&hops, &[Post { row: 1, col: 1 }.into()], Search::default(), &()).unwrap();
     for (index, &hops) in map.hops.iter().enumerate() {
         let (row, col) = (f64::from(u32::try_from(index / side).unwrap()), f64::from(u32::try_from(index % side).unwrap()));
         let distance = (row - middle).hypot(col - middle);

@@ -24,7 +24,7 @@ use chta::{
 const CHOICES: [TakeoffChoice; 4] = TakeoffChoice::ALL;
 
 fn map_from(hops: &PostHops, start: Post) -> HopMap {
-    search(hops, start, Search::default(), &()).unwrap()
+    search(hops, &[start.into()], Search::default(), &()).unwrap()
 }
 
 fn path_to(hops: &PostHops, map: &HopMap, goal: Post, choice: TakeoffChoice) -> Option<HopPath> {

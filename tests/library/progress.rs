@@ -214,8 +214,9 @@ fn maps() {
     let hops = PostHops::new(ground(80), 1).unwrap();
     let start = Post { row: 40, col: 40 };
     for journey in [Journey::Outbound, Journey::Return] {
-        let asked = Search { journey, effort: None };
-        holds(&[Stage::MapLayers], 10, |progress| search_map(&hops, start, asked, progress));
+        let asked = Search { journey, ..Search::default() };
+        let stage = if journey == Journey::Outbound { Stage::MapLayers } else { Stage::ReturnLayers };
+        holds(&[stage], 10, |progress| search_map(&hops, &[start.into()], asked, progress));
     }
     holds(&[Stage::Mobility], 25, |progress| {
         // NaN, which is not equal to itself, marks posts without a value.

@@ -144,7 +144,7 @@ proptest! {
             let document = scenario_document(&scenario, &|path| path.to_string_lossy().into_owned());
             let written = serde_json::to_string_pretty(&document).map_err(|error| TestCaseError::fail(error.to_string()))?;
             let read: serde_json::Value = serde_json::from_str(&written).map_err(|error| TestCaseError::fail(error.to_string()))?;
-            let again = Scenario::new(Entries::from_json(&read));
+            let again = Scenario::from_document(&read);
             prop_assert_eq!(again.as_ref(), Ok(&scenario), "{}\n{}", text, written);
             // Writing it again gives the same bytes.
             let second = again.map(|again| scenario_document(&again, &|path| path.to_string_lossy().into_owned()));
@@ -228,5 +228,26 @@ fn every_key_reaches_the_document() {
             .as_ref()
             .is_ok_and(|written| *written == expected || (written.as_f64().is_some() && written.as_f64() == expected.as_f64()));
         assert!(same, "{} is {written:?}, given {expected}", key.path());
+    }
+}
+
+/// The shipped scenarios, as files.
+fn shipped() -> Vec<std::path::PathBuf> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/data/scenarios");
+    let mut files: Vec<_> = std::fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path()).collect();
+    files.retain(|path| path.extension().is_some_and(|extension| extension == "toml"));
+    files
+}
+
+#[test]
+fn every_shipped_scenario_reads_back_from_its_document() {
+    let files = shipped();
+    assert!(files.len() >= 15, "{files:?}");
+    for file in files {
+        let text = std::fs::read_to_string(&file).unwrap_or_default();
+        let scenario = Scenario::new(Entries::from_toml(&text));
+        let scenario = scenario.unwrap_or_else(|problems| panic!("{}: {problems:?}", file.display()));
+        let document = scenario_document(&scenario, &|path| path.to_string_lossy().into_owned());
+        assert_eq!(Scenario::from_document(&document), Ok(scenario), "{}", file.display());
     }
 }

@@ -4,6 +4,7 @@
 
 use std::{collections::BTreeMap, fs, path::Path, process::Command};
 
+use chta::terrain::{Dem, read_geotiff_bytes};
 use tempfile::TempDir;
 
 /// A mesh of one tilted face with four corners.
@@ -46,6 +47,17 @@ pub(crate) fn chta(folder: &Path, args: &[&str]) -> (i32, String, String) {
     let (stdout, stderr) = (text(output.stdout), text(output.stderr));
     assert!(!stderr.contains("panicked"), "{args:?} panicked: {stderr}");
     (output.status.code().unwrap_or(-1), stdout, stderr)
+}
+
+/// A raster of results. Its unit is taken away first: the reader of DEMs refuses every unit that is no length.
+pub(crate) fn raster(file: &Path) -> Dem {
+    let mut bytes = fs::read(file).unwrap();
+    for at in 0..bytes.len().saturating_sub(8) {
+        if bytes[at..at + 8].eq_ignore_ascii_case(b"unittype") {
+            bytes[at..at + 8].copy_from_slice(b"no__unit");
+        }
+    }
+    read_geotiff_bytes(bytes).unwrap()
 }
 
 /// Runs a line of the shell in a folder, which must succeed; returns its standard output.

@@ -100,6 +100,10 @@ pub const PAIRS_COLUMNS: [CsvColumn; 2] = [
     required("goal_x_m", "where on the chain the path ends (required)"),
 ];
 
+/// All columns of a CSV of positions on a map.
+pub const POSITION_COLUMNS: [CsvColumn; 2] =
+    [required("x_m", "easting on the map (required)"), required("y_m", "northing on the map (required)")];
+
 /// The value that a field should have, and how to correct the file.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Fault {

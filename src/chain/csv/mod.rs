@@ -20,6 +20,7 @@
 mod columns;
 mod degrees;
 mod pairs;
+mod positions;
 mod problem;
 mod read;
 mod records;
@@ -27,8 +28,9 @@ mod table;
 mod voids;
 mod write;
 
-pub use columns::{CHAIN_COLUMNS, CsvColumn, PAIRS_COLUMNS};
+pub use columns::{CHAIN_COLUMNS, CsvColumn, PAIRS_COLUMNS, POSITION_COLUMNS};
 pub use pairs::{PairsFile, StartGoal, read_pairs_csv, read_pairs_csv_file};
+pub use positions::{PositionsFile, read_positions_csv, read_positions_csv_file};
 pub use problem::{CsvFileError, CsvProblem, CsvProblems};
 pub use read::{ChainFile, read_chain_csv, read_chain_csv_file, read_chain_csv_file_with, read_chain_csv_with};
 pub use write::{ChainWriteError, write_chain_csv};

@@ -1,11 +1,18 @@
 //! The options of the commands that analyse a chain.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use chta::graph::proof::DEFAULT_BUDGET_CELLS;
+use chta::{
+    graph::proof::DEFAULT_BUDGET_CELLS,
+    study::{Case, SimulateOptions},
+    uncertainty::experiments::{DriftReading, Experiment},
+};
 use clap::Args as ClapArgs;
 
-use super::{AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, cell_count, max_gib};
+use super::{
+    super::{Failure, load::OwnKey},
+    AnswerArgs, CommonArgs, DEFAULT_MAX_GIB, Format, JourneyArgs, ProveArgs, SearchArgs, along_chain, cell_count, max_gib,
+};
 
 /// Options of commands that fly a path.
 #[derive(Debug, ClapArgs)]
@@ -54,10 +61,10 @@ pub(crate) struct HopArgs {
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Where the hop takes off, along the chain, m [default: the scenario's start]
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
     pub(crate) from: Option<f64>,
     /// Where it lands, along the chain, m [default: the scenario's goal]
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
     pub(crate) to: Option<f64>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
@@ -252,4 +259,73 @@ pub(crate) struct CompareArgs {
     /// No warnings and no progress on standard error
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+impl SimulateArgs {
+    /// The scenario keys set by the options of trials; they are checked and written as keys of the scenario.
+    pub(crate) fn own_keys(&self) -> Vec<OwnKey<'static>> {
+        let trials = self.trials.map(|trials| ("--trials", "uncertainty", "trials", trials.into()));
+        let seed = self.seed.map(|seed| ("--seed", "uncertainty", "seed", seed.into()));
+        let policy = self.policy.clone().map(|policy| ("--policy", "uncertainty", "policy", policy.into()));
+        [trials, seed, policy].into_iter().flatten().collect()
+    }
+
+    /// What is wanted beyond the keys of the scenario.
+    pub(crate) const fn options(&self) -> SimulateOptions {
+        SimulateOptions { compare: self.compare, until_half_width: self.until_half_width }
+    }
+
+    /// Whether the landings go to standard output, in place of the answer.
+    pub(crate) fn lands_on_stdout(&self) -> bool {
+        self.output.as_deref() == Some(Path::new("-"))
+    }
+
+    /// Checks the options of trials.
+    pub(crate) fn check(&self, case: &Case) -> Result<(), Failure> {
+        if let Some(half_width) = self.until_half_width.filter(|half_width| !(*half_width > 0.0 && *half_width < 0.5)) {
+            return Err(Failure::message(format!(
+                "--until-half-width is {half_width}, expected a number above 0 and below 0.5: 0.01 stops at a rate known to one in a hundred"
+            )));
+        }
+        if self.plot_map.is_some() && !case.is_on_dem() {
+            return Err(Failure::message("--plot-map: the landings lie on no DEM; give the scenario [terrain] dem, or use --plot"));
+        }
+        Ok(())
+    }
+
+    /// The experiment by its name and how it interprets the paper, once no option without effect on it is given.
+    pub(crate) fn experiment(&self, name: &str) -> Result<(Experiment, DriftReading), Failure> {
+        if self.trajectory.trajectory.is_some() {
+            let message =
+                format!("--trajectory: the experiment {name} flies no nominal path: omit one of --trajectory and --experiment");
+            return Err(Failure::message(message));
+        }
+        let experiment = named(&Experiment::ALL, Experiment::name, name, "--experiment")?;
+        let reading = self.reading.as_deref().map(|reading| named(&DriftReading::ALL, DriftReading::name, reading, "--reading"));
+        let reading = reading.transpose()?.unwrap_or_default();
+        let trades = experiment == Experiment::RiskTrade;
+        let without_effect = [
+            ("--output", self.output.is_some()),
+            ("--reading", self.reading.is_some() && experiment != Experiment::WorstDrift),
+            ("--trials", self.trials.is_some() && !trades),
+            ("--policy", self.policy.is_some() && !trades),
+            ("--threads", self.answer.threads != 0 && !trades),
+            ("--plot", self.plot.is_some() && trades),
+        ];
+        match without_effect.into_iter().find(|(_, given)| *given) {
+            Some((option, _)) => {
+                Err(Failure::message(format!("{option} has no effect on the experiment {}: omit it", experiment.name())))
+            }
+            None => Ok((experiment, reading)),
+        }
+    }
+}
+
+/// The variant with this name, or an error that suggests the nearest.
+fn named<T: Copy>(all: &[T], name: fn(T) -> &'static str, given: &str, option: &str) -> Result<T, Failure> {
+    all.iter().copied().find(|variant| name(*variant) == given).ok_or_else(|| {
+        let names: Vec<_> = all.iter().map(|variant| name(*variant)).collect();
+        let near = names.iter().min_by_key(|known| strsim::damerau_levenshtein(given, known)).copied().unwrap_or_default();
+        Failure::message(format!("{option}: '{given}' is unknown, expected one of {}; the nearest is {near}", names.join(", ")))
+    })
 }

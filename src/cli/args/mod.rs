@@ -1,32 +1,43 @@
 //! The command line as typed: the commands, the options that several of them share, and the parsers of positions and counts.
 
 mod journeys;
+mod maps;
+mod position;
+mod setup;
+mod synth;
 mod terrains;
 
 use std::path::PathBuf;
 
-use chta::{
-    graph::proof::DEFAULT_BUDGET_CELLS,
-    quantity::MapPoint,
-    terrain::{LonLat, NoDataRule},
-};
+use chta::{graph::proof::DEFAULT_BUDGET_CELLS, study::Proof, terrain::NoDataRule};
 use clap::{Args as ClapArgs, Parser, Subcommand, ValueEnum};
 
-use super::inputs::{DEFAULT_MAX_GIB, max_gib};
+use super::{
+    inputs::{DEFAULT_MAX_GIB, max_gib},
+    threads::thread_count,
+};
 
 pub(crate) use journeys::{
     CheckArgs, CompareArgs, HopArgs, PlanArgs, RequireArgs, RunArgs, SimulateArgs, TradeArgs, TrajectoryArgs,
 };
-pub(crate) use terrains::{DepthLawArg, FanArgs, MapArgs, SliceArgs, SynthArgs};
+pub(crate) use maps::{FanArgs, MapArgs};
+pub(crate) use position::place;
+use position::{along_chain, lon_lat, map_point};
+pub(crate) use setup::{CompletionsArgs, ManArgs, SchemaArgs};
+pub(crate) use synth::SynthArgs;
+pub(crate) use terrains::SliceArgs;
 
 /// Constrained hopping traversability analysis: can a hopping robot get from here to there, in how few hops, with which commands?
 ///
-/// Exit status: 0 done, and the answer is yes; 1 done, and the answer is no; 2 bad input or failure.
+/// Exit status: 0 done, and the answer is yes; 1 done, and the answer is no; 2 bad input or failure; 130 interrupted.
 #[derive(Debug, Parser)]
 #[command(version, max_term_width = 110)]
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// Say on standard error what is read, with which settings, and how long each stage takes; the answer stays as it is
+    #[arg(short, long, global = true)]
+    pub(crate) verbose: bool,
 }
 
 /// The commands.
@@ -47,6 +58,9 @@ pub(crate) enum Command {
     /// List the known bodies with gravity, radius and their source
     #[command(after_help = "Example:\n  chta bodies")]
     Bodies,
+    Completions(CompletionsArgs),
+    Man(ManArgs),
+    Schema(SchemaArgs),
 }
 
 /// How a result is written to standard output.
@@ -90,6 +104,15 @@ pub(crate) struct CommonArgs {
     pub(crate) quiet: bool,
 }
 
+impl CommonArgs {
+    /// The same for a command that takes whole scenarios and few of these options.
+    pub(crate) fn of_scenarios(set: &[String], accept_map_scale: bool, input_max_gib: f64, quiet: bool) -> Self {
+        let set = set.to_vec();
+        let (body, gravity_m_s2, clearance_m, no_data) = (None, None, None, None);
+        Self { scenario: None, set, body, gravity_m_s2, clearance_m, accept_map_scale, no_data, input_max_gib, quiet }
+    }
+}
+
 /// Options of commands that search.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct SearchArgs {
@@ -115,6 +138,13 @@ pub(crate) struct ProveArgs {
     pub(crate) budget: usize,
 }
 
+impl ProveArgs {
+    /// The proof, if it is wanted.
+    pub(crate) fn proof(self) -> Option<Proof> {
+        self.prove.then_some(Proof { budget_cells: self.budget })
+    }
+}
+
 /// A chain, and where the journey over it begins and ends.
 #[derive(Debug, ClapArgs)]
 pub(crate) struct JourneyArgs {
@@ -122,32 +152,22 @@ pub(crate) struct JourneyArgs {
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Start along the chain, m [default: the scenario's]
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
     pub(crate) start: Option<f64>,
     /// Goal along the chain, m [default: the scenario's]
-    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
     pub(crate) goal: Option<f64>,
 }
 
 /// How an answer is computed and written.
 #[derive(Clone, Copy, Debug, ClapArgs)]
 pub(crate) struct AnswerArgs {
-    /// Threads to work with; the answer does not depend on it [default: one for each core]
+    /// Threads to work with; the answer does not depend on it [default: the environment variable `CHTA_THREADS`, else one for each core]
     #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true, value_parser = thread_count)]
     pub(crate) threads: usize,
     /// How the answer is written to standard output
     #[arg(long, value_enum, default_value = "text")]
     pub(crate) format: Format,
-}
-
-/// Reads a number of threads; 0: one for each core.
-fn thread_count(text: &str) -> Result<usize, String> {
-    /// More than any machine this runs on has cores; thousands of threads take longer to start than most answers.
-    const MOST_THREADS: usize = 512;
-    match text.parse() {
-        Ok(threads) if threads <= MOST_THREADS => Ok(threads),
-        _ => Err(format!("expected a whole number from 0 (one for each core) to {MOST_THREADS}")),
-    }
 }
 
 /// Reads a number of cells.
@@ -158,31 +178,10 @@ fn cell_count(text: &str) -> Result<usize, String> {
         .ok_or_else(|| format!("found `{text}`, expected a whole number of cells from 1 to {MOST}, such as {DEFAULT_BUDGET_CELLS}"))
 }
 
-/// Reads `X,Y`.
-fn map_point(text: &str) -> Result<MapPoint, String> {
-    let number = |part: &str| part.trim().parse::<f64>().ok().filter(|n| n.is_finite());
-    let wanted = || format!("found `{text}`, expected two finite numbers in metres, X,Y, such as 12.5,-30");
-    let (x, y) = text.split_once(',').ok_or_else(wanted)?;
-    Ok(MapPoint::new(number(x).ok_or_else(wanted)?, number(y).ok_or_else(wanted)?))
-}
-
 /// Reads `VALUE` or `none`.
 fn no_data_rule(text: &str) -> Result<NoDataRule, String> {
     if text.eq_ignore_ascii_case("none") {
         return Ok(NoDataRule::Nothing);
     }
     text.parse().map(NoDataRule::Value).map_err(|_| format!("found `{text}`, expected a number, or none"))
-}
-
-/// Reads `LON,LAT`.
-fn lon_lat(text: &str) -> Result<LonLat, String> {
-    let number = |part: &str, range: std::ops::RangeInclusive<f64>| part.trim().parse::<f64>().ok().filter(|n| range.contains(n));
-    let wanted = || {
-        format!(
-            "found `{text}`, expected longitude (-180 to 360, east positive) and latitude (-90 to 90) in degrees, such as 62.8,-87.18"
-        )
-    };
-    let (lon, lat) = text.split_once(',').ok_or_else(wanted)?;
-    let (lon_deg, lat_deg) = (number(lon, -180.0..=360.0).ok_or_else(wanted)?, number(lat, -90.0..=90.0).ok_or_else(wanted)?);
-    Ok(LonLat { lon_deg, lat_deg })
 }

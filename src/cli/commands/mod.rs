@@ -1,19 +1,18 @@
 //! One file per command.
 
 pub(super) mod bodies;
-mod captions;
 pub(super) mod check;
 pub(super) mod compare;
+pub(super) mod completions;
 pub(super) mod fan;
 pub(super) mod hop;
+pub(super) mod man;
 pub(super) mod map;
-mod map_profiles;
 pub(super) mod plan;
 pub(super) mod require;
 pub(super) mod run;
-mod search;
+pub(super) mod schema;
 pub(super) mod simulate;
 pub(super) mod slice;
 pub(super) mod synth;
 pub(super) mod trade;
-mod trajectory;

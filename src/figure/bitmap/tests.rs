@@ -1,5 +1,7 @@
 //! Marks as pixels: position, coverage and colour.
 
+use sha2::{Digest as _, Sha256};
+
 use super::*;
 use crate::figure::{
     palette::BLACK,
@@ -83,4 +85,31 @@ fn images_are_at_their_position() {
     let at = |x: usize, y: usize| canvas.pixels.colour(x, y);
     assert_eq!([at(10, 5), at(19, 14), at(20, 5), at(29, 14)], [[0; 3], [0; 3], [255, 0, 0], [255, 0, 0]]);
     assert_eq!([at(9, 5), at(30, 5), at(10, 4), at(10, 15)], [[255; 3]; 4]);
+}
+
+/// Every kind of mark: the checksum is that of the same bytes on every processor.
+#[test]
+fn a_picture_has_the_same_bytes_on_every_machine() {
+    let mut sheet = Sheet::default();
+    let pen = Pen { colour: RGBColor(0, 90, 160), width_mm: 0.3 };
+    sheet.marks = vec![
+        Mark::Area { points: vec![(1.0, 1.0), (19.3, 2.1), (11.7, 12.9)], colour: RGBColor(200, 120, 0), opacity: 0.4 },
+        Mark::Line { points: vec![(2.0, 2.0), (9.5, 13.0), (12.1, 3.3), (12.1, 13.7)], pen },
+        Mark::Dot { centre: (5.2, 5.1), radius_mm: 1.3, pen, filled: true },
+        Mark::Dot { centre: (15.2, 5.1), radius_mm: 1.3, pen, filled: false },
+        Mark::Label(Label::new("9 hops, 45\u{b0}", (3.0, 8.0), 2.5)),
+        Mark::Label(Label::new("\u{2264} 2.5 m/s", (17.0, 13.0), 2.0).turned()),
+    ];
+    let image = Pixels { width: 2, height: 2, form: Form::Palette(vec![[0, 0, 0], [255, 0, 0]]), bytes: vec![0, 1, 1, 0] };
+    sheet.images = vec![SheetImage { left_mm: 14.0, top_mm: 9.0, width_mm: 4.0, height_mm: 4.0, pixels: image }];
+    let png = render(&sheet, 20.0, 15.0).unwrap();
+    let mut decoder = ::png::Decoder::new(std::io::Cursor::new(&png)).read_info().unwrap();
+    let mut bytes = vec![0; decoder.output_buffer_size().unwrap()];
+    decoder.next_frame(&mut bytes).unwrap();
+    let drawn = pixels(&sheet, 20.0, 15.0).unwrap();
+    assert_eq!((drawn.width, drawn.height), (236, 177));
+    assert!(bytes == drawn.bytes, "the decoded pixels are those that were drawn");
+    let hex = |bytes: &[u8]| format!("{:x}", Sha256::digest(bytes));
+    assert_eq!(hex(&drawn.bytes), "a2cbbbba3e2c9ea669b86cae6145aa798cf26f282cdc7f1f902fa7a451ce4743", "pixels");
+    assert_eq!(hex(&png), "28e89aa2fd55da170f94a2a9d7cc224003fc228ee3b9ee330d7792aa52b420e0", "file of {} bytes", png.len());
 }

@@ -9,7 +9,10 @@ use crate::{
 
 impl From<&Hop> for Flight {
     fn from(hop: &Hop) -> Self {
-        Self { from: hop.takeoff.in_profile(), to: hop.landing.in_profile(), takeoff_slope: hop.takeoff_angle.slope() }
+        let (from, to) = (hop.takeoff.in_profile(), hop.landing.in_profile());
+        // A hop beside its line is drawn projected on its plane: as high, and shorter.
+        let stretch = if hop.is_beside_line() { hop.run_m() / (to.x_m - from.x_m).abs() } else { 1.0 };
+        Self { from, to, takeoff_slope: hop.takeoff_angle.slope() * stretch }
     }
 }
 

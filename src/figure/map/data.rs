@@ -5,6 +5,8 @@ use crate::{quantity::MapPoint, terrain::Dem};
 
 /// The value of an unreachable post, in [`HopMapFigure::hops`] and in the GeoTIFF.
 pub const HOPS_UNREACHABLE: i16 = -1;
+/// The value of a post beyond the hops that were searched, in [`HopMapFigure::hops`] and in the GeoTIFF.
+pub const HOPS_NOT_SEARCHED: i16 = -2;
 /// The value of a post without an elevation, in [`HopMapFigure::hops`] and in the GeoTIFF.
 pub const HOPS_NO_DATA: i16 = i16::MIN;
 
@@ -68,14 +70,15 @@ pub struct HopMapFigure<'a> {
     pub caption: Caption,
     /// Terrain and posts.
     pub posts: MapPosts<'a>,
-    /// Fewest hops to each post, row-major from the north-west; [`HOPS_UNREACHABLE`] or [`HOPS_NO_DATA`] for other posts.
+    /// Fewest hops to each post, row-major from the north-west; [`HOPS_UNREACHABLE`], [`HOPS_NOT_SEARCHED`] or [`HOPS_NO_DATA`] for
+    /// other posts.
     pub hops: &'a [i16],
-    /// Whether the start can be reached again from each post, in the same order; `None` if not requested.
+    /// Whether a start can be reached again from each post, in the same order; `None` if not requested.
     pub can_return: Option<&'a [bool]>,
     /// Whether each post lies in a keep-out zone, in the same order; `None` without zones.
     pub kept_out: Option<&'a [bool]>,
-    /// The start.
-    pub start: MapPoint,
+    /// The starts.
+    pub starts: Vec<MapPoint>,
     /// The goals.
     pub goals: Vec<GoalMark>,
     /// Paths to goals: the start and every landing, in order.

@@ -12,7 +12,7 @@ use super::{
         sheet::Sheet,
     },
     check_size,
-    data::{HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, MapPosts},
+    data::{HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, MapPosts},
     panel::{MapPanel, end_keys, start_symbol},
     raster::{self, Pattern, Window, tone},
 };
@@ -21,6 +21,7 @@ use super::{
 pub(super) const NOT_REACHED: RGBColor = RGBColor(205, 205, 205);
 const KEEP_OUT: &str = "keep-out, not reached";
 const NO_WAY_BACK: &str = "reached, no path back to the start";
+const NO_WAY_BACK_TO_ANY: &str = "reached, no path back to a start";
 /// The legend symbol of no-data: white in a thin frame.
 pub(super) fn no_data_symbol(sheet: &mut Sheet, (x, y): (f64, f64)) {
     let corners = keys::rectangle((x - 3.0, y - 1.5), (x + 3.0, y + 1.5));
@@ -61,10 +62,10 @@ pub fn draw_hop_map(figure: &HopMapFigure<'_>) -> Result<Picture, FigureError> {
     let map = MapPanel::new(posts.dem, &window, top_mm);
     let end_mm = map.draw(&mut sheet, pixels);
     map.paths(&mut sheet, &figure.paths);
-    map.ends(&mut sheet, Some(figure.start), &figure.goals, &figure.paths);
+    map.ends(&mut sheet, &figure.starts, &figure.goals, &figure.paths);
     let mut entries = counts.keys(&tones);
-    let uncounted_start = (counts.start == 0).then_some(figure.start);
-    entries.extend(end_keys(uncounted_start, &figure.goals, &figure.paths));
+    let uncounted_starts = if counts.start == 0 { &figure.starts[..] } else { &[] };
+    entries.extend(end_keys(uncounted_starts, &figure.goals, &figure.paths));
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 3.0);
     let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
     Ok(Picture::page(sheet, height_mm))
@@ -108,6 +109,7 @@ fn pattern_of(figure: &HopMapFigure<'_>, at: usize) -> Pattern {
     let is_kept_out = figure.kept_out.is_some_and(|kept_out| kept_out[at]);
     match figure.can_return.map(|can_return| can_return[at]) {
         _ if is_kept_out && hops == HOPS_UNREACHABLE => Pattern::Crossed,
+        _ if hops == HOPS_NOT_SEARCHED => Pattern::Striped,
         Some(false) if hops >= 0 => Pattern::Striped,
         Some(true) if hops == HOPS_UNREACHABLE => Pattern::Dotted,
         _ => Pattern::Plain,
@@ -124,7 +126,9 @@ struct Counts {
     one_way: u64,
     back_only: u64,
     kept_out: u64,
+    not_searched: u64,
     asks_return: bool,
+    several_starts: bool,
 }
 
 impl Counts {
@@ -134,20 +138,31 @@ impl Counts {
         let classes = HopClasses::even(most.map_or(0, |most| most.max(1)));
         let bands = vec![0; classes.0.len()];
         let asks_return = figure.can_return.is_some();
-        let none =
-            Self { classes, start: 0, bands, not_reached: 0, no_data: 0, one_way: 0, back_only: 0, kept_out: 0, asks_return };
-        let mut counts = none;
+        let mut counts = Self {
+            classes,
+            start: 0,
+            bands,
+            not_reached: 0,
+            no_data: 0,
+            one_way: 0,
+            back_only: 0,
+            kept_out: 0,
+            not_searched: 0,
+            asks_return,
+            several_starts: figure.starts.len() > 1,
+        };
         for (at, &hops) in figure.hops.iter().enumerate() {
             let pattern = pattern_of(figure, at);
             match class_of(&counts.classes, hops) {
                 Some(_) if hops == 0 => counts.start += 1,
                 Some(class) => counts.bands[class] += 1,
                 None if hops == HOPS_NO_DATA => counts.no_data += 1,
+                None if hops == HOPS_NOT_SEARCHED => counts.not_searched += 1,
                 None if pattern == Pattern::Crossed => counts.kept_out += 1,
                 None => counts.not_reached += 1,
             }
             match pattern {
-                Pattern::Striped => counts.one_way += 1,
+                Pattern::Striped => counts.one_way += u64::from(hops >= 0),
                 Pattern::Dotted => counts.back_only += 1,
                 Pattern::Plain | Pattern::Crossed => {}
             }
@@ -157,18 +172,24 @@ impl Counts {
 
     fn keys(&self, tones: &[RGBColor]) -> Vec<(Swatch, String)> {
         let texts = self.classes.texts();
+        let (no_way_back, back_only) = if self.several_starts {
+            (NO_WAY_BACK_TO_ANY, "not reached, but with a path to a start")
+        } else {
+            (NO_WAY_BACK, "not reached, but with a path to the start")
+        };
         let bands =
             texts.iter().zip(&self.bands).zip(tones).map(|((text, count), &tone)| (Swatch::Fill(tone), text.as_str(), *count));
         let rest = [
             (Swatch::Fill(NOT_REACHED), "not reached", self.not_reached),
+            (Swatch::Striped(NOT_REACHED), "farther or not reachable, not searched", self.not_searched),
             (Swatch::Crossed(NOT_REACHED), KEEP_OUT, self.kept_out),
             (Swatch::Symbol(no_data_symbol), "no data", self.no_data),
-            (Swatch::Striped(tones[0]), NO_WAY_BACK, self.one_way),
-            (Swatch::Dotted(NOT_REACHED), "not reached, but with a path to the start", self.back_only),
+            (Swatch::Striped(tones[0]), no_way_back, self.one_way),
+            (Swatch::Dotted(NOT_REACHED), back_only, self.back_only),
         ];
         let start = (Swatch::Symbol(start_symbol), "start", self.start);
         // A count of 0 posts without a return path is shown too, if return paths were requested.
-        let is_told = |&(_, text, count): &(Swatch, &str, u64)| count > 0 || (self.asks_return && text == NO_WAY_BACK);
+        let is_told = |&(_, text, count): &(Swatch, &str, u64)| count > 0 || (self.asks_return && text == no_way_back);
         let all = std::iter::once(start).chain(bands).chain(rest).filter(is_told);
         all.map(|(swatch, text, count)| (swatch, format!("{text}: {count} post{}", if count == 1 { "" } else { "s" }))).collect()
     }

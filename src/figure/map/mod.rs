@@ -7,14 +7,16 @@ mod landings;
 mod names;
 mod panel;
 mod raster;
+mod style;
 mod values;
 
 pub use data::{
-    GoalMark, HOPS_NO_DATA, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure, MapPosts,
-    ValueMapFigure,
+    GoalMark, HOPS_NO_DATA, HOPS_NOT_SEARCHED, HOPS_UNREACHABLE, HopMapFigure, LandingCloud, LandingEllipse, LandingMapFigure,
+    MapPosts, ValueMapFigure,
 };
 pub use hops::draw_hop_map;
 pub use landings::draw_landing_map;
+pub use style::RasterStyle;
 pub use values::draw_value_map;
 
 use super::FigureError;

@@ -29,7 +29,7 @@ const STRIP_MM: f64 = 8.0;
 const SHORT_MM: f64 = 15.0;
 /// Smallest spacing of the numbers of the y axis.
 const TICK_MM: f64 = 9.0;
-/// Above this number of goals the markers have no labels.
+/// Above this number of starts or goals the markers have no labels.
 const MOST_NAMED: usize = 12;
 /// Half the size of the markers of start and goals.
 pub(super) const MARKER_MM: f64 = 2.0;
@@ -161,13 +161,13 @@ impl MapPanel {
         }
     }
 
-    /// Start and goals over the paths, and their labels over everything but markers.
-    pub(super) fn ends(&self, sheet: &mut Sheet, start: Option<MapPoint>, goals: &[GoalMark], paths: &[Vec<MapPoint>]) {
-        let start = start.filter(|&at| self.shows(at));
+    /// Starts and goals over the paths, and their labels over everything but markers.
+    pub(super) fn ends(&self, sheet: &mut Sheet, starts: &[MapPoint], goals: &[GoalMark], paths: &[Vec<MapPoint>]) {
+        let seen_starts: Vec<_> = (1..).zip(starts.iter().copied()).filter(|&(_, at)| self.shows(at)).collect();
         let seen: Vec<_> = goals.iter().enumerate().filter(|(_, goal)| self.shows(goal.at)).collect();
         let mut taken = Taken::default();
         taken.spared.extend(paths.iter().flatten().map(|&at| self.place(at)));
-        if let Some(at) = start {
+        for &(_, at) in &seen_starts {
             start_symbol(sheet, self.place(at));
             taken.kept.push(Bounds::around(self.place(at), MARKER_MM));
         }
@@ -176,8 +176,9 @@ impl MapPanel {
             symbol(sheet, self.place(goal.at));
             taken.kept.push(Bounds::around(self.place(goal.at), MARKER_MM));
         }
-        if let Some(at) = start {
-            self.name(sheet, at, "start", &mut taken);
+        for (number, at) in seen_starts.into_iter().take(MOST_NAMED) {
+            let text = if starts.len() > 1 { format!("start {number}") } else { "start".to_owned() };
+            self.name(sheet, at, &text, &mut taken);
         }
         for (i, goal) in seen.into_iter().take(MOST_NAMED) {
             let number = if goals.len() > 1 { format!(" {}", i + 1) } else { String::new() };
@@ -261,10 +262,10 @@ pub(super) fn path_symbol(sheet: &mut Sheet, (x, y): Place) {
     }
 }
 
-/// Legend entries of start, goals and paths, if present.
-pub(super) fn end_keys(start: Option<MapPoint>, goals: &[GoalMark], paths: &[Vec<MapPoint>]) -> Vec<(Swatch, String)> {
+/// Legend entries of starts, goals and paths, if present.
+pub(super) fn end_keys(starts: &[MapPoint], goals: &[GoalMark], paths: &[Vec<MapPoint>]) -> Vec<(Swatch, String)> {
     let mut found = Vec::new();
-    if start.is_some() {
+    if !starts.is_empty() {
         found.push((Swatch::Symbol(start_symbol), "start".to_owned()));
     }
     if goals.iter().any(|goal| goal.hops.is_some()) {

@@ -47,7 +47,7 @@ fn hop_map<'a>(posts: MapPosts<'a>, hops: &'a [i16], can_return: Option<&'a [boo
     let goals = vec![GoalMark { at: at(20, 80), hops: Some(7) }, GoalMark { at: at(88, 30), hops: None }];
     let path = vec![at(50, 50), at(44, 55), at(40, 62), at(31, 66), at(25, 72), at(20, 80)];
     let caption = Caption::new("A map", "Moon, g = 1.624 m/s²; take-off speed ≤ 10 m/s; friction coefficient 0.6");
-    HopMapFigure { caption, posts, hops, can_return, kept_out: None, start: at(50, 50), goals, paths: vec![path] }
+    HopMapFigure { caption, posts, hops, can_return, kept_out: None, starts: vec![at(50, 50)], goals, paths: vec![path] }
 }
 
 fn drawn(name: &str, posts: MapPosts<'_>, per_hop: f64, most: f64, with_return: bool) -> Picture {

@@ -45,7 +45,7 @@ pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureErro
     let map = MapPanel::new(posts.dem, &window, top_mm);
     let end_mm = map.draw(&mut sheet, pixels);
     map.paths(&mut sheet, &figure.paths);
-    map.ends(&mut sheet, figure.start, &figure.goals, &figure.paths);
+    map.ends(&mut sheet, figure.start.as_slice(), &figure.goals, &figure.paths);
     let end_mm = paragraph(&mut sheet, &format!("Colours: {}", figure.value_name), TEXT_MM, false, end_mm + 0.5);
     let mut entries: Vec<_> = steps.texts().into_iter().zip(&tones).map(|(text, &tone)| (Swatch::Fill(tone), text)).collect();
     let none = figure.values.iter().filter(|value| !value.is_finite()).count();
@@ -56,20 +56,20 @@ pub fn draw_value_map(figure: &ValueMapFigure<'_>) -> Result<Picture, FigureErro
     if gaps > 0 {
         entries.push((Swatch::Symbol(no_data_symbol), "no data".to_owned()));
     }
-    entries.extend(end_keys(figure.start, &figure.goals, &figure.paths));
+    entries.extend(end_keys(figure.start.as_slice(), &figure.goals, &figure.paths));
     let end_mm = keys::draw(&mut sheet, &entries, end_mm + 2.5);
     let height_mm = notes(&mut sheet, &posts, &window, end_mm + 0.8) + 2.0;
     Ok(Picture::page(sheet, height_mm))
 }
 
 /// Classes of a value between round numbers; the first and the last end at the extremes.
-struct Steps {
+pub(super) struct Steps {
     /// The class boundaries, in ascending order; for a single value that value twice, without values empty.
-    ends: Vec<f64>,
+    pub(super) ends: Vec<f64>,
 }
 
 impl Steps {
-    fn between(low: f64, high: f64) -> Self {
+    pub(super) fn between(low: f64, high: f64) -> Self {
         if low > high {
             return Self { ends: Vec::new() };
         }
@@ -87,12 +87,12 @@ impl Steps {
     }
 
     #[expect(clippy::cast_precision_loss, reason = "some ten classes")]
-    fn tones(&self) -> Vec<RGBColor> {
+    pub(super) fn tones(&self) -> Vec<RGBColor> {
         let last = self.count().max(2) - 1;
         (0..self.count()).map(|class| tone(ramp(class as f64 / last as f64))).collect()
     }
 
-    fn texts(&self) -> Vec<String> {
+    pub(super) fn texts(&self) -> Vec<String> {
         let text = |pair: &[f64]| {
             if pair[0] == pair[1] { short(pair[0]) } else { format!("{} to {}", short(pair[0]), short(pair[1])) }
         };

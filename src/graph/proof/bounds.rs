@@ -58,6 +58,9 @@ pub enum ProofVerdict {
 }
 
 impl ProofVerdict {
+    /// All verdicts.
+    pub const ALL: [Self; 3] = [Self::Traversable, Self::Untraversable, Self::Open];
+
     /// The name in results.
     pub const fn name(self) -> &'static str {
         match self {
@@ -67,6 +70,8 @@ impl ProofVerdict {
         }
     }
 }
+
+crate::quantity::by_name!(ProofVerdict, ProofVerdict::ALL);
 
 /// The work done for a proof.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

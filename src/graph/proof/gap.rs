@@ -19,6 +19,9 @@ pub enum StretchClass {
 }
 
 impl StretchClass {
+    /// All classes.
+    pub const ALL: [Self; 3] = [Self::Reachable, Self::Unreachable, Self::Open];
+
     /// The name in results.
     pub const fn name(self) -> &'static str {
         match self {
@@ -28,6 +31,8 @@ impl StretchClass {
         }
     }
 }
+
+crate::quantity::by_name!(StretchClass, StretchClass::ALL);
 
 /// A stretch of the chain with one class; a vertex, the start or the goal has zero length.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -21,4 +21,5 @@ pub(crate) use offsets::Offset;
 #[cfg(test)]
 pub(crate) use offsets::{OffsetTable, Spacing};
 pub use post_hops::{Lofts, PostHops};
+pub use reach::PostHopsSize;
 pub use refusal::PostRefusal;

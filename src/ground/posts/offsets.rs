@@ -193,6 +193,19 @@ impl OffsetTable {
         size
     }
 
+    /// The bytes that a table of this size holds, at most: a vector that grew holds up to twice what is in it.
+    pub(super) fn bytes(offsets: usize, crossings: usize) -> usize {
+        let of_offset = size_of::<Offset>() + size_of::<isize>() + size_of::<Kink>();
+        2 * (offsets * of_offset + crossings * size_of::<Crossing>())
+    }
+
+    /// The bytes that making it holds beside it, at most: half of a vector while it grows, the list of all offsets and the buffer of its
+    /// sorting, and the shared ranges.
+    pub(super) fn preparation_bytes(offsets: usize, crossings: usize) -> usize {
+        let of_offset = 4 * size_of::<(f64, i32, i32)>() + 2 * size_of::<((i32, i32), [Range<usize>; 2])>();
+        Self::bytes(offsets, crossings) / 2 + offsets * of_offset + crossings.min(1 << 12) * size_of::<Crossing>()
+    }
+
     /// The table; `rises_m` gives the rises that a distance allows (the offset is left out where the lower one is above the upper).
     pub(crate) fn new(
         spacing: Spacing,

@@ -27,6 +27,13 @@ pub(super) struct OverlayTable {
 }
 
 impl OverlayTable {
+    /// The bytes that the tables of so many posts hold, and those that making them holds beside it: at most, as long as no post has
+    /// more than two borders of the overlays on its row on average.
+    pub(super) const fn bytes(posts: usize) -> (usize, usize) {
+        let line = size_of::<ProfilePoint>() + size_of::<ProfileFacet>();
+        (posts * (size_of::<bool>() + size_of::<f64>() + size_of::<u32>()), posts * 6 * line)
+    }
+
     /// The overlays of a DEM; `None` if it has neither friction raster nor zones.
     ///
     /// # Errors

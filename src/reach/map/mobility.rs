@@ -73,6 +73,13 @@ pub fn mobility(hops: &PostHops, progress: &dyn Progress) -> Result<Mobility, Ma
     Ok(map)
 }
 
+impl Mobility {
+    /// The bytes that its search holds beside it for each node, at most: short lists grow to twice their length.
+    pub(crate) const fn working_bytes_per_node() -> usize {
+        3 * size_of::<OfNode>() + 2
+    }
+}
+
 /// A node's number, its fraction and its directions.
 type OfNode = (usize, f32, f32);
 

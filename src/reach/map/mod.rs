@@ -1,14 +1,14 @@
-//! Hop maps: the fewest hops from one post of a DEM to all others.
+//! Hop maps: the fewest hops from one or several posts of a DEM to all others.
 //!
 //! Nodes are posts; an edge is a single hop whose limits hold on the exact slice between its two posts ([`PostHops`]). [`search`]
-//! finds the fewest hops from a start to every post, layer by layer.
+//! finds the fewest hops from its sources to every post, layer by layer.
 
 mod layer_bits;
 mod mobility;
 mod paths;
 mod search;
 
-pub use crate::ground::{MapError, NodeLattice, Post, PostHops, PostRefusal};
+pub use crate::ground::{MapError, NodeLattice, Post, PostHops, PostHopsSize, PostRefusal};
 pub use mobility::{Mobility, SECTORS, mobility};
 pub use paths::{MapHop, joined, path_hops, verify};
-pub use search::{HopMap, Journey, NO_GROUND, Search, UNREACHED, search};
+pub use search::{HopMap, Journey, NO_GROUND, NOT_SEARCHED, Search, Source, UNREACHED, search};

@@ -1,5 +1,7 @@
 //! Fewest hops by breadth-first search, layer by layer: a layer is all nodes of one hop count.
 //!
+//! A map has one or several [`Source`]s, each with what was spent on the way to it; a source joins the layer of its hop count.
+//!
 //! Each unreached node searches the last layer, nearest nodes first, for one that a feasible hop joins to it (bottom-up
 //! breadth-first search). A bitmap of the layer lets the search skip nodes that have no layer node within reach. Pairs that cannot
 //! improve the result are never tested, and the result does not depend on which thread tests a node first.
@@ -7,7 +9,7 @@
 use rayon::prelude::*;
 
 use super::{
-    MapError, Post, PostHops,
+    MapError, NodeLattice, Post, PostHops,
     layer_bits::{Disc, LayerBits},
 };
 use crate::{
@@ -23,16 +25,37 @@ pub const UNREACHED: i16 = -1;
 /// The hop count of a post without elevation.
 pub const NO_GROUND: i16 = i16::MIN;
 
-/// No offset: for the start and for unreached posts.
+/// The hop count of a post that may need more hops than [`Search::hops_max`], which no search has looked for.
+pub const NOT_SEARCHED: i16 = -2;
+
+/// No offset, and no source: for sources and for unreached posts.
 const NONE: u32 = u32::MAX;
 
-/// The direction of travel between the start and the other posts.
+/// A node that paths start from, and what was spent before: the labels with which the search begins there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Source {
+    /// The node.
+    pub node: Post,
+    /// Hops already spent, at least 0.
+    pub hops: i16,
+    /// Effort already spent, in the unit of the requested [`Effort`], finite and at least 0; without one it is ignored.
+    pub effort: f64,
+}
+
+impl From<Post> for Source {
+    /// A source at which nothing was spent yet.
+    fn from(node: Post) -> Self {
+        Self { node, hops: 0, effort: 0.0 }
+    }
+}
+
+/// The direction of travel between the sources and the other posts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Journey {
-    /// From the start to every post.
+    /// From the nearest source to every post.
     #[default]
     Outbound,
-    /// From every post to the start.
+    /// From every post to the nearest source.
     Return,
 }
 
@@ -43,18 +66,22 @@ pub struct Search {
     pub journey: Journey,
     /// If given, also find the least effort among the paths of fewest hops, for this choice of take-offs.
     pub effort: Option<(Effort, TakeoffChoice)>,
+    /// The search ends after the layer of this hop count; `None`: after the last layer.
+    pub hops_max: Option<i16>,
 }
 
-/// Fewest hops between the start and every node.
+/// Fewest hops between the sources and every node.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HopMap {
-    /// For each node, row after row: its hop count, [`UNREACHED`] or [`NO_GROUND`].
+    /// For each node, row after row: its hop count, [`UNREACHED`], [`NO_GROUND`] or, beyond [`Search::hops_max`], [`NOT_SEARCHED`].
     pub hops: Vec<i16>,
     /// The least effort among the paths of fewest hops, in the unit of the requested [`Effort`]; NaN for unreached nodes. Empty if
     /// no effort was requested.
     pub effort: Vec<f64>,
     /// The offset of the hop between each node and the node before it.
     previous: Vec<u32>,
+    /// For each node the number of its source; empty for a map of one source.
+    nearest: Vec<u32>,
     journey: Journey,
 }
 
@@ -64,39 +91,99 @@ struct Found {
     node: usize,
     offset: u32,
     effort: f64,
+    /// The number of the source.
+    source: u32,
 }
 
-/// The fewest hops between a start and every node, layer by layer; the result does not depend on the number of threads.
+/// The fewest hops between the sources and every node, layer by layer; the result does not depend on the number of threads.
+///
+/// The label of a node is the least over all sources: the fewest hops, those spent before a source included, then, if requested, the
+/// least effort. Of sources with equal labels at a node, the one of the lower number is its nearest. Without sources, no node is reached.
 ///
 /// Reports every complete layer, with the number of posts reached and the number of posts reached or still open.
 ///
 /// # Errors
-/// [`MapError`]; if several blocks fail, the error of the block with the lowest index.
-pub fn search(hops: &PostHops, start: Post, asked: Search, progress: &dyn Progress) -> Result<HopMap, MapError> {
-    let meter = Meter::new(progress, Stage::MapLayers);
+/// [`MapError`]; if several blocks fail, the error of the block with the lowest index. [`MapError::Request`] if a label is negative or,
+/// with an effort, not finite.
+///
+/// # Examples
+/// ```
+/// use chta::{ground::DemGround, reach::map::{Post, PostHops, Search, Source, search}, terrain::{OverlaidDem, Overlays, SyntheticTerrain, synthesise}, world::{FrictionCone, Gravity, Grip, Hopper, HopperLimits, RestSlope, SurfaceProperties}};
+/// let dem = synthesise(&SyntheticTerrain { rows: 20, cols: 30, ..SyntheticTerrain::default() })?;
+/// let surface = SurfaceProperties { grip: Some(Grip::Friction(FrictionCone::new(0.6)?)), rest: RestSlope::AsFrictionHolds };
+/// let hopper = Hopper::new(HopperLimits::with_speeds(2.0, 2.0))?;
+/// let ground = DemGround::new(OverlaidDem::new(dem, Overlays::default()), &hopper, Gravity::new(1.62)?, &surface);
+/// let hops = PostHops::new(ground, 1)?;
+/// // Two landers; the second begins two hops late.
+/// let late = Source { node: Post { row: 15, col: 28 }, hops: 2, effort: 0.0 };
+/// let map = search(&hops, &[Post { row: 3, col: 2 }.into(), late], Search::default(), &())?;
+/// assert_eq!(map.hops[hops.lattice().index(late.node)], 2);
+/// assert_eq!(map.source(hops.lattice(), late.node), Some(1));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn search(hops: &PostHops, sources: &[Source], asked: Search, progress: &dyn Progress) -> Result<HopMap, MapError> {
+    check_labels(sources, asked)?;
+    let stage = match asked.journey {
+        Journey::Outbound => Stage::MapLayers,
+        Journey::Return => Stage::ReturnLayers,
+    };
+    let meter = Meter::new(progress, stage);
     meter.report(Detail::None)?;
-    let mut state = State::new(hops, start, asked);
-    let mut layer: i16 = 0;
+    let mut state = State::new(hops, sources, asked);
+    let first = state.waiting.last().map(|(_, source)| source.hops);
+    if first.is_some_and(|first| asked.hops_max.is_some_and(|most| first > most)) {
+        state.leave_open(hops);
+        return Ok(state.map);
+    }
+    let Some(mut layer) = state.join_sources(hops, None) else { return Ok(state.map) };
     loop {
         let open: u64 = state.open.iter().copied().map(u64::from).sum();
         meter.set_done(state.reached as u64, state.reached as u64 + open);
         meter.report(Detail::Layer { hops: layer })?;
-        let pull = Pull { hops, map: &state.map, asked, layer, nodes: &state.layer };
         let near = blocks_near(hops, &state.layer_blocks, &state.open);
+        let is_last = asked.hops_max.is_some_and(|most| layer >= most);
+        if is_last && (!near.is_empty() || !state.waiting.is_empty()) {
+            state.leave_open(hops);
+            return Ok(state.map);
+        }
+        let pull = Pull { hops, map: &state.map, asked, layer, nodes: &state.layer };
         let found: Vec<Result<Vec<Found>, MapError>> =
             near.par_iter().map_init(|| meter.counter(), |counter, &block| pull.block(block, counter)).collect();
         meter.check()?;
         let found = found.into_iter().collect::<Result<Vec<_>, _>>()?.concat();
-        if found.is_empty() {
+        if found.is_empty() && state.waiting.is_empty() {
             return Ok(state.map);
         }
-        layer = layer.checked_add(1).ok_or(MapError::TooManyHops { most: i16::MAX })?;
         state.layer_blocks.fill(false);
         state.layer.clear();
+        if found.is_empty() {
+            // Only sources of greater hop counts are left.
+            let Some(next) = state.join_sources(hops, None) else { return Ok(state.map) };
+            layer = next;
+            continue;
+        }
+        layer = layer.checked_add(1).ok_or(MapError::TooManyHops { most: i16::MAX })?;
         for node in found {
             state.settle(hops, node, layer);
         }
+        state.join_sources(hops, Some(layer));
     }
+}
+
+/// Checks the labels of the sources.
+fn check_labels(sources: &[Source], asked: Search) -> Result<(), MapError> {
+    for source in sources {
+        if source.hops < 0 {
+            let (found, expected) = (source.hops.to_string(), "a count of at least 0");
+            return Err(MapError::Request { what: "the hop count of a source", found, expected });
+        }
+        let is_effort = source.effort.is_finite() && source.effort >= 0.0;
+        if asked.effort.is_some() && !is_effort {
+            let (found, expected) = (source.effort.to_string(), "a finite number of at least 0");
+            return Err(MapError::Request { what: "the effort of a source", found, expected });
+        }
+    }
+    Ok(())
 }
 
 /// The state between two layers.
@@ -110,11 +197,13 @@ struct State {
     layer_blocks: Vec<bool>,
     /// Number of nodes reached.
     reached: usize,
+    /// The sources that have not joined yet, with their numbers, those of the fewest hops last.
+    waiting: Vec<(u32, Source)>,
 }
 
 impl State {
-    /// The state with only the start reached.
-    fn new(hops: &PostHops, start: Post, asked: Search) -> Self {
+    /// The state before any source has joined.
+    fn new(hops: &PostHops, sources: &[Source], asked: Search) -> Self {
         let lattice = hops.lattice();
         let (nodes, (down, across)) = (lattice.count(), lattice.blocks());
         let ground = |index| if hops.has_ground(lattice.node(index)) { UNREACHED } else { NO_GROUND };
@@ -123,22 +212,62 @@ impl State {
             hops: (0..nodes).into_par_iter().map(ground).collect(),
             effort: if asked.effort.is_some() { vec![f64::NAN; nodes] } else { Vec::new() },
             previous: vec![NONE; nodes],
+            nearest: if sources.len() > 1 { vec![NONE; nodes] } else { Vec::new() },
             journey: asked.journey,
         };
         let open = (0..down * across).into_par_iter().map(usable).collect();
-        let mut state = Self { map, open, layer: LayerBits::none(lattice), layer_blocks: vec![false; down * across], reached: 0 };
-        state.settle(hops, Found { node: lattice.index(start), offset: NONE, effort: 0.0 }, 0);
-        state
+        let mut waiting: Vec<(u32, Source)> = (0..).zip(sources.iter().copied()).collect();
+        waiting.sort_by_key(|(number, source)| std::cmp::Reverse((source.hops, *number)));
+        Self { map, open, layer: LayerBits::none(lattice), layer_blocks: vec![false; down * across], reached: 0, waiting }
     }
 
-    /// Marks a node as reached.
-    fn settle(&mut self, hops: &PostHops, Found { node, offset, effort }: Found, count: i16) {
+    /// Adds the waiting sources of a hop count, `None`: of the fewest hops, to the present layer; that hop count, `None` if there is none.
+    ///
+    /// A source on a node that was reached in fewer hops, or in as many with less effort, changes nothing.
+    fn join_sources(&mut self, hops: &PostHops, count: Option<i16>) -> Option<i16> {
+        let count = count.or_else(|| self.waiting.last().map(|(_, source)| source.hops))?;
+        while let Some((number, source)) = self.waiting.pop_if(|(_, source)| source.hops == count) {
+            let node = hops.lattice().index(source.node);
+            let found = Found { node, offset: NONE, effort: source.effort, source: number };
+            match self.map.hops[node] {
+                known if known < 0 => self.settle(hops, found, count),
+                known if known == count && self.map.is_nearer(&found) => self.label(found, count),
+                _ => {}
+            }
+        }
+        Some(count)
+    }
+
+    /// Marks the nodes that a further layer could reach, and sources that have not joined, as not searched.
+    fn leave_open(&mut self, hops: &PostHops) {
         let lattice = hops.lattice();
+        let is_open = |node: usize| hops.usable(lattice.node(node));
+        let unreached = self.map.hops.par_iter_mut().enumerate().filter(|(_, count)| **count == UNREACHED);
+        unreached.filter(|(node, _)| is_open(*node)).for_each(|(_, count)| *count = NOT_SEARCHED);
+        for (_, source) in &self.waiting {
+            let count = &mut self.map.hops[lattice.index(source.node)];
+            if *count == UNREACHED {
+                *count = NOT_SEARCHED;
+            }
+        }
+    }
+
+    /// Labels a node.
+    fn label(&mut self, Found { node, offset, effort, source }: Found, count: i16) {
         self.map.hops[node] = count;
         self.map.previous[node] = offset;
         if let Some(known) = self.map.effort.get_mut(node) {
             *known = effort;
         }
+        if let Some(known) = self.map.nearest.get_mut(node) {
+            *known = source;
+        }
+    }
+
+    /// Marks a node as reached.
+    fn settle(&mut self, hops: &PostHops, found: Found, count: i16) {
+        let (lattice, node) = (hops.lattice(), found.node);
+        self.label(found, count);
         let post = lattice.node(node);
         let block = lattice.block_of(post);
         self.layer_blocks[block] = true;
@@ -210,13 +339,20 @@ impl Pull<'_> {
         (inside || is_on_layer(self.hops.lattice().index(other))).then_some(other)
     }
 
-    /// The hop that joins a node to the layer: the shortest, or the one with the least total effort.
+    /// The hop that joins a node to the layer: the one with the least total effort, if requested, then from the source of the lowest
+    /// number, then the shortest.
     fn pulled(&self, node: Post, steps: &[isize], inside: bool, counter: &mut PairCounter<'_>) -> Result<Option<Found>, MapError> {
         let lattice = self.hops.lattice();
         let index = lattice.index(node);
         let mut best: Option<Found> = None;
         for (number, &step) in steps.iter().enumerate() {
             let Some(other) = self.on_layer(node, index, (number, step), inside) else { continue };
+            let source = self.map.nearest.get(lattice.index(other)).copied().unwrap_or(0);
+            // Of equal labels that of the lower source counts; without an effort all labels of a layer are equal.
+            let is_lower = best.is_some_and(|best| source < best.source);
+            if self.asked.effort.is_none() && best.is_some() && !is_lower {
+                continue;
+            }
             counter.pair()?;
             let offset = &self.hops.offsets()[number];
             let from = if self.asked.journey == Journey::Outbound { other } else { node };
@@ -224,7 +360,11 @@ impl Pull<'_> {
             let offset_number = number as u32;
             let Some((effort, choice)) = self.asked.effort else {
                 if self.hops.lofts_where(from, offset, |_, _| true)?.is_some() {
-                    return Ok(Some(Found { node: index, offset: offset_number, effort: f64::NAN }));
+                    best = Some(Found { node: index, offset: offset_number, effort: f64::NAN, source });
+                    // No other source can be lower.
+                    if source == 0 {
+                        return Ok(best);
+                    }
                 }
                 continue;
             };
@@ -235,13 +375,14 @@ impl Pull<'_> {
             let worth = |sight: LineOfSight, lofts: SlopeInterval| {
                 // Where the machine lacks the slowest arc, the flatter one flown instead may be shorter.
                 let is_bound = choice == TakeoffChoice::LeastSpeed && (any_speed || effort != Effort::Time);
-                !is_bound || joined(effort, so_far, at_least(effort, sight, lofts, gravity)) < least
+                let bound = joined(effort, so_far, at_least(effort, sight, lofts, gravity));
+                !is_bound || bound < least || (is_lower && bound <= least)
             };
             if let Some((sight, lofts)) = self.hops.lofts_where(from, offset, worth)? {
                 let arc = Arc::new(sight, self.hops.envelope().loft(choice, sight, lofts), gravity);
                 let effort = joined(effort, so_far, effort.cost(&arc, 1).effort());
-                if effort < least {
-                    best = Some(Found { node: index, offset: offset_number, effort });
+                if effort < least || (is_lower && effort <= least) {
+                    best = Some(Found { node: index, offset: offset_number, effort, source });
                 }
             }
         }
@@ -270,7 +411,55 @@ fn at_least(effort: Effort, sight: LineOfSight, lofts: SlopeInterval, gravity_m_
 }
 
 impl HopMap {
-    /// The node before this one on its path from the start (after it, on a return path); `None` for the start and for unreached
+    /// Whether a label is less than that of the same node, which has as many hops.
+    fn is_nearer(&self, found: &Found) -> bool {
+        let is_lower = self.nearest.get(found.node).is_some_and(|&nearest| found.source < nearest);
+        match self.effort.get(found.node) {
+            Some(&known) => found.effort < known || (found.effort <= known && is_lower),
+            None => is_lower,
+        }
+    }
+
+    /// The bytes of a map for each node, with an effort or without, of one source or of several.
+    pub(crate) const fn bytes_per_node(effort: bool, several: bool) -> usize {
+        let labels = size_of::<i16>() + size_of::<u32>();
+        labels + if effort { size_of::<f64>() } else { 0 } + if several { size_of::<u32>() } else { 0 }
+    }
+
+    /// The bytes that a search holds beside its map for each node, at most: those of a layer of all nodes, which is first found block by
+    /// block, where short lists grow to twice their length, then joined; the bitmap of a layer; and the counts of the blocks.
+    pub(crate) const fn search_bytes_per_node() -> usize {
+        3 * size_of::<Found>() + 4
+    }
+
+    /// For each node, row after row, the node that the last hop of its path comes from (on a return map: that its first hop leads to), as
+    /// its index in the same order; -1 at sources, and `absent` at nodes that were not reached.
+    pub fn predecessors(&self, hops: &PostHops, absent: i32) -> Vec<i32> {
+        let lattice = hops.lattice();
+        let index_of = |node: usize| {
+            if self.hops[node] < 0 {
+                return absent;
+            }
+            let previous = self.previous(hops, lattice.node(node)).map(|previous| lattice.index(previous));
+            previous.map_or(-1, |previous| i32::try_from(previous).unwrap_or(absent))
+        };
+        (0..lattice.count()).into_par_iter().map(index_of).collect()
+    }
+
+    /// The number of the source that a node is reached from by the fewest hops, then, if requested, the least effort, as its path leads
+    /// there; where paths with equal labels meet, the lower number. `None` for unreached nodes.
+    pub fn source(&self, lattice: NodeLattice, node: Post) -> Option<usize> {
+        let index = lattice.index(node);
+        let number = self.nearest.get(index).copied().unwrap_or(0);
+        (self.hops[index] >= 0).then_some(number as usize)
+    }
+
+    /// Whether it is known if a node, by its index, can be reached: `false` where the search ended at [`Search::hops_max`] before.
+    pub fn searched(&self, index: usize) -> bool {
+        self.hops[index] != NOT_SEARCHED
+    }
+
+    /// The node before this one on its path from its source (after it, on a return path); `None` for sources and for unreached
     /// nodes.
     pub fn previous(&self, hops: &PostHops, node: Post) -> Option<Post> {
         let offset = self.previous[hops.lattice().index(node)];
@@ -283,7 +472,7 @@ impl HopMap {
         }
     }
 
-    /// The nodes of a path of fewest hops between the start and a node, in the order of flight; `None` if no path was found.
+    /// The nodes of a path of fewest hops between the nearest source and a node, in the order of flight; `None` if no path was found.
     pub fn path(&self, hops: &PostHops, node: Post) -> Option<Vec<Post>> {
         if self.hops[hops.lattice().index(node)] < 0 {
             return None;

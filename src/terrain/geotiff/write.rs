@@ -25,16 +25,18 @@ struct Raster<'a, T> {
     /// The text that declares the no-data value.
     no_data: &'a str,
     predictor: Predictor,
-    /// The names of the bands; empty for a raster of elevations.
-    names: Vec<&'a str>,
+    /// The names and units of the bands; empty for a raster of elevations.
+    names: Vec<(&'a str, &'a str)>,
     georeference: &'a GeoReference,
 }
 
-/// A band of a result raster: a name and a number for every post, row after row from the north.
+/// A band of a result raster: a name, a unit and a number for every post, row after row from the north.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Band<'a, T> {
-    /// What the numbers mean, with their unit.
+    /// What the numbers mean.
     pub name: &'a str,
+    /// Their unit; empty if it is not stated.
+    pub unit: &'a str,
     /// The numbers.
     pub samples: &'a [T],
 }
@@ -44,6 +46,8 @@ pub struct Band<'a, T> {
 pub enum ResultBands<'a> {
     /// Integers, and the no-data value.
     Int16(Vec<Band<'a, i16>>, i16),
+    /// Large integers, and the no-data value.
+    Int32(Vec<Band<'a, i32>>, i32),
     /// Floats; NaN is no-data.
     Float32(Vec<Band<'a, f32>>),
 }
@@ -59,7 +63,7 @@ pub enum ResultBands<'a> {
 /// use chta::quantity::MapPoint;
 /// use chta::terrain::{Band, GeoReference, ResultBands, read_geotiff_bytes, result_geotiff_bytes};
 /// let map = GeoReference::local(MapPoint::new(5.0, 9.0), 2.0, 2.0)?;
-/// let hops = ResultBands::Int16(vec![Band { name: "hops", samples: &[0, 1, -1, -32768] }], -32768);
+/// let hops = ResultBands::Int16(vec![Band { name: "hops", unit: "", samples: &[0, 1, -1, -32768] }], -32768);
 /// let read = read_geotiff_bytes(result_geotiff_bytes(2, 2, &map, &hops)?)?;
 /// assert_eq!(read.elevations().collect::<Vec<_>>(), [Some(0.0), Some(1.0), Some(-1.0), None]);
 /// # Ok::<(), chta::terrain::TerrainError>(())
@@ -78,7 +82,17 @@ pub fn result_geotiff_bytes(
             filler: *no_data,
             no_data: &no_data.to_string(),
             predictor: Predictor::Horizontal,
-            names: bands.iter().map(|band| band.name).collect(),
+            names: bands.iter().map(|band| (band.name, band.unit)).collect(),
+            georeference,
+        }),
+        ResultBands::Int32(bands, no_data) => raster_bytes(&Raster {
+            rows,
+            cols,
+            bands: bands.iter().map(|band| band.samples).collect(),
+            filler: *no_data,
+            no_data: &no_data.to_string(),
+            predictor: Predictor::Horizontal,
+            names: bands.iter().map(|band| (band.name, band.unit)).collect(),
             georeference,
         }),
         ResultBands::Float32(bands) => raster_bytes(&Raster {
@@ -88,7 +102,7 @@ pub fn result_geotiff_bytes(
             filler: f32::NAN,
             no_data: "nan",
             predictor: Predictor::FloatingPoint,
-            names: bands.iter().map(|band| band.name).collect(),
+            names: bands.iter().map(|band| (band.name, band.unit)).collect(),
             georeference,
         }),
     }
@@ -187,11 +201,15 @@ fn image<T: TiffWriteSample>(raster: &Raster<'_, T>) -> Result<ImageBuilder, Ter
     Ok(map_tags(raster.georeference, raster.rows).into_iter().fold(image, ImageBuilder::tag))
 }
 
-/// The names of bands in GDAL's metadata.
-fn band_names(names: &[&str]) -> String {
-    let item = |(band, name): (usize, &&str)| {
-        let name = name.replace('&', "&amp;").replace('<', "&lt;");
-        format!("<Item name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\">{name}</Item>")
+/// The names and units of bands in GDAL's metadata.
+fn band_names(names: &[(&str, &str)]) -> String {
+    let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;");
+    let item = |(band, (name, unit)): (usize, &(&str, &str))| {
+        let name = format!("<Item name=\"DESCRIPTION\" sample=\"{band}\" role=\"description\">{}</Item>", escaped(name));
+        if unit.is_empty() {
+            return name;
+        }
+        format!("{name}<Item name=\"UNITTYPE\" sample=\"{band}\" role=\"unittype\">{}</Item>", escaped(unit))
     };
     format!("<GDALMetadata>{}</GDALMetadata>", names.iter().enumerate().map(item).collect::<String>())
 }

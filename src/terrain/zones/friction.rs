@@ -55,6 +55,11 @@ pub fn read_friction_raster(path: &Path, coordinates: Option<&CoordinateSystem>)
 }
 
 impl FrictionRaster {
+    /// Its content, whatever file it comes from.
+    pub(crate) const fn content(&self) -> &dyn std::fmt::Debug {
+        &self.raster
+    }
+
     /// Calls `visit` with rectangles that together contain all borders between different coefficients, including the border of
     /// the raster.
     pub(crate) fn borders(&self, visit: &mut dyn FnMut(MapBounds)) {

@@ -85,6 +85,11 @@ fn mask_of(path: &Path) -> Result<Dem, TerrainError> {
 }
 
 impl KeepOut {
+    /// Its content, whatever file it comes from.
+    pub(crate) const fn content(&self) -> &dyn std::fmt::Debug {
+        &self.zones
+    }
+
     /// Whether a position lies in a zone, including its border; beyond its pixels a mask has no zones.
     ///
     /// # Examples

@@ -32,3 +32,5 @@ impl Experiment {
         }
     }
 }
+
+crate::quantity::by_name!(Experiment, Experiment::ALL);

@@ -37,6 +37,8 @@ impl DriftReading {
     }
 }
 
+crate::quantity::by_name!(DriftReading, DriftReading::ALL);
+
 /// The paper's experiment in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DriftExperiment {

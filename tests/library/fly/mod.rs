@@ -12,4 +12,5 @@ mod contact;
 mod outcomes;
 mod plans;
 mod scene;
+mod tallies;
 mod terrains;

@@ -23,6 +23,7 @@ fn count(scene: &Scene, uncertainty: Uncertainty, options: &TrialOptions, outcom
 }
 
 const HUNDRED: TrialOptions = TrialOptions {
+    first_trial: 0,
     trials: 100,
     seed: 1,
     policy: Policy::OpenLoop,

@@ -1,10 +1,13 @@
 //! Titles and captions of pictures: the limits that apply.
 
-use std::fmt;
+use std::{fmt, path::Path};
 
-use chta::{figure, scenario::Scenario, world::Hopper};
-
-use super::plan::format_ground;
+use crate::{
+    figure,
+    quantity::{Angle, AngleInterval},
+    scenario::Scenario,
+    world::{Grip, Hopper, RestSlope},
+};
 
 /// A speed limit of the hopper, in words.
 pub(super) struct SpeedLimit {
@@ -16,7 +19,7 @@ pub(super) struct SpeedLimit {
 
 impl SpeedLimit {
     /// The take-off and landing speed limits.
-    pub(super) const fn of(hopper: &Hopper) -> [Self; 2] {
+    const fn of(hopper: &Hopper) -> [Self; 2] {
         // With brakes the landing speed limit is one of the touchdown.
         let landing = if hopper.limits().landing.brakes() { "touchdown" } else { "landing" };
         [
@@ -38,7 +41,7 @@ impl fmt::Display for SpeedLimit {
 }
 
 /// The assumptions of an answer over a map: body, gravity, hopper limits and ground, in the words of the pictures of plans.
-pub(super) fn conditions(scenario: &Scenario) -> String {
+pub fn conditions(scenario: &Scenario) -> String {
     let (hopper, body) = (&scenario.hopper, &scenario.body);
     let bounds_m_s = (hopper.limits().takeoff_speed_max_m_s, hopper.limits().landing_speed_max_m_s);
     figure::conditions(body.name.as_deref().unwrap_or_default(), body.gravity.m_s2(), hopper, bounds_m_s, &format_ground(scenario))
@@ -47,4 +50,33 @@ pub(super) fn conditions(scenario: &Scenario) -> String {
 /// The title of a picture: what it shows, and the scenario's title if it has one.
 pub(super) fn title(shown: &str, scenario: &Scenario) -> String {
     scenario.title.as_ref().map_or_else(|| shown.to_owned(), |name| format!("{shown}: {name}"))
+}
+
+/// The ground in a few words: grip, rest slope and overlays.
+pub(super) fn format_ground(scenario: &Scenario) -> String {
+    let surface = &scenario.surface;
+    let mut parts = Vec::new();
+    match surface.grip {
+        Some(Grip::Friction(cone)) => parts.push(format!("friction coefficient {}", cone.coefficient())),
+        Some(Grip::FromSlope { takeoff, landing }) => {
+            let range = |angles: AngleInterval| {
+                let [min, max] = [angles.min, angles.max].map(Angle::written_degrees);
+                format!("{min} to {max}")
+            };
+            parts.push(format!("take-off {} and landing {} deg from the slope", range(takeoff), range(landing)));
+        }
+        None => {}
+    }
+    let file = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    parts.extend(scenario.friction_raster.as_deref().map(|path| format!("friction from {}", file(path))));
+    match (surface.rest, surface.grip) {
+        (RestSlope::AsFrictionHolds, Some(Grip::Friction(_))) => parts.push("rest slope as friction holds".to_owned()),
+        (RestSlope::AsFrictionHolds, _) => {}
+        (RestSlope::AtMost(slope), _) => {
+            parts.push(format!("rest slope ≤ {} deg", slope.written_degrees()));
+        }
+        (RestSlope::Unlimited, _) => parts.push("rest slope without limit".to_owned()),
+    }
+    parts.extend(scenario.keep_out.as_deref().map(|path| format!("keep-out {}", file(path))));
+    parts.join("; ")
 }

@@ -1,117 +1,77 @@
 //! From the command line to a scenario and its chain.
 
+mod ends;
+mod names;
+mod vary;
+
 use std::{
     fs,
     io::Read,
-    path::{Component, Path, PathBuf},
-    sync::Arc,
+    path::{Path, PathBuf},
 };
 
 use chta::{
     chain::{Station, csv::read_chain_csv_file},
-    hop::HopTest,
-    report::InputFile,
+    report::{Document, DocumentKind, InputFile},
     scenario::{
         Entries, FileKind, LackingKey, Place, Scenario, ScenarioProblem, ScenarioProblems, TerrainSource, scenario_document,
     },
-    study::{JourneyEnd as End, Overlays, PipelineError, Prepared, Survey, SweptKey, Trade, prepare, sha256_of},
-    terrain::sidecar_files,
+    study::{
+        self, Case, CaseError, CaseRecord, Commands, Compared, Comparison, JourneyEnd as End, Overlays, PipelineError, checksums,
+        scenario_files,
+    },
+    terrain::MapPlace,
 };
+use serde::Serialize;
+
+pub(crate) use ends::EndOptions;
+pub(crate) use names::relative_name;
+pub(crate) use vary::load_to_vary;
 
 use super::{
     Failure,
-    args::{CommonArgs, SearchArgs},
+    args::{CommonArgs, JourneyArgs, SearchArgs},
     claims,
     effects::Purpose,
     hints,
     inputs::{self, Input, KeyProblem},
-    output,
+    output, verbose,
     wrong_thing::Role,
 };
 
-/// A scenario with its chain, and the records of both for a result.
+/// A case, and what a result says of it.
 #[derive(Debug)]
 pub(crate) struct Loaded {
-    /// The scenario as used.
-    pub(crate) scenario: Scenario,
-    /// The chain, with start and goal where they are known.
-    pub(crate) prepared: Prepared,
-    /// The scenario for a result.
-    pub(crate) document: serde_json::Value,
-    /// The files that were read.
-    pub(crate) inputs: Vec<InputFile>,
-    /// The folder that the scenario's paths start from.
-    pub(crate) base: PathBuf,
+    /// The scenario over its terrain, with all warnings about the input.
+    pub(crate) case: Case,
+    /// The head of its documents.
+    pub(crate) record: CaseRecord,
     /// How the command line gives start and goal.
     ends: EndOptions,
 }
 
-/// The options for start and goal. Commands name them differently; some have none.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct EndOptions {
-    names: Option<[&'static str; 2]>,
-    x_m: [Option<f64>; 2],
-}
-
-impl EndOptions {
-    /// A command without such options.
-    pub(crate) const NONE: Self = Self { names: None, x_m: [None, None] };
-
-    /// The ends of one hop.
-    pub(crate) const fn of_hop(from: Option<f64>, to: Option<f64>) -> Self {
-        Self { names: Some(["--from", "--to"]), x_m: [from, to] }
-    }
-
-    /// The ends of a path.
-    pub(crate) const fn of_path(start: Option<f64>, goal: Option<f64>) -> Self {
-        Self { names: Some(["--start", "--goal"]), x_m: [start, goal] }
-    }
-
-    /// The source of an end's value.
-    fn place(&self, end: End) -> String {
-        match (self.names, self.x_m[end as usize]) {
-            (Some(names), Some(_)) => names[end as usize].to_owned(),
-            _ => format!("terrain.{}_x_m", end.name()),
-        }
-    }
-
-    /// The failure for an end that is given nowhere.
-    fn missing(&self, end: End) -> Failure {
-        let name = end.name();
-        Failure::message(match self.names {
-            Some(names) => format!(
-                "found no {name}: give {} X along the chain, or [terrain] {name}_x_m (for a dem or mesh {name}_m) in the scenario",
-                names[end as usize]
-            ),
-            None => {
-                format!("found no {name}: add {name}_x_m = X (for a dem or mesh {name}_m = [x, y]) to the scenario's [terrain]")
-            }
-        })
-    }
-}
-
 impl Loaded {
-    /// The hop test over the chain.
-    pub(crate) fn hop_test(&self) -> HopTest {
-        HopTest::new(Arc::clone(&self.prepared.chain))
-    }
-
     /// Start and goal, or a failure that names the missing one.
     pub(crate) fn ends(&self) -> Result<(Station, Station), Failure> {
-        let start = self.prepared.start.ok_or_else(|| self.ends.missing(End::Start))?;
-        let goal = self.prepared.goal.ok_or_else(|| self.ends.missing(End::Goal))?;
-        Ok((start, goal))
+        self.case.ends().map_err(|error| match error {
+            CaseError::MissingEnd { which } => self.ends.missing(which),
+            other => other.into(),
+        })
     }
 
-    /// The warnings about the input and an answer, without repetition.
-    pub(crate) fn warnings_with(&self, more: impl IntoIterator<Item = String>) -> Vec<String> {
-        let mut warnings = self.prepared.warnings.clone();
-        for warning in more {
-            if !warnings.contains(&warning) {
-                warnings.push(warning);
-            }
+    /// An answer as one document, with its warnings.
+    pub(crate) fn document<T: Serialize>(&self, kind: DocumentKind, warnings: &[String], answer: T) -> Result<String, Failure> {
+        Ok(self.record.document(kind, warnings, answer).to_json()?)
+    }
+
+    /// Refuses an option that needs a chain on a map.
+    pub(crate) fn check_on_map(&self, option: &str) -> Result<(), Failure> {
+        match self.case.prepared.chain.geometry().map_points() {
+            Some(_) => Ok(()),
+            None => Err(Failure::message(format!(
+                "{option}: the chain lies on no map; give it map_x_m and map_y_m, or slice it from a DEM"
+            ))),
         }
-        warnings
     }
 }
 
@@ -148,28 +108,31 @@ pub(crate) fn load_scenario(target: &Path, common: &CommonArgs, purpose: Purpose
     let target = Target { input: inputs::open(target, Role::Scenario)?, is_scenario: true };
     let source = typed(&target, common, None, EndOptions::NONE)?;
     let given = source.entries.clone();
-    validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut prepare)
+    validate_and_prepare(&target, source, common.quiet, (EndOptions::NONE, purpose, &given), &mut purpose.preparation())
 }
 
-/// Loads a chain, scenario or result with the options beside it.
+/// Loads the chain, scenario or result of a journey with the options beside it, and with keys that a command's own options set.
+pub(crate) fn load_journey(
+    JourneyArgs { chain, start, goal }: &JourneyArgs,
+    common: &CommonArgs,
+    search: &SearchArgs,
+    purpose: Purpose,
+    own: &[OwnKey<'_>],
+) -> Result<Loaded, Failure> {
+    load(chain, common, Some(search), EndOptions::of_path(*start, *goal), purpose, own)
+}
+
+/// A key that a command's own option sets: option, table, key and value.
+pub(crate) type OwnKey<'a> = (&'a str, &'a str, &'a str, toml::Value);
+
+/// Loads a chain, scenario or result with the options beside it, and with keys that a command's own options set.
 pub(crate) fn load(
     target: &Path,
     common: &CommonArgs,
     search: Option<&SearchArgs>,
     ends: EndOptions,
     purpose: Purpose,
-) -> Result<Loaded, Failure> {
-    load_with(target, common, search, ends, purpose, &[])
-}
-
-/// Loads the same with keys that a command's own options set: option, table, key and value.
-pub(crate) fn load_with(
-    target: &Path,
-    common: &CommonArgs,
-    search: Option<&SearchArgs>,
-    ends: EndOptions,
-    purpose: Purpose,
-    own: &[(&str, &str, &str, toml::Value)],
+    own: &[OwnKey<'_>],
 ) -> Result<Loaded, Failure> {
     let target = Target::chain(target)?;
     let mut source = typed(&target, common, search, ends)?;
@@ -177,41 +140,7 @@ pub(crate) fn load_with(
         source.entries.set_by_option(option, table, key, value.clone());
     }
     let given = source.entries.clone();
-    validate_and_prepare(&target, source, common.quiet, (ends, purpose, &given), &mut prepare)
-}
-
-/// A scenario of which keys are varied: the first cell, loaded, and the source of all other cells.
-#[derive(Debug)]
-pub(crate) struct ToVary {
-    /// With the first value of every key.
-    pub(crate) first: Loaded,
-    /// The terrain.
-    pub(crate) survey: Survey,
-    /// The keys as typed, with the options.
-    pub(crate) entries: Entries,
-    /// The folder that the scenario's paths start from.
-    pub(crate) base: PathBuf,
-}
-
-/// Loads the same for keys that are varied, the terrain read once.
-pub(crate) fn load_to_vary(
-    target: &Path,
-    common: &CommonArgs,
-    search: &SearchArgs,
-    ends: EndOptions,
-    swept: &[SweptKey],
-) -> Result<ToVary, Failure> {
-    let target = Target::chain(target)?;
-    let mut source = typed(&target, common, Some(search), ends)?;
-    let (entries, base) = (source.entries.clone(), source.base.clone());
-    source.entries = Trade::first_cell(&entries, swept, "--vary").map_err(|error| Failure::message(format!("--vary: {error}")))?;
-    let mut kept = None;
-    let first =
-        validate_and_prepare(&target, source, common.quiet, (ends, Purpose::Trade, &entries), &mut |scenario, terrain, base| {
-            kept.insert(Survey::of(scenario, terrain, base)?).prepare(scenario)
-        })?;
-    let survey = kept.ok_or_else(|| Failure::message(format!("{}: found no terrain", target.input.given.display())))?;
-    Ok(ToVary { first, survey, entries, base })
+    validate_and_prepare(&target, source, common.quiet, (ends, purpose, &given), &mut purpose.preparation())
 }
 
 /// The keys of a chain, scenario or result with the options beside it.
@@ -219,13 +148,7 @@ fn typed(target: &Target, common: &CommonArgs, search: Option<&SearchArgs>, ends
     let Target { input, is_scenario } = target;
     let mut source = match (*is_scenario, &common.scenario) {
         (true, None) => read_source(input)?,
-        (true, Some(other)) => {
-            return Err(Failure::message(format!(
-                "found two scenarios, {} and --scenario {}, expected one: give a chain CSV as CHAIN, or leave --scenario away",
-                input.given.display(),
-                other.display()
-            )));
-        }
+        (true, Some(other)) => return Err(two_scenarios(input, other, "a chain CSV as CHAIN")),
         (false, scenario) => option_source(scenario.as_deref())?,
     };
     if !is_scenario {
@@ -280,10 +203,32 @@ fn look_at_keys(source: &mut Source, chain_is_a_key: bool) -> Result<(), Failure
     Err(refused(problems, &source.name, &source.text))
 }
 
-/// Prepares a chain from a scenario and its terrain, whose paths start from the given folder.
-type Prepare<'a> = &'a mut dyn FnMut(&Scenario, &TerrainSource, &Path) -> Result<Prepared, PipelineError>;
+/// Prepares the case of a scenario, whose paths start from the given folder.
+type Prepare<'a> = &'a mut dyn FnMut(Scenario, &Path) -> Result<Case, CaseError>;
 
-/// Validates keys and prepares their chain. `given`: the keys of file and options, without those that a command varies.
+impl Purpose {
+    /// How its cases are prepared.
+    fn preparation(self) -> impl FnMut(Scenario, &Path) -> Result<Case, CaseError> {
+        let commands = if self.flies_commands() { Commands::OfTheMachine } else { Commands::Exact };
+        move |scenario, base| Case::new(scenario, base, commands)
+    }
+}
+
+/// What a result says of a case.
+fn recorded(case: &Case) -> Result<CaseRecord, Failure> {
+    for file in scenario_files(&case.scenario, &case.base) {
+        claims::reads(&file);
+        verbose::read(&file);
+    }
+    let record = case.record(&relative_name)?;
+    let geometry = case.prepared.chain.geometry();
+    let (from_m, to_m) = geometry.extent_m();
+    verbose::say(|| format!("the chain has {} segments, x from {from_m} to {to_m} m", geometry.segment_count()));
+    verbose::settings(&record.scenario, &case.scenario.search);
+    Ok(record)
+}
+
+/// Validates keys and prepares their case. `given`: the keys of file and options, without those that a command varies.
 fn validate_and_prepare(
     target: &Target,
     source: Source,
@@ -311,23 +256,27 @@ fn validate_and_prepare(
         scenario.terrain = Some(terrain.clone());
     }
     let file = base.join(terrain.path());
-    let exact = || Scenario { hopper: scenario.hopper.with_any_command(), ..scenario.clone() };
-    let assumed = (!purpose.flies_commands()).then(exact);
-    let mut prepared =
-        prepare(assumed.as_ref().unwrap_or(&scenario), &terrain, &base).map_err(|error| unprepared(error, &file, ends))?;
-    prepared.warnings.extend(purpose.unused(given, &scenario).into_iter().chain(replaced));
-    for warning in &prepared.warnings {
-        output::warn(quiet, warning);
+    let mut case = prepare(scenario, &base).map_err(|error| match error {
+        CaseError::Prepare(error) => unprepared(error, &file, ends),
+        other => other.into(),
+    })?;
+    case.prepared.warnings.extend(purpose.unused(given, &case.scenario).into_iter().chain(replaced));
+    output::warn_all(quiet, &case.prepared.warnings);
+    Ok(Loaded { record: recorded(&case)?, case, ends })
+}
+
+/// Several scenarios side by side as one document, with all of them as used.
+pub(crate) fn comparison_document(loaded: &[Loaded], comparison: &Comparison) -> Result<String, Failure> {
+    let scenarios = loaded.iter().map(|one| one.record.scenario.clone()).collect();
+    let mut inputs: Vec<InputFile> = Vec::new();
+    for input in loaded.iter().flat_map(|one| &one.record.inputs) {
+        if !inputs.contains(input) {
+            inputs.push(input.clone());
+        }
     }
-    let mut inputs = match terrain {
-        TerrainSource::Dem { .. } => raster_files(&file)?,
-        TerrainSource::Mesh { .. } | TerrainSource::Chain { .. } => vec![input_file(&file)?],
-    };
-    for overlay in Overlays::files(&scenario) {
-        inputs.extend(raster_files(&base.join(overlay))?);
-    }
-    let document = scenario_document(&scenario, &|path| relative_name(&base.join(path)));
-    Ok(Loaded { scenario, prepared, document, inputs, base, ends })
+    let warnings = comparison.compared.iter().flat_map(Compared::warnings).collect();
+    let document = Document::new(DocumentKind::Compare, serde_json::Value::Array(scenarios), inputs, warnings, &comparison.answer);
+    Ok(document.to_json()?)
 }
 
 /// The failure for a terrain without a usable chain, with the file or option at fault.
@@ -352,14 +301,95 @@ pub(crate) struct Bare {
     pub(crate) document: serde_json::Value,
     /// Warnings about keys without effect.
     pub(crate) warnings: Vec<String>,
+    /// The title that the scenario gives its report, other than the file's name.
+    pub(crate) title: Option<String>,
+    /// The scenario's own start and goal on its DEM, where they are used.
+    pub(crate) ends: Option<[MapPlace; 2]>,
+}
+
+impl Bare {
+    /// The name of the map in titles: that of the scenario's report, else of the DEM.
+    pub(crate) fn title_of_map(&self) -> String {
+        let of_dem = || self.dem.file_stem().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+        self.title.clone().unwrap_or_else(of_dem)
+    }
 }
 
 /// Loads the scenario of the options for hops over this DEM, without its own terrain.
 pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, purpose: Purpose) -> Result<Bare, Failure> {
     let dem = inputs::open(dem, Role::Dem)?.file;
-    let mut source = option_source(common.scenario.as_deref())?;
+    of_source(option_source(common.scenario.as_deref())?, Some(dem), common, search, purpose)
+}
+
+/// Loads the same for a DEM, or for a scenario that names one, with the scenario's start and goal where the command line has no start.
+pub(crate) fn load_map(
+    target: &Path,
+    common: &CommonArgs,
+    search: &SearchArgs,
+    purpose: impl Fn(ScenarioEnds) -> Purpose,
+    has_start: bool,
+) -> Result<Bare, Failure> {
+    let input = inputs::open(target, Role::MapTarget)?;
+    let ends = match (input.is_scenario(), has_start) {
+        (_, false) => ScenarioEnds::Needed,
+        (true, true) => ScenarioEnds::Offered,
+        (false, true) => ScenarioEnds::Ignored,
+    };
+    let source = match (input.is_scenario(), &common.scenario) {
+        (true, Some(other)) => return Err(two_scenarios(&input, other, "a DEM as DEM")),
+        (true, None) => read_source(&input)?,
+        (false, scenario) => option_source(scenario.as_deref())?,
+    };
+    let dem = (!input.is_scenario()).then_some(input.file);
+    of_source(source, dem, common, search, purpose(ends))
+}
+
+/// Whether a scenario's own start and goal count for a map.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum ScenarioEnds {
+    /// They are ignored, with the rest of its terrain.
+    Ignored,
+    /// Its goal counts where it has one.
+    Offered,
+    /// There is no other start.
+    Needed,
+}
+
+/// The failure for two scenarios.
+fn two_scenarios(input: &Input, other: &Path, instead: &str) -> Failure {
+    Failure::message(format!(
+        "found two scenarios, {} and --scenario {}, expected one: give {instead}, or leave --scenario away",
+        input.given.display(),
+        other.display()
+    ))
+}
+
+/// The scenario of a source for hops over a DEM, its own one if no other is given.
+fn of_source(
+    mut source: Source,
+    dem: Option<PathBuf>,
+    common: &CommonArgs,
+    search: &SearchArgs,
+    purpose: Purpose,
+) -> Result<Bare, Failure> {
     apply_options(&mut source.entries, common, Some(search), EndOptions::NONE);
     let given = source.entries.clone();
+    let (ends, dem) = if let Some(dem) = dem {
+        (own_ends(&source, purpose.scenario_ends())?, dem)
+    } else {
+        look_at_keys(&mut source, false)?;
+        let ends = own_ends(&source, purpose.scenario_ends())?;
+        let own = source.entries.files().into_iter().find(|(key, _)| key.path() == "terrain.dem").map(|(_, file)| file);
+        let own = own.ok_or_else(|| {
+            let name = &source.name;
+            Failure::message(format!(
+                "{name}: found no terrain.dem, expected one for a map: add it, or give the DEM, and the scenario with --scenario {name}"
+            ))
+        })?;
+        (ends, source.base.join(own))
+    };
+    let title = given.given().any(|(key, place)| key.path() == "report.title" && *place != Place::Nowhere);
+    let title = given.title().filter(|_| title).map(str::to_owned);
     forget_terrain(&mut source.entries);
     look_at_keys(&mut source, false)?;
     let scenario = validated(source.entries, &source.name, &source.text)?;
@@ -370,9 +400,24 @@ pub(crate) fn load_bare(dem: &Path, common: &CommonArgs, search: &SearchArgs, pu
         return Err(Failure::message(name + &lacking_on_a_dem(&lacking)));
     }
     let document = scenario_document(&scenario, &|path| relative_name(&source.base.join(path)));
+    verbose::settings(&document, &scenario.search);
     // Hops over a map have exact commands, which the warnings say.
     let scenario = Scenario { hopper: scenario.hopper.with_any_command(), ..scenario };
-    Ok(Bare { dem, scenario, base: source.base, document, warnings })
+    Ok(Bare { dem, scenario, base: source.base, document, warnings, title, ends })
+}
+
+/// The start and goal of a scenario on its DEM, where they count.
+fn own_ends(source: &Source, wanted: ScenarioEnds) -> Result<Option<[MapPlace; 2]>, Failure> {
+    let has_dem = source.entries.files().iter().any(|(key, _)| key.path() == "terrain.dem");
+    if wanted == ScenarioEnds::Ignored || !has_dem {
+        return Ok(None);
+    }
+    let scenario = match validated(source.entries.clone(), &source.name, &source.text) {
+        // A start or goal that the scenario lacks is not missed where the command line has a start.
+        Err(_) if wanted == ScenarioEnds::Offered => return Ok(None),
+        scenario => scenario?,
+    };
+    Ok(scenario.terrain.and_then(|terrain| terrain.map_ends()))
 }
 
 /// The failure for keys that hops over a DEM need, with how to give them.
@@ -391,15 +436,23 @@ fn lacking_on_a_dem(keys: &[LackingKey]) -> String {
     )
 }
 
-/// A file that was read, for a result.
-pub(crate) fn input_file(path: &Path) -> Result<InputFile, Failure> {
-    claims::reads(path);
-    Ok(InputFile { name: relative_name(path), sha256: sha256_of(path)? })
-}
-
 /// A raster and the files beside it that were read, for a result.
 pub(crate) fn raster_files(path: &Path) -> Result<Vec<InputFile>, Failure> {
-    [path.to_path_buf()].into_iter().chain(sidecar_files(path)).map(|file| input_file(&file)).collect()
+    let files = study::raster_files(path);
+    for file in &files {
+        claims::reads(file);
+        verbose::read(file);
+    }
+    Ok(checksums(&files, &relative_name)?)
+}
+
+/// The DEM and the overlays of a scenario over it, for a result.
+pub(crate) fn raster_files_of(bare: &Bare) -> Result<Vec<InputFile>, Failure> {
+    let mut files = raster_files(&bare.dem)?;
+    for overlay in Overlays::files(&bare.scenario) {
+        files.extend(raster_files(&bare.base.join(overlay))?);
+    }
+    Ok(files)
 }
 
 /// Reads a scenario with the folder of its paths but without its terrain, for commands that have their own.
@@ -537,36 +590,4 @@ fn refused(mut problems: Vec<ScenarioProblem>, name: &str, text: &str) -> Failur
     let in_file = problems.iter().any(|problem| !matches!(problem.place, Place::Option(_)));
     let (name, source) = if in_file { (name.to_owned(), text.to_owned()) } else { (String::new(), String::new()) };
     Failure::Scenario(ScenarioProblems { name, source, problems })
-}
-
-/// A file's path relative to the working folder, normalised and with `/`, so that results are the same on every platform.
-///
-/// What came through a pipe keeps the name it was given under, such as `-`.
-pub(crate) fn relative_name(path: &Path) -> String {
-    if let Some(given) = inputs::given_name(path) {
-        return given.to_string_lossy().into_owned();
-    }
-    let here = std::env::current_dir().unwrap_or_default();
-    let absolute = normal(&here.join(path));
-    let here = normal(&here);
-    let shared = absolute.iter().zip(&here).take_while(|(a, b)| a == b).count();
-    let up = std::iter::repeat_n("..".to_owned(), here.len() - shared);
-    up.chain(absolute[shared..].iter().cloned()).collect::<Vec<_>>().join("/")
-}
-
-/// The parts of a path, with `.` and `..` resolved as text.
-fn normal(path: &Path) -> Vec<String> {
-    let mut parts = Vec::new();
-    for component in path.components() {
-        match component {
-            Component::CurDir => {}
-            Component::ParentDir => {
-                parts.pop();
-            }
-            Component::Prefix(_) | Component::RootDir | Component::Normal(_) => {
-                parts.push(component.as_os_str().to_string_lossy().into_owned());
-            }
-        }
-    }
-    parts
 }

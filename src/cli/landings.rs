@@ -1,24 +1,24 @@
-//! The listener of the trials: it writes the file of landings and shows progress on the terminal.
+//! The file of landings, written while the trials run.
 
 use std::{
     io::{self, BufWriter},
     path::Path,
-    time::Instant,
 };
 
 use chta::{
-    progress::{Detail, Step},
-    report::MapKnowledge,
-    report::landings::{CsvLandings, LandingRow, LandingWriter},
+    report::{
+        MapKnowledge,
+        landings::{CsvLandings, LandingRow, LandingWriter},
+    },
+    study::{Simulated, Trials},
     terrain::MapProjection,
     uncertainty::{HopRecord, Observer, Policy},
 };
 
-use super::trials::on_dem;
-use crate::cli::{Failure, load::Loaded, output::Pending, progress::Progress};
+use super::{Failure, load::Loaded, output::Pending, progress::Progress};
 
 /// The file of landings, written while the trials run.
-pub(super) struct RowFile<'a> {
+pub(crate) struct RowFile<'a> {
     writer: Box<dyn LandingWriter>,
     /// `None` for standard output.
     pending: Option<Pending<'a>>,
@@ -28,9 +28,10 @@ pub(super) struct RowFile<'a> {
 
 impl<'a> RowFile<'a> {
     /// Opens it in the format of its extension.
-    pub(super) fn begin(path: &'a Path, loaded: &Loaded) -> Result<Self, Failure> {
-        let projection = loaded.prepared.projection.clone().filter(|_| on_dem(loaded));
-        let known = match (on_dem(loaded), &projection) {
+    pub(crate) fn begin(path: &'a Path, loaded: &Loaded) -> Result<Self, Failure> {
+        let on_dem = loaded.case.is_on_dem();
+        let projection = loaded.case.prepared.projection.clone().filter(|_| on_dem);
+        let known = match (on_dem, &projection) {
             (false, _) => MapKnowledge::Nothing,
             (true, None) => MapKnowledge::Metres,
             (true, Some(_)) => MapKnowledge::Projection,
@@ -77,12 +78,12 @@ impl<'a> RowFile<'a> {
 fn parquet<'a>(path: &'a Path, loaded: &Loaded, known: MapKnowledge) -> Result<(Pending<'a>, Box<dyn LandingWriter>), Failure> {
     use chta::report::landings::ParquetLandings;
 
-    let seed = loaded.scenario.uncertainty.unwrap_or_default().seed;
+    let seed = loaded.case.scenario.uncertainty.unwrap_or_default().seed;
     let words = [
         ("chta_version", env!("CARGO_PKG_VERSION").to_owned()),
-        ("scenario", loaded.document.to_string()),
+        ("scenario", loaded.record.scenario.to_string()),
         ("seed", seed.to_string()),
-        ("inputs", serde_json::to_string(&loaded.inputs)?),
+        ("inputs", serde_json::to_string(&loaded.record.inputs)?),
     ];
     let pending = Pending::begin(path)?;
     let out = BufWriter::with_capacity(1 << 16, pending.handle()?);
@@ -101,8 +102,8 @@ fn parquet<'a>(path: &'a Path, _loaded: &Loaded, _known: MapKnowledge) -> Result
     )))
 }
 
-/// Writes landings as they are flown.
-pub(super) struct Listener<'a> {
+/// Writes landings as they are flown, and tells the progress which policy is flown.
+pub(crate) struct Listener<'a> {
     rows: Option<RowFile<'a>>,
     policy: Policy,
     failed: Option<io::Error>,
@@ -110,33 +111,28 @@ pub(super) struct Listener<'a> {
 }
 
 impl<'a> Listener<'a> {
-    pub(super) fn new(rows: Option<RowFile<'a>>, policy: Policy, progress: &'a Progress) -> Self {
-        Self { rows, policy, failed: None, progress }
-    }
-
-    /// The trials of another policy follow.
-    pub(super) const fn begin(&mut self, policy: Policy) {
-        self.policy = policy;
-    }
-
-    /// The write error, which replaces the simulation's error that it was stopped.
-    pub(super) fn failure(&mut self) -> Option<Failure> {
-        let error = self.failed.take()?;
-        Some(Failure::message(format!("the landings cannot be written ({error}): free some space")))
-    }
-
-    /// Finishes the file.
-    pub(super) fn finish(mut self) -> Result<(), Failure> {
-        if let Some(failure) = self.failure() {
-            return Err(failure);
+    /// Flies trials, and writes their landings.
+    pub(crate) fn fly(trials: Trials, rows: Option<RowFile<'a>>, progress: &'a Progress) -> Result<Simulated, Failure> {
+        let mut listener = Self { rows, policy: Policy::OpenLoop, failed: None, progress };
+        let flown = trials.fly(&mut listener, progress);
+        // A write error replaces the error of the trials that it stopped.
+        if let Some(error) = listener.failed {
+            return Err(Failure::message(format!("the landings cannot be written ({error}): free some space")));
         }
-        self.rows.map_or(Ok(()), RowFile::keep)
+        let flown = flown?;
+        listener.rows.map_or(Ok(()), RowFile::keep)?;
+        Ok(flown)
     }
 }
 
 impl Observer for Listener<'_> {
     fn wants_records(&self) -> bool {
         self.rows.is_some()
+    }
+
+    fn begin(&mut self, policy: Policy) {
+        self.policy = policy;
+        self.progress.begin_trials(policy);
     }
 
     fn hop(&mut self, hop: &HopRecord) {
@@ -152,41 +148,5 @@ impl Observer for Listener<'_> {
                 self.progress.stop();
             }
         }
-    }
-}
-
-/// The lines of the trials of a policy, which begin now.
-pub(super) fn trials_line(policy: Policy) -> impl Fn(&Step) -> Option<String> + Sync {
-    let begun = Instant::now();
-    move |step| match (step.detail, step.of) {
-        (Detail::Trials { reached_goal }, Some(of)) => {
-            Some(progress_text(policy, (step.done, of), reached_goal, begun.elapsed().as_secs_f64()))
-        }
-        _ => None,
-    }
-}
-
-/// The progress line: trials done, trials per second and time left.
-#[expect(clippy::cast_precision_loss, reason = "for reading")]
-fn progress_text(policy: Policy, (done, of): (u64, u64), reached_goal: u64, elapsed_s: f64) -> String {
-    let rate = done as f64 / elapsed_s.max(1e-9);
-    let left_s = (of - done.min(of)) as f64 / rate.max(1e-9);
-    format!(
-        "{}: {done} of {of} trials, {rate:.0} a second, {left_s:.0} s left at most, {:.4} reach the goal",
-        policy.name(),
-        reached_goal as f64 / done.max(1) as f64
-    )
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn progress_has_rate_and_time_left() {
-        assert_eq!(
-            progress_text(Policy::Replan, (3000, 9000), 1500, 2.0),
-            "replan: 3000 of 9000 trials, 1500 a second, 4 s left at most, 0.5000 reach the goal"
-        );
     }
 }

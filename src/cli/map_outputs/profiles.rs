@@ -7,21 +7,20 @@ use chta::{
     figure::{Caption, HopProfile, HopProfilesFigure, draw_hop_profiles},
     path::execute,
     reach::map::MapHop,
-    scenario::Scenario,
+    study::conditions,
     terrain::MapProjection,
 };
 
-use super::captions::conditions;
-use crate::cli::{Failure, output};
+use crate::cli::{Failure, map_input::MapInput, output};
 
 /// The sheet of all hops to all goals, in the format of the file's extension.
 pub(super) fn sheet(
-    name: &str,
-    scenario: &Scenario,
+    input: &MapInput,
     goal_hops: &[Option<Vec<MapHop>>],
     projection: Option<&MapProjection>,
     file: &Path,
 ) -> Result<Vec<u8>, Failure> {
+    let (name, scenario) = (input.title(), &input.bare.scenario);
     let mut profiles = Vec::new();
     for (goal, hops) in goal_hops.iter().enumerate() {
         let hops = hops.as_deref().unwrap_or_default();

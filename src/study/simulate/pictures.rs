@@ -1,45 +1,51 @@
 //! The pictures of trials.
 
-use std::path::Path;
-
-use chta::{
-    figure::{
-        Caption, ConvergencePoint, ErrorQuantiles, Flight, FlownFigure, FlownTrial, LandingBoxes, LandingCloud, LandingEllipse,
-        LandingMapFigure, OutcomeBars, SimulationFigure, Success, draw_landing_map, draw_simulation,
-    },
-    quantity::{ChainPoint, MapPoint},
-    uncertainty::{HopRecord, LandingSummary, Summary, TrialOutcome, Uncertainty, Wilson},
-};
 use nalgebra::Vector2;
 
-use super::trials::{Flown, Flyer};
-use crate::cli::{Failure, load::Loaded, output};
+use super::Simulated;
+use crate::{
+    figure::{
+        Caption, ConvergencePoint, ErrorQuantiles, FigureError, Flight, FlownFigure, FlownTrial, LandingBoxes, LandingCloud,
+        LandingEllipse, LandingMapFigure, OutcomeBars, Picture, SimulationFigure, Success, draw_landing_map, draw_simulation,
+    },
+    path::Hop,
+    quantity::{ChainPoint, MapPoint},
+    scenario::Scenario,
+    uncertainty::{HopRecord, LandingSummary, Summary, TrialOutcome, Uncertainty, Wilson},
+};
 
-/// The sheet with all panels of the trials.
-pub(super) fn sheet(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Vec<u8>, Failure> {
-    let summaries = || flown.iter().map(|flown| &flown.summary);
-    let figure = SimulationFigure {
-        caption: caption(flyer.loaded, summaries()),
-        flown: summaries().next().and_then(|summary| bundle(flyer, summary)),
-        errors: summaries().map(boxes).collect(),
-        outcomes: summaries().map(bars).collect(),
-    };
-    output::encoded(draw_simulation(&figure), file)
-}
+impl Simulated {
+    /// The sheet with all panels of the trials; `None` if nothing was flown.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    pub fn picture(&self) -> Option<Result<Picture, FigureError>> {
+        let first = self.summaries.first()?;
+        Some(draw_simulation(&SimulationFigure {
+            caption: caption(&self.planned.case.scenario, self.summaries.iter()),
+            flown: bundle(self, first),
+            errors: self.summaries.iter().map(boxes).collect(),
+            outcomes: self.summaries.iter().map(bars).collect(),
+        }))
+    }
 
-/// The landings on the map; `None` where there is no map.
-pub(super) fn landing_map(flyer: &Flyer<'_>, flown: &[Flown], file: &Path) -> Result<Option<Vec<u8>>, Failure> {
-    let (Some(dem), Some(Flown { summary })) = (flyer.dem(), flown.first()) else { return Ok(None) };
-    let ends: Vec<_> = flyer.path.hops.iter().filter_map(chta::path::Hop::map_ends).collect();
-    let path = ends.first().map(|(takeoff, _)| *takeoff).into_iter().chain(ends.iter().map(|(_, landing)| *landing)).collect();
-    let clouds = summary.landings.iter().zip(&ends).map(|(landing, (_, planned))| cloud(landing, *planned, summary)).collect();
-    let figure = LandingMapFigure { caption: caption(flyer.loaded, std::iter::once(summary)), dem, path, clouds };
-    output::encoded(draw_landing_map(&figure), file).map(Some)
+    /// The landings on the map, under the first policy; `None` without a map or if nothing was flown.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    pub fn landing_map(&self) -> Option<Result<Picture, FigureError>> {
+        let (dem, summary) = (self.dem()?, self.summaries.first()?);
+        let ends: Vec<_> = self.planned.path.iter().flat_map(|path| &path.hops).filter_map(Hop::map_ends).collect();
+        let path = ends.first().map(|(takeoff, _)| *takeoff).into_iter().chain(ends.iter().map(|(_, landing)| *landing)).collect();
+        let clouds = summary.landings.iter().zip(&ends).map(|(landing, (_, planned))| cloud(landing, *planned, summary)).collect();
+        let caption = caption(&self.planned.case.scenario, std::iter::once(summary));
+        Some(draw_landing_map(&LandingMapFigure { caption, dem, path, clouds }))
+    }
 }
 
 /// The caption: what was flown, under which errors, and the success rates.
-fn caption<'a>(loaded: &Loaded, summaries: impl Iterator<Item = &'a Summary>) -> Caption {
-    let keys = loaded.scenario.uncertainty.unwrap_or_default();
+fn caption<'a>(scenario: &Scenario, summaries: impl Iterator<Item = &'a Summary>) -> Caption {
+    let keys = scenario.uncertainty.unwrap_or_default();
     let mut lines =
         vec![format!("{}; goal tolerance {} m; seed {}", format_errors(&keys.errors), keys.goal_tolerance_m, keys.seed)];
     lines.extend(summaries.map(|summary| {
@@ -51,7 +57,7 @@ fn caption<'a>(loaded: &Loaded, summaries: impl Iterator<Item = &'a Summary>) ->
             summary.trials
         )
     }));
-    Caption { title: loaded.scenario.title.clone().unwrap_or_default(), lines }
+    Caption { title: scenario.title.clone().unwrap_or_default(), lines }
 }
 
 /// The deviations that are not zero, each with its unit.
@@ -106,19 +112,19 @@ fn bars(summary: &Summary) -> OutcomeBars {
 }
 
 /// The recorded trials over the profile; on a map in side view, and only where the transect has no bend.
-fn bundle(flyer: &Flyer<'_>, summary: &Summary) -> Option<FlownFigure> {
-    let geometry = flyer.test.chain().geometry();
+fn bundle(simulated: &Simulated, summary: &Summary) -> Option<FlownFigure> {
+    let geometry = simulated.planned.test.chain().geometry();
     if !geometry.bends().is_empty() {
         return None;
     }
-    let side = Side::of(flyer)?;
+    let side = Side::of(simulated)?;
     let trials = summary.trajectories.iter().map(|trajectory| FlownTrial {
         flights: trajectory.hops.iter().filter(|hop| hop.landed).filter_map(|hop| side.flight(hop)).collect(),
         reached: trajectory.trial.outcome == TrialOutcome::Reached,
     });
     Some(FlownFigure {
         ground: geometry.vertices().to_vec(),
-        planned: flyer.path.hops.iter().map(Flight::from).collect(),
+        planned: simulated.planned.path.iter().flat_map(|path| &path.hops).map(Flight::from).collect(),
         trials: trials.collect(),
         trials_in_all: summary.trials,
     })
@@ -132,10 +138,10 @@ struct Side {
 }
 
 impl Side {
-    fn of(flyer: &Flyer<'_>) -> Option<Self> {
-        let geometry = flyer.test.chain().geometry();
+    fn of(simulated: &Simulated) -> Option<Self> {
+        let geometry = simulated.planned.test.chain().geometry();
         let (first_x_m, _) = geometry.extent_m();
-        if flyer.dem().is_none() {
+        if simulated.dem().is_none() {
             return Some(Self { origin: Vector2::new(first_x_m, 0.0), along: Vector2::x(), first_x_m });
         }
         let (first, last) = geometry.map_points().and_then(|points| points.first().zip(points.last()))?;

@@ -1,0 +1,76 @@
+//! The picture of a map.
+
+use std::path::Path;
+
+use chta::{
+    figure::{Caption, GoalMark, HopMapFigure, MapPosts, draw_hop_map},
+    path::HopPath,
+    quantity::MapPoint,
+    report::MapAnswer,
+    scenario::Scenario,
+    study::{
+        conditions,
+        map::{MapStudy, PreparedMap},
+    },
+    terrain::KeepOut,
+};
+
+use crate::cli::{Failure, map_input::MapInput, output};
+
+/// The map as a picture, in the format of the file's extension.
+pub(super) fn map(input: &MapInput, prepared: &PreparedMap, study: &MapStudy, file: &Path) -> Result<Vec<u8>, Failure> {
+    let MapStudy { answer, out, back, paths, .. } = study;
+    let can_return: Option<Vec<bool>> = back.as_ref().map(|back| back.hops.iter().map(|&hops| hops >= 0).collect());
+    let kept_out = prepared.ground.terrain().overlays().keep_out().map(|zones| kept_out(prepared, zones));
+    let goals = prepared.goals.iter().zip(&answer.goals);
+    let figure = HopMapFigure {
+        caption: Caption {
+            title: format!("Where in how few hops: {}", input.title()),
+            lines: subtitle(answer, &input.bare.scenario),
+        },
+        posts: MapPosts { dem: prepared.dem(), stride: prepared.lattice.stride },
+        hops: &out.hops,
+        can_return: can_return.as_deref(),
+        kept_out: kept_out.as_deref(),
+        starts: prepared.starts.iter().map(|start| start.at).collect(),
+        goals: goals
+            .clone()
+            .map(|(goal, record)| GoalMark { at: goal.at, hops: record.hops.and_then(|hops| u64::try_from(hops).ok()) })
+            .collect(),
+        paths: goals
+            .zip(paths)
+            .filter_map(|((_, record), path)| {
+                let start = prepared.starts.get(record.start?.checked_sub(1)?)?;
+                Some(places(start.at, path.as_ref()?))
+            })
+            .collect(),
+    };
+    output::encoded(draw_hop_map(&figure), file)
+}
+
+/// The start and every landing.
+fn places(start: MapPoint, path: &HopPath) -> Vec<MapPoint> {
+    let landings = path.hops.iter().filter_map(|hop| hop.landing.map());
+    std::iter::once(start).chain(landings).collect()
+}
+
+/// Which posts of the map lie in a keep-out zone.
+fn kept_out(prepared: &PreparedMap, zones: &KeepOut) -> Vec<bool> {
+    let nodes = prepared.nodes();
+    let posts = (0..prepared.lattice.count()).map(|index| prepared.lattice.node(index));
+    posts.map(|post| zones.keeps_out(nodes.post(post.row, post.col))).collect()
+}
+
+/// The subtitle of the picture: the map's assumptions and a summary of its result.
+fn subtitle(answer: &MapAnswer, scenario: &Scenario) -> Vec<String> {
+    let stride = if answer.stride > 1 { format!(", every {} posts", answer.stride) } else { String::new() };
+    let bound = answer.hops_max.map_or(String::new(), |most| format!(", searched up to {most}"));
+    let found = format!(
+        "{} of {} posts reachable from {} in at most {} hops{bound}{stride}",
+        answer.reachable_posts,
+        answer.posts,
+        answer.from(),
+        answer.farthest_hops
+    );
+    vec![conditions(scenario), found]
+}

@@ -1,0 +1,115 @@
+//! The folder of a whole run.
+
+use std::{
+    fs,
+    path::{Path, PathBuf},
+};
+
+use chta::{
+    chain::csv::write_chain_csv,
+    report::{CrsRecord, DocumentKind},
+    study::{Planned, Simulated},
+};
+
+use super::{
+    Failure, claims,
+    load::Loaded,
+    output::{self, Pending},
+    trajectory::TrajectoryFile,
+};
+
+/// The kind of the answer, which a run accepts as input to repeat it.
+const RESULT: &str = "result.json";
+
+/// The picture of the plan.
+const PICTURE: &str = "path.svg";
+
+/// The pictures of the trials.
+const TRIAL_PICTURES: [&str; 2] = ["trials.svg", "landings.svg"];
+
+/// Files that only some runs have: those left by an earlier run that had a path, trials or another map would contradict this one.
+const OF_SOME_RUNS: [&str; 5] = ["path.geojson", "path.prj", "simulation.json", TRIAL_PICTURES[0], TRIAL_PICTURES[1]];
+
+/// The files of a run before they are written.
+#[derive(Debug)]
+pub(crate) struct RunFolder<'a> {
+    folder: &'a Path,
+    files: Vec<(&'static str, Vec<u8>)>,
+    in_time: Option<(Pending<'a>, Vec<u8>)>,
+}
+
+/// Makes the folder of the files, if there is none yet.
+fn made(folder: &Path) -> Result<(), Failure> {
+    fs::create_dir_all(folder).map_err(|error| {
+        Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))
+    })
+}
+
+impl<'a> RunFolder<'a> {
+    /// A folder without files; `in_time`: a file beside them that is opened at once, so that its folder has to be there.
+    ///
+    /// # Errors
+    /// A folder that cannot be made.
+    pub(crate) fn new(folder: &'a Path, in_time: Option<&Path>) -> Result<Self, Failure> {
+        if in_time.is_some_and(|file| file.parent() == Some(folder)) {
+            made(folder)?;
+        }
+        Ok(Self { folder, files: Vec::new(), in_time: None })
+    }
+
+    /// Adds the path in time, which has a place of its own.
+    pub(crate) fn trajectory(&mut self, file: Option<TrajectoryFile<'a>>, planned: &Planned) -> Result<(), Failure> {
+        self.in_time = file.map(|file| file.filled(planned.path.as_ref(), &planned.case)).transpose()?;
+        Ok(())
+    }
+
+    /// Adds the chain, the path, the answer and its picture.
+    pub(crate) fn plan(&mut self, planned: &Planned, loaded: &Loaded) -> Result<(), Failure> {
+        let mut chain_csv = Vec::new();
+        let (scenario, prepared) = (&planned.case.scenario, &planned.case.prepared);
+        let projection = prepared.projection.as_ref();
+        let mut comments =
+            vec![format!("chta {} run of {}", env!("CARGO_PKG_VERSION"), scenario.title.as_deref().unwrap_or("a scenario"))];
+        comments.extend(projection.map(|projection| CrsRecord::from(projection).comments()).unwrap_or_default());
+        write_chain_csv(prepared.chain.geometry(), &mut chain_csv, &comments).map_err(|e| Failure::of(&e))?;
+        let mut path_csv = Vec::new();
+        planned.write_csv(&mut path_csv).map_err(|error| Failure::message(format!("path.csv: {error}")))?;
+        let result = loaded.document(DocumentKind::Run, &planned.warnings, &planned.answer)?;
+        self.files.extend([("chain.csv", chain_csv), ("path.csv", path_csv), (RESULT, result.into_bytes())]);
+        self.files.push((PICTURE, output::encoded(planned.picture(), Path::new(PICTURE))?));
+        if let Some(geojson) = planned.geojson() {
+            self.files.push(("path.geojson", geojson.into_bytes()));
+            self.files.extend(output::prj(projection).map(|text| ("path.prj", text)));
+        }
+        Ok(())
+    }
+
+    /// Adds the answer of the trials and its pictures.
+    pub(crate) fn trials(&mut self, simulated: &Simulated, loaded: &Loaded) -> Result<(), Failure> {
+        let document = loaded.document(DocumentKind::Simulate, &simulated.warnings, &simulated.answer)?;
+        self.files.push(("simulation.json", document.into_bytes()));
+        for (name, picture) in TRIAL_PICTURES.into_iter().zip([simulated.picture(), simulated.landing_map()]) {
+            if let Some(drawn) = picture {
+                self.files.push((name, output::encoded(drawn, Path::new(name))?));
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes all files or none, and removes those of an earlier run that this one does not have. Returns what was written, in words.
+    pub(crate) fn write(self) -> Result<String, Failure> {
+        let Self { folder, files, in_time } = self;
+        made(folder)?;
+        claims::repeats(&folder.join(RESULT));
+        let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
+        let pending: Result<Vec<_>, Failure> =
+            files.into_iter().map(|(name, bytes)| Ok((Pending::begin(folder.join(name))?, bytes))).collect();
+        let mut pending = pending?;
+        pending.extend(in_time);
+        output::finish(pending)?;
+        for stale in OF_SOME_RUNS.into_iter().filter(|name| !names.contains(name)) {
+            let _ = fs::remove_file::<PathBuf>(folder.join(stale));
+        }
+        Ok(format!("written to {}: {}", folder.display(), names.join(", ")))
+    }
+}

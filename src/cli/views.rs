@@ -1,0 +1,154 @@
+//! An answer as a command writes it: the views of it, and the files that hold them.
+
+use std::{io, path::Path};
+
+use chta::{
+    figure::{FigureError, Picture},
+    path::HopPath,
+    study::Case,
+    terrain::MapProjection,
+};
+
+use super::{
+    Failure,
+    args::Format,
+    output::{self, Pending, TableFormat},
+    trajectory::TrajectoryFile,
+};
+
+/// The views of an answer, each made when it is wanted.
+pub(crate) struct Views<'v> {
+    /// For reading.
+    pub(crate) text: &'v dyn Fn() -> String,
+    /// One document.
+    pub(crate) json: &'v dyn Fn() -> Result<String, Failure>,
+    /// A table.
+    pub(crate) csv: &'v dyn Fn(&mut Vec<u8>) -> io::Result<()>,
+}
+
+impl Views<'_> {
+    /// The table in a format.
+    fn table(&self, format: TableFormat) -> Result<Vec<u8>, Failure> {
+        if format == TableFormat::Json {
+            return (self.json)().map(String::into_bytes);
+        }
+        let mut csv = Vec::new();
+        (self.csv)(&mut csv).map_err(|error| Failure::message(format!("the table cannot be written ({error})")))?;
+        Ok(csv)
+    }
+
+    /// Writes the answer to standard output: the table where that is wanted there.
+    pub(crate) fn show(&self, format: Format, table_to_stdout: bool) -> Result<(), Failure> {
+        let answer = match format {
+            _ if table_to_stdout => self.table(TableFormat::Csv)?,
+            Format::Text => (self.text)().into_bytes(),
+            Format::Json => (self.json)()?.into_bytes(),
+        };
+        output::to_stdout(&answer)
+    }
+}
+
+/// Writes an answer that has no table to standard output.
+pub(crate) fn show(
+    format: Format,
+    text: impl FnOnce() -> String,
+    json: impl FnOnce() -> Result<String, Failure>,
+) -> Result<(), Failure> {
+    let answer = match format {
+        Format::Text => text(),
+        Format::Json => json()?,
+    };
+    output::to_stdout(answer.as_bytes())
+}
+
+/// The file of a table.
+#[derive(Debug)]
+pub(crate) struct Table<'a> {
+    file: Option<Pending<'a>>,
+    format: TableFormat,
+    /// Whether it goes to standard output, in place of the answer.
+    pub(crate) to_stdout: bool,
+}
+
+impl<'a> Table<'a> {
+    /// Opens the file of a table before the computation begins, in this format.
+    pub(crate) fn begin(path: Option<&'a Path>, format: TableFormat) -> Result<Self, Failure> {
+        let to_stdout = path == Some(Path::new("-"));
+        Ok(Self { file: path.filter(|_| !to_stdout).map(Pending::begin).transpose()?, format, to_stdout })
+    }
+
+    /// The same in the format of the file's extension.
+    pub(crate) fn by_extension(path: Option<&'a Path>) -> Result<Self, Failure> {
+        Self::begin(path, path.map(TableFormat::of).transpose()?.unwrap_or(TableFormat::Csv))
+    }
+}
+
+/// The file of a GeoJSON, with its `.prj` where it needs one.
+#[derive(Debug)]
+pub(crate) struct GeoJsonFile<'a> {
+    file: Pending<'a>,
+    prj: Option<(Pending<'a>, Vec<u8>)>,
+}
+
+impl<'a> GeoJsonFile<'a> {
+    /// Opens both before the computation begins.
+    pub(crate) fn begin(path: Option<&'a Path>, projection: Option<&MapProjection>) -> Result<Option<Self>, Failure> {
+        let Some(path) = path else { return Ok(None) };
+        let file = Pending::begin(path)?;
+        let prj = output::prj(projection).map(|text| Ok::<_, Failure>((Pending::begin(path.with_extension("prj"))?, text)));
+        Ok(Some(Self { file, prj: prj.transpose()? }))
+    }
+}
+
+/// The files of an answer: each was opened before the computation, which may take long; all are written together after it.
+#[derive(Debug, Default)]
+pub(crate) struct Files<'a>(Vec<(Pending<'a>, Vec<u8>)>);
+
+impl<'a> Files<'a> {
+    /// Adds a picture, in the format of the file's extension; without a picture the file is not written.
+    pub(crate) fn picture(
+        &mut self,
+        file: Option<Pending<'a>>,
+        draw: impl FnOnce() -> Option<Result<Picture, FigureError>>,
+    ) -> Result<(), Failure> {
+        if let Some(file) = file
+            && let Some(drawn) = draw()
+        {
+            let encoded = output::encoded(drawn, file.path())?;
+            self.0.push((file, encoded));
+        }
+        Ok(())
+    }
+
+    /// Adds a table.
+    pub(crate) fn table(&mut self, table: &mut Table<'a>, views: &Views<'_>) -> Result<(), Failure> {
+        if let Some(file) = table.file.take() {
+            self.0.push((file, views.table(table.format)?));
+        }
+        Ok(())
+    }
+
+    /// Adds a GeoJSON; without one the file is not written.
+    pub(crate) fn geojson(&mut self, file: Option<GeoJsonFile<'a>>, geojson: Option<String>) {
+        if let (Some(GeoJsonFile { file, prj }), Some(geojson)) = (file, geojson) {
+            self.0.push((file, geojson.into_bytes()));
+            self.0.extend(prj);
+        }
+    }
+
+    /// Adds a path in time.
+    pub(crate) fn trajectory(
+        &mut self,
+        file: Option<TrajectoryFile<'a>>,
+        path: Option<&HopPath>,
+        case: &Case,
+    ) -> Result<(), Failure> {
+        self.0.extend(file.map(|file| file.filled(path, case)).transpose()?);
+        Ok(())
+    }
+
+    /// Writes all files or none.
+    pub(crate) fn finish(self) -> Result<(), Failure> {
+        output::finish(self.0)
+    }
+}

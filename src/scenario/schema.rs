@@ -1,0 +1,65 @@
+//! The JSON schema of a scenario, from the catalogue of its keys.
+
+use serde_json::{Map, Value, json};
+
+use super::{
+    CATALOGUE, Kind,
+    catalogue::{MOST, SPEED_LEAST, SPEED_MOST},
+};
+use crate::world::SpeedLevels;
+
+/// The JSON schema (draft 2020-12) of a scenario as a document: its tables with the keys of [`CATALOGUE`], their kinds, bounds and
+/// meanings. It holds for a TOML scenario as well.
+///
+/// What several keys mean together is no part of it: [`Scenario::new`](super::Scenario::new) checks that.
+pub fn scenario_schema() -> Value {
+    let mut tables = Map::new();
+    for key in &CATALOGUE {
+        let table =
+            tables.entry(key.table).or_insert_with(|| json!({ "type": "object", "properties": {}, "additionalProperties": false }));
+        let mut value = of_kind(key.kind);
+        value["description"] = key.help.into();
+        table["properties"][key.name] = value;
+    }
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "chta scenario",
+        "description": "A scenario of constrained hopping traversability analysis: body, hopper, surface, terrain, search and errors.",
+        "type": "object",
+        "properties": tables,
+        "additionalProperties": false,
+    })
+}
+
+/// The values of a kind.
+fn of_kind(kind: Kind) -> Value {
+    let number = |min: f64, max: f64| json!({ "type": "number", "minimum": min, "maximum": max });
+    let list = |of: Value, least: usize| json!({ "type": "array", "items": of, "minItems": least });
+    match kind {
+        Kind::Number { min, max } => number(min, max),
+        Kind::AngleOrUnlimited => json!({ "anyOf": [number(0.0, 90.0), { "const": "inf" }] }),
+        Kind::AngleRange => pair(&[number(-360.0, 360.0), number(-360.0, 360.0)]),
+        Kind::MapPoint => pair(&[number(-1e12, 1e12), number(-1e12, 1e12)]),
+        Kind::LonLat => pair(&[number(-180.0, 360.0), number(-90.0, 90.0)]),
+        Kind::Flag => json!({ "type": "boolean" }),
+        Kind::MapPoints => list(of_kind(Kind::MapPoint), 0),
+        Kind::LonLats => list(of_kind(Kind::LonLat), 0),
+        Kind::CountOrAuto => json!({ "anyOf": [{ "type": "integer", "minimum": 0, "maximum": 100_000 }, { "const": "auto" }] }),
+        Kind::Count { min, max: MOST } => json!({ "type": "integer", "minimum": min }),
+        Kind::Count { min, max } => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        // A number that JSON does not have, such as NaN, or a long one, is a text.
+        Kind::NumberOrNone => {
+            json!({ "anyOf": [{ "type": "number" }, { "type": "string", "pattern": "^ *([Nn][Oo][Nn][Ee]|[-+]?[0-9.]+([eE][-+]?[0-9]+)?|[-+]?[Nn][Aa][Nn]|[-+]?[Ii][Nn][Ff]([Ii][Nn][Ii][Tt][Yy])?) *$" }] })
+        }
+        Kind::Word(words) => json!({ "enum": words }),
+        Kind::Speeds => {
+            json!({ "type": "array", "items": number(SPEED_LEAST, SPEED_MOST), "minItems": 1, "maxItems": SpeedLevels::MOST })
+        }
+        Kind::Text => json!({ "type": "string", "pattern": "\\S" }),
+    }
+}
+
+/// Two numbers.
+fn pair(numbers: &[Value; 2]) -> Value {
+    json!({ "type": "array", "prefixItems": numbers, "minItems": 2, "maxItems": 2 })
+}

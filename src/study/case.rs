@@ -1,0 +1,161 @@
+//! A scenario over its terrain: what the questions along a chain are asked of.
+
+use std::{
+    path::{Path, PathBuf},
+    sync::Arc,
+};
+
+use super::{CaseRecord, JourneyEnd, PipelineError, Prepared, Survey, prepare, scenario_files};
+use crate::{
+    chain::Station,
+    hop::HopTest,
+    report::{CrsRecord, MapKnowledge},
+    scenario::{Scenario, TerrainSource, scenario_document},
+    world::Hopper,
+};
+
+/// Which commands an answer assumes that the machine flies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Commands {
+    /// Those of the machine, in steps if it takes its commands in steps.
+    #[default]
+    OfTheMachine,
+    /// Any command up to the machine's greatest.
+    Exact,
+}
+
+impl Commands {
+    /// The hopper that flies them.
+    fn hopper(self, hopper: &Hopper) -> Hopper {
+        match self {
+            Self::OfTheMachine => *hopper,
+            Self::Exact => hopper.with_any_command(),
+        }
+    }
+}
+
+/// A scenario over its terrain.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// The scenario as used.
+    pub scenario: Scenario,
+    /// The folder that its paths start from.
+    pub base: PathBuf,
+    /// The chain, with start and goal where they are known, and all warnings about the input.
+    pub prepared: Prepared,
+    /// The commands that the chain is prepared for.
+    commands: Commands,
+}
+
+/// Why a scenario gives no case, or a case no answer.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CaseError {
+    /// A scenario without terrain.
+    #[error("found no terrain, expected [terrain] with dem, mesh or chain")]
+    NoTerrain,
+    /// A terrain without a usable chain.
+    #[error(transparent)]
+    Prepare(#[from] PipelineError),
+    /// A start or goal that is given nowhere.
+    #[error("found no {name}, expected terrain.{name}_x_m, or for a dem or mesh terrain.{name}_m", name = which.name())]
+    MissingEnd {
+        /// Start or goal.
+        which: JourneyEnd,
+    },
+}
+
+impl Case {
+    /// Reads the terrain of a scenario, whose paths start from the folder `base`, and prepares its chain.
+    ///
+    /// # Errors
+    /// [`CaseError::NoTerrain`] and [`CaseError::Prepare`].
+    pub fn new(scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
+        Self::prepared_by(scenario, base, commands, &mut |scenario, terrain| prepare(scenario, terrain, base))
+    }
+
+    /// The same over terrain that was read before.
+    ///
+    /// # Errors
+    /// As [`Case::new`].
+    pub fn over(survey: &Survey, scenario: Scenario, base: &Path, commands: Commands) -> Result<Self, CaseError> {
+        Self::prepared_by(scenario, base, commands, &mut |scenario, _| survey.prepare(scenario))
+    }
+
+    fn prepared_by(
+        scenario: Scenario,
+        base: &Path,
+        commands: Commands,
+        prepare: &mut dyn FnMut(&Scenario, &TerrainSource) -> Result<Prepared, PipelineError>,
+    ) -> Result<Self, CaseError> {
+        let terrain = scenario.terrain.as_ref().ok_or(CaseError::NoTerrain)?;
+        let hopper = commands.hopper(&scenario.hopper);
+        let prepared = prepare(&Scenario { hopper, ..scenario.clone() }, terrain)?;
+        Ok(Self { scenario, base: base.to_path_buf(), prepared, commands })
+    }
+
+    /// The same case for these commands: its chain is prepared again if they make a difference.
+    ///
+    /// # Errors
+    /// As [`Case::new`].
+    pub fn with_commands(&self, commands: Commands) -> Result<Self, CaseError> {
+        if commands == self.commands || self.scenario.hopper.limits().steps.is_continuous() {
+            return Ok(self.clone());
+        }
+        let mut case = Self::new(self.scenario.clone(), &self.base, commands)?;
+        case.prepared.warnings = self.warnings_with(case.prepared.warnings);
+        Ok(case)
+    }
+
+    /// The hop test over the chain.
+    pub fn hop_test(&self) -> HopTest {
+        HopTest::new(Arc::clone(&self.prepared.chain))
+    }
+
+    /// Start and goal.
+    ///
+    /// # Errors
+    /// [`CaseError::MissingEnd`], for the first that is given nowhere.
+    pub fn ends(&self) -> Result<(Station, Station), CaseError> {
+        let end = |which, station: Option<Station>| station.ok_or(CaseError::MissingEnd { which });
+        Ok((end(JourneyEnd::Start, self.prepared.start)?, end(JourneyEnd::Goal, self.prepared.goal)?))
+    }
+
+    /// The warnings about the input and an answer, without repetition.
+    pub fn warnings_with(&self, more: impl IntoIterator<Item = String>) -> Vec<String> {
+        let mut warnings = self.prepared.warnings.clone();
+        for warning in more {
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
+        warnings
+    }
+
+    /// How the chain is located on a map, which determines the columns of its paths.
+    pub fn map_knowledge(&self) -> MapKnowledge {
+        match (self.prepared.chain.geometry().map_points(), &self.prepared.projection) {
+            (None, _) => MapKnowledge::Nothing,
+            (Some(_), None) => MapKnowledge::Metres,
+            (Some(_), Some(_)) => MapKnowledge::Projection,
+        }
+    }
+
+    /// Whether the terrain is a raster, so that trials fly in three dimensions.
+    pub const fn is_on_dem(&self) -> bool {
+        matches!(self.scenario.terrain, Some(TerrainSource::Dem { .. }))
+    }
+
+    /// What a result says of this case. Files are `name`d by the caller, such as relative to its working folder.
+    ///
+    /// # Errors
+    /// [`PipelineError::Read`].
+    pub fn record(&self, name: &dyn Fn(&Path) -> String) -> Result<CaseRecord, PipelineError> {
+        Ok(CaseRecord {
+            scenario: scenario_document(&self.scenario, &|path| name(&self.base.join(path))),
+            inputs: super::checksums(&scenario_files(&self.scenario, &self.base), name)?,
+            warnings: self.prepared.warnings.clone(),
+            crs: self.prepared.projection.as_ref().map(CrsRecord::from),
+        })
+    }
+}

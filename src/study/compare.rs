@@ -1,0 +1,107 @@
+//! Several scenarios side by side.
+
+use super::{Case, PlanError, PlanOptions, Planned, Proof, plan};
+#[cfg(feature = "plot")]
+use crate::figure::{Caption, CompareFigure, ComparedScenario, FigureError, Flight, Picture, draw_compare};
+use crate::{
+    progress::Progress,
+    report::{CompareAnswer, CompareRow, MarginsRecord, TotalsRecord},
+};
+
+/// One of several scenarios, with its plan.
+#[derive(Clone, Debug)]
+pub struct Compared {
+    /// The plan.
+    pub planned: Planned,
+    /// Its row of the table.
+    pub row: CompareRow,
+}
+
+impl Compared {
+    /// A plan and the file of its scenario; `untitled` is the name of a scenario without a title.
+    pub fn of(planned: Planned, file: String, untitled: &str) -> Self {
+        let (check, path) = (&planned.answer.check, planned.path.as_ref());
+        let row = CompareRow {
+            file,
+            name: planned.case.scenario.title.clone().unwrap_or_else(|| untitled.to_owned()),
+            start_x_m: check.start_x_m,
+            goal_x_m: check.goal_x_m,
+            verdict: check.verdict,
+            hops: check.hops,
+            lower_bound: check.proof.as_ref().map(|proof| proof.lower_bound),
+            totals: path.map(|path| TotalsRecord::from(&path.totals)),
+            margins: path.and_then(MarginsRecord::of),
+        };
+        Self { planned, row }
+    }
+
+    /// The warnings about the input and the path, each with the name of the file.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        let all = self.planned.case.warnings_with(self.planned.warnings.iter().cloned());
+        all.into_iter().map(|warning| format!("{}: {warning}", self.row.file))
+    }
+}
+
+/// Several scenarios with their plans.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// They, in the order given.
+    pub compared: Vec<Compared>,
+    /// The answer as plain data.
+    pub answer: CompareAnswer,
+}
+
+impl Comparison {
+    /// The answers side by side.
+    pub fn of(compared: Vec<Compared>) -> Self {
+        let answer = CompareAnswer { compared: compared.iter().map(|one| one.row.clone()).collect() };
+        Self { compared, answer }
+    }
+}
+
+/// Plans for every case, named by its file, and shows the answers side by side.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn compare(cases: &[(&str, &Case)], proof: Option<Proof>, progress: &dyn Progress) -> Result<Comparison, PlanError> {
+    let options = PlanOptions { proof, verify: false };
+    let compared = |&(file, case): &(&str, &Case)| Ok(Compared::of(plan(case, options, progress)?, file.to_owned(), file));
+    Ok(Comparison::of(cases.iter().map(compared).collect::<Result<_, PlanError>>()?))
+}
+
+#[cfg(feature = "plot")]
+impl Comparison {
+    /// The picture with all paths overlaid.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    pub fn picture(&self) -> Result<Picture, FigureError> {
+        let words = |one: &Compared| {
+            let hops = one.row.hops.map(|hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" })).unwrap_or_default();
+            let beside = one.planned.path.iter().flat_map(|path| &path.hops).any(crate::path::Hop::is_beside_line);
+            let drawn = if beside { " beside the line, drawn projected on it" } else { "" };
+            format!("{}: {}{hops}{drawn}", one.row.name, one.row.verdict)
+        };
+        let line = self.compared.iter().map(words).collect::<Vec<_>>().join("; ");
+        let names: Vec<_> = self.compared.iter().map(|one| one.row.name.as_str()).collect();
+        let scenarios = self.compared.iter().map(Compared::drawn).collect();
+        draw_compare(&CompareFigure { caption: Caption::new(names.join(" and "), line), scenarios })
+    }
+}
+
+#[cfg(feature = "plot")]
+impl Compared {
+    /// The scenario as the picture shows it.
+    fn drawn(&self) -> ComparedScenario {
+        let (start, goal) = self.planned.ends;
+        ComparedScenario {
+            name: self.row.name.clone(),
+            verdict: self.row.verdict.to_string(),
+            hops: self.row.hops,
+            ground: self.planned.case.prepared.chain.geometry().vertices().to_vec(),
+            start: start.point,
+            goal: goal.point,
+            flights: self.planned.path.iter().flat_map(|path| &path.hops).map(Flight::from).collect(),
+        }
+    }
+}

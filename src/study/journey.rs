@@ -1,0 +1,149 @@
+//! The search for a journey, and the proof where one is requested: what check, plan, compare and require share.
+
+use super::{Case, CaseError, Prepared, SimulateError, dem_ground::dem_ground, front::FlownJourney};
+use crate::{
+    chain::Station,
+    graph::{
+        self, Outcome, ReliabilityUse, ReliablePath, SearchError,
+        proof::{Bounds, BoundsOptions, bounds},
+        search_most_reliable,
+    },
+    hop::HopTest,
+    path::{HopPath, PathError, TooManyHops},
+    progress::Progress,
+    report::CheckAnswer,
+    scenario::Scenario,
+};
+
+/// Bounds on the fewest hops are proved, for every choice of points.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Proof {
+    /// The greatest number of cells that the chain is divided into.
+    pub budget_cells: usize,
+}
+
+/// Why a journey is not searched.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum JourneyError {
+    /// The case.
+    #[error(transparent)]
+    Case(#[from] CaseError),
+    /// The search or the proof.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// The trials that estimate the success of paths.
+    #[error(transparent)]
+    Trials(#[from] Box<SimulateError>),
+    /// A proof for a scenario that selects the most reliable path.
+    #[error(
+        "a proof bounds the fewest hops, but search.risk is \"{}\", which selects the most reliable path: leave the proof out, or set \
+         search.risk to \"ignored\"",
+        risk.name()
+    )]
+    ProofWithRisk {
+        /// How path choice weighs reliability.
+        risk: ReliabilityUse,
+    },
+}
+
+/// The result of a search, with bounds if a proof was requested.
+#[derive(Clone, Debug)]
+pub(super) struct Searched {
+    pub(super) found: graph::Answer,
+    /// The Pareto front of hops against success probability, where the scenario weighs risk.
+    pub(super) reliable_paths: Vec<ReliablePath>,
+    /// The bounds, and the budget of cells.
+    pub(super) proof: Option<(Bounds, usize)>,
+}
+
+impl Searched {
+    /// Searches, and proves if requested.
+    pub(super) fn new(
+        test: &HopTest,
+        ends: (Station, Station),
+        case: &Case,
+        proof: Option<Proof>,
+        progress: &dyn Progress,
+    ) -> Result<Self, JourneyError> {
+        let Some(Proof { budget_cells }) = proof else {
+            let (found, reliable_paths) = search(test, ends, case, progress)?;
+            return Ok(Self { found, reliable_paths, proof: None });
+        };
+        if weighs_reliability(&case.scenario) {
+            return Err(JourneyError::ProofWithRisk { risk: case.scenario.risk });
+        }
+        let search = case.scenario.search.clone();
+        let options = BoundsOptions { budget_cells, search, explain: true, ..BoundsOptions::default() };
+        let bounds = bounds(test, ends.0, ends.1, &options, progress)?;
+        Ok(Self { found: bounds.answer.clone(), reliable_paths: Vec::new(), proof: Some((bounds, budget_cells)) })
+    }
+
+    /// The same for many pairs: one search from each start; pair by pair for proofs and where the most reliable paths are wanted.
+    pub(super) fn all(
+        test: &HopTest,
+        pairs: &[(Station, Station)],
+        case: &Case,
+        proof: Option<Proof>,
+        progress: &dyn Progress,
+    ) -> Result<Vec<Self>, JourneyError> {
+        if proof.is_some() {
+            return pairs.iter().map(|&ends| Self::new(test, ends, case, proof, progress)).collect();
+        }
+        let found: Vec<graph::Answer> = if weighs_reliability(&case.scenario) {
+            pairs.iter().map(|&ends| Ok(search(test, ends, case, progress)?.0)).collect::<Result<_, JourneyError>>()?
+        } else {
+            graph::search_pairs(test, pairs, &case.scenario.search, progress)?
+        };
+        Ok(found.into_iter().map(|found| Self { found, reliable_paths: Vec::new(), proof: None }).collect())
+    }
+
+    /// The answer as plain data together with the path that it found, whose hops may be too many to list. An answer whose path no
+    /// commands of the machine fly has no path.
+    pub(super) fn answer_with_path(
+        &self,
+        test: &HopTest,
+        (start, goal): (Station, Station),
+        (prepared, options): (&Prepared, &graph::SearchOptions),
+    ) -> (CheckAnswer, Result<Option<HopPath>, TooManyHops>) {
+        let answer = CheckAnswer::new(test, start.point.x_m, goal.point.x_m, &self.found, options.effort);
+        let answer = match &self.proof {
+            None => answer,
+            Some((bounds, budget)) => answer.with_bounds(bounds, *budget),
+        };
+        let Outcome::Path { legs, .. } = &self.found.outcome else { return (answer, Ok(None)) };
+        match prepared.path(test, legs, options) {
+            Ok(path) => (answer.with_path(Some(&path)), Ok(Some(path))),
+            Err(PathError::TooManyHops(problem)) => (answer, Err(problem)),
+            Err(PathError::NoCommand(problem)) => (answer.without_commands(&problem), Ok(None)),
+        }
+    }
+}
+
+/// Whether path choice weighs reliability.
+fn weighs_reliability(scenario: &Scenario) -> bool {
+    scenario.risk != ReliabilityUse::Ignored
+}
+
+/// Searches for one pair, for the most reliable path if the scenario requests it.
+pub(super) fn search(
+    test: &HopTest,
+    ends: (Station, Station),
+    case: &Case,
+    progress: &dyn Progress,
+) -> Result<(graph::Answer, Vec<ReliablePath>), JourneyError> {
+    let scenario = &case.scenario;
+    let options = &scenario.search;
+    if !weighs_reliability(scenario) {
+        return Ok((graph::search(test, ends.0, ends.1, options, progress)?, Vec::new()));
+    }
+    let flown = scenario.uncertainty.is_some();
+    let ground = if flown { dem_ground(case).map_err(Box::new)? } else { None };
+    let journey = FlownJourney { scenario, test, ends, ground: ground.as_ref() };
+    let Some(reliability) = scenario.reliability(ground.as_ref()) else {
+        return Ok((graph::search(test, ends.0, ends.1, options, progress)?, Vec::new()));
+    };
+    let (mut found, mut front) = search_most_reliable(test, ends.0, ends.1, options, &reliability, progress)?;
+    journey.estimate(&mut found, &mut front, progress).map_err(Box::new)?;
+    Ok((found, front))
+}

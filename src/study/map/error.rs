@@ -1,0 +1,118 @@
+//! Why a question about a map has no answer.
+
+use super::super::{JourneyEnd, PipelineError};
+use crate::{
+    path::{Execution, Violation},
+    quantity::MapPoint,
+    reach::map::MapError,
+    terrain::{MapBounds, TerrainError},
+    uncertainty::SimulationError,
+};
+
+/// Why a question about a map has no answer.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum MapStudyError {
+    /// The terrain, or its body.
+    #[error(transparent)]
+    Pipeline(#[from] PipelineError),
+    /// The terrain, its overlays or its map.
+    #[error(transparent)]
+    Terrain(#[from] TerrainError),
+    /// No start.
+    #[error("found no start, expected at least one: give terrain.start_m, or the longitude and latitude terrain.start_lonlat_deg")]
+    NoStart,
+    /// A start or goal off the map.
+    #[error("{name} ({:.3}, {:.3}) m lies off the map, which covers {bounds}", at.x, at.y)]
+    OffMap {
+        /// What the caller calls it.
+        name: String,
+        /// Where it lies.
+        at: MapPoint,
+        /// What the map covers.
+        bounds: MapBounds,
+    },
+    /// A start or goal whose nearest post has no elevation.
+    #[error(
+        "{name}: the nearest post, ({:.3}, {:.3}) m, has no elevation; choose a {} where the DEM has data",
+        post.x, post.y, end.name()
+    )]
+    NoElevation {
+        /// What the caller calls it.
+        name: String,
+        /// Start or goal.
+        end: JourneyEnd,
+        /// The nearest post.
+        post: MapPoint,
+    },
+    /// A stride that merges two positions, which would give one answer for both.
+    #[error(
+        "with a stride of {stride}, ({:.3}, {:.3}) m and ({:.3}, {:.3}) m have the same nearest post, ({:.3}, {:.3}) m: take a smaller \
+         stride", asked[0].x, asked[0].y, asked[1].x, asked[1].y, post.x, post.y
+    )]
+    SamePost {
+        /// The stride.
+        stride: usize,
+        /// The two positions.
+        asked: [MapPoint; 2],
+        /// Their nearest post.
+        post: MapPoint,
+    },
+    /// Trials under a policy that needs the nodes of a transect.
+    #[error(
+        "uncertainty.policy is \"replan\", expected \"open-loop\" for trials over a map: replanning needs the nodes of a transect search; \
+         set uncertainty.policy = \"open-loop\""
+    )]
+    Replanning,
+    /// More memory than allowed.
+    #[error(
+        "the map needs up to {} MiB ({posts} posts of the DEM, {nodes} posts of the map), expected at most {} MiB: take a greater stride, \
+         a part of the DEM (gdal_translate -projwin) or a coarser one (gdalwarp -tr), ask for fewer maps at once, or allow more",
+        needed_bytes.div_ceil(1 << 20), allowed_bytes >> 20
+    )]
+    TooMuchMemory {
+        /// The bytes needed at most.
+        needed_bytes: u64,
+        /// The bytes allowed.
+        allowed_bytes: u64,
+        /// Posts of the DEM.
+        posts: usize,
+        /// Posts of the map.
+        nodes: usize,
+    },
+    /// The search.
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// The trials.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+    /// A path that breaks a limit when it is flown again.
+    #[error(
+        "the planned path does not pass its own check ({count} violations): {}; this is a defect of chta, please report it with the \
+         scenario",
+        listed(first)
+    )]
+    Refuted {
+        /// How many violations there are.
+        count: usize,
+        /// The first of them.
+        first: Vec<Violation>,
+    },
+}
+
+fn listed(violations: &[Violation]) -> String {
+    violations.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
+
+impl MapStudyError {
+    /// The error for a path that fails its check.
+    ///
+    /// # Errors
+    /// [`MapStudyError::Refuted`] if the check found a violation.
+    pub(super) fn if_refuted(check: &Execution) -> Result<(), Self> {
+        if check.passes() {
+            return Ok(());
+        }
+        Err(Self::Refuted { count: check.violations.len(), first: check.violations.iter().take(10).copied().collect() })
+    }
+}

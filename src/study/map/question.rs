@@ -1,0 +1,46 @@
+//! What is asked of a map.
+
+use std::path::Path;
+
+use crate::{scenario::Scenario, terrain::MapPlace};
+
+/// A position, and what the caller calls it in messages: a key, an option, or a line of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedPlace {
+    /// Its name, such as `terrain.start_m`.
+    pub name: String,
+    /// The position.
+    pub place: MapPlace,
+}
+
+/// A question about the hops from some starts to all posts of a DEM.
+#[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is one more map or answer that is asked for")]
+pub struct MapQuestion<'a> {
+    /// The hopper, its body, its ground and the search; the terrain in it is ignored.
+    pub scenario: &'a Scenario,
+    /// The folder that the scenario's paths start from.
+    pub base: &'a Path,
+    /// The DEM's file.
+    pub dem: &'a Path,
+    /// The starts, at least one. A post is reached from the nearest of them.
+    pub starts: Vec<NamedPlace>,
+    /// The goals, whose paths are planned and flown again.
+    pub goals: Vec<NamedPlace>,
+    /// Every `stride`-th post is a post of the map; 0 counts as 1.
+    pub stride: usize,
+    /// Also the least effort, as the scenario names it, among paths of fewest hops.
+    pub effort: bool,
+    /// Also the fewest hops back to the nearest start.
+    pub returns: bool,
+    /// Also the single hops from every post.
+    pub mobility: bool,
+    /// Also the post that the last hop to each post comes from.
+    pub predecessors: bool,
+    /// Also trials along the path to every goal.
+    pub trials: bool,
+    /// Posts that need more hops are not searched.
+    pub hops_max: Option<i16>,
+    /// The most memory, bytes, that the map may need.
+    pub memory_max_bytes: Option<u64>,
+}

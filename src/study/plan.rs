@@ -1,0 +1,157 @@
+//! The path of fewest hops, then least effort.
+
+use std::io::{self, Write};
+
+use super::{Case, CaseError, Commands, JourneyError, Proof, journey::Searched};
+#[cfg(feature = "plot")]
+use crate::figure::{FigureError, FigureInput, FigureTitle, Picture, draw};
+use crate::{
+    chain::Station,
+    graph,
+    hop::HopTest,
+    path::{Execution, HopPath, TooManyHops, Violation},
+    progress::Progress,
+    report::{HopRecord, PlanAnswer, ReliablePathRecord, TotalsRecord, path_geojson, write_path_csv},
+};
+
+/// What is wanted beside the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub struct PlanOptions {
+    /// Bounds on the fewest hops.
+    pub proof: Option<Proof>,
+    /// Whether the path is flown again by direct simulation, against every limit.
+    pub verify: bool,
+}
+
+/// Why there is no plan. That there is no path is an answer, not an error.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum PlanError {
+    /// The case, the search or the proof.
+    #[error(transparent)]
+    Journey(#[from] JourneyError),
+    /// A path of too many hops to list.
+    #[error(transparent)]
+    TooManyHops(#[from] TooManyHops),
+    /// A path that breaks a limit when it is flown again.
+    #[error(transparent)]
+    Defect(#[from] Defect),
+}
+
+impl From<CaseError> for PlanError {
+    fn from(error: CaseError) -> Self {
+        Self::Journey(error.into())
+    }
+}
+
+/// A planned path that does not pass the independent checker: a defect of this crate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the planned path does not pass its own check ({} violations): {}; this is a defect of chta, please report it with the scenario",
+    violations.len(), first_of(violations)
+)]
+pub struct Defect {
+    /// All violations.
+    pub violations: Vec<Violation>,
+}
+
+/// The first violations in words.
+fn first_of(violations: &[Violation]) -> String {
+    violations.iter().take(10).map(ToString::to_string).collect::<Vec<_>>().join("; ")
+}
+
+impl Defect {
+    /// Refuses a path that breaks a limit when it is flown again.
+    ///
+    /// # Errors
+    /// [`Defect`].
+    pub fn unless_passed(execution: &Execution) -> Result<(), Self> {
+        if execution.passes() { Ok(()) } else { Err(Self { violations: execution.violations.clone() }) }
+    }
+}
+
+/// A plan with everything that its views need.
+#[derive(Clone, Debug)]
+pub struct Planned {
+    /// What was asked.
+    pub case: Case,
+    /// The hop test over its chain.
+    pub test: HopTest,
+    /// Start and goal.
+    pub ends: (Station, Station),
+    /// The answer of the search.
+    pub found: graph::Answer,
+    /// The path; `None` if there is none, or no commands of the machine fly it.
+    pub path: Option<HopPath>,
+    /// The answer as plain data.
+    pub answer: PlanAnswer,
+    /// The warnings about the path.
+    pub warnings: Vec<String>,
+}
+
+/// Plans the path of fewest hops, then least effort; proves bounds and flies the path again if that is wanted.
+///
+/// # Errors
+/// [`PlanError`].
+pub fn plan(case: &Case, options: PlanOptions, progress: &dyn Progress) -> Result<Planned, PlanError> {
+    let case = case.with_commands(Commands::OfTheMachine)?;
+    let (test, ends) = (case.hop_test(), case.ends()?);
+    let searched = Searched::new(&test, ends, &case, options.proof, progress)?;
+    let (check, path) = searched.answer_with_path(&test, ends, (&case.prepared, &case.scenario.search));
+    let path = path?;
+    if let Some(path) = path.as_ref().filter(|_| options.verify) {
+        Defect::unless_passed(&case.prepared.execute(path, ends))?;
+    }
+    let warnings = path.as_ref().map(|path| case.scenario.path_warnings(path)).unwrap_or_default();
+    let answer = PlanAnswer {
+        check,
+        verified: (options.verify && path.is_some()).then_some(true),
+        path: path.as_ref().map(|path| HopRecord::rows(path, case.prepared.projection.as_ref())).unwrap_or_default(),
+        totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+        reliable_paths: ReliablePathRecord::rows(&searched.reliable_paths),
+    };
+    Ok(Planned { case, test, ends, found: searched.found, path, answer, warnings })
+}
+
+impl Planned {
+    /// Whether there is a path that the machine can fly.
+    pub fn is_traversable(&self) -> bool {
+        self.answer.check.is_traversable()
+    }
+
+    /// Writes the path as CSV; only the header without a path.
+    ///
+    /// # Errors
+    /// An error of the writer.
+    pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
+        write_path_csv(&self.answer.path, self.case.map_knowledge(), out)
+    }
+
+    /// The path as GeoJSON over the map; `None` without a path or a map.
+    pub fn geojson(&self) -> Option<String> {
+        self.case.prepared.chain.geometry().map_points()?;
+        path_geojson(self.path.as_ref()?, self.case.scenario.body.gravity.m_s2(), self.case.prepared.projection.as_ref())
+    }
+
+    /// The picture, with or without a path.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    #[cfg(feature = "plot")]
+    pub fn picture(&self) -> Result<Picture, FigureError> {
+        let scenario = &self.case.scenario;
+        draw(&FigureInput {
+            test: &self.test,
+            answer: &self.found,
+            path: self.path.as_ref(),
+            start: self.ends.0,
+            goal: self.ends.1,
+            title: FigureTitle {
+                name: scenario.title.clone().unwrap_or_default(),
+                body: scenario.body.name.clone().unwrap_or_default(),
+                ground: super::captions::format_ground(scenario),
+                refusal: self.answer.check.commands_refusal.clone(),
+            },
+        })
+    }
+}

@@ -1,0 +1,126 @@
+//! The JSON schemas of everything that is written and read as JSON.
+
+use schemars::{JsonSchema, generate::SchemaSettings};
+use serde_json::{Value, json};
+
+use crate::{
+    report::{
+        CheckAnswer, CompareAnswer, Document, DocumentKind, ExperimentAnswer, FanAnswer, HopAnswer, MapAnswer, PairsAnswer,
+        PlanAnswer, RequireAnswer, SimulateAnswer, SizeAnswer, TradeAnswer,
+    },
+    scenario::scenario_schema,
+};
+
+/// What a schema describes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SchemaKind {
+    /// A scenario.
+    Scenario,
+    /// The document with an answer.
+    Answer(DocumentKind),
+}
+
+impl SchemaKind {
+    /// All of them, the scenario first.
+    pub fn all() -> impl Iterator<Item = Self> {
+        std::iter::once(Self::Scenario).chain(DocumentKind::ALL.into_iter().map(Self::Answer))
+    }
+
+    /// The name.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Scenario => "scenario",
+            Self::Answer(kind) => kind.name(),
+        }
+    }
+
+    /// The JSON schema, draft 2020-12. It stands alone: the schema of an answer contains that of the scenario. A key that it does not
+    /// state is refused.
+    pub fn schema(self) -> Value {
+        match self {
+            Self::Scenario => scenario_schema(),
+            Self::Answer(kind) => answer_schema(kind),
+        }
+    }
+}
+
+/// The schema of a document with an answer.
+fn answer_schema(kind: DocumentKind) -> Value {
+    let mut schema = match kind {
+        DocumentKind::Hop => derived::<HopAnswer>(),
+        DocumentKind::Check => derived::<CheckAnswer>(),
+        DocumentKind::CheckPairs => derived::<PairsAnswer>(),
+        DocumentKind::Plan | DocumentKind::Run => derived::<PlanAnswer>(),
+        DocumentKind::Simulate => derived::<SimulateAnswer>(),
+        DocumentKind::SimulateExperiment => derived::<ExperimentAnswer>(),
+        DocumentKind::Require => derived::<RequireAnswer>(),
+        DocumentKind::Trade => derived::<TradeAnswer>(),
+        DocumentKind::Compare => derived::<CompareAnswer>(),
+        DocumentKind::Fan => derived::<FanAnswer>(),
+        DocumentKind::Map => derived::<MapAnswer>(),
+        DocumentKind::Size => derived::<SizeAnswer>(),
+    };
+    close(&mut schema, false);
+    open_parts(&mut schema);
+    schema["title"] = format!("chta {}", kind.name()).into();
+    schema["properties"]["schema"]["const"] = kind.schema().into();
+    let mut scenario = scenario_schema();
+    if let Some(keys) = scenario.as_object_mut() {
+        keys.remove("$schema");
+        keys.remove("title");
+    }
+    schema["$defs"]["Scenario"] = scenario;
+    let used = json!({ "$ref": "#/$defs/Scenario" });
+    schema["properties"]["scenario"] = if kind == DocumentKind::Compare {
+        json!({ "description": "The scenarios as used, in SI units and degrees.", "type": "array", "items": used })
+    } else {
+        json!({ "description": "The scenario as used, in SI units and degrees.", "$ref": used["$ref"] })
+    };
+    schema
+}
+
+/// The schema of a document that is written, from its types.
+fn derived<T: JsonSchema>() -> Value {
+    SchemaSettings::draft2020_12().for_serialize().into_generator().into_root_schema_for::<Document<T>>().to_value()
+}
+
+/// The definitions of which the document itself is composed do not know its other keys: the document is closed, they are not.
+fn open_parts(document: &mut Value) {
+    let parts: Vec<String> = ["anyOf", "oneOf", "allOf"]
+        .into_iter()
+        .filter_map(|group| document[group].as_array())
+        .flatten()
+        .filter_map(|part| part["$ref"].as_str()?.strip_prefix("#/$defs/").map(str::to_owned))
+        .collect();
+    for part in parts {
+        if let Some(keys) = document["$defs"][&part].as_object_mut() {
+            keys.remove("unevaluatedProperties");
+        }
+    }
+}
+
+/// Lets every object have its stated keys alone. The parts of a composed object do not know each other's keys: only the whole is closed.
+fn close(schema: &mut Value, is_part: bool) {
+    let has_properties = schema.get("properties").is_some();
+    let Some(keys) = schema.as_object_mut() else {
+        if let Some(items) = schema.as_array_mut() {
+            for item in items {
+                close(item, is_part);
+            }
+        }
+        return;
+    };
+    for (key, value) in keys.iter_mut() {
+        match key.as_str() {
+            "anyOf" | "oneOf" | "allOf" => close(value, is_part || has_properties),
+            "properties" | "$defs" => {
+                value.as_object_mut().into_iter().flat_map(serde_json::Map::values_mut).for_each(|value| close(value, false));
+            }
+            "items" | "prefixItems" | "additionalProperties" | "patternProperties" => close(value, false),
+            _ => {}
+        }
+    }
+    if has_properties && !is_part && !keys.contains_key("additionalProperties") {
+        keys.insert("unevaluatedProperties".to_owned(), false.into());
+    }
+}

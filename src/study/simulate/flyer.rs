@@ -1,0 +1,62 @@
+//! The ground and the policy of the trials of a plan.
+
+use std::sync::Arc;
+
+use super::SimulateError;
+use crate::{
+    graph::{self, CostToGo},
+    ground::DemGround,
+    path::HopPath,
+    progress::Progress,
+    study::{Planned, dem_ground::dem_ground, front::FlownJourney},
+    uncertainty::{Policy, Simulation, Summary, TrialOptions},
+};
+
+/// A plan with everything that its trials need.
+pub(in crate::study) struct Flyer<'a> {
+    planned: &'a Planned,
+    /// The whole raster with its overlays, for flights in three dimensions.
+    ground: Option<DemGround>,
+    to_go: Option<Arc<CostToGo>>,
+}
+
+impl<'a> Flyer<'a> {
+    /// Reads the raster, and computes the replanning policy once.
+    pub(in crate::study) fn new(
+        planned: &'a Planned,
+        found: &graph::Answer,
+        policies: &[Policy],
+        progress: &dyn Progress,
+    ) -> Result<Self, SimulateError> {
+        let mut flyer = Self { planned, ground: dem_ground(&planned.case)?, to_go: None };
+        if policies.contains(&Policy::Replan) {
+            flyer.to_go = Some(Arc::new(flyer.journey().costs_to_go(found, progress)?));
+        }
+        Ok(flyer)
+    }
+
+    fn journey(&self) -> FlownJourney<'_> {
+        let Planned { case, test, ends, .. } = self.planned;
+        FlownJourney { scenario: &case.scenario, test, ends: *ends, ground: self.ground.as_ref() }
+    }
+
+    /// The whole raster with its overlays, if the terrain is one.
+    pub(super) fn into_ground(self) -> Option<DemGround> {
+        self.ground
+    }
+
+    /// The trials along a path over this ground.
+    pub(super) fn simulation(&self, path: &HopPath) -> Result<Simulation, SimulateError> {
+        self.journey().simulation(path, self.to_go.as_ref())
+    }
+
+    /// Flies the trials of a path over this ground.
+    pub(in crate::study) fn fly(
+        &self,
+        path: &HopPath,
+        options: &TrialOptions,
+        progress: &dyn Progress,
+    ) -> Result<Summary, SimulateError> {
+        Ok(self.simulation(path)?.run(options, &mut (), progress)?)
+    }
+}

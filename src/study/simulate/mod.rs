@@ -1,0 +1,186 @@
+//! How reliably a planned path is flown.
+
+mod flyer;
+#[cfg(feature = "plot")]
+mod pictures;
+
+use std::{ops::Range, path::PathBuf, sync::Arc};
+
+pub(super) use flyer::Flyer;
+
+use super::{Planned, TrialGround};
+use crate::{
+    graph::{NodesError, SearchError},
+    ground::DemGround,
+    progress::{Cancelled, Progress},
+    report::{SimulateAnswer, SimulationRecord},
+    terrain::{Dem, TerrainError},
+    uncertainty::{Observer, Policy, SimulationError, Summary, Tally, TrialOptions},
+};
+
+/// How many trials are kept with all their hops, for the pictures.
+const KEPT_TRIALS: u64 = 300;
+
+/// What is wanted beyond the keys of `[uncertainty]`.
+#[derive(Clone, Copy, Debug, PartialEq, Default)]
+pub struct SimulateOptions {
+    /// Both policies on the same draws, instead of the scenario's alone.
+    pub compare: bool,
+    /// Stop once half the width of the success rate's 95 % interval is at most this.
+    pub until_half_width: Option<f64>,
+}
+
+/// Why there is no simulation.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SimulateError {
+    /// The raster that is flown over.
+    #[error("{}: {problem}", file.display())]
+    Dem {
+        /// Its file.
+        file: PathBuf,
+        /// The problem.
+        problem: Box<TerrainError>,
+    },
+    /// Its overlays.
+    #[error(transparent)]
+    Overlay(Box<TerrainError>),
+    /// The nodes of the replanning policy.
+    #[error(transparent)]
+    Nodes(#[from] NodesError),
+    /// The replanning policy.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+    /// The trials.
+    #[error(transparent)]
+    Simulation(#[from] SimulationError),
+}
+
+impl From<Cancelled> for SimulateError {
+    fn from(cancelled: Cancelled) -> Self {
+        Self::Search(cancelled.into())
+    }
+}
+
+/// The trials of a plan, before they are flown.
+#[derive(Clone, Debug)]
+pub struct Trials {
+    planned: Arc<Planned>,
+    policies: Vec<Policy>,
+    options: TrialOptions,
+    warnings: Vec<String>,
+}
+
+/// The trials of a plan, with everything that their views need.
+#[derive(Clone, Debug)]
+pub struct Simulated {
+    /// The plan.
+    pub planned: Arc<Planned>,
+    /// The results, policy by policy; empty without a path.
+    pub summaries: Vec<Summary>,
+    /// The answer as plain data.
+    pub answer: SimulateAnswer,
+    /// The warnings about the trials: settings without effect, deviations beyond sense.
+    pub warnings: Vec<String>,
+    /// The raster flown over with its overlays, if the terrain is one.
+    ground: Option<DemGround>,
+}
+
+/// Flies the trials of a plan under the errors of its scenario. Without a path nothing is flown, and the answer says so.
+///
+/// # Errors
+/// [`SimulateError`].
+pub fn simulate(
+    planned: &Arc<Planned>,
+    options: &SimulateOptions,
+    observer: &mut dyn Observer,
+    progress: &dyn Progress,
+) -> Result<Simulated, SimulateError> {
+    Trials::new(planned, options).fly(observer, progress)
+}
+
+impl Trials {
+    /// The trials of a plan, with the warnings about them. Nothing is read or flown yet.
+    pub fn new(planned: &Arc<Planned>, options: &SimulateOptions) -> Self {
+        let scenario = &planned.case.scenario;
+        let keys = scenario.uncertainty.unwrap_or_default();
+        let policies = if options.compare { Policy::ALL.to_vec() } else { vec![keys.policy] };
+        let warnings = planned.path.as_ref().map(|path| {
+            let ground = TrialGround::of_chain(scenario, &planned.case.prepared, path.hops.len());
+            scenario.trial_warnings(&policies, &ground)
+        });
+        let options = TrialOptions { until_half_width: options.until_half_width, trajectories: KEPT_TRIALS, ..keys.options() };
+        Self { planned: Arc::clone(planned), policies, options, warnings: warnings.unwrap_or_default() }
+    }
+
+    /// The warnings about them.
+    pub fn warnings(&self) -> &[String] {
+        &self.warnings
+    }
+
+    /// Flies those of a range of numbers under the scenario's policy, as a tally that merges with those of other ranges: the trials of a
+    /// campaign can be flown in parts, by several processes, and together give the answer of the whole to the byte.
+    ///
+    /// # Returns
+    /// `None` without a path to fly.
+    ///
+    /// # Errors
+    /// [`SimulateError`].
+    pub fn tally(&self, numbers: Range<u64>, progress: &dyn Progress) -> Result<Option<Tally>, SimulateError> {
+        let Some(path) = &self.planned.path else { return Ok(None) };
+        let policy = self.planned.case.scenario.uncertainty.unwrap_or_default().policy;
+        let simulation = Flyer::new(&self.planned, &self.planned.found, &[policy], progress)?.simulation(path)?;
+        let options = TrialOptions {
+            policy,
+            first_trial: numbers.start,
+            trials: numbers.end.saturating_sub(numbers.start),
+            until_half_width: None,
+            trajectories: 0,
+            ..self.options
+        };
+        Ok(Some(simulation.tally(&options, &mut (), progress)?))
+    }
+
+    /// The answer of trials that were flown in parts and merged.
+    pub fn answer_of(&self, tally: &Tally) -> SimulateAnswer {
+        let hops = self.planned.path.as_ref().map_or(0, |path| path.hops.len());
+        let simulation = Some(SimulationRecord::new(&tally.summary(), hops));
+        SimulateAnswer { check: self.planned.answer.check.clone(), simulation, compare: Vec::new() }
+    }
+
+    /// Flies them, policy by policy on the same draws.
+    ///
+    /// # Errors
+    /// [`SimulateError`].
+    pub fn fly(self, observer: &mut dyn Observer, progress: &dyn Progress) -> Result<Simulated, SimulateError> {
+        let Self { planned, policies, options, warnings } = self;
+        let check = planned.answer.check.clone();
+        let Some(path) = &planned.path else {
+            let answer = SimulateAnswer { check, simulation: None, compare: Vec::new() };
+            return Ok(Simulated { planned, summaries: Vec::new(), answer, warnings, ground: None });
+        };
+        let flyer = Flyer::new(&planned, &planned.found, &policies, progress)?;
+        let simulation = flyer.simulation(path)?;
+        let of_policy = |policy| simulation.run(&TrialOptions { policy, ..options }, observer, progress);
+        let summaries: Vec<Summary> = policies.into_iter().map(of_policy).collect::<Result<_, _>>()?;
+        let hops = path.hops.len();
+        let records: Vec<_> = summaries.iter().map(|summary| SimulationRecord::new(summary, hops)).collect();
+        let own = planned.case.scenario.uncertainty.unwrap_or_default().policy;
+        let simulation = summaries.iter().position(|summary| summary.policy == own).map(|i| records[i].clone());
+        let compare = if records.len() > 1 { records } else { Vec::new() };
+        Ok(Simulated {
+            planned: Arc::clone(&planned),
+            summaries,
+            answer: SimulateAnswer { check, simulation, compare },
+            warnings,
+            ground: flyer.into_ground(),
+        })
+    }
+}
+
+impl Simulated {
+    /// The raster flown over, if the terrain is one.
+    pub fn dem(&self) -> Option<&Dem> {
+        self.ground.as_ref().map(|ground| ground.terrain().dem())
+    }
+}

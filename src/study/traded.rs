@@ -1,0 +1,53 @@
+//! The answer of a trade with its picture.
+
+use super::{Case, Proof, SweptKey, Trade, TradeError, Variation};
+#[cfg(feature = "plot")]
+use crate::figure::{FigureError, Picture, TradeFigure, draw_trade};
+use crate::{progress::Progress, report::TradeAnswer};
+
+/// A verdict for every value of one or two keys, with everything that its views need.
+#[derive(Clone, Debug)]
+pub struct Traded {
+    /// The first case, with the first value of every key.
+    pub first: Case,
+    /// The answer as plain data.
+    pub answer: TradeAnswer,
+    /// The warnings about the rows.
+    pub warnings: Vec<String>,
+}
+
+/// Finds the verdict for every value of one or two keys. The first case of the variation is that of [`Trade::first_cell`].
+///
+/// # Errors
+/// [`TradeError`].
+pub fn trade(
+    variation: &Variation,
+    swept: &[SweptKey],
+    proof: Option<Proof>,
+    progress: &dyn Progress,
+) -> Result<Traded, TradeError> {
+    let trade = Trade::new(&variation.entries, variation.base(), &variation.survey, swept)?;
+    let answer = trade.run(proof.map(|proof| proof.budget_cells), progress)?;
+    Ok(Traded { first: variation.first.clone(), warnings: answer.warnings(), answer })
+}
+
+#[cfg(feature = "plot")]
+impl Traded {
+    /// The heat map.
+    ///
+    /// # Errors
+    /// [`FigureError`].
+    pub fn picture(&self) -> Result<Picture, FigureError> {
+        use super::captions::{SpeedLimit, title};
+
+        let Case { scenario, prepared, .. } = &self.first;
+        let varied = |key: &str| self.answer.vary.iter().any(|v| v.key == key);
+        let mut line = Vec::new();
+        for (end, key, station) in [("from", "terrain.start_x_m", prepared.start), ("to", "terrain.goal_x_m", prepared.goal)] {
+            line.extend(station.filter(|_| !varied(key)).map(|station| format!("{end} x = {:.3} m", station.point.x_m)));
+        }
+        line.extend(scenario.body.name.clone().filter(|_| !varied("body.gravity_m_s2")));
+        line.extend(SpeedLimit::stated(&scenario.hopper).filter(|limit| !varied(limit.key)).map(|limit| limit.to_string()));
+        draw_trade(&TradeFigure::of(&self.answer, title("Fewest hops", scenario), line.join(", ")))
+    }
+}
