@@ -28,7 +28,7 @@ pub struct UncertaintyKeys {
 impl Default for UncertaintyKeys {
     /// No errors, no tolerance, 10 000 open-loop trials of seed 0.
     fn default() -> Self {
-        Self { errors: Uncertainty::NONE, goal_tolerance_m: 0.0, hop_limit: None, policy: Policy::Replan, trials: 10_000, seed: 0 }
+        Self { errors: Uncertainty::NONE, goal_tolerance_m: 0.0, hop_limit: None, policy: Policy::OpenLoop, trials: 10_000, seed: 0 }
     }
 }
 
