@@ -19,7 +19,7 @@ use crate::cli::{
 /// Finds the least capability.
 pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
-    let requirement = Requirement::new(&args.vary, [args.from, args.to], args.resolution, args.budget, "--set")?;
+    let requirement = Requirement::new(&args.vary, [args.from, args.to], args.resolution, args.prove_cells_max, "--set")?;
     threads::start(args.answer.threads)?;
     let common = without_option_of(&args.vary, &args.common);
     let to_vary =
