@@ -701,7 +701,12 @@ const REQUIRE: [Trial; 17] = [
 
 const VARY: &str = "hopper.takeoff_speed_max_m_s=6:9:2";
 
-const TRADE: [Trial; 17] = [
+const TRADE: [Trial; 18] = [
+    (
+        "--require-all",
+        &["trade", "scenario.toml", "--vary", "surface.friction_coefficient=0.05:0.6:2"],
+        &["trade", "scenario.toml", "--vary", "surface.friction_coefficient=0.05:0.6:2", "--require-all"],
+    ),
     ("--start", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--start", "30"]),
     ("--goal", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--goal", "10"]),
     (
@@ -761,7 +766,12 @@ const TRADE: [Trial; 17] = [
     ),
 ];
 
-const COMPARE: [Trial; 7] = [
+const COMPARE: [Trial; 8] = [
+    (
+        "--require-all",
+        &["compare", "scenario.toml", "map.toml", "--set", "surface.friction_coefficient=0.05"],
+        &["compare", "scenario.toml", "map.toml", "--set", "surface.friction_coefficient=0.05", "--require-all"],
+    ),
     ("--output", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "-o", "compare.csv"]),
     ("--plot", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--plot", "compare.svg"]),
     ("--format", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--format", "json"]),

@@ -217,6 +217,9 @@ pub(crate) struct TradeArgs {
     /// Rows to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// End with exit status 1 where a cell has no path or fails
+    #[arg(long)]
+    pub(crate) require_all: bool,
     /// Picture (SVG or PNG) to write: a heat map with the number of every cell
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
@@ -240,6 +243,9 @@ pub(crate) struct CompareArgs {
     /// Table to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// End with exit status 1 where a scenario has no path or fails
+    #[arg(long)]
+    pub(crate) require_all: bool,
     /// Picture (SVG or PNG) to write: all paths overlaid
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
