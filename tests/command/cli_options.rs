@@ -1154,7 +1154,7 @@ fn a_position_with_too_many_numbers_is_refused_with_what_each_terrain_takes() {
             let ran = desk.run(&[&[command, "scenario.toml", option, text], more].concat());
             let sentence = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
             let expected = format!(
-                "found `{text}` ({count} numbers), expected one finite number in metres, X, such as 12.5: a position is X along a chain, X,Y \
+                "found `{text}` ({count} numbers), expected one number in metres, X, such as 12.5: a position is X along a chain, X,Y \
                  on a map and X,Y,Z on a mesh"
             );
             assert!(ran.status == 2 && sentence.contains(&expected) && sentence.contains(option), "{command} {option}: {ran:?}");
