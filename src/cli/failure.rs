@@ -11,7 +11,7 @@ use std::{
 use chta::{
     chain::csv::{CsvFileError, CsvProblem},
     progress::Cancelled,
-    scenario::{ScenarioProblem, ScenarioProblems},
+    scenario::{Place, ScenarioProblem, ScenarioProblems},
     study::PipelineError,
 };
 use miette::{
@@ -60,6 +60,16 @@ impl Failure {
         }
         // An error on writing to standard error cannot be reported.
         let _ = io::stderr().write_all(inputs::shown(&text).as_bytes());
+    }
+
+    /// All in one sentence, for an answer.
+    pub(crate) fn sentence(&self) -> String {
+        inputs::shown(&self.pointed().into_iter().map(|pointed| pointed.sentence).collect::<Vec<_>>().join("; "))
+    }
+
+    /// Whether an option of the command line is at fault.
+    pub(crate) fn is_of_option(&self) -> bool {
+        matches!(self, Self::Scenario(problems) if problems.problems.iter().any(|problem| matches!(problem.place, Place::Option(_))))
     }
 
     /// Every problem with its position.

@@ -80,7 +80,7 @@ pub(crate) fn of_problem(problem: &ScenarioProblem) -> &'static str {
 
 /// How to get a stronger answer, by the options of the command that was called or else of another one.
 pub(crate) fn further_means() -> FurtherMeans<'static> {
-    FurtherMeans { budget: "--budget", proof: if takes("prove") { "--prove" } else { "chta check --prove" } }
+    FurtherMeans { budget: "--prove-cells-max", proof: if takes("prove") { "--prove" } else { "chta check --prove" } }
 }
 
 /// The error that the error of a study wraps.

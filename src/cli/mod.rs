@@ -3,6 +3,7 @@
 mod args;
 mod claims;
 mod commands;
+mod compared;
 mod effects;
 mod failure;
 mod fan_outputs;

@@ -60,6 +60,7 @@ impl TradeFigure {
 fn cell(row: &TradeRow) -> TradeCell {
     match row.hops {
         Some(hops) => TradeCell::Hops(hops),
+        None if row.error.is_some() => TradeCell::Failed,
         None if row.is_closed() => TradeCell::Untraversable,
         None => TradeCell::Open,
     }

@@ -25,12 +25,13 @@ pub struct CompareRow {
     pub file: String,
     /// Its title.
     pub name: String,
-    /// Start, m.
-    pub start_x_m: f64,
-    /// Goal, m.
-    pub goal_x_m: f64,
-    /// `traversable`, `no-path-found`, or `untraversable` if that is proved.
-    pub verdict: ProofVerdict,
+    /// Start, m; null for a case without an answer.
+    pub start_x_m: Option<f64>,
+    /// Goal, m; null for a case without an answer.
+    pub goal_x_m: Option<f64>,
+    /// `traversable`, `no-path-found` (also where the propellant does not last), or `untraversable` if that is proved; null for a case
+    /// without an answer.
+    pub verdict: Option<ProofVerdict>,
     /// The fewest hops found.
     pub hops: Option<u64>,
     /// With a proof: no path has fewer hops; null if there is no path at all.
@@ -40,6 +41,9 @@ pub struct CompareRow {
     pub totals: Option<TotalsRecord>,
     /// The least margins to the limits.
     pub margins: Option<MarginsRecord>,
+    /// Why there is no answer; absent if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
 }
 
 /// The least margins of a path's hops to their limits.
@@ -68,8 +72,8 @@ impl MarginsRecord {
     }
 }
 
-/// The columns with numbers of a path.
-const COLUMNS: [&str; 12] = [
+/// The columns with the totals of a path.
+pub(super) const TOTALS_COLUMNS: [&str; 9] = [
     "flight_time_s",
     "energy_j_kg",
     "peak_takeoff_speed_m_s",
@@ -79,32 +83,63 @@ const COLUMNS: [&str; 12] = [
     "delta_v_m_s",
     "propellant_kg",
     "mass_end_kg",
-    "speed_margin_least_m_s",
-    "angle_margin_least_deg",
-    "angle_span_least_deg",
 ];
+
+/// The columns with its margins, and with what it lacks.
+const FURTHER_COLUMNS: [&str; 4] =
+    ["speed_margin_least_m_s", "angle_margin_least_deg", "angle_span_least_deg", "propellant_short_kg"];
+
+/// The numbers of [`TOTALS_COLUMNS`].
+pub(super) fn totals_numbers(totals: Option<&TotalsRecord>) -> [Option<f64>; TOTALS_COLUMNS.len()] {
+    [
+        totals.map(|t| t.flight_time_s),
+        totals.map(|t| t.energy_j_kg),
+        totals.map(|t| t.peak_takeoff_speed_m_s),
+        totals.map(|t| t.ground_distance_m),
+        totals.and_then(|t| t.energy_j),
+        totals.and_then(|t| t.mission_time_s),
+        totals.map(|t| t.delta_v_m_s),
+        totals.and_then(|t| t.propellant_kg),
+        totals.and_then(|t| t.mass_end_kg),
+    ]
+}
 
 /// The column of delta-v.
 const DELTA_V: &str = "delta_v_m_s";
 
 impl CompareRow {
-    /// The numbers of [`COLUMNS`].
-    fn numbers(&self) -> [Option<f64>; COLUMNS.len()] {
-        let (totals, margins) = (self.totals.as_ref(), self.margins.as_ref());
-        [
-            totals.map(|t| t.flight_time_s),
-            totals.map(|t| t.energy_j_kg),
-            totals.map(|t| t.peak_takeoff_speed_m_s),
-            totals.map(|t| t.ground_distance_m),
-            totals.and_then(|t| t.energy_j),
-            totals.and_then(|t| t.mission_time_s),
-            totals.map(|t| t.delta_v_m_s),
-            totals.and_then(|t| t.propellant_kg),
-            totals.and_then(|t| t.mass_end_kg),
+    /// The row of a case without an answer.
+    pub const fn failed(file: String, name: String, error: String) -> Self {
+        let (start_x_m, goal_x_m, verdict, hops, lower_bound, totals, margins) = (None, None, None, None, None, None, None);
+        Self { file, name, start_x_m, goal_x_m, verdict, hops, lower_bound, totals, margins, error: Some(error) }
+    }
+
+    /// Whether there is a path that the machine can fly.
+    pub fn is_traversable(&self) -> bool {
+        self.verdict == Some(ProofVerdict::Traversable)
+    }
+
+    /// The propellant that the path lacks.
+    pub fn propellant_short_kg(&self) -> Option<f64> {
+        self.totals.and_then(|totals| totals.propellant_short_kg)
+    }
+
+    /// The numbers of [`TOTALS_COLUMNS`] and [`FURTHER_COLUMNS`].
+    fn numbers(&self) -> impl Iterator<Item = Option<f64>> {
+        let margins = self.margins.as_ref();
+        let further = [
             margins.map(|m| m.speed_margin_least_m_s),
             margins.map(|m| m.angle_margin_least_deg),
             margins.map(|m| m.angle_span_least_deg),
-        ]
+            self.propellant_short_kg(),
+        ];
+        totals_numbers(self.totals.as_ref()).into_iter().chain(further)
+    }
+
+    /// The verdict, with the reason where the propellant does not last.
+    pub fn format_verdict(&self) -> String {
+        let short = if self.propellant_short_kg().is_some() { " (too little propellant)" } else { "" };
+        self.verdict.map_or("failed".to_owned(), |verdict| format!("{verdict}{short}"))
     }
 
     /// The number of hops, with its lower bound if that is smaller.
@@ -129,14 +164,15 @@ impl CompareAnswer {
         }
         text.push('\n');
         let mut lines: Vec<Vec<String>> =
-            vec![numbers, self.line("verdict", |row| row.verdict.to_string()), self.line("hops", CompareRow::format_hops)];
-        for (i, column) in COLUMNS.into_iter().enumerate() {
+            vec![numbers, self.line("verdict", CompareRow::format_verdict), self.line("hops", CompareRow::format_hops)];
+        for (i, column) in TOTALS_COLUMNS.into_iter().chain(FURTHER_COLUMNS).enumerate() {
             // The delta-v of machines without propulsion is the sum of their take-off speeds: no line of its own.
+            let number = |row: &CompareRow| row.numbers().nth(i).flatten();
             let is_stated = |row: &CompareRow| {
-                row.numbers()[i].is_some() && (column != DELTA_V || row.totals.is_some_and(|totals| totals.propulsive))
+                number(row).is_some() && (column != DELTA_V || row.totals.is_some_and(|totals| totals.propulsive))
             };
             if self.compared.iter().any(is_stated) {
-                lines.push(self.line(column, |row| row.numbers()[i].map_or("-".to_owned(), |number| format!("{number:.3}"))));
+                lines.push(self.line(column, |row| number(row).map_or("-".to_owned(), |number| format!("{number:.3}"))));
             }
         }
         let columns = self.compared.len() + 1;
@@ -149,7 +185,16 @@ impl CompareAnswer {
             }
             text.push('\n');
         }
+        let errors = self.compared.iter().enumerate().filter_map(|(i, row)| Some((i + 1, row.error.as_ref()?)));
+        for (i, (number, error)) in errors.enumerate() {
+            let _ = writeln!(text, "{}({number}) failed: {error}", if i == 0 { "\n" } else { "" });
+        }
         text
+    }
+
+    /// Whether every case has a path that the machine can fly.
+    pub fn is_traversable(&self) -> bool {
+        self.compared.iter().all(CompareRow::is_traversable)
     }
 
     /// One line of the table.
@@ -166,13 +211,15 @@ impl CompareAnswer {
         let proved = self.compared.iter().any(|row| row.lower_bound.is_some());
         let bound: &[&str] = if proved { &["lower_bound"] } else { &[] };
         let first = ["file", "name", "start_x_m", "goal_x_m", "verdict", "hops"];
-        writer.write_record([&first[..], bound, &COLUMNS].concat())?;
+        writer.write_record([&first[..], bound, &TOTALS_COLUMNS, &FURTHER_COLUMNS, &["error"]].concat())?;
         let count = |hops: Option<u64>| hops.map(|hops| hops.to_string()).unwrap_or_default();
+        let field = |number: Option<f64>| number.map(|n| n.to_string()).unwrap_or_default();
         for row in &self.compared {
-            let mut fields = vec![row.file.clone(), row.name.clone(), row.start_x_m.to_string(), row.goal_x_m.to_string()];
-            fields.extend([row.verdict.to_string(), count(row.hops)]);
-            fields.extend(row.lower_bound.map(count));
-            fields.extend(row.numbers().map(|number| number.map(|n| n.to_string()).unwrap_or_default()));
+            let mut fields = vec![row.file.clone(), row.name.clone(), field(row.start_x_m), field(row.goal_x_m)];
+            fields.extend([row.verdict.map(|verdict| verdict.to_string()).unwrap_or_default(), count(row.hops)]);
+            fields.extend(proved.then(|| count(row.lower_bound.flatten())));
+            fields.extend(row.numbers().map(field));
+            fields.push(row.error.clone().unwrap_or_default());
             writer.write_record(fields)?;
         }
         writer.flush()

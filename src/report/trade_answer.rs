@@ -9,7 +9,11 @@ use std::{
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::stated::stated;
+use super::{
+    EffortRecord, TotalsRecord,
+    compare_answer::{TOTALS_COLUMNS, totals_numbers},
+    stated::stated,
+};
 use crate::graph::proof::ProofVerdict;
 
 /// The answer of `chta trade`.
@@ -36,8 +40,8 @@ pub struct TradeRow {
     /// The value of each key.
     #[serde(flatten)]
     pub values: BTreeMap<String, f64>,
-    /// `traversable`, `no-path-found`, or `untraversable` if that is proved.
-    pub verdict: ProofVerdict,
+    /// `traversable`, `no-path-found`, or `untraversable` if that is proved; null for a cell without an answer.
+    pub verdict: Option<ProofVerdict>,
     /// The fewest hops found.
     pub hops: Option<u64>,
     /// With a proof: no path has fewer hops; null if there is no path at all.
@@ -49,13 +53,33 @@ pub struct TradeRow {
     /// Whether some hop is longer than a hundredth of the body's radius, so that constant gravity is a bad model.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub far_on_body: bool,
+    /// The totals of the path, for exact commands; null without one, or if it has too many hops to list.
+    pub totals: Option<TotalsRecord>,
+    /// The effort of the path, in the unit of the chosen effort; null without one.
+    pub effort: Option<EffortRecord>,
+    /// Why there is no answer; absent if there is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
 }
 
 impl TradeRow {
+    /// The row of a cell without an answer.
+    pub fn failed(values: BTreeMap<String, f64>, error: String) -> Self {
+        let (verdict, hops, lower_bound, totals, effort) = (None, None, None, None, None);
+        let (above_escape, far_on_body, error) = (false, false, Some(error));
+        Self { values, verdict, hops, lower_bound, above_escape, far_on_body, totals, effort, error }
+    }
+
+    /// Whether a path was found.
+    pub fn is_traversable(&self) -> bool {
+        self.verdict == Some(ProofVerdict::Traversable)
+    }
+
     /// The text of a table cell: the hops, `x` if it is proved that there is no path, `-` if no path was found.
     fn sign(&self) -> String {
         match self.hops {
             Some(hops) => hops.to_string(),
+            None if self.error.is_some() => "!".to_owned(),
             None if self.is_closed() => "x".to_owned(),
             None => "-".to_owned(),
         }
@@ -63,7 +87,7 @@ impl TradeRow {
 
     /// Whether it is proved that there is no path.
     pub fn is_closed(&self) -> bool {
-        self.verdict == ProofVerdict::Untraversable
+        self.verdict == Some(ProofVerdict::Untraversable)
     }
 }
 
@@ -84,7 +108,14 @@ impl TradeAnswer {
         let paths = self.rows.iter().filter(|row| row.hops.is_some()).count();
         let closed = self.rows.iter().filter(|row| row.is_closed()).count();
         let proved = if self.is_with_proof() { format!(", in {closed} it is proved that there is none") } else { String::new() };
-        format!("{paths} of {} cells have a path{proved}", self.rows.len())
+        let failures = self.rows.iter().filter(|row| row.error.is_some()).count();
+        let failed = if failures > 0 { format!(", {failures} failed") } else { String::new() };
+        format!("{paths} of {} cells have a path{proved}{failed}", self.rows.len())
+    }
+
+    /// Whether every cell has a path.
+    pub fn is_traversable(&self) -> bool {
+        self.rows.iter().all(TradeRow::is_traversable)
     }
 
     /// The warnings about cells whose answer depends on the body's size.
@@ -138,12 +169,21 @@ impl TradeAnswer {
         for (name, line) in heads.iter().zip(&lines) {
             let _ = writeln!(text, "{}", row(name, line));
         }
-        let without_path = |closed| self.rows.iter().any(|row| row.hops.is_none() && row.is_closed() == closed);
+        let without_path =
+            |closed| self.rows.iter().any(|row| row.hops.is_none() && row.error.is_none() && row.is_closed() == closed);
         if without_path(false) {
             text.push_str("\n-: no path found\n");
         }
         if without_path(true) {
             text.push_str("\nx: proved, there is no path\n");
+        }
+        // Of many cells with the same reason, the first.
+        let mut reasons: Vec<&str> = Vec::new();
+        for row in &self.rows {
+            let Some(error) = row.error.as_deref().filter(|error| !reasons.contains(error)) else { continue };
+            let at: Vec<_> = row.values.iter().map(|(key, value)| format!("{key} = {value}")).collect();
+            let _ = writeln!(text, "\n!: failed, first with {}: {error}", at.join(" and "));
+            reasons.push(error);
         }
         text
     }
@@ -155,13 +195,18 @@ impl TradeAnswer {
     pub fn write_csv(&self, out: impl Write) -> io::Result<()> {
         let keys: Vec<&str> = self.vary.iter().map(|v| v.key.as_str()).collect();
         let mut writer = csv::Writer::from_writer(out);
-        let bound: &[&str] = if self.is_with_proof() { &["lower_bound"] } else { &[] };
-        writer.write_record([&keys[..], &["verdict", "hops"], bound].concat())?;
+        let proved = self.is_with_proof();
+        let bound: &[&str] = if proved { &["lower_bound"] } else { &[] };
+        writer.write_record([&keys[..], &["verdict", "hops"], bound, &TOTALS_COLUMNS, &["effort", "error"]].concat())?;
         let count = |hops: Option<u64>| hops.map(|hops| hops.to_string()).unwrap_or_default();
         for row in &self.rows {
             let values = keys.iter().map(|key| row.values.get(*key).map(f64::to_string).unwrap_or_default());
-            let bound = row.lower_bound.map(count);
-            writer.write_record(values.chain([row.verdict.to_string(), count(row.hops)]).chain(bound))?;
+            let bound = proved.then(|| count(row.lower_bound.flatten()));
+            let verdict = row.verdict.map(|verdict| verdict.to_string()).unwrap_or_default();
+            let totals = totals_numbers(row.totals.as_ref()).into_iter().chain([row.effort.map(|effort| effort.value)]);
+            let numbers = totals.map(|number| number.map(|number| number.to_string()).unwrap_or_default());
+            let answer = [verdict, count(row.hops)].into_iter().chain(bound).chain(numbers);
+            writer.write_record(values.chain(answer).chain([row.error.clone().unwrap_or_default()]))?;
         }
         writer.flush()
     }

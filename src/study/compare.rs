@@ -24,13 +24,14 @@ impl Compared {
         let row = CompareRow {
             file,
             name: planned.case.scenario.title.clone().unwrap_or_else(|| untitled.to_owned()),
-            start_x_m: check.start_x_m,
-            goal_x_m: check.goal_x_m,
-            verdict: check.verdict,
+            start_x_m: Some(check.start_x_m),
+            goal_x_m: Some(check.goal_x_m),
+            verdict: Some(check.verdict),
             hops: check.hops,
             lower_bound: check.proof.as_ref().map(|proof| proof.lower_bound),
             totals: path.map(|path| TotalsRecord::from(&path.totals)),
             margins: path.and_then(MarginsRecord::of),
+            error: None,
         };
         Self { planned, row }
     }
@@ -45,27 +46,34 @@ impl Compared {
 /// Several scenarios with their plans.
 #[derive(Clone, Debug)]
 pub struct Comparison {
-    /// They, in the order given.
+    /// Those with an answer, in the order given.
     pub compared: Vec<Compared>,
-    /// The answer as plain data.
+    /// The answer as plain data, with a row for every case.
     pub answer: CompareAnswer,
 }
 
 impl Comparison {
-    /// The answers side by side.
-    pub fn of(compared: Vec<Compared>) -> Self {
-        let answer = CompareAnswer { compared: compared.iter().map(|one| one.row.clone()).collect() };
-        Self { compared, answer }
+    /// The answers side by side; a case without one has its row alone ([`CompareRow::failed`]).
+    pub fn of(cases: Vec<Result<Compared, CompareRow>>) -> Self {
+        let rows = cases.iter().map(|case| case.as_ref().map_or_else(Clone::clone, |one| one.row.clone())).collect();
+        Self { compared: cases.into_iter().flatten().collect(), answer: CompareAnswer { compared: rows } }
     }
 }
 
-/// Plans for every case, named by its file, and shows the answers side by side.
+/// Plans for every case, named by its file, and shows the answers side by side. A case that fails has a row with its error.
 ///
 /// # Errors
-/// [`PlanError`].
+/// [`PlanError`] if it was cancelled.
 pub fn compare(cases: &[(&str, &Case)], proof: Option<Proof>, progress: &dyn Progress) -> Result<Comparison, PlanError> {
     let options = PlanOptions { proof, verify: false };
-    let compared = |&(file, case): &(&str, &Case)| Ok(Compared::of(plan(case, options, progress)?, file.to_owned(), file));
+    let compared = |&(file, case): &(&str, &Case)| match plan(case, options, progress) {
+        Ok(planned) => Ok(Ok(Compared::of(planned, file.to_owned(), file))),
+        Err(error) if error.is_cancelled() => Err(error),
+        Err(error) => {
+            let name = case.scenario.title.clone().unwrap_or_else(|| file.to_owned());
+            Ok(Err(CompareRow::failed(file.to_owned(), name, error.to_string())))
+        }
+    };
     Ok(Comparison::of(cases.iter().map(compared).collect::<Result<_, PlanError>>()?))
 }
 
@@ -80,9 +88,11 @@ impl Comparison {
             let hops = one.row.hops.map(|hops| format!(", {hops} hop{}", if hops == 1 { "" } else { "s" })).unwrap_or_default();
             let beside = one.planned.path.iter().flat_map(|path| &path.hops).any(crate::path::Hop::is_beside_line);
             let drawn = if beside { " beside the line, drawn projected on it" } else { "" };
-            format!("{}: {}{hops}{drawn}", one.row.name, one.row.verdict)
+            format!("{}: {}{hops}{drawn}", one.row.name, one.row.format_verdict())
         };
-        let line = self.compared.iter().map(words).collect::<Vec<_>>().join("; ");
+        let failed = self.answer.compared.iter().filter(|row| row.error.is_some());
+        let failed = failed.map(|row| format!("{}: {}", row.name, row.format_verdict()));
+        let line = self.compared.iter().map(words).chain(failed).collect::<Vec<_>>().join("; ");
         let names: Vec<_> = self.compared.iter().map(|one| one.row.name.as_str()).collect();
         let scenarios = self.compared.iter().map(Compared::drawn).collect();
         draw_compare(&CompareFigure { caption: Caption::new(names.join(" and "), line), scenarios })
@@ -96,7 +106,7 @@ impl Compared {
         let (start, goal) = self.planned.ends;
         ComparedScenario {
             name: self.row.name.clone(),
-            verdict: self.row.verdict.to_string(),
+            verdict: self.row.format_verdict(),
             hops: self.row.hops,
             ground: self.planned.case.prepared.chain.geometry().vertices().to_vec(),
             start: start.point,

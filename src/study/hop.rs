@@ -61,7 +61,7 @@ impl Hopped {
     /// The hop as a path; `None` if it is not feasible.
     ///
     /// # Errors
-    /// As [`generate`].
+    /// As [`path::generate`](crate::path::generate).
     pub fn path(&self) -> Result<Option<HopPath>, PathError> {
         let (takeoff, landing) = self.ends;
         let search = &self.case.scenario.search;

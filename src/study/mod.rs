@@ -62,7 +62,7 @@ pub use require::{RangeProblem, RequireError, Required, Requirement, require};
 pub use schema::SchemaKind;
 pub use sense::TrialGround;
 pub use simulate::{SimulateError, SimulateOptions, Simulated, Trials, simulate};
-pub use trade::{SweptKey, Trade, TradeError, Varied, verdict};
+pub use trade::{CellError, SweptKey, Trade, TradeError, TradedCells, Varied, verdict};
 pub use traded::{Traded, trade};
 pub use trajectory::TrajectoryError;
 pub use variation::Variation;

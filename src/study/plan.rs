@@ -38,6 +38,13 @@ pub enum PlanError {
     Defect(#[from] Defect),
 }
 
+impl PlanError {
+    /// Whether the plan was cancelled.
+    pub const fn is_cancelled(&self) -> bool {
+        matches!(self, Self::Journey(JourneyError::Search(graph::SearchError::Cancelled(_))))
+    }
+}
+
 impl From<CaseError> for PlanError {
     fn from(error: CaseError) -> Self {
         Self::Journey(error.into())

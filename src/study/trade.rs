@@ -1,20 +1,20 @@
 //! Varies one or two keys of a scenario over a grid, with the answer in every cell.
 
-use std::path::Path;
+use std::{collections::BTreeMap, path::Path, sync::Arc};
 
 use rayon::prelude::*;
 
-use super::{Prepared, Survey, ask_the_same, physics::escape_warnings};
+use super::{PipelineError, Prepared, Survey, ask_the_same, physics::escape_warnings};
 use crate::{
     chain::Station,
     graph::{
-        SearchError, SearchOptions,
+        Answer, Outcome, SearchError, SearchOptions,
         proof::{BoundsOptions, ProofVerdict, bounds_of},
         search_one,
     },
     hop::HopTest,
     progress::{Cancelled, Detail, Meter, Progress, Stage},
-    report::{SweptKeyRecord, TradeAnswer, TradeRow},
+    report::{EffortRecord, SweptKeyRecord, TotalsRecord, TradeAnswer, TradeRow},
     scenario::{Entries, Key, Kind, Scenario, ScenarioProblem, fits, nearest_key},
 };
 
@@ -112,17 +112,39 @@ pub enum TradeError {
         /// The greatest value.
         to: f64,
     },
-    /// A cell whose scenario is refused.
-    #[error("with {cell}: {problem}")]
-    Cell {
-        /// The keys with their values.
-        cell: String,
-        /// The reason.
-        problem: String,
-    },
     /// It was cancelled.
     #[error(transparent)]
     Cancelled(#[from] Cancelled),
+}
+
+/// The reasons why one cell has no answer.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CellError {
+    /// Values that no scenario takes together.
+    #[error("{}", sentences(problems))]
+    Scenario {
+        /// All problems.
+        problems: Vec<ScenarioProblem>,
+    },
+    /// A terrain without a usable chain.
+    #[error(transparent)]
+    Prepare(#[from] PipelineError),
+    /// No start or no goal.
+    #[error("found no start or no goal, expected terrain.start_x_m and terrain.goal_x_m")]
+    NoEnds,
+    /// The search.
+    #[error(transparent)]
+    Search(#[from] SearchError),
+}
+
+/// The answers of all cells.
+#[derive(Debug)]
+pub struct TradedCells {
+    /// They as plain data.
+    pub answer: TradeAnswer,
+    /// The cells without an answer: which row, and the reason.
+    pub failed: Vec<(usize, CellError)>,
 }
 
 impl SweptKey {
@@ -241,25 +263,26 @@ pub fn verdict(
     progress: &dyn Progress,
 ) -> Result<Varied, SearchError> {
     let stage = if proof_budget_cells.is_some() { Stage::Proof } else { Stage::Search };
-    verdict_of(test, ends, options, proof_budget_cells, &Meter::new(progress, stage))
+    Ok(verdict_of(test, ends, options, proof_budget_cells, &Meter::new(progress, stage))?.0)
 }
 
-/// The same as a part of another stage.
+/// The same as a part of another stage, with the answer of the search.
 fn verdict_of(
     test: &HopTest,
     ends: (Station, Station),
     options: &SearchOptions,
     proof_budget_cells: Option<usize>,
     meter: &Meter<'_>,
-) -> Result<Varied, SearchError> {
+) -> Result<(Varied, Answer), SearchError> {
     let Some(budget_cells) = proof_budget_cells else {
-        let hops = search_one(test, ends, options, meter)?.hops();
+        let found = search_one(test, ends, options, meter)?;
+        let hops = found.hops();
         let verdict = if hops.is_some() { ProofVerdict::Traversable } else { ProofVerdict::Open };
-        return Ok(Varied { verdict, hops, lower_bound: None });
+        return Ok((Varied { verdict, hops, lower_bound: None }, found));
     };
     let options = BoundsOptions { budget_cells, search: options.clone(), ..BoundsOptions::default() };
     let bounds = bounds_of(test, ends, &options, meter)?;
-    Ok(Varied { verdict: bounds.verdict(), hops: bounds.upper(), lower_bound: Some(bounds.lower) })
+    Ok((Varied { verdict: bounds.verdict(), hops: bounds.upper(), lower_bound: Some(bounds.lower) }, bounds.answer))
 }
 
 /// A scenario, its terrain and its swept keys.
@@ -291,48 +314,56 @@ impl<'a> Trade<'a> {
 
     /// The answer in every cell, in parallel; the same for any number of threads.
     ///
-    /// The last key changes fastest. Reports every cell.
+    /// The last key changes fastest. Reports every cell. A cell that fails has a row with its error.
     ///
     /// # Errors
-    /// [`TradeError`]: a key without effect, or the first cell whose scenario is refused.
-    pub fn run(&self, proof_budget_cells: Option<usize>, progress: &dyn Progress) -> Result<TradeAnswer, TradeError> {
+    /// [`TradeError`]: a key without effect, or it was cancelled.
+    pub fn run(&self, proof_budget_cells: Option<usize>, progress: &dyn Progress) -> Result<TradedCells, TradeError> {
         let meter = Meter::with_total(progress, Stage::Trade, self.cells() as u64);
         meter.report(Detail::None)?;
         for axis in 0..self.swept.len() {
             self.check_effect(axis, &meter)?;
         }
-        let row = |cell| -> Result<TradeRow, TradeError> {
+        let row = |cell| -> Result<Result<TradeRow, CellError>, Cancelled> {
             meter.check()?;
-            let row = self.row(&self.at(cell), proof_budget_cells, &meter)?;
+            let row = match self.row(&self.at(cell), proof_budget_cells, &meter) {
+                Err(CellError::Search(SearchError::Cancelled(cancelled))) => return Err(cancelled),
+                row => row,
+            };
             meter.complete_one()?;
             Ok(row)
         };
-        let rows: Vec<_> = (0..self.cells()).into_par_iter().map(row).collect();
+        let answered: Vec<_> = (0..self.cells()).into_par_iter().map(row).collect();
         meter.check()?;
+        let (mut rows, mut failed) = (Vec::with_capacity(answered.len()), Vec::new());
+        for (cell, answer) in answered.into_iter().enumerate() {
+            rows.push(answer?.unwrap_or_else(|error| {
+                let row = TradeRow::failed(self.named(&self.at(cell)), error.to_string());
+                failed.push((cell, error));
+                row
+            }));
+        }
         let vary = self.swept.iter().map(|v| SweptKeyRecord { key: v.key.path(), values: v.values.clone() }).collect();
-        Ok(TradeAnswer { vary, rows: rows.into_iter().collect::<Result<_, _>>()? })
+        Ok(TradedCells { answer: TradeAnswer { vary, rows }, failed })
+    }
+
+    /// The values of a cell by their keys.
+    fn named(&self, values: &[f64]) -> BTreeMap<String, f64> {
+        self.swept.iter().map(|v| v.key.path()).zip(values.iter().copied()).collect()
     }
 
     /// The values of a cell, from its number.
     fn at(&self, cell: usize) -> Vec<f64> {
-        match self.swept {
-            [one] => vec![one.values[cell]],
-            [first, second] => {
-                let across = second.values.len();
-                vec![first.values[cell / across], second.values[cell % across]]
-            }
-            _ => Vec::new(),
-        }
+        at(self.swept, cell)
     }
 
     /// The scenario of a cell.
-    fn scenario(&self, values: &[f64]) -> Result<Scenario, TradeError> {
-        Scenario::new(varied(self.entries, self.swept, values, "varied"))
-            .map_err(|problems| self.refused(values, &sentences(&problems)))
+    fn scenario(&self, values: &[f64]) -> Result<Scenario, CellError> {
+        Scenario::new(varied(self.entries, self.swept, values, "varied")).map_err(|problems| CellError::Scenario { problems })
     }
 
     /// The scenario of a cell and its chain.
-    fn prepared(&self, values: &[f64]) -> Result<(Scenario, Prepared), TradeError> {
+    fn prepared(&self, values: &[f64]) -> Result<(Scenario, Prepared), CellError> {
         let scenario = self.scenario(values)?;
         // The one number that changes how the terrain is read.
         let rereads = self.swept.iter().any(|v| (v.key.table, v.key.name) == ("terrain", "mesh_scale"));
@@ -340,27 +371,21 @@ impl<'a> Trade<'a> {
             Some(source) => Survey::of(&scenario, source, self.base).and_then(|survey| survey.prepare(&scenario)),
             None => self.survey.prepare(&scenario),
         };
-        prepared.map(|prepared| (scenario, prepared)).map_err(|error| self.refused(values, &error.to_string()))
+        Ok((scenario, prepared?))
     }
 
     /// One cell.
-    fn row(&self, values: &[f64], proof_budget_cells: Option<usize>, meter: &Meter<'_>) -> Result<TradeRow, TradeError> {
-        let (scenario, Prepared { chain, start, goal, .. }) = self.prepared(values)?;
-        let Some(ends) = start.zip(goal) else {
-            return Err(self.refused(values, "found no start or no goal, expected terrain.start_x_m and terrain.goal_x_m"));
-        };
-        let above_escape = !escape_warnings(&scenario, Some(chain.geometry())).is_empty();
+    fn row(&self, values: &[f64], proof_budget_cells: Option<usize>, meter: &Meter<'_>) -> Result<TradeRow, CellError> {
+        let (scenario, prepared) = self.prepared(values)?;
+        let ends = prepared.start.zip(prepared.goal).ok_or(CellError::NoEnds)?;
+        let above_escape = !escape_warnings(&scenario, Some(prepared.chain.geometry())).is_empty();
         let distance_m = (ends.1.point.x_m - ends.0.point.x_m).abs();
-        let test = HopTest::new(chain);
-        let answer = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter).map_err(|error| match error {
-            SearchError::Cancelled(cancelled) => TradeError::Cancelled(cancelled),
-            SearchError::Nodes(problem) => self.refused(values, &problem.to_string()),
-            SearchError::Errors(problem) => self.refused(values, &problem.to_string()),
-        })?;
-        let keys = self.swept.iter().map(|v| v.key.path());
+        let test = HopTest::new(Arc::clone(&prepared.chain));
+        let (answer, found) = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter)?;
+        let effort = scenario.search.effort;
         Ok(TradeRow {
-            values: keys.zip(values.iter().copied()).collect(),
-            verdict: answer.verdict,
+            values: self.named(values),
+            verdict: Some(answer.verdict),
             hops: answer.hops,
             lower_bound: answer.lower_bound,
             above_escape,
@@ -370,7 +395,25 @@ impl<'a> Trade<'a> {
                 let hops = hops.max(1) as f64;
                 distance_m / hops > 0.01 * radius_m
             }),
+            totals: self.totals(&scenario, &prepared, &found),
+            effort: match &found.outcome {
+                Outcome::Path { cost, .. } => Some(EffortRecord::new(effort, cost.effort())),
+                Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
+            },
+            error: None,
         })
+    }
+
+    /// The totals of the path found, for exact commands; `None` without one, or if it has too many hops to list.
+    fn totals(&self, scenario: &Scenario, prepared: &Prepared, found: &Answer) -> Option<TotalsRecord> {
+        let Outcome::Path { legs, .. } = &found.outcome else { return None };
+        let hopper = scenario.hopper.with_any_command();
+        let is_exact = hopper.limits() == scenario.hopper.limits();
+        let exact = || self.survey.prepare(&Scenario { hopper, ..scenario.clone() }).ok();
+        let exact = if is_exact { None } else { Some(exact()?) };
+        let prepared = exact.as_ref().unwrap_or(prepared);
+        let path = prepared.path(&HopTest::new(Arc::clone(&prepared.chain)), legs, &scenario.search).ok()?;
+        Some(TotalsRecord::from(&path.totals))
     }
 
     /// Whether any answer depends on a key: neighbouring cells along it are compared until two differ.
@@ -386,7 +429,8 @@ impl<'a> Trade<'a> {
                     _ => vec![other, value],
                 };
                 meter.report(Detail::None)?;
-                let (scenario, prepared) = self.prepared(&values)?;
+                // What is refused for some values depends on them, or no cell has an answer.
+                let Ok((scenario, prepared)) = self.prepared(&values) else { return Ok(()) };
                 if before.as_ref().is_some_and(|(s, p)| !ask_the_same((s, p), (&scenario, &prepared))) {
                     return Ok(());
                 }
@@ -395,12 +439,6 @@ impl<'a> Trade<'a> {
         }
         let (from, to) = (own.values[0], own.values[own.values.len() - 1]);
         Err(TradeError::NoEffect { path: own.key.path(), from, to })
-    }
-
-    /// A problem of a cell, with the cell's values.
-    fn refused(&self, values: &[f64], problem: &str) -> TradeError {
-        let cell: Vec<_> = self.swept.iter().zip(values).map(|(v, value)| format!("{}={value}", v.key.path())).collect();
-        TradeError::Cell { cell: cell.join(" and "), problem: problem.to_owned() }
     }
 }
 
@@ -414,6 +452,32 @@ impl Trade<'_> {
         checked(swept)?;
         let first: Vec<f64> = swept.iter().filter_map(|v| v.values.first().copied()).collect();
         Ok(varied(entries, swept, &first, given_by))
+    }
+
+    /// The same for the first cell and, in case it is refused, for some others, up to the last.
+    ///
+    /// # Errors
+    /// As [`Trade::new`].
+    pub fn some_cells(entries: &Entries, swept: &[SweptKey], given_by: &str) -> Result<Vec<Entries>, TradeError> {
+        /// How many.
+        const SOME: usize = 16;
+        checked(swept)?;
+        let last = cells(swept).saturating_sub(1);
+        let mut picks: Vec<usize> = (0..SOME).map(|i| i * last / (SOME - 1)).collect();
+        picks.dedup();
+        Ok(picks.into_iter().map(|cell| varied(entries, swept, &at(swept, cell), given_by)).collect())
+    }
+}
+
+/// The values of a cell, from its number.
+fn at(swept: &[SweptKey], cell: usize) -> Vec<f64> {
+    match swept {
+        [one] => vec![one.values[cell]],
+        [first, second] => {
+            let across = second.values.len();
+            vec![first.values[cell / across], second.values[cell % across]]
+        }
+        _ => Vec::new(),
     }
 }
 

@@ -1,12 +1,12 @@
 //! The answer of a trade with its picture.
 
-use super::{Case, Proof, SweptKey, Trade, TradeError, Variation};
+use super::{Case, CellError, Proof, SweptKey, Trade, TradeError, TradedCells, Variation};
 #[cfg(feature = "plot")]
 use crate::figure::{FigureError, Picture, TradeFigure, draw_trade};
 use crate::{progress::Progress, report::TradeAnswer};
 
 /// A verdict for every value of one or two keys, with everything that its views need.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Traded {
     /// The first case, with the first value of every key.
     pub first: Case,
@@ -14,6 +14,19 @@ pub struct Traded {
     pub answer: TradeAnswer,
     /// The warnings about the rows.
     pub warnings: Vec<String>,
+    /// The cells without an answer: which row, and the reason.
+    pub failed: Vec<(usize, CellError)>,
+}
+
+impl Traded {
+    /// Words the errors of the rows in the caller's way.
+    pub fn word_errors(&mut self, sentence: impl Fn(CellError) -> String) {
+        for (row, error) in self.failed.drain(..) {
+            if let Some(row) = self.answer.rows.get_mut(row) {
+                row.error = Some(sentence(error));
+            }
+        }
+    }
 }
 
 /// Finds the verdict for every value of one or two keys. The first case of the variation is that of [`Trade::first_cell`].
@@ -27,8 +40,8 @@ pub fn trade(
     progress: &dyn Progress,
 ) -> Result<Traded, TradeError> {
     let trade = Trade::new(&variation.entries, variation.base(), &variation.survey, swept)?;
-    let answer = trade.run(proof.map(|proof| proof.budget_cells), progress)?;
-    Ok(Traded { first: variation.first.clone(), warnings: answer.warnings(), answer })
+    let TradedCells { answer, failed } = trade.run(proof.map(|proof| proof.budget_cells), progress)?;
+    Ok(Traded { first: variation.first.clone(), warnings: answer.warnings(), answer, failed })
 }
 
 #[cfg(feature = "plot")]

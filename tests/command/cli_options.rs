@@ -328,7 +328,7 @@ const CHECK: [Trial; 16] = [
     ("--goal", &["check", "scenario.toml"], &["check", "scenario.toml", "--goal", "30"]),
     ("--pairs", &["check", "scenario.toml"], &["check", "scenario.toml", "--pairs", "pairs.csv"]),
     ("--prove", &["check", "scenario.toml"], &["check", "scenario.toml", "--prove"]),
-    ("--budget", &["check", "scenario.toml", "--prove"], &["check", "scenario.toml", "--prove", "--budget", "1"]),
+    ("--prove-cells-max", &["check", "scenario.toml", "--prove"], &["check", "scenario.toml", "--prove", "--budget", "1"]),
     ("--plot", &["check", "scenario.toml", "--prove"], &["check", "scenario.toml", "--prove", "--plot", "proof.svg"]),
     ("--format", &["check", "scenario.toml"], &["check", "scenario.toml", "--format", "json"]),
     ("--points-per-segment", &["check", "scenario.toml"], &["check", "scenario.toml", "--points-per-segment", "2"]),
@@ -363,7 +363,7 @@ const PLAN: [Trial; 20] = [
     ("--geojson", &["plan", "map.toml"], &["plan", "map.toml", "--geojson", "path.geojson"]),
     ("--plot", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--plot", "path.svg"]),
     ("--prove", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--prove"]),
-    ("--budget", &["plan", "scenario.toml", "--prove"], &["plan", "scenario.toml", "--prove", "--budget", "1"]),
+    ("--prove-cells-max", &["plan", "scenario.toml", "--prove"], &["plan", "scenario.toml", "--prove", "--budget", "1"]),
     ("--verify", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--verify"]),
     ("--format", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--format", "json"]),
     ("--points-per-segment", &["plan", "scenario.toml"], &["plan", "scenario.toml", "--points-per-segment", "2"]),
@@ -478,7 +478,7 @@ const REQUIRE: [Trial; 17] = [
         ],
     ),
     (
-        "--budget",
+        "--prove-cells-max",
         &[
             "require",
             "pit.csv",
@@ -502,7 +502,7 @@ const REQUIRE: [Trial; 17] = [
             "0.05",
             "--from",
             "1",
-            "--budget",
+            "--prove-cells-max",
             "1",
         ],
     ),
@@ -701,7 +701,12 @@ const REQUIRE: [Trial; 17] = [
 
 const VARY: &str = "hopper.takeoff_speed_max_m_s=6:9:2";
 
-const TRADE: [Trial; 17] = [
+const TRADE: [Trial; 18] = [
+    (
+        "--require-all",
+        &["trade", "scenario.toml", "--vary", "surface.friction_coefficient=0.05:0.6:2"],
+        &["trade", "scenario.toml", "--vary", "surface.friction_coefficient=0.05:0.6:2", "--require-all"],
+    ),
     ("--start", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--start", "30"]),
     ("--goal", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--goal", "10"]),
     (
@@ -714,9 +719,9 @@ const TRADE: [Trial; 17] = [
     ("--format", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--format", "json"]),
     ("--prove", &["trade", "scenario.toml", "--vary", VARY], &["trade", "scenario.toml", "--vary", VARY, "--prove"]),
     (
-        "--budget",
+        "--prove-cells-max",
         &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove"],
-        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove", "--budget", "1"],
+        &["trade", "scenario.toml", "--vary", VARY, "--format", "json", "--prove", "--prove-cells-max", "1"],
     ),
     (
         "--points-per-segment",
@@ -761,7 +766,12 @@ const TRADE: [Trial; 17] = [
     ),
 ];
 
-const COMPARE: [Trial; 7] = [
+const COMPARE: [Trial; 8] = [
+    (
+        "--require-all",
+        &["compare", "scenario.toml", "map.toml", "--set", "surface.friction_coefficient=0.05"],
+        &["compare", "scenario.toml", "map.toml", "--set", "surface.friction_coefficient=0.05", "--require-all"],
+    ),
     ("--output", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "-o", "compare.csv"]),
     ("--plot", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--plot", "compare.svg"]),
     ("--format", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--format", "json"]),
@@ -771,9 +781,9 @@ const COMPARE: [Trial; 7] = [
         &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove"],
     ),
     (
-        "--budget",
+        "--prove-cells-max",
         &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove"],
-        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove", "--budget", "1"],
+        &["compare", "scenario.toml", "map.toml", "--format", "json", "--prove", "--prove-cells-max", "1"],
     ),
     ("--set", &["compare", "scenario.toml", "map.toml"], &["compare", "scenario.toml", "map.toml", "--set", "body.name=moon"]),
     (
@@ -1104,5 +1114,50 @@ fn every_example_runs() {
         }
         let ran = desk.run(&words.iter().map(String::as_str).collect::<Vec<_>>());
         assert!(ran.status < 2 && !ran.stderr.contains("error"), "chta {}: {ran:?}", words.join(" "));
+    }
+}
+
+/// Options keep working under the names that they once had.
+#[test]
+fn a_former_name_of_an_option_means_the_same() {
+    const FORMER: [(&str, &str, &[&str]); 5] = [
+        ("--budget", "--prove-cells-max", &["check", "scenario.toml", "--prove"]),
+        ("--budget", "--prove-cells-max", &["plan", "scenario.toml", "--prove"]),
+        ("--budget", "--prove-cells-max", &["trade", "scenario.toml", "--vary", VARY, "--prove"]),
+        ("--budget", "--prove-cells-max", &["compare", "scenario.toml", "map.toml", "--prove"]),
+        ("--budget", "--prove-cells-max", &["require", "scenario.toml", "--vary", "surface.friction_coefficient"]),
+    ];
+    let desk = Desk::with_dem();
+    for (former, name, words) in FORMER {
+        let run = |option: &str| desk.run(&[words, &[option, "9", "--format", "json"]].concat());
+        let (ran, before) = (run(name), run(former));
+        assert!(ran.status < 2, "{words:?}: {ran:?}");
+        assert_eq!((ran.status, ran.stdout), (before.status, before.stdout), "{words:?} {former}");
+    }
+}
+
+/// A position of another terrain is refused with what each terrain takes.
+#[test]
+fn a_position_with_too_many_numbers_is_refused_with_what_each_terrain_takes() {
+    let vary = ["--vary", VARY];
+    let commands: [(&str, &[&str], &[&str]); 6] = [
+        ("check", &["--start", "--goal"], &[]),
+        ("plan", &["--start", "--goal"], &[]),
+        ("simulate", &["--start", "--goal"], &[]),
+        ("require", &["--start", "--goal"], &["--vary", "hopper.takeoff_speed_max_m_s"]),
+        ("trade", &["--start", "--goal"], &vary),
+        ("hop", &["--from", "--to"], &[]),
+    ];
+    let desk = Desk::new();
+    for (command, options, more) in commands {
+        for (option, (text, count)) in options.iter().flat_map(|option| [("1,2", 2), ("-1,2,3", 3)].map(|of| (option, of))) {
+            let ran = desk.run(&[&[command, "scenario.toml", option, text], more].concat());
+            let sentence = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+            let expected = format!(
+                "found `{text}` ({count} numbers), expected one number in metres, X, such as 12.5: a position is X along a chain, X,Y \
+                 on a map and X,Y,Z on a mesh"
+            );
+            assert!(ran.status == 2 && sentence.contains(&expected) && sentence.contains(option), "{command} {option}: {ran:?}");
+        }
     }
 }

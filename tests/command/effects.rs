@@ -366,7 +366,7 @@ fn require_says_whether_its_resolution_is_met() {
     let met = desk.json(&coarse);
     assert_eq!(met["resolution_met"], true, "{met}");
     // So few cells leave the values near the threshold open.
-    let few = [&require[..], &["--budget", "200"]].concat();
+    let few = [&require[..], &["--prove-cells-max", "200"]].concat();
     let missed = desk.json(&few);
     let [Some(low), Some(high)] = [&missed["unreachable_at"], &missed["reachable_at"]].map(Value::as_f64) else {
         panic!("no bracket: {missed}")

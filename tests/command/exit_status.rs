@@ -26,8 +26,16 @@ const CASES: [Case; 16] = [
         &["require", "scenario.toml", "--vary", "surface.friction_coefficient"],
         Some(&["require", "slippery.toml", "--vary", "hopper.takeoff_speed_max_m_s"]),
     ),
-    ("trade", &["trade", "slippery.toml", "--vary", "surface.friction_coefficient=0.05:0.06:2"], None),
-    ("compare", &["compare", "scenario.toml", "slippery.toml"], None),
+    (
+        "trade",
+        &["trade", "slippery.toml", "--vary", "surface.friction_coefficient=0.05:0.06:2"],
+        Some(&["trade", "slippery.toml", "--vary", "surface.friction_coefficient=0.05:0.6:2", "--require-all"]),
+    ),
+    (
+        "compare",
+        &["compare", "scenario.toml", "slippery.toml"],
+        Some(&["compare", "scenario.toml", "slippery.toml", "--require-all"]),
+    ),
     ("simulate", &["simulate", "trials.toml"], Some(&["simulate", "slippery.toml"])),
     ("synth", &["synth", "--rows", "9", "--cols", "9", "-o", "new.tif"], None),
     ("bodies", &["bodies"], None),

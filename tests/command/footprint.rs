@@ -102,7 +102,7 @@ fn answers_name_the_limits_of_a_footprint() {
 #[test]
 fn a_proof_says_what_it_does_of_the_footprint() {
     let desk = desk();
-    let proof = |keys: &[&str]| desk.json(&[&["check", "table.toml", "--prove", "--budget", "200"], keys].concat());
+    let proof = |keys: &[&str]| desk.json(&[&["check", "table.toml", "--prove", "--prove-cells-max", "200"], keys].concat());
     assert!(proof(&["--set", "hopper.footprint_m=4"]).to_string().contains("\"footprint_at_vertices_alone\":true"));
     assert!(!proof(&[]).to_string().contains("footprint_at_vertices_alone"));
 }

@@ -105,6 +105,11 @@ fn too_little_propellant_is_no_and_is_said() {
     assert!(number(&plan, "/propellant_shortage/short_kg") > 0.005);
     let compare = short.json(&["compare", "level.toml", "level.toml"]);
     assert_eq!(compare["compared"][0]["verdict"], "no-path-found");
+    assert!(number(&compare, "/compared/0/totals/propellant_short_kg") > 0.005);
+    let compare = short.run(&["compare", "level.toml", "level.toml", "--require-all", "-o", "both.csv"]);
+    assert!(compare.status == 1 && compare.stdout.contains("no-path-found (too little propellant)"), "{compare:?}");
+    let columns = short.read("both.csv").lines().next().map(|head| head.ends_with(",propellant_short_kg,error"));
+    assert_eq!(columns, Some(true));
     // What counts hops alone says that it does not keep the limit.
     let trade = short.run(&["trade", "level.toml", "--vary", "hopper.takeoff_speed_max_m_s=5:10:2"]);
     assert!(trade.stderr.contains("hopper.propellant_max_kg is not kept"), "{trade:?}");

@@ -42,6 +42,8 @@ fn agrees(desk: &Desk, target: &[&str], vary: &[(&str, &str)], more: &[&str]) ->
         let check = checked(desk, target, row, &keys, more);
         assert_eq!((&row["verdict"], &row["hops"]), (&check["verdict"], &check["hops"]), "{row}");
         assert_eq!(row.get("lower_bound"), check.get("lower_bound"), "{row}");
+        assert_eq!(row["effort"], check["effort"], "{row}");
+        assert_eq!((row.get("error"), row["totals"].is_object()), (None, row["hops"].is_u64()), "{row}");
     }
     rows.iter().map(|row| row["verdict"].as_str().unwrap().to_owned()).collect()
 }
@@ -116,7 +118,13 @@ fn threads_and_files_change_no_byte() {
 
     // CSV and JSON agree.
     let mut lines = csv.lines();
-    assert_eq!(lines.next(), Some("hopper.takeoff_speed_max_m_s,surface.friction_coefficient,verdict,hops"));
+    assert_eq!(
+        lines.next(),
+        Some(
+            "hopper.takeoff_speed_max_m_s,surface.friction_coefficient,verdict,hops,flight_time_s,energy_j_kg,peak_takeoff_speed_m_s,\
+             ground_distance_m,energy_j,mission_time_s,delta_v_m_s,propellant_kg,mass_end_kg,effort,error"
+        )
+    );
     let rows: Value = serde_json::from_str(&document).unwrap();
     for (line, row) in lines.zip(rows["rows"].as_array().unwrap()) {
         let fields: Vec<&str> = line.split(',').collect();
@@ -155,7 +163,6 @@ fn what_cannot_be_varied_is_refused_in_one_sentence() {
         (vec!["search.points_per_segment=0:3:3"], "a value is 1.5, expected a whole number"),
         (vec!["surface.rest_slope_max_deg=0:100:3"], "expected an angle from 0 to 90 degrees"),
         (vec!["hopper.mass_kg=1:2:2"], "no value from 1 to 2 changes anything here"),
-        (vec!["terrain.goal_x_m=30:50:3"], "with terrain.goal_x_m=50"),
         (vec![&*format!("{speed}=4:10:3"), &*format!("{speed}=5:9:3")], "hopper.takeoff_speed_max_m_s is varied twice"),
         (
             vec![&*format!("{speed}=4:10:3"), "hopper.clearance_m=0:1:2", "body.gravity_m_s2=1:2:2"],
@@ -227,6 +234,61 @@ fn compared_scenarios_agree_with_plan() {
     assert_eq!(desk.run(&["compare", files[0]]).status, 2, "a single scenario cannot be compared");
     let chain = desk.run(&["compare", "scenario.toml", "chain.csv"]);
     assert!(chain.status == 2 && chain.stderr.contains("chain.csv: this is a chain CSV; expected a scenario"), "{chain:?}");
+}
+
+/// A case that fails is a row with the sentence of the command alone, and the others are answered.
+#[test]
+fn a_case_that_fails_does_not_end_the_others() {
+    let desk = Desk::new();
+    let scenario = crate::desk::SCENARIO;
+    desk.write("no_key.toml", scenario.replace("friction_coefficient", "friktion_coefficient"));
+    desk.write("no_terrain.toml", scenario.split("[terrain]").next().unwrap());
+    let alone = |args: &[&str]| {
+        let ran = desk.run(args);
+        assert_eq!(ran.status, 2, "{args:?}: {ran:?}");
+        ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ")
+    };
+    let plain = |row: &Value| row["error"].as_str().unwrap().split_whitespace().collect::<Vec<_>>().join(" ");
+    for file in ["no_key.toml", "no_terrain.toml"] {
+        let words = ["compare", file, "scenario.toml"];
+        let all = json(&desk, &[&words[..], &["--format", "json", "-o", "all.csv", "--plot", "all.svg"]].concat());
+        let rows = all["compared"].as_array().unwrap();
+        assert_eq!((rows.len(), all["scenario"].as_array().unwrap().len()), (2, 1), "{file}");
+        assert!(rows[0]["verdict"].is_null() && rows[1]["verdict"] == "traversable" && rows[1].get("error").is_none(), "{rows:?}");
+        let error = plain(&rows[0]);
+        assert!(alone(&["plan", file]).starts_with(&format!("error: {error}")), "{file}: {error}");
+        assert!(desk.read("all.csv").lines().nth(1).unwrap().contains(&error[..20]), "{file}");
+        assert!(desk.read("all.svg").contains("failed"), "{file}");
+        let text = desk.run(&words);
+        assert!(text.status == 0 && text.stdout.contains("(1) failed: "), "{text:?}");
+        assert_eq!(desk.run(&[&words[..], &["--require-all"]].concat()).status, 1, "{file}");
+        alone(&["compare", file, file]);
+        alone(&["compare", file, "scenario.toml", "--set", "hopper.no_such_key=1"]);
+    }
+
+    // The chain ends at 40 m, and the least take-off angle must be below the greatest.
+    let settings: [(&str, &[&str], &[bool]); 3] = [
+        ("terrain.goal_x_m=30:50:3", &[], &[true, true, false]),
+        ("terrain.goal_x_m=-10:10:3", &[], &[false, true, true]),
+        ("hopper.takeoff_angle_min_deg=20:80:3", &["--set", "hopper.takeoff_angle_max_deg=70"], &[true, true, false]),
+    ];
+    for (vary, more, answered) in settings {
+        let words = [&["trade", "scenario.toml", "--vary", vary], more].concat();
+        let trade = json(&desk, &[&words[..], &["--format", "json", "-o", "rows.csv", "--plot", "rows.svg"]].concat());
+        let (key, _) = vary.split_once('=').unwrap();
+        for (row, is_answered) in trade["rows"].as_array().unwrap().iter().zip(answered) {
+            assert_eq!((row["verdict"].is_string(), row.get("error").is_none()), (*is_answered, *is_answered), "{vary}: {row}");
+            if key == "terrain.goal_x_m" && row.get("error").is_some() {
+                let setting = format!("{key}={}", row[key]);
+                assert_eq!(format!("error: {}", plain(row)), alone(&["check", "scenario.toml", "--set", &setting]));
+            }
+        }
+        assert_eq!(desk.read("rows.csv").lines().count(), 4, "{vary}");
+        assert!(desk.read("rows.svg").contains("failed: no answer"), "{vary}");
+        let text = desk.run(&words);
+        assert!(text.status == 0 && text.stdout.contains("!: failed, first with"), "{text:?}");
+        assert_eq!(desk.run(&[&words[..], &["--require-all"]].concat()).status, 1, "{vary}");
+    }
 }
 
 /// A tapered clearance that no hop of the path is long enough to keep asks for the same at every greater value: there is no bound to find.

@@ -263,6 +263,6 @@ fn trade_grids() {
     let survey = Survey::of(&first, first.terrain.as_ref().unwrap(), &folder).unwrap();
     let trade = Trade::new(&entries, &folder, &survey, &swept).unwrap();
     for budget_cells in [None, Some(500)] {
-        holds(&[Stage::Trade], 8, |progress| trade.run(budget_cells, progress).map(|answer| answer.rows));
+        holds(&[Stage::Trade], 8, |progress| trade.run(budget_cells, progress).map(|cells| cells.answer.rows));
     }
 }

@@ -61,10 +61,10 @@ pub(crate) struct HopArgs {
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Where the hop takes off, along the chain, m [default: the scenario's start]
-    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_hyphen_values = true)]
     pub(crate) from: Option<f64>,
     /// Where it lands, along the chain, m [default: the scenario's goal]
-    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_hyphen_values = true)]
     pub(crate) to: Option<f64>,
     #[command(flatten)]
     pub(crate) trajectory: TrajectoryArgs,
@@ -194,8 +194,8 @@ pub(crate) struct RequireArgs {
     #[arg(long, value_name = "SHARE", default_value_t = 0.001, allow_negative_numbers = true)]
     pub(crate) resolution: f64,
     /// Greatest number of cells that the chain is divided into at each value
-    #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS / 5, value_parser = cell_count, allow_negative_numbers = true)]
-    pub(crate) budget: usize,
+    #[arg(long, value_name = "CELLS", alias = "budget", default_value_t = DEFAULT_BUDGET_CELLS / 5, value_parser = cell_count, allow_negative_numbers = true)]
+    pub(crate) prove_cells_max: usize,
     #[command(flatten)]
     pub(crate) answer: AnswerArgs,
     #[command(flatten)]
@@ -217,6 +217,9 @@ pub(crate) struct TradeArgs {
     /// Rows to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// End with exit status 1 where a cell has no path or fails
+    #[arg(long)]
+    pub(crate) require_all: bool,
     /// Picture (SVG or PNG) to write: a heat map with the number of every cell
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,
@@ -240,6 +243,9 @@ pub(crate) struct CompareArgs {
     /// Table to write, as .csv or .json by the file's extension; -: CSV to standard output, in place of the answer
     #[arg(short, long, value_name = "FILE")]
     pub(crate) output: Option<PathBuf>,
+    /// End with exit status 1 where a scenario has no path or fails
+    #[arg(long)]
+    pub(crate) require_all: bool,
     /// Picture (SVG or PNG) to write: all paths overlaid
     #[arg(long, value_name = "FILE")]
     pub(crate) plot: Option<PathBuf>,

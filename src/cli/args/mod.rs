@@ -134,14 +134,14 @@ pub(crate) struct ProveArgs {
     #[arg(long)]
     pub(crate) prove: bool,
     /// Greatest number of cells that the chain is divided into for the proof
-    #[arg(long, value_name = "CELLS", default_value_t = DEFAULT_BUDGET_CELLS, value_parser = cell_count, requires = "prove", allow_negative_numbers = true)]
-    pub(crate) budget: usize,
+    #[arg(long, value_name = "CELLS", alias = "budget", default_value_t = DEFAULT_BUDGET_CELLS, value_parser = cell_count, requires = "prove", allow_negative_numbers = true)]
+    pub(crate) prove_cells_max: usize,
 }
 
 impl ProveArgs {
     /// The proof, if it is wanted.
     pub(crate) fn proof(self) -> Option<Proof> {
-        self.prove.then_some(Proof { budget_cells: self.budget })
+        self.prove.then_some(Proof { budget_cells: self.prove_cells_max })
     }
 }
 
@@ -152,10 +152,10 @@ pub(crate) struct JourneyArgs {
     #[arg(value_name = "CHAIN")]
     pub(crate) chain: PathBuf,
     /// Start along the chain, m [default: the scenario's]
-    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_hyphen_values = true)]
     pub(crate) start: Option<f64>,
     /// Goal along the chain, m [default: the scenario's]
-    #[arg(long, value_name = "X", value_parser = along_chain, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", value_parser = along_chain, allow_hyphen_values = true)]
     pub(crate) goal: Option<f64>,
 }
 

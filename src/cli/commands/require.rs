@@ -19,11 +19,11 @@ use crate::cli::{
 /// Finds the least capability.
 pub(crate) fn run(args: &RequireArgs) -> Result<Answer, Failure> {
     inputs::look_at_chain(&args.journey.chain, &args.common)?;
-    let requirement = Requirement::new(&args.vary, [args.from, args.to], args.resolution, args.budget, "--set")?;
+    let requirement = Requirement::new(&args.vary, [args.from, args.to], args.resolution, args.prove_cells_max, "--set")?;
     threads::start(args.answer.threads)?;
     let common = without_option_of(&args.vary, &args.common);
     let to_vary =
-        load_to_vary(&args.journey, &common, &args.search, Purpose::Require, &|entries| Ok(requirement.strongest(entries)))?;
+        load_to_vary(&args.journey, &common, &args.search, Purpose::Require, &|entries| Ok(vec![requirement.strongest(entries)]))?;
     to_vary.first.ends()?;
     let required = require(&to_vary.variation, &requirement, &Progress::new(args.common.quiet));
     let Required { shown, shown_entries, answer, .. } = required.map_err(|error| match error {

@@ -26,14 +26,15 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     let mut table = Table::by_extension(args.output.as_deref())?;
     let plot = output::begin_picture("--plot", args.plot.as_deref())?;
     let to_vary = load_to_vary(&args.journey, &args.common, &args.search, Purpose::Trade, &|entries| {
-        Ok(Trade::first_cell(entries, &swept, "--vary")?)
+        Ok(Trade::some_cells(entries, &swept, "--vary")?)
     })?;
     to_vary.first.ends()?;
-    let traded = trade(&to_vary.variation, &swept, args.prove.proof(), &Progress::new(args.common.quiet))?;
+    let mut traded = trade(&to_vary.variation, &swept, args.prove.proof(), &Progress::new(args.common.quiet))?;
+    traded.word_errors(|error| to_vary.sentence(error));
     output::warn_all(args.common.quiet, &traded.warnings);
     let views = Views {
         text: &|| traded.answer.text(),
-        // Its scenario is that of the first row.
+        // Its scenario is that of the first row that is not refused.
         json: &|| to_vary.first.document(DocumentKind::Trade, &traded.warnings, &traded.answer),
         csv: &|out| traded.answer.write_csv(out),
     };
@@ -42,5 +43,5 @@ pub(crate) fn run(args: &TradeArgs) -> Result<Answer, Failure> {
     files.picture(plot, || Some(traded.picture()))?;
     files.finish()?;
     views.show(args.answer.format, table.to_stdout)?;
-    Ok(Answer::Yes)
+    Ok(Answer::of(!args.require_all || traded.answer.is_traversable()))
 }

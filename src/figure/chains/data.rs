@@ -98,6 +98,8 @@ pub enum TradeCell {
     Untraversable,
     /// No path found, but not excluded either.
     Open,
+    /// No answer.
+    Failed,
 }
 
 /// Hops over one or two capabilities.

@@ -33,7 +33,7 @@ const MOST_SAMPLES: usize = 8;
 /// Draws the fewest hops over a grid of two capabilities, or over a row of one, with the number in every cell.
 ///
 /// Few hops are light, many dark, on a logarithmic scale from the fewest to the most; grey with a cross: proved that there is no
-/// path; white with a question mark: no path found. Numbers too small to be read are omitted, and the picture says so.
+/// path; white with a question mark: no path found; with an exclamation mark: no answer. Numbers too small to be read are omitted, and the picture says so.
 ///
 /// # Errors
 /// [`FigureError::RasterSize`] if there is not one cell for every pair of values.
@@ -87,7 +87,7 @@ impl Shades {
             }
             (TradeCell::Hops(_), ..) => ramp(0.3),
             (TradeCell::Untraversable, ..) => CLOSED,
-            (TradeCell::Open, ..) => WHITE,
+            (TradeCell::Open | TradeCell::Failed, ..) => WHITE,
         }
     }
 
@@ -105,6 +105,7 @@ impl Shades {
         let signs = [
             (TradeCell::Untraversable, closed_sample as fn(&mut Sheet, Place), "proved: no path"),
             (TradeCell::Open, open_sample, "open: no path found, none excluded"),
+            (TradeCell::Failed, failed_sample, "failed: no answer"),
         ];
         let signs = signs.into_iter().filter(|(cell, ..)| count(*cell) > 0);
         hops.chain(signs.map(|(cell, symbol, text)| (Swatch::Symbol(symbol), format!("{text} ({})", count(cell))))).collect()
@@ -116,10 +117,18 @@ fn closed_sample(sheet: &mut Sheet, (x, y): Place) {
     cross(sheet, (x, y), 0.9);
 }
 
-fn open_sample(sheet: &mut Sheet, (x, y): Place) {
+fn open_sample(sheet: &mut Sheet, at: Place) {
+    lettered_sample(sheet, at, sign(TradeCell::Open));
+}
+
+fn failed_sample(sheet: &mut Sheet, at: Place) {
+    lettered_sample(sheet, at, sign(TradeCell::Failed));
+}
+
+fn lettered_sample(sheet: &mut Sheet, (x, y): Place, letter: String) {
     let corners = rectangle((x - 3.0, y - 1.5), (x + 3.0, y + 1.5));
     sheet.line(corners.iter().copied().chain([corners[0]]).collect(), Pen { colour: BLACK, width_mm: 0.12 });
-    sheet.label(Label::new("?", (x, y), SMALL_MM).hung(Anchor::Middle, Hang::Through));
+    sheet.label(Label::new(letter, (x, y), SMALL_MM).hung(Anchor::Middle, Hang::Through));
 }
 
 fn cross(sheet: &mut Sheet, (x, y): Place, r: f64) {
@@ -247,6 +256,7 @@ fn sign(cell: TradeCell) -> String {
         TradeCell::Hops(hops) => hops.to_string(),
         TradeCell::Untraversable => "x".to_owned(),
         TradeCell::Open => "?".to_owned(),
+        TradeCell::Failed => "!".to_owned(),
     }
 }
 
