@@ -33,11 +33,28 @@ pub const STANDARD_GRAVITY_M_S2: f64 = 9.806_65;
 /// assert!((delta_v_m_s(&arc, &braked) - (10.5 + (50.0 + (50f64.sqrt() - 1.0).powi(2)).sqrt())).abs() < 1e-12);
 /// ```
 pub fn delta_v_m_s(arc: &Arc, limits: &HopperLimits) -> f64 {
-    let braking = limits.landing.touchdown_speed_m_s().map_or(0.0, |touchdown_m_s| {
-        let across = arc.horizontal_speed_m_s();
-        libm::hypot(across, across * arc.landing_slope() + touchdown_m_s)
-    });
-    arc.takeoff_speed_m_s() + braking + limits.hop_delta_v_overhead_m_s.unwrap_or(0.0)
+    let across = arc.horizontal_speed_m_s();
+    delta_v_of_m_s(arc.takeoff_speed_m_s(), Some([across, across * arc.landing_slope()]), limits)
+}
+
+/// The same from the velocities at its ends, for a hop that is flown otherwise than planned.
+///
+/// # Arguments
+/// `takeoff_speed_m_s`; `landing_velocity_m_s`: horizontal and vertical, `None` for a flight that does not come down, which does not brake.
+///
+/// # Examples
+/// ```
+/// use chta::{ballistics::delta_v_of_m_s, world::{HopperLimits, LandingMode}};
+/// let landing = LandingMode::Braked { touchdown_speed_m_s: 1.0 };
+/// let braked = HopperLimits { landing, ..HopperLimits::with_speeds(20.0, 20.0) };
+/// // Brakes from (3, -5) to (0, -1) m/s: 5 m/s more.
+/// assert_eq!(delta_v_of_m_s(6.0, Some([3.0, -5.0]), &braked), 11.0);
+/// assert_eq!(delta_v_of_m_s(6.0, None, &braked), 6.0);
+/// ```
+pub fn delta_v_of_m_s(takeoff_speed_m_s: f64, landing_velocity_m_s: Option<[f64; 2]>, limits: &HopperLimits) -> f64 {
+    let brakes = limits.landing.touchdown_speed_m_s().zip(landing_velocity_m_s);
+    let braking = brakes.map_or(0.0, |(touchdown_m_s, [across, up])| libm::hypot(across, up + touchdown_m_s));
+    takeoff_speed_m_s + braking + limits.hop_delta_v_overhead_m_s.unwrap_or(0.0)
 }
 
 /// The propellant of a delta-v, kg.

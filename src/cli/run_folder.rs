@@ -38,7 +38,7 @@ pub(crate) struct RunFolder<'a> {
     in_time: Option<(Pending<'a>, Vec<u8>)>,
 }
 
-/// Makes the folder of the files, if there is none yet.
+/// Makes the folder of the files, unless it exists.
 fn made(folder: &Path) -> Result<(), Failure> {
     fs::create_dir_all(folder).map_err(|error| {
         Failure::message(format!("{}: cannot be made ({error}): choose a folder that may be written to", folder.display()))

@@ -60,7 +60,7 @@ pub struct CheckedPair {
     pub ends: (Station, Station),
     /// The answer as plain data.
     pub answer: CheckAnswer,
-    /// The path; `None` if there is none, or if it has too many hops to list.
+    /// The path; `None` if no path was found, or if it has too many hops to list.
     pub path: Option<HopPath>,
     /// The bounds on the fewest hops, if they were wanted.
     pub bounds: Option<Bounds>,

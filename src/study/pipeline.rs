@@ -138,19 +138,12 @@ pub enum PipelineError {
 /// # Errors
 /// [`PipelineError`].
 pub fn prepare(scenario: &Scenario, source: &TerrainSource, base: &Path) -> Result<Prepared, PipelineError> {
-    let Survey { ground, projection, mut warnings } = Survey::of(scenario, source, base)?;
-    let mut beside_line = None;
-    let (geometry, dem, ends) = match ground {
-        Surveyed::Slice { legs, overlays, dem } => {
-            let around = dem.as_ref().map(|dem| dem.around(&legs, &scenario.hopper)).transpose()?.flatten();
-            beside_line = dem.map(|dem| dem.beside_line(&legs, &overlays, scenario)).transpose()?.flatten();
-            let (chain, without_effect) = overlays.laid(legs, friction(scenario))?;
-            warnings.extend(without_effect);
-            whole(chain, around)
-        }
-        Surveyed::Chain(chain) => (chain, None, (None, None)),
+    let survey = Survey::of(scenario, source, base)?;
+    let beside_line = match &survey.ground {
+        Surveyed::Slice { legs, overlays, dem: Some(dem) } => dem.beside_line(legs, overlays, scenario)?,
+        Surveyed::Slice { dem: None, .. } | Surveyed::Chain(_) => None,
     };
-    Ok(Prepared { beside_line, ..resolved(scenario, (geometry, dem), ends, projection, warnings)? })
+    Ok(Prepared { beside_line, ..survey.prepare(scenario)? })
 }
 
 /// The terrain of a scenario, read and sliced once. Chains for any hopper, grip and search are prepared from it.

@@ -88,7 +88,7 @@ pub struct Planned {
     pub ends: (Station, Station),
     /// The answer of the search.
     pub found: graph::Answer,
-    /// The path; `None` if there is none, or no commands of the machine fly it.
+    /// The path; `None` if no path was found, or no commands of the machine fly it.
     pub path: Option<HopPath>,
     /// The answer as plain data.
     pub answer: PlanAnswer,

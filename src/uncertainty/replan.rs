@@ -70,9 +70,9 @@ impl Replan<ChainPosition> for ChainReplan {
     }
 }
 
-/// Which commands of a hop are looked for.
+/// What kind of command of a hop is wanted.
 #[derive(Clone, Copy)]
-enum Commands {
+enum CommandKind {
     /// Those that lead to the node exactly.
     Exact,
     /// Those that the machine has.
@@ -90,7 +90,7 @@ pub(super) struct MapReplan {
 
 impl MapReplan {
     /// The best hop to any node.
-    fn best(&self, from: &MapPosition, commands: Commands) -> Option<Command<MapPosition>> {
+    fn best(&self, from: &MapPosition, commands: CommandKind) -> Option<Command<MapPosition>> {
         let mut best: Option<(Command<MapPosition>, Cost)> = None;
         for node in self.to_go.in_order() {
             let known = best.as_ref().map(|(_, cost)| *cost);
@@ -112,7 +112,7 @@ impl MapReplan {
         from: &MapPosition,
         node: usize,
         best: Option<Cost>,
-        commands: Commands,
+        commands: CommandKind,
     ) -> Option<(Command<MapPosition>, Cost)> {
         let Self { ground, to_go, nodes } = self;
         let target = nodes[node];
@@ -138,12 +138,12 @@ impl MapReplan {
             return None;
         }
         let command = match commands {
-            Commands::Exact => {
+            CommandKind::Exact => {
                 let chosen = to_go.loft_on_map((from, &target), heading, (sight, lofts));
                 let arc = chosen.map_or(arc, |loft| ballistics::Arc::new(sight, loft, g));
                 Command::of_arc(&arc, heading, target)
             }
-            Commands::InSteps => in_steps(ground, from, &target, to_go.options().takeoff)?,
+            CommandKind::InSteps => in_steps(ground, from, &target, to_go.options().takeoff)?,
         };
         Some((command, cost))
     }
@@ -156,7 +156,7 @@ impl MapReplan {
         let away2 = |node: &MapPosition| (node.at - from.at).norm_squared();
         let nearest = (0..self.nodes.len()).min_by(|&a, &b| away2(&self.nodes[a]).total_cmp(&away2(&self.nodes[b])))?;
         let mut successors = self.to_go.reliable_successors(NodeId(nearest)).iter();
-        let commands = if self.ground.hopper().limits().steps.is_continuous() { Commands::Exact } else { Commands::InSteps };
+        let commands = if self.ground.hopper().limits().steps.is_continuous() { CommandKind::Exact } else { CommandKind::InSteps };
         successors.find_map(|node| self.hop_to(from, node.index(), None, commands)).map(|(command, _)| command)
     }
 }
@@ -166,12 +166,12 @@ impl Replan<MapPosition> for MapReplan {
         if let Some(reliable) = self.reliable_successor(believed) {
             return Some(reliable);
         }
-        let exact = self.best(believed, Commands::Exact)?;
+        let exact = self.best(believed, CommandKind::Exact)?;
         if self.ground.hopper().limits().steps.is_continuous() {
             return Some(exact);
         }
         // The best hop mostly has a command in steps; to look for one of every hop on the way to it would take many times as long.
         let nearest = in_steps(&self.ground, believed, &exact.aim, self.to_go.options().takeoff);
-        nearest.or_else(|| self.best(believed, Commands::InSteps))
+        nearest.or_else(|| self.best(believed, CommandKind::InSteps))
     }
 }

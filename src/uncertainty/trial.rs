@@ -4,7 +4,7 @@ use nalgebra::{Point2, Point3};
 
 use super::{HopRecord, Policy, TrialOutcome, TrialRecord, replan::Replan};
 use crate::{
-    ballistics::propellant_kg,
+    ballistics::{delta_v_of_m_s, propellant_kg},
     flight::{Command, Errors, FlownHop, HopDraws, TrialDraws},
     ground::{ContactFailure, FirstContact, LiftoffVelocity},
     world::HopperLimits,
@@ -184,12 +184,9 @@ impl<G: FirstContact> Journey<'_, G> {
         if liftoff.stays() {
             return 0.0;
         }
-        let limits = self.ground.hopper().limits();
-        let braking =
-            limits.landing.touchdown_speed_m_s().filter(|_| flown.landed).map_or(0.0, |touchdown_m_s| {
-                libm::hypot(flown.touchdown.horizontal_m_s, flown.touchdown.vertical_m_s + touchdown_m_s)
-            });
-        libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s) + braking + limits.hop_delta_v_overhead_m_s.unwrap_or(0.0)
+        let landing_m_s = flown.landed.then_some([flown.touchdown.horizontal_m_s, flown.touchdown.vertical_m_s]);
+        let takeoff_m_s = libm::hypot(liftoff.horizontal_m_s, liftoff.vertical_m_s);
+        delta_v_of_m_s(takeoff_m_s, landing_m_s, self.ground.hopper().limits())
     }
 
     /// Ends a flown hop, with its bounce-and-roll displacement, and reports it; returns the outcome if the trial ends with it.

@@ -12,8 +12,8 @@ use chta::{
     scenario::{Entries, Scenario},
     study::{
         Case, CaseError, CheckError, Commands, ExperimentError, HopError, JourneyEnd, JourneyError, PlanOptions, Proof,
-        RequireError, Requirement, SimulateOptions, SweptKey, Trade, Variation, check, check_pairs, compare, experiment, hop, plan,
-        require, simulate, trade,
+        RequireError, Requirement, SimulateOptions, SweptKey, Trade, Trials, Variation, check, check_pairs, compare, experiment,
+        hop, plan, require, simulate, trade,
     },
     uncertainty::experiments::{DriftReading, Experiment},
 };
@@ -147,6 +147,32 @@ fn simulate_answers_as_the_command() {
             assert_eq!(simulated.landing_map().is_some(), is_on_map, "{name}");
         }
     }
+}
+
+#[test]
+fn trials_flown_in_parts_give_the_answer_of_the_whole() {
+    // No multiple of the batches in which trials are flown and their rates kept.
+    let settings = ["uncertainty.trials=2345"];
+    for (name, policy) in [("rolling_surely", "open-loop"), ("rolling_surely", "replan"), ("mars_crater_field_surely", "open-loop")]
+    {
+        let policy = format!("uncertainty.policy={policy}");
+        let case = case(name, &[settings[0], &policy], Commands::OfTheMachine);
+        let planned = Arc::new(plan(&case, PlanOptions::default(), &()).unwrap());
+        let trials = Trials::new(&planned, &SimulateOptions::default());
+        let part = |numbers| trials.tally(numbers, &()).unwrap().unwrap();
+        // The last part first, and none twice.
+        let mut tally = part(1000..2345);
+        assert!(tally.merge(&part(900..1100)).is_err(), "{name}: trials 1000 to 1099 were flown twice");
+        tally.merge(&part(0..1000)).unwrap();
+        let whole = simulate(&planned, &SimulateOptions::default(), &mut (), &()).unwrap();
+        let json = |answer| serde_json::to_string(answer).unwrap();
+        assert_eq!(json(&trials.answer_of(&tally)), json(&whole.answer), "{name} {policy}");
+    }
+    let wall = Arc::new(plan(&case("wall", &[], Commands::OfTheMachine), PlanOptions::default(), &()).unwrap());
+    assert!(
+        Trials::new(&wall, &SimulateOptions::default()).tally(0..10, &()).unwrap().is_none(),
+        "nothing is flown without a path"
+    );
 }
 
 #[test]

@@ -163,7 +163,7 @@ impl SteppedGround for DemGround {
             let (east, north) = libm::sincos(degrees.to_radians());
             let along = Vector2::new(east, north);
             let heading = Heading { along, degrees: Some(degrees) };
-            // The nearest point of the heading to the aim; behind the take-off, there is none.
+            // The point of the heading nearest to the aim. A heading that leads away from the aim has no such point.
             let foot_m = run_m * along.dot(&exact);
             if foot_m <= 0.0 {
                 continue;

@@ -368,7 +368,7 @@ impl<G: SteppedGround> Machine<'_, G> {
             takeoff,
             landing,
             heading_deg: target.heading.degrees.unwrap_or(own.heading_deg),
-            // A vertex of the slice under this hop is none of the chain.
+            // A vertex of the slice under this hop is not a vertex of the chain.
             lower_vertex: None,
             aim: Some(Aim { point: planned.landing, miss_m, across_m: Some(across_m) }),
             ..commanded

@@ -221,9 +221,12 @@ impl State {
         Self { map, open, layer: LayerBits::none(lattice), layer_blocks: vec![false; down * across], reached: 0, waiting }
     }
 
-    /// Adds the waiting sources of a hop count, `None`: of the fewest hops, to the present layer; that hop count, `None` if there is none.
+    /// Adds the waiting sources of a hop count, `None`: of the fewest hops, to the present layer.
     ///
     /// A source on a node that was reached in fewer hops, or in as many with less effort, changes nothing.
+    ///
+    /// # Returns
+    /// That hop count; `None` if no source waits.
     fn join_sources(&mut self, hops: &PostHops, count: Option<i16>) -> Option<i16> {
         let count = count.or_else(|| self.waiting.last().map(|(_, source)| source.hops))?;
         while let Some((number, source)) = self.waiting.pop_if(|(_, source)| source.hops == count) {

@@ -1,6 +1,6 @@
 //! The search, the paths and their check, the trials, and the answer that they make.
 
-use super::{MapQuestion, MapStudyError, PreparedMap, Spot};
+use super::{super::Defect, MapQuestion, MapStudyError, PreparedMap, Spot};
 use crate::{
     path::HopPath,
     progress::Progress,
@@ -113,7 +113,7 @@ impl PreparedMap {
         for (path, goal) in paths.iter().zip(&self.goals) {
             let start = out.source(self.lattice, goal.post).and_then(|number| self.starts.get(number));
             if let (Some(path), Some(start)) = (path, start) {
-                MapStudyError::if_refuted(&verify(&hops, path, start.post, goal.post))?;
+                Defect::unless_passed(&verify(&hops, path, start.post, goal.post))?;
             }
         }
         let predecessors = question.predecessors.then(|| out.predecessors(&hops, NO_PREDECESSOR));

@@ -1,8 +1,7 @@
 //! Why a question about a map has no answer.
 
-use super::super::{JourneyEnd, PipelineError};
+use super::super::{Defect, JourneyEnd, PipelineError};
 use crate::{
-    path::{Execution, Violation},
     quantity::MapPoint,
     reach::map::MapError,
     terrain::{MapBounds, TerrainError},
@@ -87,32 +86,6 @@ pub enum MapStudyError {
     #[error(transparent)]
     Simulation(#[from] SimulationError),
     /// A path that breaks a limit when it is flown again.
-    #[error(
-        "the planned path does not pass its own check ({count} violations): {}; this is a defect of chta, please report it with the \
-         scenario",
-        listed(first)
-    )]
-    Refuted {
-        /// How many violations there are.
-        count: usize,
-        /// The first of them.
-        first: Vec<Violation>,
-    },
-}
-
-fn listed(violations: &[Violation]) -> String {
-    violations.iter().map(ToString::to_string).collect::<Vec<_>>().join("; ")
-}
-
-impl MapStudyError {
-    /// The error for a path that fails its check.
-    ///
-    /// # Errors
-    /// [`MapStudyError::Refuted`] if the check found a violation.
-    pub(super) fn if_refuted(check: &Execution) -> Result<(), Self> {
-        if check.passes() {
-            return Ok(());
-        }
-        Err(Self::Refuted { count: check.violations.len(), first: check.violations.iter().take(10).copied().collect() })
-    }
+    #[error(transparent)]
+    Defect(#[from] Defect),
 }
