@@ -21,11 +21,6 @@ impl From<JourneyError> for Failure {
     fn from(error: JourneyError) -> Self {
         match error {
             JourneyError::Case(error) => error.into(),
-            JourneyError::ProofWithRisk { risk } => Self::message(format!(
-                "--prove bounds the fewest hops, but search.risk is \"{}\", which selects the most reliable path: omit --prove, or add \
-                 --set search.risk=ignored",
-                risk.name()
-            )),
             other => Self::of(&other),
         }
     }

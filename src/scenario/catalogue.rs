@@ -280,20 +280,21 @@ pub const CATALOGUE: [Key; 73] = [
         "search",
         "takeoff_angle",
         Kind::Word(&CHOICES),
-        "which feasible take-off angle to fly; most-reliable: where most draws of [uncertainty] survive; absent: least-speed",
+        "which feasible take-off angle to fly; most-reliable: where most draws of [uncertainty] survive; absent: that where errors are given, else least-speed",
     ),
     key("search", "split", Kind::Word(&SPLITS), "how to divide many hops on a segment; absent: full-reach"),
     key(
         "search",
         "risk",
         Kind::Word(&RELIABILITY_USES),
-        "how to weigh the probability to fail, or the slack: ignored; fewest-hops: the most reliable path of fewest hops; traded: more hops allowed",
+        "how to weigh the probability to fail, or without [uncertainty] the slack: ignored; fewest-hops: the most reliable path of fewest hops; \
+         traded: the fewest hops at 0.98 of the best success; absent: traded where errors are given, else ignored",
     ),
     key(
         "search",
         "risk_extra_hops_max",
         Kind::Count { min: 1, max: 1000 },
-        "hops beyond the fewest that a more reliable path may take; absent: 3",
+        "hops beyond the fewest that a more reliable path may take; absent: 10, or half the fewest if that is more",
     ),
     key("uncertainty", "takeoff_speed_sigma_m_s", FROM_ZERO, "standard deviation of the take-off speed, m/s"),
     key(
@@ -326,7 +327,7 @@ pub const CATALOGUE: [Key; 73] = [
         "uncertainty",
         "policy",
         Kind::Word(&POLICIES),
-        "open-loop: planned commands, wherever the robot is; replan: replanned after every landing; absent: open-loop",
+        "open-loop: planned commands, wherever the robot is; replan: replanned after every landing; absent: replan",
     ),
     key("uncertainty", "trials", Kind::Count { min: 1, max: MOST }, "how many trials; absent: 10000"),
     key("uncertainty", "seed", Kind::Count { min: 0, max: MOST }, "seed of all draws; absent: 0"),

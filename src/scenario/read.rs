@@ -148,9 +148,9 @@ impl Scenario {
         let terrain = terrain(&mut entries);
         let via = via(&mut entries, terrain.as_ref());
         let [friction_raster, keep_out] = overlays(&mut entries, &surface, terrain.as_ref());
-        let search = search(&mut entries);
-        let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries);
         let uncertainty = super::trials::trials(&mut entries, terrain.as_ref());
+        let (risk, risk_extra_hops_max) = super::trials::risk(&mut entries, uncertainty.as_ref());
+        let search = search(&mut entries, super::trials::takeoff_choice(risk, uncertainty.as_ref()));
         let mut problems = entries.problems().to_vec();
         let Some(body) = body.filter(|_| problems.is_empty()) else {
             let first = |problem: &ScenarioProblem| match &problem.place {
@@ -556,8 +556,8 @@ fn map_place(entries: &mut Entries, end: &str, kind: &str) -> Option<MapPlace> {
     }
 }
 
-/// How to search.
-fn search(entries: &mut Entries) -> SearchOptions {
+/// How to search, with this choice of take-off angle where none is given.
+fn search(entries: &mut Entries, takeoff: TakeoffChoice) -> SearchOptions {
     let points = entries.value("search", "points_per_segment").cloned();
     let spacing_m = entries.number("search", "node_spacing_max_m");
     if let (Some(_), Some(_)) = (&points, spacing_m) {
@@ -569,12 +569,17 @@ fn search(entries: &mut Entries) -> SearchOptions {
     SearchOptions {
         spacing: spacing_m.map(PointSpacing::AtMostM).or(count.map(PointSpacing::PerSegment)),
         effort: named(&Effort::ALL, Effort::name, word("effort")),
-        takeoff: named(&TakeoffChoice::ALL, TakeoffChoice::name, word("takeoff_angle")),
+        takeoff: find(&TakeoffChoice::ALL, TakeoffChoice::name, word("takeoff_angle")).unwrap_or(takeoff),
         split: named(&Split::ALL, Split::name, word("split")),
     }
 }
 
 /// The variant with this name; the default if no name is given.
-pub(super) fn named<T: Copy + Default>(all: &[T], name: fn(T) -> &'static str, word: Option<&str>) -> T {
-    all.iter().copied().find(|variant| Some(name(*variant)) == word).unwrap_or_default()
+fn named<T: Copy + Default>(all: &[T], name: fn(T) -> &'static str, word: Option<&str>) -> T {
+    find(all, name, word).unwrap_or_default()
+}
+
+/// The variant with this name; `None` if no name is given.
+pub(super) fn find<T: Copy>(all: &[T], name: fn(T) -> &'static str, word: Option<&str>) -> Option<T> {
+    all.iter().copied().find(|variant| Some(name(*variant)) == word)
 }

@@ -2,6 +2,7 @@
 
 use super::{Entries, ProblemKind, Scenario, TerrainSource};
 use crate::{
+    ballistics::TakeoffChoice,
     graph::{ReliabilityOptions, ReliabilityUse, RiskModel, TakeoffScatter},
     ground::DemGround,
     quantity::Angle,
@@ -28,7 +29,14 @@ pub struct UncertaintyKeys {
 impl Default for UncertaintyKeys {
     /// No errors, no tolerance, 10 000 open-loop trials of seed 0.
     fn default() -> Self {
-        Self { errors: Uncertainty::NONE, goal_tolerance_m: 0.0, hop_limit: None, policy: Policy::OpenLoop, trials: 10_000, seed: 0 }
+        Self {
+            errors: Uncertainty::NONE,
+            goal_tolerance_m: 0.0,
+            hop_limit: None,
+            policy: Policy::OpenLoop,
+            trials: 10_000,
+            seed: 0,
+        }
     }
 }
 
@@ -86,7 +94,7 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
         },
         goal_tolerance_m: number("goal_tolerance_m"),
         hop_limit: entries.count("uncertainty", "hop_limit").and_then(|limit| u32::try_from(limit).ok()),
-        policy: super::read::named(&Policy::ALL, Policy::name, entries.text("uncertainty", "policy")),
+        policy: super::read::find(&Policy::ALL, Policy::name, entries.text("uncertainty", "policy")).unwrap_or(Policy::Replan),
         trials: entries.count("uncertainty", "trials").unwrap_or(absent.trials),
         seed: entries.count("uncertainty", "seed").unwrap_or(absent.seed),
     };
@@ -98,9 +106,12 @@ pub(super) fn trials(entries: &mut Entries, terrain: Option<&TerrainSource>) -> 
     Some(keys)
 }
 
-/// How risk weighs, and how many extra hops it may cost.
-pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, Option<u32>) {
-    let risk = super::read::named(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
+/// How risk weighs, and how many extra hops it may cost. Where errors are given, hops are traded for reliability unless the scenario says
+/// otherwise: a path planned without regard to them stands on the edge of its limits.
+pub(super) fn risk(entries: &mut Entries, uncertainty: Option<&UncertaintyKeys>) -> (ReliabilityUse, Option<u32>) {
+    let absent = if has_errors(uncertainty) { ReliabilityUse::Traded } else { ReliabilityUse::Ignored };
+    let given = super::read::find(&ReliabilityUse::ALL, ReliabilityUse::name, entries.text("search", "risk"));
+    let risk = given.unwrap_or(absent);
     let extra = entries.count("search", "risk_extra_hops_max").and_then(|hops| u32::try_from(hops).ok());
     if extra.is_some() && risk != ReliabilityUse::Traded {
         let message = format!("search.risk_extra_hops_max with search.risk = \"{}\", which allows no extra hops", risk.name());
@@ -112,6 +123,17 @@ pub(super) fn risk(entries: &mut Entries) -> (ReliabilityUse, Option<u32>) {
         );
     }
     (risk, extra)
+}
+
+/// The choice of take-off angle where the scenario names none.
+pub(super) fn takeoff_choice(risk: ReliabilityUse, uncertainty: Option<&UncertaintyKeys>) -> TakeoffChoice {
+    let is_weighed = risk != ReliabilityUse::Ignored && has_errors(uncertainty);
+    if is_weighed { TakeoffChoice::MostReliable } else { TakeoffChoice::default() }
+}
+
+/// Whether any error of command, ground or position is given.
+fn has_errors(uncertainty: Option<&UncertaintyKeys>) -> bool {
+    uncertainty.is_some_and(|keys| keys.errors != Uncertainty::NONE)
 }
 
 impl Scenario {

@@ -35,16 +35,6 @@ pub enum JourneyError {
     /// The trials that estimate the success of paths.
     #[error(transparent)]
     Trials(#[from] Box<SimulateError>),
-    /// A proof for a scenario that selects the most reliable path.
-    #[error(
-        "a proof bounds the fewest hops, but search.risk is \"{}\", which selects the most reliable path: leave the proof out, or set \
-         search.risk to \"ignored\"",
-        risk.name()
-    )]
-    ProofWithRisk {
-        /// How path choice weighs reliability.
-        risk: ReliabilityUse,
-    },
 }
 
 /// The result of a search, with bounds if a proof was requested.
@@ -70,13 +60,16 @@ impl Searched {
             let (found, reliable_paths) = search(test, ends, case, progress)?;
             return Ok(Self { found, reliable_paths, proof: None });
         };
-        if weighs_reliability(&case.scenario) {
-            return Err(JourneyError::ProofWithRisk { risk: case.scenario.risk });
-        }
-        let search = case.scenario.search.clone();
-        let options = BoundsOptions { budget_cells, search, explain: true, ..BoundsOptions::default() };
+        let options = case.scenario.search.clone();
+        let options = BoundsOptions { budget_cells, search: options, explain: true, ..BoundsOptions::default() };
         let bounds = bounds(test, ends.0, ends.1, &options, progress)?;
-        Ok(Self { found: bounds.answer.clone(), reliable_paths: Vec::new(), proof: Some((bounds, budget_cells)) })
+        // The bounds are on the fewest hops; the most reliable path may take more.
+        let (found, reliable_paths) = if weighs_reliability(&case.scenario) && bounds.answer.hops().is_some() {
+            search(test, ends, case, progress)?
+        } else {
+            (bounds.answer.clone(), Vec::new())
+        };
+        Ok(Self { found, reliable_paths, proof: Some((bounds, budget_cells)) })
     }
 
     /// The same for many pairs: one search from each start; pair by pair for proofs and where the most reliable paths are wanted.

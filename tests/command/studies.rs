@@ -11,9 +11,9 @@ use chta::{
     report::DocumentKind,
     scenario::{Entries, Scenario},
     study::{
-        Case, CaseError, CheckError, Commands, ExperimentError, HopError, JourneyEnd, JourneyError, PlanOptions, Proof,
-        RequireError, Requirement, SimulateOptions, SweptKey, Trade, Trials, Variation, check, check_pairs, compare, experiment,
-        hop, plan, require, simulate, trade,
+        Case, CaseError, CheckError, Commands, ExperimentError, HopError, JourneyEnd, PlanOptions, Proof, RequireError,
+        Requirement, SimulateOptions, SweptKey, Trade, Trials, Variation, check, check_pairs, compare, experiment, hop, plan,
+        require, simulate, trade,
     },
     uncertainty::experiments::{DriftReading, Experiment},
 };
@@ -101,16 +101,10 @@ fn hop_check_and_plan_answer_as_the_command() {
             "{name}"
         );
         assert_eq!(planned.answer.verified.is_some(), planned.path.is_some(), "{name}: a path is flown again");
-        let proved = check(&case, proof, &());
-        if case.scenario.reliability(None).is_some() {
-            let error = proved.unwrap_err();
-            assert!(matches!(error, CheckError::Journey(JourneyError::ProofWithRisk { .. })), "{name}: {error}");
-        } else {
-            let (proved, more) = (proved.unwrap(), ["--prove", "--budget", "2000"]);
-            let answer = proved.answers().next().unwrap();
-            assert_eq!(of_study(&case, "check", &proved.warnings, answer), of_command("check", name, &[], &more), "{name}");
-            assert!(proved.picture().is_some(), "{name}: what is proved has a picture");
-        }
+        let (proved, more) = (check(&case, proof, &()).unwrap(), ["--prove", "--budget", "2000"]);
+        let answer = proved.answers().next().unwrap();
+        assert_eq!(of_study(&case, "check", &proved.warnings, answer), of_command("check", name, &[], &more), "{name}");
+        assert!(proved.picture().is_some(), "{name}: what is proved has a picture");
         assert!(planned.picture().unwrap().to_svg().unwrap().starts_with("<svg"), "{name}");
     }
 }
