@@ -85,9 +85,11 @@ pub(super) const TOTALS_COLUMNS: [&str; 9] = [
     "mass_end_kg",
 ];
 
-/// The columns with its margins, and with what it lacks.
-const FURTHER_COLUMNS: [&str; 4] =
-    ["speed_margin_least_m_s", "angle_margin_least_deg", "angle_span_least_deg", "propellant_short_kg"];
+/// The columns with its margins.
+pub(super) const MARGIN_COLUMNS: [&str; 3] = ["speed_margin_least_m_s", "angle_margin_least_deg", "angle_span_least_deg"];
+
+/// The column with what it lacks.
+const SHORT: &str = "propellant_short_kg";
 
 /// The numbers of [`TOTALS_COLUMNS`].
 pub(super) fn totals_numbers(totals: Option<&TotalsRecord>) -> [Option<f64>; TOTALS_COLUMNS.len()] {
@@ -102,6 +104,11 @@ pub(super) fn totals_numbers(totals: Option<&TotalsRecord>) -> [Option<f64>; TOT
         totals.and_then(|t| t.propellant_kg),
         totals.and_then(|t| t.mass_end_kg),
     ]
+}
+
+/// The numbers of [`MARGIN_COLUMNS`].
+pub(super) fn margin_numbers(margins: Option<&MarginsRecord>) -> [Option<f64>; MARGIN_COLUMNS.len()] {
+    [margins.map(|m| m.speed_margin_least_m_s), margins.map(|m| m.angle_margin_least_deg), margins.map(|m| m.angle_span_least_deg)]
 }
 
 /// The column of delta-v.
@@ -124,16 +131,10 @@ impl CompareRow {
         self.totals.and_then(|totals| totals.propellant_short_kg)
     }
 
-    /// The numbers of [`TOTALS_COLUMNS`] and [`FURTHER_COLUMNS`].
+    /// The numbers of [`TOTALS_COLUMNS`], [`MARGIN_COLUMNS`] and [`SHORT`].
     fn numbers(&self) -> impl Iterator<Item = Option<f64>> {
-        let margins = self.margins.as_ref();
-        let further = [
-            margins.map(|m| m.speed_margin_least_m_s),
-            margins.map(|m| m.angle_margin_least_deg),
-            margins.map(|m| m.angle_span_least_deg),
-            self.propellant_short_kg(),
-        ];
-        totals_numbers(self.totals.as_ref()).into_iter().chain(further)
+        let (totals, margins) = (totals_numbers(self.totals.as_ref()), margin_numbers(self.margins.as_ref()));
+        totals.into_iter().chain(margins).chain([self.propellant_short_kg()])
     }
 
     /// The verdict, with the reason where the propellant does not last.
@@ -165,7 +166,7 @@ impl CompareAnswer {
         text.push('\n');
         let mut lines: Vec<Vec<String>> =
             vec![numbers, self.line("verdict", CompareRow::format_verdict), self.line("hops", CompareRow::format_hops)];
-        for (i, column) in TOTALS_COLUMNS.into_iter().chain(FURTHER_COLUMNS).enumerate() {
+        for (i, column) in TOTALS_COLUMNS.into_iter().chain(MARGIN_COLUMNS).chain([SHORT]).enumerate() {
             // The delta-v of machines without propulsion is the sum of their take-off speeds: no line of its own.
             let number = |row: &CompareRow| row.numbers().nth(i).flatten();
             let is_stated = |row: &CompareRow| {
@@ -211,7 +212,7 @@ impl CompareAnswer {
         let proved = self.compared.iter().any(|row| row.lower_bound.is_some());
         let bound: &[&str] = if proved { &["lower_bound"] } else { &[] };
         let first = ["file", "name", "start_x_m", "goal_x_m", "verdict", "hops"];
-        writer.write_record([&first[..], bound, &TOTALS_COLUMNS, &FURTHER_COLUMNS, &["error"]].concat())?;
+        writer.write_record([&first[..], bound, &TOTALS_COLUMNS, &MARGIN_COLUMNS, &[SHORT, "error"]].concat())?;
         let count = |hops: Option<u64>| hops.map(|hops| hops.to_string()).unwrap_or_default();
         let field = |number: Option<f64>| number.map(|n| n.to_string()).unwrap_or_default();
         for row in &self.compared {

@@ -166,8 +166,8 @@ pub fn require_text(answer: &RequireAnswer) -> String {
         Some(value) if answer.never_binds => {
             let hops = answer.hops.unwrap_or(0);
             sheet.line(format_args!(
-                "does not bind at any value: reachable in {hops} hop{} of which none is long enough for its taper to reach {}, so that any \
-                 greater value asks for the same",
+                "does not bind at any value: reachable in {hops} hop{}, each too short for its taper to reach {}, so that a greater value \
+                 changes nothing",
                 plural(hops),
                 with_unit(value)
             ));

@@ -10,8 +10,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    EffortRecord, TotalsRecord,
-    compare_answer::{TOTALS_COLUMNS, totals_numbers},
+    EffortRecord, MarginsRecord, TotalsRecord,
+    compare_answer::{MARGIN_COLUMNS, TOTALS_COLUMNS, margin_numbers, totals_numbers},
     stated::stated,
 };
 use crate::graph::proof::ProofVerdict;
@@ -55,6 +55,8 @@ pub struct TradeRow {
     pub far_on_body: bool,
     /// The totals of the path, for exact commands; null without one, or if it has too many hops to list.
     pub totals: Option<TotalsRecord>,
+    /// The least margins of its hops to the limits; null where the totals are, and without a hop.
+    pub margins: Option<MarginsRecord>,
     /// The effort of the path, in the unit of the chosen effort; null without one.
     pub effort: Option<EffortRecord>,
     /// Why there is no answer; absent if there is one.
@@ -65,9 +67,9 @@ pub struct TradeRow {
 impl TradeRow {
     /// The row of a cell without an answer.
     pub fn failed(values: BTreeMap<String, f64>, error: String) -> Self {
-        let (verdict, hops, lower_bound, totals, effort) = (None, None, None, None, None);
+        let (verdict, hops, lower_bound, totals, margins, effort) = (None, None, None, None, None, None);
         let (above_escape, far_on_body, error) = (false, false, Some(error));
-        Self { values, verdict, hops, lower_bound, above_escape, far_on_body, totals, effort, error }
+        Self { values, verdict, hops, lower_bound, above_escape, far_on_body, totals, margins, effort, error }
     }
 
     /// Whether a path was found.
@@ -197,14 +199,17 @@ impl TradeAnswer {
         let mut writer = csv::Writer::from_writer(out);
         let proved = self.is_with_proof();
         let bound: &[&str] = if proved { &["lower_bound"] } else { &[] };
-        writer.write_record([&keys[..], &["verdict", "hops"], bound, &TOTALS_COLUMNS, &["effort", "error"]].concat())?;
+        writer.write_record(
+            [&keys[..], &["verdict", "hops"], bound, &TOTALS_COLUMNS, &MARGIN_COLUMNS, &["effort", "error"]].concat(),
+        )?;
         let count = |hops: Option<u64>| hops.map(|hops| hops.to_string()).unwrap_or_default();
         for row in &self.rows {
             let values = keys.iter().map(|key| row.values.get(*key).map(f64::to_string).unwrap_or_default());
             let bound = proved.then(|| count(row.lower_bound.flatten()));
             let verdict = row.verdict.map(|verdict| verdict.to_string()).unwrap_or_default();
-            let totals = totals_numbers(row.totals.as_ref()).into_iter().chain([row.effort.map(|effort| effort.value)]);
-            let numbers = totals.map(|number| number.map(|number| number.to_string()).unwrap_or_default());
+            let (totals, margins) = (totals_numbers(row.totals.as_ref()), margin_numbers(row.margins.as_ref()));
+            let numbers = totals.into_iter().chain(margins).chain([row.effort.map(|effort| effort.value)]);
+            let numbers = numbers.map(|number| number.map(|number| number.to_string()).unwrap_or_default());
             let answer = [verdict, count(row.hops)].into_iter().chain(bound).chain(numbers);
             writer.write_record(values.chain(answer).chain([row.error.clone().unwrap_or_default()]))?;
         }

@@ -13,8 +13,9 @@ use crate::{
         search_one,
     },
     hop::HopTest,
+    path::HopPath,
     progress::{Cancelled, Detail, Meter, Progress, Stage},
-    report::{EffortRecord, SweptKeyRecord, TotalsRecord, TradeAnswer, TradeRow},
+    report::{EffortRecord, MarginsRecord, SweptKeyRecord, TotalsRecord, TradeAnswer, TradeRow},
     scenario::{Entries, Key, Kind, Scenario, ScenarioProblem, fits, nearest_key},
 };
 
@@ -383,6 +384,7 @@ impl<'a> Trade<'a> {
         let test = HopTest::new(Arc::clone(&prepared.chain));
         let (answer, found) = verdict_of(&test, ends, &scenario.search, proof_budget_cells, meter)?;
         let effort = scenario.search.effort;
+        let path = self.exact_path(&scenario, &prepared, &found);
         Ok(TradeRow {
             values: self.named(values),
             verdict: Some(answer.verdict),
@@ -395,7 +397,8 @@ impl<'a> Trade<'a> {
                 let hops = hops.max(1) as f64;
                 distance_m / hops > 0.01 * radius_m
             }),
-            totals: self.totals(&scenario, &prepared, &found),
+            totals: path.as_ref().map(|path| TotalsRecord::from(&path.totals)),
+            margins: path.as_ref().and_then(MarginsRecord::of),
             effort: match &found.outcome {
                 Outcome::Path { cost, .. } => Some(EffortRecord::new(effort, cost.effort())),
                 Outcome::EndpointsRefuse(_) | Outcome::NoPath(_) => None,
@@ -404,16 +407,15 @@ impl<'a> Trade<'a> {
         })
     }
 
-    /// The totals of the path found, for exact commands; `None` without one, or if it has too many hops to list.
-    fn totals(&self, scenario: &Scenario, prepared: &Prepared, found: &Answer) -> Option<TotalsRecord> {
+    /// The path found, with exact commands; `None` without one, or if it has too many hops to list.
+    fn exact_path(&self, scenario: &Scenario, prepared: &Prepared, found: &Answer) -> Option<HopPath> {
         let Outcome::Path { legs, .. } = &found.outcome else { return None };
         let hopper = scenario.hopper.with_any_command();
         let is_exact = hopper.limits() == scenario.hopper.limits();
         let exact = || self.survey.prepare(&Scenario { hopper, ..scenario.clone() }).ok();
         let exact = if is_exact { None } else { Some(exact()?) };
         let prepared = exact.as_ref().unwrap_or(prepared);
-        let path = prepared.path(&HopTest::new(Arc::clone(&prepared.chain)), legs, &scenario.search).ok()?;
-        Some(TotalsRecord::from(&path.totals))
+        prepared.path(&HopTest::new(Arc::clone(&prepared.chain)), legs, &scenario.search).ok()
     }
 
     /// Whether any answer depends on a key: neighbouring cells along it are compared until two differ.
