@@ -207,7 +207,7 @@ fn tables(records: &Records) -> Vec<(&'static str, &'static str, Vec<String>, Ve
         ("A path in time (`--trajectory`)", "trajectory", trajectory, vec![]),
         ("Landings of trials (`simulate --output`), CSV and Parquet", "landings", landings, vec![]),
         ("`fan --output`", "fan", header(|out| fan.write_csv(out)), vec!["FanRecord"]),
-        ("`trade --output`", "trade", header(|out| trade.write_csv(out)), vec!["TradeRow", "TotalsRecord"]),
+        ("`trade --output`", "trade", header(|out| trade.write_csv(out)), vec!["TradeRow", "TotalsRecord", "MarginsRecord"]),
         (
             "`compare --output`",
             "compare",
