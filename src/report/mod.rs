@@ -49,7 +49,7 @@ pub use path_record::{
 pub use plan_answer::{PlanAnswer, plan_text};
 pub use proof_record::{GapRecord, ProofRecord, ProofSummaryRecord, StretchRecord};
 pub use propellant_record::{PropellantShortage, StoresRecord};
-pub use reliability_record::{ReliablePathRecord, reliable_paths_text};
+pub use reliability_record::{ReliablePathRecord, SuccessEstimate, reliable_paths_text};
 pub use require_answer::{RequireAnswer, RequireTry};
 pub use simulate_answer::{
     EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, simulate_text,

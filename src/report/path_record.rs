@@ -9,6 +9,7 @@ use super::{
     hop_margins::HopMarginsRecord,
     limit_pair::LimitPair,
     propellant_record::{StoresRecord, stores_columns},
+    reliability_record::SuccessEstimate,
     stated::stated,
 };
 use crate::{
@@ -213,6 +214,9 @@ pub struct TotalsRecord {
     /// Propellant beyond what the machine has, if the path takes too much.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub propellant_short_kg: Option<f64>,
+    /// How reliably the path is flown, where errors are given and the estimate was wanted.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub estimate: Option<SuccessEstimate>,
     /// Whether the machine has a key of propulsion, so that text states the delta-v. The scenario says so, JSON does not: false after
     /// reading.
     #[serde(skip)]
@@ -273,6 +277,7 @@ impl From<&Totals> for TotalsRecord {
             propellant_kg: totals.propellant.map(|propellant| unsigned_zero(propellant.used_kg)),
             mass_end_kg: totals.propellant.map(|propellant| propellant.mass_end_kg),
             propellant_short_kg: totals.propellant_short_kg(),
+            estimate: None,
             propulsive: totals.propulsive,
         }
     }

@@ -30,7 +30,10 @@ pub fn plan_text(answer: &PlanAnswer, means: FurtherMeans<'_>) -> String {
         text.push('\n');
         text.push_str(&path_text(&answer.path, totals));
     }
-    text.push_str(&reliable_paths_text(&answer.reliable_paths));
+    text.push_str(&reliable_paths_text(&answer.reliable_paths, answer.check.hops));
+    if let Some(estimate) = answer.totals.as_ref().and_then(|totals| totals.estimate) {
+        text.push_str(&estimate.text(&answer.reliable_paths, answer.check.hops));
+    }
     if answer.verified == Some(true) {
         let of = if answer.check.propellant_shortage.is_some() { " of a hop" } else { "" };
         text.push_str("verified: every hop was flown again by direct simulation and breaks no limit");

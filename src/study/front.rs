@@ -11,7 +11,7 @@ use crate::{
     path::{HopPath, PathError, generate},
     progress::Progress,
     scenario::Scenario,
-    uncertainty::{Mission, Policy, Simulation},
+    uncertainty::{Mission, Policy, Simulation, TrialOptions},
 };
 
 /// A journey whose paths are flown in trials.
@@ -66,6 +66,19 @@ impl FlownJourney<'_> {
             *takeoffs = TakeoffScatter::OfPosition;
         }
         Ok(CostToGo::with_reliability(self.test, nodes, options, &reliability, progress)?)
+    }
+
+    /// The share of fixed trials of one path that reach the goal.
+    pub(super) fn success_of(
+        &self,
+        found: &graph::Answer,
+        path: &HopPath,
+        options: &TrialOptions,
+        progress: &dyn Progress,
+    ) -> Result<f64, SimulateError> {
+        let replans = options.policy == Policy::Replan;
+        let to_go = replans.then(|| self.costs_to_go(found, progress)).transpose()?.map(Arc::new);
+        Ok(self.simulation(path, to_go.as_ref())?.estimated_success(options, progress)?)
     }
 
     /// Estimates the success of the paths of a front, and takes the one to fly: [`preferred_path`].

@@ -11,8 +11,9 @@ use crate::{
     hop::HopTest,
     path::{HopPath, PathError, TooManyHops},
     progress::Progress,
-    report::CheckAnswer,
+    report::{CheckAnswer, SuccessEstimate},
     scenario::Scenario,
+    uncertainty::Uncertainty,
 };
 
 /// Bounds on the fewest hops are proved, for every choice of points.
@@ -89,6 +90,32 @@ impl Searched {
             graph::search_pairs(test, pairs, &case.scenario.search, progress)?
         };
         Ok(found.into_iter().map(|found| Self { found, reliable_paths: Vec::new(), proof: None }).collect())
+    }
+
+    /// How reliably the path of the answer is flown, under the policy of the scenario; `None` without errors.
+    ///
+    /// A path of a front was estimated when it was chosen; another one is flown here.
+    pub(super) fn success_estimate(
+        &self,
+        test: &HopTest,
+        ends: (Station, Station),
+        case: &Case,
+        path: &HopPath,
+        progress: &dyn Progress,
+    ) -> Result<Option<SuccessEstimate>, JourneyError> {
+        let scenario = &case.scenario;
+        let Some(keys) = scenario.uncertainty.filter(|keys| keys.errors != Uncertainty::NONE) else { return Ok(None) };
+        let hops = self.found.hops();
+        let known = self.reliable_paths.iter().find(|path| Some(path.cost.hops()) == hops).and_then(|path| path.success);
+        let success_estimated = match known {
+            Some(share) => share,
+            None => {
+                let ground = dem_ground(case).map_err(Box::new)?;
+                let journey = FlownJourney { scenario, test, ends, ground: ground.as_ref() };
+                journey.success_of(&self.found, path, &keys.options(), progress).map_err(Box::new)?
+            }
+        };
+        Ok(Some(SuccessEstimate { success_estimated, success_policy: keys.policy }))
     }
 
     /// The answer as plain data together with the path that it found, whose hops may be too many to list. An answer whose path no

@@ -94,7 +94,7 @@ fn hop_check_and_plan_answer_as_the_command() {
             assert_eq!(of_study(&own, "check", &checked.warnings, answer), of_command("check", name, settings, &[]), "{name}");
         }
         let case = case(name, &[], Commands::OfTheMachine);
-        let planned = plan(&case, PlanOptions { proof: None, verify: true }, &()).unwrap();
+        let planned = plan(&case, PlanOptions { verify: true, estimate: true, ..PlanOptions::default() }, &()).unwrap();
         assert_eq!(
             of_study(&case, "plan", &planned.warnings, &planned.answer),
             of_command("plan", name, &[], &["--verify"]),
