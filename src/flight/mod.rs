@@ -10,5 +10,6 @@ mod quasi;
 
 pub use deviations::{Uncertainty, UncertaintyProblem};
 pub(crate) use draws::{HopDraws, TrialDraws};
+pub use hop::DrawnErrors;
 pub(crate) use hop::{Command, Errors, FlownHop};
 pub(crate) use hop_trials::{HopTrials, JudgedHop, Survival};

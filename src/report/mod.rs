@@ -52,7 +52,8 @@ pub use propellant_record::{PropellantShortage, StoresRecord};
 pub use reliability_record::{ReliablePathRecord, SuccessEstimate, reliable_paths_text};
 pub use require_answer::{RequireAnswer, RequireTry};
 pub use simulate_answer::{
-    EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, simulate_text,
+    EllipseRecord, ErrorRecord, LandingRecord, OutcomeRecord, RateRecord, SimulateAnswer, SimulationRecord, SuccessRequirement,
+    simulate_text,
 };
 pub use size_answer::{SizeAnswer, SizeRecord};
 pub use text::{FurtherMeans, check_text, hop_text, path_text, require_text};

@@ -20,6 +20,52 @@ pub struct SimulateAnswer {
     /// Both policies on the same draws, if requested.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub compare: Vec<SimulationRecord>,
+    /// Whether the success that was asked for is shown.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub requirement: Option<SuccessRequirement>,
+}
+
+/// A success rate that trials have to show.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SuccessRequirement {
+    /// The success that was asked for.
+    pub success_min: f64,
+    /// Whether the lower end of the 95 % interval, under the policy of the scenario, is at least that.
+    pub success_min_shown: bool,
+}
+
+impl SimulateAnswer {
+    /// The answer to whether this success is shown; `None` asks for nothing. Without trials nothing is shown.
+    #[must_use]
+    pub fn requiring(mut self, success_min: Option<f64>) -> Self {
+        let low = self.simulation.as_ref().map(|simulation| simulation.success_rate_ci95[0]);
+        self.requirement = success_min.map(|success_min| SuccessRequirement {
+            success_min,
+            success_min_shown: low.is_some_and(|low| low >= success_min),
+        });
+        self
+    }
+
+    /// Whether the success that was asked for, if any was, is shown.
+    pub fn shows_success(&self) -> bool {
+        self.requirement.is_none_or(|requirement| requirement.success_min_shown)
+    }
+
+    /// Whether the success that was asked for is shown, as a sentence.
+    fn requirement_text(&self) -> Option<String> {
+        let SuccessRequirement { success_min, success_min_shown } = self.requirement?;
+        let SimulationRecord { success_rate, success_rate_ci95: [low, _], .. } = self.simulation.as_ref()?;
+        Some(if success_min_shown {
+            format!("a success of {success_min} is shown: the lower end of the 95 % interval is {low:.4}\n")
+        } else if *success_rate > success_min {
+            format!(
+                "a success of {success_min} is not shown: the lower end of the 95 % interval is {low:.4}, below it; more trials narrow the \
+                 interval\n"
+            )
+        } else {
+            format!("a success of {success_min} is not shown: the lower end of the 95 % interval is {low:.4}, below it\n")
+        })
+    }
 }
 
 /// The text of `chta simulate`.
@@ -33,12 +79,19 @@ pub fn simulate_text(answer: &SimulateAnswer, means: FurtherMeans<'_>) -> String
         text.push('\n');
         text.push_str(&record.text());
     }
+    if let Some(sentence) = answer.requirement_text() {
+        text.push('\n');
+        text.push_str(&sentence);
+    }
     text
 }
 
 /// The results of the trials of one policy.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SimulationRecord {
+    /// The number of the first trial, of trials flown in ranges; absent if it is 0.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub first_trial: u64,
     /// The number of trials flown.
     pub trials: u64,
     /// The seed of all draws.
@@ -57,6 +110,11 @@ pub struct SimulationRecord {
     pub landings: Vec<LandingRecord>,
     /// The rate after each 1 000 trials, at most some hundred points, and at the end.
     pub convergence: Vec<RateRecord>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
+const fn is_zero(number: &u64) -> bool {
+    *number == 0
 }
 
 /// Trials by outcome.
@@ -157,6 +215,7 @@ impl SimulationRecord {
         let last = summary.convergence.len().saturating_sub(1);
         let kept = |i: usize| (i + 1).is_multiple_of(every) || i == last;
         Self {
+            first_trial: summary.first_trial,
             trials: summary.trials,
             seed: summary.seed,
             policy: summary.policy,
@@ -193,6 +252,9 @@ impl SimulationRecord {
         ));
         let ended: Vec<_> =
             self.outcomes.each().filter(|(_, count)| *count > 0).map(|(name, count)| format!("{name} {count}")).collect();
+        if self.first_trial > 0 {
+            sheet.line(format_args!("the first of these trials has the number {}", self.first_trial));
+        }
         sheet.line(format_args!("outcomes: {}", ended.join(", ")));
         sheet.line(format_args!(
             "\n{} (m)\n{:>5}{:>11}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}{:>10}",

@@ -59,7 +59,7 @@ mod trial;
 mod wilson;
 
 pub use crate::{
-    flight::{Uncertainty, UncertaintyProblem},
+    flight::{DrawnErrors, Uncertainty, UncertaintyProblem},
     ground::LiftoffVelocity,
 };
 pub use mission::Mission;

@@ -2,7 +2,7 @@
 
 use nalgebra::{Point3, Vector2};
 
-use super::TrialOutcome;
+use super::{DrawnErrors, TrialOutcome};
 use crate::quantity::Angle;
 
 /// One flown hop of one trial.
@@ -35,6 +35,8 @@ pub struct HopRecord {
     pub rest_m: Point3<f64>,
     /// Horizontal distance from the planned landing to the position of rest, m.
     pub error_m: f64,
+    /// The errors that were drawn for it.
+    pub drawn: DrawnErrors,
     /// Whether it met the ground.
     pub landed: bool,
     /// The outcome of the trial, if this is its last hop.

@@ -12,6 +12,8 @@ pub struct Summary {
     pub policy: Policy,
     /// The seed of all draws.
     pub seed: u64,
+    /// The number of the first trial; 0 unless they are a later part of a run.
+    pub first_trial: u64,
     /// The number of trials flown; fewer than requested if the success rate was precise enough before.
     pub trials: u64,
     /// The outcomes; their sum is `trials`.

@@ -196,6 +196,7 @@ impl Statistics {
         Summary {
             policy,
             seed,
+            first_trial: self.trials.first().map_or(0, |first| first.start),
             trials: self.outcomes.total(),
             outcomes: self.outcomes,
             success: self.success(),
